@@ -1,20 +1,20 @@
-//! Solvers by the names that users type.
+//! Solvers by name.
 
 use super::{ActiveSet, InequalitySolver, MonotoneMultigrid};
 use crate::instances::compiled;
 use crate::linear::LinearMethod;
 use crate::real::Real;
 
-/// What a user may choose about solvers by name.
+/// The options of the solvers that [`solver_by_name`] returns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SolverOptions {
-    /// The linear solver inside solvers that have the choice.
+    /// The method for the linear systems, in solvers that have more than one.
     pub linear: LinearMethod,
 }
 
 impl SolverOptions {
-    /// Sets the linear solver.
+    /// Sets the method for the linear systems.
     #[must_use]
     pub fn linear(mut self, linear: LinearMethod) -> Self {
         self.linear = linear;
@@ -22,13 +22,13 @@ impl SolverOptions {
     }
 }
 
-/// Makes of one list the names with their summaries, and the function that finds a solver.
+/// Defines [`SOLVERS`] and the function `new_solver` from one list of names, summaries and constructors.
 macro_rules! solvers_by_name {
     ($options:ident: $($name:literal, $summary:literal => $solver:expr;)*) => {
         /// Names of the solvers, with one line each.
         pub const SOLVERS: &[(&str, &str)] = &[$(($name, $summary)),*];
 
-        fn made<T: Real>(
+        fn new_solver<T: Real>(
             name: &str,
             $options: &SolverOptions,
         ) -> Option<Box<dyn InequalitySolver<T>>> {
@@ -40,7 +40,7 @@ macro_rules! solvers_by_name {
     };
 }
 
-// A solver gets its name by one entry here: name, summary, constructor from the options.
+// one entry for each solver: name, summary, constructor from the options
 solvers_by_name! { options:
     "active-set", "primal-dual active set, started from coarser levels in conforming P1"
         => ActiveSet::default().linear(options.linear);
@@ -48,13 +48,13 @@ solvers_by_name! { options:
         => MonotoneMultigrid::default();
 }
 
-/// The solver of this name.
+/// The solver of this name; `None` if there is none.
 pub fn solver_by_name<T: Real>(
     name: &str,
     options: &SolverOptions,
 ) -> Option<Box<dyn InequalitySolver<T>>> {
     compiled!(
         T: fn(&str, &SolverOptions) -> Option<Box<dyn InequalitySolver<T>>>
-            = made
+            = new_solver
     )(name, options)
 }

@@ -14,24 +14,21 @@ use crate::real::Real;
 /// correction towards this bound. An unknown counts as active if its gap is at most `|s_i|`. No
 /// contact state of a solver enters.
 ///
-/// Reasons for these scalings. *Violations of bounds* (`feasibility`) are relative to `U`: by the
-/// comparison principle a violation of a bound by `g` changes the solution by `g` at most. Bounds
-/// far from the solution (an obstacle at minus a million) do not enter `U`, where they would hide
-/// everything else. *Residuals and multipliers* are relative to `E` in the dual norm
-/// `(sum r_i^2 / d_i)^(1/2)`: `r_i^2 / (2 d_i)` is the decrease of the energy by a correction of
-/// unknown `i` alone, so that each measure bounds a relative distance to the solution from below.
-/// The Euclidean norm of `r` divided by the Euclidean norm of `b` is no measure for an
-/// over-penalised scheme: with entries of size `eta h^-2` (`eta` the penalty, `h` the mesh size) it
-/// is dominated by the penalty rows and cannot fall below rounding times the largest entry. Sums,
-/// not maxima, because the multiplier of one unknown shrinks like the volume of its patch: on a
-/// fine mesh each wrong multiplier is tiny, while all of them together may change the solution by
-/// as much as the solution itself. A sum is never below its largest term.
+/// Reasons for these scalings. *Violations of bounds* (`feasibility`) are relative to `U`: by the comparison principle
+/// a violation of a bound by `g` changes the solution by `g` at most. Bounds far from the solution (an obstacle at
+/// minus a million) do not enter `U`: relative to them all violations would be small. *Residuals and multipliers* are
+/// relative to `E` in the dual norm `(sum r_i^2 / d_i)^(1/2)`: `r_i^2 / (2 d_i)` is the decrease of the energy by a
+/// correction of unknown `i` alone, so that each measure bounds a relative distance to the solution from below. The
+/// Euclidean norm of `r` divided by the Euclidean norm of `b` is no measure for an over-penalised scheme: with entries
+/// of size `eta h^-2` (`eta` the penalty, `h` the mesh size) the quotient is dominated by the penalty rows and cannot
+/// fall below rounding times the largest entry. The measures are sums, not maxima, because the multiplier of one
+/// unknown is of the size of the volume of its patch: on a fine mesh each wrong multiplier is tiny, while all of them
+/// together may change the solution by as much as the solution itself.
 ///
-/// Where the energy vanishes up to rounding (a constant, zero), the norm `(sum c_i^2 / d_i)^(1/2)` of the
-/// load `c` without Dirichlet data replaces `E`, then `(sum d_i u_i^2)^(1/2)`, then one. All sums are in
-/// `f64`, of numbers divided by a power of two near the largest, so that the certificate of
-/// multiples of data is that of the data. If a number is not finite or sizes do not match, all four
-/// violations are infinite.
+/// If the energy vanishes up to rounding (a constant, zero), the norm `(sum c_i^2 / d_i)^(1/2)` of the load `c` without
+/// Dirichlet data replaces `E`, then `(sum d_i u_i^2)^(1/2)`, then one. All sums are in `f64`, of numbers divided by a
+/// power of two near the largest, so that the certificate does not change if the data and the values are multiplied by
+/// a power of two. If a number is not finite or sizes do not match, all four violations are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -39,9 +36,8 @@ pub struct Certificate {
     /// Largest violation of a bound or Dirichlet value, divided by `U`.
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub feasibility: f64,
-    /// Dual norm, divided by `E`, of the multipliers of active unknowns with the wrong sign. Each
-    /// counts at most with the multiplier whose step reaches the opposite bound, where its sign
-    /// would be right.
+    /// Dual norm, divided by `E`, of the multipliers of active unknowns with the wrong sign. A multiplier counts at
+    /// most as much as one whose step reaches the opposite bound, where its sign would be right.
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub multiplier: f64,
     /// `(sum d_i min(gap_i, s_i)^2)^(1/2)` divided by `E`, the sum over all `i` with positive gap
@@ -53,10 +49,9 @@ pub struct Certificate {
     /// ([`Violations::of`](super::Violations::of)).
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub residual: f64,
-    /// Bound on the relative algebraic error in the energy norm, if the solver computes one; else
-    /// `None`. It rests on an estimate of the smallest eigenvalue of the preconditioned matrix and,
-    /// for a matrix that is not symmetric, on the assumption that no strongly active unknown
-    /// becomes inactive.
+    /// Bound on the relative algebraic error in the energy norm, if the solver computes one; else `None`. Without
+    /// factors the bound depends on an estimate of the smallest eigenvalue of the preconditioned matrix and, for a
+    /// matrix that is not symmetric, on the assumption that no strongly active unknown becomes inactive.
     pub algebraic_bound: Option<f64>,
 }
 
@@ -134,8 +129,8 @@ pub(crate) fn positive_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-/// The contact states of values that a solver without them found: active at the nearer bound is an unknown
-/// whose gap is at most the Gauss-Seidel step `r_i / d_i` towards this bound.
+/// The contact states of values from a solver that has no contact states: an unknown is active at the nearer bound if
+/// its gap is at most the Gauss-Seidel step `r_i / d_i` towards this bound.
 #[must_use]
 pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> {
     let mut residual = vec![0.0; inequality.size()];
@@ -158,7 +153,7 @@ pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> 
     inequality.bounds.iter().enumerate().map(state).collect()
 }
 
-/// The number of active unknowns; fixed ones do not count.
+/// The number of active unknowns; unknowns with a Dirichlet value do not count.
 #[must_use]
 pub fn count_active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usize {
     inequality

@@ -1,12 +1,12 @@
-//! The data, in addition to an inequality, from which an iterative solver starts.
+//! The data from which a solver of an inequality starts.
 
 use super::step_counter::StepCounter;
 use crate::algebra::{Contact, Support};
 use crate::linear::CoarseSpaces;
 use crate::real::Real;
 
-/// Relative tolerance in the energy norm for iterative solvers of P1, whose solution serves as an
-/// initial guess only: below the discretisation error of all meshes that fit into memory.
+/// Relative tolerance in the energy norm for iterative solvers of P1 if the solution is only the initial guess of
+/// another solve: below the discretisation error of all meshes that fit into memory.
 pub(crate) const P1_ENERGY_TOLERANCE: f64 = 1e-4;
 
 /// Coarse spaces, starting values and accuracy of a solve. The starting active set is part of the
@@ -22,7 +22,7 @@ pub struct InitialGuess<T> {
     /// energy norm of the iterate); `None` for the limit of the certificate. Direct solvers ignore
     /// it.
     pub energy_tolerance: Option<f64>,
-    /// Receives the number of each outer step as it begins.
+    /// The counter of outer steps, which the solver updates.
     pub steps: StepCounter,
 }
 
@@ -57,7 +57,7 @@ impl<T> InitialGuess<T> {
         self.energy_tolerance = Some(tolerance);
         self
     }
-    /// Sets what receives the number of each outer step.
+    /// Sets the counter of outer steps.
     #[must_use]
     pub fn steps(mut self, steps: StepCounter) -> Self {
         self.steps = steps;
@@ -65,8 +65,8 @@ impl<T> InitialGuess<T> {
     }
 }
 
-/// The contact of unknowns by that of vertices: an unknown is in contact if more than half of the vertices of its
-/// support are.
+/// The contact states of unknowns from those of vertices: a bound is active at an unknown if it is active at more than
+/// half of the vertices of its support.
 pub(crate) fn contact_of_supports(supports: &[Support], contact: &[Contact]) -> Vec<Contact> {
     let state = |support: &Support| {
         let vertices = support.vertices();
@@ -79,7 +79,7 @@ pub(crate) fn contact_of_supports(supports: &[Support], contact: &[Contact]) -> 
     supports.iter().map(state).collect()
 }
 
-/// The means of vertex values over the vertices of each support.
+/// The mean of the vertex values over each support.
 pub(crate) fn means_over_supports<T: Real>(supports: &[Support], values: &[T]) -> Vec<T> {
     let mean = |support: &Support| {
         let vertices = support.vertices();

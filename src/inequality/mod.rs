@@ -1,9 +1,8 @@
 //! Solvers of the algebraic variational inequality, and the certificate of their results.
 //!
-//! Find `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v` within the bounds
-//! ([`Inequality`]). A solver takes it with an [`InitialGuess`] and returns a [`Solution`], whose
-//! [`Outcome`] says whether it converged. The [`Certificate`] measures any `u` without knowledge of the
-//! solver.
+//! Find `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v` within the bounds ([`Inequality`]). A solver
+//! takes it with an [`InitialGuess`] and returns a [`Solution`], whose [`Outcome`] states whether the solver converged.
+//! The [`Certificate`] measures the violations of any `u`, whichever solver computed it.
 //!
 //! Words: a *fixed* unknown has a Dirichlet value (or two bounds that coincide); an *active* one
 //! has the value of a bound; an *inactive* one is solved for; a *free* one is not fixed. The
@@ -18,19 +17,19 @@
 //! | `interior_point/` | the interior point method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid/` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`] |
-//! | `violations` | [`certify`], [`Violations`]: the sums and maxima of a certificate, which parts of a mesh merge |
-//! | `energy_error_bound` | [`energy_error_bound`]: a proven bound for any values |
-//! | `preconditioned_error_bound` | the same bound by a preconditioner in place of factors |
+//! | `violations` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh |
+//! | `energy_error_bound` | [`energy_error_bound`]: a proven bound on the error of any values, by factors |
+//! | `preconditioned_error_bound` | a bound on the error of admissible values, by a preconditioner |
 //! | `scales` | the energy norm and the largest value to which violations are relative |
 //! | `recession` | whether a solution exists and is unique where only bounds hold the domain |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
-//! | `step_counter` | [`StepCounter`]: the outer step in which a solver is |
+//! | `step_counter` | [`StepCounter`]: the number of the present outer step of a solver |
 //! | `by_name` | [`solver_by_name`] |
-//! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`StageRun`]: the result of a solver |
+//! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`Stage`], [`StageRun`]: the result of a solver |
 //!
-//! [`ActiveSet`] runs in stages, each only if the preceding one has not converged; its
-//! `strategy` lists them with all thresholds, and [`Solution::stages`] tells which ones ran. The
-//! certificate decides between [`Outcome::Converged`] and [`Outcome::Stalled`] after every stage.
+//! [`ActiveSet`] runs in stages, each only if no stage before it has converged. `active_set/strategy` lists the stages
+//! with all thresholds; [`Solution::stages`] contains those that ran. If the active set no longer changes, the outcome
+//! is [`Outcome::Converged`] or [`Outcome::Stalled`], depending on the certificate.
 
 mod active_set;
 mod by_name;

@@ -18,7 +18,7 @@ pub enum Outcome {
     Cycling,
     /// Rounding prevents the complementarity conditions from holding to the tolerance.
     Stalled,
-    /// Values from elsewhere do not satisfy the inequality to the tolerance.
+    /// Values that no solver of this library computed do not satisfy the inequality to the tolerance.
     NotASolution,
     /// The matrix is not positive definite on the inactive unknowns (penalty too small).
     NotCoercive,
@@ -64,7 +64,7 @@ impl Outcome {
             Outcome::OutOfMemory => "out-of-memory",
         }
     }
-    /// Whether values that come with the outcome are an iterate: other ones mean nothing.
+    /// Whether the values of a solution with this outcome are an iterate; otherwise they have no meaning.
     pub(crate) fn has_iterate(self) -> bool {
         !matches!(
             self,
@@ -77,7 +77,7 @@ impl Outcome {
                 | Outcome::Malformed
         )
     }
-    /// The outcome that an error of the data stands for; none for errors of another kind.
+    /// The outcome of a solve that corresponds to an error of the data; `None` for errors of another kind.
     pub(crate) fn of_error(error: &Error) -> Option<Self> {
         match error {
             Error::CoefficientNotPositive { value, .. } if value.is_finite() => {
@@ -91,7 +91,7 @@ impl Outcome {
             _ => None,
         }
     }
-    /// What the outcome says, in one sentence.
+    /// An explanation of the outcome, in one sentence.
     #[must_use]
     pub fn message(self) -> &'static str {
         match self {

@@ -1,13 +1,11 @@
-//! Directions in which the energy does not grow: whether a solution exists, and whether there is one
-//! only.
+//! Directions in which the energy does not grow: whether a solution exists, and whether it is unique.
 //!
-//! `A` is positive semidefinite with the kernel of [`Inequality::kernel`]: constants on components of
-//! the domain that neither Dirichlet data nor a reaction hold. A kernel vector `w` along which no bound
-//! stops the unknowns is a direction of recession. The energy along `u + t w` is linear in `t` with
-//! slope `-b.w`: a load with `b.w > 0` pulls the component away and there is no solution; for
-//! `b.w = 0` a solution may be moved along `w`; for `b.w < 0` the load presses the component against its
-//! bounds. (Fichera, Atti Accad. Naz. Lincei 7 (1964); Lions, Stampacchia, Comm. Pure Appl. Math. 20
-//! (1967) 493-519, section 5.)
+//! `A` is positive semidefinite with the kernel of [`Inequality::kernel`]: constants on components of the domain that
+//! neither Dirichlet data nor a reaction hold. A kernel vector `w` is a direction of recession if no bound limits
+//! `t > 0` in `u + t w`. The energy along `u + t w` is linear in `t` with slope `-b.w`: a load with `b.w > 0` pulls the
+//! component away and there is no solution; for `b.w = 0` a solution may be moved along `w`; for `b.w < 0` the load
+//! presses the component against its bounds. (Fichera, Atti Accad. Naz. Lincei 7 (1964); Lions, Stampacchia, Comm. Pure
+//! Appl. Math. 20 (1967) 493-519, section 5.)
 
 use super::{Outcome, Solution};
 use crate::algebra::{Bound, Inequality};
@@ -17,25 +15,25 @@ use crate::real::Real;
 /// resultant of the load counts as zero.
 const ROUNDING: f64 = 64.0;
 
-/// What a load does along a kernel vector.
+/// The energy along a kernel vector and its negative, within the bounds.
 enum Motion {
-    /// Bounds stop the load, or it presses against them.
+    /// Bounded below, with a bounded set of minimisers: bounds stop both directions, or the one of the load.
     Stopped,
-    /// The load pulls away from all bounds.
+    /// Without a lower bound: no bound stops the direction of the load.
     Unbounded,
-    /// The load is balanced, and bounds stop one direction at most.
+    /// Constant, because the load is balanced; bounds stop one direction at most.
     Balanced,
 }
 
-/// Solves an inequality by `solve` if bounds stop every kernel vector along which the load acts. Else
-/// the outcome is [`Outcome::NoSolution`] with admissible values, or [`Outcome::NotUnique`] with a
-/// solution: that of the problem in which components with a balanced load have no bounds and one
-/// prescribed value, moved until all bounds hold.
+/// Solves an inequality by `solve` if there is no kernel vector or all of them are [`Motion::Stopped`]. Else the
+/// outcome is [`Outcome::NoSolution`] with admissible values if one is [`Motion::Unbounded`], or [`Outcome::NotUnique`]
+/// with a solution: that of the problem in which components with a balanced load have no bounds and one prescribed
+/// value, moved along the kernel vectors until all bounds hold.
 pub(crate) fn solve_with_kernel<T: Real>(
     inequality: &Inequality<T>,
     solve: impl FnOnce(&Inequality<T>) -> Solution<T>,
 ) -> Solution<T> {
-    // a solver names the fault of an inequality that is not well formed
+    // the solver returns the outcome of an inequality that is not well formed
     if inequality.kernel.is_empty() || !inequality.is_well_formed() {
         return solve(inequality);
     }
@@ -70,9 +68,10 @@ pub(crate) fn solve_with_kernel<T: Real>(
     solution
 }
 
+/// The motion along a kernel vector.
 fn motion<T: Real>(inequality: &Inequality<T>, kernel_vector: &[(u32, T)]) -> Motion {
     let (mut resultant, mut terms) = (0.0, 0.0);
-    // whether a bound stops a motion along the vector, and against it
+    // whether a bound stops the direction of the vector, and the opposite one
     let (mut stops_along, mut stops_against) = (false, false);
     for &(i, value) in kernel_vector {
         let (i, value) = (i as usize, value.to_f64());
@@ -100,7 +99,7 @@ fn motion<T: Real>(inequality: &Inequality<T>, kernel_vector: &[(u32, T)]) -> Mo
     }
 }
 
-/// Adds the smallest multiple of a kernel vector with which all bounds of its unknowns hold.
+/// Adds the multiple of a kernel vector, of smallest absolute value, with which all bounds of its unknowns hold.
 fn move_within_bounds<T: Real>(
     inequality: &Inequality<T>,
     kernel_vector: &[(u32, T)],

@@ -1,5 +1,5 @@
-//! The sizes to which violations of the complementarity conditions are relative: one largest value and
-//! one energy norm for the certificate and for every stopping test.
+//! The scales to which violations of the complementarity conditions are relative: a largest value and an energy norm,
+//! for the certificate and for every stopping test.
 
 use std::cmp::Ordering;
 
@@ -7,46 +7,48 @@ use crate::algebra::{Distribution, Inequality};
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
 
-/// The multiple of machine epsilon times the size of its terms below which an energy counts as
-/// vanishing.
+/// The multiple of machine epsilon times the sum of the absolute values of its terms below which an energy counts as
+/// zero.
 const VANISHING: f64 = 8.0;
 
-/// The sizes of values `u` of an inequality.
+/// The scales of values `u` of an inequality.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scales {
     /// The largest of all `|u_i|` and `|v_i|`, `v_i` the admissible value nearest to `u_i`; one if all
     /// are zero.
     pub max_norm: f64,
-    /// The energy norm `E`: the square root of the first of these numbers that does not vanish.
+    /// The energy norm `E`: the square root of the first of these numbers that is not zero.
     ///
     /// 1. The energy with data: `u.A u`; with weak Dirichlet data `u.A u - l.u + q`
-    ///    ([`DirichletEnergy`](crate::algebra::DirichletEnergy)), for a penalised matrix
-    ///    `u.K u + p.(S^-1 p)`. It does not contain the penalty times the square of the data, which for
-    ///    an over-penalised scheme exceeds the energy by any factor on fine meshes. An energy below
-    ///    rounding of its terms counts as zero.
+    ///    ([`DirichletEnergy`](crate::algebra::DirichletEnergy)), for a penalised matrix `u.K u + p.(S^-1 p)`. The
+    ///    energy with data does not contain the penalty times the square of the data, which for an over-penalised
+    ///    scheme exceeds the energy by any factor on fine meshes. An energy below rounding of its terms counts as zero.
     /// 2. `sum c_i^2 / d_i`, `c` the load without Dirichlet data.
     /// 3. `sum d_i u_i^2`, for constants.
     /// 4. One.
     pub energy_norm: f64,
 }
 
-/// What sizes are made of: a maximum and sums over unknowns, of numbers divided by a unit.
+/// The maximum and the sums over unknowns from which [`Scales`] are computed; the sums are divided by the square of a
+/// unit.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
     /// The largest `|u_i|` or `|v_i|`, not divided by the unit.
     max_norm: f64,
+    /// The energy with data; see [`Scales::energy_norm`].
     energy: f64,
     /// The sum of the absolute values of the terms of `energy`.
     terms: f64,
+    /// `sum c_i^2 / d_i`.
     load_energy: f64,
+    /// `sum d_i u_i^2`.
     diagonal_energy: f64,
 }
 
 impl Scales {
-    /// The sizes of `u`. `residual` is `b - A u`, or `c - K u - M^T p` with jump multipliers `p` if they
-    /// are not empty; `diagonal` the positive diagonal; `unit` a power of two by which values, loads
-    /// and residuals are divided before they are squared. Numbers that are not finite give norms that
-    /// are not finite.
+    /// The scales of `u`. `residual` is `b - A u`, or `c - K u - M^T p` with jump multipliers `p` if they are not
+    /// empty; `diagonal` is the positive diagonal; `unit` is a power of two by which values, loads and residuals are
+    /// divided before they are squared. Numbers that are not finite give norms that are not finite.
     pub fn of<T: Real>(
         inequality: &Inequality<T>,
         u: &[T],
@@ -115,12 +117,12 @@ impl Sums {
         }
         sums
     }
-    /// The sizes.
+    /// The scales; `epsilon` is machine epsilon of the scalar, `unit` that of the sums.
     pub fn scales(&self, epsilon: f64, unit: f64) -> Scales {
         let least = VANISHING * epsilon * self.terms;
         let energy = [(self.energy, least), (self.load_energy, 0.0), (self.diagonal_energy, 0.0)]
             .into_iter()
-            // true for numbers that are not finite
+            // true for NaN
             .find(|(energy, least)| energy.partial_cmp(least).is_none_or(Ordering::is_gt))
             .map_or(1.0, |(energy, _)| energy);
         Scales {
@@ -128,7 +130,7 @@ impl Sums {
             energy_norm: energy.sqrt() * unit,
         }
     }
-    /// The sums over all parts, all in one unit.
+    /// The maximum and the sums over all parts, which must have the same unit.
     pub fn over_parts(self, distribution: &dyn Distribution) -> Self {
         let mut max_norm = [self.max_norm];
         distribution.largest(&mut max_norm);
@@ -137,7 +139,7 @@ impl Sums {
         let [energy, terms, load_energy, diagonal_energy] = sums;
         Self { max_norm: max_norm[0], energy, terms, load_energy, diagonal_energy }
     }
-    /// The sums with another unit, that of before times `ratio`.
+    /// The sums in the unit that is `ratio` times the present one.
     pub fn in_units_of(self, ratio: f64) -> Self {
         let factor = ratio.recip().powi(2);
         Self {
@@ -148,12 +150,12 @@ impl Sums {
             diagonal_energy: self.diagonal_energy * factor,
         }
     }
-    /// All of them as numbers.
+    /// The maximum and the sums as numbers.
     pub fn to_numbers(self) -> [f64; 5] {
         let Self { max_norm, energy, terms, load_energy, diagonal_energy } = self;
         [max_norm, energy, terms, load_energy, diagonal_energy]
     }
-    /// What [`Sums::to_numbers`] has made numbers of.
+    /// The sums from the numbers of [`Sums::to_numbers`].
     pub fn from_numbers(numbers: [f64; 5]) -> Self {
         let [max_norm, energy, terms, load_energy, diagonal_energy] = numbers;
         Self { max_norm, energy, terms, load_energy, diagonal_energy }
@@ -162,7 +164,7 @@ impl Sums {
     pub fn is_zero(&self) -> bool {
         [self.max_norm, self.terms, self.load_energy, self.diagonal_energy] == [0.0; 4]
     }
-    /// The sums over the unknowns of both.
+    /// The sums over the unknowns of `self` and `other`, which must have the same unit.
     pub fn merge(self, other: Self) -> Self {
         Self {
             max_norm: maximum(self.max_norm, other.max_norm),
@@ -178,7 +180,7 @@ impl Sums {
     }
 }
 
-/// The larger number; not a number if one of the two is not a number.
+/// The larger number; NaN if one of the two is NaN.
 pub(super) fn maximum(a: f64, b: f64) -> f64 {
     if a <= b || b.is_nan() { b } else { a }
 }

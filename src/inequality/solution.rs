@@ -9,9 +9,8 @@ use crate::real::Real;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Solution<T> {
-    /// The unknowns: the solution if converged. Else, from the active set method, the iterate with
-    /// the smallest distance from its projected Jacobi step, measured in the norm of the diagonal of
-    /// `A`; from the other methods the last iterate.
+    /// The values of the unknowns: the solution if converged. Else, from the active set method, the iterate with the
+    /// smallest projected Jacobi step, in the norm of the diagonal of `A`; from the other methods the last iterate.
     pub values: Vec<T>,
     /// Which bound, if any, is active at each unknown.
     pub contact: Vec<Contact>,
@@ -30,9 +29,8 @@ pub struct Solution<T> {
     pub linear: usize,
     /// The linear solver: `direct`, or the name of a preconditioner.
     pub linear_solver: &'static str,
-    /// Bound on the relative algebraic error in the energy norm, if the solver computes one: on the
-    /// energy norm of the difference between `values` and the exact solution of the inequality,
-    /// divided by the energy norm of the iterate.
+    /// Bound on the relative algebraic error in the energy norm, if the solver computes one: the energy norm of the
+    /// difference between `values` and the exact solution of the inequality, divided by the energy norm of the iterate.
     pub algebraic_bound: Option<f64>,
     /// The jump multipliers `p = S (M u - g)` of a
     /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix), which defines `S`, `M` and `g`, if the
@@ -59,8 +57,8 @@ impl<T> Solution<T> {
             stages: Vec::new(),
         }
     }
-    /// The result of a solve that ends before the first iterate: the admissible values nearest to zero,
-    /// none of them active.
+    /// The result of a solve that ends before the first iterate: the admissible values nearest to zero, all contact
+    /// states inactive.
     pub(crate) fn without_iterate(inequality: &Inequality<T>, outcome: Outcome) -> Self
     where
         T: Real,

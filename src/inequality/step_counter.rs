@@ -1,11 +1,11 @@
-//! The number of the outer step in which a solver is.
+//! The number of the present outer step of a solver.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The number of the outer step in which a solver is, for whoever shows its progress: clones share the
-/// number. Solvers of this library count linear systems with a new active set, steps of the interior point
-/// method when that method ends, and cycles of monotone multigrid.
+/// The number of the present outer step of a solver, from which another thread can display the progress. Clones share
+/// the number. Solvers of this library count linear systems with a new active set, steps of the interior point method
+/// (when that method ends), and cycles of monotone multigrid.
 ///
 /// ```
 /// use unilateral::inequality::StepCounter;

@@ -1,4 +1,4 @@
-//! How a certificate is computed: by sums and maxima over the unknowns of one part of a mesh, or of all.
+//! The sums and maxima from which a certificate is computed, over the unknowns of one part of a mesh or of all parts.
 
 use super::certificate::{Certificate, positive_diagonal, residual};
 use super::scales::{Scales, Sums, maximum};
@@ -34,9 +34,8 @@ fn certificate_of<T: Real>(
     certify_with_rounding(inequality, u, jump_multipliers).0
 }
 
-/// The certificate, and the dual norm, divided by `E`, of the vector with the entries `d_i U`. This
-/// second number times machine epsilon is the size of rounding errors in `A u`, below which no
-/// solver can reduce the residual.
+/// The certificate, and the dual norm of the vector with the entries `d_i U`, divided by `E`. The second number times
+/// machine epsilon is the size of rounding errors in `A u`, below which no solver can reduce the residual.
 pub(crate) fn certify_with_rounding<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
@@ -50,8 +49,9 @@ pub(crate) fn certify_with_rounding<T: Real>(
     .certificate_with_rounding()
 }
 
-/// The violations of the complementarity conditions at the unknowns that a part of a mesh owns: sums and
-/// maxima that [merge](Violations::merge) into those at all unknowns, of which the [`Certificate`] is made.
+/// The violations of the complementarity conditions at the unknowns that a part of a mesh owns: sums and maxima. Those
+/// of all parts are [merged](Violations::merge) into the violations at all unknowns, from which the [`Certificate`] is
+/// computed.
 ///
 /// ```
 /// use unilateral::inequality::{Violations, certify};
@@ -70,17 +70,18 @@ pub(crate) fn certify_with_rounding<T: Real>(
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Violations {
-    /// A power of two near the largest value; by its square the sums are divided.
+    /// A power of two near the largest value or Jacobi correction; `scales` and `squares` are divided by its square.
     unit: f64,
+    /// The sums for the scales of the certificate.
     scales: Sums,
     /// The largest violation of a bound.
     feasibility: f64,
-    /// The largest difference between a jump and the one that its multiplier determines.
-    mismatch: f64,
-    /// Sums of squares, by the names of the certificate.
+    /// The largest jump residual `|g - M u + p / s|`; infinite if sizes do not match.
+    jump_residual: f64,
+    /// `sum d_i v_i^2` for the violations `v_i` called `multiplier`, `complementarity` and `residual`, in this order.
     squares: [f64; 3],
-    /// The sum of the diagonal, not divided by the unit.
-    stiffness: f64,
+    /// The sum of the diagonal entries `d_i`, not divided by the unit.
+    diagonal_sum: f64,
     /// Machine epsilon.
     epsilon: f64,
 }
@@ -109,6 +110,7 @@ impl Violations {
         )(inequality, u, jump_multipliers, owns)
     }
 
+    /// [`Violations::of`] without the dispatch to a compiled instance.
     pub(super) fn at<T: Real>(
         inequality: &Inequality<T>,
         u: &[T],
@@ -120,13 +122,13 @@ impl Violations {
             unit: 1.0,
             scales: Sums::default(),
             feasibility: 0.0,
-            mismatch: 0.0,
+            jump_residual: 0.0,
             squares: [0.0; 3],
-            stiffness: 0.0,
+            diagonal_sum: 0.0,
             epsilon: T::EPSILON,
         };
         if !inequality.is_well_formed() || u.len() != n {
-            return Self { mismatch: f64::INFINITY, ..sums };
+            return Self { jump_residual: f64::INFINITY, ..sums };
         }
         let bounds = &inequality.bounds;
         let mut r = vec![0.0; n];
@@ -136,10 +138,10 @@ impl Violations {
         sums.unit = unit((0..n).filter(|&i| owns(i)).map(of_unknown).fold(0.0, f64::max));
         let values = (u, &r[..], jump_multipliers);
         sums.scales = Sums::of(inequality, values, &|i| diagonal[i], sums.unit, owns);
-        sums.mismatch = largest_mismatch(inequality, u, jump_multipliers, owns);
+        sums.jump_residual = largest_jump_residual(inequality, u, jump_multipliers, owns);
         for i in (0..n).filter(|&i| owns(i)) {
             let d = diagonal[i];
-            sums.stiffness += d;
+            sums.diagonal_sum += d;
             let local = LocalViolation::new(&bounds[i], u[i].to_f64(), -r[i] / d);
             sums.feasibility = sums.feasibility.max(local.feasibility);
             let changes = [local.multiplier, local.complementarity, local.residual];
@@ -150,7 +152,7 @@ impl Violations {
         sums
     }
 
-    /// The violations at the unknowns of both; no unknown may be one of both.
+    /// The violations at the unknowns of `self` and `other`, which must have no unknown in common.
     #[must_use]
     pub fn merge(self, other: Self) -> Self {
         let unit = match [self.is_zero(), other.is_zero()] {
@@ -163,9 +165,9 @@ impl Violations {
             unit: one.unit,
             scales: one.scales.merge(two.scales),
             feasibility: one.feasibility.max(two.feasibility),
-            mismatch: maximum(one.mismatch, two.mismatch),
+            jump_residual: maximum(one.jump_residual, two.jump_residual),
             squares: tabulate(|k| one.squares[k] + two.squares[k]),
-            stiffness: one.stiffness + two.stiffness,
+            diagonal_sum: one.diagonal_sum + two.diagonal_sum,
             epsilon: one.epsilon.max(two.epsilon),
         }
     }
@@ -176,35 +178,36 @@ impl Violations {
         let mut unit = [if self.is_zero() { 0.0 } else { self.unit }];
         distribution.largest(&mut unit);
         let own = self.in_unit(if unit[0] == 0.0 { 1.0 } else { unit[0] });
-        let mut largest = [own.feasibility, own.mismatch, own.epsilon];
+        let mut largest = [own.feasibility, own.jump_residual, own.epsilon];
         distribution.largest(&mut largest);
         let [multiplier, complementarity, residual] = own.squares;
-        let mut sums = [multiplier, complementarity, residual, own.stiffness];
+        let mut sums = [multiplier, complementarity, residual, own.diagonal_sum];
         distribution.sum(&mut sums);
-        let [multiplier, complementarity, residual, stiffness] = sums;
-        let [feasibility, mismatch, epsilon] = largest;
+        let [multiplier, complementarity, residual, diagonal_sum] = sums;
+        let [feasibility, jump_residual, epsilon] = largest;
         let squares = [multiplier, complementarity, residual];
         let scales = own.scales.over_parts(distribution);
-        Self { unit: own.unit, scales, feasibility, mismatch, squares, stiffness, epsilon }
+        Self { unit: own.unit, scales, feasibility, jump_residual, squares, diagonal_sum, epsilon }
     }
 
     /// All sums and maxima as numbers, to be sent to another part.
     pub fn to_numbers(&self) -> Vec<f64> {
-        let Self { unit, scales, feasibility, mismatch, squares, stiffness, epsilon } = *self;
-        let own = [unit, feasibility, mismatch, stiffness, epsilon];
+        let Self { unit, scales, feasibility, jump_residual, squares, diagonal_sum, epsilon } =
+            *self;
+        let own = [unit, feasibility, jump_residual, diagonal_sum, epsilon];
         [&own[..], &squares, &scales.to_numbers()].concat()
     }
-    /// What [`Violations::to_numbers`] has made numbers of; none for another number of them.
+    /// The violations from the numbers of [`Violations::to_numbers`]; `None` if their number is wrong.
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
-        let (&[unit, feasibility, mismatch, stiffness, epsilon], numbers) =
+        let (&[unit, feasibility, jump_residual, diagonal_sum, epsilon], numbers) =
             numbers.split_first_chunk()?;
         let (&squares, numbers) = numbers.split_first_chunk()?;
         let scales = Sums::from_numbers(numbers.try_into().ok()?);
-        Some(Self { unit, scales, feasibility, mismatch, squares, stiffness, epsilon })
+        Some(Self { unit, scales, feasibility, jump_residual, squares, diagonal_sum, epsilon })
     }
 
-    /// The certificate of what was merged.
+    /// The certificate of the unknowns whose violations these are.
     #[must_use]
     pub fn certificate(&self) -> Certificate {
         self.certificate_with_rounding().0
@@ -215,7 +218,7 @@ impl Violations {
     pub(super) fn certificate_with_rounding(&self) -> (Certificate, f64) {
         let Scales { max_norm, energy_norm } = self.scales.scales(self.epsilon, self.unit);
         let [multiplier, complementarity, residual] = self.squares;
-        let numbers = [max_norm, energy_norm, multiplier, residual, self.mismatch];
+        let numbers = [max_norm, energy_norm, multiplier, residual, self.jump_residual];
         if !numbers.iter().all(|x| x.is_finite()) {
             return (Certificate::INVALID, 0.0);
         }
@@ -224,16 +227,17 @@ impl Violations {
             self.feasibility / max_norm,
             norm(multiplier),
             norm(complementarity),
-            norm(residual).max(self.mismatch / max_norm),
+            norm(residual).max(self.jump_residual / max_norm),
         ]);
-        (certificate, max_norm / self.unit * norm(self.stiffness))
+        (certificate, max_norm / self.unit * norm(self.diagonal_sum))
     }
 
-    /// Whether all values and corrections are zero, so that the unit has no meaning.
+    /// Whether all values, loads and violations are zero, so that the unit has no meaning.
     fn is_zero(&self) -> bool {
         self.scales.is_zero() && self.squares == [0.0; 3]
     }
 
+    /// The violations with another unit.
     fn in_unit(self, unit: f64) -> Self {
         if self.is_zero() {
             return Self { unit, ..self };
@@ -245,7 +249,7 @@ impl Violations {
     }
 }
 
-/// The largest of a value, its nearest admissible value and its Jacobi correction.
+/// The largest absolute value of a value, its nearest admissible value and its Jacobi correction.
 fn size<T: Real>(bound: &Bound<T>, x: T, correction: f64) -> f64 {
     x.to_f64().abs().max(bound.nearest(x).to_f64().abs()).max(correction.abs())
 }
@@ -255,8 +259,9 @@ fn unit(largest: f64) -> f64 {
     if largest > 0.0 && largest.is_finite() { largest.log2().floor().exp2() } else { 1.0 }
 }
 
-/// The largest `|g - M u + p / s|` of the jumps whose first unknown is owned; zero without jump multipliers.
-fn largest_mismatch<T: Real>(
+/// The largest jump residual `|g - M u + p / s|` of the jumps whose first unknown is owned; zero without jump
+/// multipliers.
+fn largest_jump_residual<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
     jump_multipliers: &[T],
@@ -275,7 +280,7 @@ fn largest_mismatch<T: Real>(
     (0..jump_multipliers.len()).filter(owned).map(of_jump).fold(0.0, maximum)
 }
 
-/// The violations of one unknown, each as a change of its value.
+/// The violations at one unknown, each as a change of its value; see [`Certificate`].
 #[derive(Default)]
 struct LocalViolation {
     feasibility: f64,
@@ -314,7 +319,8 @@ mod tests {
     use super::*;
     use crate::algebra::{DirichletEnergy, DirichletTerm, SparseMatrix};
 
-    /// Two unknowns with bounds and a third one apart, which rests at zero; data and values in this unit.
+    /// Two coupled unknowns with bounds, and an unknown without load and coupling, whose value is zero; data and values
+    /// in this unit.
     fn problem(unit: f64) -> (Inequality<f64>, [f64; 3]) {
         let matrix = SparseMatrix {
             row_starts: vec![0, 2, 4, 5],

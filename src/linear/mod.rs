@@ -8,7 +8,7 @@
 //! | `method` | [`LinearMethod`]: the choice between direct and iterative solvers |
 //! | `direct/` | Cholesky and LU factors, orders of elimination, static condensation |
 //! | `krylov/` | conjugate gradients and GMRES |
-//! | `precondition/` | multigrid, auxiliary spaces, mean-jump splitting |
+//! | `precondition/` | preconditioners: multigrid, auxiliary spaces, splitting into facet means and jumps |
 
 pub(crate) mod direct;
 pub(crate) mod krylov;

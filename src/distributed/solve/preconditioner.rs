@@ -77,8 +77,8 @@ impl PreconditionerFamily<f64> for EnginePreconditioners {
                     penalised,
                     places,
                     |_, space| {
-                        let mut unknown_of = vec![0; space.sides.len()];
-                        for (&facet, &unknown) in space.facet.iter().zip(unknowns) {
+                        let mut unknown_of = vec![0; space.sides_of_facet.len()];
+                        for (&facet, &unknown) in space.facet_of_side.iter().zip(unknowns) {
                             unknown_of[facet as usize] = unknown;
                         }
                         let n = solver.n_unknowns();

@@ -10,24 +10,18 @@ use crate::linear::krylov::EIGENVALUE_TO_RITZ_VALUE;
 use crate::parallel::vectors::{dot, zeros};
 use crate::real::Real;
 
-/// The threshold of strong activity divided by the estimate of the error.
+/// The threshold of strong activity divided by the estimate of the energy norm of the error.
 const THRESHOLD_FACTOR: f64 = 4.0;
 
 /// Number of thresholds tried before no unknown counts as strongly active.
 const MAX_THRESHOLDS: usize = 3;
 
 impl<T: Real> PreconditionedSolver<'_, T> {
-    /// Projects the values onto their bounds and returns a bound on the energy norm of their error
-    /// divided by the energy norm of the iterate, which stands for the energy norm of the solution.
-    /// `None` if the preconditioner cannot be set up for an enlarged set of unknowns, or rounding makes a square
-    /// negative.
+    /// Projects the values onto their bounds and returns a bound on the energy norm of their error, divided by the
+    /// energy norm of the iterate in place of that of the solution. `None` if the preconditioner cannot be set up for
+    /// the unknowns on which the error may be nonzero, or rounding makes the square of the bound negative.
     ///
-    /// # Errors
-    /// The outcome if the preconditioner finds the symmetric part of the matrix indefinite on that set, and factors do
-    /// not disprove it.
-    ///
-    /// Overwrites the fixed unknowns of the preconditioner: no linear system can be solved afterwards
-    /// without setting them again.
+    /// Changes the fixed unknowns of the preconditioner, which must be set again before the next linear system.
     ///
     /// Notation: `u` are the projected values, `u*` is the solution, `e = u* - u` the error,
     /// `S = (A + A^T) / 2` the symmetric part of `A`, and `||e||_A = (e . A e)^(1/2)` the energy norm,
@@ -54,6 +48,10 @@ impl<T: Real> PreconditionedSolver<'_, T> {
     ///    The Ritz values come from systems on the inactive unknowns, while the bound uses all unknowns
     ///    that are neither fixed nor strongly active, a larger set with a smaller eigenvalue at most:
     ///    that the factor covers this difference too is assumed.
+    ///
+    /// # Errors
+    /// The outcome of [`diagnose_loss_of_positivity`] if the preconditioner finds the symmetric part of the matrix not
+    /// to be positive definite on the unknowns on which the error may be nonzero.
     pub(crate) fn error_bound(
         &mut self,
         iterate: &mut Iterate<'_, T>,
@@ -64,30 +62,32 @@ impl<T: Real> PreconditionedSolver<'_, T> {
         let sqrt_eigenvalue = (EIGENVALUE_TO_RITZ_VALUE * self.smallest_ritz_value).sqrt();
         let mut threshold = THRESHOLD_FACTOR * self.residual_norm / sqrt_eigenvalue;
         for _ in 0..MAX_THRESHOLDS {
-            let Some(norm) = self.unbalanced_norm(iterate, threshold)? else { return Ok(None) };
-            let error = norm / sqrt_eigenvalue;
-            if error <= threshold {
-                return Ok(Some(error / iterate.energy_norm));
+            let Some(norm) = self.norm_of_unbalanced_residual(iterate, threshold)? else {
+                return Ok(None);
+            };
+            let bound = norm / sqrt_eigenvalue;
+            if bound <= threshold {
+                return Ok(Some(bound / iterate.energy_norm));
             }
-            threshold = THRESHOLD_FACTOR * error;
+            threshold = THRESHOLD_FACTOR * bound;
         }
-        let norm = self.unbalanced_norm(iterate, f64::INFINITY)?;
+        let norm = self.norm_of_unbalanced_residual(iterate, f64::INFINITY)?;
         Ok(norm.map(|norm| norm / sqrt_eigenvalue / iterate.energy_norm))
     }
 
-    /// The preconditioned norm `(r . B r)^(1/2)` of the unbalanced residual `r`, with all fixed and
-    /// strongly active unknowns eliminated; see [`PreconditionedSolver::error_bound`]. `None` if the
-    /// preconditioner rejects these unknowns, or the square is negative.
+    /// The preconditioned norm `(r . B r)^(1/2)` of the unbalanced residual `r`, with all fixed and strongly active
+    /// unknowns eliminated; see [`PreconditionedSolver::error_bound`]. `None` if the preconditioner cannot be set up
+    /// for the other unknowns, or `r . B r` is negative.
     ///
     /// # Errors
     /// See [`PreconditionedSolver::error_bound`].
-    fn unbalanced_norm(
+    fn norm_of_unbalanced_residual(
         &mut self,
         iterate: &Iterate<'_, T>,
         threshold: f64,
     ) -> Result<Option<f64>, Outcome> {
         let distribution = iterate.inequality.distribution();
-        let mut unbalanced = zeros(iterate.values.len());
+        let mut unbalanced_residual = zeros(iterate.values.len());
         let mut eliminated = vec![false; iterate.values.len()];
         for (i, bound) in iterate.inequality.bounds.iter().enumerate() {
             if !iterate.inequality.owns(i) {
@@ -98,7 +98,7 @@ impl<T: Real> PreconditionedSolver<'_, T> {
             let multiplier = iterate.multiplier(i).unwrap_or(f64::NEG_INFINITY);
             let is_fixed = bound.fixed_value().is_some();
             if !is_fixed && multiplier < 0.0 {
-                unbalanced[i] = T::lit(residual);
+                unbalanced_residual[i] = T::lit(residual);
             }
             let is_strongly_active = multiplier > threshold * iterate.diagonal[i].sqrt();
             eliminated[i] = is_fixed || is_strongly_active;
@@ -112,9 +112,9 @@ impl<T: Real> PreconditionedSolver<'_, T> {
                 Err(_) => return Ok(None),
             }
         }
-        let mut z = zeros(unbalanced.len());
-        self.preconditioner.apply(&unbalanced, &mut z);
-        let squared = sum_over_parts(distribution, dot(&unbalanced, &mut z));
+        let mut preconditioned = zeros(unbalanced_residual.len());
+        self.preconditioner.apply(&unbalanced_residual, &mut preconditioned);
+        let squared = sum_over_parts(distribution, dot(&unbalanced_residual, &mut preconditioned));
         Ok((squared >= 0.0).then(|| squared.sqrt()))
     }
 }

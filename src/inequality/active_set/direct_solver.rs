@@ -1,4 +1,4 @@
-//! Linear systems solved with factors: of the assembled matrix, or of a penalised matrix by static
+//! The linear systems of active sets, solved with factors of the assembled matrix or, for a penalised matrix, by static
 //! condensation.
 
 use super::iterate::Iterate;
@@ -11,26 +11,27 @@ use crate::real::Real;
 /// Largest number of corrections of values and jump multipliers for one active set.
 const MAX_CORRECTIONS: usize = 12;
 
-/// A correction is the last one if its largest entry is at most this multiple of machine epsilon
-/// times the largest value.
+/// A correction counts as rounding if its largest entry is at most this multiple of machine epsilon times the largest
+/// absolute value.
 const CORRECTION_MULTIPLE: f64 = 16.0;
 
-/// The share of the energy of a solution that a second correction may have.
-const LOST_SHARE: f64 = 0.01;
+/// Largest energy of the last of several corrections, divided by the energy of the values, with which the factors count
+/// as accurate to one digit or more.
+const MAX_CORRECTION_SHARE: f64 = 0.01;
 
-/// The solver with factors for all active sets of an inequality.
+/// A solver with factors for the linear systems of all active sets of an inequality.
 pub(crate) struct DirectSolver<'a, T> {
     inequality: &'a Inequality<T>,
     /// Number of corrections after the first solution.
     refinements: usize,
     /// The inactive unknowns, ascending.
     inactive: Vec<u32>,
-    /// The factors for the inactive unknowns; `None` before the first system.
+    /// The factors for the inactive unknowns; `None` before the first factorisation and after one that failed.
     factors: Option<InactiveFactors<T>>,
     /// The static condensation of the penalised matrix, if the matrix is penalised.
     condensation: Option<StaticCondensation<'a, T>>,
-    /// The elimination order of a symmetric matrix, which is the same for all active sets; `None`
-    /// before the first factorisation.
+    /// The elimination order of a symmetric assembled matrix, which is the same for all active sets; `None` before the
+    /// first factorisation.
     elimination_order: Option<EliminationOrder>,
 }
 
@@ -48,7 +49,7 @@ struct CorrectionSize {
     max_change: f64,
     /// Largest absolute value after the correction.
     max_norm: f64,
-    /// Energy after the correction.
+    /// The energy scale of [`PenalisedMatrix::energy`] after the correction.
     energy: f64,
     /// `sum K_ii u_i^2` after the correction.
     diagonal_energy: f64,
@@ -76,7 +77,7 @@ impl<'a, T: Real> DirectSolver<'a, T> {
         self.condensation.as_ref()
     }
 
-    /// Factors of `A_II`.
+    /// Factors the submatrix `A_II` of the assembled matrix on the inactive unknowns `I`.
     fn factor(&mut self) -> Result<Factors<T>, FactorError> {
         let Inequality { matrix, symmetric, .. } = self.inequality;
         if !*symmetric {
@@ -93,8 +94,8 @@ impl<'a, T: Real> DirectSolver<'a, T> {
     /// Corrects the values `1 + refinements` times; then computes the residual.
     ///
     /// # Errors
-    /// [`FactorError::Singular`] if the last of several corrections has more than [`LOST_SHARE`] of the
-    /// energy of the solution, whose factors then have no correct digit.
+    /// [`FactorError::Singular`] if there are several corrections and the energy of the last one exceeds
+    /// [`MAX_CORRECTION_SHARE`] times the energy of the values: the factors then have no correct digit.
     fn correct_assembled(
         &self,
         factors: &Factors<T>,
@@ -120,7 +121,7 @@ impl<'a, T: Real> DirectSolver<'a, T> {
         matrix.residual_f64(load, values, residual);
         let terms = values.iter().zip(load).zip(residual.iter());
         let energy: f64 = terms.map(|((x, b), r)| x.to_f64() * (b.to_f64() - r)).sum();
-        match correction_energy.abs() > LOST_SHARE * energy.abs() {
+        match correction_energy.abs() > MAX_CORRECTION_SHARE * energy.abs() {
             true => Err(FactorError::Singular),
             false => Ok(()),
         }
@@ -132,11 +133,13 @@ impl<T: Real> DirectSolver<'_, T> {
     /// divided by the energy norm of the iterate; `None` for a matrix that is not symmetric, if an
     /// active unknown is not strongly active, or if rounding makes the square negative.
     ///
-    /// With the active unknowns held, the error `e` of admissible values satisfies
-    /// `||e||_A^2 <= r . inv(A_II) r`, `r` the residual on the inactive unknowns `I`: the energy of one more
-    /// correction. An active unknown whose multiplier exceeds `sqrt(d_i) ||e||_A` is strongly active: its
-    /// multiplier keeps its sign in the solution of that problem. If all are, this is the solution of
-    /// the inequality. The bound is proven but for rounding in the factors.
+    /// Let `e` be the difference between the projected values and the solution of the problem in which all active
+    /// unknowns keep their values. It satisfies `||e||_A^2 <= r . inv(A_II) r`, with the residual `r` on the inactive
+    /// unknowns `I`; the right-hand side is the energy of one more correction. An active unknown is strongly active if
+    /// its multiplier exceeds `sqrt(d_i) ||e||_A`: the multiplier then has the right sign in the solution of that
+    /// problem too. If all active unknowns are strongly active, that solution is the solution of the inequality. For an
+    /// assembled matrix the bound is proven but for rounding in the factors. For a penalised matrix the energy is that
+    /// of a correction of values and jump multipliers together, in which the rounding of single values has no weight.
     pub fn error_bound(&self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
         if !self.inequality.symmetric {
             return None;
@@ -144,15 +147,16 @@ impl<T: Real> DirectSolver<'_, T> {
         iterate.project_onto_bounds();
         let error = self.correction_energy(iterate).filter(|&squared| squared >= 0.0)?.sqrt();
         let is_strongly_active = |i: usize| {
-            let least = iterate.diagonal[i].sqrt() * error;
+            let threshold = iterate.diagonal[i].sqrt() * error;
             self.inequality.bounds[i].fixed_value().is_some()
-                || iterate.multiplier(i).is_none_or(|multiplier| multiplier > least)
+                || iterate.multiplier(i).is_none_or(|multiplier| multiplier > threshold)
         };
-        let all = (0..iterate.states.len()).all(is_strongly_active);
-        all.then(|| error / iterate.energy_norm)
+        let all_are_strongly_active = (0..iterate.states.len()).all(is_strongly_active);
+        all_are_strongly_active.then(|| error / iterate.energy_norm)
     }
 
-    /// The energy of the next correction, which is not made. The residual is then that of the values.
+    /// The energy of one more correction, which is not applied; `None` without factors. Computes the residual of the
+    /// values.
     fn correction_energy(&self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
         match (&self.factors, &self.condensation, &self.inequality.penalised) {
             (Some(InactiveFactors::Assembled(factors)), ..) => {
@@ -167,11 +171,11 @@ impl<T: Real> DirectSolver<'_, T> {
             (Some(InactiveFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
                 let is_inactive = iterate.eliminated.iter().map(|&e| !e).collect();
                 let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
-                let mut mismatch = vec![0.0; iterate.jump_multipliers.len()];
-                system.compute_residuals(iterate, &mut mismatch);
+                let mut jump_residuals = vec![0.0; iterate.jump_multipliers.len()];
+                system.compute_residuals(iterate, &mut jump_residuals);
                 let mut residual = iterate.residual.clone();
                 let is_inactive = &system.is_inactive;
-                Some(condensation.solve(factors, is_inactive, &mut residual, &mut mismatch))
+                Some(condensation.solve(factors, is_inactive, &mut residual, &mut jump_residuals))
             }
             _ => None,
         }
@@ -198,8 +202,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
         Ok(())
     }
 
-    /// For a penalised matrix, corrects values and jump multipliers together, as often as corrections
-    /// halve.
+    /// For a penalised matrix, corrects values and jump multipliers together until the corrections no longer halve.
     fn correct(
         &mut self,
         iterate: &mut Iterate<'_, T>,
@@ -236,7 +239,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
         }
     }
 
-    fn size_of_values_near(&self, i: usize, iterate: &Iterate<'_, T>) -> f64 {
+    fn largest_value_near(&self, i: usize, iterate: &Iterate<'_, T>) -> f64 {
         let value = |j: usize| iterate.values[j].to_f64();
         self.condensation.as_ref().map_or(f64::INFINITY, |c| c.largest_value_near(i, value))
     }
@@ -252,45 +255,45 @@ struct PenalisedSystem<'s, 'a, T> {
 }
 
 impl<T: Real> PenalisedSystem<'_, '_, T> {
-    /// Corrects values and jump multipliers together, at least `1 + refinements` times (but at most
-    /// [`MAX_CORRECTIONS`] times) and until the corrections no longer halve.
+    /// Corrects values and jump multipliers together, at least `1 + refinements` times (but at most [`MAX_CORRECTIONS`]
+    /// times), until a correction is rounding or its largest change is more than half of the preceding one.
     ///
     /// # Errors
-    /// [`FactorError::Singular`] if the last correction is not small in energy: the matrix is then
-    /// singular in the precision of the scalar.
+    /// [`FactorError::Singular`] if the energy of the last correction is not small: the matrix is then singular in the
+    /// precision of the scalar.
     fn solve(&self, iterate: &mut Iterate<'_, T>, refinements: usize) -> Result<(), FactorError> {
-        let mut mismatch = vec![0.0; iterate.jump_multipliers.len()];
-        let mut least = f64::INFINITY;
+        let mut jump_residuals = vec![0.0; iterate.jump_multipliers.len()];
+        let mut previous_change = f64::INFINITY;
         let mut is_singular = false;
-        let floor = (CORRECTION_MULTIPLE * T::EPSILON).powi(2);
+        let squared_rounding = (CORRECTION_MULTIPLE * T::EPSILON).powi(2);
         for correction in 0..MAX_CORRECTIONS {
-            let size = self.correct(iterate, &mut mismatch);
+            let size = self.correct(iterate, &mut jump_residuals);
             let is_small = size.max_change <= CORRECTION_MULTIPLE * T::EPSILON * size.max_norm;
-            // A quarter of the digits of the scalar in the energy norm: single unknowns of thin
-            // cells may have fewer correct digits. The floor is for constants, whose energy is
-            // zero.
-            let tolerance = T::EPSILON.sqrt() * size.energy + floor * size.diagonal_energy;
+            // A quarter of the digits of the scalar in the energy norm: single unknowns of thin cells may have fewer
+            // correct digits. The second term is for constants, whose energy is zero.
+            let tolerance =
+                T::EPSILON.sqrt() * size.energy + squared_rounding * size.diagonal_energy;
             is_singular = size.correction_energy.abs() > tolerance;
             // false for numbers that are not finite
-            let halves = size.max_change <= 0.5 * least && !is_small;
+            let halves = size.max_change <= 0.5 * previous_change && !is_small;
             if correction >= refinements && !halves {
                 break;
             }
-            least = size.max_change;
+            previous_change = size.max_change;
         }
         self.compute_residual(iterate);
         if is_singular { Err(FactorError::Singular) } else { Ok(()) }
     }
 
-    /// One correction of values and jump multipliers by the solution for the residuals of both
-    /// equations. The residual of the second equation is computed in `mismatch`; both residuals are
-    /// overwritten by the corrections.
-    fn correct(&self, iterate: &mut Iterate<'_, T>, mismatch: &mut [f64]) -> CorrectionSize {
+    /// One correction of values and jump multipliers: the solution of the system with the residuals of both equations
+    /// as right-hand sides. `jump_residuals` is workspace for the residual of the second equation; the corrections
+    /// overwrite both residuals.
+    fn correct(&self, iterate: &mut Iterate<'_, T>, jump_residuals: &mut [f64]) -> CorrectionSize {
         let penalised = self.penalised;
-        self.compute_residuals(iterate, mismatch);
+        self.compute_residuals(iterate, jump_residuals);
         let Iterate { values, jump_multipliers, residual, .. } = iterate;
         let correction_energy =
-            self.condensation.solve(self.factors, &self.is_inactive, residual, mismatch);
+            self.condensation.solve(self.factors, &self.is_inactive, residual, jump_residuals);
         let (mut max_change, mut max_norm, mut diagonal_energy) = (0.0_f64, 0.0_f64, 0.0);
         for (i, (x, correction)) in values.iter_mut().zip(residual.iter()).enumerate() {
             *x += T::lit(*correction);
@@ -298,7 +301,7 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
             max_norm = max_norm.max(x.to_f64().abs());
             diagonal_energy += penalised.stiffness_diagonal(i) * x.to_f64().powi(2);
         }
-        for (multiplier, correction) in jump_multipliers.iter_mut().zip(mismatch) {
+        for (multiplier, correction) in jump_multipliers.iter_mut().zip(jump_residuals) {
             *multiplier += T::lit(*correction);
         }
         let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
@@ -306,9 +309,9 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
         CorrectionSize { correction_energy, max_change, max_norm, energy, diagonal_energy }
     }
 
-    /// Sets the residual to `c - K u - M^T p`, and `mismatch` to `g - M u + S^-1 p`.
-    fn compute_residuals(&self, iterate: &mut Iterate<'_, T>, mismatch: &mut [f64]) {
-        for (jump, out) in mismatch.iter_mut().enumerate() {
+    /// Sets the residual to `c - K u - M^T p`, and `jump_residuals` to `g - M u + S^-1 p`.
+    fn compute_residuals(&self, iterate: &mut Iterate<'_, T>, jump_residuals: &mut [f64]) {
+        for (jump, out) in jump_residuals.iter_mut().enumerate() {
             let multiplier = iterate.jump_multipliers[jump].to_f64();
             *out = self.penalised.jump_residual(jump, |i| iterate.values[i].to_f64(), multiplier);
         }

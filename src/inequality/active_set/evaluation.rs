@@ -15,9 +15,9 @@ pub(crate) struct Evaluation {
     pub state_changes: Vec<(u32, Contact)>,
     /// The number of state changes, those of other parts included.
     pub n_changes: usize,
-    /// The square of the projected Jacobi step `u - P(u + r / d)`, `r = b - A u`, in the norm
-    /// `(sum d_i v_i^2)^(1/2)` of the diagonal `d` of `A`. It is zero at the solution only. It is
-    /// not divided by the size of the iterate, which would favour iterates that are far too large.
+    /// The square of the projected Jacobi step `u - P(u + r / d)`, `r = b - A u`, in the norm `(sum d_i v_i^2)^(1/2)`
+    /// of the diagonal `d` of `A`: zero at the solution only. A division by the size of the iterate would favour
+    /// iterates that are far too large.
     pub merit: f64,
     /// See [`Scales::max_norm`].
     pub max_norm: f64,
@@ -31,7 +31,7 @@ pub(crate) struct Evaluation {
 }
 
 impl Evaluation {
-    /// Adds what other parts have, but for the unknowns that change their states there.
+    /// Replaces sums and maxima by those over all parts; `state_changes` remain the changes in this part.
     fn add_other_parts(&mut self, distribution: &dyn Distribution) {
         let mut sums = [self.merit, self.multiplier_violation, self.n_changes as f64];
         distribution.sum(&mut sums);
@@ -58,8 +58,8 @@ impl<T: Real> Iterate<'_, T> {
     /// Evaluates the KKT conditions of every unknown, and stores the energy norm. The residual must be
     /// current.
     ///
-    /// An inactive unknown that violates a bound becomes active, an active unknown whose multiplier
-    /// has the wrong sign becomes inactive, both only beyond tolerances: the rounding band of
+    /// An inactive unknown that violates a bound becomes active, an active unknown whose multiplier has the wrong sign
+    /// becomes inactive, each only if the violation exceeds a tolerance proportional to `rounding_band`: see
     /// [`ActiveSet`](super::ActiveSet).
     pub fn evaluate(&mut self, rounding_band: f64, solver: &dyn LinearSolver<T>) -> Evaluation {
         let diagonal = |i: usize| self.diagonal[i];
@@ -95,8 +95,8 @@ impl<T: Real> Iterate<'_, T> {
         evaluation
     }
 
-    /// Adds unknown `i` to an evaluation. Its square `r_i^2 / d_i` in `multiplier_violation`, of which
-    /// the caller takes the square root, is added without a tolerance.
+    /// Adds unknown `i` to an evaluation. `multiplier_violation` is here the sum of the squares `r_i^2 / d_i`, without
+    /// a tolerance; the caller takes the square root.
     #[inline(always)]
     fn evaluate_at(
         &self,
@@ -131,7 +131,7 @@ impl<T: Real> Iterate<'_, T> {
         };
         if wrong_multiplier > 0.0 {
             evaluation.multiplier_violation += wrong_multiplier * wrong_multiplier / d;
-            // values of eliminated unknowns are exact
+            // the values of eliminated unknowns have no error, so that their terms are rounded in `f64` only
             let [inactive, eliminated] = solver.residual_term_magnitudes(i, self);
             let terms = T::EPSILON * inactive + f64::EPSILON * eliminated;
             if wrong_multiplier > rounding_band * terms {

@@ -3,7 +3,7 @@
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use super::local_inequality::solve_locally;
-use super::progress::{Obstruction, Patience, ProgressMonitor};
+use super::progress::{Obstruction, ProgressLimits, ProgressMonitor};
 use super::settings::ActiveSet;
 use crate::algebra::{Bound, Inequality, any_part};
 use crate::inequality::violations::certify_with_rounding;
@@ -15,16 +15,16 @@ use crate::real::Real;
 /// epsilon.
 const CERTIFICATE_FACTOR: f64 = 8.0;
 
-/// Number of steps after which an iteration with few state changes continues from the solution near the
-/// unknowns that change them; see [`solve_locally`]. WOPSIP with bounds at vertices on radial-3d at 32, whose
-/// last changes move along the free boundary from cell to cell, takes three quarters of the steps.
+/// Number of steps after which an iteration with few state changes calls [`solve_locally`]. WOPSIP with bounds at
+/// vertices on radial-3d at 32, whose last state changes move along the free boundary from cell to cell, then takes
+/// three quarters of the steps.
 const MANY_STEPS: usize = 8;
 
-/// Changes of states are few up to this share of the unknowns.
-const FEW_CHANGES: f64 = 1.0 / 4000.0;
+/// Largest number of state changes, divided by the number of unknowns, that counts as few.
+const FEW_CHANGES_SHARE: f64 = 1.0 / 4000.0;
 
-/// How often an iteration continues with violations below its tolerance.
-const CONTINUATIONS: usize = 8;
+/// Largest number of times that an iteration continues with the violations of [`Iterate::small_violations`].
+const MAX_CONTINUATIONS: usize = 8;
 
 /// How an iteration ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,21 +55,19 @@ impl From<LinearFailure> for End {
 
 /// The active set iteration from the contact states of an iterate.
 ///
-/// Each step solves the linear system of the present active set and predicts a new one
-/// ([`Iterate::evaluate`]). It ends where the active set predicts itself, or all violations are
-/// within the tolerance of the linear solver; the certificate, which does not depend on contact
-/// states, then decides.
+/// Each step solves the linear system of the present active set and predicts a new one ([`Iterate::evaluate`]). The
+/// iteration converges if the active set predicts itself, or all violations are within the tolerance of the linear
+/// solver, and if the certificate, which does not depend on contact states, is small.
 pub(crate) struct Iteration<'s, 'i, 'a, T> {
     pub settings: &'s ActiveSet,
     pub iterate: &'i mut Iterate<'a, T>,
     pub solver: &'i mut dyn LinearSolver<T>,
-    pub patience: Patience,
-    /// How often an iteration that does not progress may continue from the solution near the unknowns
-    /// whose states change; see [`solve_locally`].
+    pub progress_limits: ProgressLimits,
+    /// Number of inequalities near unknowns whose states change that may still be solved; see [`solve_locally`].
     pub local_solves: usize,
-    /// Whether the certificate must be within its limit. A solution that only provides a start for
-    /// another solve needs no small residual.
-    pub is_certified: bool,
+    /// Whether the certificate must be small. The residual of a solution that is only the initial guess of another
+    /// solve need not be small.
+    pub needs_certificate: bool,
     /// Counts the steps.
     pub steps: &'s StepCounter,
 }
@@ -83,15 +81,13 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         }
     }
 
-    /// The iteration. `Ok` if it converged.
-    ///
-    /// Unknowns that then violate bounds by less than the tolerance, but by what large penalties make count in energy,
-    /// become active ([`Iterate::small_violations`]), and the iteration continues. Where it does not converge again,
-    /// the first solution remains.
+    /// Iterates to the tolerance, then continues with the unknowns of [`Iterate::small_violations`] active: they
+    /// violate a bound by less than the tolerance, but large penalties give such violations a large energy. The
+    /// solution before a continuation that does not converge is restored. `Ok` if the iteration converged.
     fn iterate_to_end(&mut self) -> Result<(), End> {
         self.iterate_to_tolerance()?;
         let band = self.settings.rounding_band;
-        for _ in 0..CONTINUATIONS {
+        for _ in 0..MAX_CONTINUATIONS {
             let violations = self.iterate.small_violations(band, &*self.solver);
             if violations.is_empty() {
                 break;
@@ -100,7 +96,8 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             let (values, jumps, states) =
                 (values.clone(), jump_multipliers.clone(), states.clone());
             self.iterate.change_states(&violations);
-            self.patience.halving = self.patience.halving.or(Some(self.settings.stagnation_steps));
+            let halving = &mut self.progress_limits.halving;
+            *halving = halving.or(Some(self.settings.stagnation_steps));
             if self.iterate_to_tolerance().is_err() {
                 self.iterate.replace(values, jumps, states);
                 self.solver.set_eliminated(&self.iterate.eliminated)?;
@@ -110,8 +107,8 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         Ok(())
     }
 
-    /// The iteration from the present states until all violations are within the tolerances of the solver and of
-    /// [`Iterate::evaluate`].
+    /// Iterates from the present states until the active set predicts itself or all violations are within the tolerance
+    /// of the linear solver, and the certificate is small.
     fn iterate_to_tolerance(&mut self) -> Result<(), End> {
         let tolerance = self.solver.tolerance();
         let band = self.settings.rounding_band;
@@ -124,12 +121,12 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         let distribution = inequality.distribution();
         let has_bounds = inequality.bounds.iter().any(Bound::is_inequality);
         let is_linear = !any_part(distribution, has_bounds);
-        let patience = self.patience;
-        let new_progress = || ProgressMonitor::new(patience, is_linear, distribution);
+        let progress_limits = self.progress_limits;
+        let new_progress = || ProgressMonitor::new(progress_limits, is_linear, distribution);
         let mut progress = new_progress();
         let mut has_new_states = true;
-        // the unknowns whose states have changed since the number of changes halved
-        let mut recent: Vec<u32> = Vec::new();
+        // the unknowns whose states have changed since the number of changes last halved
+        let mut recently_changed: Vec<u32> = Vec::new();
         loop {
             if !self.solve_system(has_new_states, progress.accuracy())? {
                 progress = new_progress();
@@ -145,7 +142,7 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             let changes = &evaluation.state_changes;
             has_new_states = evaluation.n_changes > 0;
             if is_accurate && (!has_new_states || evaluation.holds_to(tolerance)) {
-                if !self.is_certified || self.has_small_certificate() {
+                if !self.needs_certificate || self.has_small_certificate() {
                     return Ok(());
                 }
                 if self.solver.determine_jump_multipliers(self.iterate)? {
@@ -155,27 +152,28 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                     self.iterate.jump_multipliers.clear();
                     self.iterate.residual_is_current = false;
                 }
-                // rounding may have made the recursive residual of a Krylov method too small
-                if tolerance == 0.0 || !progress.may_repeat() {
+                // the residual that a Krylov method updates may be too small by rounding: it is computed anew
+                if tolerance == 0.0 || !progress.may_solve_again() {
                     return Err(self.end_by_rounding());
                 }
             }
-            let noted = progress.note(changes, &self.iterate.states, is_best, is_accurate);
+            let recorded =
+                progress.record_solution(changes, &self.iterate.states, is_best, is_accurate);
             if progress.has_halved() {
-                recent.clear();
+                recently_changed.clear();
             }
-            recent.extend(changes.iter().map(|change| change.0));
+            recently_changed.extend(changes.iter().map(|change| change.0));
             let is_slow = progress.steps() > MANY_STEPS
-                && changes.len() as f64 <= FEW_CHANGES * self.iterate.values.len() as f64;
-            if (noted.is_err() || is_slow) && self.settle(&recent) {
+                && changes.len() as f64 <= FEW_CHANGES_SHARE * self.iterate.values.len() as f64;
+            if (recorded.is_err() || is_slow) && self.try_local_solve(&recently_changed) {
                 progress = new_progress();
-                recent.clear();
+                recently_changed.clear();
                 has_new_states = true;
                 continue;
             }
-            noted.map_err(End::Obstruction)?;
-            // states that keep changing at the limit of rounding, in a stage that no other one follows
-            if !patience.limits_improvement()
+            recorded.map_err(End::Obstruction)?;
+            // in the last stage, states may change without end at the limit of rounding
+            if !progress_limits.limits_improvement()
                 && progress.steps_without_improvement() > self.settings.improvement_steps
                 && QualityOfBest::of(self.iterate, band).is_admissible_solution()
             {
@@ -185,18 +183,18 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         }
     }
 
-    /// Solves the inequality near the unknowns `changed`, if that is allowed once more; returns whether it
-    /// was solved.
-    fn settle(&mut self, changed: &[u32]) -> bool {
+    /// Solves the inequality near the unknowns `changed` if [`Iteration::local_solves`] is not zero; returns whether a
+    /// solution was found.
+    fn try_local_solve(&mut self, changed: &[u32]) -> bool {
         let is_solved =
             self.local_solves > 0 && solve_locally(self.iterate, self.settings, changed);
         self.local_solves -= usize::from(is_solved);
         is_solved
     }
 
-    /// Solves the linear system of the present active set, which `has_new_states` if the solver has not
-    /// been prepared for it. `Ok(false)` if the first matrix of a solve is singular and every bound has
-    /// been made active instead.
+    /// Solves the linear system of the present active set; `has_new_states` if the linear solver is not yet prepared
+    /// for this active set. `Ok(false)` if the first matrix of a solve is singular and every bound has been made active
+    /// instead.
     fn solve_system(&mut self, has_new_states: bool, accuracy: Accuracy) -> Result<bool, End> {
         if has_new_states {
             if self.iterate.outer >= self.settings.max_outer {
@@ -234,10 +232,10 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                     Err(Outcome::Singular.into())
                 }
             }
-            // bounds alone hold a part of the domain, and the active set has released all of them there;
-            // or large penalties make the matrix of an arbitrary active set singular but for rounding
+            // bounds alone hold a part of the domain, and no unknown is active there; or large penalties make the
+            // matrix of an arbitrary active set singular but for rounding
             Err(LinearFailure::Factors(FactorError::Singular))
-                if self.patience.halving.is_some() && self.may_have_regular_successor() =>
+                if self.progress_limits.halving.is_some() && self.may_have_regular_successor() =>
             {
                 Err(End::Obstruction(Obstruction::Stagnation))
             }
@@ -245,14 +243,15 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         }
     }
 
-    /// Whether another active set may have a regular matrix where that of the present one is singular.
+    /// Whether the matrix of another active set may be regular although that of the present one is singular.
     fn may_have_regular_successor(&self) -> bool {
         let Inequality { kernel, penalised, is_definite, .. } = self.iterate.inequality;
         !kernel.is_empty() || (*is_definite && penalised.is_some())
     }
 
-    /// The end of an iteration whose certificate stays too large. Factors with jump multipliers as
-    /// unknowns have less rounding than a Krylov method with the assembled matrix.
+    /// The end of an iteration whose certificate remains too large because of rounding. [`End::Unsuitable`] after a
+    /// Krylov method for a penalised matrix: factors with jump multipliers as unknowns have smaller rounding errors
+    /// than the assembled matrix.
     fn end_by_rounding(&self) -> End {
         let is_assembled = self.iterate.jump_multipliers.is_empty();
         match self.iterate.inequality.penalised {
@@ -277,10 +276,13 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
     }
 }
 
-/// The outcome of an iteration that ends with `outcome`, without a final active set or above rounding. If the
-/// best iterate satisfies the complementarity conditions as well as rounding allows or, after
-/// [`Outcome::Stalled`], within the limit of the certificate, it replaces the present one and the outcome is
-/// [`Outcome::Converged`]; within rounding, but above that limit, it is [`Outcome::Stalled`]; else `outcome`.
+/// The outcome of a solve that ended with `outcome`. After an iteration limit, a cycle or a stall it follows from the
+/// certificate of the best iterate:
+///
+/// * [`Outcome::Converged`], and the best iterate replaces the present one, if the certificate is within its limit and,
+///   unless `outcome` is [`Outcome::Stalled`], within rounding;
+/// * [`Outcome::Stalled`] if the certificate is within rounding, but above its limit;
+/// * else `outcome`, also if there is no best iterate.
 pub(crate) fn outcome_of_best<T: Real>(
     iterate: &mut Iterate<'_, T>,
     rounding_band: f64,
@@ -292,7 +294,7 @@ pub(crate) fn outcome_of_best<T: Real>(
         return outcome;
     }
     let quality = QualityOfBest::of(iterate, rounding_band);
-    // factors aim at rounding; a settled active set that misses this aim only is a solution all the same
+    // factors stall if the certificate is above rounding; within its limit it is that of a solution nevertheless
     if quality.is_solution() || (quality.is_within_limit && outcome == Outcome::Stalled) {
         iterate.restore_best();
         Outcome::Converged
@@ -305,9 +307,9 @@ pub(crate) fn outcome_of_best<T: Real>(
 
 /// How well the best iterate satisfies the complementarity conditions.
 struct QualityOfBest {
-    /// Whether bounds hold to the rounding of values.
+    /// Whether violations of bounds are within the rounding of values.
     is_admissible: bool,
-    /// Whether the certificate is within rounding, which large penalties amplify.
+    /// Whether the certificate is within rounding, amplified by large penalties.
     is_within_rounding: bool,
     /// Whether the certificate is within its limit.
     is_within_limit: bool,

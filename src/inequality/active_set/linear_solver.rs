@@ -1,4 +1,4 @@
-//! The linear systems of an active set, as the active set iteration sees them.
+//! The trait of solvers of the linear systems of active sets.
 
 use super::iterate::Iterate;
 use crate::inequality::Outcome;
@@ -16,11 +16,11 @@ pub(crate) enum Accuracy {
 /// Why a linear system was not solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LinearFailure {
-    /// There are no factors.
+    /// The matrix has no factors.
     Factors(FactorError),
     /// The outcome of the solve, which no other linear solver would change.
     Outcome(Outcome),
-    /// The solver does not fit the matrix, or needs too many iterations.
+    /// The solver does not fit the matrix, or its iterations do not converge within their limit.
     Unsuitable,
 }
 
@@ -36,14 +36,14 @@ pub(crate) trait LinearSolver<T>: Sync {
     /// Relative tolerance, in the energy norm, of systems solved with [`Accuracy::Full`]; zero if only
     /// rounding limits the accuracy.
     fn tolerance(&self) -> f64;
-    /// Prepares the systems without the eliminated unknowns.
+    /// Prepares the solver for the linear system in which these unknowns are eliminated.
     ///
     /// # Errors
     /// See [`LinearFailure`].
     fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), LinearFailure>;
-    /// Corrects the values of the inactive unknowns, and the jump multipliers if the solver has them as
-    /// unknowns, by the solution for the residual. On return the residual is the true one of all
-    /// unknowns, in `f64`.
+    /// Corrects the values of the inactive unknowns, and the jump multipliers if the solver has them as unknowns, by
+    /// the solution of the linear system with the residual as right-hand side. On return the residual of the iterate is
+    /// that of the corrected values on all unknowns, computed in `f64`.
     ///
     /// # Errors
     /// See [`LinearFailure`].
@@ -52,9 +52,9 @@ pub(crate) trait LinearSolver<T>: Sync {
         iterate: &mut Iterate<'_, T>,
         accuracy: Accuracy,
     ) -> Result<(), LinearFailure>;
-    /// Determines the jump multipliers of a penalised matrix, with the residual that belongs to them,
-    /// more accurately than they follow from the values; false if the solver cannot, or if its
-    /// corrections determine them already.
+    /// Computes the jump multipliers of a penalised matrix more accurately than they follow from the values, and the
+    /// residual with these jump multipliers. False, without a change, if the matrix is not penalised or if
+    /// [`LinearSolver::correct`] determines the jump multipliers already.
     ///
     /// # Errors
     /// See [`LinearFailure`].
@@ -68,12 +68,12 @@ pub(crate) trait LinearSolver<T>: Sync {
     /// Whether the energy norm of the error of the last solution is within the tolerance, relative to
     /// `energy_norm`.
     fn is_accurate(&self, energy_norm: f64) -> bool;
-    /// Sums of the absolute values of the terms of which the residual of unknown `i` is computed: terms
-    /// of inactive unknowns, then terms of eliminated unknowns and of the load.
+    /// Sums of the absolute values of the terms of the residual of unknown `i`: terms of inactive unknowns and jump
+    /// multipliers, then terms of eliminated unknowns and of the load.
     fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2];
-    /// The largest of the values whose rounding an inactive unknown `i` has, if the solver resolves differences of
-    /// values to rounding; else infinite.
-    fn size_of_values_near(&self, i: usize, iterate: &Iterate<'_, T>) -> f64 {
+    /// The largest absolute value of the unknowns coupled with the inactive unknown `i`, if the rounding error of its
+    /// value is of the size of the rounding of these values; infinite if the solver does not solve that accurately.
+    fn largest_value_near(&self, i: usize, iterate: &Iterate<'_, T>) -> f64 {
         let _ = (i, iterate);
         f64::INFINITY
     }

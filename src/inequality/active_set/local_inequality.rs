@@ -1,4 +1,4 @@
-//! The inequality near a few unknowns, whose solution provides their contact states.
+//! The inequality near a few unknowns whose contact states change, and its solution.
 
 use super::iterate::Iterate;
 use super::settings::ActiveSet;
@@ -7,20 +7,22 @@ use crate::inequality::{InequalitySolver, Outcome};
 use crate::linear::LinearMethod;
 use crate::real::Real;
 
-/// The distance of the unknowns of a local inequality from those that change, in couplings of the matrix. The vertex values at a vertex of
-/// tetrahedra, which are coupled from cell to cell, are at most half a dozen couplings apart.
-const DISTANCE: usize = 4;
+/// Largest distance, in couplings of the matrix, of the unknowns of a local inequality from those whose states change.
+/// The values of different tetrahedra at one vertex, which are coupled from cell to cell, are at most half a dozen
+/// couplings apart.
+const MAX_DISTANCE: usize = 4;
 
-/// Largest number of unknowns of a local inequality, divided by the number of all unknowns. It is solved
-/// with factors.
-const SHARE: f64 = 0.1;
+/// Largest number of unknowns of a local inequality, which is solved with factors, divided by the number of all
+/// unknowns.
+const MAX_SHARE: f64 = 0.1;
 
-/// Solves the inequality for the unknowns near those of `changed`, all others as they are, and stores values
-/// and contact states. Returns false, without a change, if they are too many or there is no solution.
+/// Solves the inequality for the unknowns near `changed`, with the values of all other unknowns held, and stores values
+/// and contact states in the iterate. Returns false, and leaves values and states unchanged, if the local inequality
+/// has too many unknowns or its solve does not converge.
 ///
-/// The active set of a matrix that is no M-matrix may return to itself where a few unknowns, each group on
-/// a few cells, change their states in turn. The exact solution on these cells ends this: the sum of all
-/// local inequalities is solved by a method that does not cycle, and decreases the energy.
+/// If the matrix is no M-matrix, the active set may cycle because a few unknowns, in groups on a few cells, change
+/// their states in turn. The exact solution on the cells of all groups ends the cycle: the active set method with
+/// factors and the interior point method find it, and it does not increase the energy.
 pub(super) fn solve_locally<T: Real>(
     iterate: &mut Iterate<'_, T>,
     settings: &ActiveSet,
@@ -31,13 +33,13 @@ pub(super) fn solve_locally<T: Real>(
     }
     let Iterate { inequality, values, states, residual, .. } = &*iterate;
     let unknowns = unknowns_around(&inequality.matrix, changed);
-    if unknowns.len() as f64 > SHARE * values.len() as f64 {
+    if unknowns.len() as f64 > MAX_SHARE * values.len() as f64 {
         return false;
     }
     let Submatrix { row_starts, columns, values: entries } =
         Submatrix::new(&inequality.matrix, &unknowns);
     let matrix = SparseMatrix { row_starts, columns, values: entries };
-    // for the correction of the values, so that the others contribute their residual
+    // the unknowns of the local inequality are corrections of values: its load is the residual
     let load = unknowns.iter().map(|&i| T::lit(residual[i as usize])).collect();
     let bounds =
         unknowns.iter().map(|&i| shifted(&inequality.bounds[i as usize], values[i as usize]));
@@ -57,8 +59,8 @@ pub(super) fn solve_locally<T: Real>(
     true
 }
 
-/// The unknowns within [`DISTANCE`] of some unknowns, ascending.
-fn unknowns_around<T: Real>(matrix: &SparseMatrix<T>, of: &[u32]) -> Vec<u32> {
+/// The unknowns within [`MAX_DISTANCE`] of the unknowns `changed`, these included, ascending.
+fn unknowns_around<T: Real>(matrix: &SparseMatrix<T>, changed: &[u32]) -> Vec<u32> {
     let mut is_local = vec![false; matrix.size()];
     let mut all: Vec<u32> = Vec::new();
     let add = |i: u32, is_local: &mut [bool], all: &mut Vec<u32>| {
@@ -66,9 +68,9 @@ fn unknowns_around<T: Real>(matrix: &SparseMatrix<T>, of: &[u32]) -> Vec<u32> {
             all.push(i);
         }
     };
-    of.iter().for_each(|&i| add(i, &mut is_local, &mut all));
+    changed.iter().for_each(|&i| add(i, &mut is_local, &mut all));
     let mut begin = 0;
-    for _ in 0..DISTANCE {
+    for _ in 0..MAX_DISTANCE {
         let end = all.len();
         for k in begin..end {
             for &j in matrix.row(all[k] as usize).0 {
@@ -111,7 +113,7 @@ mod tests {
         assert!(solve_locally(&mut iterate, &ActiveSet::default(), &[middle as u32]));
         iterate.compute_residual();
         for i in 0..n {
-            let is_local = i.abs_diff(middle) <= DISTANCE;
+            let is_local = i.abs_diff(middle) <= MAX_DISTANCE;
             let (u, r) = (iterate.values[i], iterate.residual[i]);
             match iterate.states[i] {
                 Contact::Lower => assert!(is_local && u == -0.05 && r < 0.0, "{i}: {u} {r}"),
@@ -125,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_local_inequality_of_most_unknowns_is_none() {
+    fn a_local_inequality_of_too_many_unknowns_is_not_solved() {
         let string = string(40, -0.05);
         let mut iterate = Iterate::new(&string, &[]);
         assert!(!solve_locally(&mut iterate, &ActiveSet::default(), &[20]));

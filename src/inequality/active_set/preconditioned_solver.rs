@@ -13,20 +13,19 @@ use crate::linear::krylov::{
 use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
 
-/// Estimated condition number of the preconditioned matrix (largest Ritz value divided by the
-/// smallest) above which the preconditioner counts as unsuitable: the preconditioned norm of a
-/// residual is then no measure of the error, and factors are better.
+/// Estimated condition number of the preconditioned matrix (largest Ritz value divided by the smallest) above which the
+/// preconditioner counts as unsuitable: the preconditioned norm of a residual is then no measure of the error.
 const MAX_CONDITION: f64 = 1e4;
 
 /// Largest number of iterations for one linear system.
 const MAX_ITERATIONS: usize = 500;
 
-/// Relative tolerance of the system that determines jump multipliers.
+/// Relative tolerance of the linear system for the jump multipliers.
 const MULTIPLIER_TOLERANCE: f64 = 1e-6;
 
-/// The factor by which the target of an accurate solution may exceed the tolerance after the energy
-/// norm has changed.
-const TARGET_MARGIN: f64 = 1.01;
+/// The factor by which the residual of an accurate solution may exceed the tolerance relative to the energy norm of the
+/// solution, because the system was solved to the tolerance relative to that of the preceding iterate.
+const TOLERANCE_MARGIN: f64 = 1.01;
 
 /// The solver with a Krylov method and a preconditioner for the symmetric part of the matrix.
 pub(crate) struct PreconditionedSolver<'a, T: Real> {
@@ -35,7 +34,7 @@ pub(crate) struct PreconditionedSolver<'a, T: Real> {
     symmetric_part: &'a SparseMatrix<T>,
     pub(super) preconditioner: Box<dyn Preconditioner<T> + 'a>,
     krylov: KrylovMethod<'a, T>,
-    /// The fixed unknowns of the preconditioner.
+    /// The fixed unknowns for which the preconditioner is set up.
     pub(super) eliminated: Vec<bool>,
     /// See [`LinearSolver::tolerance`].
     tolerance: f64,
@@ -45,8 +44,8 @@ pub(crate) struct PreconditionedSolver<'a, T: Real> {
     pub(super) smallest_ritz_value: f64,
     /// Preconditioned norm of the residual at the end of the last system.
     pub(super) residual_norm: f64,
-    /// The norm at which the last system was to stop.
-    target: f64,
+    /// Preconditioned norm of the residual at which the last system would have been solved with [`Accuracy::Full`].
+    full_accuracy_norm: f64,
 }
 
 impl<'a, T: Real> PreconditionedSolver<'a, T> {
@@ -67,11 +66,11 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
             residual: zeros(inequality.size()),
             smallest_ritz_value: 1.0,
             residual_norm: f64::INFINITY,
-            target: 0.0,
+            full_accuracy_norm: 0.0,
         }
     }
 
-    /// Copies the residual of an iterate, zero on eliminated unknowns.
+    /// Copies the residual of an iterate on inactive unknowns and sets it to zero on eliminated ones.
     fn restrict_residual(&mut self, iterate: &Iterate<'_, T>) {
         let Iterate { eliminated, residual, .. } = iterate;
         for_each_chunk(&mut self.residual, |range, r| {
@@ -84,23 +83,24 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
     /// Updates `smallest_ritz_value` by a run of a Krylov method.
     ///
     /// # Errors
-    /// See [`LinearFailure`].
-    fn check(&mut self, run: &KrylovRun) -> Result<(), LinearFailure> {
+    /// The failure if the run did not converge, or if the condition number exceeds [`MAX_CONDITION`].
+    fn check_run(&mut self, run: &KrylovRun) -> Result<(), LinearFailure> {
         let (low, high) = run.ritz.unwrap_or((1.0, 1.0));
         self.smallest_ritz_value = self.smallest_ritz_value.min(low);
         match run.reason {
-            StopReason::NotPositive if !self.inequality.symmetric => Err(self.not_coercive()),
+            StopReason::NotPositive if !self.inequality.symmetric => Err(self.loss_of_positivity()),
             _ if high > MAX_CONDITION * low => Err(LinearFailure::Unsuitable),
-            StopReason::NotPositive => Err(self.not_coercive()),
+            StopReason::NotPositive => Err(self.loss_of_positivity()),
             StopReason::Converged => Ok(()),
             StopReason::NotFinite => Err(LinearFailure::Outcome(Outcome::NotFinite)),
             StopReason::IterationLimit => Err(LinearFailure::Unsuitable),
         }
     }
 
-    /// The failure where the symmetric part of the matrix was found not to be positive definite. LU factors of the matrix
-    /// would not detect an indefinite symmetric part.
-    fn not_coercive(&self) -> LinearFailure {
+    /// The failure after a run or the preconditioner found the symmetric part of the matrix not to be positive
+    /// definite. For a matrix that is not symmetric the stage with factors would not find the reason: LU factors do not
+    /// detect an indefinite symmetric part.
+    fn loss_of_positivity(&self) -> LinearFailure {
         diagnose_loss_of_positivity(self.inequality)
             .map_or(LinearFailure::Unsuitable, LinearFailure::Outcome)
     }
@@ -114,8 +114,8 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
     /// but need not come close to it.
     ///
     /// # Errors
-    /// [`LinearFailure::Unsuitable`] if the preconditioner does not fit or the iterations do not
-    /// suffice, an outcome if the symmetric part is not positive definite.
+    /// [`LinearFailure::Unsuitable`] if the condition number is too large or the run does not converge, an outcome if
+    /// the symmetric part is not positive definite.
     pub fn estimate_smallest_eigenvalue(
         &mut self,
         iterate: &mut Iterate<'_, T>,
@@ -129,7 +129,7 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
             MAX_ITERATIONS,
         );
         iterate.linear += run.iterations;
-        self.check(&run)
+        self.check_run(&run)
     }
 }
 
@@ -143,8 +143,8 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         self.eliminated.extend_from_slice(eliminated);
         self.preconditioner.set_fixed(eliminated).map_err(|error| match error {
             FactorError::OutOfMemory => LinearFailure::Outcome(Outcome::OutOfMemory),
-            FactorError::NotPositive if !self.inequality.symmetric => self.not_coercive(),
-            // factors of the whole matrix give the reason
+            FactorError::NotPositive if !self.inequality.symmetric => self.loss_of_positivity(),
+            // the stage with factors finds the reason
             _ => LinearFailure::Unsuitable,
         })
     }
@@ -170,14 +170,15 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         let system = (&mut values[..], &mut self.residual[..]);
         let run = self.krylov.solve(eliminated, &mut *self.preconditioner, system, stop);
         iterate.linear += run.iterations;
-        (self.residual_norm, self.target) = (run.residual_norm, stop.absolute_tolerance);
-        self.check(&run)?;
+        self.residual_norm = run.residual_norm;
+        self.full_accuracy_norm = stop.absolute_tolerance;
+        self.check_run(&run)?;
         iterate.compute_residual();
         Ok(())
     }
 
-    /// The multipliers are `S (M u - g) + S M e`, where `A e` is the residual of `u`: they belong to the
-    /// values `u + e`, whose jumps the rounded sum of `u` and `e` would lose.
+    /// The jump multipliers are `S (M u - g) + S M e`, where `e` solves the system with the residual of `u`. They are
+    /// those of the values `u + e` without the rounding of this sum, which large weights `S` would amplify.
     fn determine_jump_multipliers(
         &mut self,
         iterate: &mut Iterate<'_, T>,
@@ -194,13 +195,14 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         let system = (&mut correction[..], &mut self.residual[..]);
         let run = self.krylov.solve(&iterate.eliminated, &mut *self.preconditioner, system, stop);
         iterate.linear += run.iterations;
-        self.check(&run)?;
-        let of_values = penalised.jump_multipliers(|i| iterate.values[i].to_f64());
-        let multiplier = |(jump, &of_values): (usize, &f64)| {
+        self.check_run(&run)?;
+        let multipliers_of_values = penalised.jump_multipliers(|i| iterate.values[i].to_f64());
+        let multiplier = |(jump, &multiplier): (usize, &f64)| {
             let jump_of_correction = penalised.jump(jump, |i| correction[i].to_f64());
-            T::lit(of_values + penalised.weights[jump].to_f64() * jump_of_correction)
+            T::lit(multiplier + penalised.weights[jump].to_f64() * jump_of_correction)
         };
-        iterate.jump_multipliers = of_values.iter().enumerate().map(multiplier).collect();
+        iterate.jump_multipliers =
+            multipliers_of_values.iter().enumerate().map(multiplier).collect();
         let Iterate { values, jump_multipliers, residual, .. } = iterate;
         penalised.residual_with_jump_multipliers(
             |i| values[i].to_f64(),
@@ -211,7 +213,8 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
     }
 
     fn is_accurate(&self, energy_norm: f64) -> bool {
-        self.residual_norm <= self.target.min(TARGET_MARGIN * self.tolerance * energy_norm)
+        self.residual_norm
+            <= self.full_accuracy_norm.min(TOLERANCE_MARGIN * self.tolerance * energy_norm)
     }
 
     fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {

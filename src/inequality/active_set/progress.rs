@@ -1,13 +1,14 @@
-//! The progress of an active set iteration: active sets that return, stagnation, and how accurately to
-//! solve.
+//! The progress of an active set iteration: cycles, stagnation, and the accuracy of the next linear solution.
 
 use super::linear_solver::Accuracy;
 use crate::algebra::{Contact, Distribution};
 
-/// Fewer state changes than this hardly change the error: the next system is then solved accurately.
-const FEW_CHANGES: usize = 16;
+/// Least number of state changes after which the next system is solved with reduced accuracy. Fewer changes hardly
+/// affect the error.
+const MIN_CHANGES_FOR_REDUCED_ACCURACY: usize = 16;
 
-/// Largest number of solutions that may be repeated because of rounding.
+/// Largest number of systems that are solved again because rounding made the certificate of an accurate solution too
+/// large.
 const MAX_REPEATS: usize = 3;
 
 /// Why an active set iteration does not continue.
@@ -21,18 +22,18 @@ pub(crate) enum Obstruction {
 
 /// The numbers of steps within which an iteration must progress.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Patience {
+pub(crate) struct ProgressLimits {
     /// Number of systems within which the number of state changes must halve; `None` for no limit.
     pub halving: Option<usize>,
     /// Number of systems within which the merit must decrease.
     pub improvement: usize,
 }
 
-impl Patience {
-    /// The patience with a stage that no other one follows.
+impl ProgressLimits {
+    /// No limits: for a stage that no other one follows.
     pub const UNLIMITED: Self = Self { halving: None, improvement: usize::MAX };
 
-    /// Whether the number of systems without a better iterate is limited.
+    /// Whether the number of systems within which the merit must decrease is limited.
     pub fn limits_improvement(self) -> bool {
         self.improvement < usize::MAX
     }
@@ -40,14 +41,16 @@ impl Patience {
 
 /// The progress of an iteration.
 pub(crate) struct ProgressMonitor<'d> {
-    patience: Patience,
-    /// The other parts, if the states are those of one part.
+    limits: ProgressLimits,
+    /// The other parts of the mesh, if the states are those of one part.
     distribution: Option<&'d dyn Distribution>,
-    /// The fingerprint of the present active set, less that of the first; see [`ActiveSetKey`].
+    /// The fingerprint of the present active set, less that of the first; see [`FingerprintChange`].
     fingerprint: u128,
     /// The fingerprints of the preceding active sets, each with whether its system was solved accurately.
     seen: Vec<(u128, bool)>,
+    /// Whether the next system is solved accurately.
     next_is_accurate: bool,
+    /// Whether all following systems are solved accurately.
     all_are_accurate: bool,
     /// The number of systems since the smallest merit, or since all are solved accurately.
     steps_without_improvement: usize,
@@ -55,20 +58,20 @@ pub(crate) struct ProgressMonitor<'d> {
     repeats: usize,
     /// The number of state changes when it last halved.
     fewest_changes: usize,
-    /// The number of systems with state changes since then.
+    /// The number of systems with state changes since `fewest_changes` was set.
     steps_without_halving: usize,
 }
 
 impl<'d> ProgressMonitor<'d> {
-    /// The progress before the first system, which is solved accurately if `is_linear`: no unknown has an
+    /// The progress before the first system, which is solved accurately if the problem is linear: no unknown has an
     /// inequality as bound.
     pub fn new(
-        patience: Patience,
+        limits: ProgressLimits,
         is_linear: bool,
         distribution: Option<&'d dyn Distribution>,
     ) -> Self {
         Self {
-            patience,
+            limits,
             distribution,
             fingerprint: 0,
             seen: Vec::new(),
@@ -89,33 +92,32 @@ impl<'d> ProgressMonitor<'d> {
         }
     }
 
-    /// Notes an accurate solution whose certificate is too large; false after more than
-    /// [`MAX_REPEATS`] of them.
-    pub fn may_repeat(&mut self) -> bool {
+    /// Counts an accurate solution whose certificate is too large; returns false after more than [`MAX_REPEATS`] of
+    /// them.
+    pub fn may_solve_again(&mut self) -> bool {
         self.repeats += 1;
         self.repeats <= MAX_REPEATS
     }
 
-    /// Notes the state changes that follow from a solution and whether the solution is the best so
-    /// far. `before` are the states before the changes, `is_accurate` tells whether the solution is as
-    /// accurate as possible.
+    /// Records a solution of a linear system: the state changes that follow from it, the states `before` these changes,
+    /// whether its merit is the smallest so far, and whether it is accurate to the tolerance of the linear solver.
     ///
     /// # Errors
     /// [`Obstruction`] if the iteration does not progress.
-    pub fn note(
+    pub fn record_solution(
         &mut self,
         changes: &[(u32, Contact)],
         before: &[Contact],
         is_best: bool,
         is_accurate: bool,
     ) -> Result<(), Obstruction> {
-        let own = ActiveSetKey::of_changes(changes, before, self.distribution);
-        let ActiveSetKey { fingerprint, count } = own.over_parts(self.distribution);
-        self.next_is_accurate = count < FEW_CHANGES;
+        let own = FingerprintChange::of_changes(changes, before, self.distribution);
+        let FingerprintChange { fingerprint, count } = own.over_parts(self.distribution);
+        self.next_is_accurate = count < MIN_CHANGES_FOR_REDUCED_ACCURACY;
         if count == 0 {
             return Ok(());
         }
-        match self.record(fingerprint, is_accurate) {
+        match self.record_active_set(fingerprint, is_accurate) {
             Some(true) => return Err(Obstruction::Cycle),
             Some(false) => self.next_is_accurate = true,
             None => {}
@@ -125,11 +127,11 @@ impl<'d> ProgressMonitor<'d> {
         }
         self.steps_without_improvement =
             if is_best { 0 } else { self.steps_without_improvement + 1 };
-        if self.steps_without_improvement > self.patience.improvement {
+        if self.steps_without_improvement > self.limits.improvement {
             if self.all_are_accurate || is_accurate {
                 return Err(Obstruction::Stagnation);
             }
-            // inaccurate solutions may be the cause
+            // the reduced accuracy of the solutions may be the cause
             (self.all_are_accurate, self.steps_without_improvement) = (true, 0);
         }
         Ok(())
@@ -140,30 +142,30 @@ impl<'d> ProgressMonitor<'d> {
         self.seen.len()
     }
 
-    /// The number of systems of this iteration since the smallest merit, or since all are solved accurately.
+    /// The number of systems since the smallest merit of this iteration, or since all are solved accurately.
     pub fn steps_without_improvement(&self) -> usize {
         self.steps_without_improvement
     }
 
-    /// Whether the number of state changes has halved at the last note.
+    /// Whether the number of state changes has halved with the last solution.
     pub fn has_halved(&self) -> bool {
         self.steps_without_halving == 0
     }
 
-    /// Whether the number of state changes has not halved for too long.
+    /// Records a number of state changes; returns whether the number has not halved within the limit.
     fn has_stagnated(&mut self, changes: usize) -> bool {
         if 2 * changes <= self.fewest_changes {
             (self.fewest_changes, self.steps_without_halving) = (changes, 0);
         } else {
             self.steps_without_halving += 1;
         }
-        self.patience.halving.is_some_and(|steps| self.steps_without_halving >= steps)
+        self.limits.halving.is_some_and(|steps| self.steps_without_halving >= steps)
     }
 
-    /// Records the present active set and the one that follows by a change of the fingerprint. If the latter
-    /// has occurred before: whether its system was solved accurately, so that the iteration would repeat
-    /// itself.
-    fn record(&mut self, change: u128, is_accurate: bool) -> Option<bool> {
+    /// Records the present active set and adds `change` to the fingerprint, which gives the next active set. `None` if
+    /// the next active set has not occurred before; else whether its system was solved accurately, so that the
+    /// iteration would cycle.
+    fn record_active_set(&mut self, change: u128, is_accurate: bool) -> Option<bool> {
         self.seen.push((self.fingerprint, is_accurate));
         self.fingerprint = self.fingerprint.wrapping_add(change);
         let earlier = self.seen.iter().filter(|(seen, _)| *seen == self.fingerprint);
@@ -171,17 +173,17 @@ impl<'d> ProgressMonitor<'d> {
     }
 }
 
-/// The fingerprint of an active set is the sum of the keys of all unknowns; here is the difference of two. It
-/// has 128 bits: two different sets among a few hundred share one with a probability below 1e-33, so that
-/// equal fingerprints count as equal sets.
-struct ActiveSetKey {
+/// The difference of the fingerprints of two active sets. The fingerprint of an active set is the sum of the keys of
+/// all unknowns and has 128 bits: two different sets among a few hundred share one with a probability below 1e-33, so
+/// that sets with equal fingerprints count as equal.
+struct FingerprintChange {
     fingerprint: u128,
-    /// The number of changes.
+    /// The number of state changes.
     count: usize,
 }
 
-impl ActiveSetKey {
-    /// That of changes in one part.
+impl FingerprintChange {
+    /// The difference by the state changes in one part.
     fn of_changes(
         changes: &[(u32, Contact)],
         before: &[Contact],
@@ -197,7 +199,7 @@ impl ActiveSetKey {
         Self { fingerprint, count: changes.len() }
     }
 
-    /// The sum over all parts, of quarters of 32 bits: their sums are exact in `f64`.
+    /// The sum over all parts. Quarters of 32 bits are added separately, so that their sums are exact in `f64`.
     fn over_parts(self, distribution: Option<&dyn Distribution>) -> Self {
         let Some(distribution) = distribution else { return self };
         let quarter = |k: u32| f64::from((self.fingerprint >> (32 * k)) as u32);
@@ -213,8 +215,8 @@ fn number(unknown: usize, distribution: Option<&dyn Distribution>) -> u64 {
     distribution.map_or(unknown as u64, |distribution| distribution.number(unknown))
 }
 
-/// The key of the contact state of unknown `i`: a pseudo-random number determined by the unknown
-/// and its active bound, zero if the unknown is inactive.
+/// The key of the contact state of the unknown with number `i`: a pseudo-random number determined by `i` and the active
+/// bound; zero if the unknown is inactive.
 fn state_key(i: u64, contact: Contact) -> u128 {
     let side = match contact {
         Contact::Inactive => return 0,
@@ -238,18 +240,18 @@ fn scramble(key: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// The number of accurate steps, each with another unknown in contact, before the iteration ends.
+    /// The number of accurate solutions, each with another unknown in contact, before stagnation.
     fn steps(improvement: usize, is_best: bool) -> usize {
         let mut states = vec![Contact::Inactive; 20];
         let mut progress =
-            ProgressMonitor::new(Patience { halving: None, improvement }, false, None);
-        let mut goes_on = |i: &usize| {
+            ProgressMonitor::new(ProgressLimits { halving: None, improvement }, false, None);
+        let mut continues = |i: &usize| {
             let change = [(*i as u32, Contact::Lower)];
-            let noted = progress.note(&change, &states, is_best, true);
+            let recorded = progress.record_solution(&change, &states, is_best, true);
             states[*i] = Contact::Lower;
-            noted != Err(Obstruction::Stagnation)
+            recorded != Err(Obstruction::Stagnation)
         };
-        (0..20).take_while(|i| goes_on(i)).count()
+        (0..20).take_while(|i| continues(i)).count()
     }
 
     /// The published outputs of SplitMix64 from the seeds 0 and 1234567.
@@ -262,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn patience_ends_where_nothing_improves() {
+    fn an_iteration_without_better_iterates_stagnates() {
         assert_eq!(steps(3, false), 3);
         assert_eq!(steps(7, false), 7);
         assert_eq!(steps(3, true), 20);

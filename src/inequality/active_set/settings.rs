@@ -11,29 +11,28 @@ use crate::linear::LinearMethod;
 /// becomes active. For M-matrices the method ends in the solution after finitely many steps. For other
 /// matrices it may cycle or stagnate:
 ///
-/// * An active set that returns, a number of state changes that has not halved within
-///   `stagnation_steps` steps, or `improvement_steps` steps without a better iterate, lead to the next
-///   stage, in the end to the interior point method, which provides a new start ([`Globalisation`]).
-/// * If nothing is left, the outcome is [`Outcome::Cycling`](super::super::Outcome::Cycling).
+/// * An active set that occurs again, a number of state changes that has not halved within `stagnation_steps` steps, or
+///   `improvement_steps` steps without a better iterate, lead to the next stage, in the end to the interior point
+///   method, which provides a new start ([`Globalisation`]).
+/// * If no stage is left, the outcome is [`Outcome::Cycling`](super::super::Outcome::Cycling).
 ///
-/// No difference within rounding changes a state, since ties would cycle. Two tolerances decide, both
+/// No difference within rounding changes a state, because ties would otherwise cycle. There are two tolerances, both
 /// proportional to `rounding_band` times machine epsilon:
 ///
 /// * A bound counts as violated if the violation exceeds this product times the largest absolute
 ///   value of all unknowns. An unknown wrongly left inactive changes the solution by its violation
 ///   at most, so that a global scale is safe.
-/// * The sign of a multiplier counts as wrong if its size exceeds this product times the sum of the
-///   absolute values of the terms of its residual (machine epsilon of the scalar for terms of
-///   inactive unknowns, of `f64` for terms of fixed and active unknowns). Multipliers
-///   shrink like the volume of a patch and there are many of them, so that a global scale would
-///   hide all of them on fine meshes.
+/// * The sign of a multiplier counts as wrong if its size exceeds this product times the sum of the absolute values of
+///   the terms of its residual (machine epsilon of the scalar for terms of inactive unknowns, of `f64` for terms of
+///   fixed and active unknowns). On fine meshes each multiplier is proportional to the small volume of a patch, so that
+///   all of them would be below a tolerance with a global scale.
 ///
-/// The band is the same for all linear solvers. The solution of a Krylov method is accepted if all
-/// violations are within the tolerance of the linear systems, a tenth of the limit of the certificate:
-/// unknowns whose gap or multiplier is smaller may have another state than with factors.
+/// The two tolerances are those of all linear solvers. The solution of a Krylov method is accepted if all violations
+/// are within the tolerance of the linear systems, a tenth of the limit of the certificate: unknowns whose gap or
+/// multiplier is below that tolerance may have another state than with factors.
 ///
-/// A cold start begins with the solution without inequalities. If the matrix is singular on the free
-/// unknowns, because only the bounds prevent a rigid motion, it begins with every bound active.
+/// A cold start begins with the solution without inequalities, or, if the matrix is singular on the free unknowns
+/// because only the bounds prevent a rigid motion, with every bound active.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ActiveSet {
@@ -41,23 +40,23 @@ pub struct ActiveSet {
     pub max_outer: usize,
     /// The multiple of machine epsilon within which no unknown changes its state.
     pub rounding_band: f64,
-    /// Number of corrections of each linear solution by its residual in `f64`. Every step of the
-    /// active set method is itself a correction of the preceding iterate; one more matters where a
-    /// single step suffices (a warm start), in `f32` by two digits and more.
+    /// Number of corrections of each linear solution by its residual in `f64`. Every step of the active set method is
+    /// itself a correction of the preceding iterate; one more correction gains two digits and more in `f32` if a single
+    /// step suffices (a warm start).
     pub refinements: usize,
     /// Number of linear systems within which the number of state changes must halve; otherwise the
     /// active set stagnates and the interior point method provides a new start.
     pub stagnation_steps: usize,
-    /// Number of linear systems within which the best iterate must improve; otherwise the next stage
-    /// follows. A stage that no other one follows ends then if the best iterate is a solution.
+    /// Number of linear systems within which the best iterate must improve; otherwise the next stage follows. The last
+    /// stage ends after this number if the best iterate is a solution.
     pub improvement_steps: usize,
-    /// The method that takes over from an active set that stagnates or cycles.
+    /// The use of the interior point method after an active set that stagnates or cycles.
     pub globalisation: Globalisation,
-    /// Whether factors check first that the matrix, or its symmetric part if it is not symmetric, is
-    /// positive definite on all unknowns that are not fixed, unless this is known
-    /// ([`Inequality::is_definite`](crate::algebra::Inequality::is_definite)). A solution does not
-    /// reveal that its matrix is indefinite. A symmetric matrix is always checked from a start in
-    /// contact, and, free of cost, from a cold start with factors.
+    /// Whether factors check first that the matrix, or its symmetric part if it is not symmetric, is positive definite
+    /// on all unknowns that are not fixed, unless this is known
+    /// ([`Inequality::is_definite`](crate::algebra::Inequality::is_definite)). Without the check an indefinite matrix
+    /// may remain undetected. A symmetric matrix is always checked if the start has contact states and, without
+    /// additional cost, if a cold start uses factors.
     pub check_definite: bool,
     /// The method for the linear systems.
     pub linear: LinearMethod,
@@ -68,12 +67,12 @@ pub struct ActiveSet {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Globalisation {
-    /// None: the active set method alone determines the outcome.
+    /// No use: the active set method alone determines the outcome.
     Never,
-    /// Where the active set stagnates or cycles.
+    /// After an active set that stagnates or cycles.
     #[default]
     OnStagnation,
-    /// For the first active set too.
+    /// For the first active set as well.
     InteriorPointFirst,
 }
 
@@ -124,7 +123,7 @@ impl ActiveSet {
         self.improvement_steps = improvement_steps;
         self
     }
-    /// Sets the method that takes over from an active set that stagnates or cycles.
+    /// Sets the use of the interior point method.
     #[must_use]
     pub fn globalisation(mut self, globalisation: Globalisation) -> Self {
         self.globalisation = globalisation;

@@ -1,27 +1,31 @@
 //! The stages of the active set method, in their order, with all thresholds.
 //!
-//! | stage | runs if | ends without a solution if |
-//! |---|---|---|
-//! | active set, preconditioned | coarse spaces are known and the problem has at least [`CROSSOVER`] unknowns, or the settings ask for it | the active set stagnates or cycles, or the preconditioner does not fit |
-//! | monotone multigrid | the preceding stage stagnated, the matrix is symmetric and coarse spaces are known; not for penalties on jumps of means of several unknowns | its cycles stagnate, or reach their limit |
-//! | active set, direct | no solution is known | the active set stagnates or cycles |
-//! | interior point | the preceding stage ended so, and the limit of linear systems leaves room | never: it provides the next starting active set |
+//! 1. *Active set, preconditioned.* Runs if coarse spaces are known and the problem has at least [`CROSSOVER`]
+//!    unknowns, or if the settings require it. The next stage follows if the active set stagnates or cycles, or if the
+//!    preconditioner does not fit.
+//! 2. *Monotone multigrid.* Runs if the active set of the first stage stagnated or cycled, the matrix is symmetric,
+//!    coarse spaces are known, and no penalty acts on jumps of means of several unknowns. The next stage follows if the
+//!    cycles stagnate or reach their limit.
+//! 3. *Active set, direct.* Runs if no solution is known. The next stage follows if the active set stagnates or cycles.
+//! 4. *Interior point.* Runs if the active set of the third stage stagnated or cycled, and the limit `max_outer` of
+//!    linear systems leaves room for all steps, or in place of the third stage if the settings require it. It never
+//!    ends the solve, but provides the next starting active set.
 //!
-//! The direct active set and the interior point method alternate: the interior point method identifies the active set
-//! early, and a second time at its final accuracy. The active set iteration that follows the second one has no limit
-//! but `max_outer`; nor has one that follows a stagnation where `max_outer` leaves no room for the interior point
-//! method. Such an iteration also ends where `improvement_steps` systems have found no better iterate than one that
-//! satisfies its bounds to rounding, and the other conditions to the rounding that a large penalty amplifies and within
-//! the limit of the certificate; the values of the interior point method may be that one.
+//! The third and the fourth stage alternate: the interior point method identifies the active set early, and in its
+//! second run at its final accuracy. The active set iteration after the second run has no limit but `max_outer`; nor
+//! has one that continues after a stagnation because `max_outer` leaves no room for the interior point method. Such an
+//! iteration also ends after `improvement_steps` systems without a better iterate, if the best iterate satisfies its
+//! bounds to rounding and the other conditions within the limit of the certificate and to the rounding that a large
+//! penalty amplifies. The best iterate may consist of the values of the interior point method.
 //!
-//! Of an inequality that is distributed over the parts of a mesh the first stage alone runs.
+//! For an inequality that is distributed over the parts of a mesh only the first stage runs.
 //!
-//! Thresholds of a stage itself stand where it is defined: the numbers of steps without progress in [`ActiveSet`],
+//! Thresholds within a stage are defined with the stage: the numbers of steps without progress in [`ActiveSet`],
 //! `STAGNATION_CYCLES` in `monotone_multigrid/iteration`, `MAX_STEPS` in `interior_point`. `solve/stage_runs` runs a
 //! stage.
 
 use super::iteration::End;
-use super::progress::{Obstruction, Patience};
+use super::progress::{Obstruction, ProgressLimits};
 use super::settings::{ActiveSet, Globalisation};
 use super::solve::state::Solve;
 use crate::algebra::{Inequality, PenalisedMatrix, Start};
@@ -32,7 +36,7 @@ use crate::linear::precondition::unknowns_per_cell;
 use crate::linear::{CoarseSpaces, LinearMethod};
 use crate::real::Real;
 
-/// Number of unknowns from which the first stage runs by default, given nested meshes.
+/// Number of unknowns from which the first stage runs by default if coarse spaces are known.
 ///
 /// Solves of radial-2d with factors take 1.2 to 2.6 times as long as with Krylov methods at 300 to 6 000
 /// unknowns of P1, Crouzeix-Raviart, SIPG and WOPSIP, and 1.8 to 4.4 times at 12 000 to 98 000
@@ -48,11 +52,11 @@ const DIRECT_STEP_COST: usize = 4;
 /// Relative tolerance of accurate solutions by Krylov methods, divided by the limit of the certificate.
 const TOLERANCE_TO_LIMIT: f64 = 0.1;
 
-/// Largest number of inequalities near unknowns that change their states that are solved in place of a
-/// later stage. One suffices for WOPSIP with bounds at vertices in space.
-const LOCAL_SOLVES: usize = 3;
+/// Largest number of local inequalities, near unknowns whose states change, that the first stage solves before a later
+/// stage follows. One suffices for WOPSIP with bounds at vertices in space.
+const MAX_LOCAL_SOLVES: usize = 3;
 
-/// Number of basis functions of linear functions on a tetrahedron.
+/// Dimension of the space of linear functions on a tetrahedron.
 const MAX_LINEAR_BASIS: usize = 4;
 
 /// The stages in their order.
@@ -83,7 +87,7 @@ pub(super) fn is_preconditioned<T: Real>(
 }
 
 impl<T: Real> Solve<'_, '_, T> {
-    /// Whether a stage comes next.
+    /// Whether a stage runs, given the stages before it.
     pub(super) fn applies(&self, stage: Stage) -> bool {
         match stage {
             Stage::PreconditionedActiveSet => {
@@ -95,17 +99,17 @@ impl<T: Real> Solve<'_, '_, T> {
         }
     }
 
-    /// Whether monotone multigrid takes over: from a stagnating active set, if it suits the inequality and the
-    /// settings leave the choice.
+    /// Whether monotone multigrid runs: after an active set that stagnates or cycles, if monotone multigrid suits the
+    /// inequality and the settings have [`Globalisation::OnStagnation`].
     fn may_run_monotone_multigrid(&self) -> bool {
         matches!(self.end, Some(End::Obstruction(_)))
             && self.settings.globalisation == Globalisation::OnStagnation
             && self.suits_monotone_multigrid()
     }
 
-    /// Whether monotone multigrid suits the inequality: its matrix is symmetric, coarse spaces are known, and
-    /// sweeps by unknowns see what a penalty couples, because each jump of the penalty is that of one unknown. Where a
-    /// jump is that of a mean of vertex values, sweeps change hardly any single vertex value.
+    /// Whether monotone multigrid suits the inequality: the matrix is symmetric, coarse spaces are known, and each jump
+    /// of the penalty is that of a single unknown. If a large penalty acts on jumps of means of several vertex values,
+    /// Gauss-Seidel sweeps hardly change any single vertex value.
     fn suits_monotone_multigrid(&self) -> bool {
         let Inequality { distribution, symmetric, penalised, .. } = self.inequality;
         distribution.is_none()
@@ -114,14 +118,14 @@ impl<T: Real> Solve<'_, '_, T> {
             && penalised.as_ref().is_none_or(PenalisedMatrix::has_jumps_of_single_unknowns)
     }
 
-    /// Whether cells own more unknowns than linear functions on a tetrahedron have: broken quadratics in the plane and
-    /// in space.
+    /// Whether each cell owns more unknowns than linear functions on a tetrahedron have: broken quadratics in the plane
+    /// and in space.
     fn has_more_unknowns_than_linears(&self) -> bool {
         unknowns_per_cell(&self.inequality.supports).is_some_and(|n| n > MAX_LINEAR_BASIS)
     }
 
-    /// Whether an active set iteration with factors comes next: not where the interior point method
-    /// comes first, and after an interior point method only where one ran.
+    /// Whether an active set iteration with factors runs: once after each run of the interior point method and, unless
+    /// the interior point method comes first, once before.
     fn may_run_direct(&self) -> bool {
         let interior_point_runs = self.runs_of(Stage::InteriorPoint);
         let direct_runs = self.runs_of(Stage::DirectActiveSet);
@@ -132,8 +136,8 @@ impl<T: Real> Solve<'_, '_, T> {
         }
     }
 
-    /// Whether an active set iteration with factors goes on from its stagnation: its number of steps was limited in
-    /// favour of an interior point method for which the limit of linear systems leaves no room.
+    /// Whether an active set iteration with factors continues after its stagnation: its number of steps was limited so
+    /// that the interior point method could follow, but the limit of linear systems leaves no room for that method.
     pub(super) fn may_continue_direct(&self) -> bool {
         self.end == Some(End::Obstruction(Obstruction::Stagnation))
             && self.settings.globalisation != Globalisation::Never
@@ -143,8 +147,8 @@ impl<T: Real> Solve<'_, '_, T> {
             && self.iterate.outer < self.settings.max_outer
     }
 
-    /// Whether the interior point method comes next: where it comes first whatever the limit of systems,
-    /// else only if the limit leaves room for all its steps.
+    /// Whether the interior point method runs: without regard to the limit of linear systems if it comes first, else
+    /// only if it may improve the active set and the limit leaves room for all its steps.
     pub(super) fn may_run_interior_point(&self) -> bool {
         match self.settings.globalisation {
             _ if self.inequality.distribution.is_some() => false,
@@ -157,32 +161,35 @@ impl<T: Real> Solve<'_, '_, T> {
         }
     }
 
-    /// The relative tolerance of accurate solutions by Krylov methods: that of the guess if it is larger.
+    /// The relative tolerance of accurate solutions by Krylov methods; that of the initial guess if it is larger.
     pub(super) fn krylov_tolerance(&self) -> f64 {
         let least = TOLERANCE_TO_LIMIT * T::CERTIFICATE_LIMIT;
         self.guess.energy_tolerance.unwrap_or(0.0).max(least)
     }
 
-    /// How many inequalities near unknowns that change their states the first stage may solve: none where monotone
-    /// multigrid may follow.
+    /// The largest number of local inequalities, near unknowns whose states change, that the first stage solves: zero
+    /// if monotone multigrid may follow.
     pub(super) fn local_solves(&self) -> usize {
         let is_local = self.settings.globalisation == Globalisation::OnStagnation
             && self.inequality.distribution.is_none()
             && !self.suits_monotone_multigrid();
-        if is_local { LOCAL_SOLVES } else { 0 }
+        if is_local { MAX_LOCAL_SOLVES } else { 0 }
     }
 
-    /// The numbers of steps within which a stage must progress.
+    /// The numbers of steps within which an active set iteration must progress.
     ///
-    /// From a cold start the number of state changes of a preconditioned stage need not halve: the active set then
-    /// grows layer by layer, in many steps that are cheap. From another start more of its steps may pass than with
-    /// factors, unless the stage that follows is cheap too: monotone multigrid, or static condensation, which halves
-    /// the number of unknowns. Active sets of broken quadratics settle late, and take less time than cycles of monotone
-    /// multigrid all the same. An active set that stagnated there leads to the interior point method after one step
-    /// with factors, unless monotone multigrid, which follows a short stagnation, ran in between. After an interior
-    /// point method two steps suffice to tell that the active set was identified too early; where that did not resolve
-    /// small slacks, few states are wrong, and each step corrects some.
-    pub(super) fn patience(&self, stage: Stage) -> Patience {
+    /// * Preconditioned, from a cold start: the number of state changes need not halve, because the active set grows
+    ///   layer by layer, in many steps that are cheap.
+    /// * Preconditioned, from another start: more steps without progress are admitted than with factors, unless the
+    ///   stage that follows is cheap too: monotone multigrid, or static condensation, which halves the number of
+    ///   unknowns. Broken quadratics need many steps, which nevertheless take less time than cycles of monotone
+    ///   multigrid.
+    /// * With factors, after a stagnation of the preconditioned stage: one step, then the interior point method; but
+    ///   the number of steps of the settings if monotone multigrid, which follows a short stagnation, ran in between.
+    /// * With factors, after an interior point method: two steps, because no progress in two steps shows that the
+    ///   active set was identified too early. If that method did not resolve small slacks, the number of steps of the
+    ///   settings: few states are wrong, and each step corrects some.
+    pub(super) fn progress_limits(&self, stage: Stage) -> ProgressLimits {
         let ActiveSet { stagnation_steps, improvement_steps, globalisation, .. } = *self.settings;
         if stage == Stage::PreconditionedActiveSet {
             let is_cheap = self.inequality.penalised.is_some()
@@ -191,13 +198,13 @@ impl<T: Real> Solve<'_, '_, T> {
             let is_limited = globalisation == Globalisation::OnStagnation
                 && self.inequality.distribution.is_none()
                 && self.inequality.start != Start::Cold;
-            return Patience {
+            return ProgressLimits {
                 halving: is_limited.then_some(steps),
                 improvement: improvement_steps,
             };
         }
         if !self.may_run_interior_point() {
-            return Patience::UNLIMITED;
+            return ProgressLimits::UNLIMITED;
         }
         let halving = match (self.runs_of(Stage::InteriorPoint), self.end) {
             (0, Some(End::Obstruction(Obstruction::Stagnation))) if self.cycles == 0 => 0,
@@ -205,6 +212,6 @@ impl<T: Real> Solve<'_, '_, T> {
             _ if self.has_small_slacks => stagnation_steps,
             _ => 1,
         };
-        Patience { halving: Some(halving), improvement: improvement_steps }
+        ProgressLimits { halving: Some(halving), improvement: improvement_steps }
     }
 }

@@ -11,8 +11,9 @@ const STEP_FRACTION: f64 = 0.995;
 /// after it.
 const BACKTRACKING: f64 = 0.9;
 
-/// Smallest share of a step that keeps near the central path.
-const LEAST_LENGTH: f64 = 0.1;
+/// Length of a step, divided by the length with which all slack and dual variables are positive, from which the step is
+/// no longer shortened to stay near the central path.
+const LEAST_LENGTH_FRACTION: f64 = 0.1;
 
 /// Number of subintervals of a step at whose ends a polynomial is evaluated to find a sign change.
 const SUBINTERVALS: usize = 32;
@@ -96,17 +97,16 @@ impl ComplementarityPair {
 /// The ratio test: a step length in `(0, 1]` after which all slack and dual variables are positive,
 /// along their Taylor polynomials of degree `order`.
 ///
-/// The length is [`STEP_FRACTION`] times the smallest root of any of the polynomials in `(0, 1]`,
-/// or one, not shortened, if [`first_root`] finds no root there. While a slack or dual variable is
-/// not positive after the step, because roots were missed, the length is multiplied by
-/// [`BACKTRACKING`].
+/// The length is [`STEP_FRACTION`] times the smallest root of any of the polynomials in `(0, 1]`, or one if
+/// [`first_root`] finds no root there. While a slack or dual variable is not positive after the step, because a root
+/// was not found, the length is multiplied by [`BACKTRACKING`].
 ///
-/// While a complementarity product is less than `least_share` of their mean after the step, and less than
-/// before it, the length is multiplied by [`BACKTRACKING`] too: a product far below the mean makes all
-/// later steps short (the neighbourhood of the central path in Wright, Primal-Dual Interior-Point Methods,
-/// SIAM 1997). The length never falls below [`LEAST_LENGTH`] times that of the positive variables.
+/// The length is multiplied by [`BACKTRACKING`] also while a complementarity product after the step is less than
+/// `least_share` times the mean of all products, and less than before the step: a product far below the mean makes all
+/// later steps short (the neighbourhood of the central path in Wright, Primal-Dual Interior-Point Methods, SIAM 1997).
+/// This ends as soon as the length is at most [`LEAST_LENGTH_FRACTION`] times the length before.
 ///
-/// All slack and dual variables must be positive at zero; otherwise the search does not end.
+/// All slack and dual variables must be positive before the step; otherwise the search does not end.
 pub(crate) fn ratio_test(pairs: &[ComplementarityPair], order: usize, least_share: f64) -> f64 {
     let bernstein = BernsteinBasis::new(order);
     let longest = pairs.iter().fold(1.0, |longest, pair| {
@@ -115,11 +115,11 @@ pub(crate) fn ratio_test(pairs: &[ComplementarityPair], order: usize, least_shar
         first_root(pair.dual, &pair.dual_coefficients[..order], longest, &bernstein)
     });
     let mut length = if longest < 1.0 { STEP_FRACTION * longest } else { 1.0 };
-    // a polynomial may be negative between two points of evaluation and positive at both
+    // `first_root` does not find two roots between neighbouring points of evaluation
     while pairs.iter().any(|pair| pair.at(length, order).iter().any(|&variable| variable <= 0.0)) {
         length *= BACKTRACKING;
     }
-    let least_length = if least_share > 0.0 { LEAST_LENGTH * length } else { length };
+    let least_length = if least_share > 0.0 { LEAST_LENGTH_FRACTION * length } else { length };
     while length > least_length {
         let least = least_share * mean_complementarity(pairs, length, order);
         let is_too_small = |pair: &ComplementarityPair| {
@@ -144,7 +144,7 @@ pub(crate) fn mean_complementarity(pairs: &[ComplementarityPair], t: f64, order:
     pairs.iter().map(product).sum::<f64>() / pairs.len().max(1) as f64
 }
 
-/// The value at `t` of the polynomial without constant term.
+/// The value at `t` of the polynomial with these coefficients of `t, t^2, ...` and without constant term.
 fn increment(coefficients: &[f64], t: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| t * (sum + coefficient))
 }
@@ -172,7 +172,7 @@ fn first_root(constant: f64, coefficients: &[f64], end: f64, bernstein: &Bernste
 
 /// The Bernstein basis of polynomials of one degree.
 struct BernsteinBasis {
-    /// The quotients of the binomial coefficients `(j, k)` and `(degree, k)`.
+    /// `quotients[j][k]` is the binomial coefficient `(j, k)` divided by `(degree, k)`.
     quotients: [[f64; MAX_ORDER + 1]; MAX_ORDER + 1],
 }
 
@@ -189,9 +189,9 @@ impl BernsteinBasis {
         Self { quotients }
     }
 
-    /// Whether all Bernstein coefficients on `[0, end]` are positive, and therefore the polynomial, which is a convex
-    /// combination of them at every point (G. Farin, Curves and Surfaces for CAGD, 2002, section 6.2). The polynomial
-    /// may be positive without that.
+    /// Whether all Bernstein coefficients on `[0, end]` are positive. The polynomial, which is a convex combination of
+    /// them at every point (G. Farin, Curves and Surfaces for CAGD, 2002, section 6.2), is then positive; the converse
+    /// does not hold.
     fn is_positive(&self, constant: f64, coefficients: &[f64], end: f64) -> bool {
         let mut scaled = [0.0; MAX_ORDER];
         let mut power = 1.0;

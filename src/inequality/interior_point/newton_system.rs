@@ -7,8 +7,8 @@ use crate::linear::direct::{CondensedFactors, StaticCondensation};
 use crate::linear::direct::{FactorError, Factors, SymbolicFactor};
 use crate::real::Real;
 
-/// A vector of the mixed system: values of the unknowns, relative to a reference, and jump multipliers
-/// where the matrix is a [`PenalisedMatrix`] (else the list is empty).
+/// A vector of the mixed system: entries for the unknowns, and for the jump multipliers if these are unknowns of the
+/// system (else empty). The values of a point are differences from the reference of the [`NewtonSystem`].
 #[derive(Clone, Debug)]
 pub(crate) struct MixedVector {
     pub values: Vec<f64>,
@@ -21,11 +21,11 @@ pub(crate) struct MixedVector {
 pub(crate) struct NewtonSystem<'h, 'a, T> {
     inequality: &'a Inequality<T>,
     condensation: Option<&'h StaticCondensation<'a, T>>,
-    /// Values relative to which a point is given, where jump multipliers are unknowns; else zeros.
+    /// The values that are subtracted from those of a point; zeros before [`NewtonSystem::with_reference`].
     reference: Vec<f64>,
-    /// `K` times the reference; empty if this is zero.
+    /// `K` times the reference; empty before [`NewtonSystem::with_reference`].
     reference_stiffness: Vec<f64>,
-    /// `g - M u` of the reference `u`; empty if jump multipliers are no unknowns.
+    /// `g - M u` for the reference `u`; empty if jump multipliers are no unknowns.
     reference_data: Vec<f64>,
     /// The unknowns that are not fixed, ascending.
     free: Vec<u32>,
@@ -61,8 +61,8 @@ pub(crate) enum NewtonFactors<T> {
 }
 
 impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
-    /// The system of an inequality, solved by the static condensation if it is given, which must be
-    /// that of the penalised matrix of the inequality.
+    /// The system of an inequality. If a static condensation of the penalised matrix of the inequality is given, jump
+    /// multipliers are unknowns, and the condensation solves the linear systems.
     pub fn new(
         inequality: &'a Inequality<T>,
         condensation: Option<&'h StaticCondensation<'a, T>>,
@@ -84,10 +84,11 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         }
     }
 
-    /// Gives points relative to these values, if jump multipliers are unknowns.
+    /// Sets the reference; no change if jump multipliers are no unknowns.
     ///
-    /// A slack that the penalty determines is far below the rounding of the value: relative to their
-    /// bounds values have the digits of their slacks, and jumps of the difference do too.
+    /// A slack that is inversely proportional to a large penalty is far below the rounding of the value. If the
+    /// reference consists of bounds, the values of a point are slacks, and jumps of slacks are as accurate as the
+    /// slacks.
     #[must_use]
     pub fn with_reference(mut self, reference: Vec<f64>) -> Self {
         let Some(penalised) = self.penalised() else { return self };
@@ -100,7 +101,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         self
     }
 
-    /// The value of unknown `i` relative to which a point is given.
+    /// The reference value of unknown `i`.
     pub fn reference(&self, i: usize) -> f64 {
         self.reference[i]
     }
@@ -109,7 +110,8 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
     fn penalised(&self) -> Option<&'a PenalisedMatrix<T>> {
         self.inequality.penalised.as_ref().filter(|_| self.condensation.is_some())
     }
-    /// Whether cells have null directions: unknowns besides those of the condensation.
+
+    /// See [`StaticCondensation::has_null_directions`]; false without a condensation.
     pub fn has_null_directions(&self) -> bool {
         self.condensation.is_some_and(|c| c.has_null_directions())
     }
@@ -174,13 +176,12 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         }
     }
 
-    /// Computes the residual `b - A u`; where jump multipliers `p` are unknowns, `c - K u - M^T p`
-    /// and `g - M u + p / s` in the notation of
-    /// [`PenalisedMatrix`], `s` the weight of a jump.
+    /// Computes the residual `b - A u`; if jump multipliers `p` are unknowns, `c - K u - M^T p` and `g - M u + p / s`
+    /// in the notation of [`PenalisedMatrix`], `s` the weight of a jump.
     ///
-    /// Returns a positive energy scale for the sum of all complementarity products:
-    /// `sum |u_i b_i|`, or the energy of the penalised matrix where jump multipliers are unknowns,
-    /// plus `sum b_i^2 / d_i` with the diagonal scales `d`; one if all of this is zero.
+    /// Returns a positive energy scale for the sum of all complementarity products: `sum |u_i b_i| + sum b_i^2 / d_i`
+    /// with the diagonal scales `d`; if jump multipliers are unknowns, `sum c_i^2 / d_i` plus
+    /// [`PenalisedMatrix::energy`]; one if all terms are zero.
     pub fn residual(&self, point: &MixedVector, residual: &mut MixedVector) -> f64 {
         let load = &self.inequality.load;
         let value = |i: usize| point.values[i];

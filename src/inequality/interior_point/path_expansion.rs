@@ -1,4 +1,4 @@
-//! Taylor polynomials of the central path.
+//! The Taylor polynomial of the central path along which a step goes.
 
 use super::complementarity_pairs::{ComplementarityPair, mean_complementarity, ratio_test};
 use super::newton_system::{MixedVector, NewtonFactors, NewtonSystem};
@@ -7,9 +7,8 @@ use crate::real::Real;
 /// Order of the first expansion of a step, which determines the target of the second.
 pub(crate) const PREDICTOR_ORDER: usize = 2;
 
-/// A higher order is kept if the mean complementarity product after its step is less than this
-/// fraction of the smallest so far: otherwise it is not worth a solution with the factors of the
-/// step.
+/// A higher order is kept if the mean complementarity product after its step is less than this fraction of the smallest
+/// so far: otherwise the gain does not justify another solution with the factors of the step.
 const ORDER_GAIN: f64 = 0.95;
 
 /// Consecutive orders without gain after which the expansion ends.
@@ -26,10 +25,11 @@ pub(crate) struct PathExpansion {
 }
 
 impl PathExpansion {
-    /// The Taylor polynomial of the curve on which the residual, and the difference of each
-    /// complementarity product from `target`, are `(1 - t)^2` times their values at the current point.
-    /// The order, at most `max_order`, increases as long as the mean complementarity product after the
-    /// step decreases by it. Sets the coefficients of the complementarity pairs.
+    /// The Taylor polynomial of the curve on which the residual, and the difference of each complementarity product
+    /// from `target`, are `(1 - t)^2` times their values at the current point. The order increases up to `max_order`,
+    /// but not beyond [`MAX_ORDERS_WITHOUT_GAIN`] orders without a smaller mean complementarity product after the step;
+    /// the best order is kept. `least_share` is that of [`ratio_test`]. Sets the coefficients of the complementarity
+    /// pairs.
     pub fn new<T: Real>(
         system: &NewtonSystem<'_, '_, T>,
         factors: &NewtonFactors<T>,

@@ -1,4 +1,5 @@
-//! The point from which the method starts: near the central path and close to given values, or where another run ended.
+//! The point from which the method starts: near the central path and close to given values, or the point at which
+//! another run ended.
 
 use super::complementarity_pairs::ComplementarityPair;
 use super::newton_system::{MixedVector, NewtonSystem};
@@ -11,8 +12,8 @@ use crate::real::Real;
 /// [`NewtonSystem::residual`]) of the starting point.
 const INITIAL_COMPLEMENTARITY: f64 = 0.1;
 
-/// Ratio of penalty to stiffness above which the first run resolves slacks that the penalty determines. They are about
-/// its reciprocal, so that [`IDENTIFICATION_TOL`] is reached before they are told from zero.
+/// Ratio of penalty to stiffness above which the first run resolves slacks that are inversely proportional to the
+/// penalty: the complementarity reaches [`IDENTIFICATION_TOL`] before such slacks can be distinguished from zero.
 const LARGE_PENALTY: f64 = 1.0 / IDENTIFICATION_TOL;
 
 impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
@@ -54,36 +55,37 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             resolves_slacks,
             is_stuck: false,
         };
-        method.leave_out_large_jump_multipliers();
+        method.drop_large_jump_multipliers();
         method.move_to_central_path(INITIAL_COMPLEMENTARITY);
         method
     }
 
-    /// Starts without jump multipliers where the residual is smaller without them: those of an arbitrary active set
-    /// exceed all loads by the penalty, and the Jacobi values of such residuals are far off. With cells of linears,
-    /// which have no null directions, penalties do not add up to that.
-    fn leave_out_large_jump_multipliers(&mut self) {
+    /// Sets the jump multipliers to zero if the residual is then smaller. The jump multipliers of an arbitrary active
+    /// set may exceed all loads by a factor of the size of the penalty; the Jacobi values of such a residual are far
+    /// from the solution. Without null directions, as on cells with linear functions, the given jump multipliers are
+    /// kept.
+    fn drop_large_jump_multipliers(&mut self) {
         if !self.system.has_null_directions() {
             return;
         }
         let mut residual = self.point.clone();
-        let with = self.size_of_residual(&mut residual);
+        let with_given = self.squared_residual_norm(&mut residual);
         let none = vec![0.0; self.point.jump_multipliers.len()];
         let given = std::mem::replace(&mut self.point.jump_multipliers, none);
-        if with <= self.size_of_residual(&mut residual) {
+        if with_given <= self.squared_residual_norm(&mut residual) {
             self.point.jump_multipliers = given;
         }
     }
 
-    /// The square of the residual of values in the dual norm of the diagonal scales, and the residual.
-    fn size_of_residual(&self, residual: &mut MixedVector) -> f64 {
+    /// Computes the residual; returns `sum r_i^2 / d_i` over the free unknowns, with the diagonal scales `d`.
+    fn squared_residual_norm(&self, residual: &mut MixedVector) -> f64 {
         self.residual(residual);
         let square = |&i: &u32| residual.values[i as usize].powi(2) / self.diagonal[i as usize];
         self.system.free().iter().map(square).sum()
     }
 
-    /// A method to the limit of rounding that starts from the point at which another one ended, and resolves the
-    /// slacks that this left small.
+    /// A run to the limit of rounding from the point at which another run ended, to resolve the small slacks that the
+    /// other run did not resolve.
     pub fn resumed(
         inequality: &'a Inequality<T>,
         condensation: Option<&'h StaticCondensation<'a, T>>,
@@ -99,7 +101,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         for pair in &pairs {
             let bound = &inequality.bounds[pair.unknown];
             let bound = if pair.side > 0.0 { bound.lower() } else { bound.upper() };
-            // the difference from this bound has the digits of the slack
+            // the difference of the rounded value and the bound has fewer correct digits than the slack
             if bound.is_some_and(|b| b.to_f64() == method.system.reference(pair.unknown)) {
                 method.point.values[pair.unknown] = pair.side * pair.slack;
             }
@@ -108,9 +110,9 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         method
     }
 
-    /// Moves every free unknown off its bounds, close to its Jacobi value, and sets its pairs anew
-    /// so that all complementarity products are equal and their sum, relative to the energy scale,
-    /// is about `relative_complementarity`.
+    /// Moves every free unknown off its bounds, close to its Jacobi value, and creates its pairs anew so that all
+    /// complementarity products are equal and their sum is about `relative_complementarity` times the energy scale of
+    /// [`NewtonSystem::residual`].
     pub(super) fn move_to_central_path(&mut self, relative_complementarity: f64) {
         self.pairs.clear();
         let mut residual = self.point.clone();
@@ -135,7 +137,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let (lower, upper) = (bound.lower().map(relative), bound.upper().map(relative));
         let jacobi = self.point.values[i] + residual[i] / self.diagonal[i];
         let square = product / self.diagonal[i];
-        // the difference of root and `|y|` has no digit for a Jacobi value `y` far beyond the bound
+        // if the Jacobi value is far beyond the bound, the difference of square root and `|y|` has no correct digit
         let slack = |y: f64| {
             let root = 0.5 * y.hypot(2.0 * square.sqrt()) + 0.5 * y.abs();
             if y < 0.0 { square / root } else { root }
@@ -158,7 +160,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
     }
 }
 
-/// The bound nearer to the value, zero without bounds.
+/// The bound nearer to the value; zero without bounds.
 fn nearer_bound<T: Real>(bound: &Bound<T>, x: f64) -> f64 {
     let bounds = [bound.lower(), bound.upper()].into_iter().flatten().map(T::to_f64);
     bounds.min_by(|a, b| f64::total_cmp(&(x - a).abs(), &(x - b).abs())).unwrap_or(0.0)

@@ -1,4 +1,4 @@
-//! Tapia indicators, which tell the active bounds from the last step.
+//! Tapia indicators, from which the active bounds are identified after each step.
 
 use super::complementarity_pairs::ComplementarityPair;
 use crate::algebra::Contact;
@@ -28,16 +28,18 @@ pub(super) fn contact_states(pairs: &[ComplementarityPair], n: usize) -> Vec<Con
     contact
 }
 
-/// The contact states of the step with the fewest undecided bounds: the indicators of a short step tell
-/// nothing.
+/// The contact states after the step with the fewest bounds whose Tapia indicators are not separated: after a short
+/// step all indicators are near one.
 #[derive(Default)]
 pub(super) struct DecidedContact {
+    /// The number of bounds whose indicators were not separated.
     undecided: usize,
+    /// The contact states; `None` before the first ones.
     pub contact: Option<Vec<Contact>>,
 }
 
 impl DecidedContact {
-    /// Keeps contact states with as many undecided bounds as those so far, or fewer.
+    /// Keeps contact states if the number of bounds whose indicators are not separated is not larger than before.
     pub fn keep_if_better(&mut self, undecided: usize, contact: &[Contact]) {
         if self.contact.is_none() || undecided <= self.undecided {
             (self.undecided, self.contact) = (undecided, Some(contact.to_vec()));

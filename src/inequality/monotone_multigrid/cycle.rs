@@ -1,4 +1,4 @@
-//! The cycle: sweeps of projected Gauss-Seidel and a truncated linear correction.
+//! One cycle: sweeps of projected Gauss-Seidel and a truncated linear correction.
 
 use crate::algebra::Inequality;
 use crate::inequality::Outcome;
@@ -10,7 +10,7 @@ use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
 use crate::real::Real;
 
-/// Admissible values, and the vectors of a cycle.
+/// The iterate of monotone multigrid, whose values are admissible, with the vectors of a cycle.
 pub(super) struct MultigridIterate<'a, T> {
     pub inequality: &'a Inequality<T>,
     pub values: Vec<T>,
@@ -18,20 +18,21 @@ pub(super) struct MultigridIterate<'a, T> {
     residual: Vec<T>,
     /// The linear correction of the values.
     correction: Vec<T>,
-    /// Whether an unknown is fixed or active and takes no part in the linear correction.
+    /// Whether an unknown is eliminated from the linear correction: fixed, or at a bound.
     eliminated: Vec<bool>,
-    /// The eliminated unknowns for which the preconditioner is set up; empty before it is.
-    pub fixed: Vec<bool>,
+    /// The value of `eliminated` for which the preconditioner is set up; empty if it is set up for no such value.
+    pub eliminated_in_preconditioner: Vec<bool>,
     /// The name of the preconditioner, in reports.
     pub linear_solver: &'static str,
     /// The diagonal of the matrix.
     pub diagonal: Vec<T>,
     /// `b - A u` on all unknowns.
-    whole_residual: Vec<f64>,
+    full_residual: Vec<f64>,
     /// The energy norm of the values before the last correction; see [`Scales::energy_norm`].
     pub energy_norm: f64,
     pub cycles: usize,
-    /// Whether the matrix is known to be positive definite, also by factors after a direction that is not positive.
+    /// Whether the matrix is known to be positive definite: as stated by the inequality, or shown by factors after a
+    /// direction that was not positive.
     is_definite: bool,
     /// See [`Solution::algebraic_bound`](crate::inequality::Solution::algebraic_bound).
     pub algebraic_bound: Option<f64>,
@@ -52,10 +53,10 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             residual: zeros.clone(),
             correction: zeros,
             eliminated: vec![false; n],
-            fixed: Vec::new(),
+            eliminated_in_preconditioner: Vec::new(),
             linear_solver: "multigrid",
             diagonal: Vec::new(),
-            whole_residual: vec![0.0; n],
+            full_residual: vec![0.0; n],
             energy_norm: 0.0,
             cycles: 0,
             is_definite: inequality.is_definite,
@@ -63,27 +64,27 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         }
     }
 
-    /// One cycle: sweeps and a linear correction. Returns an estimate of the energy norm of its change.
+    /// One cycle: sweeps and a linear correction. Returns an estimate of the energy norm of the change of the values.
     ///
     /// # Errors
-    /// [`Outcome::NotFinite`], and those of sweeps and correction.
+    /// [`Outcome::NotFinite`], and the outcomes of a sweep and of the correction that cannot be computed.
     pub fn cycle(
         &mut self,
         sweeps: usize,
         preconditioner: &mut dyn Preconditioner<T>,
     ) -> Result<f64, Outcome> {
         self.cycles += 1;
-        // a bound is that of the values for which it was computed
+        // the bound is that of the values before this cycle
         self.algebraic_bound = None;
-        let mut by_sweeps = 0.0;
+        let mut squared_change = 0.0;
         for _ in 0..sweeps {
-            by_sweeps += self.gauss_seidel_sweep()?;
+            squared_change += self.gauss_seidel_sweep()?;
         }
-        let by_correction = self.correct(preconditioner)?;
-        if !(self.energy_norm.is_finite() && by_sweeps.is_finite()) {
+        let squared_correction = self.correct(preconditioner)?;
+        if !(self.energy_norm.is_finite() && squared_change.is_finite()) {
             return Err(Outcome::NotFinite);
         }
-        Ok((by_sweeps + by_correction).sqrt())
+        Ok((squared_change + squared_correction).sqrt())
     }
 
     /// One sweep of projected Gauss-Seidel. Returns the sum of `d_i (change of u_i)^2`, an estimate
@@ -110,19 +111,21 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Ok(sum)
     }
 
-    /// One linear correction of the inactive unknowns with exact line search. Returns the square of
-    /// the energy norm of the change; zero if nothing changes, because the coarsest matrix is
-    /// singular or the projected correction is no direction of descent.
+    /// One linear correction of the unknowns that are not eliminated, with exact line search. Returns the square of the
+    /// energy norm of the change; zero if nothing changes, because the coarsest matrix is singular, or the projected
+    /// correction is no direction of descent or has no positive curvature.
     ///
     /// # Errors
     /// The outcome if the matrix is not positive definite or has no factors for another reason.
     fn correct(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Result<f64, Outcome> {
         let Inequality { matrix, bounds, .. } = self.inequality;
         self.eliminate_active();
-        if self.eliminated != self.fixed {
-            self.fixed.clear();
+        if self.eliminated != self.eliminated_in_preconditioner {
+            self.eliminated_in_preconditioner.clear();
             match preconditioner.set_fixed(&self.eliminated) {
-                Ok(()) => self.fixed.extend_from_slice(&self.eliminated),
+                Ok(()) => {
+                    self.eliminated_in_preconditioner.extend_from_slice(&self.eliminated);
+                }
                 // only the bounds prevent a rigid motion; the sweeps converge without the correction
                 Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
                     return Ok(0.0);
@@ -143,8 +146,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             };
         }
         let (mut slope, mut curvature) = (0.0, 0.0);
-        let inactive = |(i, _): &(usize, &T)| !self.eliminated[*i];
-        for (i, correction) in self.correction.iter().enumerate().filter(inactive) {
+        let is_corrected = |(i, _): &(usize, &T)| !self.eliminated[*i];
+        for (i, correction) in self.correction.iter().enumerate().filter(is_corrected) {
             slope += self.residual[i].to_f64() * correction.to_f64();
             curvature += correction.to_f64() * matrix.row_dot_f64(i, &self.correction);
         }
@@ -162,10 +165,11 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Ok(curvature * length.to_f64().powi(2))
     }
 
-    /// Decides by factors whether a direction that is not positive is one by rounding.
+    /// Checks after a direction without positive curvature by factors that the matrix is positive definite, so that
+    /// rounding is the reason.
     ///
     /// # Errors
-    /// The outcome if it is not, or if there are no factors.
+    /// The outcome if the matrix is not positive definite, or if there are no factors.
     fn check_definite(&mut self) -> Result<(), Outcome> {
         if !self.is_definite {
             diagnose_loss_of_positivity(self.inequality).map_or(Ok(()), Err)?;
@@ -174,16 +178,16 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Ok(())
     }
 
-    /// Marks fixed and active unknowns as eliminated and computes the energy norm of the values and the
-    /// residual: zero on eliminated unknowns, `b - A u` on inactive ones.
+    /// Marks all unknowns that are fixed or at a bound as eliminated. Computes the energy norm of the values and the
+    /// residual, which is zero on eliminated unknowns and `b - A u` on all others.
     fn eliminate_active(&mut self) {
         let inequality = self.inequality;
-        inequality.residual_f64(&self.values, &mut self.whole_residual);
+        inequality.residual_f64(&self.values, &mut self.full_residual);
         let diagonal = |i: usize| match self.diagonal[i].to_f64() {
             d if d > 0.0 => d,
             _ => positive_diagonal(inequality, i),
         };
-        let residual = &self.whole_residual;
+        let residual = &self.full_residual;
         self.energy_norm =
             Scales::of(inequality, &self.values, residual, &[], &diagonal, 1.0).energy_norm;
         for (i, bound) in inequality.bounds.iter().enumerate() {
@@ -191,7 +195,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             self.eliminated[i] = bound.fixed_value().is_some()
                 || bound.lower().is_some_and(|l| x <= l)
                 || bound.upper().is_some_and(|u| x >= u);
-            let residual = if self.eliminated[i] { 0.0 } else { self.whole_residual[i] };
+            let residual = if self.eliminated[i] { 0.0 } else { self.full_residual[i] };
             self.residual[i] = T::lit(residual);
         }
     }

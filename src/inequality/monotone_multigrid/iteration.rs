@@ -15,17 +15,17 @@ use crate::linear::{
 };
 use crate::real::Real;
 
-/// The factor of the tolerance after a solution whose bound on the algebraic error is too large.
+/// The factor by which the tolerance is reduced if the bound on the algebraic error is too large.
 const REDUCTION: f64 = 0.1;
 
-/// Cycles that may pass without halving the change of a cycle before the certificate and the bound on the error decide
-/// in place of the tolerance: changes below rounding do not fall.
+/// Number of cycles without halving the change of a cycle after which the certificate and the bound on the error are
+/// examined although the change exceeds the tolerance: changes of the size of rounding do not decrease.
 pub(in crate::inequality) const STAGNATION_CYCLES: usize = 10;
 
 impl<T: Real> MultigridIterate<'_, T> {
-    /// Cycles until the changes are within the tolerance, and the certificate and the bound on the algebraic error are
-    /// within their limits. A missing bound does not prevent convergence. Cycles that stagnate converge too, if the
-    /// bound is known and both limits hold. Neither limit applies if the guess sets a tolerance.
+    /// Iterates until the change of a cycle is within the tolerance, and the certificate and the bound on the algebraic
+    /// error are within their limits; there need not be a bound. Cycles that stagnate count as converged if there is a
+    /// bound and both limits hold. Neither limit applies if the initial guess sets a tolerance.
     ///
     /// # Errors
     /// The outcome if the method does not converge.
@@ -52,7 +52,7 @@ impl<T: Real> MultigridIterate<'_, T> {
             let has_halved = change > 0.0 && change <= 0.5 * least_change;
             stagnant_cycles = if has_halved { 0 } else { stagnant_cycles + 1 };
             least_change = if stagnant_cycles == 0 { change } else { least_change };
-            // the certificate of a start for another solve is not examined
+            // the certificate of a solution that is only the initial guess of another solve is not examined
             let stagnates = guess.energy_tolerance.is_none()
                 && stagnant_cycles > 0
                 && stagnant_cycles % STAGNATION_CYCLES == 0;
@@ -65,7 +65,7 @@ impl<T: Real> MultigridIterate<'_, T> {
                 {
                     return Ok(Outcome::Converged);
                 }
-                // of cycles that converge slowly the error is much larger than a change
+                // if the cycles converge slowly, the error is much larger than the change of a cycle
                 if is_small {
                     tolerance =
                         tolerance.map(|t| REDUCTION * t).filter(|&reduced| reduced >= least);
@@ -78,17 +78,17 @@ impl<T: Real> MultigridIterate<'_, T> {
         Err(Outcome::IterationLimit)
     }
 
-    /// Computes the bound on the algebraic error. Returns whether the bound is within its limit; `None` if there is no
-    /// bound.
+    /// Computes the bound on the algebraic error, with the preconditioner set up for all unknowns that are not fixed.
+    /// Returns whether the bound is within its limit; `None` if there is no bound.
     ///
     /// # Errors
-    /// [`Outcome::NotCoercive`], which unknowns in contact hide from the cycles, or the reason why there are no
-    /// factors.
+    /// [`Outcome::NotCoercive`] for an indefinite matrix, which the cycles do not detect if unknowns are in contact, or
+    /// the reason why there are no factors.
     fn has_small_bound(
         &mut self,
         preconditioner: &mut dyn Preconditioner<T>,
     ) -> Result<Option<bool>, Outcome> {
-        self.fixed.clear();
+        self.eliminated_in_preconditioner.clear();
         self.algebraic_bound =
             preconditioned_error_bound(self.inequality, &self.values, preconditioner)?;
         Ok(self.algebraic_bound.map(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT))
@@ -104,19 +104,19 @@ impl<T: Real> MultigridIterate<'_, T> {
     }
 }
 
-/// The preconditioner for the coarse spaces `known` if one fits, else for spaces by aggregation, which are stored
-/// in `aggregated`.
+/// The preconditioner for the coarse spaces `known` if they fit, else for spaces by aggregation, which are stored in
+/// `aggregated`; `None` if there is neither.
 fn preconditioner<'a, T: Real>(
     inequality: &'a Inequality<T>,
     known: &'a CoarseSpaces<T>,
     aggregated: &'a mut CoarseSpaces<T>,
 ) -> Option<Box<dyn Preconditioner<T> + 'a>> {
     let Inequality { matrix, bounds, .. } = inequality;
-    let of = |spaces| {
+    let with_spaces = |spaces| {
         BuiltInPreconditioners.preconditioner(PreconditionedSystem::new(matrix, inequality, spaces))
     };
     if known.fits(inequality)
-        && let Some(preconditioner) = of(known)
+        && let Some(preconditioner) = with_spaces(known)
     {
         return Some(preconditioner);
     }
@@ -124,5 +124,5 @@ fn preconditioner<'a, T: Real>(
     if let Some(level) = CoarseLevel::aggregated(matrix, &fixed) {
         *aggregated = CoarseSpaces::CoarseLevel(level);
     }
-    of(aggregated)
+    with_spaces(aggregated)
 }

@@ -11,24 +11,24 @@
 /// number of cycles hardly depends on the mesh.
 ///
 /// The V-cycle is the preconditioner of [`BuiltInPreconditioners`](crate::linear::BuiltInPreconditioners) for the
-/// coarse spaces of the [`InitialGuess`](crate::inequality::InitialGuess), or follows from the matrix by aggregation,
-/// which suits conforming P1. The method converges slowly for other matrices without coarse spaces, and for
-/// over-penalty with bounds at vertices: where a large penalty couples means of several unknowns, a sweep changes
-/// hardly any single unknown. Matrices that are not symmetric, and those of one part of a mesh, are solved by
-/// [`ActiveSet`](crate::inequality::ActiveSet).
+/// coarse spaces of the [`InitialGuess`](crate::inequality::InitialGuess); without coarse spaces it is constructed from
+/// the matrix by aggregation, which suits conforming P1 only. The method converges slowly for other matrices without
+/// coarse spaces, and for over-penalty with bounds at vertices: if a large penalty couples means of several unknowns, a
+/// sweep hardly changes any single unknown. Matrices that are not symmetric, and those of one part of a mesh, are
+/// solved by [`ActiveSet`](crate::inequality::ActiveSet).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MonotoneMultigrid {
     /// Largest number of cycles.
     pub max_cycles: usize,
-    /// Number of consecutive cycles that may leave the change of a cycle above half of its least value; the method
-    /// gives up at the next such cycle. Changes that ten cycles do not halve need more than three hundred cycles to the
-    /// default tolerance.
+    /// Number of consecutive cycles that may leave the change of a cycle above half of its least value; the method ends
+    /// at the next such cycle. Changes that ten cycles do not halve need more than three hundred cycles to the default
+    /// tolerance.
     pub stagnation_cycles: usize,
     /// Sweeps of projected Gauss-Seidel before each linear correction.
     pub sweeps: usize,
-    /// Tolerance on the energy norm of the changes of a cycle divided by the energy norm of the
-    /// iterate; four times machine epsilon if that is larger.
+    /// Tolerance on the energy norm of the change of a cycle divided by the energy norm of the iterate; four times
+    /// machine epsilon if that is larger.
     pub tolerance: f64,
 }
 
@@ -58,7 +58,7 @@ impl MonotoneMultigrid {
         self.sweeps = sweeps;
         self
     }
-    /// Sets the tolerance on the relative energy norm of the changes of a cycle.
+    /// Sets the tolerance on the relative energy norm of the change of a cycle.
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;

@@ -6,25 +6,27 @@ use super::static_condensation::{BlockInverse, StaticCondensation};
 use crate::algebra::dense::{extend_basis, invert_in_place};
 use crate::real::Real;
 
-/// Largest weight divided by `k / eps`, in a block with dependent means because unknowns are fixed;
-/// `k` is the least positive diagonal entry of the stiffness of the block, `eps` machine epsilon.
+/// The largest weight of a block whose means over sides are linearly dependent because unknowns are fixed, divided by
+/// `k / eps`: `k` is the least positive diagonal entry of the stiffness of the block, `eps` machine epsilon. Larger
+/// weights are reduced to this limit.
 const MAX_WEIGHT: f64 = 1e-3;
 
-/// Largest shift divided by `k / sqrt(eps)`, `k` and `eps` as for [`MAX_WEIGHT`], of an unknown that is
-/// not as good as fixed.
+/// The largest shift, divided by `k / sqrt(eps)` with `k` and `eps` of [`MAX_WEIGHT`], with which an unknown counts as
+/// free in the rank of the means. A larger shift acts like Dirichlet data.
 const MAX_SHIFT_BY_ROOT: f64 = 4.0;
 
 impl<T: Real> StaticCondensation<'_, T> {
-    /// The rank of the means over the sides of a block, as functions of the unknowns `may_move`.
+    /// The rank of the means over the sides of a block, as functions of the unknowns for which `is_variable` is true.
+    /// `basis` is workspace.
     pub(super) fn rank_of_means(
         &self,
         block: usize,
-        may_move: impl Fn(usize) -> bool,
+        is_variable: impl Fn(usize) -> bool,
         basis: &mut Vec<f64>,
     ) -> usize {
         let (n, sides) = (self.penalised.block_size, self.sides(block));
         basis.clear();
-        for i in (block * n..(block + 1) * n).filter(|&i| may_move(i)) {
+        for i in (block * n..(block + 1) * n).filter(|&i| is_variable(i)) {
             let means = sides.iter().map(|side| self.mean_coefficient(side, i));
             extend_basis(basis, means, T::EPSILON.sqrt());
         }
@@ -48,46 +50,45 @@ impl<T: Real> StaticCondensation<'_, T> {
         let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
         let n_free = self.free(block, is_free).count();
         let n = n_free + sides.len();
-        // Jump multipliers are scaled by the largest stiffness.
+        // The stiffness is divided, and the reciprocal weights are multiplied, by its largest diagonal entry.
         let diagonal = || self.free(block, is_free).map(|i| stiffness(i, i));
         let largest = diagonal().fold(0.0, f64::max);
         let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
         let unit = if largest > 0.0 { largest } else { 1.0 };
-        // A shift above this limit acts like a fixed unknown.
         let max_shift = least * MAX_SHIFT_BY_ROOT / T::EPSILON.sqrt();
-        let may_move =
+        let is_variable =
             |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= max_shift);
         let has_null_directions = self.has_null_directions && n_free > 0;
         self.fill_block((block, n_free), is_free, shift, unit, inverse);
-        let BlockInverse { entries: out, scales, weight_divisor } = inverse;
-        // The rank of the means decides on the limit, and is computed only if some weight exceeds this.
+        let BlockInverse { entries: matrix, scales, weight_divisor } = inverse;
+        // The rank of the means is computed only if a weight exceeds the limit.
         let limit = least * MAX_WEIGHT / T::EPSILON;
-        let is_heavy = !has_null_directions
+        let may_need_limit = !has_null_directions
             && n_free > 0
-            && (block * size..(block + 1) * size).any(|i| !may_move(i))
+            && (block * size..(block + 1) * size).any(|i| !is_variable(i))
             && sides.iter().any(|side| self.side_weight(side) > limit);
         let mut basis = Vec::new();
         let has_dependent_means =
-            is_heavy && self.rank_of_means(block, may_move, &mut basis) < sides.len();
+            may_need_limit && self.rank_of_means(block, is_variable, &mut basis) < sides.len();
         let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
-            out[l * n + l] = -unit / (self.side_weight(side) / *weight_divisor).min(max_weight);
+            matrix[l * n + l] = -unit / (self.side_weight(side) / *weight_divisor).min(max_weight);
         }
         if has_null_directions {
             let tolerance = T::EPSILON.sqrt();
-            null_directions.append(block as u32, out, (n_free, n), unit, tolerance);
+            null_directions.append(block as u32, matrix, (n_free, n), unit, tolerance);
         }
-        let is_positive = invert_in_place(out, n).ok_or(FactorError::Singular)?;
-        // With a positive definite stiffness there are as many negative eigenvalues as jumps.
+        let is_positive = invert_in_place(matrix, n).ok_or(FactorError::Singular)?;
+        // With a positive definite stiffness there are as many negative eigenvalues as sides.
         if is_positive != (sides.len() % 2 == 0) {
             return Err(FactorError::NotPositive);
         }
         if has_null_directions {
-            null_directions.couple(out, (n_free, n), unit, scales);
+            null_directions.couple(matrix, (n_free, n), unit, scales);
         }
         for k in 0..n {
             for l in 0..n {
-                let entry = &mut out[k * n + l];
+                let entry = &mut matrix[k * n + l];
                 match (k < n_free, l < n_free) {
                     (true, true) => *entry = *entry * scales[k] * scales[l] / unit,
                     (false, false) => *entry *= unit,
@@ -99,9 +100,10 @@ impl<T: Real> StaticCondensation<'_, T> {
         Ok(n_free)
     }
 
-    /// Sets `inverse` to the matrix `[[K + D, B^T], [B, 0]]` of a block with `n_free` free unknowns, `D` the
-    /// shift, `K + D` divided by `unit`. Where there are null directions, unknowns with a large shift are
-    /// scaled to the size of the others.
+    /// Sets the entries of `inverse` to the matrix `[[R (K + D) R / unit, R B^T], [B R, 0]]` of a block with `n_free`
+    /// free unknowns: `D` is the shift, `B` contains the means over sides, and the diagonal `R` the `scales`. If the
+    /// matrix has null directions, `R` reduces diagonal entries of `K + D` above `unit` to `unit`; else `R` is the
+    /// identity.
     fn fill_block(
         &self,
         (block, n_free): (usize, usize),
@@ -112,7 +114,7 @@ impl<T: Real> StaticCondensation<'_, T> {
     ) {
         let (size, sides) = (self.penalised.block_size, self.sides(block));
         let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
-        let BlockInverse { entries: out, scales, .. } = inverse;
+        let BlockInverse { entries: matrix, scales, .. } = inverse;
         scales.clear();
         scales.extend(self.free(block, is_free).map(|i| match shift.get(i) {
             Some(&shift) if self.has_null_directions => {
@@ -121,19 +123,19 @@ impl<T: Real> StaticCondensation<'_, T> {
             _ => 1.0,
         }));
         let n = n_free + sides.len();
-        out.clear();
-        out.resize(n * n, 0.0);
+        matrix.clear();
+        matrix.resize(n * n, 0.0);
         for (k, i) in self.free(block, is_free).enumerate() {
             for (l, j) in self.free(block, is_free).enumerate() {
-                out[k * n + l] = scales[k] * scales[l] * stiffness(i, j) / unit;
+                matrix[k * n + l] = scales[k] * scales[l] * stiffness(i, j) / unit;
             }
             if let Some(&shift) = shift.get(i) {
-                out[k * n + k] += scales[k] * scales[k] * shift / unit;
+                matrix[k * n + k] += scales[k] * scales[k] * shift / unit;
             }
             for (l, side) in (n_free..).zip(sides) {
                 let coefficient = scales[k] * self.mean_coefficient(side, i);
-                out[k * n + l] = coefficient;
-                out[l * n + k] = coefficient;
+                matrix[k * n + l] = coefficient;
+                matrix[l * n + k] = coefficient;
             }
         }
     }

@@ -6,7 +6,9 @@ use crate::algebra::NO_INDEX;
 use crate::real::Real;
 
 impl<T: Real> StaticCondensation<'_, T> {
-    /// [`StaticCondensation::solve`] with the reduced weights in place of `S`.
+    /// Solves `K u + M^T p = r` on the free unknowns and `M u - c S^-1 p = t`, where `c` is the divisor of the weights
+    /// in `factors`. Replaces `r` by `u`, which is zero on fixed unknowns, and `t` by the jump multipliers `p`. Returns
+    /// the energy `u.r - p.t`.
     pub(super) fn solve_reduced(
         &self,
         factors: &CondensedFactors<T>,
@@ -28,9 +30,10 @@ impl<T: Real> StaticCondensation<'_, T> {
             }
         }
         self.append_null_loads(null_directions, is_free, r, t, &mut load);
-        let mut means: Vec<T> = load.into_iter().map(T::lit).collect();
-        factors.schur_complement.solve_in_place(&mut means, 1);
-        let mean = |k: u32| if k == NO_INDEX { 0.0 } else { means[k as usize].to_f64() };
+        // the facet means, then the multipliers of null directions
+        let mut condensed: Vec<T> = load.into_iter().map(T::lit).collect();
+        factors.schur_complement.solve_in_place(&mut condensed, 1);
+        let mean = |k: u32| if k == NO_INDEX { 0.0 } else { condensed[k as usize].to_f64() };
         let jump_right_side = t.to_vec();
         let mut energy = 0.0;
         let mut directions = 0..0;
@@ -40,8 +43,10 @@ impl<T: Real> StaticCondensation<'_, T> {
             let n = self.penalised.block_size;
             let mut k = 0;
             for i in block * n..(block + 1) * n {
-                let response =
-                    |q: usize| null_directions.responses(q)[k] * means[n_means + q].to_f64();
+                let response = |direction: usize| {
+                    null_directions.responses(direction)[k]
+                        * condensed[n_means + direction].to_f64()
+                };
                 let value = match is_free[i] {
                     true => directions
                         .clone()
@@ -54,7 +59,7 @@ impl<T: Real> StaticCondensation<'_, T> {
                 k += usize::from(is_free[i]);
             }
             for (k, side) in (k..).zip(self.sides(block)) {
-                // The multipliers of the two sides of a facet are equal.
+                // The multipliers of the two sides of a facet are equal up to the signs of the sides: one is used.
                 if side.sign > 0.0 || side.mean == NO_INDEX {
                     let multiplier = side.sign * factors.row_dot(block, k, &local);
                     energy -= multiplier * jump_right_side[side.jump as usize];
@@ -62,7 +67,9 @@ impl<T: Real> StaticCondensation<'_, T> {
                 }
             }
         }
-        for (k, (&block, q)) in null_directions.blocks().iter().zip(&means[n_means..]).enumerate() {
+        for (k, (&block, q)) in
+            null_directions.blocks().iter().zip(&condensed[n_means..]).enumerate()
+        {
             let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
             for (side, y) in sides.filter(|(s, _)| s.sign > 0.0 || s.mean == NO_INDEX) {
                 let multiplier = -side.sign * y * q.to_f64();
@@ -73,7 +80,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         energy
     }
 
-    /// Appends the right-hand sides of the equations of the multipliers of null directions.
+    /// Appends to `load` the right-hand sides of the equations of the multipliers of null directions.
     fn append_null_loads(
         &self,
         null_directions: &NullDirections,
@@ -90,8 +97,8 @@ impl<T: Real> StaticCondensation<'_, T> {
         }));
     }
 
-    /// The right-hand side of the equations of a block: `r` on its free unknowns, then for each side
-    /// the facet mean plus its part of `t`.
+    /// Sets `out` to the right-hand side of the equations of a block: `r` on its free unknowns, then for each side
+    /// the facet mean plus the share of the side in `t`.
     fn block_right_side(
         &self,
         block: usize,

@@ -30,16 +30,16 @@ const MIN_DISSECTED: usize = 2_000;
 /// | | unknowns | degree | dissection | new degree | old degree | old dissection |
 /// |---|---|---|---|---|---|---|
 /// | P1, `2 * 128^2` triangles | 16 129 | 1.6 | 5.7 | 15 | 13 | 13 |
-/// | its inactive unknowns | 10 308 | | | 7.6 | 5.0 | 4.7 |
+/// | inactive unknowns of this system | 10 308 | | | 7.6 | 5.0 | 4.7 |
 /// | P1, `2 * 256^2` triangles | 65 025 | 6.5 | 27 | 39 | 33 | 31 |
-/// | its inactive unknowns | 41 956 | | | 27 | 36 (a) | 32 |
+/// | inactive unknowns of this system | 41 956 | | | 27 | 36 (a) | 32 |
 /// | SIPG, `2 * 128^2` triangles | 98 304 | 8 | 22 | 93 | 87 | 80 |
 /// | P1, `6 * 32^3` tetrahedra | 29 791 | 9 | 24 | 287 | 275 | 139 |
-/// | its inactive unknowns | 24 264 | | | 132 | 125 | 68 |
+/// | inactive unknowns of this system | 24 264 | | | 132 | 125 | 68 |
 /// | Crouzeix-Raviart, `6 * 12^3` tetrahedra | 19 872 | 3 | 17 | 25 | 22 | 12 |
 /// | SIPG, `6 * 12^3` tetrahedra | 41 472 | 6 | 9 | 238 | 234 | 205 |
 ///
-/// (a) More than with a new order although the factor has fewer entries: so few that faer chooses its
+/// (a) More than with a new order although the factor has fewer entries: it has so few that faer chooses its
 /// simplicial algorithm instead of the supernodal one.
 ///
 /// With an order that is computed once, the sum of the times up to step `k` is, by the rows of full
@@ -140,8 +140,8 @@ impl EliminationOrder {
         self.unknowns
     }
 
-    /// The order of all rows of a matrix, given by its lower triangle, whose first rows have this order:
-    /// every other row comes directly after the last of the first rows in whose columns it has an entry.
+    /// An order of all rows of a matrix, given by its lower triangle. The unknowns of this order are the first rows of
+    /// the matrix; each further row follows the last one, in this order, of the unknowns with which it is coupled.
     pub(crate) fn with_rows_after_their_columns<T: Real>(
         &self,
         lower: &SparseMatrix<T>,
@@ -156,13 +156,13 @@ impl EliminationOrder {
             })
             .collect();
         rows.extend(self.unknowns.iter().enumerate().map(|(k, &i)| (k, i)));
-        // rows have larger numbers than the unknown they follow
+        // at equal positions the unknown comes first, because further rows have larger numbers
         rows.sort_unstable();
         rows.into_iter().map(|(_, i)| i).collect()
     }
 
     /// The restriction of the order to the unknowns `free` of a matrix with `size` rows: positions in
-    /// `free` in the order of elimination. Unknowns of `free` that the order lacks come last.
+    /// `free` in the order of elimination. Unknowns of `free` that are not in the order come last.
     ///
     /// # Panics
     /// If `free` contains an unknown that is not less than `size`.

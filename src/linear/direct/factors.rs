@@ -23,7 +23,7 @@ use crate::parallel::vectors::pseudorandom_signs;
 use crate::real::Real;
 
 /// A pivot counts as zero if it is at most this multiple of machine epsilon times the diagonal
-/// entry of the matrix: all its digits are lost to cancellation.
+/// entry of the matrix: cancellation has then left no correct digit.
 const PIVOT_TOLERANCE: f64 = 16.0;
 
 /// The factors of a submatrix `A_II`, `I` the set of free unknowns.
@@ -78,7 +78,7 @@ impl<T: Real> Factors<T> {
     }
 
     /// The Cholesky factor of the rows and columns `free` (ascending) of a symmetric matrix, in the
-    /// restriction of an order of elimination to `free`. Unknowns of `free` that the order lacks come
+    /// restriction of an order of elimination to `free`. Unknowns of `free` that are not in the order come
     /// last.
     ///
     /// # Errors
@@ -93,6 +93,7 @@ impl<T: Real> Factors<T> {
                 = Factors::factor_in_order
         )(matrix, free, order)
     }
+
     fn factor_in_order(
         matrix: &SparseMatrix<T>,
         free: &[u32],
@@ -145,6 +146,7 @@ impl<T: Real> Factors<T> {
     pub fn solve_in_place(&self, x: &mut [T], right_sides: usize) {
         compiled!(T: fn(&Factors<T>, &mut [T], usize) = Factors::substitute)(self, x, right_sides)
     }
+
     fn substitute(&self, x: &mut [T], right_sides: usize) {
         if x.is_empty() {
             return;
@@ -170,8 +172,11 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    /// The Cholesky factor as in [`Factors::cholesky`]; [`FactorError::NotPositive`] for every
-    /// pivot that is not positive.
+    /// The Cholesky factor of a matrix that is not empty, given by its lower triangle.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositive`] if a pivot is not positive, also for a singular matrix; else
+    /// [`FactorError::Singular`] if a pivot has no significant digit; or [`FactorError::OutOfMemory`].
     fn try_cholesky(lower: &Submatrix<T>, symbolic: &SymbolicFactor) -> Result<Self, FactorError> {
         let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
         let mut values = zero_values(&symbolic)?;
@@ -188,12 +193,12 @@ impl<T: Real> Factors<T> {
     }
 
     /// The factors `L D L^T` of a quasidefinite matrix, given by its lower triangle and the symbolic
-    /// factor of its pattern, without pivoting: the first `n_positive` pivots are positive, the others
-    /// negative (R. J. Vanderbei, SIAM J. Optim. 5 (1995), 100-113).
+    /// factor of its pattern, without pivoting: the pivots of the first `n_positive` rows are positive, those of the
+    /// others negative (R. J. Vanderbei, SIAM J. Optim. 5 (1995), 100-113).
     ///
     /// # Errors
-    /// [`FactorError::Singular`] if a pivot has another sign or no significant digit, or
-    /// [`FactorError::OutOfMemory`].
+    /// [`FactorError::Singular`] if a pivot has the wrong sign or is not finite, or if a positive pivot has no
+    /// significant digit; [`FactorError::OutOfMemory`].
     pub(crate) fn quasidefinite(
         lower: &Submatrix<T>,
         n_positive: usize,
@@ -312,9 +317,9 @@ fn has_cholesky_factor<T: Real>(
 
 /// The error for a matrix with a pivot that is not positive: [`FactorError::Singular`] if the
 /// matrix is positive definite with its diagonal multiplied by `1 + sqrt(eps)`, `eps` machine
-/// epsilon, else [`FactorError::NotPositive`]. Changes the diagonal of `lower`. The increase is
-/// large compared with rounding errors and small compared with the negative eigenvalues of a too
-/// small penalty.
+/// epsilon, else [`FactorError::NotPositive`] or [`FactorError::OutOfMemory`]. Changes the diagonal of `lower`. The
+/// increase is large compared with rounding errors and small compared with the negative eigenvalues that a matrix
+/// has if a penalty is too small.
 fn indefinite_or_singular<T: Real>(
     lower: &mut Submatrix<T>,
     symbolic: &SymbolicFactor,

@@ -1,21 +1,22 @@
-//! The directions in which the jump multipliers of a block do no work on its free unknowns.
+//! The directions in which the jump multipliers of a block do no work, or little work, on its free unknowns.
 
 use crate::algebra::dense::extend_basis;
 
-/// Largest norm of a column of `B`, relative to the largest column, that counts as dependent on others. Any
-/// number between rounding and one is right; weights up to the inverse square of the number remain beside
-/// stiffnesses.
+/// A column of `B` counts as linearly dependent on other columns if its part orthogonal to them has at most this norm,
+/// relative to the largest column. Any number between rounding errors and one is admissible: entries of the block
+/// inverse exceed stiffnesses by at most the inverse square of the number.
 const DEPENDENT: f64 = 1e-2;
 
 /// Null directions `y` of blocks, and the multipliers `q` of these directions as unknowns of the
 /// condensed system.
 ///
 /// Let `A` be the stiffness of a block on its free unknowns, `B` the means over its sides as functions of
-/// them, `a` the facet means, `p` the jump multipliers, `W` the diagonal of the reciprocal weights, and `r`
-/// the load: `A u + B^T p = r`, `B u - W p = a`. In a direction in which `B^T y` is small beside `A`,
-/// elimination of the block has a small pivot, so that a weight, or the large diagonal of an unknown, is
-/// added to stiffnesses. With such directions `Y`, `Y^T W Y = c I`, `Z = W Y / c`, `E = B^T Y`, a stiffness `k` and
-/// `p = p' - Y q`, the same equations are
+/// these unknowns, `a` the facet means, `p` the jump multipliers, `W` the diagonal of the reciprocal weights, and `r`
+/// the load: `A u + B^T p = r`, `B u - W p = a`. For a direction `y` of jump multipliers with a small `B^T y`,
+/// elimination of the block has a small pivot: the inverse then contains a weight, or the large diagonal entry of an
+/// unknown, added to stiffnesses, which loses their digits. With such directions as columns of `Y`, scaled by
+/// `Y^T W Y = c I`, with `Z = W Y / c`, `E = B^T Y`, a stiffness `k` and `p = p' - Y q`, the equations are
+/// equivalent to
 ///
 /// ```text
 /// A u + B^T p' = r + E q,
@@ -23,14 +24,15 @@ const DEPENDENT: f64 = 1e-2;
 /// Y^T a - E^T u - (c + k c^2) q = 0,
 /// ```
 ///
-/// for any `Y`, and `X` is moderate in all directions. With the inverse `N` of the first two equations and
-/// `G = N E`, `G_u` on unknowns and `G_p` on sides, elimination of the block leaves
+/// The equivalence holds for any such `Y`. In the directions `Y` the matrix `X` has the size `1 / k`, so that no pivot
+/// is small. Let `N` be the inverse of the matrix of the first two equations, and `G = N [E, 0]` with the parts `G_u`
+/// on unknowns and `G_p` on sides. Elimination of `u` and `p'` leaves
 ///
 /// ```text
 /// (Y - G_p)^T a - (c + k c^2 + E^T G_u) q = G_u^T r.
 /// ```
 ///
-/// `q` must be eliminated after the facet means of its block: before them, its pivot is the small one.
+/// The multiplier `q` must be eliminated after the facet means of its block; before them, its pivot is the small one.
 #[derive(Default)]
 pub(super) struct NullDirections {
     /// The block of each direction, ascending.
@@ -47,13 +49,13 @@ pub(super) struct NullDirections {
     product_starts: Vec<u32>,
     /// The row of `-(c + k c^2 + E^T G_u)` of each direction, up to its diagonal entry.
     products: Vec<f64>,
-    /// `E` for the directions of the last block, one entry for each of its free unknowns.
+    /// The columns of `E` for the directions of the last block, one entry for each free unknown of this block.
     works: Vec<f64>,
-    /// Workspace: orthonormal vectors.
+    /// Workspace: orthonormal vectors with one entry for each side of a block.
     basis: Vec<f64>,
-    /// Workspace: sums of the squares of each row of `B`.
+    /// Workspace: the sum of the squares of each row of `B`.
     squares: Vec<f64>,
-    /// Workspace: the roots of `W`, divided by the largest.
+    /// Workspace: the square roots of the entries of `W`, divided by the largest root.
     roots: Vec<f64>,
 }
 
@@ -80,12 +82,13 @@ impl NullDirections {
         start..start + self.blocks[start..].iter().take_while(is_own).count()
     }
 
-    /// The entries of a direction.
+    /// The entries `Y - G_p` of a direction in the condensed matrix, one for each side of the block.
     pub fn entries(&self, direction: usize) -> &[f64] {
         &self.entries[self.starts[direction] as usize..self.starts[direction + 1] as usize]
     }
 
-    /// The values of the free unknowns of the block where the multiplier of a direction is one.
+    /// The values `G_u` of the free unknowns of the block if the multiplier of the direction is one, and the load, the
+    /// facet means and all other multipliers are zero.
     pub fn responses(&self, direction: usize) -> &[f64] {
         let range = self.response_starts[direction]..self.response_starts[direction + 1];
         &self.responses[range.start as usize..range.end as usize]
@@ -98,13 +101,13 @@ impl NullDirections {
         &self.products[range.start as usize..range.end as usize]
     }
 
-    /// Appends the directions of a block with the matrix `[[A, B^T], [B, -W]]`, `n_free` of its `n`
-    /// rows those of free unknowns, in which `A` is divided and `W` multiplied by `unit`. Replaces `W`
-    /// by `X`. [`NullDirections::couple`] must follow with the inverse.
+    /// Appends the directions of a block with the matrix `[[A, B^T], [B, -W]]` of `n` rows, the first `n_free` of
+    /// which are those of free unknowns; `A` is divided and `W` multiplied by `unit`. Replaces `W` by `X`. A call of
+    /// [`NullDirections::couple`] with the inverse must follow.
     ///
-    /// Sides on which no free unknown has a mean have no part in a direction: their weights are
-    /// diagonal entries; such is a row of `B` whose relative norm is at most `tolerance_of_rows`, the root
-    /// of machine epsilon. Columns of `B` of relative norm up to [`DEPENDENT`] count as dependent.
+    /// A side is uncoupled if the norm of its row of `B` is at most `tolerance_of_rows`, the square root of machine
+    /// epsilon, times the largest norm of a row. Uncoupled sides have no direction: elimination of the block adds their
+    /// weights to no stiffness.
     pub fn append(
         &mut self,
         block: u32,
@@ -127,8 +130,8 @@ impl NullDirections {
         let largest_square = squares.iter().copied().fold(0.0, f64::max);
         let is_coupled = |l: &usize| squares[*l] > tolerance_of_rows.powi(2) * largest_square;
         let n_coupled = (0..n_sides).filter(is_coupled).count();
-        // W = largest * roots^2; with V = roots * Y the conditions are V^T V = I and
-        // (B / roots)^T V = 0
+        // W = largest * roots^2. With V = roots * Y the columns of V are orthonormal, and (up to the tolerance)
+        // orthogonal to the columns of B / roots.
         let largest = sides.clone().map(|l| -matrix[l * n + l]).fold(0.0, f64::max);
         roots.clear();
         roots.extend(sides.map(|l| (-matrix[l * n + l] / largest).sqrt()));
@@ -168,9 +171,9 @@ impl NullDirections {
         }
     }
 
-    /// Couples the directions of the last block with its facet means and with one another, given the
-    /// inverse of the matrix that [`NullDirections::append`] has left, in the same scaling. The true
-    /// values of the free unknowns are those of the inverse times `scales`.
+    /// Computes the entries that couple the directions of the last block with its facet means and with one another,
+    /// from the inverse of the matrix that [`NullDirections::append`] has left, in the scaling of that matrix. The
+    /// unscaled values of the free unknowns are the scaled ones times `scales`.
     pub fn couple(
         &mut self,
         inverse: &[f64],

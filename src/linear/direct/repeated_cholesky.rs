@@ -9,18 +9,19 @@ use super::symbolic_factor::SymbolicFactor;
 use crate::algebra::{PenalisedMatrix, SparseMatrix, Submatrix, barycentre};
 use crate::real::Real;
 
-/// Cholesky factorisation of matrices with the same pattern: the order of elimination and the
-/// symbolic factor of the first matrix are used for all.
+/// Cholesky factorisation of several matrices with the same pattern: the order of elimination and the
+/// symbolic factor of the first matrix are used for all of them.
 #[derive(Default)]
 pub(crate) struct RepeatedCholesky {
     /// A point for each row, if known.
     points: Option<Vec<[f32; 3]>>,
     /// The symbolic factor; empty before the first factorisation.
     symbolic: OnceLock<SymbolicFactor>,
-    /// The order of elimination of the rows with positive pivots; empty before the first quasidefinite
-    /// matrix.
+    /// The order of elimination of the rows with positive pivots, for quasidefinite matrices; empty before the first
+    /// of them.
     order: OnceLock<EliminationOrder>,
-    /// The symbolic factor of the last quasidefinite matrix, with the blocks of its last rows.
+    /// The list `blocks` and the symbolic factor of the last quasidefinite matrix; see
+    /// [`RepeatedCholesky::factor_quasidefinite`].
     last_symbolic: Mutex<Option<(Vec<u32>, SymbolicFactor)>>,
 }
 
@@ -53,20 +54,20 @@ impl RepeatedCholesky {
         Factors::cholesky(&mut lower, self.symbolic.get_or_init(|| symbolic))
     }
 
-    /// The factors `L D L^T` of a quasidefinite matrix, given by its lower triangle, with positive pivots
-    /// in the rows of `first` and negative ones in the rows after them. Each of these is eliminated after
-    /// the last row of `first` with which it is coupled. All matrices must have the same `first` up to
-    /// values; `blocks` determines the pattern of the other rows.
+    /// The factors `L D L^T` of a quasidefinite matrix, given by its lower triangle. The pivots of the leading rows are
+    /// positive, those of all further rows negative. A further row is eliminated after the last leading row with which
+    /// it is coupled. `leading` is the pattern of the leading rows, equal for all matrices; equal lists `blocks` must
+    /// mean equal patterns of the further rows.
     ///
     /// # Errors
     /// See [`FactorError`].
     pub fn factor_quasidefinite<T: Real>(
         &self,
-        first: &SparseMatrix<T>,
+        leading: &SparseMatrix<T>,
         lower: SparseMatrix<T>,
         blocks: &[u32],
     ) -> Result<Factors<T>, FactorError> {
-        let n_positive = first.size();
+        let n_positive = leading.size();
         let mut last = self.last_symbolic.lock().unwrap_or_else(|error| error.into_inner());
         let symbolic = match last.take().filter(|(last, _)| last == blocks) {
             Some((_, symbolic)) => symbolic,
@@ -75,7 +76,7 @@ impl RepeatedCholesky {
                     Some(order) => order,
                     None => {
                         let all: Vec<u32> = (0..n_positive as u32).collect();
-                        let order = EliminationOrder::new(first, &all, self.points.as_deref())?;
+                        let order = EliminationOrder::new(leading, &all, self.points.as_deref())?;
                         self.order.get_or_init(|| order)
                     }
                 };

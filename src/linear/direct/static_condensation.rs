@@ -10,23 +10,25 @@
 //! [ M  -1/w ] [ p ] = [ a + t ]
 //! ```
 //!
-//! in which weights `w` (`2 s`, or `s` on a facet with one block) are not added to stiffnesses; `r`
+//! in which the weights `w` (`2 s`, or `s` on a facet with one block) are not added to stiffnesses; `r`
 //! and `t` are the right-hand sides, `a` the facet means. The Schur complement on facet means is,
 //! up to `O(1/s)`, the matrix of Crouzeix-Raviart elements: on triangles it has half as many
 //! unknowns as `K`, and its condition number is `O(h^-2)` for all weights.
 //!
-//! Where the means over the sides of a block are linearly dependent functions of its free unknowns,
-//! the block inverse contains weights beside stiffnesses. If that is so with all unknowns free (quadratic
-//! functions vanish at both Gauss points of every edge), the multipliers of [`NullDirections`] are further
-//! unknowns of the condensed system, which is quasidefinite then; directions in which only unknowns with a
-//! large shift give way are among them. If it is so in a few blocks only, because of fixed unknowns,
-//! weights of these blocks are cut off; iterative refinement by the caller restores the solution for the
-//! true weights.
+//! If the means over the sides of a block are linearly dependent functions of its free unknowns,
+//! the block inverse contains sums of weights and stiffnesses. There are two cases:
 //!
-//! Multipliers may do no work on the free unknowns of any block: of several null directions that are coupled through
-//! their facet means one combination then has a pivot of the size of `1/w`. Weights so large that this is rounding are
-//! all reduced by the same factor, and conjugate gradients restore the solution for the true ones
-//! (`weight_correction`).
+//! * The means are dependent although all unknowns are free (a quadratic function vanishes at both Gauss points of
+//!   every edge). The multipliers of [`NullDirections`] are then further unknowns of the condensed system, which is
+//!   quasidefinite. Null directions include those in which jump multipliers do work only on unknowns with a large
+//!   shift.
+//! * The means are dependent in a few blocks only, because unknowns are fixed. The weights of these blocks are then
+//!   replaced by an upper limit; iterative refinement by the caller restores the solution for the true weights.
+//!
+//! Several null directions that are coupled through facet means can have a combination that does no work on the
+//! free unknowns of any block; the pivot of this combination has the size of `1/w`. If weights are so large that the
+//! pivot is smaller than rounding errors, all weights are reduced by the same factor, and conjugate gradients restore
+//! the solution for the true weights (`weight_correction`).
 //!
 //! Source: static condensation of hybridised methods, B. Cockburn, J. Gopalakrishnan, R. Lazarov, SIAM
 //! J. Numer. Anal. 47 (2009), 1319-1365.
@@ -38,13 +40,15 @@ use super::repeated_cholesky::RepeatedCholesky;
 use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix, sort_by_column};
 use crate::real::Real;
 
-/// Largest ratio of a penalty to the stiffness that is factored where there are null directions. Multipliers that do
-/// no work on any free unknown of any block have pivots of the reciprocal size, left by differences of numbers of
-/// size one: four digits of these pivots remain in `f64`. In another scalar the ratio is that for as many digits.
+/// Largest ratio of a penalty to the stiffness that is factored if there are null directions, in `f64`. Multipliers
+/// that do no work on any free unknown of any block have pivots of the reciprocal size, which are differences of
+/// numbers of size one: four digits of these pivots are correct. In another scalar the ratio is scaled by the quotient
+/// of the machine epsilons, for the same number of digits.
 const MAX_RATIO: f64 = 1e12;
 
-/// The factor by which the divisor of the weights grows where a matrix with shifts has no factors. Shifts spread the
-/// eigenvalues of `weight_correction` between one and `1/c` with the divisor `c`, which is therefore kept small.
+/// The factor by which the divisor of the weights is increased when a matrix with shifts is singular to working
+/// precision. With shifts, the eigenvalues in `weight_correction` are spread between one and `1/c`, where `c` is the
+/// divisor, which is therefore chosen as small as possible.
 const WEIGHT_DIVISOR_STEP: f64 = 16.0;
 
 /// One side of a jump, in the list of its block.
@@ -58,13 +62,14 @@ pub(super) struct JumpSide {
 }
 
 impl JumpSide {
-    /// The factor of the right-hand side of the jump on this side.
+    /// The factor of the right-hand side of the jump in the equation of this side.
     pub fn share(&self) -> f64 {
         if self.mean == NO_INDEX { self.sign } else { 0.5 * self.sign }
     }
 }
 
-/// The adjacency of blocks and jumps, for all sets of free unknowns.
+/// The static condensation of a matrix for all sets of free unknowns: the adjacency of blocks and jumps, and the
+/// pattern of the Schur complement.
 pub(crate) struct StaticCondensation<'a, T> {
     pub(super) penalised: &'a PenalisedMatrix<T>,
     /// Start of each block's list in `sides`, and its length at the end.
@@ -73,9 +78,9 @@ pub(crate) struct StaticCondensation<'a, T> {
     /// The lower triangle of the Schur complement on facet means, all values zero.
     pub(super) pattern: SparseMatrix<T>,
     cholesky: RepeatedCholesky,
-    /// Whether the means over the sides of a block are dependent functions of all its unknowns.
+    /// Whether a block has sides whose means are linearly dependent functions of all unknowns of the block.
     pub(super) has_null_directions: bool,
-    /// The largest divisor of the weights; at least one.
+    /// The largest divisor of the weights: at least one, and one without null directions.
     max_weight_divisor: f64,
 }
 
@@ -87,11 +92,11 @@ pub(crate) struct CondensedFactors<T> {
     pub(super) starts: Vec<usize>,
     pub(super) null_directions: NullDirections,
     pub(super) schur_complement: Factors<T>,
-    /// The true weights divided by those that are factored; at least one.
+    /// The ratio of the true weights to the weights in the factors; at least one.
     pub(super) weight_divisor: f64,
 }
 
-/// Workspace for the inverse of a block with its jump multipliers.
+/// The inverse of a block with its jump multipliers; before the inversion, the matrix.
 #[derive(Default)]
 pub(super) struct BlockInverse {
     /// By rows: free unknowns of the block, then jump multipliers.
@@ -155,8 +160,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         condensation
     }
 
-    /// Whether the means over the sides of a block are dependent functions of all its unknowns, as the
-    /// moments of quadratics on a triangle are.
+    /// Whether a block has sides whose means are linearly dependent functions of all unknowns of the block, as the
+    /// moments of quadratic functions on a triangle are.
     pub fn has_null_directions(&self) -> bool {
         self.has_null_directions
     }
@@ -169,7 +174,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         self
     }
 
-    /// The lower triangle of the Schur complement: facet means of the same block are coupled.
+    /// The lower triangle of the Schur complement, all values zero: facet means of the same block are coupled.
     fn lower_pattern(&self, n_means: usize) -> SparseMatrix<T> {
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); n_means];
         for block in 0..self.starts.len() - 1 {
@@ -204,7 +209,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     }
 
     /// The coefficient of an unknown in the mean over a side of a facet; zero if the mean does not
-    /// contain it.
+    /// contain the unknown.
     pub(super) fn mean_coefficient(&self, side: &JumpSide, unknown: usize) -> f64 {
         let is_own = |t: &&JumpTerm<T>| {
             let i = if side.sign > 0.0 { t.here } else { t.there };
@@ -232,8 +237,9 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         self.factor_reduced(is_free, &[], self.max_weight_divisor)
     }
 
-    /// [`StaticCondensation::factor`] for `K + D` in place of `K`; `shift` is the nonnegative
-    /// diagonal of `D`, or empty for zero.
+    /// [`StaticCondensation::factor`] for `K + D` in place of `K`; `shift` is the nonnegative diagonal of `D`, or empty
+    /// for zero. The weights are reduced by the smallest power of [`WEIGHT_DIVISOR_STEP`] with which the factorisation
+    /// succeeds, but at most by the largest divisor.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -254,7 +260,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         }
     }
 
-    /// [`StaticCondensation::factor_shifted`] with weights divided by a number.
+    /// Inverts the blocks of `K + D` on the free unknowns and factors the Schur complement, with all weights divided by
+    /// `weight_divisor`.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -314,9 +321,9 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         }
     }
 
-    /// Sums of the absolute values of terms of the residual `(c - K u - M^T p)_i`: first of the
-    /// terms with free unknowns and jump multipliers `p`, then of the terms with fixed unknowns and
-    /// of the load.
+    /// Two sums of absolute values of terms of the residual `(c - K u - M^T p)_i`: the sum over the
+    /// terms with free unknowns and jump multipliers `p`, and the sum over the terms with fixed unknowns and
+    /// the load.
     pub fn residual_term_magnitudes(
         &self,
         i: usize,

@@ -13,7 +13,8 @@ use crate::real::Real;
 /// Conjugate gradients for a symmetric matrix, with vectors that are allocated once.
 pub(crate) struct ConjugateGradients<'m, T> {
     matrix: Product<'m, T>,
-    /// The other parts, if the matrix is that of one part: all unknowns of these are fixed.
+    /// The distribution of the unknowns over the parts of a mesh, if the matrix is that of one part; unknowns that
+    /// other parts own are fixed.
     distribution: Option<&'m dyn Distribution>,
     /// The preconditioned residual.
     z: Vec<T>,
@@ -26,8 +27,9 @@ pub(crate) struct ConjugateGradients<'m, T> {
 }
 
 impl<'m, T: Real> ConjugateGradients<'m, T> {
-    /// The method for a symmetric matrix, or for one part of it. Unknowns that other parts own must be fixed
-    /// and zero in preconditioned residuals; their values in `x` are then those of the owners.
+    /// The method for a symmetric matrix, or for the rows of one part of a mesh. Unknowns that other parts own must be
+    /// fixed, and zero in preconditioned residuals; on return of [`ConjugateGradients::solve`] their values in `x` are
+    /// those that the owners computed.
     pub fn new(matrix: Product<'m, T>, distribution: Option<&'m dyn Distribution>) -> Self {
         let n = matrix.size();
         Self { matrix, distribution, z: zeros(n), p: zeros(n), q: zeros(n), largest_ritz: 1.0 }
@@ -35,7 +37,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
 
     /// Corrects the iterate `(x, r)`, `r` the residual of `x` on free unknowns and zero on fixed ones.
     /// On return `r` is the residual of the new `x` if its norm reached `rule.absolute_tolerance`; else `x` may
-    /// contain a last correction that `r` lacks.
+    /// contain a last correction that is not yet subtracted from `r`.
     pub fn solve(
         &mut self,
         fixed: &[bool],
@@ -53,7 +55,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
             run.residual_norm = rz.max(0.0).sqrt();
             run.reason = match () {
                 () if !rz.is_finite() => StopReason::NotFinite,
-                // a negative square within the target is rounding
+                // a negative square not larger than that of the target is a rounding error
                 () if rz < -target * target => StopReason::NotPositive,
                 () if run.residual_norm <= target => StopReason::Converged,
                 () if run.iterations >= rule.max_iterations => StopReason::IterationLimit,
@@ -188,7 +190,7 @@ mod tests {
 
     #[test]
     fn ritz_values_are_the_eigenvalues_after_as_many_steps_as_unknowns() {
-        // Second differences with the eigenvalues 2 - 2 cos(k pi / 6)
+        // second differences with the eigenvalues 2 - 2 cos(k pi / 6)
         let matrix = SparseMatrix {
             row_starts: vec![0, 2, 5, 8, 11, 13],
             columns: vec![0, 1, 0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4],

@@ -7,16 +7,17 @@ use crate::parallel::vectors::{pseudorandom_signs, zeros};
 use crate::real::Real;
 
 /// Assumed lower bound of the ratio of the smallest eigenvalue to the smallest Ritz value of
-/// [`eigenvalue_run`]. The Ritz value is above the eigenvalue and close to it after a few iterations.
+/// [`eigenvalue_run`]. The Ritz value is not smaller than the eigenvalue, and close to it after a few iterations.
 pub(crate) const EIGENVALUE_TO_RITZ_VALUE: f64 = 0.9;
 
-/// Relative tolerance of the linear system that is solved for its Ritz values alone.
+/// Relative tolerance of the norm of the residual in [`eigenvalue_run`].
 const TOLERANCE: f64 = 1e-6;
 
-/// Conjugate gradients for a symmetric matrix on the unknowns that are not fixed, whose smallest Ritz value
-/// estimates the smallest eigenvalue of `B A`. The right-hand side has pseudo-random signs and the sizes of the square
-/// roots of the positive `diagonal`: its components in all eigenvectors have similar norms, those of regions with small
-/// coefficients too. The preconditioner must be set up for the fixed unknowns.
+/// A run of conjugate gradients for a symmetric matrix `A` on the free unknowns, with a preconditioner `B` that must be
+/// set up for the fixed unknowns. The smallest Ritz value estimates the smallest eigenvalue of `B A`; the solution is
+/// not used. The entries of the right-hand side are the square roots of the positive `diagonal` of `A` with
+/// pseudo-random signs: its components in all eigenvectors have similar norms, also in eigenvectors that are
+/// concentrated in a region with a small coefficient.
 pub(crate) fn eigenvalue_run<T: Real>(
     matrix: Product<'_, T>,
     distribution: Option<&dyn Distribution>,
@@ -58,9 +59,9 @@ mod tests {
         }
     }
 
-    /// The smallest eigenvalue belongs to a block whose coefficient is smaller than all others by `contrast`.
+    /// The smallest eigenvalue belongs to a block whose coefficient is that of all others divided by `contrast`.
     #[test]
-    fn a_region_with_a_small_coefficient_has_its_share() {
+    fn an_eigenvector_in_a_region_with_a_small_coefficient_is_found() {
         let n = 40;
         for contrast in [1.0, 1e8, 1e16] {
             let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };

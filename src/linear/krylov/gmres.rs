@@ -17,25 +17,25 @@ use crate::real::Real;
 /// Largest dimension of the Krylov space before a restart.
 const RESTART: usize = 25;
 
-/// Factor by which the residual is reduced at most before a restart. Preconditioners work in single
-/// precision, and the basis loses its orthogonality as the residual falls (A. Greenbaum, M.
-/// Rozloznik, Z. Strakos, BIT 37 (1997), 706-719).
-const MAX_REDUCTION: f64 = 1e-4;
+/// Least ratio of the norm of the residual after a cycle to that before it; smaller norms are reached by a restart.
+/// Preconditioners work in single precision, and the basis loses its orthogonality as the residual falls
+/// (A. Greenbaum, M. Rozloznik, Z. Strakos, BIT 37 (1997), 706-719).
+const LEAST_CYCLE_RATIO: f64 = 1e-4;
 
-/// The factor between the residual of the least squares problem and the target, for the rounding
-/// error by which the true residual is larger.
+/// A cycle ends when the residual of the least squares problem is at most this factor times the wanted norm. The true
+/// residual is larger by rounding errors.
 const LEAST_SQUARES_FACTOR: f64 = 0.99;
 
-/// Restarted GMRES. It minimises the preconditioned norm `(r . B r)^(1/2)` of [`StoppingRule`]. The
-/// vectors are allocated once.
+/// Restarted GMRES. It minimises the preconditioned norm `(r . B r)^(1/2)` of [`StoppingRule`]. A cycle is the part of
+/// a run between two restarts. The vectors are kept for all runs.
 pub(crate) struct Gmres<'m, T> {
-    /// The other parts of the mesh, if the matrices are those of one part: unknowns that other parts own are fixed,
-    /// and zero in preconditioned residuals.
+    /// The distribution of the unknowns over the parts of a mesh, if the matrices are those of one part: unknowns that
+    /// other parts own are fixed, and zero in preconditioned residuals.
     distribution: Option<&'m dyn Distribution>,
     /// The Krylov basis `v_k`, orthonormal in the inner product `v . B w`.
     basis: Vec<Vec<T>>,
-    /// The directions `B v_k`. Both sequences are stored, so that rounding errors of the preconditioner
-    /// do not accumulate.
+    /// The directions `B v_k`. The correction of `x` is a combination of them, without a further application of `B`, so
+    /// that rounding errors of the preconditioner do not accumulate.
     directions: Vec<Vec<T>>,
 }
 
@@ -65,26 +65,26 @@ impl<'m, T: Real> Gmres<'m, T> {
             if run.iterations == 0 {
                 target = rule.target(run.residual_norm);
             }
-            let left = rule.max_iterations - run.iterations;
+            let remaining = rule.max_iterations - run.iterations;
             run.reason = match last_cycle {
                 _ if !square.is_finite() => StopReason::NotFinite,
-                // a negative square within the target is rounding
+                // a negative square not larger than that of the target is a rounding error
                 _ if square < -target * target => StopReason::NotPositive,
                 _ if run.residual_norm <= target => StopReason::Converged,
-                Some(cycle) if !converges_within(cycle, run.residual_norm, target, left) => {
+                Some(cycle) if !converges_within(cycle, run.residual_norm, target, remaining) => {
                     StopReason::IterationLimit
                 }
-                _ if left == 0 => StopReason::IterationLimit,
+                _ if remaining == 0 => StopReason::IterationLimit,
                 _ => {
-                    let goal = target.max(MAX_REDUCTION * run.residual_norm);
-                    let most = left.min(RESTART);
+                    let goal = target.max(LEAST_CYCLE_RATIO * run.residual_norm);
+                    let max_dimension = remaining.min(RESTART);
                     let hessenberg = self.arnoldi(
                         matrix,
                         fixed,
                         preconditioner,
                         r,
                         (run.residual_norm, goal),
-                        most,
+                        max_dimension,
                     );
                     run.iterations += hessenberg.size();
                     if !hessenberg.is_finite() {
@@ -110,9 +110,9 @@ impl<'m, T: Real> Gmres<'m, T> {
         }
     }
 
-    /// The Arnoldi process from the residual `r` of norm `initial`, until the norm of the minimal
-    /// residual is below `goal`, or the Krylov space has dimension `most`. `directions[0]` contains
-    /// `B r`.
+    /// The Arnoldi process from the residual `r` of norm `initial`, until the norm of the minimal residual is at most
+    /// [`LEAST_SQUARES_FACTOR`] times `goal`, or the Krylov space has dimension `max_dimension`. `directions[0]` must
+    /// contain `B r`.
     fn arnoldi(
         &mut self,
         matrix: &SparseMatrix<T>,
@@ -120,13 +120,14 @@ impl<'m, T: Real> Gmres<'m, T> {
         preconditioner: &mut dyn Preconditioner<T>,
         r: &[T],
         (initial, goal): (f64, f64),
-        most: usize,
+        max_dimension: usize,
     ) -> HessenbergMatrix {
         let mut hessenberg = HessenbergMatrix::default();
+        // the norm of the last basis vector, which is not yet scaled
         let mut norm = initial;
         let mut residual_norm = initial;
         self.basis[0].copy_from_slice(r);
-        while hessenberg.size() < most
+        while hessenberg.size() < max_dimension
             && residual_norm > LEAST_SQUARES_FACTOR * goal
             && norm > 0.0
             && norm.is_finite()
@@ -164,8 +165,8 @@ impl<'m, T: Real> Gmres<'m, T> {
         hessenberg
     }
 
-    /// Adds the combination of directions with the given weights to `x`, and subtracts the matrix times
-    /// that combination from `r`.
+    /// Adds the combination of the directions with the given weights to `x`, and subtracts the matrix times
+    /// this combination from `r` on free unknowns.
     fn correct(
         &mut self,
         matrix: &SparseMatrix<T>,
@@ -197,11 +198,16 @@ impl<'m, T: Real> Gmres<'m, T> {
     }
 }
 
-/// Whether `left` iterations reduce the norm to the target, at the rate of the last cycle: from
-/// `previous` to `norm` in `count` iterations.
-fn converges_within((previous, count): (f64, usize), norm: f64, target: f64, left: usize) -> bool {
+/// Whether `remaining` iterations reduce the norm of the residual from `norm` to `target`, at the rate of the last
+/// cycle, which reduced it from `previous` to `norm` in `count` iterations.
+fn converges_within(
+    (previous, count): (f64, usize),
+    norm: f64,
+    target: f64,
+    remaining: usize,
+) -> bool {
     let rate = (previous / norm).ln() / count as f64;
-    (norm / target).ln() <= rate * left as f64
+    (norm / target).ln() <= rate * remaining as f64
 }
 
 /// `x = factor x`.
@@ -239,7 +245,7 @@ impl HessenbergMatrix {
         self.columns.iter().flatten().all(|x| x.is_finite())
     }
 
-    /// Adds a column; returns the factor by which it reduces the minimal residual.
+    /// Adds a column; returns the ratio of the norms of the minimal residual with and without this column.
     fn push(&mut self, column: Vec<f64>) -> f64 {
         let mut rotated = column.clone();
         for (k, &(c, s)) in self.rotations.iter().enumerate() {
@@ -275,9 +281,9 @@ impl HessenbergMatrix {
         y
     }
 
-    /// The smallest and the largest eigenvalue of the symmetric part of the square matrix, or the
-    /// values `previous` where those are more extreme; `None` if there is neither. Both values lie
-    /// between the extreme eigenvalues of the preconditioned symmetric part of `A`.
+    /// The smallest and the largest among the eigenvalues of the symmetric part of the square matrix (without the last
+    /// row) and the two values `previous`; `None` without columns and `previous`. They lie between the smallest and the
+    /// largest eigenvalue of `B` times the symmetric part of `A`.
     fn extreme_ritz_values(&self, previous: Option<(f64, f64)>) -> Option<(f64, f64)> {
         let entry = |i: usize, j: usize| self.columns[j].get(i).copied().unwrap_or(0.0);
         let n = self.size();
@@ -364,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn an_indefinite_symmetric_part_is_noticed() {
+    fn an_indefinite_symmetric_part_stops_the_run() {
         let mut matrix = matrix(3.0);
         matrix.values[9] = -5.0;
         assert_eq!(solve(&matrix, &[1.0; 4], 20).0.reason, StopReason::NotPositive);

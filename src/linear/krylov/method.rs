@@ -18,7 +18,7 @@ pub(crate) fn symmetric_part<T: Real>(inequality: &Inequality<T>) -> Cow<'_, Spa
     }
 }
 
-/// A Krylov method for one matrix, with symmetric positive definite preconditioners.
+/// A Krylov method for the matrix of an inequality, with symmetric positive definite preconditioners.
 pub(crate) enum KrylovMethod<'m, T> {
     /// For symmetric matrices.
     ConjugateGradients(ConjugateGradients<'m, T>),
@@ -40,8 +40,8 @@ impl<'m, T: Real> KrylovMethod<'m, T> {
     }
 
     /// Corrects the iterate `(x, r)`, `r` the residual of `x` on free unknowns and zero on fixed ones.
-    /// On return `r` is the residual of the new `x` if its norm reached `rule.absolute_tolerance`; else `r` may lack
-    /// the last correction of `x`.
+    /// On return `r` is the residual of the new `x` if its norm reached `rule.absolute_tolerance`; else `x` may
+    /// contain a last correction that is not yet subtracted from `r`.
     pub fn solve(
         &mut self,
         fixed: &[bool],

@@ -6,21 +6,21 @@ use crate::algebra::{NO_INDEX, PenalisedMatrix, SidePenalties, Support};
 use crate::real::Real;
 
 /// The matrix `K + M^T S M` of discontinuous linear functions, without assembled entries. A product reads for each
-/// cell the block of `K`, and a penalty and an index for each facet: in space 176 bytes in `f64`, where the entries of
-/// the assembled matrix and their columns take 936.
+/// cell the block of `K`, and a penalty and an index for each facet: 176 bytes for a tetrahedron in `f64`, whereas the
+/// entries of the assembled matrix and their columns take 936.
 ///
 /// The rows of a cell need the means over both sides of its facets. Each penalty is computed once for each of the two
 /// cells of a facet, so that no cell writes to the rows of another cell.
 pub(crate) struct PenalisedProduct<'m, T> {
     /// The blocks of `K`.
     blocks: &'m [T],
-    /// The penalties `M^T S M`. For vertex values each penalty is divided by the square of the number of vertices of
-    /// a facet, so that sums over these vertices replace means.
+    /// The penalties `M^T S M`. If the unknowns are vertex values, each penalty is divided by the square of the number
+    /// of vertices of a facet, so that sums over these vertices replace means.
     penalties: SidePenalties<T>,
 }
 
 impl<'m, T: Real> PenalisedProduct<'m, T> {
-    /// The product with a penalised matrix; `None` for the matrices of which [`SidePenalties::new`] returns none.
+    /// The product with a penalised matrix; `None` if [`SidePenalties::new`] returns `None`.
     pub fn new(penalised: &'m PenalisedMatrix<T>, supports: &[Support]) -> Option<Self> {
         let mut penalties = SidePenalties::new(penalised, supports)?;
         if !penalties.are_means {
@@ -81,11 +81,12 @@ impl<'m, T: Real> PenalisedProduct<'m, T> {
                 };
                 multipliers[s] = penalty[s] * (own[s] - other);
             }
-            // the transpose of the map to means is the map itself
-            let forces = means::<T, N, ARE_MEANS>(&multipliers);
+            // the map from the unknowns of a cell to its means is symmetric
+            let penalty_product = means::<T, N, ARE_MEANS>(&multipliers);
             let block = &blocks[first * N..(first + N) * N];
             for (i, row) in block.chunks_exact(N).enumerate() {
-                let product = row.iter().zip(&x).fold(forces[i], |sum, (&a, &x)| sum + a * x);
+                let product =
+                    row.iter().zip(&x).fold(penalty_product[i], |sum, (&a, &x)| sum + a * x);
                 q[i] = if fixed[i] { zero } else { product };
                 sum += x[i].to_f64() * q[i].to_f64();
             }

@@ -6,7 +6,7 @@ use super::penalised_product::PenalisedProduct;
 use crate::algebra::{Inequality, SparseMatrix};
 use crate::real::Real;
 
-/// A symmetric matrix in the form in which a product reads the least memory.
+/// A symmetric matrix, stored in the form for which a product with a vector reads the fewest bytes.
 pub(crate) enum Product<'m, T> {
     /// The stored entries.
     Assembled(&'m SparseMatrix<T>),

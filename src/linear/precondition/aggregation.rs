@@ -17,8 +17,8 @@ const NEGLIGIBLE: f64 = 1e-4;
 /// diagonal.
 const DAMPING: f64 = 4.0 / 3.0;
 
-/// The prolongation `P` and the coarse matrix `P^T A P`; `None` if the coarse space has no unknown or
-/// more than half as many as the fine one.
+/// The prolongation `P` and the coarse matrix `P^T A P`; `None` if the coarse space has no unknown, or
+/// more than half as many unknowns as the matrix has rows.
 pub(crate) fn aggregate<T: Real>(
     matrix: &SparseMatrix<T>,
     fixed: &[bool],
@@ -38,10 +38,10 @@ pub(crate) fn aggregate<T: Real>(
 
 /// The aggregate of each unknown, [`NO_INDEX`] for none, and the number of aggregates.
 ///
-/// Aggregates are disjoint neighbourhoods of strong couplings. An unknown outside of all of them
-/// joins the aggregate of its most strongly coupled neighbour that has one; the remaining unknowns
-/// form further aggregates with their neighbours. Fixed unknowns, and unknowns without strong
-/// couplings, have none.
+/// The first aggregates are disjoint sets of an unknown and all its strongly coupled neighbours. An unknown in none of
+/// these sets joins the aggregate of its most strongly coupled neighbour that is in one of them; the remaining unknowns
+/// form further aggregates with those neighbours that have no aggregate. Fixed unknowns, and unknowns without strong
+/// couplings, have no aggregate.
 fn aggregates<T: Real>(
     matrix: &SparseMatrix<T>,
     fixed: &[bool],
@@ -89,7 +89,8 @@ fn aggregates<T: Real>(
     (aggregate_of, count as usize)
 }
 
-/// The prolongation `(I - omega D^-1 A) P_0`, `P_0` the indicator functions of aggregates.
+/// The prolongation `(I - omega D^-1 A) P_0`, where the columns of `P_0` are the indicator functions of aggregates.
+/// Rows of fixed unknowns are empty.
 fn smoothed_prolongation<T: Real>(
     matrix: &SparseMatrix<T>,
     fixed: &[bool],

@@ -23,14 +23,15 @@ use crate::real::Real;
 /// the form on conforming linear functions ([`P1Level`](super::coarse_level::P1Level)), not of `A`.
 pub(crate) struct AuxiliarySpace<'a, T: Real> {
     blocks: BlockJacobi<'a, T>,
-    /// The unknowns whose blocks are complete, on a part of a mesh; `None` if all are.
+    /// On a part of a mesh, the unknowns that the part owns; only the blocks of these are complete. `None` on a whole
+    /// mesh.
     own: Option<Vec<bool>>,
     correction: VertexCorrection<'a, T>,
 }
 
 impl<'a, T: Real> AuxiliarySpace<'a, T> {
-    /// The preconditioner of a symmetric matrix; `None` if [`unknowns_per_cell`] is, or the size of the
-    /// matrix is not a multiple of this number.
+    /// The preconditioner of a symmetric matrix; `None` if [`unknowns_per_cell`] returns `None`, or the size of the
+    /// matrix is not a multiple of the number of unknowns of a cell.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
         supports: &[Support],
@@ -40,7 +41,7 @@ impl<'a, T: Real> AuxiliarySpace<'a, T> {
         Some(Self { blocks, own: None, correction })
     }
 
-    /// The preconditioner on a part of a mesh, where blocks correct own unknowns alone.
+    /// The preconditioner on a part of a mesh: `D^-1` corrects only the unknowns for which `own` is true.
     #[must_use]
     pub fn with_own_blocks(self, own: Vec<bool>) -> Self {
         Self { own: Some(own), ..self }
@@ -60,7 +61,7 @@ impl<T: Real> Preconditioner<T> for AuxiliarySpace<'_, T> {
                 self.blocks.set_fixed(&fixed.iter().zip(own).map(is_fixed).collect::<Vec<_>>())
             }
         }
-        // parts of a mesh call both or none
+        // also after an error: the second call is collective over the parts of a mesh
         .and(self.correction.set_fixed(fixed))
     }
 
@@ -70,12 +71,12 @@ impl<T: Real> Preconditioner<T> for AuxiliarySpace<'_, T> {
     }
 }
 
-/// One if cells share all unknowns. If cells own all unknowns: the number `n` of unknowns at the
-/// beginning of the list that belong to the first cell, provided that `n` is at most
-/// [`MAX_BASIS`] and the list consists of groups of `n` consecutive unknowns, each with the
-/// same cell. `None` for every other list, among them the empty one.
+/// The number of unknowns of a cell, from the supports of all unknowns: one if no unknown belongs to a single cell.
+/// If every unknown belongs to a cell: the number `n` of unknowns at the beginning of the list that belong to the cell
+/// of the first unknown, provided that `n` is at most [`MAX_BASIS`] and the list consists of groups of `n` consecutive
+/// unknowns, each group with one cell. `None` for every other list, and for the empty list.
 ///
-/// Whether two groups belong to different cells is not examined.
+/// The function does not check that two groups belong to different cells.
 pub(crate) fn unknowns_per_cell(supports: &[Support]) -> Option<usize> {
     let first = supports.first()?.cell();
     if first.is_none() {
@@ -109,8 +110,8 @@ pub(crate) struct VertexCorrection<'a, T: Real> {
 }
 
 impl<'a, T: Real> VertexCorrection<'a, T> {
-    /// The correction with functions that vanish at the vertices `dirichlet`; `None` if a support is
-    /// empty or contains a vertex beyond that list.
+    /// The correction with functions that vanish at the vertices for which `dirichlet` is true; `None` if a support is
+    /// empty or contains a vertex that is not less than the length of `dirichlet`.
     pub fn new(
         coarse: Box<dyn Preconditioner<T> + 'a>,
         dirichlet: Cow<'a, [bool]>,
@@ -128,7 +129,7 @@ impl<'a, T: Real> VertexCorrection<'a, T> {
     /// support of a fixed unknown.
     ///
     /// # Errors
-    /// [`FactorError`] if the matrix of the coarsest level is not positive definite.
+    /// The error of the preconditioner `C`.
     pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         let (transpose, dirichlet) = (&self.transpose, &self.dirichlet);
         for_each_chunk(&mut self.fixed_vertices, |range, out| {
@@ -216,8 +217,8 @@ impl<'a, T: Real> BlockJacobi<'a, T> {
     }
 }
 
-/// Copies the diagonal block that begins with the unknown `first`; rows and columns of fixed
-/// unknowns are zero. `fixed` are the entries for the unknowns of the block. The columns of a row
+/// Sets `block` to the diagonal block that begins with the unknown `first`, with zeros in rows and columns of fixed
+/// unknowns. `fixed` has one entry for each unknown of the block. The columns of a row
 /// of the matrix must be ascending.
 fn read_block<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], block: &mut [T]) {
     let size = fixed.len();

@@ -2,12 +2,13 @@
 //!
 //! As in [`GaussSeidel`](super::gauss_seidel::GaussSeidel), an iteration is a Gauss-Seidel iteration within
 //! a chunk of cells and a Jacobi iteration between chunks, only the strictly lower triangle of a chunk is
-//! stored, and the forward iteration returns the residual. Blocks need one index each, and their products
-//! do not depend on each other, which takes a third of the time of the iteration by unknowns.
+//! stored, and the forward iteration returns the residual. An iteration takes a third of the time of an iteration by
+//! unknowns: only one index is read for each block, and the rows of a product with a block are independent.
 //!
-//! With block diagonal `D`, strictly lower triangle `L` and entries `O` between chunks, the iteration `D + L`
-//! reduces the energy of the error if `D - O` is positive. A sum of forms on facets, each positive with either
-//! sign of the traces from one side, has this property: interior penalties above the proven bound.
+//! Let `D` be the block diagonal, `L` the strictly lower triangle within chunks and `O` the entries between chunks. The
+//! iteration with `D + L` reduces the energy of the error if `D - O` is positive definite. This is so for a sum of
+//! forms on facets each of which remains positive if the traces from one side change their sign, such as the forms of
+//! interior penalty methods with a penalty above the proven bound.
 
 use crate::algebra::SparseMatrix;
 use crate::algebra::dense::invert_positive_definite;
@@ -30,18 +31,21 @@ pub(crate) struct CellGaussSeidel<const N: usize> {
     mask: Vec<f32>,
 }
 
-/// The blocks in the rows of a chunk of cells, without the diagonal ones.
+/// The blocks in the rows of a chunk of cells: the strictly lower triangle within the chunk, and all blocks outside of
+/// it.
 struct CellRows<const N: usize> {
     /// Start of each cell in `cells` and `blocks`, and the number of blocks at the end.
     starts: Vec<u32>,
-    /// The preceding cells of the chunk that are coupled to a cell, relative to the chunk.
+    /// For each cell the preceding cells of the chunk that are coupled to it, relative to the chunk.
     cells: Vec<u16>,
+    /// The blocks that couple a cell to these cells.
     blocks: Vec<[[f32; N]; N]>,
     /// The blocks outside of the chunk: cell relative to the chunk, other cell, block.
     outside: Vec<(u16, u32, [[f32; N]; N])>,
 }
 
 impl<const N: usize> CellRows<N> {
+    /// The rows `range` of a matrix divided by `scale`, and their diagonal blocks.
     fn new<T: Real>(
         matrix: &SparseMatrix<T>,
         scale: f64,
@@ -90,9 +94,10 @@ impl<const N: usize> CellRows<N> {
         (rows, diagonal)
     }
 
-    /// The blocks of a cell of the chunk with the other cells.
+    /// The blocks of a cell in the strictly lower triangle, each with the number of the other cell relative to the
+    /// chunk.
     #[inline(always)]
-    fn row(&self, cell: usize) -> impl Iterator<Item = (usize, &[[f32; N]; N])> {
+    fn lower_row(&self, cell: usize) -> impl Iterator<Item = (usize, &[[f32; N]; N])> {
         let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
         let cells = self.cells[range.clone()].iter().map(|&other| usize::from(other));
         cells.zip(&self.blocks[range])
@@ -172,7 +177,7 @@ impl<const N: usize> CellGaussSeidel<N> {
             let mut block = [[0.0_f64; N]; N];
             for i in (0..N).filter(|&i| !fixed[i]) {
                 for j in (0..N).filter(|&j| !fixed[j]) {
-                    // rounding to single precision keeps neither symmetry nor its loss
+                    // the matrix is symmetric up to rounding errors only
                     block[i][j] = 0.5 * f64::from(diagonal[i][j] + diagonal[j][i]);
                 }
             }
@@ -198,12 +203,14 @@ impl<const N: usize> CellGaussSeidel<N> {
             let b = b[range].as_chunks::<N>().0;
             for (cell, (b, inverse)) in b.iter().zip(inverses).enumerate() {
                 let mut sum = *b;
-                chunk.row(cell).for_each(|(other, a)| subtract_product(a, &x[other], &mut sum));
+                chunk
+                    .lower_row(cell)
+                    .for_each(|(other, a)| subtract_product(a, &x[other], &mut sum));
                 let value = product(inverse, &sum);
                 x[cell] = value;
                 r[cell] = [0.0; N];
                 chunk
-                    .row(cell)
+                    .lower_row(cell)
                     .for_each(|(other, a)| subtract_transposed(a, &value, &mut r[other]));
             }
             0.0
@@ -234,11 +241,13 @@ impl<const N: usize> CellGaussSeidel<N> {
             let inverses = &self.inverses[range.start / N..range.end / N];
             for (cell, inverse) in inverses.iter().enumerate().rev() {
                 let mut sum = r[cell];
-                chunk.row(cell).for_each(|(other, a)| subtract_product(a, &x[other], &mut sum));
+                chunk
+                    .lower_row(cell)
+                    .for_each(|(other, a)| subtract_product(a, &x[other], &mut sum));
                 let value = product(inverse, &sum);
                 x[cell] = value;
                 chunk
-                    .row(cell)
+                    .lower_row(cell)
                     .for_each(|(other, a)| subtract_transposed(a, &value, &mut r[other]));
             }
             0.0
@@ -284,7 +293,7 @@ mod tests {
         let n = 3 * 6000;
         let matrix = matrix(n / 3);
         let mut smoother = CellGaussSeidel::<3>::new(&matrix, 2.0);
-        // the blocks of an earlier set must not stay
+        // inverses for an earlier set of fixed unknowns must be replaced
         smoother.set_fixed(&vec![false; n]).unwrap();
         let fixed: Vec<bool> = (0..n).map(|i| i % 7 == 3).collect();
         smoother.set_fixed(&fixed).unwrap();

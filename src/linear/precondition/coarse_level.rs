@@ -13,8 +13,8 @@ const MAX_FACTORED: usize = 600;
 /// Largest number of free unknowns of a coarsest level that is factored instead of smoothed.
 pub(crate) const MAX_COARSEST_FACTORED: usize = 20_000;
 
-/// The conforming linear functions on a mesh: the matrix of the form on all vertices, and the next
-/// coarser level.
+/// The conforming linear functions on a mesh: the matrix of the form on all vertices, the vertices with Dirichlet data,
+/// and the next coarser level.
 #[derive(Debug)]
 pub struct P1Level<T> {
     pub(crate) matrix: SparseMatrix<T>,
@@ -89,7 +89,7 @@ impl<T: Real> CoarseLevel<T> {
     }
 
     /// The coarser level by smoothed aggregation; `None` if the matrix is small enough to be factored,
-    /// or aggregation does not reduce its size.
+    /// or if aggregation does not halve the number of unknowns.
     pub(crate) fn aggregated(matrix: &SparseMatrix<T>, fixed: &[bool]) -> Option<Self> {
         if matrix.size() <= MAX_FACTORED {
             return None;
@@ -117,7 +117,7 @@ mod tests {
         let level = |coarser| P1Level::new(matrix(), vec![false; 9], coarser);
         let coarser = CoarseLevel::new(coarse.clone(), prolongation(9));
         assert_eq!(level(coarser).map(|level| level.size()), Some(9));
-        // ten values by prolongation, for nine vertices; then sizes of other vectors
+        // six coarse unknowns for five vertices, ten fine unknowns for nine vertices, eight flags for nine rows
         assert!(CoarseLevel::new(coarse.clone(), prolongation(11)).is_none());
         let of_too_many = vec![[0, 1]; 10];
         let prolongation = Arc::new(Prolongation::midpoints(of_too_many, 5));

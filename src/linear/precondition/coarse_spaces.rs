@@ -25,8 +25,8 @@ pub enum CoarseSpaces<T> {
 }
 
 impl<T: Real> CoarseSpaces<T> {
-    /// Whether spaces are known for an inequality: a coarser level with a prolongation to its unknowns, or a level with
-    /// all vertices of the supports of its unknowns.
+    /// Whether these are spaces for an inequality: a coarser level whose prolongation has as many fine unknowns as the
+    /// inequality, or a level that has all vertices in the supports of the unknowns of the inequality.
     pub(crate) fn fits(&self, inequality: &Inequality<T>) -> bool {
         match self {
             Self::Unknown => false,
@@ -41,7 +41,7 @@ impl<T: Real> CoarseSpaces<T> {
 
     /// These spaces if they fit an inequality, else spaces constructed from the symmetric part `matrix`
     /// of its matrix and the supports of its unknowns; `None` if the inequality does not have a support
-    /// for each unknown.
+    /// for each unknown, or if no space can be constructed.
     pub(crate) fn complete(
         &self,
         matrix: &SparseMatrix<T>,
@@ -64,9 +64,9 @@ impl<T: Real> CoarseSpaces<T> {
 }
 
 /// The conforming linear functions on the mesh of another finite element, with the Galerkin matrix
-/// `P^T A P`, where an unknown of the element is the mean of the values at the vertices of its
-/// support. Vertices in the supports of fixed unknowns are fixed, and vertices whose diagonal entry
-/// is not positive. `None` without supports.
+/// `P^T A P`: the prolongation `P` sets an unknown of the element to the mean of the values at the vertices of its
+/// support. Fixed are the vertices in the supports of fixed unknowns, and those whose diagonal entry
+/// is not positive. `None` if no support has a vertex.
 fn p1_level<T: Real>(
     matrix: &SparseMatrix<T>,
     supports: &[Support],

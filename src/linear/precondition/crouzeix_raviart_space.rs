@@ -8,53 +8,55 @@ use crate::algebra::{
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
-/// The facets of a mesh, by the sides of an element of which [`SidePenalties`] has the penalties.
+/// The Crouzeix-Raviart functions on a mesh, one for each facet; the sides of facets have the indices of
+/// [`SidePenalties`].
 ///
-/// A Crouzeix-Raviart function has one mean on each facet, which is the mean over both sides: such
-/// functions have no jumps of means, and their form is the stiffness alone.
+/// The means of a Crouzeix-Raviart function over the two sides of a facet are equal. Such functions have no jumps of
+/// means, and their form is the stiffness alone.
 pub(crate) struct CrouzeixRaviartSpace {
     /// The facet of each side.
-    pub facet: Vec<u32>,
+    pub facet_of_side: Vec<u32>,
     /// The sides of each facet; the second is [`NO_INDEX`] on the boundary.
-    pub sides: Vec<[u32; 2]>,
+    pub sides_of_facet: Vec<[u32; 2]>,
 }
 
 impl CrouzeixRaviartSpace {
     /// The facets in the order of their first sides.
     pub fn new<T>(penalties: &SidePenalties<T>) -> Self {
         let n = penalties.opposite.len();
-        let mut facet = in_large_pages(vec![0; n]);
+        let mut facet_of_side = in_large_pages(vec![0; n]);
         let is_first =
             |side: usize, opposite: u32| opposite == NO_INDEX || side < opposite as usize;
-        let sides = penalties.opposite.iter().enumerate();
-        let n_facets = sides.filter(|&(side, &opposite)| is_first(side, opposite)).count();
-        let mut sides = in_large_pages(Vec::with_capacity(n_facets));
+        let all = penalties.opposite.iter().enumerate();
+        let n_facets = all.filter(|&(side, &opposite)| is_first(side, opposite)).count();
+        let mut sides_of_facet = in_large_pages(Vec::with_capacity(n_facets));
         for (side, &opposite) in penalties.opposite.iter().enumerate() {
             if is_first(side, opposite) {
-                facet[side] = sides.len() as u32;
-                sides.push([side as u32, opposite]);
+                facet_of_side[side] = sides_of_facet.len() as u32;
+                sides_of_facet.push([side as u32, opposite]);
             } else {
-                facet[side] = facet[opposite as usize];
+                facet_of_side[side] = facet_of_side[opposite as usize];
             }
         }
-        Self { facet, sides }
+        Self { facet_of_side, sides_of_facet }
     }
 
-    /// The matrix of the stiffness on all facets.
+    /// The matrix of the stiffness in the basis of all Crouzeix-Raviart functions.
     pub fn matrix<T: Real>(
         &self,
         penalties: &SidePenalties<T>,
         penalised: &PenalisedMatrix<T>,
     ) -> SparseMatrix<T> {
         let size = penalties.cell_size;
-        let capacity = self.sides.len() * (2 * size - 1);
+        let capacity = self.sides_of_facet.len() * (2 * size - 1);
         let mut matrix = SparseMatrix {
-            row_starts: in_large_pages(Vec::with_capacity(self.sides.len() + 1)),
+            row_starts: in_large_pages(Vec::with_capacity(self.sides_of_facet.len() + 1)),
             columns: in_large_pages(Vec::with_capacity(capacity)),
             values: in_large_pages(Vec::with_capacity(capacity)),
         };
         matrix.row_starts.push(0);
-        for (own, sides) in (0..).zip(&self.sides) {
+        for (own, sides) in (0..).zip(&self.sides_of_facet) {
+            // the facet itself, and at most three other facets of each of its two cells
             let mut row = [(NO_INDEX, T::lit(0.0)); 7];
             row[0].0 = own;
             let mut n = 1;
@@ -66,7 +68,7 @@ impl CrouzeixRaviartSpace {
                     if other == side {
                         row[0].1 += value;
                     } else {
-                        row[n] = (self.facet[other], value);
+                        row[n] = (self.facet_of_side[other], value);
                         n += 1;
                     }
                 }
@@ -89,8 +91,9 @@ impl CrouzeixRaviartSpace {
     ) -> Option<Prolongation<T>> {
         let size = penalties.cell_size;
         let length = size - 1;
-        let mut vertices: Vec<u32> = in_large_pages(Vec::with_capacity(self.sides.len() * length));
-        for &[side, _] in &self.sides {
+        let mut vertices: Vec<u32> =
+            in_large_pages(Vec::with_capacity(self.sides_of_facet.len() * length));
+        for &[side, _] in &self.sides_of_facet {
             let side = side as usize;
             if penalties.are_means {
                 vertices.extend(supports[side].vertices());

@@ -1,6 +1,6 @@
 //! The form of an over-penalised discontinuous linear element on its facet mean functions.
 //!
-//! The facet mean function of a side is the linear function on its cell with mean one on the facet
+//! The facet mean function of a side is the linear function on the cell of the side with mean one on its facet
 //! and mean zero on the other facets of the cell: the Crouzeix-Raviart basis. Sides have the indices of
 //! [`SidePenalties`].
 
@@ -8,13 +8,14 @@ use crate::algebra::{PenalisedMatrix, SidePenalties};
 use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
 
-/// The facet mean function of a facet at a vertex, in a cell of `cell_size` vertices.
+/// The value at a vertex of the facet mean function of a facet, in a cell of `cell_size` vertices; facet `i` is
+/// opposite to vertex `i`.
 #[inline(always)]
-pub(crate) fn cr_basis<T: Real>(cell_size: usize, vertex: usize, facet: usize) -> T {
+pub(crate) fn facet_mean_function<T: Real>(cell_size: usize, vertex: usize, facet: usize) -> T {
     T::lit(if vertex == facet { 2.0 - cell_size as f64 } else { 1.0 })
 }
 
-/// The form `K + M^T S M` of the function of each side with itself.
+/// The form `K + M^T S M` of the facet mean function of each side with itself.
 pub(crate) fn diagonal<T: Real>(
     penalised: &PenalisedMatrix<T>,
     penalties: &SidePenalties<T>,
@@ -28,7 +29,7 @@ pub(crate) fn diagonal<T: Real>(
     diagonal
 }
 
-/// The stiffness form of the facet mean functions of two sides of a cell.
+/// The stiffness form of the facet mean functions of two sides of a cell; `are_means` is that of [`SidePenalties`].
 pub(super) fn stiffness<T: Real>(
     penalised: &PenalisedMatrix<T>,
     [one, other]: [usize; 2],
@@ -44,7 +45,8 @@ pub(super) fn stiffness<T: Real>(
     let mut sum = T::lit(0.0);
     for i in 0..size {
         for j in 0..size {
-            let weight: T = cr_basis::<T>(size, i, one) * cr_basis::<T>(size, j, other);
+            let weight: T =
+                facet_mean_function::<T>(size, i, one) * facet_mean_function::<T>(size, j, other);
             sum += weight * entry(i, j);
         }
     }

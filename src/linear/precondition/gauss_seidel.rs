@@ -4,15 +4,16 @@
 //! iteration, so that chunks run in parallel. The backward iteration is the transpose of the forward
 //! one.
 //!
-//! With the lower triangle `L` and the diagonal `D` of the diagonal blocks of chunks, the iteration
-//! `M = D + E + L` for `A` reduces the energy of the error if `M + M^T - A = D + 2 E - O` is positive, `O` the
-//! entries between chunks. `E` is zero in rows in which `D` exceeds the sum of `|O|`, as in all of a matrix
-//! with negative off-diagonal entries and non-negative row sums, else it makes up for the difference
-//! (A. H. Baker, R. D. Falgout, T. V. Kolev, U. M. Yang, SIAM J. Sci. Comput. 33 (2011), 2864-2887). Flat
-//! tetrahedra in a numbering without locality need it: Jacobi's iteration diverges for their matrices.
+//! Let `D` be the diagonal of the matrix `A`, `L` the strictly lower triangle within chunks, `O` the entries between
+//! chunks, and `E` a non-negative diagonal. The iteration with `M = D + E + L` reduces the energy of the error if
+//! `M + M^T - A = D + 2 E - O` is positive definite. `E` is zero in rows in which the entry of `D` is at least the sum
+//! of the entries of `|O|`; these are all rows of a matrix with negative off-diagonal entries and non-negative row
+//! sums. In other rows `E` makes `D + 2 E` larger than that sum (A. H. Baker, R. D. Falgout, T. V. Kolev, U. M. Yang,
+//! SIAM J. Sci. Comput. 33 (2011), 2864-2887). Meshes of flat tetrahedra with a numbering without locality need a
+//! positive `E`: Jacobi's iteration diverges for their matrices.
 //!
 //! An iteration is limited by memory bandwidth. Only the strictly lower triangle of each chunk is
-//! stored: by symmetry, row `i` of it updates both the equation of unknown `i` and, once `x_i` is
+//! stored: by symmetry, a row `i` of this triangle updates both the equation of unknown `i` and, once `x_i` is
 //! computed, the residuals of the preceding unknowns. The forward iteration therefore returns the
 //! residual without a further product. With column indices of two bytes and values of four, a
 //! forward and a backward iteration read a seventh of the bytes of two products with the matrix.
@@ -21,32 +22,34 @@ use crate::algebra::SparseMatrix;
 use crate::parallel::vectors::{CHUNK, for_each_chunk, map_chunks, sum_chunks_of_two, zeros};
 use crate::real::Real;
 
-/// Where the entries between chunks exceed the diagonal entry, the sum of their sizes counts with this factor.
+/// The entry of `D + 2 E`, divided by the sum of the absolute values of the entries between chunks, in rows in which
+/// `E` is positive.
 const MARGIN: f64 = 1.1;
 
-/// The reciprocal of the diagonal entry of an unknown that is not smoothed: a forward iteration leaves it at
-/// zero but for rounding, and does not count it as fixed. Reciprocals of other unknowns are at least one.
-const KEPT: f32 = 1e-30;
+/// The value of `inverse_diagonal` for a kept unknown, which is free but not smoothed. With this value a forward
+/// iteration from zero leaves the unknown at zero up to rounding. The values for smoothed unknowns are much larger, the
+/// value for fixed unknowns is zero.
+const KEPT_INVERSE_DIAGONAL: f32 = 1e-30;
 
 /// The Gauss-Seidel smoother of a symmetric matrix divided by a scale.
 pub(crate) struct GaussSeidel {
     chunks: Vec<ChunkRows>,
-    /// The reciprocal of the diagonal entry; zero for fixed unknowns, whose values then stay zero,
-    /// and where the diagonal entry is zero.
+    /// The reciprocals of the entries of `D + E`; zero for fixed unknowns, whose values then stay zero,
+    /// and for unknowns whose diagonal entry is zero; [`KEPT_INVERSE_DIAGONAL`] for kept unknowns.
     inverse_diagonal: Vec<f32>,
 }
 
 /// The rows of a chunk.
 struct ChunkRows {
     diagonal: Vec<f32>,
-    /// What is added to each diagonal entry; empty if that is nothing.
+    /// The diagonal `E` that is added to the diagonal; empty if it is zero.
     added: Vec<f32>,
     /// Start of each row in `columns` and `values`, and the number of entries at the end.
     starts: Vec<u32>,
     /// The strictly lower triangle of the diagonal block of the chunk; columns relative to the chunk.
     columns: Vec<u16>,
     values: Vec<f32>,
-    /// The entries outside of the diagonal block: row relative to the chunk, column, value.
+    /// The entries outside of the diagonal block (`O`): row relative to the chunk, column, value.
     outside: Vec<(u16, u32, f32)>,
 }
 
@@ -56,6 +59,7 @@ fn to_single<T: Real>(a: T, scale: f64) -> f32 {
 }
 
 impl ChunkRows {
+    /// The rows `range`, given by `row`, divided by `scale`; see [`GaussSeidel::new`].
     fn new<'m, T: Real>(
         matrix: &SparseMatrix<T>,
         row: &impl Fn(usize) -> (&'m [u32], &'m [T]),
@@ -101,14 +105,14 @@ impl ChunkRows {
         chunk
     }
 
-    /// Computes what is added to diagonal entries.
+    /// Computes the diagonal `E`.
     fn update_added(&mut self) {
         self.added.clear();
         for of_row in self.outside.chunk_by(|one, other| one.0 == other.0) {
             let k = usize::from(of_row[0].0);
             let sum: f64 = of_row.iter().map(|entry| f64::from(entry.2.abs())).sum();
             let diagonal = f64::from(self.diagonal[k]);
-            // equal but for rounding in rows of second differences
+            // sum and diagonal entry are equal up to rounding in some rows of second differences: no increase there
             if sum > diagonal * (1.0 + 1e-4) {
                 self.added.resize(self.diagonal.len(), 0.0);
                 self.added[k] = (0.5 * (MARGIN * sum - diagonal)) as f32;
@@ -124,7 +128,7 @@ impl ChunkRows {
         }
     }
 
-    /// Columns and values of row `k` of the strictly lower triangle.
+    /// Columns and values of row `k` of the strictly lower triangle, both indices relative to the chunk.
     #[inline(always)]
     fn lower_row(&self, k: usize) -> impl Iterator<Item = (usize, f32)> {
         let range = self.starts[k] as usize..self.starts[k + 1] as usize;
@@ -178,8 +182,8 @@ impl GaussSeidel {
         self.chunks.iter_mut().for_each(ChunkRows::update_added);
     }
 
-    /// Sets the fixed unknowns, and unknowns `kept` that are neither fixed nor smoothed: of them the forward
-    /// iteration returns the residual, and the backward iteration keeps the value.
+    /// Sets the fixed unknowns, and the unknowns `kept`, which are neither fixed nor smoothed: the forward
+    /// iteration returns their residuals, and the backward iteration does not change their values.
     pub fn set_fixed(&mut self, fixed: &[bool], kept: &[u32]) {
         let chunks = &self.chunks;
         for_each_chunk(&mut self.inverse_diagonal, |range, inverse| {
@@ -191,10 +195,10 @@ impl GaussSeidel {
                 *inverse /= 1.0 + added * *inverse;
             }
         });
-        kept.iter().for_each(|&i| self.inverse_diagonal[i as usize] = KEPT);
+        kept.iter().for_each(|&i| self.inverse_diagonal[i as usize] = KEPT_INVERSE_DIAGONAL);
     }
 
-    /// The reciprocals of the diagonal entries, zero for fixed unknowns.
+    /// The reciprocals of the entries of `D + E`, zero for fixed unknowns, positive for kept ones.
     pub fn inverse_diagonal(&self) -> &[f32] {
         &self.inverse_diagonal
     }
@@ -208,9 +212,9 @@ impl GaussSeidel {
                 let sum = chunk.lower_row(k).fold(b, |sum, (j, a)| sum - a * x[j]);
                 let value = sum * inverse;
                 x[k] = value;
-                // a fixed unknown becomes zero below
+                // the residual of a fixed unknown is set to zero below
                 let own = chunk.added.get(k).map_or(0.0, |added| added * value);
-                r[k] = if inverse > KEPT { own } else { sum };
+                r[k] = if inverse > KEPT_INVERSE_DIAGONAL { own } else { sum };
                 chunk.lower_row(k).for_each(|(j, a)| r[j] -= a * value);
             }
             0.0
@@ -240,8 +244,8 @@ impl GaussSeidel {
             for (k, &inverse) in self.inverse_diagonal[range].iter().enumerate().rev() {
                 let first = r[k] + chunk.added.get(k).map_or(0.0, |added| added * x[k]);
                 let sum = chunk.lower_row(k).fold(first, |sum, (j, a)| sum - a * x[j]);
-                // a fixed unknown is zero already
-                let value = if inverse > KEPT { sum * inverse } else { x[k] };
+                // the value of a fixed unknown is zero since the forward iteration
+                let value = if inverse > KEPT_INVERSE_DIAGONAL { sum * inverse } else { x[k] };
                 x[k] = value;
                 chunk.lower_row(k).for_each(|(j, a)| r[j] -= a * value);
             }
@@ -314,7 +318,8 @@ pub(super) mod tests {
         }
     }
 
-    /// Three unknowns of three chunks each, so that Jacobi's iteration between chunks diverges.
+    /// Each unknown is coupled with one unknown of each of the two other chunks, so strongly that Jacobi's iteration
+    /// between chunks diverges.
     #[test]
     fn strong_couplings_between_chunks_leave_the_smoother_positive() {
         let (n, coupling) = (3 * CHUNK, 0.9);
@@ -335,7 +340,7 @@ pub(super) mod tests {
             let residual = 1.0 - f64::from(x[0]) * (1.0 + 2.0 * coupling);
             assert!(r.iter().all(|&r| (f64::from(r) - residual).abs() < 1e-6), "{}", r[0]);
             smoother.backward(&b, &mut x, &mut r);
-            // the solution is 1 / 2.8; a smoother that is positive steps towards it, and not beyond
+            // with a positive smoother the iterate lies between zero and the solution 1 / 2.8
             let solution = 1.0 / (1.0 + 2.0 * coupling) as f32;
             assert!(x.iter().all(|&x| x > 0.0 && x < 1.001 * solution), "{} {solution}", x[0]);
             smoother.replace_rows(&rows, |i| matrix.row(i), 1.0);

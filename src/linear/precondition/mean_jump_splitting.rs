@@ -1,10 +1,10 @@
 //! A preconditioner for discontinuous linear functions that are coupled only by a penalty on jumps
 //! of facet means.
 //!
-//! A facet has a facet mean from each side. The form is nearly diagonal in the sum and the
-//! difference of the two, the mean and the jump: jumps have the penalty as diagonal, means are
-//! Crouzeix-Raviart functions, with multigrid for their stiffness. Source: B. Ayuso de Dios, L. Zikatanov,
-//! J. Sci. Comput. 40 (2009), 4-36.
+//! A function has one mean over each of the two sides of a facet. In the basis of the averages of these two means and
+//! of their differences, the jumps, the coupling of averages and jumps is weak. The form of jumps is nearly diagonal,
+//! with the penalty on the diagonal. Functions without jumps are Crouzeix-Raviart functions, with multigrid for their
+//! stiffness. Source: B. Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
 
 use std::borrow::Cow;
 
@@ -19,19 +19,19 @@ use crate::linear::direct::FactorError;
 use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups};
 use crate::real::Real;
 
-/// The sum of a diagonal correction of jumps, an exact solution on cells with free and fixed vertex values,
-/// and a multigrid cycle on Crouzeix-Raviart functions, whose next coarser level has the conforming linear
-/// functions.
+/// The sum of a diagonal correction of jumps, a solution with factors on cells with free and fixed vertex values
+/// (the mixed block), and a multigrid cycle on Crouzeix-Raviart functions, whose next coarser level has the conforming
+/// linear functions.
 ///
-/// A cell without fixed unknowns has facet mean functions as basis. On a facet between two such cells
-/// mean and jump are corrected separately. On a facet to a cell with all unknowns fixed, or with
-/// Dirichlet data, the mean over the one side is corrected. The free vertex values of the remaining
-/// cells, with the means of the adjacent sides, form the mixed block; conforming linear functions that vanish
-/// at all vertices with fixed values correct them as well.
+/// In a cell without fixed unknowns the basis consists of facet mean functions. On a facet between two such cells,
+/// average and jump are corrected separately. On a facet between such a cell and a cell with all unknowns fixed, and on
+/// a facet with Dirichlet data, the mean over the one side is corrected. The free vertex values of cells with free and
+/// fixed unknowns, and the means over the sides opposite to these cells, form the mixed block; conforming linear
+/// functions that vanish at all vertices with fixed values correct both as well.
 pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     matrix: &'a SparseMatrix<T>,
     penalties: SidePenalties<T>,
-    /// The form of the facet mean function of each side with itself.
+    /// The form `K + M^T S M` of the facet mean function of each side with itself.
     diagonal: Vec<T>,
     space: CrouzeixRaviartSpace,
     /// The preconditioner of the stiffness on Crouzeix-Raviart functions.
@@ -40,11 +40,11 @@ pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     supports: &'a [Support],
     /// Whether an unknown is fixed.
     fixed: Vec<bool>,
-    /// The state of each side.
+    /// Whether the values on each side are free.
     states: Vec<SideState>,
-    /// Whether a facet has no Crouzeix-Raviart function.
+    /// Whether a facet has no Crouzeix-Raviart function in the correction.
     fixed_facets: Vec<bool>,
-    /// The facets on which conforming linear functions alone correct.
+    /// The facets that are corrected by conforming linear functions alone.
     kept_facets: Vec<u32>,
     /// Whether a vertex has a fixed value in a cell; empty if the unknowns are means.
     fixed_vertices: Vec<bool>,
@@ -60,17 +60,18 @@ pub(crate) struct MeanJumpSplitting<'a, T: Real> {
 
 /// The diagonal corrections of the means over the sides of facets.
 struct SideCorrections<T> {
-    /// Whether a side is corrected together with the opposite one.
+    /// Whether a side and the opposite one are a pair, of which the jump is corrected.
     is_pair: Vec<bool>,
-    /// The reciprocal of the form of the difference of the two functions of a pair; of the function of the
-    /// side if it is none; zero without a correction.
+    /// For a side of a pair, the reciprocal of the form of the difference of the facet mean functions of the two sides
+    /// with itself. For another side, the reciprocal of the form of its facet mean function with itself, or zero if the
+    /// side has no diagonal correction.
     inverse_jump: Vec<T>,
 }
 
 /// A preconditioner of the stiffness on Crouzeix-Raviart functions.
 pub(crate) trait FacetMeansSolver<T>: Send + Sync {
-    /// Sets the facets without a function; those among the others on which conforming linear functions
-    /// alone may correct; and the vertices at which these vanish.
+    /// Sets the facets without a function, the facets with a function that conforming linear functions
+    /// alone may correct, and the vertices at which conforming linear functions vanish.
     ///
     /// # Errors
     /// [`FactorError`] if a coarse matrix is not positive definite.
@@ -80,7 +81,7 @@ pub(crate) trait FacetMeansSolver<T>: Send + Sync {
         kept_facets: &[u32],
         fixed_vertices: &[bool],
     ) -> Result<(), FactorError>;
-    /// The correction of the means on facets for a residual that is zero on facets without a function.
+    /// Sets `means` to the correction of the means on facets for a residual that is zero on facets without a function.
     fn apply(&mut self, residual: &[T], means: &mut [T]);
 }
 
@@ -99,9 +100,9 @@ impl<T: Real> FacetMeansSolver<T> for Multigrid<'_, T> {
 }
 
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
-    /// The preconditioner of `matrix`, which is `penalised` multiplied out; `None` if its unknowns are
-    /// not those of discontinuous linear functions, or cells are coupled by more than facet means, or
-    /// a support has a vertex that `level` lacks.
+    /// The preconditioner of `matrix`, which contains the assembled entries of `penalised`; `None` if its unknowns are
+    /// not those of discontinuous linear functions, if cells are coupled by more than facet means, or if
+    /// a support has a vertex that `level` does not have.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
         penalised: &PenalisedMatrix<T>,
@@ -118,8 +119,9 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         Self::with_solvers(matrix, penalised, (supports, level.size()), multigrid, factors)
     }
 
-    /// The preconditioner with other solvers on Crouzeix-Raviart functions and of the mixed block; vertices
-    /// of supports are below `n_vertices`.
+    /// The preconditioner with given solvers for Crouzeix-Raviart functions and for the mixed block; all vertices
+    /// of supports must be less than `n_vertices`. `None` as for [`MeanJumpSplitting::new`], or if there is no solver
+    /// for Crouzeix-Raviart functions.
     pub fn with_solvers(
         matrix: &'a SparseMatrix<T>,
         penalised: &PenalisedMatrix<T>,
@@ -136,7 +138,7 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         let n = matrix.size();
         let space = CrouzeixRaviartSpace::new(&penalties);
         let facet_means_solver = facet_means_solver(&penalties, &space)?;
-        let n_facets = space.sides.len();
+        let n_facets = space.sides_of_facet.len();
         let are_means = penalties.are_means;
         let n_vertices = if are_means { 0 } else { n_vertices };
         Some(Self {
@@ -161,14 +163,14 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
     }
 }
 
-/// Which values of the element on a side are free.
+/// The state of a side. If the unknowns are vertex values, all sides of a cell have the same state.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum SideState {
-    /// The facet mean function of the side.
+    /// The mean over the side is free: its own unknown, or all vertex values of its cell.
     Free,
-    /// Some vertex values of the cell, but not all.
+    /// Some vertex values of the cell are free, but not all.
     Mixed,
-    /// None.
+    /// The mean over the side, or all vertex values of the cell, are fixed.
     Fixed,
 }
 
@@ -191,10 +193,10 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
         }
     }
 
-    /// Sets the corrections of all sides, and the unknowns of the mixed block.
+    /// Sets the diagonal corrections of all sides, and the unknowns of the mixed block.
     ///
     /// # Errors
-    /// [`FactorError::NotPositive`] if the form of a function is not positive.
+    /// [`FactorError::NotPositive`] if the form of a corrected function with itself is not positive.
     fn set_side_corrections(&mut self) -> Result<(), FactorError> {
         let Self { penalties, diagonal, states, sides, mixed_block, fixed, .. } = self;
         mixed_block.vertex_values.clear();
@@ -224,21 +226,21 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
         Ok(())
     }
 
-    /// Sets the facets without Crouzeix-Raviart functions, and those on which conforming functions alone
-    /// correct: a cell with free and fixed vertex values has no facet mean functions.
+    /// Sets the facets without Crouzeix-Raviart functions, and the facets that conforming functions alone
+    /// correct: those of cells with free and fixed vertex values, in which facet mean functions are not free.
     fn set_facets(&mut self) {
         let Self { penalties, space, states, fixed_facets, kept_facets, .. } = self;
         kept_facets.clear();
-        let facets = fixed_facets.iter_mut().zip(&space.sides);
+        let facets = fixed_facets.iter_mut().zip(&space.sides_of_facet);
         for (facet, (is_fixed, &[one, other])) in (0..).zip(facets) {
             let one = one as usize;
-            // Dirichlet data are a jump without an opposite side
-            let beyond = match states.get(other as usize) {
+            // on a facet with Dirichlet data the jump has no opposite side
+            let opposite = match states.get(other as usize) {
                 Some(&state) => state,
                 None if penalties.has_jump(one) => SideState::Fixed,
                 None => states[one],
             };
-            let pair = [states[one], beyond];
+            let pair = [states[one], opposite];
             *is_fixed = pair.contains(&SideState::Fixed);
             if !*is_fixed && pair.contains(&SideState::Mixed) {
                 kept_facets.push(facet);
@@ -257,8 +259,8 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         "facet-split"
     }
 
-    /// An error that is small in the energy norm can be large in single unknowns of an over-penalised
-    /// element, and change their contact states.
+    /// Smaller than the default: an error that is small in the energy norm can be large in single unknowns of an
+    /// over-penalised element, and change the contact states of these unknowns.
     fn forcing_term(&self) -> f64 {
         0.03
     }
@@ -266,7 +268,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
     fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         self.fixed.copy_from_slice(fixed);
         self.set_side_states();
-        // parts of a mesh call the solvers of both spaces or none
+        // errors are returned at the end, because calls of both solvers are collective over the parts of a mesh
         let corrected = self.set_side_corrections();
         let factored = self.mixed_block.factor(self.matrix, self.penalties.cell_size);
         self.set_facets();
@@ -298,11 +300,12 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
                 }
             });
         }
+        // the residual in the basis of facet mean functions
         let g = if are_means { r } else { &self.mean_residuals[..] };
-        let (facet_sides, fixed_facets) = (&self.space.sides, &self.fixed_facets);
+        let (sides_of_facet, fixed_facets) = (&self.space.sides_of_facet, &self.fixed_facets);
         for_each_chunk(&mut self.facet_residuals, |range, out| {
             for (facet, out) in range.zip(out) {
-                *out = match facet_sides[facet] {
+                *out = match sides_of_facet[facet] {
                     _ if fixed_facets[facet] => zero,
                     [one, NO_INDEX] => g[one as usize],
                     [one, other] => g[one as usize] + g[other as usize],
@@ -310,7 +313,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
             }
         });
         self.facet_means_solver.apply(&self.facet_residuals, &mut self.facet_means);
-        let (facets, facet_means) = (&self.space.facet, &self.facet_means);
+        let (facet_of_side, facet_means) = (&self.space.facet_of_side, &self.facet_means);
         let opposite = &self.penalties.opposite;
         let means = if are_means { &mut *z } else { &mut self.means[..] };
         for_each_chunk_of_groups(means, size, |range, chunk| {
@@ -319,7 +322,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
                     true => g[s] - g[opposite[s] as usize],
                     false => g[s],
                 };
-                *mean = facet_means[facets[s] as usize] + sides.inverse_jump[s] * jump;
+                *mean = facet_means[facet_of_side[s] as usize] + sides.inverse_jump[s] * jump;
             }
         });
         if !are_means {

@@ -1,40 +1,44 @@
-//! The block of the matrix of an over-penalised element on the cells with free and fixed vertex values.
+//! The mixed block: the block of the matrix of an over-penalised element on the cells with free and fixed vertex
+//! values and on the sides opposite to these cells.
 
-use super::facet_mean_form::cr_basis;
+use super::facet_mean_form::facet_mean_function;
 use crate::algebra::{RectangularMatrix, SparseMatrix, galerkin_product};
 use crate::linear::direct::{FactorError, Factors};
 use crate::real::Real;
 
-/// The block of the matrix that is solved exactly.
+/// The mixed block, with its solver.
 pub(super) struct MixedBlock<'a, T> {
     /// The free vertex values of cells with free and fixed unknowns.
     pub vertex_values: Vec<u32>,
-    /// The sides of cells without fixed unknowns that are opposite to such cells.
+    /// The sides of cells without fixed unknowns that are opposite to cells with free and fixed unknowns.
     pub sides: Vec<u32>,
     solver: Box<dyn BlockSolver<T> + 'a>,
+    /// Workspace: residual and correction.
     vector: Vec<T>,
 }
 
 /// The solver of a block of the matrix on few unknowns.
 pub(crate) trait BlockSolver<T>: Send + Sync {
-    /// Takes the matrix of a block, of which each function has an unknown that no other function has.
+    /// Factors the matrix of a block. `unknowns[k]` is an unknown of the whole matrix that belongs to function `k` of
+    /// the block and to no other.
     ///
     /// # Errors
     /// See [`FactorError`].
     fn factor(&mut self, block: &SparseMatrix<T>, unknowns: &[u32]) -> Result<(), FactorError>;
-    /// Replaces a vector by the solution with it as right side.
+    /// Replaces a right-hand side by the solution.
     fn solve(&mut self, vector: &mut [T]);
 }
 
-/// Factors of a block: in single precision, and in the scalar `T` from the first block on whose pivots have no digit
-/// in single precision.
+/// Factors of a block: in single precision until a block has no Cholesky factor in single precision, in the scalar `T`
+/// for this block and all later ones.
 ///
 /// A preconditioner need not be exact, and numeric factors with half the bytes take little more than half the time. The
-/// smallest eigenvalues of a block are of the size of the stiffness, the largest ones of the size of the penalty: where
-/// the penalty over the stiffness exceeds the reciprocal of machine epsilon of `f32`, pivots have no digit.
+/// smallest eigenvalues of a block are of the size of the stiffness, the largest ones of the size of the penalty: if
+/// the ratio of the penalty to the stiffness exceeds the reciprocal of the machine epsilon of `f32`, pivots have no
+/// correct digit in single precision.
 pub(super) struct BlockFactors<T> {
     factors: PreparedFactors<T>,
-    /// Whether each block so far has factors in single precision.
+    /// Whether all blocks so far had factors in single precision.
     is_single: bool,
 }
 
@@ -42,10 +46,10 @@ pub(super) struct BlockFactors<T> {
 enum PreparedFactors<T> {
     /// No factors: the block has no functions.
     Empty,
-    /// Factors of the block divided by `scale`, and workspace for a right side.
+    /// Factors of the block divided by `scale`, and workspace for a right-hand side.
     Single { factors: Factors<f32>, scale: f64, vector: Vec<f32> },
-    /// Factors of the block itself.
-    Own(Factors<T>),
+    /// Factors of the block in the scalar `T`.
+    Full(Factors<T>),
 }
 
 impl<T: Real> BlockFactors<T> {
@@ -58,7 +62,7 @@ impl<T: Real> BlockFactors<T> {
     ///
     /// # Errors
     /// See [`FactorError`].
-    fn single(
+    fn factor_single(
         block: &SparseMatrix<T>,
         functions: &[u32],
     ) -> Result<PreparedFactors<T>, FactorError> {
@@ -81,14 +85,14 @@ fn largest<T: Real>(values: &[T]) -> f64 {
 
 impl<T: Real> BlockSolver<T> for BlockFactors<T> {
     fn factor(&mut self, block: &SparseMatrix<T>, _: &[u32]) -> Result<(), FactorError> {
-        // the memory of the factors before is free for the new ones
+        // the memory of the old factors is released before the new ones are computed
         self.factors = PreparedFactors::Empty;
         if block.size() == 0 {
             return Ok(());
         }
         let functions: Vec<u32> = (0..block.size() as u32).collect();
         if self.is_single {
-            match Self::single(block, &functions) {
+            match Self::factor_single(block, &functions) {
                 Err(FactorError::NotPositive | FactorError::Singular) => self.is_single = false,
                 factors => {
                     self.factors = factors?;
@@ -96,16 +100,16 @@ impl<T: Real> BlockSolver<T> for BlockFactors<T> {
                 }
             }
         }
-        self.factors = PreparedFactors::Own(Factors::new(block, true, &functions)?);
+        self.factors = PreparedFactors::Full(Factors::new(block, true, &functions)?);
         Ok(())
     }
 
     fn solve(&mut self, x: &mut [T]) {
         match &mut self.factors {
             PreparedFactors::Empty => {}
-            PreparedFactors::Own(factors) => factors.solve_in_place(x, 1),
+            PreparedFactors::Full(factors) => factors.solve_in_place(x, 1),
             PreparedFactors::Single { factors, scale, vector } => {
-                // a number that is not finite stays so after the division
+                // the quotient of a number that is not finite is not finite
                 let unit = largest(x);
                 vector.iter_mut().zip(&*x).for_each(|(s, x)| *s = (x.to_f64() / unit) as f32);
                 factors.solve_in_place(vector, 1);
@@ -146,8 +150,9 @@ impl<T: Real> MixedBlock<'_, T> {
         }
         for (k, &s) in (self.vertex_values.len()..).zip(&self.sides) {
             let (cell, facet) = (s as usize / cell_size, s as usize % cell_size);
-            let at_vertex =
-                |i: usize| ((cell * cell_size + i) as u32, k as u32, cr_basis(cell_size, i, facet));
+            let at_vertex = |i: usize| {
+                ((cell * cell_size + i) as u32, k as u32, facet_mean_function(cell_size, i, facet))
+            };
             entries.extend((0..cell_size).map(at_vertex));
         }
         entries.sort_unstable_by_key(|&(i, k, _)| (i, k));
@@ -165,9 +170,9 @@ impl<T: Real> MixedBlock<'_, T> {
         self.solver.factor(&form, &unknowns)
     }
 
-    /// Solves for the residual with the entries `r` for vertex values and `g` for facet mean
-    /// functions; sets the entries of `z` for the vertex values and of `means` for the sides of the
-    /// block.
+    /// Solves the block for the residual with the entries `r` for vertex values and `g` for facet mean functions. Sets
+    /// the entries of `z` at the vertex values of the block to the solution, and adds the solution at the sides of the
+    /// block to the entries of `means`.
     pub fn solve(&mut self, r: &[T], g: &[T], means: &mut [T], z: &mut [T]) {
         self.vector.clear();
         self.vector.extend(self.vertex_values.iter().map(|&i| r[i as usize]));
@@ -187,7 +192,7 @@ impl<T: Real> MixedBlock<'_, T> {
 mod tests {
     use super::*;
 
-    /// The tridiagonal matrix of springs in a row: stiffness one between each point and the ground,
+    /// The tridiagonal matrix of a row of `n` points: a spring of stiffness one at each point, and springs of stiffness
     /// `penalty` between neighbours.
     fn springs(n: u32, penalty: f64) -> SparseMatrix<f64> {
         let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
@@ -213,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn factors_are_single_unless_pivots_have_no_digit_there() {
+    fn factors_are_single_unless_pivots_have_no_digit_in_single_precision() {
         let mut factors = BlockFactors::new();
         // entries beyond the range of single precision
         for (penalty, unit, is_single, limit) in [

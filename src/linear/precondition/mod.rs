@@ -1,12 +1,11 @@
 //! Symmetric positive definite preconditioners on the free unknowns.
 //!
-//! `preconditioner`: the trait. `multigrid`: conforming linear functions, and other linear elements with
-//! them as auxiliary space, with `smoother`, `gauss_seidel`, `cell_gauss_seidel`, `prolongation`,
-//! `aggregation` and `coarse_level`. `auxiliary_space`: discontinuous elements of higher degree.
-//! `mean_jump_splitting`, `mixed_block`, `facet_mean_form` and `crouzeix_raviart_space`: over-penalised discontinuous
-//! elements.
-//! `coarse_spaces`: the spaces that are known for an inequality. `built_in`: the preconditioner that
-//! fits an inequality.
+//! `preconditioner`: the traits. `multigrid`: conforming linear functions, and other elements with conforming linear
+//! functions as auxiliary space; its parts are `smoother`, `gauss_seidel`, `cell_gauss_seidel`, `prolongation`,
+//! `aggregation` and `coarse_level`. `mean_jump_splitting`, `mixed_block`, `facet_mean_form` and
+//! `crouzeix_raviart_space`: over-penalised discontinuous elements. `auxiliary_space`: all other discontinuous
+//! elements. `coarse_spaces`: the spaces that are known for an inequality. `built_in`: the preconditioner that fits an
+//! inequality.
 
 mod aggregation;
 mod auxiliary_space;

@@ -7,8 +7,8 @@ use crate::real::Real;
 
 /// A prolongation `P`: a sparse matrix whose columns are the coarse basis functions in the fine basis.
 ///
-/// The *children* of a coarse unknown are the rows of its column, the *parents* of a fine unknown the
-/// columns of its row.
+/// The *children* of a coarse unknown are the fine unknowns with entries in its column, the *parents* of a fine
+/// unknown are the coarse unknowns with entries in its row.
 #[derive(Clone, Debug)]
 pub struct Prolongation<T> {
     entries: Entries<T>,
@@ -17,18 +17,18 @@ pub struct Prolongation<T> {
 
 #[derive(Clone, Debug)]
 enum Entries<T> {
-    /// Each fine unknown is the mean of its two `parents`, which are equal if it belongs to a
-    /// vertex of the coarse mesh. A coarse unknown has one child of weight one, in `own`, and as
-    /// children of weight 1/2 the midpoints in `children`, from its entry of `starts` up to the
-    /// next one.
+    /// Each fine unknown is the mean of its two `parents`, which are equal if it belongs to a vertex of the coarse
+    /// mesh. A coarse unknown has one child of weight one, its entry of `own`. Its children of weight 1/2 are the
+    /// midpoints in `children` from its entry of `starts` up to the next entry.
     Midpoints { parents: Vec<[u32; 2]>, starts: Vec<u32>, children: Vec<u32>, own: Vec<u32> },
     /// General weights: `P` by rows (`fine`), and its transpose by rows (`coarse`).
     Weights { fine: RectangularMatrix<T>, coarse: RectangularMatrix<T> },
 }
 
 impl<T: Real> Prolongation<T> {
-    /// The prolongation of conforming linear functions to a uniform refinement: fine vertex `i` is the
-    /// midpoint of the coarse vertices `parents[i]`, which are equal for a vertex of the coarse mesh.
+    /// The prolongation of conforming linear functions to a uniform refinement: fine vertex `i` is the midpoint of the
+    /// coarse vertices `parents[i]`, which are equal for a vertex of the coarse mesh. Every coarse vertex must be a
+    /// fine vertex.
     ///
     /// # Panics
     /// If a parent is not less than `n_coarse`.
@@ -59,9 +59,9 @@ impl<T: Real> Prolongation<T> {
         Self { entries: Entries::Midpoints { parents, starts, children, own }, n_coarse }
     }
 
-    /// The prolongation of conforming linear functions to a mesh by bisections, whose first `n_coarse`
-    /// vertices are those of the coarse mesh. Each further one is the midpoint of its two `parents` among the
-    /// vertices before it.
+    /// The prolongation of conforming linear functions to a mesh that results from bisections. The first `n_coarse`
+    /// vertices of this mesh are those of the coarse mesh; `parents` has for each further vertex the two preceding
+    /// vertices of which it is the midpoint.
     ///
     /// # Panics
     /// If a parent does not come before its child.
@@ -72,7 +72,7 @@ impl<T: Real> Prolongation<T> {
             columns: (0..n_coarse as u32).collect(),
             values: vec![T::lit(1.0); n_coarse],
         };
-        // a vertex lies in one coarse cell: its row has at most D + 1 entries
+        // a vertex lies in one coarse cell: its row has at most as many entries as the cell has vertices
         let mut row: Vec<(u32, T)> = Vec::new();
         for pair in parents {
             row.clear();
@@ -110,7 +110,8 @@ impl<T: Real> Prolongation<T> {
         Some(Self::from_weights(rows_of_means(sets, n_vertices)?, n_vertices))
     }
 
-    /// The prolongation with other numbers of the fine and of the coarse unknowns, by their present ones.
+    /// The prolongation after a renumbering of the unknowns: `fine[i]` and `coarse[j]` are the new numbers of the fine
+    /// unknown `i` and of the coarse unknown `j`.
     pub(crate) fn renumbered(&self, fine: &[u32], coarse: &[u32]) -> Self {
         let mut order = vec![0; fine.len()];
         (0..).zip(fine).for_each(|(old, &new): (u32, _)| order[new as usize] = old);
@@ -147,7 +148,7 @@ impl<T: Real> Prolongation<T> {
         }
     }
 
-    /// Sets the coarse residual to `P^T r` for the fine residual `r`, in the scalar of the residual.
+    /// Sets the coarse residual to `P^T r` for the fine residual `r`, computed in the scalar of the residuals.
     pub(crate) fn restrict<S: Real>(&self, fine_residual: &[S], coarse_residual: &mut [S]) {
         let half = S::lit(0.5);
         for_each_chunk(coarse_residual, |range, out| match &self.entries {
@@ -168,7 +169,7 @@ impl<T: Real> Prolongation<T> {
     }
 
     /// Adds the entries of `P v`, for the coarse values `v`, to the fine values at which `mask` is
-    /// not zero; its other entries are not used as factors.
+    /// not zero. The entries of `mask` are only compared with zero.
     pub(crate) fn add_prolongation<S: Real>(
         &self,
         coarse_values: &[S],
@@ -247,7 +248,8 @@ impl<T: Real> Prolongation<T> {
         }
     }
 
-    /// Calls a function with each parent of the fine unknown `i` and its weight.
+    /// Calls a function with each parent of the fine unknown `i` and its weight. The two equal parents of a vertex of
+    /// the coarse mesh are passed one by one, with weight 1/2 each.
     #[inline(always)]
     pub(crate) fn for_each_parent(&self, i: usize, mut call: impl FnMut(u32, T)) {
         match &self.entries {
@@ -264,7 +266,7 @@ impl<T: Real> Prolongation<T> {
     }
 }
 
-/// The rows of the prolongation [`Prolongation::to_means`].
+/// The rows of the prolongation [`Prolongation::to_means`]; `None` as there.
 pub(crate) fn rows_of_means<'v, T: Real>(
     sets: impl Iterator<Item = &'v [u32]> + Clone,
     n_vertices: usize,

@@ -30,7 +30,8 @@ impl Smoother {
         }
     }
 
-    /// Sets the fixed unknowns, and those of a smoother by unknowns that are neither fixed nor smoothed.
+    /// Sets the fixed unknowns, and the unknowns `kept`, which are neither fixed nor smoothed; smoothers by cells do
+    /// not support the latter, and smooth them.
     ///
     /// # Errors
     /// [`FactorError::NotPositive`] if the block of a cell is not positive definite.
@@ -45,7 +46,7 @@ impl Smoother {
         }
     }
 
-    /// A forward iteration from zero, with the residual.
+    /// A forward iteration from zero: sets `x`, and `r = b - A x` on free unknowns, zero on fixed ones.
     pub fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         match self {
             Self::Unknowns(smoother) => smoother.forward(b, x, r),
@@ -54,7 +55,7 @@ impl Smoother {
         }
     }
 
-    /// A backward iteration.
+    /// A backward iteration from `x`. `r` is workspace.
     pub fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         match self {
             Self::Unknowns(smoother) => smoother.backward(b, x, r),

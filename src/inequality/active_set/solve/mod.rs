@@ -2,7 +2,7 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `mod` | the check of the input, the stages in turn, the outcome |
+//! | `mod` | the check of the input, the stages in their order, the outcome |
 //! | `state` | the state of a solve between two stages |
 //! | `stage_runs` | the run of each stage |
 
@@ -17,7 +17,7 @@ use crate::inequality::validation::{check_definite, check_input};
 use crate::inequality::{Outcome, Solution, Stage};
 use crate::linear::PreconditionerFamily;
 use crate::real::Real;
-use state::{Found, Solve};
+use state::{Solve, StageResult};
 
 /// Solves an inequality by the stages of [`STRATEGY`].
 pub(super) fn solve<T: Real>(
@@ -36,36 +36,37 @@ pub(super) fn solve<T: Real>(
         return Solution::without_iterate(inequality, outcome);
     }
     let mut solve = Solve::new(settings, inequality, guess, family, values);
-    let found = solve.run_stages();
-    let mut found = found.unwrap_or_else(|| Found::new(solve.outcome_without_solution()));
-    if found.outcome != Outcome::Converged
+    let result = solve.run_stages();
+    let mut result = result.unwrap_or_else(|| StageResult::new(solve.outcome_without_solution()));
+    // a matrix that is not symmetric, although it is declared so, explains a failure
+    if result.outcome != Outcome::Converged
         && inequality.symmetric
         && inequality.distribution.is_none()
         && !inequality.matrix.is_symmetric()
     {
-        found.outcome = Outcome::Malformed;
+        result.outcome = Outcome::Malformed;
     }
-    solve.into_solution(found)
+    solve.into_solution(result)
 }
 
 impl<T: Real> Solve<'_, '_, T> {
-    /// Runs the stages that apply, until one of them ends the solve.
-    fn run_stages(&mut self) -> Option<Found> {
+    /// Runs the stages that apply, until one of them ends the solve; `None` if none does.
+    fn run_stages(&mut self) -> Option<StageResult> {
         for stage in STRATEGY {
             if self.applies(stage)
-                && let Some(found) = self.run(stage)
+                && let Some(result) = self.run(stage)
             {
-                return Some(found);
+                return Some(result);
             }
         }
         if self.may_continue_direct() { self.run(Stage::DirectActiveSet) } else { None }
     }
 }
 
-/// Checks the input, and definiteness unless it is known: where a setting requires it, and for a symmetric matrix from
-/// a start in contact, where indefinite directions of active unknowns would remain unseen. From a cold start the active
-/// set iteration with factors factors a symmetric matrix on all free unknowns first, which is such a check itself; a
-/// Krylov method and the interior point method, where it comes first, do not.
+/// Checks the input, and whether the matrix is positive definite, unless this is known or the matrix is distributed: if
+/// `check_definite` is set, and for a symmetric matrix with a start in contact, whose linear systems do not contain the
+/// directions of active unknowns. With a cold start the active set iteration with factors begins with the Cholesky
+/// factors on all free unknowns, which are such a check; a Krylov method or a first interior point method does not.
 ///
 /// # Errors
 /// The outcome that the solver returns.
@@ -74,9 +75,9 @@ fn check<T: Real>(
     inequality: &Inequality<T>,
     is_preconditioned: bool,
 ) -> Result<(), Outcome> {
-    agree(inequality, check_input(inequality))?;
+    over_all_parts(inequality, check_input(inequality))?;
     if inequality.distribution.is_some() {
-        // there are no factors of a distributed matrix; Krylov methods notice directions that are not positive
+        // there are no factors of a distributed matrix; Krylov methods detect directions that are not positive
         return Ok(());
     }
     let is_cold = inequality.start == Start::Cold;
@@ -91,8 +92,12 @@ fn check<T: Real>(
     if is_required && !inequality.is_definite { check_definite(inequality) } else { Ok(()) }
 }
 
-/// The result of a check in all parts: that of this part, or the outcome of another part if this one has none.
-fn agree<T: Real>(inequality: &Inequality<T>, checked: Result<(), Outcome>) -> Result<(), Outcome> {
+/// The result of a check in all parts: of the outcomes of the parts the one that comes last in `OUTCOMES`, or
+/// [`Outcome::NotFinite`] if messages between the parts fail.
+fn over_all_parts<T: Real>(
+    inequality: &Inequality<T>,
+    checked: Result<(), Outcome>,
+) -> Result<(), Outcome> {
     const OUTCOMES: [Outcome; 4] =
         [Outcome::OutOfRange, Outcome::Infeasible, Outcome::NotFinite, Outcome::Malformed];
     let Some(distribution) = inequality.distribution() else { return checked };
@@ -101,6 +106,7 @@ fn agree<T: Real>(inequality: &Inequality<T>, checked: Result<(), Outcome>) -> R
     distribution.largest(&mut largest);
     match largest[0] as usize {
         0 if largest[0] == 0.0 => Ok(()),
+        // not a number
         0 => Err(Outcome::NotFinite),
         code => Err(OUTCOMES[code - 1]),
     }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::state::{Found, Solve};
+use super::state::{Solve, StageResult};
 use crate::algebra::{Contact, any_part};
 use crate::inequality::active_set::contact_state::{admissible_state, prescribed_value};
 use crate::inequality::active_set::direct_solver::DirectSolver;
@@ -19,23 +19,24 @@ use crate::linear::krylov::symmetric_part;
 use crate::real::Real;
 
 impl<T: Real> Solve<'_, '_, T> {
-    /// Runs a stage. Returns what it found if the solve ends with it; else stores how it ended.
-    pub(super) fn run(&mut self, stage: Stage) -> Option<Found> {
+    /// Runs a stage. Returns its result if the solve ends with it; else `None`, and `end` is how an active set
+    /// iteration ended.
+    pub(super) fn run(&mut self, stage: Stage) -> Option<StageResult> {
         let (outer, linear) = (self.iterate.outer + self.cycles, self.iterate.linear);
-        let (mut found, mut has_interior_values) = (None, false);
+        let (mut result, mut has_interior_values) = (None, false);
         match stage {
             Stage::PreconditionedActiveSet => match self.run_preconditioned() {
-                Ok(result) => found = Some(result),
+                Ok(found) => result = Some(found),
                 Err(end) => self.end = Some(end),
             },
-            Stage::MonotoneMultigrid => found = self.run_monotone_multigrid(),
+            Stage::MonotoneMultigrid => result = self.run_monotone_multigrid(),
             Stage::DirectActiveSet => match self.run_direct() {
                 End::Outcome(outcome) => {
                     let algebraic_bound = match (&self.direct, outcome) {
                         (Some(solver), Outcome::Converged) => solver.error_bound(&mut self.iterate),
                         _ => None,
                     };
-                    found = Some(Found { algebraic_bound, ..Found::new(outcome) });
+                    result = Some(StageResult { algebraic_bound, ..StageResult::new(outcome) });
                 }
                 end => self.end = Some(end),
             },
@@ -44,22 +45,23 @@ impl<T: Real> Solve<'_, '_, T> {
         let outer = self.iterate.outer + self.cycles - outer;
         let linear = self.iterate.linear - linear;
         self.stages.push(StageRun { stage, outer, linear });
-        // another run would start from the best iterate, which must then not lie close to its bounds
+        // another run of the interior point method would start from the best iterate, which must not consist of values
+        // of this run, close to their bounds
         if has_interior_values && !self.may_run_interior_point() {
-            self.keep_if_best();
+            self.keep_interior_values_if_best();
         }
-        found
+        result
     }
 
     /// The active set iteration with a preconditioned Krylov method.
     ///
     /// # Errors
     /// [`End`] if another stage must follow.
-    fn run_preconditioned(&mut self) -> Result<Found, End> {
+    fn run_preconditioned(&mut self) -> Result<StageResult, End> {
         let (inequality, guess) = (self.inequality, self.guess);
         let matrix = symmetric_part(inequality);
         let spaces = match inequality.distribution {
-            // the preconditioner of a distributed matrix knows its own
+            // the preconditioner of a distributed matrix has its own coarse spaces
             Some(_) => Cow::Borrowed(&guess.coarse_spaces),
             None => guess.coarse_spaces.complete(&matrix, inequality).ok_or(End::Unsuitable)?,
         };
@@ -68,15 +70,15 @@ impl<T: Real> Solve<'_, '_, T> {
         let linear_solver = preconditioner.name();
         let tolerance = self.krylov_tolerance();
         let mut solver = PreconditionedSolver::new(inequality, &matrix, preconditioner, tolerance);
-        let patience = self.patience(Stage::PreconditionedActiveSet);
+        let progress_limits = self.progress_limits(Stage::PreconditionedActiveSet);
         let local_solves = self.local_solves();
         let mut iteration = Iteration {
             settings: self.settings,
             iterate: &mut self.iterate,
             solver: &mut solver,
-            patience,
+            progress_limits,
             local_solves,
-            is_certified: guess.energy_tolerance.is_none(),
+            needs_certificate: guess.energy_tolerance.is_none(),
             steps: &guess.steps,
         };
         let mut outcome = match iteration.run() {
@@ -95,15 +97,15 @@ impl<T: Real> Solve<'_, '_, T> {
         if outcome == Outcome::Converged {
             (outcome, algebraic_bound) = self.bound_error(&mut solver)?;
         }
-        Ok(Found { outcome, linear_solver, algebraic_bound })
+        Ok(StageResult { outcome, linear_solver, algebraic_bound })
     }
 
-    /// The bound on the error of a converged iterate, which a Krylov method has found. The bound is that of the values
-    /// projected onto their bounds; where the certificate of these is too large, the values before the projection
-    /// remain, without a bound.
+    /// Projects the values of a converged iterate onto their bounds and computes the bound on their error. Returns the
+    /// outcome and the bound. If the certificate of the projected values is too large, the values before the projection
+    /// are restored, without a bound.
     ///
     /// # Errors
-    /// [`End::Unsuitable`] if the bound is above its limit.
+    /// [`End::Unsuitable`] if the bound is above its limit and the initial guess sets no tolerance.
     fn bound_error(
         &mut self,
         solver: &mut PreconditionedSolver<'_, T>,
@@ -115,7 +117,7 @@ impl<T: Real> Solve<'_, '_, T> {
             Ok(bound) => (Outcome::Converged, bound),
             Err(failure) => (failure, None),
         };
-        // large penalties see each step from a value to its bound
+        // the projection changes jumps, and large penalties amplify such changes
         let limit = match energy_tolerance {
             None => T::CERTIFICATE_LIMIT,
             Some(tolerance) if inequality.penalised.is_some() => tolerance,
@@ -135,9 +137,10 @@ impl<T: Real> Solve<'_, '_, T> {
         Ok((outcome, algebraic_bound))
     }
 
-    /// Monotone multigrid from the best iterate. The iterate is replaced if it converges. An indefinite matrix ends
-    /// the solve: with factors for inactive unknowns alone, contact may hide it.
-    fn run_monotone_multigrid(&mut self) -> Option<Found> {
+    /// Monotone multigrid from the best iterate. Its solution replaces the iterate if it converges. `None` if the next
+    /// stage must follow. An indefinite matrix ends the solve, because later factors on inactive unknowns alone need
+    /// not detect it.
+    fn run_monotone_multigrid(&mut self) -> Option<StageResult> {
         let values = Some(self.iterate.best_values().0.to_vec());
         let InitialGuess { coarse_spaces, energy_tolerance, steps, .. } = self.guess;
         let guess = InitialGuess {
@@ -162,23 +165,24 @@ impl<T: Real> Solve<'_, '_, T> {
         self.cycles += outer;
         self.iterate.linear += linear;
         if outcome == Outcome::NotCoercive {
-            return Some(Found { outcome, linear_solver, algebraic_bound: None });
+            return Some(StageResult { outcome, linear_solver, algebraic_bound: None });
         }
         (outcome == Outcome::Converged).then(|| {
-            // certificate and bound are those of the values, so that no active unknown may move to its bound
+            // certificate and bound were computed for these values: an unknown that is not exactly at its bound becomes
+            // inactive, because `replace` would otherwise change its value
             for (i, state) in contact.iter_mut().enumerate() {
                 if prescribed_value(&self.inequality.bounds[i], *state) != Some(values[i]) {
                     *state = Contact::Inactive;
                 }
             }
             self.iterate.replace(values, Vec::new(), contact);
-            Found { outcome, linear_solver, algebraic_bound }
+            StageResult { outcome, linear_solver, algebraic_bound }
         })
     }
 
     /// The active set iteration with factors.
     fn run_direct(&mut self) -> End {
-        let patience = self.patience(Stage::DirectActiveSet);
+        let progress_limits = self.progress_limits(Stage::DirectActiveSet);
         if self.direct.is_none() {
             // iterates of a Krylov method have no jump multipliers
             self.iterate.forget_best();
@@ -187,23 +191,23 @@ impl<T: Real> Solve<'_, '_, T> {
         let new = || DirectSolver::new(self.inequality, refinements);
         let solver = self.direct.get_or_insert_with(new);
         let iterate = &mut self.iterate;
-        let is_certified = true;
+        let needs_certificate = true;
         let steps = &self.guess.steps;
         let mut iteration = Iteration {
             settings: self.settings,
             iterate,
             solver,
-            patience,
+            progress_limits,
             local_solves: 0,
-            is_certified,
+            needs_certificate,
             steps,
         };
         iteration.run()
     }
 
-    /// Replaces the iterate by the result of the interior point method, which starts from the best iterate, or goes on
-    /// where its first run left small slacks. Returns whether the method found an active set; if not, only the number of
-    /// linear systems changes.
+    /// Replaces the iterate by the result of the interior point method, which starts from the best iterate, or from the
+    /// point at which its first run ended if that run did not resolve small slacks. Returns whether the method found an
+    /// active set; if not, the iterate changes in the number of linear systems only.
     fn run_interior_point(&mut self) -> bool {
         let identification = match self.runs_of(Stage::InteriorPoint) {
             0 => Identification::Early,
@@ -232,10 +236,11 @@ impl<T: Real> Solve<'_, '_, T> {
         true
     }
 
-    /// Keeps the iterate if it is the best one. Under a huge penalty the values of the interior point method may be
-    /// more accurate than all that follow from active sets: a slack of the size of rounding decides a state. The merit
-    /// does not see whether jumps and their multipliers agree, but the certificate does.
-    fn keep_if_best(&mut self) {
+    /// Keeps the values of the interior point method as the best iterate if their certificate is not larger and their
+    /// merit is smaller. With a huge penalty these values may be more accurate than those of every active set, because
+    /// the state of an unknown whose slack is of the size of rounding is arbitrary. The certificate is compared
+    /// because, unlike the merit, it contains the jump residuals.
+    fn keep_interior_values_if_best(&mut self) {
         let Some(solver) = &self.direct else { return };
         if self.iterate.certificate() > self.iterate.best_certificate().0.largest() {
             return;

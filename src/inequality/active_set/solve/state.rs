@@ -18,25 +18,25 @@ pub(in crate::inequality::active_set) struct Solve<'s, 'a, T: Real> {
     pub guess: &'s InitialGuess<T>,
     pub family: &'s dyn PreconditionerFamily<T>,
     pub iterate: Iterate<'a, T>,
-    /// Cycles of monotone multigrid so far. They are no linear systems, whose number is limited.
+    /// Cycles of monotone multigrid so far. They do not count towards [`ActiveSet::max_outer`].
     pub cycles: usize,
     /// The solver with factors; `None` before the first stage that needs it.
     pub direct: Option<DirectSolver<'a, T>>,
     /// The stages that ran.
     pub stages: Vec<StageRun>,
-    /// How the last stage ended; `None` before the first one.
+    /// How the last active set iteration ended that did not end the solve; `None` before it.
     pub end: Option<End>,
-    /// Whether another run of the interior point method may find a better active set: before the first
-    /// run, and after one that identified the active set before the limit of rounding.
+    /// Whether another run of the interior point method may find a better active set: true before the first run, then
+    /// [`InteriorPoint::may_improve`](crate::inequality::interior_point::InteriorPoint::may_improve) of the last one.
     pub interior_point_may_improve: bool,
     /// Whether there may be slacks that only the second run of the interior point method resolves.
     pub has_small_slacks: bool,
-    /// Where the first run of the interior point method ended, if the second one may go on from there.
+    /// The point at which the first run of the interior point method ended, if the second run may start from it.
     pub restart_point: Option<RestartPoint>,
 }
 
-/// What the last stage of a solve found, in addition to the iterate.
-pub(super) struct Found {
+/// The result of the stage that ends a solve, in addition to the iterate.
+pub(super) struct StageResult {
     pub outcome: Outcome,
     /// See [`Solution::linear_solver`].
     pub linear_solver: &'static str,
@@ -44,8 +44,8 @@ pub(super) struct Found {
     pub algebraic_bound: Option<f64>,
 }
 
-impl Found {
-    /// An outcome of factors.
+impl StageResult {
+    /// An outcome of a stage with factors, without an algebraic bound.
     pub fn new(outcome: Outcome) -> Self {
         Self { outcome, linear_solver: "direct", algebraic_bound: None }
     }
@@ -81,7 +81,7 @@ impl<'s, 'a, T: Real> Solve<'s, 'a, T> {
         self.stages.iter().filter(|run| run.stage == stage).count()
     }
 
-    /// The outcome where no stage found a solution.
+    /// The outcome if no stage ended the solve.
     pub fn outcome_without_solution(&self) -> Outcome {
         match self.end {
             // there are no factors of a distributed matrix
@@ -91,9 +91,9 @@ impl<'s, 'a, T: Real> Solve<'s, 'a, T> {
     }
 
     /// The solution: the iterate if it converged, else the best one.
-    pub(super) fn into_solution(mut self, found: Found) -> Solution<T> {
-        let Found { mut outcome, linear_solver, algebraic_bound } = found;
-        // a bound that is too large says more of distributed values than their certificate
+    pub(super) fn into_solution(mut self, result: StageResult) -> Solution<T> {
+        let StageResult { mut outcome, linear_solver, algebraic_bound } = result;
+        // distributed values whose bound on the error is too large are no solution, however small their certificate
         if self.inequality.distribution.is_none() || self.end != Some(End::Unsuitable) {
             outcome = outcome_of_best(&mut self.iterate, self.settings.rounding_band, outcome);
         }

@@ -16,15 +16,15 @@ const IMBALANCE_WEIGHT: f64 = 8.0;
 /// The state of a node.
 #[derive(Clone, Copy, Default)]
 struct NodeState {
-    /// The label of its part.
+    /// The label of the part that contains the node.
     label: u32,
-    /// Its position among the nodes of its part, sorted along each axis.
+    /// For each axis, the position of the node among the nodes of its part, sorted along this axis.
     positions: [u32; 3],
 }
 
 /// The boundary sizes of all planes perpendicular to an axis. The plane at a position has the nodes
-/// before this position below it, all others above it. Its two boundaries are the nodes below with
-/// neighbours above, and the nodes above with neighbours below.
+/// before this position below it, all others above it. The two boundaries of a plane are the nodes below it with
+/// neighbours above it, and the nodes above it with neighbours below it.
 #[derive(Clone, Default)]
 struct AxisPlanes {
     /// The sizes of the two boundaries of the plane at a position minus the sizes for the plane at the
@@ -177,12 +177,13 @@ impl<'g> Bisector<'g> {
 }
 
 impl Bisector<'_> {
-    /// Computes a maximum matching between the nodes `boundary` and the nodes with label `other`.
-    fn match_boundary(&mut self, boundary: &[u32], other: u32) {
+    /// Computes a maximum matching between the nodes `boundary` below the plane and the nodes with the label
+    /// `label_above`, those above it.
+    fn match_boundary(&mut self, boundary: &[u32], label_above: u32) {
         for &node in boundary {
             let neighbours = self.graph.neighbours(node).iter();
             let mut unmatched = neighbours
-                .filter(|&&k| self.label(k) == other && self.mate[k as usize] == NO_INDEX);
+                .filter(|&&k| self.label(k) == label_above && self.mate[k as usize] == NO_INDEX);
             if let Some(&mate) = unmatched.next() {
                 self.set_mates(node, mate);
             }
@@ -191,7 +192,7 @@ impl Bisector<'_> {
         // changes; the number of the search therefore changes only then.
         self.search += 1;
         for &node in boundary {
-            if self.mate[node as usize] == NO_INDEX && self.augment(node, other) {
+            if self.mate[node as usize] == NO_INDEX && self.augment(node, label_above) {
                 self.search += 1;
             }
         }
@@ -202,9 +203,9 @@ impl Bisector<'_> {
         self.mate[mate as usize] = node;
     }
 
-    /// Enlarges the matching along an augmenting path from an unmatched node below the plane; false if
-    /// there is none.
-    fn augment(&mut self, start: u32, other: u32) -> bool {
+    /// Enlarges the matching along an augmenting path from the unmatched node `start` below the plane; false if
+    /// there is none. The nodes above the plane have the label `label_above`.
+    fn augment(&mut self, start: u32, label_above: u32) -> bool {
         // The nodes of the path below the plane, each with the index of its next neighbour.
         let mut path = vec![(start, 0)];
         while let Some((node, next)) = path.last_mut() {
@@ -214,7 +215,7 @@ impl Bisector<'_> {
             };
             *next += 1;
             let k = across as usize;
-            if self.label(across) != other || self.visited[k] == self.search {
+            if self.label(across) != label_above || self.visited[k] == self.search {
                 continue;
             }
             self.visited[k] = self.search;
@@ -230,14 +231,15 @@ impl Bisector<'_> {
         false
     }
 
-    /// Marks all nodes on alternating paths from an unmatched node below the plane as visited.
-    fn visit_alternating_paths(&mut self, start: u32, other: u32) {
+    /// Marks all nodes on alternating paths from the unmatched node `start` below the plane as visited. The nodes
+    /// above the plane have the label `label_above`.
+    fn visit_alternating_paths(&mut self, start: u32, label_above: u32) {
         let mut stack = vec![start];
         self.visited[start as usize] = self.search;
         while let Some(node) = stack.pop() {
             for &across in self.graph.neighbours(node) {
                 let k = across as usize;
-                if self.label(across) != other || self.visited[k] == self.search {
+                if self.label(across) != label_above || self.visited[k] == self.search {
                     continue;
                 }
                 self.visited[k] = self.search;

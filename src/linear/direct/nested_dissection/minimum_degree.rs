@@ -102,8 +102,8 @@ impl MinimumDegree {
         let n = pivots.len();
         let mut position = vec![0; n];
         pivots.iter().enumerate().for_each(|(k, &pivot)| position[pivot] = k);
-        // The row of an eliminated node contains its neighbours at the time of elimination. Its
-        // parent is the neighbour that is eliminated next.
+        // The row of an eliminated node contains its neighbours at the time of elimination. The parent of
+        // the node is the one of these neighbours that is eliminated first.
         let parent = |pivot: usize| {
             let row = &self.adjacency[pivot * width..(pivot + 1) * width];
             bits(row).take_while(|&k| k < n).map(|k| position[k]).min()

@@ -1,6 +1,6 @@
 //! Geometric nested dissection.
 //!
-//! A plane perpendicular to a coordinate axis divides the nodes of a graph in two parts; a minimum
+//! A plane perpendicular to a coordinate axis divides the nodes of a graph into two parts; a minimum
 //! vertex separator of the two parts is eliminated last; both parts are ordered recursively.
 //! Sources: A. George, SIAM J. Numer. Anal. 10 (1973), 345-363; planes: J. R. Gilbert, G. L.
 //! Miller, S.-H. Teng, SIAM J. Sci. Comput. 19 (1998), 2091-2110; separators: A. Pothen, C.-J. Fan,
@@ -21,7 +21,7 @@ use bisection::{Bisector, SEPARATOR};
 use compressed_graph::CompressedGraph;
 use minimum_degree::MinimumDegree;
 
-/// Largest number of nodes of a part that is ordered by minimum degree instead of dissection. Fill
+/// Largest number of nodes of a part that is ordered by minimum degree instead of dissection. The fill of the factor
 /// differs by two per cent between the sizes 16 and 100; the time to compute the order is least for 32.
 const LEAF_SIZE: usize = 32;
 

@@ -8,10 +8,12 @@ use crate::real::Real;
 
 /// The factors of the coarsest level on its free unknowns; without factors the level is smoothed.
 pub(super) struct CoarsestSolver<T> {
+    /// The free unknowns at the time of the factorisation.
     free: Vec<u32>,
     factors: Option<Factors<T>>,
     /// Whether the matrix of the factors has recomputed rows.
     has_recomputed_rows: bool,
+    /// Workspace: right-hand side and solution on the free unknowns.
     values: Vec<T>,
     /// The divisor of the matrices of all levels.
     scale: f64,
@@ -29,7 +31,8 @@ impl<T: Real> CoarsestSolver<T> {
         self.factors.is_some()
     }
 
-    /// Factors the coarsest level, or updates its smoother if it is too large for factors.
+    /// Factors the coarsest level, or updates the smoother of the level if it has more than
+    /// [`MAX_COARSEST_FACTORED`] free unknowns. Factors of the same matrix on the same unknowns are kept.
     ///
     /// # Errors
     /// [`FactorError`] if the matrix is not positive definite.
@@ -41,7 +44,7 @@ impl<T: Real> CoarsestSolver<T> {
             level.update_smoother(self.scale)?;
             return Ok(());
         }
-        // Discarded, because its rows are not updated while factors are used.
+        // The smoother is discarded, because its rows are not updated while factors are used.
         level.smoother = None;
         let has_recomputed_rows = !level.recomputed_rows.is_empty();
         let is_same_set = self.factors.is_some() && free == self.free;
@@ -53,7 +56,8 @@ impl<T: Real> CoarsestSolver<T> {
         Ok(())
     }
 
-    /// Sets `x` to the solution with the factors on free unknowns, and to zero on fixed ones.
+    /// Sets `x` to the solution with the factors on free unknowns, and to zero on fixed ones. The right-hand side is
+    /// that of a level whose matrix is divided by the scale.
     pub fn solve(&mut self, right_side: &[f32], x: &mut [f32]) {
         let Some(factors) = &self.factors else { return };
         self.values.clear();
@@ -66,8 +70,8 @@ impl<T: Real> CoarsestSolver<T> {
     }
 }
 
-/// The Cholesky factor of a level on the unknowns `free`. Truncated functions can be linearly dependent; the matrix is
-/// then made positive definite by multiplication of its diagonal by `1 + sqrt(eps)`, `eps` machine epsilon.
+/// The Cholesky factor of a level on the unknowns `free`. Truncated functions can be linearly dependent; if the matrix
+/// after truncation has no Cholesky factor, its diagonal is multiplied by `1 + sqrt(eps)`, `eps` machine epsilon.
 ///
 /// # Errors
 /// See [`FactorError`].

@@ -11,17 +11,17 @@ use crate::linear::precondition::smoother::Smoother;
 use crate::parallel::vectors::zeros;
 use crate::real::Real;
 
-/// If at most one in so many rows is outdated, the outdated rows of a smoother are replaced, which
-/// is then faster than a new smoother.
+/// If at most one row in this number of rows is outdated, the outdated rows of a smoother are replaced, which
+/// is then faster than the construction of a new smoother.
 const ROWS_PER_OUTDATED_ROW: usize = 8;
 
-/// One level. Its unknown `i` is the coefficient of basis function `i`.
+/// One level. Unknown `i` is the coefficient of basis function `i`.
 pub(super) struct Level<'a, T: Real> {
-    /// Number of unknowns of a cell if cells share none and are smoothed as blocks, else one.
+    /// Number of unknowns of a cell if cells share no unknowns and are smoothed as blocks, else one.
     pub cell_size: usize,
-    /// The unknowns that are not fixed, but not smoothed either; empty for all levels but the finest.
+    /// The unknowns that are neither fixed nor smoothed; empty for all levels but the finest.
     pub kept: Vec<u32>,
-    /// Further fixed unknowns besides those with Dirichlet data; empty for none.
+    /// Flags of unknowns that are fixed besides those with Dirichlet data; empty if there are none.
     pub fixed_besides: Vec<bool>,
     /// The given matrix, without truncation.
     pub matrix: Cow<'a, SparseMatrix<T>>,
@@ -31,7 +31,7 @@ pub(super) struct Level<'a, T: Real> {
     pub recomputed_starts: Vec<usize>,
     /// The values of these rows, one row after the other; the columns are those of the given matrix.
     pub recomputed_values: Vec<T>,
-    /// The rows that have changed since the smoother was updated, ascending.
+    /// The rows that may have changed since the smoother was updated, ascending.
     pub outdated: Vec<u32>,
     /// The prolongation from the next coarser level; `None` for the coarsest.
     pub prolongation: Option<Cow<'a, Prolongation<T>>>,
@@ -41,6 +41,7 @@ pub(super) struct Level<'a, T: Real> {
     pub smoother: Option<Smoother>,
     /// The fixed unknowns.
     pub fixed: Vec<bool>,
+    /// Workspace of the cycle: right-hand side and values, empty for the finest level, and residual.
     pub right_side: Vec<f32>,
     pub values: Vec<f32>,
     pub residual: Vec<f32>,
@@ -107,7 +108,7 @@ impl<T: Real> Level<'_, T> {
             Some(Smoother::Unknowns(smoother)) => {
                 Smoother::Unknowns(self.smoother_by_unknowns(Some(smoother), scale))
             }
-            // the finest level, whose rows stay as they are
+            // only the finest level has a smoother by cells, and its rows do not change
             Some(by_cells) => by_cells,
             None => Smoother::by_cells(&self.matrix, self.cell_size, scale)
                 .unwrap_or_else(|| Smoother::Unknowns(self.smoother_by_unknowns(None, scale))),
@@ -118,11 +119,12 @@ impl<T: Real> Level<'_, T> {
         Ok(())
     }
 
-    /// The smoother by unknowns for the present rows, from the one before if few rows are outdated.
-    fn smoother_by_unknowns(&self, before: Option<GaussSeidel>, scale: f64) -> GaussSeidel {
-        let few = self.matrix.size() / ROWS_PER_OUTDATED_ROW;
-        match before {
-            Some(mut smoother) if self.outdated.len() <= few => {
+    /// The smoother by unknowns for the present rows: the `previous` one with replaced rows if few rows are outdated,
+    /// else a new one.
+    fn smoother_by_unknowns(&self, previous: Option<GaussSeidel>, scale: f64) -> GaussSeidel {
+        let max_replaced = self.matrix.size() / ROWS_PER_OUTDATED_ROW;
+        match previous {
+            Some(mut smoother) if self.outdated.len() <= max_replaced => {
                 smoother.replace_rows(&self.outdated, |i| self.row(i), scale);
                 smoother
             }

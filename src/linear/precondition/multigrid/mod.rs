@@ -1,11 +1,12 @@
 //! A multigrid V-cycle for conforming linear functions with fixed unknowns.
 //!
 //! The finest level may have another finite element (J. Xu, Computing 56 (1996), 215-235; for discontinuous
-//! functions B. Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36). Smoothing before and after
-//! the correction takes a third of the iterations that the sum of both takes.
+//! functions B. Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36). With smoothing before and after
+//! the coarse correction, Krylov methods take a third of the iterations that they take with the sum of smoother and
+//! coarse correction.
 //!
 //! On each level, unknown `i` is the coefficient of basis function `i`, and row `i` of the matrix
-//! is its equation. On a mesh it is the value at vertex `i`.
+//! is the equation of this unknown. For conforming linear functions on a mesh, unknown `i` is the value at vertex `i`.
 //!
 //! | file | content |
 //! |---|---|
@@ -38,7 +39,7 @@ use level::Level;
 /// given one, except for the rows that truncation may change, those of truncated functions and of
 /// functions near them: these rows are Galerkin products with the matrix of the finer level.
 ///
-/// All levels but a factored coarsest one work in single precision, with the matrices of all levels
+/// All levels but a factored coarsest one compute in single precision. The matrices of all levels are
 /// divided by the largest entry of the finest matrix, and the right-hand side by its largest entry.
 /// A preconditioner need not be exact, and the time is limited by memory bandwidth: numbers with
 /// half the bytes of `f64` take half the time. Right-hand side and result are in the scalar `T`.
@@ -47,6 +48,7 @@ pub(crate) struct Multigrid<'a, T: Real> {
     coarsest: CoarsestSolver<T>,
     /// The divisor of the matrices of all levels: the largest absolute entry of the finest matrix.
     scale: f64,
+    /// Workspace: right-hand side and result on the finest level.
     right_side: Vec<f32>,
     values: Vec<f32>,
     /// The name in reports.
@@ -63,8 +65,8 @@ impl<'a, T: Real> Multigrid<'a, T> {
     }
 
     /// The cycle for the matrix of another finite element on the mesh of a level, with the
-    /// `prolongation` from the conforming linear functions of the level: these are the auxiliary space
-    /// of the element. `cell_size` is the number of unknowns of a cell if cells own their unknowns, else
+    /// `prolongation` from the conforming linear functions of the level, which are the auxiliary space
+    /// of the element. `cell_size` is the number of unknowns of a cell if cells share no unknowns, else
     /// one.
     pub fn of_element(
         matrix: Cow<'a, SparseMatrix<T>>,
@@ -77,9 +79,9 @@ impl<'a, T: Real> Multigrid<'a, T> {
         Self { name: "auxiliary-space", ..all }
     }
 
-    /// As [`Multigrid::set_fixed`], with two further sets: unknowns `kept` of the finest level that are
-    /// corrected by the coarser levels alone, and unknowns `fixed_on_next` of the next coarser level
-    /// that are fixed besides those with Dirichlet data.
+    /// Sets the fixed unknowns as [`Multigrid::set_fixed`] does, and two further sets: the unknowns `kept` of the
+    /// finest level, which are corrected by the coarser levels alone, and the unknowns of the next coarser level that
+    /// are fixed besides those with Dirichlet data, for which `fixed_on_next` is true.
     ///
     /// # Errors
     /// See [`Multigrid::set_fixed`].
@@ -115,11 +117,11 @@ impl<'a, T: Real> Multigrid<'a, T> {
         Self { levels, coarsest, scale, right_side, values, name: "multigrid" }
     }
 
-    /// Sets the fixed unknowns of the finest level, and of all coarser levels those with Dirichlet
-    /// data or all of whose children are fixed.
+    /// Sets the fixed unknowns of the finest level. On a coarser level an unknown is fixed if it has Dirichlet
+    /// data, if all its children are fixed, or if [`Multigrid::set_fixed_and_kept`] has fixed it.
     ///
     /// # Errors
-    /// [`FactorError`] if the matrix of the coarsest level is not positive definite.
+    /// [`FactorError`] if the matrix of the coarsest level, or the block of a cell, is not positive definite.
     pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         self.levels[0].fixed.copy_from_slice(fixed);
         for k in 0..self.levels.len() {
@@ -130,7 +132,7 @@ impl<'a, T: Real> Multigrid<'a, T> {
                 let fixed_besides = level.fixed.iter_mut().zip(&level.fixed_besides);
                 fixed_besides.for_each(|(fixed, besides)| *fixed |= besides);
                 if let Some(prolongation) = &finer.prolongation {
-                    // functions that truncation sets to zero
+                    // truncation sets a coarse function to zero if all its children are fixed
                     prolongation.fix_covered(&finer.fixed, &mut level.fixed);
                     level.recompute_rows(finer, prolongation);
                 }
@@ -151,7 +153,7 @@ impl<'a, T: Real> Multigrid<'a, T> {
         let largest = |range: std::ops::Range<usize>| {
             right_side[range].iter().fold(0.0, |m: f64, f| m.max(f.to_f64().abs()))
         };
-        // A number that is not finite stays so after the division.
+        // the quotient of a number that is not finite is not finite
         let largest = map_chunks(right_side.len(), largest).into_iter().fold(0.0, f64::max);
         let unit = if largest > 0.0 { largest } else { 1.0 };
         for_each_chunk(&mut self.right_side, |range, single| {

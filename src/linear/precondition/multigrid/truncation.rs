@@ -9,13 +9,12 @@ use crate::linear::precondition::prolongation::Prolongation;
 use crate::real::Real;
 
 impl<T: Real> Level<'_, T> {
-    /// Recomputes the rows that truncation at the fixed unknowns of the finer level may change, and
-    /// marks them, with all rows recomputed before, as outdated. A free unknown is concerned if one
-    /// of its children is fixed, is coupled to a fixed unknown with a free parent, or has a recomputed
-    /// row itself.
+    /// Recomputes the rows that truncation at the fixed unknowns of the finer level may change, and marks these rows,
+    /// and the rows of the last call, as outdated. The row of a free unknown is recomputed if one of the children of
+    /// the unknown is fixed, or is coupled to a fixed unknown with a free parent, or has a recomputed row.
     pub(super) fn recompute_rows(&mut self, finer: &Level<'_, T>, prolongation: &Prolongation<T>) {
         let mut is_near = vec![false; finer.fixed.len()];
-        // where all parents are fixed, as at most Dirichlet data, no free function is truncated
+        // if all parents of a fixed unknown are fixed, as for most Dirichlet data, no free function is truncated there
         let is_truncated =
             |&i: &usize| finer.fixed[i] && prolongation.any_parent(i, |j| !self.fixed[j as usize]);
         for i in (0..is_near.len()).filter(is_truncated) {
@@ -58,8 +57,8 @@ fn union(one: &[u32], other: &[u32]) -> Vec<u32> {
 }
 
 /// Adds `weight` times a fine row, restricted to free unknowns and multiplied by the prolongation,
-/// to the values of a coarse row, by the places of its columns among these values. Products in other
-/// columns are dropped.
+/// to the values of a coarse row. `places` has the position of each column among the values of the coarse row,
+/// [`NO_INDEX`] for columns outside of its pattern; products in these columns are dropped.
 fn add_row<T: Real>(
     (neighbours, entries): (&[u32], &[T]),
     fixed: &[bool],
