@@ -130,7 +130,8 @@ pub(crate) fn positive_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -
 }
 
 /// The contact states of values from a solver that has no contact states: an unknown is active at the nearer bound if
-/// its gap is at most the Gauss-Seidel step `r_i / d_i` towards this bound.
+/// its gap is at most the Gauss-Seidel step `r_i / d_i` towards this bound. An unknown whose bounds coincide is active
+/// at its lower bound.
 #[must_use]
 pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> {
     let mut residual = vec![0.0; inequality.size()];
@@ -138,6 +139,9 @@ pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> 
     let state = |(i, bound): (usize, &Bound<T>)| {
         if !bound.is_inequality() {
             return Contact::Inactive;
+        }
+        if bound.fixed_value().is_some() {
+            return Contact::Lower;
         }
         let (x, step) = (u[i].to_f64(), -residual[i] / positive_diagonal(inequality, i));
         let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());

@@ -22,7 +22,7 @@ use crate::real::Real;
 ///
 /// # Errors
 /// [`Outcome::Malformed`], [`Outcome::NotFinite`], [`Outcome::Infeasible`] or [`Outcome::OutOfRange`] for invalid
-/// input, values of another length included; [`Outcome::NotCoercive`] if the matrix is not symmetric; the reason if
+/// input, values of another length included; [`Outcome::NotCoercive`] if the matrix is not symmetric or the inequality is that of one part of a mesh; the reason if
 /// there are no Cholesky factors.
 pub fn energy_error_bound<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Result<f64, Outcome> {
     compiled!(
@@ -39,7 +39,7 @@ fn error_bound_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Result<f64, O
     if !u.iter().all(|x| x.to_f64().is_finite()) {
         return Err(Outcome::NotFinite);
     }
-    if !inequality.symmetric {
+    if !inequality.symmetric || inequality.distribution.is_some() {
         return Err(Outcome::NotCoercive);
     }
     let Inequality { matrix, bounds, .. } = inequality;

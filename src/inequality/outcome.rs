@@ -74,6 +74,7 @@ impl Outcome {
                 | Outcome::OutOfMemory
                 | Outcome::NoSolution
                 | Outcome::OutOfRange
+                | Outcome::Infeasible
                 | Outcome::Malformed
         )
     }

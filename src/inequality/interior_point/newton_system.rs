@@ -208,7 +208,8 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         };
         let loads = load.iter().enumerate();
         let of_load: f64 = loads.map(|(i, b)| b.to_f64().powi(2) / self.diagonal_scale(i)).sum();
-        if energy + of_load > 0.0 { energy + of_load } else { 1.0 }
+        // a scale that is not a number is returned as such
+        if energy + of_load <= 0.0 { 1.0 } else { energy + of_load }
     }
 }
 

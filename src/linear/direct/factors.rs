@@ -324,14 +324,26 @@ fn indefinite_or_singular<T: Real>(
     lower: &mut Submatrix<T>,
     symbolic: &SymbolicFactor,
 ) -> FactorError {
+    let mut is_zero = vec![false; lower.size()];
     for i in 0..lower.size() {
         let (columns, values) = lower.row_mut(i);
-        match (columns.last(), values.last_mut()) {
-            (Some(&j), Some(a)) if j as usize == i && a.to_f64() > 0.0 => {
-                *a *= T::lit(1.0 + T::EPSILON.sqrt());
+        let is_stored = columns.last().is_some_and(|&j| j as usize == i);
+        match values.last_mut() {
+            Some(a) if is_stored && a.to_f64() > 0.0 => *a *= T::lit(1.0 + T::EPSILON.sqrt()),
+            // no relative increase makes zero positive; the matrix is singular if row and column are zero too
+            Some(a) if is_stored && a.to_f64() == 0.0 => {
+                *a = T::lit(1.0);
+                is_zero[i] = true;
             }
-            // No relative increase makes a diagonal entry positive that is zero or negative.
             _ => return FactorError::NotPositive,
+        }
+    }
+    for i in 0..lower.size() {
+        let (columns, values) = lower.row_mut(i);
+        let entries = columns.iter().zip(values.iter());
+        let mut entries = entries.filter(|(j, a)| **j as usize != i && a.to_f64() != 0.0);
+        if entries.any(|(&j, _)| is_zero[i] || is_zero[j as usize]) {
+            return FactorError::NotPositive;
         }
     }
     match Factors::try_cholesky(lower, symbolic) {

@@ -171,9 +171,6 @@ impl<const N: usize> CellGaussSeidel<N> {
             if is_same && !is_first {
                 continue;
             }
-            for (mask, &fixed) in mask.iter_mut().zip(fixed) {
-                *mask = if fixed { 0.0 } else { 1.0 };
-            }
             let mut block = [[0.0_f64; N]; N];
             for i in (0..N).filter(|&i| !fixed[i]) {
                 for j in (0..N).filter(|&j| !fixed[j]) {
@@ -185,6 +182,9 @@ impl<const N: usize> CellGaussSeidel<N> {
                 return Err(FactorError::NotPositive);
             }
             *inverse = block.map(|row| row.map(|a| a as f32));
+            for (mask, &fixed) in mask.iter_mut().zip(fixed) {
+                *mask = if fixed { 0.0 } else { 1.0 };
+            }
         }
         Ok(())
     }

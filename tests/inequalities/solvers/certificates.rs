@@ -78,6 +78,20 @@ fn contact_is_told_from_values_alone() {
     }
 }
 
+/// Where lower and upper bound coincide the unknown is active whatever the sign of its multiplier, as in the solution
+/// of the active set method.
+#[test]
+fn contact_of_values_includes_coinciding_bounds() {
+    for load in [-1.0, 1.0] {
+        let bounds = vec![Bound::Free, Bound::Both(0.5, 0.5), Bound::Free];
+        let string = inequality(laplacian(3, 1, 2.0), &[load; 3], bounds);
+        let solution = cold(&string);
+        let expected = [Contact::Inactive, Contact::Lower, Contact::Inactive];
+        assert_eq!(solution.contact, expected, "load {load}");
+        assert_eq!(contact_of(&string, &solution.values), expected, "load {load}");
+    }
+}
+
 /// Without energy and load, residuals are relative to the size of the values, of all parts together.
 #[test]
 fn parts_without_energy_have_the_scale_of_the_whole() {

@@ -9,12 +9,12 @@ mod reach;
 mod wrong_promises;
 
 use crate::problems::*;
-use unilateral::algebra::{Bound, Contact, Inequality, Start};
+use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix, Start};
 use unilateral::assemble::Discretisation;
 use unilateral::inequality::{
     ActiveSet, Globalisation, InequalitySolver, Outcome, Solution, certify,
 };
-use unilateral::linear::Factors;
+use unilateral::linear::{FactorError, Factors};
 use unilateral::mesh::{BoxDomain, Mesh};
 use unilateral::problem::Problem;
 use unilateral::real::{Point, Real};
@@ -345,6 +345,21 @@ fn no_difference_within_the_rounding_band_changes_a_state() {
     };
     assert_eq!(contact(ActiveSet::default()), 1);
     assert_eq!(contact(ActiveSet::default().rounding_band(1e5)), 0);
+}
+
+/// A zero diagonal entry makes a matrix singular if the other entries of its row and column are zero, else indefinite.
+#[test]
+fn a_zero_diagonal_entry_is_singular_without_other_entries() {
+    let error = |coupling: f64| {
+        let matrix = SparseMatrix {
+            row_starts: vec![0, 2, 5, 7],
+            columns: vec![0, 1, 0, 1, 2, 1, 2],
+            values: vec![2.0, -1.0, -1.0, 2.0, coupling, coupling, 0.0],
+        };
+        Factors::new(&matrix, true, &[0, 1, 2]).err()
+    };
+    assert_eq!(error(0.0), Some(FactorError::Singular));
+    assert_eq!(error(0.5), Some(FactorError::NotPositive));
 }
 
 #[test]

@@ -98,3 +98,54 @@ impl Interrupt {
         exit(code)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+    use std::process::{Command, exit};
+    use std::{env, fs, process, thread};
+
+    use super::*;
+    use unilateral::scheme::ConformingP1;
+    use unilateral::study::{Program, Study};
+
+    /// Names the directory of the report in the process that panics.
+    const DIRECTORY: &str = "UNILATERAL_TEST_OF_A_PANIC";
+
+    /// Finishes a row, then panics in a thread. Ends with exit code 3 if the hook does not end the process.
+    fn panic_after_a_row(directory: PathBuf) -> ! {
+        let journal = Journal::create(&directory, Program::new("test", "f64", 1, 1)).unwrap();
+        let journal: &'static Journal = Box::leak(Box::new(journal));
+        let interrupt = Interrupt::default();
+        interrupt.watch(journal);
+        interrupt.install_panic_hook(Arc::new(move |report: &Report| {
+            let text = format!("{} rows", report.rows.len());
+            fs::write(directory.join("written"), text).map_err(|e| e.to_string())
+        }));
+        let study = Study::<f64, 1>::new(unilateral::scenes::radial(1.0)).levels([4]);
+        study.scheme(ConformingP1).journal(journal).run().unwrap();
+        let _ = thread::spawn(|| panic!("a deliberate panic")).join();
+        exit(3)
+    }
+
+    #[test]
+    fn a_panic_of_any_thread_writes_the_finished_rows_and_ends_the_process() {
+        if let Some(directory) = env::var_os(DIRECTORY) {
+            panic_after_a_row(directory.into());
+        }
+        let directory = env::temp_dir().join(format!("unilateral-panic-{}", process::id()));
+        let test = "a_panic_of_any_thread_writes_the_finished_rows_and_ends_the_process";
+        let output = Command::new(env::current_exe().unwrap())
+            .args([test, "--nocapture"])
+            .env(DIRECTORY, &directory)
+            .output()
+            .unwrap();
+        let messages = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{messages}");
+        assert_eq!(fs::read_to_string(directory.join("written")).unwrap(), "1 rows");
+        let place = messages.find("a deliberate panic");
+        let report = messages.find("stopped by a panic; 1 finished rows are in the report");
+        assert!(place.is_some() && place < report, "{messages}");
+        fs::remove_dir_all(directory).unwrap();
+    }
+}
