@@ -16,6 +16,7 @@ use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
+use crate::parallel::vectors::zeros;
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
@@ -64,7 +65,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if !source.is_given() && !self.has_weak_data() && !flux {
             return Ok(Vec::new());
         }
-        let mut load = vec![T::lit(0.0); self.mesh.n_cells() * self.per_cell()];
+        let mut load = zeros(self.mesh.n_cells() * self.per_cell());
         let constant = source.all().next().and_then(|f| f.constant());
         match constant.filter(|_| !source.has_names()) {
             Some(f) => self.add_constant_source(f, &mut load)?,
@@ -140,10 +141,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         })
     }
 
-    /// Calls a function with each cell and its part of the load, in parallel.
+    /// Calls a function with each cell and its part of a load of zeros, in parallel.
     fn for_each_cell(&self, load: &mut [T], work: OfCell<'_, T>) -> Result<(), Error> {
         let n = self.per_cell();
         let add_cells = |mut cells: Range<usize>, entries: &mut [T]| {
+            // the first access to memory of zeros is a write: reading first takes two page faults, and the second one
+            // interrupts all other threads
+            entries.fill(T::lit(0.0));
             entries.chunks_exact_mut(n).try_for_each(|out| match cells.next() {
                 Some(cell) => work(cell, out),
                 None => Ok(()),

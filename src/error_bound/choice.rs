@@ -3,6 +3,7 @@
 
 use super::algebra::{CoarserCells, Unbalanced, dual_norm};
 use super::terms::CellTerms;
+use crate::memory::in_large_pages;
 use crate::real::Real;
 
 /// Forces away from contact below this share of the square of a bound are left as they are.
@@ -40,7 +41,9 @@ impl Choice {
             let integral = if is_left { terms.unbalanced * volume } else { 0.0 };
             Unbalanced { integral, volume, least_coefficient: terms.least_coefficient }
         };
-        let unbalanced: Vec<Unbalanced> = terms.iter().flatten().map(of_solver).collect();
+        let n_cells = terms.iter().map(Vec::len).sum();
+        let mut unbalanced: Vec<Unbalanced> = in_large_pages(Vec::with_capacity(n_cells));
+        unbalanced.extend(terms.iter().flatten().map(of_solver));
         let is_balanced = unbalanced.iter().all(|cell| cell.integral == 0.0);
         let algebra = dual_norm(unbalanced, coarser, constant);
         Self { least_ratio, with_oscillation, obstacle, algebra, is_balanced }

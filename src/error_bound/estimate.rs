@@ -326,7 +326,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let rules = (&table, cut.as_ref());
         Ok(cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let terms = |cell| self.cell_terms(pair, u, cell, rules, &boundary, friedrichs);
-            cells.filter(|&cell| counts(cell)).map(terms).collect::<Vec<_>>()
+            let mut all = Vec::with_capacity(cells.len());
+            all.extend(cells.filter(|&cell| counts(cell)).map(terms));
+            all
         }))
     }
 }

@@ -24,7 +24,8 @@ pub(super) struct ExactContact {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The exact multiplier and contact set on some entities, at the same points.
+    /// The exact multiplier and contact set on some entities, at the same points: a list for each chunk of entities,
+    /// because one list would be a copy of them.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
@@ -32,7 +33,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         exact: &Exact<D>,
         entities: &[ContactEntity],
-    ) -> Result<Vec<ExactContact>, Error> {
+    ) -> Result<Vec<Vec<ExactContact>>, Error> {
         // for facets and for cells
         let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, DEGREE));
         let chunks = cells::map(entities.len(), &|range: Range<usize>| {
@@ -41,7 +42,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             };
             entities[range].iter().map(on_entity).collect::<Result<Vec<_>, _>>()
         });
-        Ok(chunks.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
+        chunks.into_iter().collect()
     }
 
     fn exact_contact_on(

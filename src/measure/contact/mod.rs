@@ -164,7 +164,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let wrong = |((entity, exact), touches): ((&ContactEntity, &ExactContact), &bool)| {
                 exact.shares[usize::from(!touches)] * self.measure_of(*entity)
             };
-            let area = entities.iter().zip(&on_entities).zip(&touching).map(wrong).sum();
+            let exact = on_entities.iter().flatten();
+            let area = entities.iter().zip(exact).zip(&touching).map(wrong).sum();
             errors.contact_area_error = Some(area);
             errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
         }

@@ -31,13 +31,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn multiplier_errors(
         &self,
         entities: &[ContactEntity],
-        exact: &[ExactContact],
+        exact: &[Vec<ExactContact>],
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Option<[f64; 2]> {
         let weights = self.hat_integrals(entities);
         let mut multipliers = self.vertex_multipliers(inequality, solution, &|_| true);
-        for (entity, exact) in entities.iter().zip(exact) {
+        for (entity, exact) in entities.iter().zip(exact.iter().flatten()) {
             let (measure, cell) = (self.measure_of(*entity), self.mesh.cell(entity.cell));
             for (k, local) in entity.corners::<D>().enumerate() {
                 multipliers[cell[local] as usize] -= measure * exact.tested[k];
