@@ -56,6 +56,6 @@ pub(crate) fn for_each_item<A: Send>(items: Vec<A>, work: &(dyn Fn(usize, A) + S
 }
 
 /// The content of a lock; a task that panicked leaves it as it was.
-fn lock<A>(slot: &Mutex<A>) -> MutexGuard<'_, A> {
+pub(crate) fn lock<A>(slot: &Mutex<A>) -> MutexGuard<'_, A> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -6,6 +6,8 @@
 use std::ops::Range;
 use std::sync::Mutex;
 
+use rayon::prelude::*;
+
 use super::{for_each_item, lock, map_indices};
 use crate::memory::in_large_pages;
 use crate::real::Real;
@@ -120,6 +122,22 @@ pub(crate) fn sum_chunks_of_groups_of_two<A: Send, B: Send>(
         });
         sums.iter().sum()
     }
+}
+
+/// The values of `work` at all indices below `n`, in newly allocated memory that all threads write.
+pub(crate) fn collect<V: Send>(n: usize, work: impl Fn(usize) -> V + Sync) -> Vec<V> {
+    let mut values = in_large_pages(Vec::with_capacity(n));
+    if is_sequential(n) {
+        values.extend((0..n).map(work));
+    } else {
+        collect_in_parallel(n, &work, &mut values);
+    }
+    values
+}
+
+/// The parallel case of [`collect`], compiled once for each type of values.
+fn collect_in_parallel<V: Send>(n: usize, work: &(dyn Fn(usize) -> V + Sync), values: &mut Vec<V>) {
+    (0..n).into_par_iter().with_min_len(CHUNK).map(work).collect_into_vec(values);
 }
 
 /// Calls `work` with the index range and the entries of each chunk of `x`.

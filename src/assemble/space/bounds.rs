@@ -1,5 +1,8 @@
 //! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
 
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
 use super::contradictions::{BoundedNode, Contradiction};
 use super::{Space, Terms, data};
 use crate::algebra::Bound;
@@ -8,6 +11,8 @@ use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
 use crate::mesh::BoundaryPart;
+use crate::parallel::vectors::collect;
+use crate::parallel::{cells, lock};
 use crate::problem::DatumRef;
 use crate::real::{Point, Real, point_f64};
 
@@ -23,7 +28,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The bounds of all unknowns, see `Discretisation::bounds`, and those of which a lower one exceeds an upper
     /// one.
     pub fn bounds(&self) -> Result<ComparedBounds<T, D>, Error> {
-        let mut bounds = vec![Bound::Free; self.dofs.size()];
+        let mut bounds = collect(self.dofs.size(), |_| Bound::Free);
         let mut found = Vec::new();
         if self.problem.has_obstacle() {
             self.bound_by_obstacles(&mut bounds, &mut found)?;
@@ -46,32 +51,60 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let (lowers, uppers) = (&self.data.lower, &self.data.upper);
         let by_region = lowers.has_names() || uppers.has_names();
-        for cell in 0..self.mesh.n_cells() {
+        let bound_at = |cell: usize,
+                        (i, by): (usize, BoundBy),
+                        bound: &mut Bound<T>,
+                        found: &mut Vec<Contradiction<D>>|
+         -> Result<(), Error> {
+            let old = *bound;
+            count::bounds(1);
             let region = self.mesh.region(cell);
-            for &(i, by) in &bounded {
-                let unknown = self.dofs.of(cell, i);
-                let old = bounds[unknown];
-                if old != Bound::Free && !by_region {
-                    continue;
+            let node = &self.nodes[i];
+            let at = |psi: Option<DatumRef<'_, D>>| {
+                let bound = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
+                psi.map(bound).transpose()
+            };
+            // of the obstacles of two regions both hold
+            let both = |old: Option<T>, new: Option<f64>, choose: fn(f64, f64) -> f64| {
+                let old = old.map(Real::to_f64);
+                new.map(|new| old.map_or(new, |old| choose(old, new))).or(old)
+            };
+            let lower = both(old.lower(), at(lowers.of(region))?, f64::max);
+            let upper = both(old.upper(), at(uppers.of(region))?, f64::min);
+            let (unknown, x) = (self.dofs.of(cell, i), self.node_point(cell, node));
+            *bound = between(lower, upper, BoundedNode { unknown, cell, x }, found);
+            Ok(())
+        };
+        if !self.broken {
+            for cell in 0..self.mesh.n_cells() {
+                for &(i, by) in &bounded {
+                    let bound = &mut bounds[self.dofs.of(cell, i)];
+                    if *bound == Bound::Free || by_region {
+                        bound_at(cell, (i, by), bound, found)?;
+                    }
                 }
-                count::bounds(1);
-                let node = &self.nodes[i];
-                let x = self.node_point(cell, node);
-                let at = |psi: Option<DatumRef<'_, D>>| {
-                    let bound = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
-                    psi.map(bound).transpose()
-                };
-                // of the obstacles of two regions both hold
-                let both = |old: Option<T>, new: Option<f64>, choose: fn(f64, f64) -> f64| {
-                    let old = old.map(Real::to_f64);
-                    new.map(|new| old.map_or(new, |old| choose(old, new))).or(old)
-                };
-                let lower = both(old.lower(), at(lowers.of(region))?, f64::max);
-                let upper = both(old.upper(), at(uppers.of(region))?, f64::min);
-                let node = BoundedNode { unknown, cell, x };
-                bounds[unknown] = between(lower, upper, node, found);
             }
+            return Ok(());
         }
+        // no other cell has the unknowns of a cell
+        let n = self.per_cell();
+        let found_in_chunks = Mutex::new(Vec::new());
+        let bound_chunk = |cells: Range<usize>, bounds: &mut [Bound<T>]| -> Result<(), Error> {
+            let (first, mut found) = (cells.start, Vec::new());
+            for (cell, bounds) in cells.zip(bounds.chunks_exact_mut(n)) {
+                for &(i, by) in &bounded {
+                    bound_at(cell, (i, by), &mut bounds[i], &mut found)?;
+                }
+            }
+            if !found.is_empty() {
+                lock(&found_in_chunks).push((first, found));
+            }
+            Ok(())
+        };
+        cells::for_each(self.mesh.n_cells(), &|cell| cell * n, bounds, &bound_chunk)?;
+        let mut chunks = found_in_chunks.into_inner().unwrap_or_else(PoisonError::into_inner);
+        chunks.sort_unstable_by_key(|(first, _)| *first);
+        found.extend(chunks.into_iter().flat_map(|(_, found)| found));
         Ok(())
     }
 

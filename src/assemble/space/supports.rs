@@ -4,6 +4,7 @@ use super::Space;
 use crate::algebra::Support;
 use crate::element::Entity;
 use crate::memory::in_large_pages;
+use crate::parallel::vectors::collect;
 use crate::real::Real;
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
@@ -11,19 +12,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub fn supports(&self) -> Vec<Support> {
         let n = self.dofs.size();
         if self.broken {
-            let mut supports = in_large_pages(Vec::with_capacity(n));
-            for cell in 0..self.mesh.n_cells() {
-                let (owner, vertices) = (Some(cell as u32), self.mesh.cell(cell));
-                supports
-                    .extend(self.node_vertices.iter().map(|node| node.support(owner, vertices)));
-            }
-            return supports;
+            let per_cell = self.per_cell() as u32;
+            return collect(n, |unknown| {
+                let (cell, node) = (unknown as u32 / per_cell, unknown as u32 % per_cell);
+                let node = &self.node_vertices[node as usize];
+                node.support(Some(cell), self.mesh.cell(cell as usize))
+            });
         }
         if self.nodes.iter().all(|node| matches!(node.entity(), Entity::Vertex(_))) {
             // unknowns are numbered like the vertices that own them
-            let mut supports = in_large_pages(Vec::with_capacity(n));
-            supports.extend((0..n as u32).map(|vertex| Support::new(None, &[vertex])));
-            return supports;
+            return collect(n, |vertex| Support::new(None, &[vertex as u32]));
         }
         let mut supports = in_large_pages(vec![Support::new(None, &[]); n]);
         for cell in 0..self.mesh.n_cells() {
