@@ -10,8 +10,9 @@
  *     cargo bench --bench scaling -- --rounds 5 2d-p1-linear-1024 3d-p1-linear-64
  *
  * Arguments are dimension, subdivisions and rounds. The matrix is that of conforming P1 on the built-in meshes, which
- * is the stencil of 5 or 7 points, on the unknowns without Dirichlet data; the load is 1. Seconds are the least of all
- * rounds, for set-up and for solve; the run ends where the residual is 1e-8 of its initial norm.
+ * is the stencil of 5 or 7 points, on the unknowns without Dirichlet data; the load is 1. Seconds are those of the
+ * fastest round; the run ends where the residual is 1e-8 of its initial norm. The largest value is 0.07367 on the square
+ * and 0.0562 on the cube.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,8 +62,12 @@ int main(int argc, char **argv)
     double *values = malloc(sizeof(double) * size * (dim + 1));
     for (long i = 0; i < size; i++) {
         values[i * (dim + 1)] = 2.0 * dim * scale;
-        for (int d = 0; d < dim; d++)
-            values[i * (dim + 1) + d + 1] = -scale;
+        long place = i;
+        for (int d = 0; d < dim; d++) {
+            /* no entry reaches outside the grid */
+            values[i * (dim + 1) + d + 1] = place % (n - 1) == n - 2 ? 0.0 : -scale;
+            place /= n - 1;
+        }
     }
     HYPRE_StructMatrix matrix;
     HYPRE_StructMatrixCreate(0, grid, stencil, &matrix);
@@ -108,11 +113,17 @@ int main(int argc, char **argv)
         HYPRE_StructPCGGetFinalRelativeResidualNorm(krylov, &norm);
         HYPRE_StructPCGDestroy(krylov);
         HYPRE_StructPFMGDestroy(multigrid);
-        least_setup = middle - start < least_setup ? middle - start : least_setup;
-        least_solve = end - middle < least_solve ? end - middle : least_solve;
+        if (end - start < least_setup + least_solve) {
+            least_setup = middle - start;
+            least_solve = end - middle;
+        }
     }
-    printf("hypre %dD n = %d: %ld unknowns, set-up %.4f s, solve %.4f s, %d iterations, residual %.1e\n", dim, n, size,
-           least_setup, least_solve, iterations, norm);
+    HYPRE_StructVectorGetBoxValues(solution, lower, upper, values);
+    double largest = 0.0;
+    for (long i = 0; i < size; i++)
+        largest = values[i] > largest ? values[i] : largest;
+    printf("hypre %dD n = %d: %ld unknowns, set-up %.4f s, solve %.4f s, %d iterations, residual %.1e, maximum %.6f\n",
+           dim, n, size, least_setup, least_solve, iterations, norm, largest);
     free(values);
     HYPRE_Finalize();
     return 0;

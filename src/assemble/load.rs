@@ -99,7 +99,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             table.basis.iter().zip(&table.weights).map(|(basis, w)| w * basis.values[i]).sum()
         };
         let means: Vec<f64> = (0..self.per_cell()).map(|i| f * mean(i)).collect();
-        self.for_each_cell(load, &|cell, out| {
+        self.fill_each_cell(load, &|cell, out| {
             let volume = self.mesh.geometry(cell).volume.to_f64();
             for (value, mean) in out.iter_mut().zip(&means) {
                 *value += T::lit(volume * mean);
@@ -112,7 +112,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let table = self.cell_table(self.cell_rule.clone());
         let has_level = self.data.source.any(&|f| f.level().is_some());
         let cut_rule = has_level.then(|| CutRule::new(D, self.cell_degree));
-        self.for_each_cell(load, &|cell, out| {
+        self.fill_each_cell(load, &|cell, out| {
             let Some(f) = self.data.source.of(self.mesh.region(cell)) else { return Ok(()) };
             let volume = self.mesh.geometry(cell).volume.to_f64();
             let mut add = |x: &Point<f64, D>, weight: f64, basis: &BasisAt<f64>| {
@@ -141,8 +141,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         })
     }
 
-    /// Calls a function with each cell and its part of a load of zeros, in parallel.
-    fn for_each_cell(&self, load: &mut [T], work: OfCell<'_, T>) -> Result<(), Error> {
+    /// Sets the load to zero and calls a function with each cell and its part of the load, in parallel.
+    fn fill_each_cell(&self, load: &mut [T], work: OfCell<'_, T>) -> Result<(), Error> {
         let n = self.per_cell();
         let add_cells = |mut cells: Range<usize>, entries: &mut [T]| {
             // the first access to memory of zeros is a write: reading first takes two page faults, and the second one

@@ -24,13 +24,13 @@ use crate::real::Real;
 #[cfg_attr(feature = "report", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Unproven {
-    /// Integrals of data that are functions: a rule need not be exact. Least values of a reaction that is none of degree
-    /// two, or whose Bernstein coefficients are not all positive.
+    /// Integrals of data that are functions: a rule need not be exact. Least values of a reaction that is none of
+    /// degree two, or whose Bernstein coefficients are not all positive.
     Quadrature,
     /// Dirichlet data of a higher degree than `v` on facets: `v` takes them at its nodes only.
     Boundary,
-    /// Obstacles and gaps of a higher degree than `v` in cells, or of degree two where the Bernstein coefficients of `v`
-    /// do not exceed theirs: `v` satisfies them at points only.
+    /// Obstacles and gaps of a higher degree than `v` in cells, or of degree two where the Bernstein coefficients of
+    /// `v` do not exceed theirs: `v` satisfies them at points only.
     Obstacle,
     /// What the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
     /// somewhere.

@@ -22,8 +22,8 @@ use crate::real::Real;
 ///
 /// # Errors
 /// [`Outcome::Malformed`], [`Outcome::NotFinite`], [`Outcome::Infeasible`] or [`Outcome::OutOfRange`] for invalid
-/// input, values of another length included; [`Outcome::NotCoercive`] if the matrix is not symmetric or the inequality is that of one part of a mesh; the reason if
-/// there are no Cholesky factors.
+/// input, values of another length and the inequality of one part of a mesh included; [`Outcome::NotCoercive`] if the
+/// matrix is not symmetric; the reason if there are no Cholesky factors.
 pub fn energy_error_bound<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Result<f64, Outcome> {
     compiled!(
         T: fn(&Inequality<T>, &[T]) -> Result<f64, Outcome>
@@ -33,13 +33,13 @@ pub fn energy_error_bound<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Resul
 
 fn error_bound_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Result<f64, Outcome> {
     check_input(inequality)?;
-    if u.len() != inequality.size() {
+    if u.len() != inequality.size() || inequality.distribution.is_some() {
         return Err(Outcome::Malformed);
     }
     if !u.iter().all(|x| x.to_f64().is_finite()) {
         return Err(Outcome::NotFinite);
     }
-    if !inequality.symmetric || inequality.distribution.is_some() {
+    if !inequality.symmetric {
         return Err(Outcome::NotCoercive);
     }
     let Inequality { matrix, bounds, .. } = inequality;

@@ -28,7 +28,7 @@ pub(crate) type ChunkWork<'w, V, E> = &'w (dyn Fn(Range<usize>, &mut [V]) -> Res
 /// `a..b` are `end(a)..end(b)`.
 ///
 /// # Errors
-/// One of those that `work` returns; the chunks that have not begun are skipped.
+/// That of the first chunk whose `work` returns one, whatever the number of threads; chunks after it may be skipped.
 pub(crate) fn for_each<V: Send, E: Send>(
     n: usize,
     end: &dyn Fn(usize) -> usize,
@@ -43,16 +43,19 @@ pub(crate) fn for_each<V: Send, E: Send>(
         chunks.push((items, own));
         rest = tail;
     }
-    let failed = Mutex::new(None);
-    for_each_item(chunks, &|_, (items, entries)| {
-        if lock(&failed).is_none()
+    // the first chunk that failed so far, and its error
+    let failed: Mutex<Option<(usize, E)>> = Mutex::new(None);
+    let is_first = |chunk: usize| lock(&failed).as_ref().is_none_or(|(first, _)| chunk < *first);
+    for_each_item(chunks, &|chunk, (items, entries)| {
+        if is_first(chunk)
             && let Err(error) = work(items, entries)
+            && is_first(chunk)
         {
-            *lock(&failed) = Some(error);
+            *lock(&failed) = Some((chunk, error));
         }
     });
     match failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        Some(error) => Err(error),
+        Some((_, error)) => Err(error),
         None => Ok(()),
     }
 }

@@ -1,11 +1,12 @@
-//! Parallel loops over chunks of fixed length, for the same bits with any number of threads.
+//! Parallel loops over chunks, of fixed length where a result depends on it, for the same bits with any number of
+//! threads.
 //!
 //! `cells`: loops of the assembly over cells, rows or patches. `vectors`: loops of solvers over the
 //! entries of vectors, with inner products and pseudorandom signs.
 //!
-//! Every loop ends in [`for_each_index`], so that the task machinery of rayon is compiled once and not
-//! once for each loop, scalar and dimension. A task is a chunk of a thousand items or more, beside
-//! which a virtual call and a lock cost nothing.
+//! Every loop but [`vectors::collect`] ends in [`for_each_index`], so that the task machinery of rayon is compiled once
+//! and not once for each loop, scalar and dimension. A task is a chunk of a thousand items or more, beside which a
+//! virtual call and a lock cost nothing.
 
 pub(crate) mod cells;
 pub(crate) mod vectors;

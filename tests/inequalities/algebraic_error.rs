@@ -72,8 +72,8 @@ fn correction(
     ActiveSet::default().solve_from(&left, &guess.values(jacobi_step(&left, &solution.contact)))
 }
 
-/// The step of Jacobi's method from zero on unknowns off contact. Tolerances are relative to the energy of the values at
-/// hand: the step has that of the residual that is left, zero would leave the scale to the forces of contact.
+/// The step of Jacobi's method from zero on unknowns off contact. Tolerances are relative to the energy of the values
+/// at hand: the step has that of the residual that is left, zero would leave the scale to the forces of contact.
 fn jacobi_step(left: &Inequality<f64>, contact: &[Contact]) -> Vec<f64> {
     let entry = |i: usize| {
         let (columns, values) = left.matrix.row(i);
@@ -302,8 +302,8 @@ fn the_algebraic_error_is_a_thousandth_of_the_error_in_the_plane_and_in_space() 
     check(&["radial-3d"], &[("sipg", "vertices"), ("p1", "vertices")], &[8]);
 }
 
-/// Gap and multiplier vanish together in half of the domain, so that the contact states of a Krylov method are arbitrary
-/// there within its tolerance. With the tolerance of linear functions the share is 4e-6.
+/// Gap and multiplier vanish together in half of the domain, so that the contact states of a Krylov method are
+/// arbitrary there within its tolerance. With the tolerance of linear functions the share is 4e-6.
 #[test]
 fn the_tolerance_of_quadratics_is_below_that_of_linear_functions() {
     let left = left_on("biactive-half-2d", ("sipg-p2", "midpoints"), &[64]);

@@ -292,6 +292,7 @@ fn a_gap_above_the_dirichlet_data_beside_it_is_infeasible() {
         assert_eq!(rows(&report).len(), 4);
         for row in rows(&report) {
             assert_eq!(row["status"], status, "{row}");
+            assert_eq!(row["energy"].is_null(), status == "infeasible", "{row}");
         }
     }
 }

@@ -103,7 +103,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         is_changed
     }
 
-    /// Sets all values that are not prescribed to zero, whether or not their bounds admit zero, and forgets the jump
+    /// Sets all values that are not prescribed to zero, whether or not their bounds admit zero, and removes the jump
     /// multipliers.
     pub fn reset_values(&mut self) {
         self.values.fill(T::lit(0.0));
@@ -215,8 +215,8 @@ impl<'a, T: Real> Iterate<'a, T> {
         (&self.best.values, &self.best.jump_multipliers)
     }
 
-    /// Sums of the absolute values of the terms of row `i` of `b - A u`: terms of unknowns that are not eliminated, then
-    /// terms of eliminated ones and of the load.
+    /// Sums of the absolute values of the terms of row `i` of `b - A u`: terms of unknowns that are not eliminated,
+    /// then terms of eliminated ones and of the load.
     pub fn residual_term_magnitudes(&self, i: usize) -> [f64; 2] {
         let (columns, entries) = self.inequality.matrix.row(i);
         let (mut free, mut eliminated) = (0.0, self.inequality.load[i].to_f64().abs());
@@ -245,8 +245,8 @@ impl<'a, T: Real> Iterate<'a, T> {
         certify_with_rounding(self.inequality, &self.values, &self.jump_multipliers).0.largest()
     }
 
-    /// The certificate of the best iterate, and the factor by which large penalties amplify rounding in its residual: a
-    /// certificate below rounding times this factor cannot be asked for.
+    /// The certificate of the best iterate, and the factor by which large penalties amplify rounding in its residual:
+    /// no iterate has a certificate that is reliably below rounding times this factor.
     pub fn best_certificate(&self) -> (Certificate, f64) {
         let (best, jump_multipliers) = self.best_values();
         certify_with_rounding(self.inequality, best, jump_multipliers)

@@ -28,8 +28,9 @@ use crate::linear::LinearMethod;
 ///   all of them would be below a tolerance with a global scale.
 ///
 /// The two tolerances are those of all linear solvers. The solution of a Krylov method is accepted if all violations
-/// are within the tolerance of the linear systems, a tenth of the limit of the certificate: unknowns whose gap or
-/// multiplier is below that tolerance may have another state than with factors.
+/// are within the tolerance of the linear systems, a tenth of the limit of the certificate, and in `f64` a hundredth
+/// for broken quadratics in the plane and in space: unknowns whose gap or multiplier is below that tolerance may have
+/// another state than with factors.
 ///
 /// A cold start begins with the solution without inequalities, or, if the matrix is singular on the free unknowns
 /// because only the bounds prevent a rigid motion, with every bound active.

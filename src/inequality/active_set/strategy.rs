@@ -52,10 +52,11 @@ const DIRECT_STEP_COST: usize = 4;
 /// Relative tolerance of accurate solutions by Krylov methods, divided by the limit of the certificate.
 const TOLERANCE_TO_LIMIT: f64 = 0.1;
 
-/// That tolerance for broken quadratics, divided by the tolerance for linear functions: the L2 error of quadratics falls
-/// by eight with each refinement. On biactive-half-2d, where gap and multiplier vanish together in half of the domain,
-/// the algebraic error of `sipg-p2:midpoints` at 128 falls from 1e-3 of the L2 error to 3e-6 (`algebraic_errors` in
-/// docs/solvers.md). Solves of `sipg-p2` on radial-2d and signorini-2d at 128 take 1.1 times as long.
+/// That tolerance for broken quadratics, divided by the tolerance for linear functions: the L2 error of quadratics
+/// falls by eight with each refinement. On biactive-half-2d, where gap and multiplier vanish together in half of the
+/// domain, the algebraic error of `sipg-p2:midpoints` at 128 falls from 1e-3 of the L2 error to 3e-6
+/// (`algebraic_errors` in docs/solvers.md). Solves of `sipg-p2` on radial-2d and signorini-2d at 128 take 1.1 times as
+/// long.
 const QUADRATIC_TO_LINEAR: f64 = 0.1;
 
 /// Least tolerance for broken quadratics, divided by machine epsilon, unless that for linear functions is smaller.

@@ -75,12 +75,12 @@ pub(crate) struct RestartPoint {
 /// A step follows the Taylor polynomial of the path (Monteiro, Adler, Resende, Math. Oper. Res. 15
 /// (1990) 191-214). Every degree costs one solution with the factors of the step.
 ///
-/// The matrix of a step is `A` plus a positive diagonal, so that the method applies to every matrix
-/// whose symmetric part is positive semidefinite. The number of steps is one or two dozen in practice,
-/// while theory bounds those of related methods with short steps by the order of the square root of the number of
-/// bounds, for each digit (Wright, Primal-Dual Interior-Point Methods, SIAM 1997). The energy norm of the error of the
-/// values reaches rounding; single values need not. The active set consists of the bounds whose last step kept a larger fraction of the dual
-/// variable than of the slack (Tapia indicators).
+/// The matrix of a step is `A` plus a positive diagonal, so that the method applies to every matrix whose symmetric
+/// part is positive semidefinite. The number of steps is one or two dozen in practice, while theory bounds those of
+/// related methods with short steps by the order of the square root of the number of bounds, for each digit (Wright,
+/// Primal-Dual Interior-Point Methods, SIAM 1997). The energy norm of the error of the values reaches rounding; single
+/// values need not. The active set consists of the bounds whose last step kept a larger fraction of the dual variable
+/// than of the slack (Tapia indicators).
 ///
 /// Where the matrix is a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) `K + M^T S M` and a
 /// static condensation is given, the jump multipliers `p = S (M u - g)` are unknowns too, and
@@ -101,21 +101,22 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
     is_identified: bool,
     /// Whether the method ended with an identified active set, or with complementarity products at their final size.
     has_small_complementarity: bool,
-    /// Whether values are differences from bounds, steps keep near the central path ([`LEAST_SHARE`]), and the run goes on
-    /// until the Tapia indicators of every bound are separated, which takes two to three times as many steps. That is
-    /// needed where cells have null directions
-    /// ([`has_null_directions`](crate::linear::direct::StaticCondensation::has_null_directions)): the values of different
-    /// cells at one node of the contact set differ, and some of them leave the bound, by a slack that is inversely
-    /// proportional to the penalty. A run without differences from bounds cannot tell such slacks from zero if the
-    /// penalty is large, and can at its limit of rounding if it is not.
+    /// Whether values are differences from bounds, steps keep near the central path ([`LEAST_SHARE`]), and the run goes
+    /// on until the Tapia indicators of every bound are separated, which takes two to three times as many steps. That
+    /// is needed where cells have null directions
+    /// ([`has_null_directions`](crate::linear::direct::StaticCondensation::has_null_directions)): the values of
+    /// different cells at one node of the contact set differ, and some of them leave the bound, by a slack that is
+    /// inversely proportional to the penalty. A run without differences from bounds cannot tell such slacks from zero
+    /// if the penalty is large, and can at its limit of rounding if it is not.
     resolves_slacks: bool,
-    /// Whether the relative complementarity stagnated above [`FINAL_COMPLEMENTARITY`] in a run that resolves small slacks.
+    /// Whether the relative complementarity stagnated above [`FINAL_COMPLEMENTARITY`] in a run that resolves small
+    /// slacks.
     is_stuck: bool,
 }
 
 impl<T: Real> InteriorPoint<'_, '_, T> {
-    /// The point at which the method ended, from which another run may resolve small slacks; `None` if the inequality has
-    /// no slacks that a penalty makes small, or if the method ended by stagnation.
+    /// The point at which the method ended, from which another run may resolve small slacks; `None` if the inequality
+    /// has no slacks that a penalty makes small, or if the method ended by stagnation.
     pub fn into_restart_point(self) -> Option<RestartPoint> {
         let is_restartable = self.has_small_complementarity && self.leaves_small_slacks();
         let Self { system, point, pairs, .. } = self;

@@ -49,8 +49,8 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
 
 impl MonotoneMultigrid {
     /// The solution by cycles. The counter of the guess, which contains the steps of all stages before this one, grows
-    /// by one for each cycle. A matrix that is not symmetric or is distributed has no energy, or no coarse spaces in one
-    /// process: the active set method with its default settings solves such an inequality.
+    /// by one for each cycle. A matrix that is not symmetric or is distributed has no energy, or no coarse spaces in
+    /// one process: the active set method with its default settings solves such an inequality.
     pub(super) fn run_cycles<T: Real>(
         &self,
         inequality: &Inequality<T>,

@@ -315,11 +315,11 @@ fn has_cholesky_factor<T: Real>(
     }
 }
 
-/// The error for a matrix with a pivot that is not positive: [`FactorError::Singular`] if the
-/// matrix is positive definite with its diagonal multiplied by `1 + sqrt(eps)`, `eps` machine
-/// epsilon, else [`FactorError::NotPositive`] or [`FactorError::OutOfMemory`]. Changes the diagonal of `lower`. The
-/// increase is large compared with rounding errors and small compared with the negative eigenvalues that a matrix
-/// has if a penalty is too small.
+/// The error for a matrix with a pivot that is not positive: [`FactorError::Singular`] if the matrix without its zero
+/// rows (those whose stored entries, one on the diagonal among them, are zero) is positive definite with its diagonal
+/// multiplied by `1 + sqrt(eps)`, `eps` machine epsilon, else [`FactorError::NotPositive`] or
+/// [`FactorError::OutOfMemory`]. Changes the diagonal of `lower`. The increase is large compared with rounding errors
+/// and small compared with the negative eigenvalues that a matrix has if a penalty is too small.
 fn indefinite_or_singular<T: Real>(
     lower: &mut Submatrix<T>,
     symbolic: &SymbolicFactor,

@@ -16,8 +16,8 @@ use crate::real::Real;
 ///    contain conforming linear functions on the mesh of the inequality.
 /// 2. The splitting into facet means and jumps, for discontinuous linear functions coupled by a penalty on jumps of
 ///    facet means alone.
-/// 3. Multigrid with conforming linear functions as its second level, for elements whose cells share unknowns (conforming
-///    quadratics, Crouzeix-Raviart) and for discontinuous linear functions on triangles and tetrahedra.
+/// 3. Multigrid with conforming linear functions as its second level, for elements whose cells share unknowns
+///    (conforming quadratics, Crouzeix-Raviart) and for discontinuous linear functions on triangles and tetrahedra.
 /// 4. The sum of the inverses of cell blocks (additive Schwarz) and of the auxiliary space of conforming linear
 ///    functions, for other discontinuous elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

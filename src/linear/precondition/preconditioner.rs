@@ -26,7 +26,8 @@ pub trait Preconditioner<T>: Send + Sync {
     }
 }
 
-/// A symmetric matrix for which a preconditioner is asked, with the inequality and the spaces from which it can be made.
+/// A symmetric matrix for which a preconditioner is asked, with the inequality and the spaces from which it can be
+/// made.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct PreconditionedSystem<'a, T> {

@@ -436,7 +436,9 @@ fn the_same_bits_for_any_number_of_threads() {
             .reaction(1.5)
             .source(|x| x[0].sin())
             .dirichlet(|x| x[0])
-            .neumann(|x, n| x[0] * n[0]);
+            .neumann(|x, n| x[0] * n[0])
+            .obstacle_below(|x| x[0] - 1.0)
+            .obstacle_above(|x| x[0] + x[0].cos());
         let schemes: [&dyn AnyScheme<f64, D>; 5] =
             [&ConformingP1, &ConformingP2, &NonconformingP1, &Sipg::default(), &Wopsip::default()];
         for scheme in schemes {
@@ -451,12 +453,33 @@ fn the_same_bits_for_any_number_of_threads() {
                 let many = run(threads);
                 assert_eq!(one.matrix, many.matrix, "{} with {threads} threads", scheme.name());
                 assert_eq!(one.load, many.load);
+                assert_eq!(one.bounds, many.bounds);
+                assert_eq!(one.supports, many.supports);
             }
         }
     }
-    check::<1>(5000);
+    check::<1>(9000);
     check::<2>(60);
     check::<3>(12);
+}
+
+/// Data that are not finite in many cells: the message names the same cell for any number of threads.
+#[test]
+fn the_same_error_for_any_number_of_threads() {
+    let mesh = Raw::<2>::jittered(&mixed_box(), 60, 0.3, &mut Random(3)).mesh::<f64>();
+    let nan_beyond = |x: &Point<f64, 2>| if x[0] > 0.2 { f64::NAN } else { 0.0 };
+    let problems = [Problem::new().obstacle_below(nan_beyond), Problem::new().source(nan_beyond)];
+    for problem in &problems {
+        let error = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let scheme: &dyn AnyScheme<f64, 2> = &Sipg::default();
+            let inequality =
+                || scheme.inequality(problem, &mesh, DataQuadrature::default()).map(|_| ());
+            pool.install(inequality).unwrap_err().to_string()
+        };
+        let one = error(1);
+        assert!((0..20).all(|_| error(4) == one), "{one}");
+    }
 }
 
 #[test]

@@ -360,6 +360,16 @@ fn a_zero_diagonal_entry_is_singular_without_other_entries() {
     };
     assert_eq!(error(0.0), Some(FactorError::Singular));
     assert_eq!(error(0.5), Some(FactorError::NotPositive));
+    let zero_first = |coupling: f64| {
+        let matrix = SparseMatrix {
+            row_starts: vec![0, 2, 4],
+            columns: vec![0, 1, 0, 1],
+            values: vec![0.0, coupling, coupling, 2.0],
+        };
+        Factors::new(&matrix, true, &[0, 1]).err()
+    };
+    assert_eq!(zero_first(0.0), Some(FactorError::Singular));
+    assert_eq!(zero_first(0.5), Some(FactorError::NotPositive));
 }
 
 #[test]

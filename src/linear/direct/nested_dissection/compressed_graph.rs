@@ -9,8 +9,8 @@ use crate::algebra::{NO_INDEX, SparseMatrix};
 /// unknowns of a cell of discontinuous elements. Two different nodes are adjacent if the matrix couples their
 /// unknowns; no node is its own neighbour.
 ///
-/// Rows of the matrix are sorted by column and contain their diagonal entry, so that unknowns with equal rows are
-/// coupled with each other.
+/// Rows of the matrix are sorted by column. Rows of assembled matrices contain their diagonal entry, so that unknowns
+/// with equal rows are coupled with each other; in other matrices unknowns of a node need not be.
 ///
 /// Unknowns of a node are indistinguishable for minimum degree and dissection; they are eliminated one
 /// after the other (C. Ashcraft, SIAM J. Sci. Comput. 16 (1995), 1404-1411).
