@@ -45,13 +45,17 @@ pub(crate) fn for_each<V: Send, E: Send>(
     }
     // the first chunk that failed so far, and its error
     let failed: Mutex<Option<(usize, E)>> = Mutex::new(None);
-    let is_first = |chunk: usize| lock(&failed).as_ref().is_none_or(|(first, _)| chunk < *first);
+    let is_first = |failed: &Option<(usize, E)>, chunk: usize| {
+        failed.as_ref().is_none_or(|(first, _)| chunk < *first)
+    };
     for_each_item(chunks, &|chunk, (items, entries)| {
-        if is_first(chunk)
+        if is_first(&lock(&failed), chunk)
             && let Err(error) = work(items, entries)
-            && is_first(chunk)
         {
-            *lock(&failed) = Some((chunk, error));
+            let mut failed = lock(&failed);
+            if is_first(&failed, chunk) {
+                *failed = Some((chunk, error));
+            }
         }
     });
     match failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
