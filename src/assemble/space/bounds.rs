@@ -1,7 +1,7 @@
 //! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
 
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use super::contradictions::{BoundedNode, Contradiction};
 use super::{Space, Terms, data};
@@ -49,62 +49,68 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<(), Error> {
         let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
-        let (lowers, uppers) = (&self.data.lower, &self.data.upper);
-        let by_region = lowers.has_names() || uppers.has_names();
-        let bound_at = |cell: usize,
-                        (i, by): (usize, BoundBy),
-                        bound: &mut Bound<T>,
-                        found: &mut Vec<Contradiction<D>>|
-         -> Result<(), Error> {
-            let old = *bound;
-            count::bounds(1);
-            let region = self.mesh.region(cell);
-            let node = &self.nodes[i];
-            let at = |psi: Option<DatumRef<'_, D>>| {
-                let bound = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
-                psi.map(bound).transpose()
-            };
-            // of the obstacles of two regions both hold
-            let both = |old: Option<T>, new: Option<f64>, choose: fn(f64, f64) -> f64| {
-                let old = old.map(Real::to_f64);
-                new.map(|new| old.map_or(new, |old| choose(old, new))).or(old)
-            };
-            let lower = both(old.lower(), at(lowers.of(region))?, f64::max);
-            let upper = both(old.upper(), at(uppers.of(region))?, f64::min);
-            let (unknown, x) = (self.dofs.of(cell, i), self.node_point(cell, node));
-            *bound = between(lower, upper, BoundedNode { unknown, cell, x }, found);
-            Ok(())
-        };
-        if !self.broken {
-            for cell in 0..self.mesh.n_cells() {
-                for &(i, by) in &bounded {
-                    let bound = &mut bounds[self.dofs.of(cell, i)];
-                    if *bound == Bound::Free || by_region {
-                        bound_at(cell, (i, by), bound, found)?;
+        if self.broken {
+            // no other cell has the unknowns of a cell
+            let n = self.per_cell();
+            let found_by_all = Mutex::new(Vec::new());
+            let bound_chunk = |cells: Range<usize>, bounds: &mut [Bound<T>]| -> Result<(), Error> {
+                let mut found = Vec::new();
+                for (cell, bounds) in cells.zip(bounds.chunks_exact_mut(n)) {
+                    for &node in &bounded {
+                        self.restrict_by_obstacles(
+                            &terms,
+                            cell,
+                            node,
+                            &mut bounds[node.0],
+                            &mut found,
+                        )?;
                     }
                 }
-            }
+                lock(&found_by_all).append(&mut found);
+                Ok(())
+            };
+            cells::for_each(self.mesh.n_cells(), &|cell| cell * n, bounds, &bound_chunk)?;
+            found.append(&mut lock(&found_by_all));
+            // the order of chunks depends on the threads
+            found.sort_unstable_by_key(|contradiction| contradiction.node.unknown);
             return Ok(());
         }
-        // no other cell has the unknowns of a cell
-        let n = self.per_cell();
-        let found_in_chunks = Mutex::new(Vec::new());
-        let bound_chunk = |cells: Range<usize>, bounds: &mut [Bound<T>]| -> Result<(), Error> {
-            let (first, mut found) = (cells.start, Vec::new());
-            for (cell, bounds) in cells.zip(bounds.chunks_exact_mut(n)) {
-                for &(i, by) in &bounded {
-                    bound_at(cell, (i, by), &mut bounds[i], &mut found)?;
+        let by_region = self.data.lower.has_names() || self.data.upper.has_names();
+        for cell in 0..self.mesh.n_cells() {
+            for &node in &bounded {
+                let bound = &mut bounds[self.dofs.of(cell, node.0)];
+                if *bound == Bound::Free || by_region {
+                    self.restrict_by_obstacles(&terms, cell, node, bound, found)?;
                 }
             }
-            if !found.is_empty() {
-                lock(&found_in_chunks).push((first, found));
-            }
-            Ok(())
+        }
+        Ok(())
+    }
+
+    /// Restricts the bound of node `i` of a cell by the obstacles in the region of the cell: of the obstacles of two
+    /// regions both hold.
+    fn restrict_by_obstacles(
+        &self,
+        terms: &[Terms],
+        cell: usize,
+        (i, by): (usize, BoundBy),
+        bound: &mut Bound<T>,
+        found: &mut Vec<Contradiction<D>>,
+    ) -> Result<(), Error> {
+        count::bounds(1);
+        let (region, node) = (self.mesh.region(cell), &self.nodes[i]);
+        let at = |psi: Option<DatumRef<'_, D>>| {
+            let value = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
+            psi.map(value).transpose()
         };
-        cells::for_each(self.mesh.n_cells(), &|cell| cell * n, bounds, &bound_chunk)?;
-        let mut chunks = found_in_chunks.into_inner().unwrap_or_else(PoisonError::into_inner);
-        chunks.sort_unstable_by_key(|(first, _)| *first);
-        found.extend(chunks.into_iter().flat_map(|(_, found)| found));
+        let both = |old: Option<T>, new: Option<f64>, choose: fn(f64, f64) -> f64| {
+            let old = old.map(Real::to_f64);
+            new.map(|new| old.map_or(new, |old| choose(old, new))).or(old)
+        };
+        let lower = both(bound.lower(), at(self.data.lower.of(region))?, f64::max);
+        let upper = both(bound.upper(), at(self.data.upper.of(region))?, f64::min);
+        let (unknown, x) = (self.dofs.of(cell, i), self.node_point(cell, node));
+        *bound = between(lower, upper, BoundedNode { unknown, cell, x }, found);
         Ok(())
     }
 
