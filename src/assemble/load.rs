@@ -145,8 +145,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn fill_each_cell(&self, load: &mut [T], work: OfCell<'_, T>) -> Result<(), Error> {
         let n = self.per_cell();
         let add_cells = |mut cells: Range<usize>, entries: &mut [T]| {
-            // the first access to memory of zeros is a write: reading first takes two page faults, and the second one
-            // interrupts all other threads
+            // the first access to memory of zeros is a write: reading first takes two page faults, and the second
+            // page fault interrupts all other threads
             entries.fill(T::lit(0.0));
             entries.chunks_exact_mut(n).try_for_each(|out| match cells.next() {
                 Some(cell) => work(cell, out),

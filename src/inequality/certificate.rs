@@ -25,10 +25,10 @@ use crate::real::Real;
 /// unknown is of the size of the volume of its patch: on a fine mesh each wrong multiplier is tiny, while all of them
 /// together may change the solution by as much as the solution itself.
 ///
-/// If the energy vanishes up to rounding (a constant, zero), the norm `(sum c_i^2 / d_i)^(1/2)` of the load `c` without
-/// Dirichlet data replaces `E`, then `(sum d_i u_i^2)^(1/2)`, then one. All sums are in `f64`, of numbers divided by a
-/// power of two near the largest, so that the certificate does not change if the data and the values are multiplied by
-/// a power of two. If a number is not finite or sizes do not match, all four violations are infinite.
+/// If the energy vanishes up to rounding (the solution is a constant), the norm `(sum c_i^2 / d_i)^(1/2)` of the load
+/// `c` without Dirichlet data replaces `E`, then `(sum d_i u_i^2)^(1/2)`, then one. All sums are in `f64`, of numbers
+/// divided by a power of two near the largest, so that the certificate does not change if the data and the values are
+/// multiplied by a power of two. If a number is not finite or sizes do not match, all four violations are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

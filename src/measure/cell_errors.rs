@@ -40,10 +40,11 @@ const fn lower_degrees(dimension: usize, basis_degree: usize) -> Option<[usize; 
     }
 }
 
-/// Two rules agree in a cell if their integrals differ by this share. Let `s` be the diameter divided by the length over
-/// which derivatives of the solution change. The square of the error in L2 of functions of degree `b` has a leading part
-/// of degree `2 b + 2`, so that rules of degrees `2 b + 3` and `2 b + 4` leave shares of the sizes `s^2` and `s^3`, and
-/// smaller ones of the squares of gradients: where both agree, the rule of higher degree, which counts, leaves about 1e-6.
+/// Two rules agree in a cell if their integrals differ by this share. Let `s` be the diameter divided by the length
+/// over which derivatives of the solution change. The square of the error in L2 of functions of degree `b` has a
+/// leading part of degree `2 b + 2`, so that rules of degrees `2 b + 3` and `2 b + 4` leave shares of the sizes `s^2`
+/// and `s^3`, and smaller ones of the squares of gradients: where both agree, the rule of higher degree, which counts,
+/// leaves about 1e-6.
 const AGREEMENT: f64 = 1e-4;
 
 /// Two rules agree in a cell if their integrals differ by this share of the mean over all cells.
@@ -65,8 +66,8 @@ struct Kinks<const D: usize> {
 }
 
 impl<const D: usize> Kinks<D> {
-    /// The function along whose zeros a cell is divided; `None` if no function is known. Of functions that have the same
-    /// zeros in the cell it is the first one: in some scenes the free boundary and jumps of load and coefficient
+    /// The function along whose zeros a cell is divided; `None` if no function is known. Of functions that have the
+    /// same zeros in the cell it is the first one: in some scenes the free boundary and jumps of load and coefficient
     /// coincide. Of functions with different zeros it is the product.
     fn level_in<T: Real>(
         &self,

@@ -71,8 +71,8 @@ impl<T: Real, const D: usize> CellIntegrand<'_, T, D> {
     }
 
     /// Sums over points, if the exact solution is finite at these points. Finite sums prove that the exact solution is
-    /// finite; only if a sum is not finite are the points visited a second time. Sums are not finite either where values
-    /// of the discrete function are not.
+    /// finite; only if a sum is not finite are the points visited a second time. Sums are not finite either where
+    /// values of the discrete function are not.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`] with the first point at which the exact solution is not finite.

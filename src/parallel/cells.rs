@@ -28,7 +28,7 @@ pub(crate) type ChunkWork<'w, V, E> = &'w (dyn Fn(Range<usize>, &mut [V]) -> Res
 /// `a..b` are `end(a)..end(b)`.
 ///
 /// # Errors
-/// That of the first chunk whose `work` returns one, whatever the number of threads; chunks after it may be skipped.
+/// The error of the first chunk for which `work` fails, whatever the number of threads. Later chunks may be skipped.
 pub(crate) fn for_each<V: Send, E: Send>(
     n: usize,
     end: &dyn Fn(usize) -> usize,

@@ -61,7 +61,8 @@ pub enum Datum<const D: usize> {
     /// the zero set of `level` cuts are divided along it, see
     /// [`Problem::piecewise_source`](super::Problem::piecewise_source).
     Piecewise {
-        /// The function. Where cells are divided no point of a rule lies on the zero set of `level`, except by rounding.
+        /// The values of the datum. Points of a rule on a cell that is divided do not lie on the zero set of `level`,
+        /// except by rounding.
         value: Field<D>,
         /// Positive on one side, negative on the other.
         level: Field<D>,

@@ -198,9 +198,10 @@ impl<const D: usize> Problem<D> {
         self.coefficient = Some(alpha.into());
         self
     }
-    /// Sets a diffusion coefficient that jumps where `level` changes its sign. Schemes evaluate such a coefficient like
-    /// any other ([`Problem::coefficient`]); errors against an exact solution, whose gradient jumps there too, are integrated over
-    /// cells divided along the zero set of `level`, as loads are ([`Problem::piecewise_source`]).
+    /// Sets a diffusion coefficient that jumps where `level` changes its sign. Schemes evaluate the coefficient at the
+    /// points at which they evaluate a coefficient without a level ([`Problem::coefficient`]). Errors against an exact
+    /// solution, whose gradient jumps on the zero set of `level`, are integrated over cells divided along the zero set,
+    /// as loads are ([`Problem::piecewise_source`]).
     #[must_use]
     pub fn piecewise_coefficient(
         mut self,

@@ -1,4 +1,4 @@
-//! Contact states: which of them a bound allows, and which value each one prescribes.
+//! The contact states that a bound allows, and the values that contact states prescribe.
 
 use crate::algebra::{Bound, Contact, Start};
 use crate::real::Real;

@@ -51,7 +51,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         dot(r, &load) - dot(t, &data)
     }
 
-    /// Replaces the solution `u`, `p` with reduced weights by that with the true ones. The error that is left after
+    /// Replaces the solution `u`, `p` with reduced weights by the solution with the true weights. The error that is left after
     /// [`MAX_STEPS`] steps, or where a step is not finite, is part of the residual from which the caller computes its
     /// next correction; the caller stops by the energy of its corrections.
     fn correct_weights(

@@ -38,7 +38,7 @@ struct CellRows<const N: usize> {
     starts: Vec<u32>,
     /// For each cell the preceding cells of the chunk that are coupled to it, relative to the chunk.
     cells: Vec<u16>,
-    /// The blocks that couple a cell to these cells.
+    /// For each entry of `cells` the block that couples the two cells.
     blocks: Vec<[[f32; N]; N]>,
     /// The blocks outside of the chunk: cell relative to the chunk, other cell, block.
     outside: Vec<(u16, u32, [[f32; N]; N])>,

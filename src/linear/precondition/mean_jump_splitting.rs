@@ -100,8 +100,8 @@ impl<T: Real> FacetMeansSolver<T> for Multigrid<'_, T> {
 }
 
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
-    /// The preconditioner of `matrix`, which contains the assembled entries of `penalised`; `None` if its unknowns are
-    /// not those of discontinuous linear functions, if cells are coupled by more than facet means, or if
+    /// The preconditioner of `matrix`, which contains the assembled entries of `penalised`; `None` if the unknowns
+    /// are not those of discontinuous linear functions, if cells are coupled by more than facet means, or if
     /// a support has a vertex that `level` does not have.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
@@ -227,7 +227,7 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
     }
 
     /// Sets the facets without Crouzeix-Raviart functions, and the facets that conforming functions alone
-    /// correct: those of cells with free and fixed vertex values, in which facet mean functions are not free.
+    /// correct: the facets of cells with free and fixed vertex values, in which facet mean functions are not free.
     fn set_facets(&mut self) {
         let Self { penalties, space, states, fixed_facets, kept_facets, .. } = self;
         kept_facets.clear();

@@ -18,9 +18,9 @@ pub trait Preconditioner<T>: Send + Sync {
     fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError>;
     /// `z = B r` for a residual `r` that is zero on the fixed unknowns.
     fn apply(&mut self, r: &[T], z: &mut [T]);
-    /// The forcing term: while the active set changes, a linear system is solved until the norm of its residual is
-    /// this times the initial one. An exact solution of such a system is lost work; a preconditioner whose
-    /// iterations are expensive beside a change of the active set chooses a larger number.
+    /// The forcing term: while the active set changes, a linear system is solved until the norm of the residual,
+    /// divided by the initial norm, is at most the forcing term. An exact solution of such a system is lost work; a
+    /// preconditioner whose iterations are expensive beside a change of the active set chooses a larger number.
     fn forcing_term(&self) -> f64 {
         0.1
     }

@@ -248,8 +248,8 @@ impl<T: Real> Prolongation<T> {
         }
     }
 
-    /// Calls a function with each parent of the fine unknown `i` and its weight. The two equal parents of a vertex of
-    /// the coarse mesh are passed one by one, with weight 1/2 each.
+    /// Calls a function with each parent of the fine unknown `i` and the weight of the parent. The two equal parents of
+    /// a vertex of the coarse mesh are passed one by one, with weight 1/2 each.
     #[inline(always)]
     pub(crate) fn for_each_parent(&self, i: usize, mut call: impl FnMut(u32, T)) {
         match &self.entries {

@@ -25,7 +25,7 @@ pub(super) struct ExactContact {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The exact multiplier and contact set on some entities, at the same points: a list for each chunk of entities,
-    /// because one list would be a copy of them.
+    /// because one list of all entities would be a copy.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].

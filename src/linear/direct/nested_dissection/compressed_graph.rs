@@ -10,7 +10,8 @@ use crate::algebra::{NO_INDEX, SparseMatrix};
 /// unknowns; no node is its own neighbour.
 ///
 /// Rows of the matrix are sorted by column. Rows of assembled matrices contain their diagonal entry, so that unknowns
-/// with equal rows are coupled with each other; in other matrices unknowns of a node need not be.
+/// with equal rows are coupled with each other; without stored diagonal entries a node may contain unknowns that are not
+/// coupled.
 ///
 /// Unknowns of a node are indistinguishable for minimum degree and dissection; they are eliminated one
 /// after the other (C. Ashcraft, SIAM J. Sci. Comput. 16 (1995), 1404-1411).
