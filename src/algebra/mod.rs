@@ -29,7 +29,7 @@ pub(crate) use inequality::barycentre;
 pub use inequality::{Bound, Contact, Inequality, Start, Support};
 pub use matrix::SparseMatrix;
 pub use penalised_matrix::{JumpTerm, PenalisedMatrix};
-pub(crate) use rectangular_matrix::{RectangularMatrix, galerkin_product};
+pub(crate) use rectangular_matrix::{RectangularMatrix, SparseSum, galerkin_product};
 pub(crate) use row::sort_by_column;
 pub(crate) use side_penalties::SidePenalties;
 pub(crate) use submatrix::Submatrix;

@@ -77,7 +77,7 @@ pub(crate) fn galerkin_product<T: Real>(
 }
 
 /// A sum of multiples of sparse rows.
-struct SparseSum<T> {
+pub(crate) struct SparseSum<T> {
     /// Columns with their entries, in the order in which they were added.
     terms: Vec<(u32, T)>,
     /// The index in `terms` of each column; [`NO_INDEX`] for a column without a term.
@@ -86,7 +86,7 @@ struct SparseSum<T> {
 
 impl<T: Real> SparseSum<T> {
     /// The empty sum of rows with this number of columns.
-    fn new(n_columns: usize) -> Self {
+    pub fn new(n_columns: usize) -> Self {
         Self { terms: Vec::new(), places: vec![NO_INDEX; n_columns] }
     }
 
@@ -94,17 +94,23 @@ impl<T: Real> SparseSum<T> {
     #[inline(always)]
     fn add(&mut self, factor: T, (columns, values): (&[u32], &[T])) {
         for (&column, &value) in columns.iter().zip(values) {
-            let place = &mut self.places[column as usize];
-            if *place == NO_INDEX {
-                *place = self.terms.len() as u32;
-                self.terms.push((column, T::lit(0.0)));
-            }
-            self.terms[*place as usize].1 += factor * value;
+            self.add_term(column, factor * value);
         }
     }
 
+    /// Adds a term.
+    #[inline(always)]
+    pub fn add_term(&mut self, column: u32, value: T) {
+        let place = &mut self.places[column as usize];
+        if *place == NO_INDEX {
+            *place = self.terms.len() as u32;
+            self.terms.push((column, T::lit(0.0)));
+        }
+        self.terms[*place as usize].1 += value;
+    }
+
     /// Appends the terms to a list of columns and one of values, and leaves the empty sum.
-    fn move_to(&mut self, columns: &mut Vec<u32>, values: &mut Vec<T>) {
+    pub fn move_to(&mut self, columns: &mut Vec<u32>, values: &mut Vec<T>) {
         for &(column, value) in &self.terms {
             self.places[column as usize] = NO_INDEX;
             columns.push(column);

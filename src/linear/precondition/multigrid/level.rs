@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::algebra::SparseMatrix;
+use crate::algebra::{NO_INDEX, SparseMatrix};
 use crate::linear::direct::FactorError;
 use crate::linear::precondition::coarse_level::P1Level;
 use crate::linear::precondition::gauss_seidel::GaussSeidel;
@@ -31,8 +31,14 @@ pub(super) struct Level<'a, T: Real> {
     pub recomputed_starts: Vec<usize>,
     /// The values of these rows, one row after the other; the columns are those of the given matrix.
     pub recomputed_values: Vec<T>,
+    /// The index of each row in `recomputed_rows`, [`NO_INDEX`] for all others; empty if there were never any.
+    pub recomputed_indices: Vec<u32>,
+    /// The fixed unknowns of the finer level for which rows were recomputed; empty before the first time.
+    pub fixed_on_finer: Vec<bool>,
     /// The rows that may have changed since the smoother was updated, ascending.
     pub outdated: Vec<u32>,
+    /// The rows that may have changed since the coarser level recomputed its rows.
+    pub changed_rows: Vec<u32>,
     /// The prolongation from the next coarser level; `None` for the coarsest.
     pub prolongation: Option<Cow<'a, Prolongation<T>>>,
     /// The unknowns with Dirichlet data; empty for the finest level.
@@ -62,7 +68,10 @@ impl<'a, T: Real> Level<'a, T> {
             recomputed_rows: Vec::new(),
             recomputed_starts: vec![0],
             recomputed_values: Vec::new(),
+            recomputed_indices: Vec::new(),
+            fixed_on_finer: Vec::new(),
             outdated: Vec::new(),
+            changed_rows: Vec::new(),
             prolongation,
             dirichlet: &[],
             smoother: None,
@@ -90,13 +99,19 @@ impl<T: Real> Level<'_, T> {
     /// Columns and values of row `i`, after truncation.
     pub fn row(&self, i: usize) -> (&[u32], &[T]) {
         let (columns, values) = self.matrix.row(i);
-        match self.recomputed_rows.binary_search(&(i as u32)) {
-            Ok(k) if !self.recomputed_rows.is_empty() => {
-                let range = self.recomputed_starts[k]..self.recomputed_starts[k + 1];
+        match self.recomputed_indices.get(i) {
+            Some(&k) if k != NO_INDEX => {
+                let range =
+                    self.recomputed_starts[k as usize]..self.recomputed_starts[k as usize + 1];
                 (columns, &self.recomputed_values[range])
             }
             _ => (columns, values),
         }
+    }
+
+    /// Whether row `j` was recomputed because of truncation.
+    pub fn is_recomputed(&self, j: u32) -> bool {
+        self.recomputed_indices.get(j as usize).is_some_and(|&k| k != NO_INDEX)
     }
 
     /// Updates the smoother to the rows and the fixed unknowns of the level.

@@ -127,14 +127,15 @@ impl<'a, T: Real> Multigrid<'a, T> {
         for k in 0..self.levels.len() {
             let (finer, rest) = self.levels.split_at_mut(k);
             let level = &mut rest[0];
-            if let Some(finer) = finer.last() {
+            if let Some(finer) = finer.last_mut() {
                 level.fixed.copy_from_slice(level.dirichlet);
                 let fixed_besides = level.fixed.iter_mut().zip(&level.fixed_besides);
                 fixed_besides.for_each(|(fixed, besides)| *fixed |= besides);
+                let changed_rows = std::mem::take(&mut finer.changed_rows);
                 if let Some(prolongation) = &finer.prolongation {
                     // truncation sets a coarse function to zero if all its children are fixed
                     prolongation.fix_covered(&finer.fixed, &mut level.fixed);
-                    level.recompute_rows(finer, prolongation);
+                    level.recompute_rows((finer, &changed_rows), prolongation);
                 }
             }
             let is_coarsest = rest.len() == 1;

@@ -4,77 +4,183 @@
 //! (R. Kornhuber, Numer. Math. 69 (1994), 167-184).
 
 use super::level::Level;
-use crate::algebra::NO_INDEX;
+use crate::algebra::{NO_INDEX, RectangularMatrix, SparseSum};
 use crate::linear::precondition::prolongation::Prolongation;
+use crate::parallel::{for_each_item, map_groups};
 use crate::real::Real;
 
+/// Rows that one task computes at least.
+const ROWS_PER_TASK: usize = 64;
+
+/// Most tasks of a level: each has an index for every column.
+const MAX_TASKS: usize = 32;
+
 impl<T: Real> Level<'_, T> {
-    /// Recomputes the rows that truncation at the fixed unknowns of the finer level may change, and marks these rows,
-    /// and the rows of the last call, as outdated. The row of a free unknown is recomputed if one of the children of
-    /// the unknown is fixed, or is coupled to a fixed unknown with a free parent, or has a recomputed row.
-    pub(super) fn recompute_rows(&mut self, finer: &Level<'_, T>, prolongation: &Prolongation<T>) {
-        let mut is_near = vec![false; finer.fixed.len()];
+    /// Recomputes the rows that truncation at the fixed unknowns of the finer level may change, and marks all rows that
+    /// have changed since the last call as outdated. The row of a free unknown is recomputed if one of the children of
+    /// the unknown is fixed, or is coupled to a fixed unknown with a free parent, or has a recomputed row. A row that
+    /// was recomputed by the last call keeps its values if its children, the unknowns coupled to these and the rows of
+    /// its children are as they were; the finer level has changed `changed_rows` since then.
+    pub(super) fn recompute_rows(
+        &mut self,
+        (finer, changed_rows): (&Level<'_, T>, &[u32]),
+        prolongation: &Prolongation<T>,
+    ) {
+        let (near, changed) = self.mark_children((finer, changed_rows), prolongation);
+        let fixed = &self.fixed;
+        let is_recomputed = |j: usize| !fixed[j] && prolongation.any_child(j, |i| near[i]);
+        let rows: Vec<u32> =
+            (0..fixed.len()).filter(|&j| is_recomputed(j)).map(|j| j as u32).collect();
+        let is_kept: Vec<bool> = rows
+            .iter()
+            .map(|&j| self.is_recomputed(j) && !prolongation.any_child(j as usize, |i| changed[i]))
+            .collect();
+        let computed = rows.iter().zip(&is_kept).filter(|(_, is_kept)| !**is_kept);
+        let mut outdated: Vec<u32> = computed.map(|(j, _)| *j).collect();
+        let images = Images::new(finer, prolongation, &outdated);
+        let (starts, values) = self.products((&rows, &is_kept), prolongation, &images);
+        let given = self.recomputed_rows.iter().filter(|j| rows.binary_search(j).is_err());
+        outdated.extend(given);
+        outdated.sort_unstable();
+        self.changed_rows.extend_from_slice(&outdated);
+        self.outdated = outdated;
+        self.recomputed_indices.resize(self.matrix.size(), NO_INDEX);
+        self.recomputed_rows.iter().for_each(|&j| self.recomputed_indices[j as usize] = NO_INDEX);
+        (0..).zip(&rows).for_each(|(k, &j)| self.recomputed_indices[j as usize] = k);
+        self.recomputed_rows = rows;
+        self.recomputed_starts = starts;
+        self.recomputed_values = values;
+        self.fixed_on_finer.clone_from(&finer.fixed);
+    }
+
+    /// Flags of the unknowns of the finer level for which rows of their parents are recomputed, and of those for which
+    /// these rows may have changed since the last call.
+    fn mark_children(
+        &self,
+        (finer, changed_rows): (&Level<'_, T>, &[u32]),
+        prolongation: &Prolongation<T>,
+    ) -> (Vec<bool>, Vec<bool>) {
+        let n = finer.fixed.len();
         // if all parents of a fixed unknown are fixed, as for most Dirichlet data, no free function is truncated there
         let is_truncated =
             |&i: &usize| finer.fixed[i] && prolongation.any_parent(i, |j| !self.fixed[j as usize]);
-        for i in (0..is_near.len()).filter(is_truncated) {
-            is_near[i] = true;
-            finer.matrix.row(i).0.iter().for_each(|&j| is_near[j as usize] = true);
+        let mut near = vec![false; n];
+        let mut changed = vec![false; n];
+        let mark = |flags: &mut [bool], i: usize| {
+            flags[i] = true;
+            finer.matrix.row(i).0.iter().for_each(|&j| flags[j as usize] = true);
+        };
+        (0..n).filter(is_truncated).for_each(|i| mark(&mut near, i));
+        finer.recomputed_rows.iter().for_each(|&i| near[i as usize] = true);
+        let flags = self.fixed_on_finer.iter().zip(&finer.fixed).enumerate();
+        flags.filter(|(_, (before, now))| before != now).for_each(|(i, _)| mark(&mut changed, i));
+        changed_rows.iter().for_each(|&i| changed[i as usize] = true);
+        (near, changed)
+    }
+
+    /// The starts and the values of rows, and the number of values after the starts: rows that are kept from the last
+    /// call, and Galerkin products for all others.
+    fn products(
+        &self,
+        (rows, is_kept): (&[u32], &[bool]),
+        prolongation: &Prolongation<T>,
+        images: &Images<T>,
+    ) -> (Vec<usize>, Vec<T>) {
+        let columns = |j: u32| self.matrix.row(j as usize).0;
+        let mut starts = Vec::with_capacity(rows.len() + 1);
+        starts.push(0);
+        let mut end = 0;
+        starts.extend(rows.iter().map(|&j| {
+            end += columns(j).len();
+            end
+        }));
+        let mut values = vec![T::lit(0.0); end];
+        let length = ROWS_PER_TASK.max(self.matrix.size() / MAX_TASKS);
+        let mut tasks = Vec::new();
+        let mut rest = &mut values[..];
+        for first in (0..rows.len()).step_by(length) {
+            let last = (first + length).min(rows.len());
+            let (own, tail) = rest.split_at_mut(starts[last] - starts[first]);
+            tasks.push((first..last, own));
+            rest = tail;
         }
-        finer.recomputed_rows.iter().for_each(|&i| is_near[i as usize] = true);
-        let fixed = &self.fixed;
-        let is_recomputed = |j: usize| !fixed[j] && prolongation.any_child(j, |i| is_near[i]);
-        let recomputed_rows: Vec<u32> =
-            (0..fixed.len()).filter(|&j| is_recomputed(j)).map(|j| j as u32).collect();
-        self.outdated = union(&self.recomputed_rows, &recomputed_rows);
-        self.recomputed_rows = recomputed_rows;
-        self.recomputed_values.clear();
-        self.recomputed_starts.truncate(1);
-        let mut places = vec![NO_INDEX; self.matrix.size()];
-        for &j in &self.recomputed_rows {
-            let columns = self.matrix.row(j as usize).0;
-            let start = self.recomputed_values.len();
-            self.recomputed_values.resize(start + columns.len(), T::lit(0.0));
-            let values = &mut self.recomputed_values[start..];
-            (0..).zip(columns).for_each(|(place, &column)| places[column as usize] = place);
-            prolongation.for_each_child(j as usize, |i, weight| {
-                if !finer.fixed[i] {
-                    add_row(finer.row(i), &finer.fixed, prolongation, weight, (&places, values));
+        for_each_item(tasks, &|_, (range, mut values)| {
+            let mut places = vec![NO_INDEX; self.matrix.size()];
+            for k in range {
+                let columns = columns(rows[k]);
+                let (row, tail) = values.split_at_mut(columns.len());
+                values = tail;
+                if is_kept[k] {
+                    row.copy_from_slice(self.row(rows[k] as usize).1);
+                    continue;
                 }
-            });
-            columns.iter().for_each(|&column| places[column as usize] = NO_INDEX);
-            self.recomputed_starts.push(self.recomputed_values.len());
-        }
+                (0..).zip(columns).for_each(|(place, &column)| places[column as usize] = place);
+                prolongation.for_each_child(rows[k] as usize, |i, weight| {
+                    if let Some((columns, image)) = images.row(i) {
+                        for (&column, &value) in columns.iter().zip(image) {
+                            // products outside of the pattern are dropped
+                            if let Some(entry) = row.get_mut(places[column as usize] as usize) {
+                                *entry += weight * value;
+                            }
+                        }
+                    }
+                });
+                columns.iter().for_each(|&column| places[column as usize] = NO_INDEX);
+            }
+        });
+        (starts, values)
     }
 }
 
-/// The union of two sets, as an ascending list.
-fn union(one: &[u32], other: &[u32]) -> Vec<u32> {
-    let mut all = [one, other].concat();
-    all.sort_unstable();
-    all.dedup();
-    all
+/// Rows of `A P`, with the matrix `A` of the finer level and the prolongation `P`, both restricted to free unknowns of
+/// the finer level. Most unknowns have several parents: without these rows each parent would compute them anew.
+struct Images<T> {
+    /// The number of the row of each unknown of the finer level, [`NO_INDEX`] for an unknown without one.
+    numbers: Vec<u32>,
+    /// The rows, in groups of `length` each.
+    groups: Vec<RectangularMatrix<T>>,
+    length: usize,
 }
 
-/// Adds `weight` times a fine row, restricted to free unknowns and multiplied by the prolongation,
-/// to the values of a coarse row. `places` has the position of each column among the values of the coarse row,
-/// [`NO_INDEX`] for columns outside of its pattern; products in these columns are dropped.
-fn add_row<T: Real>(
-    (neighbours, entries): (&[u32], &[T]),
-    fixed: &[bool],
-    prolongation: &Prolongation<T>,
-    weight: T,
-    (places, values): (&[u32], &mut [T]),
-) {
-    for (&k, &a) in neighbours.iter().zip(entries) {
-        if fixed[k as usize] {
-            continue;
+impl<T: Real> Images<T> {
+    /// The rows of all free children of the unknowns `parents`.
+    fn new(finer: &Level<'_, T>, prolongation: &Prolongation<T>, parents: &[u32]) -> Self {
+        let mut numbers = vec![NO_INDEX; finer.fixed.len()];
+        for &j in parents {
+            prolongation.for_each_child(j as usize, |i, _| numbers[i] = 0);
         }
-        prolongation.for_each_parent(k as usize, |parent, parent_weight| {
-            let place = places[parent as usize];
-            if place != NO_INDEX {
-                values[place as usize] += weight * a * parent_weight;
+        let has_row = |i: &usize| numbers[*i] == 0 && !finer.fixed[*i];
+        let children: Vec<usize> = (0..numbers.len()).filter(has_row).collect();
+        numbers.fill(NO_INDEX);
+        (0..).zip(&children).for_each(|(k, &i)| numbers[i] = k);
+        let n_coarse = prolongation.n_coarse();
+        let length = ROWS_PER_TASK.max(numbers.len() / MAX_TASKS);
+        let groups = map_groups(children.len(), length, &|range| {
+            let mut sum = SparseSum::new(n_coarse);
+            let mut rows =
+                RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+            for &i in &children[range] {
+                let (columns, entries) = finer.row(i);
+                for (&k, &a) in
+                    columns.iter().zip(entries).filter(|(k, _)| !finer.fixed[**k as usize])
+                {
+                    prolongation.for_each_parent(k as usize, |parent, weight| {
+                        sum.add_term(parent, a * weight);
+                    });
+                }
+                sum.move_to(&mut rows.columns, &mut rows.values);
+                rows.starts.push(rows.columns.len() as u32);
             }
+            rows
         });
+        Self { numbers, groups, length }
+    }
+
+    /// Columns and values of the row of an unknown, if it has one.
+    #[inline(always)]
+    fn row(&self, i: usize) -> Option<(&[u32], &[T])> {
+        let number = self.numbers[i];
+        let at = number as usize;
+        (number != NO_INDEX).then(|| self.groups[at / self.length].row(at % self.length))
     }
 }
