@@ -171,7 +171,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             };
             space.set_boundary_fluxes(&forces, &mut flux)?;
             if space.problem.has_obstacle() {
-                let multipliers = space.multipliers_by_cell(&residual, &forces);
+                let multipliers = space.multipliers_by_cell(&residual, &solution.contact, &forces);
                 let cells = (neighbours(), counts);
                 space.exchange_linears(&function, &multipliers, cells, &mut flux);
             }

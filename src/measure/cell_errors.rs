@@ -13,7 +13,7 @@ use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::tables::CellTable;
 use crate::assemble::space::{Space, Terms, data};
 use crate::error::Error;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, edge_vertices};
 use crate::parallel::cells;
 use crate::problem::{DatumRef, Exact, Field};
 use crate::quadrature::{FullySymmetric, Quadrature, Rule};
@@ -53,6 +53,10 @@ const NEGLIGIBLE: f64 = 1e-8;
 /// The largest ratio of two values at the corners of a cell of a coefficient that counts as smooth there. With a larger
 /// one a coefficient without a level, and with it the exact gradient, may jump within the cell.
 const SMOOTH_RATIO: f64 = 2.0;
+
+/// An obstacle whose value at the middle of an edge differs from the mean of those at the ends by at most this share is
+/// linear.
+const LINEAR: f64 = 1e-14;
 
 /// Degree of the rule for means over facets.
 const MEAN_DEGREE: usize = 5;
@@ -115,8 +119,8 @@ struct Measure<'m, 'r, 'f, T: Real, const D: usize> {
     table: CellTable<f64>,
     /// Two rules that are tried before.
     lower: Option<[CellTable<f64>; 2]>,
-    /// The rule on cells that kinks cut.
-    cut_rule: Option<CutRule>,
+    /// The rules on cells that kinks cut, the second one for cells in which admissible functions have no kinks.
+    cut_rules: Option<[CutRule; 2]>,
     /// By region the functions whose zeros are kinks.
     kinks: Vec<Kinks<D>>,
     /// The functional of each node.
@@ -154,9 +158,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let kinks: Vec<Kinks<D>> =
             (0..self.mesh.regions().len()).map(|region| self.kinks(exact, region)).collect();
         let has_kinks = kinks.iter().any(|kinks| !kinks.levels.is_empty());
-        let cut_rule = has_kinks.then(|| CutRule::new(D, degree));
+        let cut_rules = has_kinks.then(|| {
+            let rule = || CutRule::new(D, degree);
+            [rule(), rule().without_needless_bisections()]
+        });
         let table = self.cell_table(cell_rule);
-        let measure = Measure { exact, table, lower, cut_rule, kinks, nodes, u, function };
+        let measure = Measure { exact, table, lower, cut_rules, kinks, nodes, u, function };
         let n_cells = self.mesh.n_cells();
         // partial sums are added in order, so the result does not depend on threads
         let parts = cells::map(n_cells, &|cells: Range<usize>| {
@@ -268,10 +275,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if !try_lower {
             return by_rule(&of.table).map(|squares| [squares; 2]);
         }
-        let on_parts = of.cut_rule.as_ref().and_then(|rule| {
-            let level = of.kinks[self.mesh.region(cell)].level_in(rule, self.mesh, cell)?;
+        let on_parts = of.cut_rules.as_ref().and_then(|rules| {
+            let level = of.kinks[self.mesh.region(cell)].level_in(&rules[0], self.mesh, cell)?;
+            if !rules[0].cuts(self.mesh, cell, &level) {
+                return None;
+            }
+            let rule = &rules[usize::from(self.has_linear_obstacles(cell))];
             let mut sums = Squares::default();
-            let is_cut = rule.visit_if_cut(self.mesh, cell, &level, &mut |point, x, weight| {
+            rule.visit_if_cut(self.mesh, cell, &level, &mut |point, x, weight| {
                 integrand.add(&mut sums, (point, x), weight, &self.basis_at(point));
             });
             let points = || {
@@ -279,7 +290,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 rule.visit_if_cut(self.mesh, cell, &level, &mut |_, x, _| points.push(*x));
                 points
             };
-            is_cut.then(|| integrand.checked(sums, points))
+            Some(integrand.checked(sums, points))
         });
         if let Some(squares) = on_parts {
             return squares.map(|squares| [squares; 2]);
@@ -295,6 +306,22 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             _ => by_rule(&of.table).map(|squares| [squares; 2]),
         }
+    }
+
+    /// Whether functions are linear, and obstacles are linear in a cell but for rounding, as far as their values at
+    /// corners and middles of edges tell: no obstacle exceeds an admissible function within the cell then.
+    fn has_linear_obstacles(&self, cell: usize) -> bool {
+        let (region, corners) = (self.mesh.region(cell), self.mesh.corners(cell));
+        let is_linear = |bound: DatumRef<'_, D>| {
+            let at_corners = corners.map(|x| bound.at(&x));
+            edge_vertices(D).iter().all(|&[a, b]| {
+                let at_middle = bound.at(&((corners[a] + corners[b]) * 0.5));
+                let deviation = (at_middle - 0.5 * (at_corners[a] + at_corners[b])).abs();
+                deviation <= LINEAR * (at_corners[a].abs() + at_corners[b].abs())
+            })
+        };
+        let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
+        self.basis_degree == 1 && bounds.into_iter().flatten().all(is_linear)
     }
 
     /// The largest error at the nodes of a cell.

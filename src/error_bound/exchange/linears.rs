@@ -1,6 +1,7 @@
 //! Exchange for linears: one flux of each facet, one multiplier of each cell.
 
 use super::{FacetOfCell, ROUNDING, Step, decrease, visit_steps};
+use crate::algebra::Contact;
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
@@ -72,14 +73,18 @@ impl<const D: usize> CellInContact<D> {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the part that its
-    /// flux balances, by volume around a vertex and half on the two sides of a facet.
+    /// flux balances, by volume around a vertex and half on the two sides of a facet. Unknowns without contact have
+    /// none: their residuals are what the solver has left.
     pub(in crate::error_bound) fn multipliers_by_cell(
         &self,
         residual: &[f64],
+        contact: &[Contact],
         forces: &[NodeForce],
     ) -> Vec<f64> {
         let n = self.per_cell();
         let mut multipliers = self.multipliers_of_obstacles(residual, forces);
+        let states = multipliers.iter_mut().zip(contact);
+        states.filter(|(_, state)| **state == Contact::Inactive).for_each(|(m, _)| *m = 0.0);
         if self.broken {
             return multipliers.chunks_exact(n).map(|m| m.iter().sum()).collect();
         }

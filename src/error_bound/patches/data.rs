@@ -13,8 +13,30 @@ use crate::mesh::{BoundaryPart, Neighbours};
 use crate::parallel::cells;
 use crate::real::Real;
 
-/// Cells with the number of a vertex in each, and where those of each vertex start.
-type Corners = (Vec<(u32, u8)>, Vec<usize>);
+/// A cell, with the number of a vertex in it.
+#[derive(Clone, Copy)]
+pub(in crate::error_bound) struct Corner(u32);
+
+impl Corner {
+    fn new(cell: usize, own: usize) -> Self {
+        Self((cell * 4 + own) as u32)
+    }
+
+    pub fn cell(self) -> u32 {
+        self.0 / 4
+    }
+
+    /// The number of the vertex in the cell.
+    pub fn own(self) -> u8 {
+        (self.0 % 4) as u8
+    }
+}
+
+/// The corners of all vertices, and where those of each vertex start.
+type Corners = (Vec<Corner>, Vec<u32>);
+
+/// Cells whose parts are kept at a time. The parts of a cell are twelve numbers in space, its flux four.
+const CELLS_AT_A_TIME: usize = 1 << 17;
 
 /// What the patches read.
 pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
@@ -29,9 +51,11 @@ pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
     pub one_cell: Vec<(u32, u32)>,
     /// The cells around each vertex with its number there, and where those of each vertex start; found once needed.
     pub corners: OnceLock<Corners>,
-    /// By cell and vertex the fluxes through the facets there, as bits: each is written once, by the task of
+    /// The cells whose parts are kept.
+    kept: Range<usize>,
+    /// By kept cell and vertex the fluxes through the facets there, as bits: each is written once, by the task of
     /// the vertex.
-    pub parts: Vec<AtomicU64>,
+    parts: Vec<AtomicU64>,
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
@@ -79,8 +103,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             *cell = (k / (D + 1)) as u32;
             *count += 1;
         }
-        let mut parts = in_large_pages(Vec::with_capacity(n_cells * (D + 1) * D));
-        parts.resize_with(n_cells * (D + 1) * D, AtomicU64::default);
         Ok(Patches {
             space: self,
             neighbours,
@@ -88,23 +110,51 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             multipliers,
             one_cell,
             corners: OnceLock::new(),
-            parts,
+            kept: 0..0,
+            parts: Vec::new(),
         })
     }
 
     /// The cells around each vertex with its number there, and where those of each vertex start.
     pub(in crate::error_bound) fn corners(&self) -> Corners {
         let n_vertices = self.mesh.vertices().len();
-        let mut starts = vec![0; n_vertices + 1];
+        let mut starts = vec![0_u32; n_vertices + 1];
         self.mesh.cells().iter().for_each(|&v| starts[v as usize + 1] += 1);
         (0..n_vertices).for_each(|v| starts[v + 1] += starts[v]);
         let mut next = starts.clone();
-        let mut corners = vec![(0, 0); self.mesh.cells().len()];
+        let mut corners = in_large_pages(vec![Corner(0); self.mesh.cells().len()]);
         for (k, &v) in self.mesh.cells().iter().enumerate() {
-            corners[next[v as usize]] = ((k / (D + 1)) as u32, (k % (D + 1)) as u8);
-            next[v as usize] += 1;
+            let at = &mut next[v as usize];
+            corners[*at as usize] = Corner::new(k / (D + 1), k % (D + 1));
+            *at += 1;
         }
         (corners, starts)
+    }
+
+    /// Ranges of cells that have their parts kept at a time, each with the vertices of its cells. All cells are one
+    /// range if the vertices of several ranges would be more than twice as many as there are: the numbers of neighbours
+    /// are far apart then.
+    pub(super) fn ranges_with_vertices(&self) -> Vec<(Range<usize>, Vec<u32>)> {
+        let (n_cells, n_vertices) = (self.mesh.n_cells(), self.mesh.vertices().len());
+        let mut last_range = vec![u32::MAX; n_vertices];
+        let mut ranges = Vec::new();
+        let mut n_visits = 0;
+        for (number, first) in (0..n_cells).step_by(CELLS_AT_A_TIME).enumerate() {
+            let cells = first..(first + CELLS_AT_A_TIME).min(n_cells);
+            let mut vertices = Vec::new();
+            for &v in &self.mesh.cells()[cells.start * (D + 1)..cells.end * (D + 1)] {
+                if last_range[v as usize] != number as u32 {
+                    last_range[v as usize] = number as u32;
+                    vertices.push(v);
+                }
+            }
+            n_visits += vertices.len();
+            if n_visits > 2 * n_vertices {
+                return vec![(0..n_cells, (0..n_vertices as u32).collect())];
+            }
+            ranges.push((cells, vertices));
+        }
+        ranges
     }
 }
 
@@ -123,20 +173,32 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         own - pressure * self.volume(cell)
     }
 
-    /// Writes the flux of a vertex of a cell through its facet `k` there.
-    pub fn set(&self, corner: (usize, u8), k: usize, flux: f64) {
-        self.parts[part_of::<D>(corner, k)].store(flux.to_bits(), Ordering::Relaxed);
+    /// Keeps the parts of these cells from now on.
+    pub fn keep(&mut self, cells: Range<usize>) {
+        self.parts.resize_with(cells.len() * (D + 1) * D, AtomicU64::default);
+        self.kept = cells;
+    }
+
+    /// Writes the flux of a vertex of a cell through its facet `k` there, if the parts of the cell are kept.
+    pub fn set(&self, (cell, own): (usize, u8), k: usize, flux: f64) {
+        if self.kept.contains(&cell) {
+            self.part((cell, own), k).store(flux.to_bits(), Ordering::Relaxed);
+        }
+    }
+
+    /// The flux of a vertex of a kept cell through its facet `k` there.
+    pub fn get(&self, corner: (usize, u8), k: usize) -> f64 {
+        f64::from_bits(self.part(corner, k).load(Ordering::Relaxed))
+    }
+
+    fn part(&self, (cell, own): (usize, u8), k: usize) -> &AtomicU64 {
+        &self.parts[((cell - self.kept.start) * (D + 1) + usize::from(own)) * D + k]
     }
 }
 
 /// How many numbers are known of a cell before its patches are.
 const fn numbers_of_cell(dimension: usize) -> usize {
     2 * dimension + 3
-}
-
-/// Where the flux of a vertex of a cell through its facet `k` there is among those of all.
-pub(super) fn part_of<const D: usize>((cell, own): (usize, u8), k: usize) -> usize {
-    (cell * (D + 1) + usize::from(own)) * D + k
 }
 
 /// The facets of a cell at one of its vertices.

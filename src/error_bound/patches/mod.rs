@@ -15,10 +15,9 @@ mod fan;
 
 use std::convert::Infallible;
 use std::ops::Range;
-use std::sync::atomic::Ordering;
 
-pub(super) use data::around;
-use data::{Patches, part_of};
+use data::Patches;
+pub(super) use data::{Corner, around};
 use fan::CellOfFan;
 use nalgebra::{SMatrix, SVector};
 
@@ -45,25 +44,30 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         forces: &[NodeForce],
         neighbours: &Neighbours,
     ) -> Result<Vec<f64>, NoBound> {
-        let patches = self.patches(u, residual, forces, neighbours)?;
-        cells::map(self.mesh.vertices().len(), &|vertices: Range<usize>| {
-            let mut patch = Patch::default();
-            vertices.for_each(|vertex| patches.add_vertex(vertex, &mut patch));
-        });
-        let mut flux = in_large_pages(vec![0.0; self.mesh.n_cells() * (D + 1)]);
-        let fill = |cells: Range<usize>, flux: &mut [f64]| {
-            for (cell, flux) in cells.zip(flux.chunks_exact_mut(D + 1)) {
-                flux.copy_from_slice(patches.normals(cell));
-                for own in 0..=D as u8 {
-                    for (k, local) in around::<D>(own).enumerate() {
-                        let part = &patches.parts[part_of::<D>((cell, own), k)];
-                        flux[local] += f64::from_bits(part.load(Ordering::Relaxed));
+        let mut patches = self.patches(u, residual, forces, neighbours)?;
+        let mut flux = in_large_pages(Vec::with_capacity(self.mesh.n_cells() * (D + 1)));
+        for (cells, vertices) in self.ranges_with_vertices() {
+            patches.keep(cells.clone());
+            cells::map(vertices.len(), &|range: Range<usize>| {
+                let mut patch = Patch::default();
+                vertices[range].iter().for_each(|&v| patches.add_vertex(v as usize, &mut patch));
+            });
+            let start = flux.len();
+            flux.resize(cells.end * (D + 1), 0.0);
+            let fill = |range: Range<usize>, flux: &mut [f64]| {
+                for (k, flux) in range.zip(flux.chunks_exact_mut(D + 1)) {
+                    let cell = cells.start + k;
+                    flux.copy_from_slice(patches.normals(cell));
+                    for own in 0..=D as u8 {
+                        for (k, local) in around::<D>(own).enumerate() {
+                            flux[local] += patches.get((cell, own), k);
+                        }
                     }
                 }
-            }
-            Ok::<(), Infallible>(())
-        };
-        let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * (D + 1), &mut flux, &fill);
+                Ok::<(), Infallible>(())
+            };
+            let Ok(()) = cells::for_each(cells.len(), &|c| c * (D + 1), &mut flux[start..], &fill);
+        }
         Ok(flux)
     }
 }
@@ -111,13 +115,14 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             return;
         }
         let (corners, starts) = self.corners.get_or_init(|| self.space.corners());
-        let corners = &corners[starts[vertex]..starts[vertex + 1]];
-        let total: f64 = corners.iter().map(|&(cell, _)| self.volume(cell as usize)).sum();
+        let corners = &corners[starts[vertex] as usize..starts[vertex + 1] as usize];
+        let total: f64 = corners.iter().map(|corner| self.volume(corner.cell() as usize)).sum();
         let pressure = self.multipliers[vertex] / total;
         let Patch { cells, matrix, multipliers, sums, .. } = patch;
         cells.clear();
         multipliers.clear();
-        for (k, &(cell, own)) in corners.iter().enumerate() {
+        for (k, corner) in corners.iter().enumerate() {
+            let (cell, own) = (corner.cell(), corner.own());
             let mut facets = [FacetOfPatch::Fixed(0.0); 3];
             for (slot, local) in facets.iter_mut().zip(around::<D>(own)) {
                 *slot = self.facet_of_patch((cell, local), k, corners, (cells, multipliers));
@@ -146,7 +151,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         solve(matrix, multipliers, n);
         // the second cell of a facet takes the rest of the sum: sides agree to rounding
         let mut n_known = 0;
-        for (&(cell, own), of) in corners.iter().zip(&*cells) {
+        for (corner, of) in corners.iter().zip(&*cells) {
             let multiplier = |a: usize| match of.facets[a] {
                 FacetOfPatch::Interior(i) => multipliers[i],
                 _ => 0.0,
@@ -162,7 +167,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                     }
                     _ => flux,
                 };
-                self.set((cell as usize, own), k, flux);
+                self.set((corner.cell() as usize, corner.own()), k, flux);
             }
         }
     }
@@ -173,17 +178,17 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         &self,
         (cell, local): (u32, usize),
         k: usize,
-        corners: &[(u32, u8)],
+        corners: &[Corner],
         (cells, multipliers): (&[CellOfPatch], &mut Vec<f64>),
     ) -> FacetOfPatch {
         let normal = self.normals(cell as usize)[local];
         match self.neighbours.across(cell as usize, local) {
             Neighbour::Cell { cell: other, local: there } => {
                 let there = usize::from(there);
-                let position = corners.binary_search_by_key(&other, |&(cell, _)| cell);
+                let position = corners.binary_search_by_key(&other, |corner| corner.cell());
                 match position.ok().filter(|&l| l < k) {
                     Some(l) => {
-                        let slot = around::<D>(corners[l].1).position(|local| local == there);
+                        let slot = around::<D>(corners[l].own()).position(|local| local == there);
                         slot.map_or(FacetOfPatch::Free, |slot| cells[l].facets[slot])
                     }
                     None => {
@@ -205,6 +210,10 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         facets: [FacetOfPatch; 3],
         load: f64,
     ) -> CellOfPatch {
+        let is_free = |facet: &FacetOfPatch| !matches!(facet, FacetOfPatch::Fixed(_));
+        if D == 3 && facets.iter().all(is_free) {
+            return self.free_cell_of_patch((cell, own), facets, load);
+        }
         let mesh = self.space.mesh;
         let products = facet_products::<D>(
             mesh.cell(cell as usize).iter().map(|&v| point_f64(&mesh.vertices()[v as usize])),
@@ -243,6 +252,37 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         };
         let known = SVector::from_fn(|a, _| fixed[a].unwrap_or(0.0));
         CellOfPatch { facets, slopes, fluxes: slopes * force + unit * rest + known }
+    }
+
+    /// A cell in space whose three facets at the vertex have fluxes that are not fixed, in closed form.
+    ///
+    /// With `a_F` opposite the facet `F` and `V` the volume, fluxes `f_F` have in the cell the vector field
+    /// `(x sum f_F - sum f_F a_F) / (3 V)`. A sum of zero leaves the constant field with `v = sum f_F a_F` along the
+    /// facet of the three points `a_F`, and there `f_F = grad lambda_F . v`, with barycentric coordinates of this facet:
+    /// the slopes are `9 alpha V` times the products of these gradients. With a sum of one the norm is least where
+    /// `sum f_F a_F` is the point of the facet next to the barycentre of the cell.
+    fn free_cell_of_patch(
+        &self,
+        (cell, own): (u32, u8),
+        facets: [FacetOfPatch; 3],
+        load: f64,
+    ) -> CellOfPatch {
+        let corners = self.space.mesh.corners(cell as usize);
+        let mut others = [Point::<f64, D>::zeros(); 3];
+        others.iter_mut().zip(around::<D>(own)).for_each(|(to, k)| *to = corners[k]);
+        let [a, b, c] = others;
+        let (one, two, from) = (a - c, b - c, corners[usize::from(own)] - c);
+        let (g11, g12, g22) = (one.norm_squared(), one.dot(&two), two.norm_squared());
+        let scale = 1.0 / (g11 * g22 - g12 * g12);
+        let (aa, ab, bb) = (g22 * scale, -g12 * scale, g11 * scale);
+        let (ac, bc) = (-aa - ab, -ab - bb);
+        let factor = 9.0 * self.volume(cell as usize) * self.space.alpha(cell as usize).to_f64();
+        let slopes = SMatrix::<f64, 3, 3>::new(aa, ab, ac, ab, bb, bc, ac, bc, -ac - bc) * factor;
+        // barycentric coordinates of the point of the facet next to the vertex
+        let (along_one, along_two) = (one.dot(&from), two.dot(&from));
+        let (of_a, of_b) = (aa * along_one + ab * along_two, ab * along_one + bb * along_two);
+        let unit = SVector::<f64, 3>::new(1.0 + of_a, 1.0 + of_b, 2.0 - of_a - of_b) * 0.25;
+        CellOfPatch { facets, slopes, fluxes: unit * load }
     }
 }
 

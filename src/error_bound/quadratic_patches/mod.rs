@@ -68,9 +68,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             vertices.for_each(|vertex| patches.add_vertex(vertex, &mut patch, &mut parts));
             parts
         });
-        for (&(cell, own), part) in patches.corners.iter().zip(parts.iter().flatten()) {
-            for (facet, part) in around::<D>(own).zip(part) {
-                let start = cell as usize * square + facet * (D + 1);
+        for (corner, part) in patches.corners.iter().zip(parts.iter().flatten()) {
+            for (facet, part) in around::<D>(corner.own()).zip(part) {
+                let start = corner.cell() as usize * square + facet * (D + 1);
                 vertices_of::<D>(facet).zip(part).for_each(|(j, part)| flux[start + j] += part);
             }
         }

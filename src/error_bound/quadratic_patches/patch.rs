@@ -3,7 +3,7 @@
 use super::cell_data::CellData;
 use crate::arrays::tabulate;
 use crate::assemble::space::{Place, Space};
-use crate::error_bound::patches::{around, solve};
+use crate::error_bound::patches::{Corner, around, solve};
 use crate::error_bound::quadratics::{Products, densities, triple, vertices_of};
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::{Point, Real};
@@ -18,8 +18,8 @@ pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
     pub cells: Vec<CellData>,
     /// The products of Neumann data and contact forces, by facet; sorted.
     pub given: Vec<&'s (Place, Products)>,
-    pub corners: Vec<(u32, u8)>,
-    pub starts: Vec<usize>,
+    pub corners: Vec<Corner>,
+    pub starts: Vec<u32>,
 }
 
 /// The densities of a facet of a patch at its vertices: a sign times unknowns, plus a shift.
@@ -45,11 +45,12 @@ pub(super) struct Patch {
 impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     /// Adds the part of a vertex to a list: for each cell around it the densities of the facets there.
     pub fn add_vertex(&self, vertex: usize, patch: &mut Patch, parts: &mut Vec<OfFacets>) {
-        let corners = &self.corners[self.starts[vertex]..self.starts[vertex + 1]];
+        let corners = &self.corners[self.starts[vertex] as usize..self.starts[vertex + 1] as usize];
         let Patch { slots, matrix, unknowns } = patch;
         let mut n_free = 0;
         slots.clear();
-        for (k, &(cell, own)) in corners.iter().enumerate() {
+        for (k, corner) in corners.iter().enumerate() {
+            let (cell, own) = (corner.cell(), corner.own());
             let mut of_cell = [Slot { first: 0, sign: 0.0, shift: [0.0; 3] }; 3];
             for (slot, local) in of_cell.iter_mut().zip(around::<D>(own)) {
                 *slot = self.slot((cell, own, local), corners, &slots[..k], &mut n_free);
@@ -61,7 +62,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         matrix.resize(n * n, 0.0);
         unknowns.clear();
         unknowns.resize(n, 0.0);
-        for (k, (&corner, slots)) in corners.iter().zip(&*slots).enumerate() {
+        for (k, (corner, slots)) in corners.iter().zip(&*slots).enumerate() {
+            let corner = (corner.cell(), corner.own());
             self.add_cell(corner, slots, n_free + k, (matrix, unknowns));
         }
         solve(matrix, unknowns, n_free);
@@ -79,7 +81,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     fn slot(
         &self,
         (cell, own, local): (u32, u8, usize),
-        corners: &[(u32, u8)],
+        corners: &[Corner],
         slots: &[[Slot; 3]],
         n_free: &mut usize,
     ) -> Slot {
@@ -98,9 +100,9 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         match self.neighbours.across(place.0, local) {
             Neighbour::Cell { cell: other, local: there } => {
                 let there = usize::from(there);
-                let position = corners.binary_search_by_key(&other, |&(cell, _)| cell);
+                let position = corners.binary_search_by_key(&other, |corner| corner.cell());
                 let Some(known) = position.ok().filter(|&l| l < slots.len()) else { return free() };
-                let own = corners[known].1;
+                let own = corners[known].own();
                 let across = self.cells[other as usize].part::<D>(there, usize::from(own));
                 let across = on_facet(&across, there);
                 let slot = around::<D>(own).position(|local| local == there).unwrap_or(0);

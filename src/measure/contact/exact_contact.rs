@@ -8,7 +8,7 @@ use crate::assemble::space::{Space, data};
 use crate::error::Error;
 use crate::parallel::cells;
 use crate::problem::Exact;
-use crate::real::Real;
+use crate::real::{Point, Real};
 
 /// Degree of the rule on a simplex, or on the parts into which the free boundary cuts it.
 const DEGREE: usize = 5;
@@ -35,7 +35,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         entities: &[ContactEntity],
     ) -> Result<Vec<Vec<ExactContact>>, Error> {
         // for facets and for cells
-        let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, DEGREE));
+        let rules = [D - 1, D]
+            .map(|dimension| CutRule::new(dimension, DEGREE).without_needless_bisections());
         let chunks = cells::map(entities.len(), &|range: Range<usize>| {
             let on_entity = |entity: &ContactEntity| {
                 self.exact_contact_on(exact, *entity, &rules[usize::from(entity.facet.is_none())])
@@ -54,9 +55,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let corners = self.corner_points(entity);
         let mut found = ExactContact::default();
         let mut not_finite = None;
-        let mut add = |hats: &[f64; 4], weight: f64| {
+        let mut add = |hats: &[f64; 4],
+                       weight: f64,
+                       is_in_contact: &dyn Fn(&Point<f64, D>) -> bool| {
             let x = in_space(hats, &corners);
-            let is_in_contact = exact.contact.as_ref().is_some_and(|set| (set.indicator)(&x) > 0.0);
+            let is_in_contact = is_in_contact(&x);
             found.shares[usize::from(is_in_contact)] += weight;
             let Some(multiplier) = &exact.multiplier else { return };
             let density = multiplier(&x);
@@ -65,9 +68,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             found.tested.iter_mut().zip(hats).for_each(|(sum, hat)| *sum += weight * density * hat);
         };
+        let mut add_whole = |is_in_contact: bool| {
+            rule.visit_whole(&mut |hats, weight| add(hats, weight, &|_| is_in_contact))
+        };
         match &exact.contact {
-            Some(set) => rule.visit(&corners, &set.indicator, &mut add),
-            None => rule.visit_whole(&mut add),
+            None => add_whole(false),
+            Some(set) => match rule.sign_of_uncut(&corners, &set.indicator) {
+                Some(is_in_contact) => add_whole(is_in_contact),
+                None => {
+                    let is_in_contact = |x: &Point<f64, D>| (set.indicator)(x) > 0.0;
+                    rule.visit(&corners, &set.indicator, &mut |hats, weight| {
+                        add(hats, weight, &is_in_contact);
+                    });
+                }
+            },
         }
         if let Some((density, x)) = not_finite {
             data::finite(density, "exact multiplier", &x, entity.cell)?;

@@ -8,6 +8,7 @@ mod reference;
 mod rows;
 mod settings;
 
+use std::cell::OnceCell;
 use std::fmt;
 #[cfg(feature = "report")]
 use std::path::PathBuf;
@@ -69,6 +70,8 @@ pub struct Study<'a, T: Real, const D: usize> {
     levels: Vec<usize>,
     adaptive: Option<Adaptivity>,
     mesh: Option<Mesh<T, D>>,
+    /// The result of [`check_fit`] for the given mesh, once known.
+    fit: OnceCell<Option<String>>,
     reference: Option<Reference<'a, T, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
@@ -134,6 +137,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             levels: Vec::new(),
             adaptive: None,
             mesh: None,
+            fit: OnceCell::new(),
             reference: None,
             solvers: Vec::new(),
             quadrature: DataQuadrature::default(),
@@ -192,10 +196,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             reference.check(domain, &self.levels)?;
             self.coarsest().check(reference.level)?;
         }
-        match &self.mesh {
-            Some(mesh) => check_fit(&self.scene, mesh),
-            None => check_domain(&self.scene).map(|()| None),
+        let Some(mesh) = &self.mesh else {
+            return check_domain(&self.scene).map(|()| None);
+        };
+        // a check of a study comes before its run
+        if self.fit.get().is_none() {
+            let _ = self.fit.set(check_fit(&self.scene, mesh)?);
         }
+        Ok(self.fit.get().cloned().flatten())
     }
 
     /// Runs every scheme with every solver on every level.

@@ -1,5 +1,6 @@
 //! The settings of a study.
 
+use std::cell::OnceCell;
 #[cfg(feature = "report")]
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -110,6 +111,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     #[must_use]
     pub fn on_mesh(mut self, mesh: Mesh<T, D>) -> Self {
         self.mesh = Some(mesh);
+        self.fit = OnceCell::new();
         self
     }
     /// Adds a solver of the inequality; without one, the active set method runs. Several solvers stand
