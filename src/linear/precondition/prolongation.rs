@@ -1,8 +1,8 @@
 //! Prolongations from coarse to fine functions, and their transposes.
 
-use crate::algebra::{RectangularMatrix, Support, sort_by_column};
+use crate::algebra::{NO_INDEX, RectangularMatrix, Support, sort_by_column};
 use crate::memory::in_large_pages;
-use crate::parallel::vectors::{for_each_chunk, zeros};
+use crate::parallel::vectors::{collect, for_each_chunk, zeros};
 use crate::real::Real;
 
 /// A prolongation `P`: a sparse matrix whose columns are the coarse basis functions in the fine basis.
@@ -21,6 +21,9 @@ enum Entries<T> {
     /// mesh. A coarse unknown has one child of weight one, its entry of `own`. Its children of weight 1/2 are the
     /// midpoints in `children` from its entry of `starts` up to the next entry.
     Midpoints { parents: Vec<[u32; 2]>, starts: Vec<u32>, children: Vec<u32>, own: Vec<u32> },
+    /// Each fine unknown has the value at one coarse unknown, its entry of `parents`. The children of a coarse unknown
+    /// are those in `children` from its entry of `starts` up to the next entry.
+    Injection { parents: Vec<u32>, starts: Vec<u32>, children: Vec<u32> },
     /// General weights: `P` by rows (`fine`), and its transpose by rows (`coarse`).
     Weights { fine: RectangularMatrix<T>, coarse: RectangularMatrix<T> },
 }
@@ -34,29 +37,31 @@ impl<T: Real> Prolongation<T> {
     /// If a parent is not less than `n_coarse`.
     #[must_use]
     pub fn midpoints(parents: Vec<[u32; 2]>, n_coarse: usize) -> Self {
-        let mut starts = vec![0_u32; n_coarse + 1];
         let mut own = vec![0_u32; n_coarse];
-        for (i, &[a, b]) in parents.iter().enumerate() {
-            if a == b {
-                own[a as usize] = i as u32;
-            } else {
-                starts[a as usize + 1] += 1;
-                starts[b as usize + 1] += 1;
-            }
+        for (i, [a, _]) in parents.iter().enumerate().filter(|(_, [a, b])| a == b) {
+            own[*a as usize] = i as u32;
         }
-        for j in 0..n_coarse {
-            starts[j + 1] += starts[j];
-        }
-        let mut next = starts.clone();
-        let mut children = in_large_pages(vec![0_u32; starts[n_coarse] as usize]);
-        for (i, &[a, b]) in parents.iter().enumerate().filter(|(_, [a, b])| a != b) {
-            for parent in [a, b] {
-                let at = &mut next[parent as usize];
-                children[*at as usize] = i as u32;
-                *at += 1;
-            }
-        }
+        let midpoints = (0..).zip(&parents).filter(|(_, [a, b])| a != b);
+        let pairs = midpoints.flat_map(|(i, &[a, b])| [(i, a), (i, b)]);
+        let (starts, children) = children(pairs, n_coarse);
         Self { entries: Entries::Midpoints { parents, starts, children, own }, n_coarse }
+    }
+
+    /// The prolongation of conforming linear functions to unknowns that are values at one vertex each; `None` if a
+    /// support has more vertices, or one that is not less than `n_vertices`.
+    fn injection(supports: &[Support], n_vertices: usize) -> Option<Self> {
+        let parents = collect(supports.len(), |i| match supports[i].vertices() {
+            [vertex] if (*vertex as usize) < n_vertices => *vertex,
+            _ => NO_INDEX,
+        });
+        if parents.contains(&NO_INDEX) {
+            return None;
+        }
+        let (starts, children) = children((0..).zip(parents.iter().copied()), n_vertices);
+        Some(Self {
+            entries: Entries::Injection { parents, starts, children },
+            n_coarse: n_vertices,
+        })
     }
 
     /// The prolongation of conforming linear functions to a mesh that results from bisections. The first `n_coarse`
@@ -98,7 +103,8 @@ impl<T: Real> Prolongation<T> {
     /// is the mean of the values at the vertices of its support; `None` if a support is empty or has a
     /// vertex that is not less than `n_vertices`.
     pub(crate) fn to_element(supports: &[Support], n_vertices: usize) -> Option<Self> {
-        Self::to_means(supports.iter().map(Support::vertices), n_vertices)
+        let to_means = || Self::to_means(supports.iter().map(Support::vertices), n_vertices);
+        Self::injection(supports, n_vertices).or_else(to_means)
     }
 
     /// The prolongation of conforming linear functions to the means over sets of vertices; `None` if a set is
@@ -144,6 +150,7 @@ impl<T: Real> Prolongation<T> {
     pub fn n_fine(&self) -> usize {
         match &self.entries {
             Entries::Midpoints { parents, .. } => parents.len(),
+            Entries::Injection { parents, .. } => parents.len(),
             Entries::Weights { fine, .. } => fine.n_rows(),
         }
     }
@@ -158,6 +165,12 @@ impl<T: Real> Prolongation<T> {
                     let add = |s, &i: &u32| s + fine_residual[i as usize];
                     let sum = midpoints.iter().fold(S::lit(0.0), add);
                     *out = fine_residual[own[j] as usize] + half * sum;
+                }
+            }
+            Entries::Injection { starts, children, .. } => {
+                for (j, out) in range.zip(out) {
+                    let children = &children[starts[j] as usize..starts[j + 1] as usize];
+                    *out = children.iter().fold(S::lit(0.0), |s, &i| s + fine_residual[i as usize]);
                 }
             }
             Entries::Weights { coarse, .. } => {
@@ -183,6 +196,14 @@ impl<T: Real> Prolongation<T> {
                 for ((&[a, b], &mask), x) in rows.zip(out) {
                     if mask != zero {
                         *x += half * (coarse_values[a as usize] + coarse_values[b as usize]);
+                    }
+                }
+            }
+            Entries::Injection { parents, .. } => {
+                let rows = parents[range.clone()].iter().zip(&mask[range]);
+                for ((&parent, &mask), x) in rows.zip(out) {
+                    if mask != zero {
+                        *x += coarse_values[parent as usize];
                     }
                 }
             }
@@ -241,6 +262,11 @@ impl<T: Real> Prolongation<T> {
                     call(i as usize, T::lit(0.5));
                 }
             }
+            Entries::Injection { starts, children, .. } => {
+                for &i in &children[starts[j] as usize..starts[j + 1] as usize] {
+                    call(i as usize, T::lit(1.0));
+                }
+            }
             Entries::Weights { coarse, .. } => {
                 let (columns, weights) = coarse.row(j);
                 columns.iter().zip(weights).for_each(|(&i, &w)| call(i as usize, w));
@@ -258,12 +284,32 @@ impl<T: Real> Prolongation<T> {
                     call(parent, T::lit(0.5));
                 }
             }
+            Entries::Injection { parents, .. } => call(parents[i], T::lit(1.0)),
             Entries::Weights { fine, .. } => {
                 let (columns, weights) = fine.row(i);
                 columns.iter().zip(weights).for_each(|(&j, &w)| call(j, w));
             }
         }
     }
+}
+
+/// Where the children of each coarse unknown start, and the children, ascending for each, from pairs of a child and a
+/// parent.
+fn children(
+    pairs: impl Iterator<Item = (u32, u32)> + Clone,
+    n_coarse: usize,
+) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0_u32; n_coarse + 1];
+    pairs.clone().for_each(|(_, parent)| starts[parent as usize + 1] += 1);
+    (0..n_coarse).for_each(|j| starts[j + 1] += starts[j]);
+    let mut next = starts.clone();
+    let mut children = in_large_pages(vec![0_u32; starts[n_coarse] as usize]);
+    for (child, parent) in pairs {
+        let at = &mut next[parent as usize];
+        children[*at as usize] = child;
+        *at += 1;
+    }
+    (starts, children)
 }
 
 /// The rows of the prolongation [`Prolongation::to_means`]; `None` as there.
