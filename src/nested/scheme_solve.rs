@@ -68,7 +68,9 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let start = self.start(position, scheme)?;
         self.enter(Phase::Assembly);
         let mesh = self.p1.meshes.mesh(position);
-        let (discretisation, mut inequality, assemble_seconds) = self.assembled(scheme, mesh)?;
+        let (mut discretisation, mut inequality, assemble_seconds) =
+            self.assembled(scheme, mesh)?;
+        discretisation.forget_prepared();
         let guess = self.guess(start.as_deref(), energy_tolerance, &mut inequality);
         let mut warnings = Vec::new();
         let penalty_below_bound = discretisation.penalty_below_bound();

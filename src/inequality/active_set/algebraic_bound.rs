@@ -87,7 +87,8 @@ impl<T: Real> PreconditionedSolver<'_, T> {
         threshold: f64,
     ) -> Result<Option<f64>, Outcome> {
         let distribution = iterate.inequality.distribution();
-        let mut unbalanced_residual = zeros(iterate.values.len());
+        // every linear system begins with a new residual
+        self.residual.fill(T::lit(0.0));
         let mut eliminated = vec![false; iterate.values.len()];
         for (i, bound) in iterate.inequality.bounds.iter().enumerate() {
             if !iterate.inequality.owns(i) {
@@ -98,7 +99,7 @@ impl<T: Real> PreconditionedSolver<'_, T> {
             let multiplier = iterate.multiplier(i).unwrap_or(f64::NEG_INFINITY);
             let is_fixed = bound.fixed_value().is_some();
             if !is_fixed && multiplier < 0.0 {
-                unbalanced_residual[i] = T::lit(residual);
+                self.residual[i] = T::lit(residual);
             }
             let is_strongly_active = multiplier > threshold * iterate.diagonal[i].sqrt();
             eliminated[i] = is_fixed || is_strongly_active;
@@ -112,9 +113,9 @@ impl<T: Real> PreconditionedSolver<'_, T> {
                 Err(_) => return Ok(None),
             }
         }
-        let mut preconditioned = zeros(unbalanced_residual.len());
-        self.preconditioner.apply(&unbalanced_residual, &mut preconditioned);
-        let squared = sum_over_parts(distribution, dot(&unbalanced_residual, &mut preconditioned));
+        let mut preconditioned = zeros(self.residual.len());
+        self.preconditioner.apply(&self.residual, &mut preconditioned);
+        let squared = sum_over_parts(distribution, dot(&self.residual, &mut preconditioned));
         Ok((squared >= 0.0).then(|| squared.sqrt()))
     }
 }

@@ -38,8 +38,8 @@ pub(crate) struct PreconditionedSolver<'a, T: Real> {
     pub(super) eliminated: Vec<bool>,
     /// See [`LinearSolver::tolerance`].
     tolerance: f64,
-    /// The residual that the Krylov method updates, zero on eliminated unknowns.
-    residual: Vec<T>,
+    /// The residual that the Krylov method updates, zero on eliminated unknowns; between systems the unbalanced one.
+    pub(super) residual: Vec<T>,
     /// Smallest Ritz value of all systems so far, at most one.
     pub(super) smallest_ritz_value: f64,
     /// Preconditioned norm of the residual at the end of the last system.
