@@ -1,9 +1,18 @@
 //! Rectangular sparse matrices, and the product `P^T A P`.
 
+use std::ops::Range;
+
 use super::index::NO_INDEX;
 use super::matrix::{SparseMatrix, transpose};
 use super::row::sort_by_column;
+use crate::parallel::map_groups;
 use crate::real::Real;
+
+/// Rows that one task computes at least.
+const ROWS_PER_TASK: usize = 1024;
+
+/// Most tasks of a product, whose sums have an index for every column.
+const MAX_TASKS: usize = 32;
 
 /// A rectangular matrix in compressed sparse rows.
 #[derive(Clone, Debug)]
@@ -15,6 +24,41 @@ pub(crate) struct RectangularMatrix<T> {
 }
 
 impl<T: Real> RectangularMatrix<T> {
+    /// The rows of a range, which `add` appends to columns and values one by one.
+    pub fn by_rows(
+        range: Range<usize>,
+        mut add: impl FnMut(usize, &mut Vec<u32>, &mut Vec<T>),
+    ) -> Self {
+        let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
+        for row in range {
+            add(row, &mut columns, &mut values);
+            starts.push(columns.len() as u32);
+        }
+        Self { starts, columns, values }
+    }
+
+    /// The rows that `work` computes for ranges of rows, one task each: all rows in one range where there is one thread.
+    pub fn by_groups(n_rows: usize, work: &(dyn Fn(Range<usize>) -> Self + Sync)) -> Self {
+        let length = match rayon::current_num_threads() {
+            1 => n_rows,
+            _ => ROWS_PER_TASK.max(n_rows / MAX_TASKS),
+        };
+        if n_rows <= length {
+            return work(0..n_rows);
+        }
+        let groups = map_groups(n_rows, length, work);
+        let n_entries = groups.iter().map(|group| group.columns.len()).sum();
+        let (mut starts, mut columns) = (vec![0], Vec::with_capacity(n_entries));
+        let mut values = Vec::with_capacity(n_entries);
+        for group in groups {
+            let before = columns.len() as u32;
+            starts.extend(group.starts[1..].iter().map(|start| before + start));
+            columns.extend_from_slice(&group.columns);
+            values.extend_from_slice(&group.values);
+        }
+        Self { starts, columns, values }
+    }
+
     /// Number of rows.
     pub fn n_rows(&self) -> usize {
         self.starts.len() - 1
@@ -50,30 +94,31 @@ pub(crate) fn galerkin_product<T: Real>(
     prolongation: &RectangularMatrix<T>,
     n_coarse: usize,
 ) -> SparseMatrix<T> {
-    let mut sum = SparseSum::new(n_coarse);
-    let mut image = RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
-    for i in 0..matrix.size() {
-        let (columns, values) = matrix.row(i);
-        for (&j, &a) in columns.iter().zip(values) {
-            if a != T::lit(0.0) {
-                sum.add(a, prolongation.row(j as usize));
+    let image = RectangularMatrix::by_groups(matrix.size(), &|range| {
+        let mut sum = SparseSum::new(n_coarse);
+        RectangularMatrix::by_rows(range, |i, columns, values| {
+            let (neighbours, entries) = matrix.row(i);
+            for (&j, &a) in neighbours.iter().zip(entries) {
+                if a != T::lit(0.0) {
+                    sum.add(a, prolongation.row(j as usize));
+                }
             }
-        }
-        sum.move_to(&mut image.columns, &mut image.values);
-        image.starts.push(image.columns.len() as u32);
-    }
+            sum.move_to(columns, values);
+        })
+    });
     let transpose = prolongation.transpose(n_coarse);
-    let mut coarse = SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
-    for row in 0..n_coarse {
-        let (fine, weights) = transpose.row(row);
-        for (&i, &weight) in fine.iter().zip(weights) {
-            sum.add(weight, image.row(i as usize));
-        }
-        sort_by_column(&mut sum.terms);
-        sum.move_to(&mut coarse.columns, &mut coarse.values);
-        coarse.row_starts.push(coarse.columns.len() as u32);
-    }
-    coarse
+    let coarse = RectangularMatrix::by_groups(n_coarse, &|range| {
+        let mut sum = SparseSum::new(n_coarse);
+        RectangularMatrix::by_rows(range, |row, columns, values| {
+            let (fine, weights) = transpose.row(row);
+            for (&i, &weight) in fine.iter().zip(weights) {
+                sum.add(weight, image.row(i as usize));
+            }
+            sort_by_column(&mut sum.terms);
+            sum.move_to(columns, values);
+        })
+    });
+    SparseMatrix { row_starts: coarse.starts, columns: coarse.columns, values: coarse.values }
 }
 
 /// A sum of multiples of sparse rows.

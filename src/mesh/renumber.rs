@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use super::boundary::BoundaryFacet;
 use super::simplicial::Mesh;
 use crate::arrays::tabulate;
+use crate::parallel::vectors::collect;
 use crate::real::Real;
 
 /// Bits of each coordinate on the lattice of the curve.
@@ -36,7 +37,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let barycentre = |cell: &[u32]| {
             tabulate(|k| cell.iter().map(|&v| corner(v)[k].to_f64() / (D + 1) as f64).sum())
         };
-        let points: Vec<[f64; D]> = sorted.chunks_exact(D + 1).map(barycentre).collect();
+        let points: Vec<[f64; D]> =
+            collect(self.n_cells(), |c| barycentre(&sorted[c * (D + 1)..][..D + 1]));
         let order = order_along_curve(&points);
         let mut positions = vec![0; order.len()];
         let mut cells = Vec::with_capacity(self.cells.len());
@@ -100,7 +102,7 @@ fn order_along_curve<const D: usize>(points: &[[f64; D]]) -> Vec<u32> {
     let side = (0..D).map(|k| high[k] - low[k]).fold(f64::MIN_POSITIVE, f64::max);
     let steps = f64::from((1_u32 << BITS) - 1) / side;
     let key = |x: &[f64; D]| hilbert::<D>(tabulate(|k| ((x[k] - low[k]) * steps) as u32));
-    let mut order: Vec<(u64, u32)> = points.iter().map(key).zip(0..).collect();
+    let mut order = collect(points.len(), |k| (key(&points[k]), k as u32));
     order.sort_unstable();
     order.into_iter().map(|(_, k)| k).collect()
 }

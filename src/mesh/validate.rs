@@ -13,6 +13,7 @@ use super::simplicial::Mesh;
 use crate::arrays::tabulate;
 use crate::input::excerpt;
 use crate::instances::compiled;
+use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
 
 /// A facet of the boundary by its `D` vertices, in any order, and its part of the boundary.
@@ -180,8 +181,8 @@ fn check_volumes<T: Real, const D: usize>(
     vertices: &[Point<T, D>],
     cells: &[u32],
 ) -> Result<Vec<bool>, MeshError> {
-    let mut is_positive = Vec::with_capacity(cells.len() / (D + 1));
-    for (c, cell) in cells.chunks_exact(D + 1).enumerate() {
+    let check = |c: usize| {
+        let cell = &cells[c * (D + 1)..][..D + 1];
         let corner = |k: usize| point_f64(&vertices[cell[k] as usize]);
         let geometry = CellGeometry::new(corner);
         let volume = geometry.volume;
@@ -194,14 +195,17 @@ fn check_volumes<T: Real, const D: usize>(
         let scaled = volume / diameter.powi(D as i32);
         // overflow and underflow count as degenerate
         if scaled.is_nan() || scaled <= 8.0 * T::EPSILON {
-            return Err(MeshError::DegenerateCell {
-                cell: c,
-                vertices: cell.to_vec(),
-                volume,
-                diameter,
-            });
+            let vertices = cell.to_vec();
+            return Err(MeshError::DegenerateCell { cell: c, vertices, volume, diameter });
         }
-        is_positive.push(geometry.is_positive());
+        Ok(geometry.is_positive())
+    };
+    let groups = cells::map(cells.len() / (D + 1), &|range| {
+        range.map(check).collect::<Result<Vec<bool>, MeshError>>()
+    });
+    let mut is_positive = Vec::with_capacity(cells.len() / (D + 1));
+    for group in groups {
+        is_positive.extend(group?);
     }
     Ok(is_positive)
 }

@@ -8,6 +8,7 @@ use crate::inequality::scales::Scales;
 use crate::inequality::validation::diagnose_loss_of_positivity;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
+use crate::parallel::vectors::{for_each_chunk, map_chunks};
 use crate::real::Real;
 
 /// The iterate of monotone multigrid, whose values are admissible, with the vectors of a cycle.
@@ -138,19 +139,25 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             }
         }
         preconditioner.apply(&self.residual, &mut self.correction);
-        for (i, correction) in self.correction.iter_mut().enumerate() {
-            *correction = if self.eliminated[i] {
-                T::lit(0.0)
-            } else {
-                bounds[i].nearest(self.values[i] + *correction) - self.values[i]
-            };
-        }
-        let (mut slope, mut curvature) = (0.0, 0.0);
-        let is_corrected = |(i, _): &(usize, &T)| !self.eliminated[*i];
-        for (i, correction) in self.correction.iter().enumerate().filter(is_corrected) {
-            slope += self.residual[i].to_f64() * correction.to_f64();
-            curvature += correction.to_f64() * matrix.row_dot_f64(i, &self.correction);
-        }
+        let (values, eliminated) = (&self.values, &self.eliminated);
+        for_each_chunk(&mut self.correction, |range, correction| {
+            for (i, correction) in range.zip(correction) {
+                *correction = match eliminated[i] {
+                    true => T::lit(0.0),
+                    false => bounds[i].nearest(values[i] + *correction) - values[i],
+                };
+            }
+        });
+        let (residual, correction) = (&self.residual, &self.correction);
+        let parts = map_chunks(correction.len(), |range| {
+            range.filter(|&i| !eliminated[i]).fold([0.0; 2], |[slope, curvature], i| {
+                let step = correction[i].to_f64();
+                let image = matrix.row_dot_f64(i, correction);
+                [slope + residual[i].to_f64() * step, curvature + step * image]
+            })
+        });
+        let (slope, curvature) =
+            parts.iter().fold((0.0, 0.0), |(a, b), [slope, curvature]| (a + slope, b + curvature));
         if slope <= 0.0 {
             return Ok(0.0);
         }
@@ -158,10 +165,12 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             return self.check_definite().and(Ok(0.0));
         }
         let length = T::lit((slope / curvature).min(self.ratio_test()));
-        let corrections = self.correction.iter().zip(bounds);
-        for (value, (correction, bound)) in self.values.iter_mut().zip(corrections) {
-            *value = bound.nearest(*value + length * *correction);
-        }
+        let correction = &self.correction;
+        for_each_chunk(&mut self.values, |range, values| {
+            for (i, value) in range.zip(values) {
+                *value = bounds[i].nearest(*value + length * correction[i]);
+            }
+        });
         Ok(curvature * length.to_f64().powi(2))
     }
 
@@ -190,28 +199,38 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         let residual = &self.full_residual;
         self.energy_norm =
             Scales::of(inequality, &self.values, residual, &[], &diagonal, 1.0).energy_norm;
-        for (i, bound) in inequality.bounds.iter().enumerate() {
-            let x = self.values[i];
-            self.eliminated[i] = bound.fixed_value().is_some()
-                || bound.lower().is_some_and(|l| x <= l)
-                || bound.upper().is_some_and(|u| x >= u);
-            let residual = if self.eliminated[i] { 0.0 } else { self.full_residual[i] };
-            self.residual[i] = T::lit(residual);
-        }
+        let (bounds, values) = (&inequality.bounds, &self.values);
+        for_each_chunk(&mut self.eliminated, |range, eliminated| {
+            for (i, eliminated) in range.zip(eliminated) {
+                let (bound, x) = (&bounds[i], values[i]);
+                *eliminated = bound.fixed_value().is_some()
+                    || bound.lower().is_some_and(|l| x <= l)
+                    || bound.upper().is_some_and(|u| x >= u);
+            }
+        });
+        let (eliminated, full_residual) = (&self.eliminated, &self.full_residual);
+        for_each_chunk(&mut self.residual, |range, residual| {
+            for (i, residual) in range.zip(residual) {
+                *residual = T::lit(if eliminated[i] { 0.0 } else { full_residual[i] });
+            }
+        });
     }
 
     /// The ratio test: the largest multiple of the projected correction that the bounds admit, at
     /// least one; infinite if no bound limits it.
     fn ratio_test(&self) -> f64 {
-        let mut longest = f64::INFINITY;
-        for (i, bound) in self.inequality.bounds.iter().enumerate() {
-            let (x, step) = (self.values[i].to_f64(), self.correction[i].to_f64());
-            match (bound.lower(), bound.upper()) {
-                (Some(l), _) if step < 0.0 => longest = longest.min((l.to_f64() - x) / step),
-                (_, Some(u)) if step > 0.0 => longest = longest.min((u.to_f64() - x) / step),
-                _ => {}
-            }
-        }
-        longest.max(1.0)
+        let (bounds, values, correction) =
+            (&self.inequality.bounds, &self.values, &self.correction);
+        let parts = map_chunks(values.len(), |range| {
+            range.fold(f64::INFINITY, |longest, i| {
+                let (x, step) = (values[i].to_f64(), correction[i].to_f64());
+                match (bounds[i].lower(), bounds[i].upper()) {
+                    (Some(l), _) if step < 0.0 => longest.min((l.to_f64() - x) / step),
+                    (_, Some(u)) if step > 0.0 => longest.min((u.to_f64() - x) / step),
+                    _ => longest,
+                }
+            })
+        });
+        parts.into_iter().fold(f64::INFINITY, f64::min).max(1.0)
     }
 }

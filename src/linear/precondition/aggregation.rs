@@ -105,30 +105,29 @@ fn smoothed_prolongation<T: Real>(
     };
     let largest = (0..n).filter(|&i| !fixed[i]).map(row_sum).fold(1.0, f64::max);
     let omega = DAMPING / largest;
-    let mut rows = RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
-    let mut row: Vec<(u32, f64)> = Vec::new();
-    for i in 0..n {
-        row.clear();
-        if !fixed[i] && diagonal[i] > 0.0 {
-            let (columns, values) = matrix.row(i);
-            for (&j, &a) in columns.iter().zip(values) {
-                let aggregate = aggregate_of[j as usize];
-                if aggregate == NO_INDEX {
-                    continue;
+    RectangularMatrix::by_groups(n, &|range| {
+        let mut row: Vec<(u32, f64)> = Vec::new();
+        RectangularMatrix::by_rows(range, |i, of_row, weights| {
+            row.clear();
+            if !fixed[i] && diagonal[i] > 0.0 {
+                let (columns, values) = matrix.row(i);
+                for (&j, &a) in columns.iter().zip(values) {
+                    let aggregate = aggregate_of[j as usize];
+                    if aggregate == NO_INDEX {
+                        continue;
+                    }
+                    let identity = if j as usize == i { 1.0 } else { 0.0 };
+                    let weight = identity - omega * a.to_f64() / diagonal[i];
+                    match row.iter_mut().find(|(column, _)| *column == aggregate) {
+                        Some((_, sum)) => *sum += weight,
+                        None => row.push((aggregate, weight)),
+                    }
                 }
-                let identity = if j as usize == i { 1.0 } else { 0.0 };
-                let weight = identity - omega * a.to_f64() / diagonal[i];
-                match row.iter_mut().find(|(column, _)| *column == aggregate) {
-                    Some((_, sum)) => *sum += weight,
-                    None => row.push((aggregate, weight)),
-                }
+                row.retain(|(_, weight)| weight.abs() > NEGLIGIBLE);
+                sort_by_column(&mut row);
             }
-            row.retain(|(_, weight)| weight.abs() > NEGLIGIBLE);
-            sort_by_column(&mut row);
-        }
-        rows.columns.extend(row.iter().map(|&(column, _)| column));
-        rows.values.extend(row.iter().map(|&(_, weight)| T::lit(weight)));
-        rows.starts.push(rows.columns.len() as u32);
-    }
-    rows
+            of_row.extend(row.iter().map(|&(column, _)| column));
+            weights.extend(row.iter().map(|&(_, weight)| T::lit(weight)));
+        })
+    })
 }

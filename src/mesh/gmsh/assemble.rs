@@ -220,6 +220,9 @@ fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), 
         return Ok(());
     };
     let reference = points[first as usize];
+    if points.iter().all(|point| point[D..] == reference[D..]) {
+        return Ok(());
+    }
     let extent = cells.iter().fold(0.0, |largest: f64, &v| {
         (0..D).fold(largest, |largest, k| largest.max((points[v as usize][k] - reference[k]).abs()))
     });
