@@ -3,10 +3,16 @@
 use super::facet_mean_form::stiffness;
 use super::prolongation::Prolongation;
 use crate::algebra::{
-    NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix, Support, sort_by_column,
+    NO_INDEX, PenalisedMatrix, RectangularMatrix, SidePenalties, SparseMatrix, Support,
+    sort_by_column,
 };
 use crate::memory::in_large_pages;
+use crate::parallel::for_each_item;
+use crate::parallel::vectors::{collect, zeros};
 use crate::real::Real;
+
+/// Facets whose rows one task computes.
+const FACETS_PER_TASK: usize = 1024;
 
 /// The Crouzeix-Raviart functions on a mesh, one for each facet; the sides of facets have the indices of
 /// [`SidePenalties`].
@@ -48,37 +54,65 @@ impl CrouzeixRaviartSpace {
         penalised: &PenalisedMatrix<T>,
     ) -> SparseMatrix<T> {
         let size = penalties.cell_size;
-        let capacity = self.sides_of_facet.len() * (2 * size - 1);
-        let mut matrix = SparseMatrix {
-            row_starts: in_large_pages(Vec::with_capacity(self.sides_of_facet.len() + 1)),
-            columns: in_large_pages(Vec::with_capacity(capacity)),
-            values: in_large_pages(Vec::with_capacity(capacity)),
-        };
-        matrix.row_starts.push(0);
-        for (own, sides) in (0..).zip(&self.sides_of_facet) {
-            // the facet itself, and at most three other facets of each of its two cells
-            let mut row = [(NO_INDEX, T::lit(0.0)); 7];
-            row[0].0 = own;
-            let mut n = 1;
-            for &side in sides.iter().filter(|&&side| side != NO_INDEX) {
-                let side = side as usize;
-                let first = side / size * size;
-                for other in first..first + size {
-                    let value = stiffness(penalised, [side, other], penalties.are_means);
-                    if other == side {
-                        row[0].1 += value;
-                    } else {
-                        row[n] = (self.facet_of_side[other], value);
-                        n += 1;
-                    }
+        let n = self.sides_of_facet.len();
+        let mut row_starts = in_large_pages(Vec::with_capacity(n + 1));
+        row_starts.push(0);
+        let mut end = 0;
+        row_starts.extend(self.sides_of_facet.iter().map(|sides| {
+            end += if sides[1] == NO_INDEX { size } else { 2 * size - 1 } as u32;
+            end
+        }));
+        let (mut columns, mut values) =
+            (in_large_pages(vec![0; end as usize]), zeros(end as usize));
+        let mut tasks = Vec::with_capacity(n.div_ceil(FACETS_PER_TASK));
+        let mut rest = (&mut columns[..], &mut values[..]);
+        for first in (0..n).step_by(FACETS_PER_TASK) {
+            let last = (first + FACETS_PER_TASK).min(n);
+            let length = (row_starts[last] - row_starts[first]) as usize;
+            let of_columns = rest.0.split_at_mut(length);
+            let of_values = rest.1.split_at_mut(length);
+            tasks.push((first..last, of_columns.0, of_values.0));
+            rest = (of_columns.1, of_values.1);
+        }
+        for_each_item(tasks, &|_, (facets, columns, values)| {
+            let mut entries = columns.iter_mut().zip(values);
+            for own in facets {
+                let (row, n) = self.row(own, penalties, penalised);
+                for (&(column, value), to) in row[..n].iter().zip(&mut entries) {
+                    (*to.0, *to.1) = (column, value);
                 }
             }
-            sort_by_column(&mut row[..n]);
-            matrix.columns.extend(row[..n].iter().map(|entry| entry.0));
-            matrix.values.extend(row[..n].iter().map(|entry| entry.1));
-            matrix.row_starts.push(matrix.columns.len() as u32);
+        });
+        SparseMatrix { row_starts, columns, values }
+    }
+
+    /// The row of a facet, sorted by column, with the number of its entries: the facet itself, and at most three other
+    /// facets of each of its two cells.
+    fn row<T: Real>(
+        &self,
+        own: usize,
+        penalties: &SidePenalties<T>,
+        penalised: &PenalisedMatrix<T>,
+    ) -> ([(u32, T); 7], usize) {
+        let size = penalties.cell_size;
+        let mut row = [(NO_INDEX, T::lit(0.0)); 7];
+        row[0].0 = own as u32;
+        let mut n = 1;
+        for &side in self.sides_of_facet[own].iter().filter(|&&side| side != NO_INDEX) {
+            let side = side as usize;
+            let first = side / size * size;
+            for other in first..first + size {
+                let value = stiffness(penalised, [side, other], penalties.are_means);
+                if other == side {
+                    row[0].1 += value;
+                } else {
+                    row[n] = (self.facet_of_side[other], value);
+                    n += 1;
+                }
+            }
         }
-        matrix
+        sort_by_column(&mut row[..n]);
+        (row, n)
     }
 
     /// The prolongation of conforming linear functions, whose mean on a facet is that of its vertex values;
@@ -91,18 +125,25 @@ impl CrouzeixRaviartSpace {
     ) -> Option<Prolongation<T>> {
         let size = penalties.cell_size;
         let length = size - 1;
-        let mut vertices: Vec<u32> =
-            in_large_pages(Vec::with_capacity(self.sides_of_facet.len() * length));
-        for &[side, _] in &self.sides_of_facet {
-            let side = side as usize;
+        let n = self.sides_of_facet.len();
+        let vertices = collect(n * length, |k| {
+            let (side, place) = (self.sides_of_facet[k / length][0] as usize, k % length);
             if penalties.are_means {
-                vertices.extend(supports[side].vertices());
-            } else {
-                let first = side / size * size;
-                let others = (first..first + size).filter(|&i| i != side);
-                vertices.extend(others.flat_map(|i| supports[i].vertices()));
+                return supports[side].vertices()[place];
             }
+            // all vertices of the cell but the one opposite the facet
+            let opposite = side % size;
+            let local = place + usize::from(place >= opposite);
+            supports[side - opposite + local].vertices()[0]
+        });
+        if vertices.iter().any(|&v| v as usize >= n_vertices) {
+            return None;
         }
-        Prolongation::to_means(vertices.chunks_exact(length), n_vertices)
+        let rows = RectangularMatrix {
+            starts: (0..=n as u32).map(|facet| facet * length as u32).collect(),
+            values: vec![T::lit(1.0 / length as f64); vertices.len()],
+            columns: vertices,
+        };
+        Some(Prolongation::from_weights(rows, n_vertices))
     }
 }

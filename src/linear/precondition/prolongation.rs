@@ -103,17 +103,10 @@ impl<T: Real> Prolongation<T> {
     /// is the mean of the values at the vertices of its support; `None` if a support is empty or has a
     /// vertex that is not less than `n_vertices`.
     pub(crate) fn to_element(supports: &[Support], n_vertices: usize) -> Option<Self> {
-        let to_means = || Self::to_means(supports.iter().map(Support::vertices), n_vertices);
-        Self::injection(supports, n_vertices).or_else(to_means)
-    }
-
-    /// The prolongation of conforming linear functions to the means over sets of vertices; `None` if a set is
-    /// empty or has a vertex that is not less than `n_vertices`.
-    pub(crate) fn to_means<'v>(
-        sets: impl Iterator<Item = &'v [u32]> + Clone,
-        n_vertices: usize,
-    ) -> Option<Self> {
-        Some(Self::from_weights(rows_of_means(sets, n_vertices)?, n_vertices))
+        Self::injection(supports, n_vertices).or_else(|| {
+            let rows = rows_of_means(supports.iter().map(Support::vertices), n_vertices)?;
+            Some(Self::from_weights(rows, n_vertices))
+        })
     }
 
     /// The prolongation after a renumbering of the unknowns: `fine[i]` and `coarse[j]` are the new numbers of the fine
@@ -312,7 +305,8 @@ fn children(
     (starts, children)
 }
 
-/// The rows of the prolongation [`Prolongation::to_means`]; `None` as there.
+/// The rows of the prolongation of conforming linear functions to the means over sets of vertices; `None` if a set is
+/// empty or has a vertex that is not less than `n_vertices`.
 pub(crate) fn rows_of_means<'v, T: Real>(
     sets: impl Iterator<Item = &'v [u32]> + Clone,
     n_vertices: usize,
