@@ -7,6 +7,7 @@ use super::distribution::{Distribution, sum_over_parts};
 use super::index::NO_INDEX;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
+use crate::parallel::vectors::all;
 use crate::real::Real;
 
 /// The set of admissible values of an unknown. An absent bound is a variant, not a large number.
@@ -296,7 +297,9 @@ impl<T: Real> Inequality<T> {
             && self.matrix.is_well_formed()
             && self.penalised.as_ref().is_none_or(|p| p.is_well_formed(self.size()))
             && (self.supports.is_empty() || self.supports.len() == self.size())
-            && self.supports.iter().flat_map(Support::vertices).all(|&v| (v as usize) < n_vertices)
+            && all(self.supports.len(), |i| {
+                self.supports[i].vertices().iter().all(|&v| (v as usize) < n_vertices)
+            })
             && self.kernel.iter().all(|w| self.is_kernel_vector(w))
             && self.dirichlet_energy.as_ref().is_none_or(|e| e.is_well_formed(self.size()))
     }
@@ -343,7 +346,9 @@ impl<T: Real> Inequality<T> {
     /// stands for a bound at infinity.
     pub fn is_finite(&self) -> bool {
         let finite = |x: T| x.to_f64().is_finite();
-        self.matrix.values.iter().chain(&self.load).all(|&x| finite(x))
+        let are_finite = |values: &[T]| all(values.len(), |k| finite(values[k]));
+        are_finite(&self.matrix.values)
+            && are_finite(&self.load)
             && self.bounds.iter().all(|bound| match *bound {
                 Bound::Free => true,
                 Bound::Fixed(x) | Bound::Lower(x) | Bound::Upper(x) => finite(x),

@@ -1,6 +1,6 @@
 //! Square sparse matrices in compressed sparse rows.
 
-use crate::parallel::vectors::for_each_chunk;
+use crate::parallel::vectors::{all, for_each_chunk};
 
 use crate::memory::in_large_pages;
 use crate::real::Real;
@@ -29,7 +29,7 @@ impl<T: Real> SparseMatrix<T> {
             && self.row_starts.windows(2).all(|w| w[0] <= w[1])
             && self.row_starts[n] as usize == self.columns.len()
             && self.columns.len() == self.values.len()
-            && (0..n).all(|i| {
+            && all(n, |i| {
                 let columns = self.row(i).0;
                 columns.windows(2).all(|w| w[0] < w[1])
                     && columns.last().is_none_or(|&j| (j as usize) < n)

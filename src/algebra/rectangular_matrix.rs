@@ -11,7 +11,7 @@ use crate::real::Real;
 /// Rows that one task computes at least.
 const ROWS_PER_TASK: usize = 1024;
 
-/// Most tasks of a product, whose sums have an index for every column.
+/// Most tasks of a product: the sum of each task has an index for every column.
 const MAX_TASKS: usize = 32;
 
 /// A rectangular matrix in compressed sparse rows.
@@ -37,7 +37,7 @@ impl<T: Real> RectangularMatrix<T> {
         Self { starts, columns, values }
     }
 
-    /// The rows that `work` computes for ranges of rows, one task each: all rows in one range where there is one thread.
+    /// The rows that `work` computes for ranges of rows, one task each; one range where there is one thread.
     pub fn by_groups(n_rows: usize, work: &(dyn Fn(Range<usize>) -> Self + Sync)) -> Self {
         let length = match rayon::current_num_threads() {
             1 => n_rows,
@@ -168,6 +168,27 @@ impl<T: Real> SparseSum<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Linear interpolation from every second point, with more rows than one task has: the rows of several tasks are
+    /// joined, and have the bits of one task.
+    #[test]
+    fn products_have_the_same_bits_for_any_number_of_threads() {
+        let n = 3 * ROWS_PER_TASK + 1;
+        let rows = RectangularMatrix::by_rows(0..n, |i, columns, values| {
+            let parents = [i / 2, i.div_ceil(2)];
+            columns.extend(parents[..1 + i % 2].iter().map(|&j| j as u32));
+            values.extend([[1.0, 0.0], [0.4, 0.6]][i % 2].iter().take(1 + i % 2));
+        });
+        let matrix = SparseMatrix::<f64>::second_differences(n);
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| galerkin_product(&matrix, &rows, n / 2 + 1))
+        };
+        let (one, three) = (with(1), with(3));
+        assert!(one.is_well_formed() && one.nonzeros() > n);
+        assert_eq!(one.row_starts, three.row_starts);
+        assert_eq!((one.columns, one.values), (three.columns, three.values));
+    }
 
     /// Second differences with linear interpolation and a function that two others contain, against sums over all
     /// indices.

@@ -5,6 +5,7 @@ use super::certificate::positive_diagonal;
 use crate::algebra::Inequality;
 use crate::linear::direct::{FactorError, Factors, StaticCondensation};
 use crate::linear::krylov::symmetric_part;
+use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
 
 /// The least and the largest magnitude of data, as values or as square roots of energies, whose squares neither
@@ -38,18 +39,21 @@ pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
 /// admissible value nearest to zero and `|b_i| / a_ii`, both as values, and their products with the square root of
 /// `a_ii`, as square roots of energies.
 fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_formed: bool) -> bool {
-    let mut largest = [0.0_f64; 2];
     let n = if is_well_formed { inequality.size() } else { 0 };
-    for i in (0..n).filter(|&i| inequality.owns(i)) {
-        let (bound, load) = (&inequality.bounds[i], inequality.load[i]);
-        let sqrt_diagonal = positive_diagonal(inequality, i).sqrt();
-        let value = bound
-            .nearest(T::lit(0.0))
-            .to_f64()
-            .abs()
-            .max(load.to_f64().abs() / sqrt_diagonal / sqrt_diagonal);
-        largest = [largest[0].max(value), largest[1].max(value * sqrt_diagonal)];
-    }
+    let parts = map_chunks(n, |range| {
+        range.filter(|&i| inequality.owns(i)).fold([0.0_f64; 2], |largest, i| {
+            let (bound, load) = (&inequality.bounds[i], inequality.load[i]);
+            let sqrt_diagonal = positive_diagonal(inequality, i).sqrt();
+            let value = bound
+                .nearest(T::lit(0.0))
+                .to_f64()
+                .abs()
+                .max(load.to_f64().abs() / sqrt_diagonal / sqrt_diagonal);
+            [largest[0].max(value), largest[1].max(value * sqrt_diagonal)]
+        })
+    });
+    let mut largest =
+        parts.iter().fold([0.0; 2], |[a, b]: [f64; 2], part| [a.max(part[0]), b.max(part[1])]);
     if let Some(distribution) = inequality.distribution() {
         distribution.largest(&mut largest);
     }

@@ -5,6 +5,7 @@ use super::scales::{Scales, Sums, maximum};
 use crate::algebra::{Bound, Distribution, Inequality};
 use crate::arrays::tabulate;
 use crate::instances::compiled;
+use crate::parallel::vectors::{collect, largest, map_chunks};
 use crate::real::Real;
 
 /// The certificate of `u` as a solution of the inequality.
@@ -133,21 +134,34 @@ impl Violations {
         let bounds = &inequality.bounds;
         let mut r = vec![0.0; n];
         residual(inequality, u, jump_multipliers, &mut r);
-        let diagonal: Vec<f64> = (0..n).map(|i| positive_diagonal(inequality, i)).collect();
-        let of_unknown = |i: usize| size(&bounds[i], u[i], r[i] / diagonal[i]);
-        sums.unit = unit((0..n).filter(|&i| owns(i)).map(of_unknown).fold(0.0, f64::max));
+        let diagonal = collect(n, |i| positive_diagonal(inequality, i));
+        let of_unknown = |i: usize| match owns(i) {
+            true => size(&bounds[i], u[i], r[i] / diagonal[i]),
+            false => 0.0,
+        };
+        sums.unit = unit(largest(n, of_unknown));
         let values = (u, &r[..], jump_multipliers);
         sums.scales = Sums::of(inequality, values, &|i| diagonal[i], sums.unit, owns);
         sums.jump_residual = largest_jump_residual(inequality, u, jump_multipliers, owns);
-        for i in (0..n).filter(|&i| owns(i)) {
-            let d = diagonal[i];
-            sums.diagonal_sum += d;
-            let local = LocalViolation::new(&bounds[i], u[i].to_f64(), -r[i] / d);
-            sums.feasibility = sums.feasibility.max(local.feasibility);
-            let changes = [local.multiplier, local.complementarity, local.residual];
-            for (square, change) in sums.squares.iter_mut().zip(changes) {
-                *square += d * (change / sums.unit).powi(2);
+        let unit = sums.unit;
+        let parts = map_chunks(n, |range| {
+            let (mut diagonal_sum, mut feasibility, mut squares) = (0.0, 0.0_f64, [0.0; 3]);
+            for i in range.filter(|&i| owns(i)) {
+                let d = diagonal[i];
+                diagonal_sum += d;
+                let local = LocalViolation::new(&bounds[i], u[i].to_f64(), -r[i] / d);
+                feasibility = feasibility.max(local.feasibility);
+                let changes = [local.multiplier, local.complementarity, local.residual];
+                for (square, change) in squares.iter_mut().zip(changes) {
+                    *square += d * (change / unit).powi(2);
+                }
             }
+            (diagonal_sum, feasibility, squares)
+        });
+        for (diagonal_sum, feasibility, squares) in parts {
+            sums.diagonal_sum += diagonal_sum;
+            sums.feasibility = sums.feasibility.max(feasibility);
+            sums.squares.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);
         }
         sums
     }

@@ -9,7 +9,7 @@ use super::cell_integrand::{CellIntegrand, LocalFunction};
 use super::evaluation::Reference;
 use super::squared_errors::{SquaredErrors, Squares};
 use crate::arrays::{map_entries, tabulate};
-use crate::assemble::cut_simplices::CutRule;
+use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::tables::CellTable;
 use crate::assemble::space::{Space, Terms, data};
 use crate::error::Error;
@@ -54,8 +54,8 @@ const NEGLIGIBLE: f64 = 1e-8;
 /// one a coefficient without a level, and with it the exact gradient, may jump within the cell.
 const SMOOTH_RATIO: f64 = 2.0;
 
-/// An obstacle whose value at the middle of an edge differs from the mean of those at the ends by at most this share is
-/// linear.
+/// An obstacle is linear along an edge if its value at the middle differs from the mean of its values at the ends by at
+/// most this share.
 const LINEAR: f64 = 1e-14;
 
 /// Degree of the rule for means over facets.
@@ -280,14 +280,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             if !rules[0].cuts(self.mesh, cell, &level) {
                 return None;
             }
-            let rule = &rules[usize::from(self.has_linear_obstacles(cell))];
+            let corners = self.mesh.corners(cell);
+            let is_linear = self.basis_degree == 1 && self.has_linear_obstacles(cell);
+            let rule = &rules[usize::from(is_linear)];
             let mut sums = Squares::default();
-            rule.visit_if_cut(self.mesh, cell, &level, &mut |point, x, weight| {
-                integrand.add(&mut sums, (point, x), weight, &self.basis_at(point));
+            rule.visit(&corners, &level, &mut |point, weight| {
+                let x = in_space(point, &corners);
+                integrand.add(&mut sums, (point, &x), weight, &self.basis_at(point));
             });
             let points = || {
                 let mut points = Vec::new();
-                rule.visit_if_cut(self.mesh, cell, &level, &mut |_, x, _| points.push(*x));
+                rule.visit(&corners, &level, &mut |point, _| {
+                    points.push(in_space(point, &corners))
+                });
                 points
             };
             Some(integrand.checked(sums, points))
@@ -308,8 +313,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
     }
 
-    /// Whether functions are linear, and obstacles are linear in a cell but for rounding, as far as their values at
-    /// corners and middles of edges tell: no obstacle exceeds an admissible function within the cell then.
+    /// Whether obstacles are linear in a cell, as far as their values at corners and middles of edges tell. A linear
+    /// obstacle exceeds no linear admissible function within a cell.
     fn has_linear_obstacles(&self, cell: usize) -> bool {
         let (region, corners) = (self.mesh.region(cell), self.mesh.corners(cell));
         let is_linear = |bound: DatumRef<'_, D>| {
@@ -321,7 +326,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             })
         };
         let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
-        self.basis_degree == 1 && bounds.into_iter().flatten().all(is_linear)
+        bounds.into_iter().flatten().all(is_linear)
     }
 
     /// The largest error at the nodes of a cell.

@@ -1,10 +1,12 @@
 //! The mesh: vertices, cells and boundary facets.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::boundary::{BoundaryFacet, BoundaryPart};
 use super::groups::Groups;
 use super::part::extent::Extent;
+use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
 
 /// A conforming simplicial mesh of a domain in `D` dimensions (1, 2 or 3).
@@ -112,16 +114,20 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     }
     /// The smallest distance of two vertices of a cell.
     pub fn shortest_edge(&self) -> f64 {
-        let mut shortest = f64::INFINITY;
-        for cell in self.cells.chunks_exact(D + 1) {
-            for (i, &a) in cell.iter().enumerate() {
-                for &b in &cell[..i] {
-                    let edge = self.vertices[a as usize] - self.vertices[b as usize];
-                    shortest = shortest.min(edge.norm_squared().to_f64());
+        let shortest_of = |cells: Range<usize>| {
+            let mut shortest = f64::INFINITY;
+            for cell in cells.map(|cell| self.cell(cell)) {
+                for (i, &a) in cell.iter().enumerate() {
+                    for &b in &cell[..i] {
+                        let edge = self.vertices[a as usize] - self.vertices[b as usize];
+                        shortest = shortest.min(edge.norm_squared().to_f64());
+                    }
                 }
             }
-        }
-        shortest.sqrt()
+            shortest
+        };
+        let shortest = cells::map(self.n_cells(), &shortest_of);
+        shortest.into_iter().fold(f64::INFINITY, f64::min).sqrt()
     }
     /// Whether the mesh is a [part](super::Part) of another one.
     pub fn is_part(&self) -> bool {

@@ -49,6 +49,16 @@ pub(crate) fn map_chunks<R: Send>(n: usize, work: impl Fn(Range<usize>) -> R + S
     map_chunks_of_groups(n, 1, work)
 }
 
+/// Whether a predicate holds for all indices below `n`.
+pub(crate) fn all(n: usize, predicate: impl Fn(usize) -> bool + Sync) -> bool {
+    map_chunks(n, |mut range| range.all(&predicate)).into_iter().all(|holds| holds)
+}
+
+/// The largest of zero and the values of `work` at all indices below `n`; values that are not numbers do not count.
+pub(crate) fn largest(n: usize, work: impl Fn(usize) -> f64 + Sync) -> f64 {
+    map_chunks(n, |range| range.map(&work).fold(0.0, f64::max)).into_iter().fold(0.0, f64::max)
+}
+
 /// The length of chunks that divide no group of `group` consecutive entries.
 pub(crate) const fn chunk_of_groups(group: usize) -> usize {
     CHUNK / group * group

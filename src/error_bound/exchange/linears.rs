@@ -73,8 +73,8 @@ impl<const D: usize> CellInContact<D> {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the part that its
-    /// flux balances, by volume around a vertex and half on the two sides of a facet. Unknowns without contact have
-    /// none: their residuals are what the solver has left.
+    /// flux balances, by volume around a vertex and half on the two sides of a facet. The multipliers of inactive
+    /// unknowns are set to zero: the residual of an inactive unknown is an algebraic error.
     pub(in crate::error_bound) fn multipliers_by_cell(
         &self,
         residual: &[f64],

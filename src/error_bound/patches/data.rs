@@ -35,8 +35,8 @@ impl Corner {
 /// The corners of all vertices, and where those of each vertex start.
 type Corners = (Vec<Corner>, Vec<u32>);
 
-/// Cells whose parts are kept at a time. The parts of a cell are twelve numbers in space, its flux four.
-const CELLS_AT_A_TIME: usize = 1 << 17;
+/// Number of cells whose parts are kept at a time. The parts of a tetrahedron are twelve numbers, the flux is four.
+pub(super) const CELLS_AT_A_TIME: usize = 1 << 17;
 
 /// What the patches read.
 pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
@@ -131,16 +131,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         (corners, starts)
     }
 
-    /// Ranges of cells that have their parts kept at a time, each with the vertices of its cells. All cells are one
-    /// range if the vertices of several ranges would be more than twice as many as there are: the numbers of neighbours
+    /// Ranges of `length` cells that have their parts kept at a time, each with the vertices of its cells. All cells are
+    /// one range if the vertices of several ranges would be more than twice as many as there are: the numbers of neighbours
     /// are far apart then.
-    pub(super) fn ranges_with_vertices(&self) -> Vec<(Range<usize>, Vec<u32>)> {
+    pub(super) fn ranges_with_vertices(&self, length: usize) -> Vec<(Range<usize>, Vec<u32>)> {
         let (n_cells, n_vertices) = (self.mesh.n_cells(), self.mesh.vertices().len());
         let mut last_range = vec![u32::MAX; n_vertices];
         let mut ranges = Vec::new();
         let mut n_visits = 0;
-        for (number, first) in (0..n_cells).step_by(CELLS_AT_A_TIME).enumerate() {
-            let cells = first..(first + CELLS_AT_A_TIME).min(n_cells);
+        for (number, first) in (0..n_cells).step_by(length).enumerate() {
+            let cells = first..(first + length).min(n_cells);
             let mut vertices = Vec::new();
             for &v in &self.mesh.cells()[cells.start * (D + 1)..cells.end * (D + 1)] {
                 if last_range[v as usize] != number as u32 {
@@ -173,7 +173,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         own - pressure * self.volume(cell)
     }
 
-    /// Keeps the parts of these cells from now on.
+    /// Keeps the parts of these cells from now on. Every part of a kept cell is written before it is read.
     pub fn keep(&mut self, cells: Range<usize>) {
         self.parts.resize_with(cells.len() * (D + 1) * D, AtomicU64::default);
         self.kept = cells;

@@ -12,11 +12,13 @@
 
 mod data;
 mod fan;
+#[cfg(test)]
+mod tests;
 
 use std::convert::Infallible;
 use std::ops::Range;
 
-use data::Patches;
+use data::{CELLS_AT_A_TIME, Patches};
 pub(super) use data::{Corner, around};
 use fan::CellOfFan;
 use nalgebra::{SMatrix, SVector};
@@ -44,9 +46,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         forces: &[NodeForce],
         neighbours: &Neighbours,
     ) -> Result<Vec<f64>, NoBound> {
-        let mut patches = self.patches(u, residual, forces, neighbours)?;
+        self.fluxes_by_ranges(CELLS_AT_A_TIME, self.patches(u, residual, forces, neighbours)?)
+    }
+
+    /// The fluxes, with the parts of `length` cells at a time.
+    fn fluxes_by_ranges(
+        &self,
+        length: usize,
+        mut patches: Patches<'_, '_, T, D>,
+    ) -> Result<Vec<f64>, NoBound> {
         let mut flux = in_large_pages(Vec::with_capacity(self.mesh.n_cells() * (D + 1)));
-        for (cells, vertices) in self.ranges_with_vertices() {
+        for (cells, vertices) in self.ranges_with_vertices(length) {
             patches.keep(cells.clone());
             cells::map(vertices.len(), &|range: Range<usize>| {
                 let mut patch = Patch::default();
@@ -211,9 +221,19 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         load: f64,
     ) -> CellOfPatch {
         let is_free = |facet: &FacetOfPatch| !matches!(facet, FacetOfPatch::Fixed(_));
-        if D == 3 && facets.iter().all(is_free) {
-            return self.free_cell_of_patch((cell, own), facets, load);
+        match D == 3 && facets.iter().all(is_free) {
+            true => self.free_cell_of_patch((cell, own), facets, load),
+            false => self.any_cell_of_patch((cell, own), facets, load),
         }
+    }
+
+    /// A cell in which fluxes may be fixed.
+    fn any_cell_of_patch(
+        &self,
+        (cell, own): (u32, u8),
+        facets: [FacetOfPatch; 3],
+        load: f64,
+    ) -> CellOfPatch {
         let mesh = self.space.mesh;
         let products = facet_products::<D>(
             mesh.cell(cell as usize).iter().map(|&v| point_f64(&mesh.vertices()[v as usize])),
@@ -258,9 +278,9 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     ///
     /// With `a_F` opposite the facet `F` and `V` the volume, fluxes `f_F` have in the cell the vector field
     /// `(x sum f_F - sum f_F a_F) / (3 V)`. A sum of zero leaves the constant field with `v = sum f_F a_F` along the
-    /// facet of the three points `a_F`, and there `f_F = grad lambda_F . v`, with barycentric coordinates of this facet:
+    /// facet of the three points `a_F`, and `f_F = grad lambda_F . v` with barycentric coordinates of this facet:
     /// the slopes are `9 alpha V` times the products of these gradients. With a sum of one the norm is least where
-    /// `sum f_F a_F` is the point of the facet next to the barycentre of the cell.
+    /// `sum f_F a_F` is the point of the plane of the facet that is nearest to the barycentre of the cell.
     fn free_cell_of_patch(
         &self,
         (cell, own): (u32, u8),
@@ -278,7 +298,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         let (ac, bc) = (-aa - ab, -ab - bb);
         let factor = 9.0 * self.volume(cell as usize) * self.space.alpha(cell as usize).to_f64();
         let slopes = SMatrix::<f64, 3, 3>::new(aa, ab, ac, ab, bb, bc, ac, bc, -ac - bc) * factor;
-        // barycentric coordinates of the point of the facet next to the vertex
+        // two barycentric coordinates of the point of the plane nearest to the vertex
         let (along_one, along_two) = (one.dot(&from), two.dot(&from));
         let (of_a, of_b) = (aa * along_one + ab * along_two, ab * along_one + bb * along_two);
         let unit = SVector::<f64, 3>::new(1.0 + of_a, 1.0 + of_b, 2.0 - of_a - of_b) * 0.25;

@@ -87,7 +87,7 @@ impl<T: Real> PreconditionedSolver<'_, T> {
         threshold: f64,
     ) -> Result<Option<f64>, Outcome> {
         let distribution = iterate.inequality.distribution();
-        // every linear system begins with a new residual
+        // every linear system overwrites the residual first
         self.residual.fill(T::lit(0.0));
         let mut eliminated = vec![false; iterate.values.len()];
         for (i, bound) in iterate.inequality.bounds.iter().enumerate() {

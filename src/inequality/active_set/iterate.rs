@@ -5,6 +5,7 @@ use crate::algebra::{Bound, Contact, Inequality, any_part};
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Certificate, Outcome, Solution};
+use crate::parallel::vectors::{collect, sum_chunks};
 use crate::real::Real;
 
 /// The values and contact states of a step, and the best values of all steps.
@@ -69,7 +70,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             eliminated: vec![false; n],
             residual: vec![0.0; n],
             residual_is_current: false,
-            diagonal: (0..n).map(|i| positive_diagonal(inequality, i)).collect(),
+            diagonal: collect(n, |i| positive_diagonal(inequality, i)),
             energy_norm: 1.0,
             outer: 0,
             linear: 0,
@@ -163,17 +164,21 @@ impl<'a, T: Real> Iterate<'a, T> {
 
     /// Replaces the values by the nearest admissible ones; returns whether one changed.
     pub fn project_onto_bounds(&mut self) -> bool {
-        let mut is_changed = false;
-        for (value, bound) in self.values.iter_mut().zip(&self.inequality.bounds) {
-            let nearest = bound.nearest(*value);
-            is_changed |= nearest != *value;
-            *value = nearest;
-        }
+        let bounds = &self.inequality.bounds;
+        let n_changed = sum_chunks(&mut self.values, |range, values| {
+            let mut n_changed = 0.0;
+            for (value, bound) in values.iter_mut().zip(&bounds[range]) {
+                let nearest = bound.nearest(*value);
+                n_changed += f64::from(u8::from(nearest != *value));
+                *value = nearest;
+            }
+            n_changed
+        });
         let distribution = self.inequality.distribution();
         if let Some(distribution) = distribution {
             distribution.update(&mut self.values);
         }
-        let is_changed = any_part(distribution, is_changed);
+        let is_changed = any_part(distribution, n_changed > 0.0);
         self.residual_is_current &= !is_changed;
         is_changed
     }

@@ -38,7 +38,8 @@ pub(crate) struct PreconditionedSolver<'a, T: Real> {
     pub(super) eliminated: Vec<bool>,
     /// See [`LinearSolver::tolerance`].
     tolerance: f64,
-    /// The residual that the Krylov method updates, zero on eliminated unknowns; between systems the unbalanced one.
+    /// Workspace: the residual that the Krylov method updates, zero on eliminated unknowns, or the unbalanced residual
+    /// of the bound on the algebraic error.
     pub(super) residual: Vec<T>,
     /// Smallest Ritz value of all systems so far, at most one.
     pub(super) smallest_ritz_value: f64,

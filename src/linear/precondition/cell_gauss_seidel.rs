@@ -10,9 +10,12 @@
 //! forms on facets each of which remains positive if the traces from one side change their sign, such as the forms of
 //! interior penalty methods with a penalty above the proven bound.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::algebra::SparseMatrix;
 use crate::algebra::dense::invert_positive_definite;
 use crate::linear::direct::FactorError;
+use crate::parallel::for_each_item;
 use crate::parallel::vectors::{
     chunk_of_groups, for_each_chunk_of_groups, map_chunks_of_groups, sum_chunks_of_groups_of_two,
     zeros,
@@ -140,6 +143,23 @@ fn product<const N: usize>(block: &[[f32; N]; N], x: &[f32; N]) -> [f32; N] {
     y
 }
 
+/// The inverse of a diagonal block on its free unknowns, zero in the rows and columns of fixed ones; `None` if the
+/// block is not positive definite there.
+fn inverse_of_free<const N: usize>(
+    diagonal: &[[f32; N]; N],
+    fixed: &[bool; N],
+) -> Option<[[f32; N]; N]> {
+    let mut block = [[0.0_f64; N]; N];
+    for i in (0..N).filter(|&i| !fixed[i]) {
+        for j in (0..N).filter(|&j| !fixed[j]) {
+            // the matrix is symmetric up to rounding errors only
+            block[i][j] = 0.5 * f64::from(diagonal[i][j] + diagonal[j][i]);
+        }
+    }
+    invert_positive_definite(block.as_flattened_mut(), N, fixed)
+        .then(|| block.map(|row| row.map(|a| a as f32)))
+}
+
 impl<const N: usize> CellGaussSeidel<N> {
     /// The smoother of a matrix divided by `scale`, whose unknowns belong to cells in groups of `N`.
     pub fn new<T: Real>(matrix: &SparseMatrix<T>, scale: f64) -> Self {
@@ -164,29 +184,27 @@ impl<const N: usize> CellGaussSeidel<N> {
         if is_first {
             self.mask = zeros(fixed.len());
         }
-        let cells = fixed.as_chunks::<N>().0.iter().zip(self.mask.as_chunks_mut::<N>().0);
-        let blocks = self.diagonal.iter().zip(&mut self.inverses);
-        for ((fixed, mask), (diagonal, inverse)) in cells.zip(blocks) {
-            let is_same = fixed.iter().zip(&*mask).all(|(&fixed, &mask)| fixed == (mask == 0.0));
-            if is_same && !is_first {
-                continue;
-            }
-            let mut block = [[0.0_f64; N]; N];
-            for i in (0..N).filter(|&i| !fixed[i]) {
-                for j in (0..N).filter(|&j| !fixed[j]) {
-                    // the matrix is symmetric up to rounding errors only
-                    block[i][j] = 0.5 * f64::from(diagonal[i][j] + diagonal[j][i]);
+        let fixed = fixed.as_chunks::<N>().0;
+        let diagonal = &self.diagonal;
+        let length = chunk_of_groups(N) / N;
+        let masks = self.mask.as_chunks_mut::<N>().0.chunks_mut(length);
+        let tasks = masks.zip(self.inverses.chunks_mut(length)).collect();
+        let is_positive = AtomicBool::new(true);
+        for_each_item(tasks, &|chunk, (masks, inverses): (&mut [[f32; N]], &mut [_])| {
+            for ((k, mask), inverse) in (chunk * length..).zip(masks).zip(inverses) {
+                let mut of_fixed = fixed[k].iter().zip(&*mask);
+                let is_same = of_fixed.all(|(&fixed, &mask)| fixed == (mask == 0.0));
+                if is_same && !is_first {
+                    continue;
                 }
+                match inverse_of_free(&diagonal[k], &fixed[k]) {
+                    Some(block) => *inverse = block,
+                    None => return is_positive.store(false, Ordering::Relaxed),
+                }
+                *mask = fixed[k].map(|fixed| if fixed { 0.0 } else { 1.0 });
             }
-            if !invert_positive_definite(block.as_flattened_mut(), N, fixed) {
-                return Err(FactorError::NotPositive);
-            }
-            *inverse = block.map(|row| row.map(|a| a as f32));
-            for (mask, &fixed) in mask.iter_mut().zip(fixed) {
-                *mask = if fixed { 0.0 } else { 1.0 };
-            }
-        }
-        Ok(())
+        });
+        if is_positive.into_inner() { Ok(()) } else { Err(FactorError::NotPositive) }
     }
 
     /// One for free unknowns, zero for fixed ones.

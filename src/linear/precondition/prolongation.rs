@@ -330,3 +330,36 @@ pub(crate) fn rows_of_means<'v, T: Real>(
     }
     Some(rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values at one vertex each: the prolongation without weights does what the one with weights does.
+    #[test]
+    fn an_injection_is_a_prolongation_with_weights_of_one() {
+        let vertices = [3, 1, 0, 3, 3, 1];
+        let supports: Vec<Support> =
+            vertices.iter().map(|&v| Support::new(Some(0), &[v])).collect();
+        let injection = Prolongation::<f64>::to_element(&supports, 4).unwrap();
+        assert!(matches!(injection.entries, Entries::Injection { .. }));
+        let rows = rows_of_means(supports.iter().map(Support::vertices), 4).unwrap();
+        let weights = Prolongation::from_weights(rows, 4);
+        let fine = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+        let both = [&injection, &weights].map(|prolongation| {
+            assert_eq!((prolongation.n_fine(), prolongation.n_coarse()), (6, 4));
+            let mut coarse = [0.0; 4];
+            prolongation.restrict(&fine, &mut coarse);
+            let mut values = [1.0; 6];
+            let mask = [1.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+            prolongation.add_prolongation(&coarse, &mask, &mut values);
+            let mut fixed = [false; 4];
+            prolongation.fix_covered(&[true, true, false, true, true, false], &mut fixed);
+            (coarse, values, fixed)
+        });
+        assert_eq!(both[0], both[1]);
+        assert_eq!(both[0].0, [4.0, 34.0, 0.0, 25.0]);
+        assert_eq!(both[0].2, [false, false, true, true]);
+        assert!(Prolongation::<f64>::to_element(&supports, 3).is_none());
+    }
+}

@@ -199,7 +199,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let Some(mesh) = &self.mesh else {
             return check_domain(&self.scene).map(|()| None);
         };
-        // a check of a study comes before its run
+        // `check` and `run` need the fit, which assembles load and bounds on the mesh
         if self.fit.get().is_none() {
             let _ = self.fit.set(check_fit(&self.scene, mesh)?);
         }

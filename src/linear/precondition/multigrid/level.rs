@@ -31,9 +31,10 @@ pub(super) struct Level<'a, T: Real> {
     pub recomputed_starts: Vec<usize>,
     /// The values of these rows, one row after the other; the columns are those of the given matrix.
     pub recomputed_values: Vec<T>,
-    /// The index of each row in `recomputed_rows`, [`NO_INDEX`] for all others; empty if there were never any.
+    /// The index of each row in `recomputed_rows`, [`NO_INDEX`] for all others; empty before rows are
+    /// recomputed for the first time.
     pub recomputed_indices: Vec<u32>,
-    /// The fixed unknowns of the finer level for which rows were recomputed; empty before the first time.
+    /// Flags of the fixed unknowns of the finer level when rows were last recomputed; empty before the first time.
     pub fixed_on_finer: Vec<bool>,
     /// The rows that may have changed since the smoother was updated, ascending.
     pub outdated: Vec<u32>,

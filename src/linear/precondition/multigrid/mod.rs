@@ -26,7 +26,7 @@ use super::preconditioner::Preconditioner;
 use super::prolongation::Prolongation;
 use crate::algebra::SparseMatrix;
 use crate::linear::direct::FactorError;
-use crate::parallel::vectors::{for_each_chunk, map_chunks, zeros};
+use crate::parallel::vectors::{for_each_chunk, largest, zeros};
 use crate::real::Real;
 use coarsest_solver::CoarsestSolver;
 use level::Level;
@@ -104,7 +104,7 @@ impl<'a, T: Real> Multigrid<'a, T> {
     fn with_finest(finest: Level<'a, T>, coarser: Option<&'a P1Level<T>>) -> Self {
         let matrix = &finest.matrix;
         let n = matrix.size();
-        let largest = matrix.values.iter().fold(0.0, |m: f64, a| m.max(a.to_f64().abs()));
+        let largest = largest(matrix.values.len(), |k| matrix.values[k].to_f64().abs());
         let scale = if largest > 0.0 { largest } else { 1.0 };
         let coarsest = CoarsestSolver::new(scale);
         let mut levels = vec![finest];
@@ -151,11 +151,8 @@ impl<'a, T: Real> Multigrid<'a, T> {
 
     /// Sets `values` to the result of one cycle from zero for a right-hand side.
     pub fn apply(&mut self, right_side: &[T], values: &mut [T]) {
-        let largest = |range: std::ops::Range<usize>| {
-            right_side[range].iter().fold(0.0, |m: f64, f| m.max(f.to_f64().abs()))
-        };
         // the quotient of a number that is not finite is not finite
-        let largest = map_chunks(right_side.len(), largest).into_iter().fold(0.0, f64::max);
+        let largest = largest(right_side.len(), |i| right_side[i].to_f64().abs());
         let unit = if largest > 0.0 { largest } else { 1.0 };
         for_each_chunk(&mut self.right_side, |range, single| {
             let pairs = single.iter_mut().zip(&right_side[range]);
@@ -245,7 +242,16 @@ mod tests {
         let finest = level(64);
         let new = || Multigrid::new(&finest.matrix, finest.coarser.as_ref());
         let right_side: Vec<f64> = (0..65).map(|i| f64::from(i * i % 23) - 9.0).collect();
-        let sets = [&[][..], &[40], &[31, 33], &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], &[16, 17, 48]];
+        // disjoint sets, and sets that share unknowns, whose rows are kept
+        let sets = [
+            &[][..],
+            &[40],
+            &[31, 33],
+            &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9],
+            &[16, 17, 48],
+            &[31, 33, 40],
+            &[16, 31, 33],
+        ];
         let sets = sets.map(|set| (0..65).map(|i| set.contains(&i)).collect::<Vec<_>>());
         let mut results = Vec::new();
         for (k, after) in sets.iter().enumerate() {
@@ -263,6 +269,13 @@ mod tests {
                 used.apply(&right_side, &mut values);
                 assert_eq!(values, expected, "{k}");
             }
+            let mut used = new();
+            sets.iter().for_each(|before| used.set_fixed(before).unwrap());
+            used.set_fixed(after).unwrap();
+            let mut values = vec![0.0; 65];
+            used.apply(&right_side, &mut values);
+            assert_eq!(values, expected, "{k}, after all sets");
+            assert!(used.levels.iter().all(|level| level.changed_rows.is_empty()));
             results.push(expected);
         }
         assert_ne!(results[0], results[1]);

@@ -12,15 +12,16 @@ use crate::real::Real;
 /// Rows that one task computes at least.
 const ROWS_PER_TASK: usize = 64;
 
-/// Most tasks of a level: each has an index for every column.
+/// Most tasks of a level: each task has an index for every column.
 const MAX_TASKS: usize = 32;
 
 impl<T: Real> Level<'_, T> {
     /// Recomputes the rows that truncation at the fixed unknowns of the finer level may change, and marks all rows that
     /// have changed since the last call as outdated. The row of a free unknown is recomputed if one of the children of
     /// the unknown is fixed, or is coupled to a fixed unknown with a free parent, or has a recomputed row. A row that
-    /// was recomputed by the last call keeps its values if its children, the unknowns coupled to these and the rows of
-    /// its children are as they were; the finer level has changed `changed_rows` since then.
+    /// the last call recomputed keeps its values if no child, and no unknown coupled to a child, has been fixed or
+    /// freed since the last call, and no row of a child is among `changed_rows`, the rows of the finer level that have
+    /// changed.
     pub(super) fn recompute_rows(
         &mut self,
         (finer, changed_rows): (&Level<'_, T>, &[u32]),
@@ -42,7 +43,10 @@ impl<T: Real> Level<'_, T> {
         let given = self.recomputed_rows.iter().filter(|j| rows.binary_search(j).is_err());
         outdated.extend(given);
         outdated.sort_unstable();
-        self.changed_rows.extend_from_slice(&outdated);
+        if self.prolongation.is_some() {
+            // the next coarser level takes the list
+            self.changed_rows.extend_from_slice(&outdated);
+        }
         self.outdated = outdated;
         self.recomputed_indices.resize(self.matrix.size(), NO_INDEX);
         self.recomputed_rows.iter().for_each(|&j| self.recomputed_indices[j as usize] = NO_INDEX);
@@ -157,21 +161,17 @@ impl<T: Real> Images<T> {
         let length = ROWS_PER_TASK.max(numbers.len() / MAX_TASKS);
         let groups = map_groups(children.len(), length, &|range| {
             let mut sum = SparseSum::new(n_coarse);
-            let mut rows =
-                RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
-            for &i in &children[range] {
-                let (columns, entries) = finer.row(i);
-                for (&k, &a) in
-                    columns.iter().zip(entries).filter(|(k, _)| !finer.fixed[**k as usize])
-                {
-                    prolongation.for_each_parent(k as usize, |parent, weight| {
+            RectangularMatrix::by_rows(range, |k, columns, values| {
+                let (neighbours, entries) = finer.row(children[k]);
+                let free =
+                    neighbours.iter().zip(entries).filter(|(j, _)| !finer.fixed[**j as usize]);
+                for (&j, &a) in free {
+                    prolongation.for_each_parent(j as usize, |parent, weight| {
                         sum.add_term(parent, a * weight);
                     });
                 }
-                sum.move_to(&mut rows.columns, &mut rows.values);
-                rows.starts.push(rows.columns.len() as u32);
-            }
-            rows
+                sum.move_to(columns, values);
+            })
         });
         Self { numbers, groups, length }
     }
