@@ -6,7 +6,7 @@
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use super::{for_each_item, lock, map_groups};
+use super::{for_each_item, lock, map_groups, split};
 
 /// Number of items (cells, rows or patches) in a chunk.
 pub(crate) const CHUNK: usize = 1024;
@@ -35,14 +35,9 @@ pub(crate) fn for_each<V: Send, E: Send>(
     entries: &mut [V],
     work: ChunkWork<'_, V, E>,
 ) -> Result<(), E> {
-    let mut chunks = Vec::with_capacity(n_chunks(n));
-    let mut rest = entries;
-    for chunk in 0..n_chunks(n) {
-        let items = items(chunk, n);
-        let (own, tail) = rest.split_at_mut(end(items.end) - end(items.start));
-        chunks.push((items, own));
-        rest = tail;
-    }
+    let items = || (0..n_chunks(n)).map(|chunk| items(chunk, n));
+    let lengths = items().map(|items| end(items.end) - end(items.start));
+    let chunks = items().zip(split(entries, lengths)).collect();
     // the first chunk that failed so far, and its error
     let failed: Mutex<Option<(usize, E)>> = Mutex::new(None);
     let is_first = |failed: &Option<(usize, E)>, chunk: usize| {

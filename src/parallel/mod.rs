@@ -5,8 +5,8 @@
 //! entries of vectors, with inner products and pseudorandom signs.
 //!
 //! Every loop but [`vectors::collect`] ends in [`for_each_index`], so that the task machinery of rayon is compiled once
-//! and not once for each loop, scalar and dimension. A task is a chunk of a thousand items or more, beside which a
-//! virtual call and a lock cost nothing.
+//! and not once for each loop, scalar and dimension. A task is a chunk of a thousand items or more, or of
+//! rows that take as long, beside which a virtual call and a lock cost nothing.
 
 pub(crate) mod cells;
 pub(crate) mod vectors;
@@ -54,6 +54,18 @@ pub(crate) fn for_each_item<A: Send>(items: Vec<A>, work: &(dyn Fn(usize, A) + S
             work(k, item);
         }
     });
+}
+
+/// Consecutive parts of a slice with these lengths, as many as there are lengths.
+pub(crate) fn split<V>(
+    mut rest: &mut [V],
+    lengths: impl Iterator<Item = usize>,
+) -> impl Iterator<Item = &mut [V]> {
+    lengths.map(move |length| {
+        let (own, tail) = std::mem::take(&mut rest).split_at_mut(length);
+        rest = tail;
+        own
+    })
 }
 
 /// The content of a lock; a task that panicked leaves it as it was.

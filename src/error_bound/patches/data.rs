@@ -26,6 +26,11 @@ impl Corner {
         self.0 / 4
     }
 
+    /// The cell, and the number of the vertex in it.
+    pub fn pair(self) -> (u32, u8) {
+        (self.cell(), self.own())
+    }
+
     /// The number of the vertex in the cell.
     pub fn own(self) -> u8 {
         (self.0 % 4) as u8
@@ -132,8 +137,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Ranges of `length` cells that have their parts kept at a time, each with the vertices of its cells. All cells are
-    /// one range if the vertices of several ranges would be more than twice as many as there are: the numbers of neighbours
-    /// are far apart then.
+    /// one range if the ranges would have more than twice as many vertices as the mesh: the numbers of neighbours are far
+    /// apart then.
     pub(super) fn ranges_with_vertices(&self, length: usize) -> Vec<(Range<usize>, Vec<u32>)> {
         let (n_cells, n_vertices) = (self.mesh.n_cells(), self.mesh.vertices().len());
         let mut last_range = vec![u32::MAX; n_vertices];

@@ -131,8 +131,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         let Patch { cells, matrix, multipliers, sums, .. } = patch;
         cells.clear();
         multipliers.clear();
-        for (k, corner) in corners.iter().enumerate() {
-            let (cell, own) = (corner.cell(), corner.own());
+        for (k, (cell, own)) in corners.iter().map(|corner| corner.pair()).enumerate() {
             let mut facets = [FacetOfPatch::Fixed(0.0); 3];
             for (slot, local) in facets.iter_mut().zip(around::<D>(own)) {
                 *slot = self.facet_of_patch((cell, local), k, corners, (cells, multipliers));

@@ -49,8 +49,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         let Patch { slots, matrix, unknowns } = patch;
         let mut n_free = 0;
         slots.clear();
-        for (k, corner) in corners.iter().enumerate() {
-            let (cell, own) = (corner.cell(), corner.own());
+        for (k, (cell, own)) in corners.iter().map(|corner| corner.pair()).enumerate() {
             let mut of_cell = [Slot { first: 0, sign: 0.0, shift: [0.0; 3] }; 3];
             for (slot, local) in of_cell.iter_mut().zip(around::<D>(own)) {
                 *slot = self.slot((cell, own, local), corners, &slots[..k], &mut n_free);
@@ -63,8 +62,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         unknowns.clear();
         unknowns.resize(n, 0.0);
         for (k, (corner, slots)) in corners.iter().zip(&*slots).enumerate() {
-            let corner = (corner.cell(), corner.own());
-            self.add_cell(corner, slots, n_free + k, (matrix, unknowns));
+            self.add_cell(corner.pair(), slots, n_free + k, (matrix, unknowns));
         }
         solve(matrix, unknowns, n_free);
         for slots in slots {

@@ -1,5 +1,7 @@
 //! The Crouzeix-Raviart functions on the mesh of a discontinuous linear element.
 
+use std::ops::Range;
+
 use super::facet_mean_form::stiffness;
 use super::prolongation::Prolongation;
 use crate::algebra::{
@@ -7,12 +9,10 @@ use crate::algebra::{
     sort_by_column,
 };
 use crate::memory::in_large_pages;
-use crate::parallel::for_each_item;
+use crate::parallel::cells::{items, n_chunks};
 use crate::parallel::vectors::{collect, zeros};
+use crate::parallel::{for_each_item, split};
 use crate::real::Real;
-
-/// Facets whose rows one task computes.
-const FACETS_PER_TASK: usize = 1024;
 
 /// The Crouzeix-Raviart functions on a mesh, one for each facet; the sides of facets have the indices of
 /// [`SidePenalties`].
@@ -64,19 +64,13 @@ impl CrouzeixRaviartSpace {
         }));
         let (mut columns, mut values) =
             (in_large_pages(vec![0; end as usize]), zeros(end as usize));
-        let mut tasks = Vec::with_capacity(n.div_ceil(FACETS_PER_TASK));
-        let mut rest = (&mut columns[..], &mut values[..]);
-        for first in (0..n).step_by(FACETS_PER_TASK) {
-            let last = (first + FACETS_PER_TASK).min(n);
-            let length = (row_starts[last] - row_starts[first]) as usize;
-            let of_columns = rest.0.split_at_mut(length);
-            let of_values = rest.1.split_at_mut(length);
-            tasks.push((first..last, of_columns.0, of_values.0));
-            rest = (of_columns.1, of_values.1);
-        }
-        for_each_item(tasks, &|_, (facets, columns, values)| {
+        let starts = &row_starts;
+        let length = |facets: Range<usize>| (starts[facets.end] - starts[facets.start]) as usize;
+        let lengths = || (0..n_chunks(n)).map(|chunk| length(items(chunk, n)));
+        let entries = split(&mut columns, lengths()).zip(split(&mut values, lengths()));
+        for_each_item(entries.collect(), &|chunk, (columns, values): (&mut [u32], &mut [T])| {
             let mut entries = columns.iter_mut().zip(values);
-            for own in facets {
+            for own in items(chunk, n) {
                 let (row, n) = self.row(own, penalties, penalised);
                 for (&(column, value), to) in row[..n].iter().zip(&mut entries) {
                     (*to.0, *to.1) = (column, value);

@@ -114,17 +114,15 @@ impl<T: Real> Prolongation<T> {
     pub(crate) fn renumbered(&self, fine: &[u32], coarse: &[u32]) -> Self {
         let mut order = vec![0; fine.len()];
         (0..).zip(fine).for_each(|(old, &new): (u32, _)| order[new as usize] = old);
-        let mut rows =
-            RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
         let mut row: Vec<(u32, T)> = Vec::new();
-        for old in order {
+        let rows = RectangularMatrix::by_rows(0..order.len(), |new, columns, values| {
             row.clear();
-            self.for_each_parent(old as usize, |j, weight| row.push((coarse[j as usize], weight)));
+            let old = order[new] as usize;
+            self.for_each_parent(old, |j, weight| row.push((coarse[j as usize], weight)));
             sort_by_column(&mut row);
-            rows.columns.extend(row.iter().map(|entry| entry.0));
-            rows.values.extend(row.iter().map(|entry| entry.1));
-            rows.starts.push(rows.columns.len() as u32);
-        }
+            columns.extend(row.iter().map(|entry| entry.0));
+            values.extend(row.iter().map(|entry| entry.1));
+        });
         Self::from_weights(rows, self.n_coarse)
     }
 

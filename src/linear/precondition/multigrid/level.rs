@@ -100,19 +100,19 @@ impl<T: Real> Level<'_, T> {
     /// Columns and values of row `i`, after truncation.
     pub fn row(&self, i: usize) -> (&[u32], &[T]) {
         let (columns, values) = self.matrix.row(i);
-        match self.recomputed_indices.get(i) {
-            Some(&k) if k != NO_INDEX => {
-                let range =
-                    self.recomputed_starts[k as usize]..self.recomputed_starts[k as usize + 1];
+        match self.recomputed_index(i) {
+            Some(k) => {
+                let range = self.recomputed_starts[k]..self.recomputed_starts[k + 1];
                 (columns, &self.recomputed_values[range])
             }
-            _ => (columns, values),
+            None => (columns, values),
         }
     }
 
-    /// Whether row `j` was recomputed because of truncation.
-    pub fn is_recomputed(&self, j: u32) -> bool {
-        self.recomputed_indices.get(j as usize).is_some_and(|&k| k != NO_INDEX)
+    /// The index of row `i` among the recomputed ones, if truncation may have changed the row.
+    pub fn recomputed_index(&self, i: usize) -> Option<usize> {
+        let index = self.recomputed_indices.get(i).filter(|&&k| k != NO_INDEX);
+        index.map(|&k| k as usize)
     }
 
     /// Updates the smoother to the rows and the fixed unknowns of the level.

@@ -3,10 +3,12 @@
 //! Coarse basis functions are truncated: their coefficients at fixed unknowns of the finer level are set to zero
 //! (R. Kornhuber, Numer. Math. 69 (1994), 167-184).
 
+use std::ops::Range;
+
 use super::level::Level;
 use crate::algebra::{NO_INDEX, RectangularMatrix, SparseSum};
 use crate::linear::precondition::prolongation::Prolongation;
-use crate::parallel::{for_each_item, map_groups};
+use crate::parallel::{for_each_item, split};
 use crate::real::Real;
 
 /// Rows that one task computes at least.
@@ -34,7 +36,10 @@ impl<T: Real> Level<'_, T> {
             (0..fixed.len()).filter(|&j| is_recomputed(j)).map(|j| j as u32).collect();
         let is_kept: Vec<bool> = rows
             .iter()
-            .map(|&j| self.is_recomputed(j) && !prolongation.any_child(j as usize, |i| changed[i]))
+            .map(|&j| j as usize)
+            .map(|j| {
+                self.recomputed_index(j).is_some() && !prolongation.any_child(j, |i| changed[i])
+            })
             .collect();
         let computed = rows.iter().zip(&is_kept).filter(|(_, is_kept)| !**is_kept);
         let mut outdated: Vec<u32> = computed.map(|(j, _)| *j).collect();
@@ -100,15 +105,11 @@ impl<T: Real> Level<'_, T> {
         }));
         let mut values = vec![T::lit(0.0); end];
         let length = ROWS_PER_TASK.max(self.matrix.size() / MAX_TASKS);
-        let mut tasks = Vec::new();
-        let mut rest = &mut values[..];
-        for first in (0..rows.len()).step_by(length) {
-            let last = (first + length).min(rows.len());
-            let (own, tail) = rest.split_at_mut(starts[last] - starts[first]);
-            tasks.push((first..last, own));
-            rest = tail;
-        }
-        for_each_item(tasks, &|_, (range, mut values)| {
+        let ranges =
+            || (0..rows.len()).step_by(length).map(|first| first..(first + length).min(rows.len()));
+        let lengths = ranges().map(|range| starts[range.end] - starts[range.start]);
+        let tasks = ranges().zip(split(&mut values, lengths)).collect();
+        for_each_item(tasks, &|_, (range, mut values): (Range<usize>, &mut [T])| {
             let mut places = vec![NO_INDEX; self.matrix.size()];
             for k in range {
                 let columns = columns(rows[k]);
@@ -141,9 +142,7 @@ impl<T: Real> Level<'_, T> {
 struct Images<T> {
     /// The number of the row of each unknown of the finer level, [`NO_INDEX`] for an unknown without one.
     numbers: Vec<u32>,
-    /// The rows, in groups of `length` each.
-    groups: Vec<RectangularMatrix<T>>,
-    length: usize,
+    rows: RectangularMatrix<T>,
 }
 
 impl<T: Real> Images<T> {
@@ -158,8 +157,7 @@ impl<T: Real> Images<T> {
         numbers.fill(NO_INDEX);
         (0..).zip(&children).for_each(|(k, &i)| numbers[i] = k);
         let n_coarse = prolongation.n_coarse();
-        let length = ROWS_PER_TASK.max(numbers.len() / MAX_TASKS);
-        let groups = map_groups(children.len(), length, &|range| {
+        let rows = RectangularMatrix::by_groups(children.len(), &|range| {
             let mut sum = SparseSum::new(n_coarse);
             RectangularMatrix::by_rows(range, |k, columns, values| {
                 let (neighbours, entries) = finer.row(children[k]);
@@ -173,14 +171,13 @@ impl<T: Real> Images<T> {
                 sum.move_to(columns, values);
             })
         });
-        Self { numbers, groups, length }
+        Self { numbers, rows }
     }
 
     /// Columns and values of the row of an unknown, if it has one.
     #[inline(always)]
     fn row(&self, i: usize) -> Option<(&[u32], &[T])> {
         let number = self.numbers[i];
-        let at = number as usize;
-        (number != NO_INDEX).then(|| self.groups[at / self.length].row(at % self.length))
+        (number != NO_INDEX).then(|| self.rows.row(number as usize))
     }
 }

@@ -3,8 +3,8 @@
 //! A cut simplex is bisected a few times, so that a zero set that meets an edge twice is seen. A second rule leaves out
 //! bisections of parts on which the function is nearly linear. Each part that is still cut is divided at the zeros on
 //! its edges. The facets between the zeros replace the zero set, which is exact for planes. What lies between these
-//! facets and a curved zero set changes sides by a second rule: along a direction across the facet, the distance to the zero set times the difference of the
-//! integrand there. On a sphere that leaves a wrong volume whose mean thickness is 1e-5 to 1e-3 of `h^2`.
+//! facets and a curved zero set changes sides by a rule on the facets: along a direction across a facet, the distance
+//! to the zero set times the difference of the integrand there. On a sphere that leaves a wrong volume whose mean thickness is 1e-5 to 1e-3 of `h^2`.
 
 use crate::arrays::{map_entries, tabulate};
 use crate::mesh::Mesh;
