@@ -1,21 +1,20 @@
 //! Squares of errors, integrated over cells.
 
-use std::borrow::Cow;
 use std::ops::Range;
-use std::sync::Arc;
 
 use super::admissible::InCells;
 use super::cell_integrand::{CellIntegrand, LocalFunction};
 use super::evaluation::Reference;
+use super::kinks::Kinks;
 use super::squared_errors::{SquaredErrors, Squares};
 use crate::arrays::{map_entries, tabulate};
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::tables::CellTable;
 use crate::assemble::space::{Space, Terms, data};
 use crate::error::Error;
-use crate::mesh::{Mesh, edge_vertices};
+use crate::mesh::edge_vertices;
 use crate::parallel::cells;
-use crate::problem::{DatumRef, Exact, Field};
+use crate::problem::DatumRef;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule};
 use crate::real::{Point, Real, point_f64};
 
@@ -63,54 +62,6 @@ const MEAN_DEGREE: usize = 5;
 
 /// Whether a cell counts in a sum over cells.
 pub(crate) type Counts<'c> = &'c (dyn Fn(usize) -> bool + Sync);
-
-/// The functions of a region whose zeros are kinks of the exact solution.
-struct Kinks<const D: usize> {
-    levels: Vec<Field<D>>,
-}
-
-impl<const D: usize> Kinks<D> {
-    /// The function along whose zeros a cell is divided; `None` if no function is known. Of functions that have the
-    /// same zeros in the cell it is the first one: in some scenes the free boundary and jumps of load and coefficient
-    /// coincide. Of functions with different zeros it is the product.
-    fn level_in<T: Real>(
-        &self,
-        rule: &CutRule,
-        mesh: &Mesh<T, D>,
-        cell: usize,
-    ) -> Option<Cow<'_, Field<D>>> {
-        if let [level] = &self.levels[..] {
-            return Some(Cow::Borrowed(level));
-        }
-        let cuts = |level: &Field<D>| rule.cuts(mesh, cell, level);
-        // The sign of a product changes at the zeros of each function, but not where zeros coincide. At common zeros a
-        // product without a change of sign may still seem to cut a cell, since `CutRule::cuts` asks for values above
-        // zero beside others; the negative product does not then.
-        let have_other_zeros = |one: &Field<D>, other: &Field<D>| {
-            [1.0, -1.0].into_iter().all(|sign| {
-                let [one, other] = [one.clone(), other.clone()];
-                let product: Field<D> = Arc::new(move |x| sign * one(x) * other(x));
-                cuts(&product)
-            })
-        };
-        let mut found: Vec<&Field<D>> = Vec::new();
-        for level in self.levels.iter().filter(|level| cuts(level)) {
-            if found.iter().all(|other| have_other_zeros(other, level)) {
-                found.push(level);
-            }
-        }
-        match found[..] {
-            [] => None,
-            [level] => Some(Cow::Borrowed(level)),
-            _ => {
-                let found: Vec<Field<D>> = found.into_iter().cloned().collect();
-                let product: Field<D> =
-                    Arc::new(move |x| found.iter().map(|level| level(x)).product());
-                Some(Cow::Owned(product))
-            }
-        }
-    }
-}
 
 /// What the errors of all cells read.
 struct Measure<'m, 'r, 'f, T: Real, const D: usize> {
@@ -204,19 +155,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             total.add(&part?.squares);
         }
         Ok(total)
-    }
-
-    /// The functions whose zeros are the exact free boundary, where there is an obstacle, and the levels of load,
-    /// coefficient and reaction of a region: first or second derivatives of the exact solution jump there.
-    fn kinks(&self, exact: &Reference<'_, T, D>, region: usize) -> Kinks<D> {
-        let Reference::Exact(Exact { contact, .. }) = exact else {
-            return Kinks { levels: Vec::new() };
-        };
-        let contact = contact.as_ref().filter(|_| self.problem.has_obstacle());
-        let indicator = contact.map(|set| set.indicator.clone());
-        let data = [&self.data.source, &self.data.coefficient, &self.data.reaction];
-        let of_data = data.map(|data| data.of(region).and_then(|f| f.level()).cloned());
-        Kinks { levels: indicator.into_iter().chain(of_data.into_iter().flatten()).collect() }
     }
 
     /// What the error is integrated with in a cell.
@@ -366,48 +304,4 @@ fn may_jump<const D: usize>(
 /// Whether two lists of squares differ by more than is allowed.
 fn differ(a: &Squares, b: &Squares, allowed: &Squares) -> bool {
     a.iter().zip(b).zip(allowed).any(|((a, b), allowed)| (a - b).abs() > *allowed)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::BoxDomain;
-
-    /// The level along which the first cell of a unit cube is divided. The middle of an edge of this cell has the first
-    /// coordinate 1/2.
-    fn level_in<const D: usize>(levels: &[&Field<D>]) -> Option<Field<D>> {
-        let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let mesh = Mesh::<f64, D>::kuhn_box(&square, [1; D]).unwrap();
-        let kinks = Kinks { levels: levels.iter().copied().cloned().collect() };
-        kinks.level_in(&CutRule::new(D, 4), &mesh, 0).map(Cow::into_owned)
-    }
-
-    fn kinks_of_several_levels<const D: usize>() {
-        let half: Field<D> = Arc::new(|x| x[0] - 0.5);
-        let opposite: Field<D> = Arc::new(|x| 0.5 - x[0]);
-        let double: Field<D> = Arc::new(|x| 2.0 * x[0] - 1.0);
-        let far: Field<D> = Arc::new(|x| x[0] + 1.0);
-        let same = |a: &Option<Field<D>>, b: &Field<D>| Arc::ptr_eq(a.as_ref().unwrap(), b);
-        // zeros that coincide, with the same and with opposite signs
-        for other in [&double, &opposite] {
-            assert!(same(&level_in(&[&half, other]), &half));
-            assert!(same(&level_in(&[&half, other, &double]), &half));
-        }
-        assert!(same(&level_in(&[&far, &half]), &half));
-        assert!(same(&level_in(&[&half, &far]), &half));
-        assert!(level_in(&[&far, &far]).is_none());
-        let [low, high]: [Field<D>; 2] = [Arc::new(|x| x[0] - 0.4), Arc::new(|x| x[0] - 0.6)];
-        for levels in [&[&low, &high][..], &[&low, &high, &high], &[&low, &low, &high]] {
-            let both = level_in(levels).unwrap();
-            let signs = [0.1, 0.5, 0.9].map(|x| both(&Point::repeat(x)) > 0.0);
-            assert_eq!(signs, [true, false, true]);
-        }
-    }
-
-    #[test]
-    fn several_levels_divide_a_cell_along_all_and_once_where_they_coincide() {
-        kinks_of_several_levels::<1>();
-        kinks_of_several_levels::<2>();
-        kinks_of_several_levels::<3>();
-    }
 }

@@ -9,6 +9,7 @@ mod error_norm;
 mod errors;
 mod evaluation;
 mod fields;
+mod kinks;
 mod norms;
 mod order;
 mod squared_errors;
