@@ -3,8 +3,10 @@
 use std::ops::Range;
 
 use super::Discretisation;
+use super::facet_coefficients::FacetCoefficients;
 use super::load::FacetMoments;
 use super::owned_rows::lifted::{LiftTable, Lifting, MAX_MOMENTS};
+use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
 use crate::error::Error;
 use crate::facet::FacetKind;
@@ -19,6 +21,11 @@ fn product<T: Real>(coefficients: &[f64], values: &[T]) -> f64 {
 
 /// The two cells of a facet that carries the form: cell and number of the facet in it.
 type Sides = ((usize, usize), Option<(usize, usize)>);
+
+/// What all facets share: the basis functions on them, the moments of Dirichlet data, and what the form needs of cells
+/// and facets.
+type TablesOfFacets<'t, T> =
+    (&'t FacetTable<T>, &'t FacetMoments<'t>, &'t (Metrics<T>, FacetCoefficients<T>));
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// By facet of each cell the first `kept` moments of a flux `q.n` out of the cell, times the measure of
@@ -47,6 +54,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let stride = kept + n_lifted;
         let per_cell = (D + 1) * stride;
         let starts = jump_multipliers.map(|_| self.facet_starts());
+        let prepared = self.prepared();
         // by facet of the cell here: fluxes, then the jumps that are lifted
         let mut here = vec![0.0; n_cells * per_cell];
         cells::for_each(n_cells, &|c| c * per_cell, &mut here, &|cells, out| {
@@ -56,7 +64,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                     let Some(sides) = self.sides((cell, local)) else { continue };
                     let n = table.degrees.len();
                     let multipliers = jump_multipliers.zip(facet).map(|(m, f)| &m[f * n..][..n]);
-                    self.moments_on_facet(u, sides, (&table, &data), multipliers, kept, out)?;
+                    let tables = (&table, &data, prepared);
+                    self.moments_on_facet(u, sides, tables, multipliers, kept, out)?;
                     facet = facet.map(|facet| facet + 1);
                 }
             }
@@ -77,7 +86,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             }
         }
         if form.is_lifted() {
-            self.add_lifted_fluxes(&jumps, kept, &mut fluxes);
+            self.add_lifted_fluxes(&jumps, kept, &prepared.0, &mut fluxes);
         }
         Ok(fluxes)
     }
@@ -111,13 +120,12 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         &self,
         u: &[T],
         ((cell, local), across): Sides,
-        (table, data): (&FacetTable<T>, &FacetMoments<'_>),
+        (table, data, (metrics, weights)): TablesOfFacets<'_, T>,
         multipliers: Option<&[f64]>,
         kept: usize,
         out: &mut [f64],
     ) -> Result<(), Error> {
         let (space, form) = (&self.space, self.form());
-        let (metrics, weights) = self.prepared();
         let n = space.per_cell();
         let kind = if across.is_some() { FacetKind::Interior } else { FacetKind::Dirichlet };
         let weight = weights.at::<D>((cell, local), true, kind);
@@ -176,9 +184,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
 
     /// Adds what the products of lifts tell of the fluxes, from the jumps as each cell sees them.
-    fn add_lifted_fluxes(&self, jumps: &[T], kept: usize, fluxes: &mut [f64]) {
+    fn add_lifted_fluxes(
+        &self,
+        jumps: &[T],
+        kept: usize,
+        metrics: &Metrics<T>,
+        fluxes: &mut [f64],
+    ) {
         let (space, form) = (&self.space, self.form());
-        let (metrics, _) = self.prepared();
         let neighbours = space.coupled_neighbours();
         let table = LiftTable::new(space, form.lift_degree(space.basis_degree));
         let lifting = Lifting { space, form, metrics, table: &table };

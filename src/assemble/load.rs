@@ -15,8 +15,8 @@ use super::space::{INWARD, Place, Space, data};
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::BoundaryPart;
-use crate::parallel::cells;
 use crate::parallel::vectors::zeros;
+use crate::parallel::{cells, once};
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
@@ -53,7 +53,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             Some(load) => load,
             None => {
                 let load = self.integrate_load()?;
-                self.load_by_cell.get_or_init(|| load)
+                once(&self.load_by_cell, || load)
             }
         };
         Ok(Cow::Borrowed(load))

@@ -9,6 +9,7 @@ use crate::error_bound::CoarserCells;
 use crate::instances::compiled;
 use crate::linear::Prolongation;
 use crate::mesh::{BisectedMesh, Mesh};
+use crate::parallel::once;
 use crate::real::Real;
 
 /// A mesh has at least so many times the vertices of the next coarser level of multigrid. A cycle then
@@ -211,7 +212,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         let is_coarser = |step: &Step<T, D>| step.n_vertices() as f64 <= few;
         let coarser = self.steps().take(position).take_while(|step| is_coarser(step)).count();
         let coarser = coarser.checked_sub(1)?;
-        let prolongation = step.prolongation.get_or_init(|| {
+        let prolongation = once(&step.prolongation, || {
             let mut parents = Vec::new();
             for finer in coarser + 1..=position {
                 parents.extend_from_slice(&self.step(finer).parents);

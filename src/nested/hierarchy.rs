@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::instances::compiled;
 use crate::linear::Prolongation;
 use crate::mesh::{Domain, Mesh, Refinement};
+use crate::parallel::once;
 use crate::real::Real;
 
 /// A mesh of a hierarchy.
@@ -89,7 +90,7 @@ impl<T: Real, const D: usize> Hierarchy<T, D> {
         let refinement = entry.refinement.as_ref()?;
         let n_coarse = self.mesh(position - 1).vertices().len();
         let new = || Arc::new(Prolongation::midpoints(refinement.parents.clone(), n_coarse));
-        Some((refinement, entry.prolongation.get_or_init(new)))
+        Some((refinement, once(&entry.prolongation, new)))
     }
 }
 

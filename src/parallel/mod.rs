@@ -12,7 +12,7 @@ pub(crate) mod cells;
 pub(crate) mod vectors;
 
 use std::ops::Range;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use rayon::prelude::*;
 
@@ -45,15 +45,23 @@ pub(crate) fn map_groups<R: Send>(
     map_indices(n.div_ceil(length), &|k| work(k * length..((k + 1) * length).min(n)))
 }
 
+/// The values of `work` at the index and the value of every item, in their order, one task each.
+///
+/// An item leaves its lock before the work on it begins: no lock is held while other tasks may run on its thread.
+pub(crate) fn map_items<A: Send, R: Send>(
+    items: Vec<A>,
+    work: &(dyn Fn(usize, A) -> R + Sync),
+) -> Vec<R> {
+    let slots: Vec<Mutex<Option<A>>> = items.into_iter().map(|a| Mutex::new(Some(a))).collect();
+    map_indices(slots.len(), &|k| {
+        let item = lock(&slots[k]).take();
+        work(k, item.expect("the task of an index is the only one that takes its item"))
+    })
+}
+
 /// Calls `work` with the index and the value of every item, one task each.
 pub(crate) fn for_each_item<A: Send>(items: Vec<A>, work: &(dyn Fn(usize, A) + Sync)) {
-    let slots: Vec<Mutex<Option<A>>> = items.into_iter().map(|a| Mutex::new(Some(a))).collect();
-    for_each_index(slots.len(), &|k| {
-        let item = lock(&slots[k]).take();
-        if let Some(item) = item {
-            work(k, item);
-        }
-    });
+    map_items(items, work);
 }
 
 /// Consecutive parts of a slice with these lengths, as many as there are lengths.
@@ -66,6 +74,20 @@ pub(crate) fn split<V>(
         rest = tail;
         own
     })
+}
+
+/// The value of a cell. Where there is none yet, the calling thread makes one.
+///
+/// The value is made before the cell is locked. A thread that waits for its own parallel work takes other tasks of the
+/// pool, and one of them may ask for the same cell: under `OnceLock::get_or_init` the thread would wait for itself.
+/// Threads that come at the same time each make the value, and the first one stays; a loop therefore has what it needs
+/// made before it.
+pub(crate) fn once<V>(cell: &OnceLock<V>, make: impl FnOnce() -> V) -> &V {
+    if let Some(value) = cell.get() {
+        return value;
+    }
+    let value = make();
+    cell.get_or_init(|| value)
 }
 
 /// The content of a lock; a task that panicked leaves it as it was.

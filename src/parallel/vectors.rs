@@ -4,11 +4,10 @@
 //! therefore independent of the number of threads.
 
 use std::ops::Range;
-use std::sync::Mutex;
 
 use rayon::prelude::*;
 
-use super::{for_each_item, lock, map_indices};
+use super::{for_each_item, map_indices, map_items};
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
@@ -95,9 +94,8 @@ pub(crate) fn sum_chunks_of_groups<A: Send>(
     if is_sequential(n) {
         x.chunks_mut(length).enumerate().map(one).sum()
     } else {
-        let chunks: Vec<Mutex<&mut [A]>> = x.chunks_mut(length).map(Mutex::new).collect();
-        let sums = map_indices(chunks.len(), &|k| one((k, &mut *lock(&chunks[k]))));
-        sums.iter().sum()
+        let chunks = x.chunks_mut(length).collect();
+        map_items(chunks, &|k, x| one((k, x))).iter().sum()
     }
 }
 
@@ -124,13 +122,8 @@ pub(crate) fn sum_chunks_of_groups_of_two<A: Send, B: Send>(
     if is_sequential(n) {
         x.chunks_mut(length).zip(y.chunks_mut(length)).enumerate().map(one).sum()
     } else {
-        let chunks = x.chunks_mut(length).zip(y.chunks_mut(length));
-        let chunks: Vec<Mutex<(&mut [A], &mut [B])>> = chunks.map(Mutex::new).collect();
-        let sums = map_indices(chunks.len(), &|k| {
-            let (x, y) = &mut *lock(&chunks[k]);
-            one((k, (x, y)))
-        });
-        sums.iter().sum()
+        let chunks = x.chunks_mut(length).zip(y.chunks_mut(length)).collect();
+        map_items(chunks, &|k, x_and_y| one((k, x_and_y))).iter().sum()
     }
 }
 

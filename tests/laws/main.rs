@@ -4,6 +4,7 @@ mod bisection;
 mod floors;
 mod gmsh;
 mod kit;
+mod locks;
 mod mesh;
 mod overlaps;
 mod quadrature;

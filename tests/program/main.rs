@@ -14,6 +14,8 @@ mod requests;
 mod rows;
 mod run;
 mod square;
+#[cfg(target_os = "linux")]
+mod threads;
 
 #[path = "../support"]
 mod support {

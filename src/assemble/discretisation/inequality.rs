@@ -6,6 +6,7 @@ use crate::assemble::penalised;
 use crate::assemble::space::contradictions::Contradictions;
 use crate::error::Error;
 use crate::instances::compiled;
+use crate::parallel::once;
 use crate::real::Real;
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
@@ -92,7 +93,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     fn checked_bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         let (bounds, found) = self.space.bounds()?;
         if self.mesh().is_part() {
-            self.contradictions.get_or_init(|| Contradictions::new(&bounds, found));
+            once(&self.contradictions, || Contradictions::new(&bounds, found));
         } else if !found.is_empty() {
             let found = Contradictions::new(&bounds, found);
             found.check(found.size(), &|_| true)?;
@@ -115,7 +116,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             return Ok(found);
         }
         let (bounds, found) = self.space.bounds()?;
-        Ok(self.contradictions.get_or_init(|| Contradictions::new(&bounds, found)))
+        Ok(once(&self.contradictions, || Contradictions::new(&bounds, found)))
     }
     /// The load of all unknowns.
     ///

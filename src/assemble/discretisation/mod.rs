@@ -22,6 +22,7 @@ use crate::algebra::{SparseMatrix, Support};
 use crate::facet::FacetForm;
 use crate::instances::compiled;
 use crate::mesh::Mesh;
+use crate::parallel::once;
 use crate::problem::Problem;
 use crate::real::Real;
 
@@ -102,9 +103,9 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         self.prepared.take();
         self.space.load_by_cell.take();
     }
-    /// What facet forms need of cells and facets.
+    /// What facet forms need of cells and facets. Loops over cells ask for it before they begin.
     pub(super) fn prepared(&self) -> &(Metrics<T>, FacetCoefficients<T>) {
-        self.prepared.get_or_init(|| {
+        once(&self.prepared, || {
             let metrics = Metrics::of(self.space.mesh);
             let weights = FacetCoefficients::of(&self.space, self.form(), &metrics);
             (metrics, weights)

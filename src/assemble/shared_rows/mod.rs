@@ -20,6 +20,7 @@ use super::space::Space;
 use crate::algebra::SparseMatrix;
 use crate::element::ReferenceElement;
 use crate::facet::FacetForm;
+use crate::parallel::once;
 use crate::real::Real;
 pub(crate) use cell_loops::CellLoops;
 pub(crate) use pattern::EntryPositions;
@@ -71,7 +72,7 @@ impl<T: Real, const D: usize> SharedRows<T, D> {
     ) {
         match &self.loops {
             Some(loops) if !form.couples() => {
-                let positions = self.positions.get_or_init(|| (loops.pattern)(&space.dofs).1);
+                let positions = once(&self.positions, || (loops.pattern)(&space.dofs).1);
                 (loops.fill)(space, positions, matrix);
             }
             _ => patches::fill(space, form, matrix),

@@ -2,7 +2,6 @@
 
 use std::convert::Infallible;
 use std::ops::Range;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::assemble::space::Space;
@@ -38,7 +37,7 @@ impl Corner {
 }
 
 /// The corners of all vertices, and where those of each vertex start.
-type Corners = (Vec<Corner>, Vec<u32>);
+pub(super) type Corners = (Vec<Corner>, Vec<u32>);
 
 /// Number of cells whose parts are kept at a time. The parts of a tetrahedron are twelve numbers, the flux is four.
 pub(super) const CELLS_AT_A_TIME: usize = 1 << 17;
@@ -54,8 +53,6 @@ pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
     pub multipliers: Vec<f64>,
     /// Of each vertex one of its cells, and how many there are.
     pub one_cell: Vec<(u32, u32)>,
-    /// The cells around each vertex with its number there, and where those of each vertex start; found once needed.
-    pub corners: OnceLock<Corners>,
     /// The cells whose parts are kept.
     kept: Range<usize>,
     /// By kept cell and vertex the fluxes through the facets there, as bits: each is written once, by the task of
@@ -114,7 +111,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             cells: data,
             multipliers,
             one_cell,
-            corners: OnceLock::new(),
             kept: 0..0,
             parts: Vec::new(),
         })

@@ -18,9 +18,8 @@ mod tests;
 use std::convert::Infallible;
 use std::ops::Range;
 
-use data::{CELLS_AT_A_TIME, Patches};
+use data::{CELLS_AT_A_TIME, Corners, Patches};
 pub(super) use data::{Corner, around};
-use fan::CellOfFan;
 use nalgebra::{SMatrix, SVector};
 
 use super::NoBound;
@@ -56,12 +55,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         mut patches: Patches<'_, '_, T, D>,
     ) -> Result<Vec<f64>, NoBound> {
         let mut flux = in_large_pages(Vec::with_capacity(self.mesh.n_cells() * (D + 1)));
-        for (cells, vertices) in self.ranges_with_vertices(length) {
+        let mut corners = None;
+        for (cells, mut vertices) in self.ranges_with_vertices(length) {
             patches.keep(cells.clone());
-            cells::map(vertices.len(), &|range: Range<usize>| {
-                let mut patch = Patch::default();
-                vertices[range].iter().for_each(|&v| patches.add_vertex(v as usize, &mut patch));
-            });
+            if D == 2 {
+                vertices = patches.add_fans(&vertices);
+            }
+            if !vertices.is_empty() {
+                patches.add_vertices(&vertices, corners.get_or_insert_with(|| self.corners()));
+            }
             let start = flux.len();
             flux.resize(cells.end * (D + 1), 0.0);
             let fill = |range: Range<usize>, flux: &mut [f64]| {
@@ -106,7 +108,6 @@ struct CellOfPatch {
 /// The arrays of one patch.
 #[derive(Default)]
 struct Patch {
-    fan: Vec<CellOfFan>,
     cells: Vec<CellOfPatch>,
     /// The upper triangle of the matrix of the multipliers by rows.
     matrix: Vec<f64>,
@@ -117,18 +118,34 @@ struct Patch {
 }
 
 impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
+    /// Sets the parts of those of these vertices of the plane whose cells form one fan, and returns the others.
+    fn add_fans(&self, vertices: &[u32]) -> Vec<u32> {
+        let others = cells::map(vertices.len(), &|range: Range<usize>| {
+            let mut fan = Vec::new();
+            let is_other = |&&v: &&u32| !self.add_fan(v as usize, &mut fan);
+            vertices[range].iter().filter(is_other).copied().collect::<Vec<_>>()
+        });
+        others.concat()
+    }
+
+    /// Sets the parts of these vertices, given the cells around every vertex.
+    fn add_vertices(&self, vertices: &[u32], (corners, starts): &Corners) {
+        cells::map(vertices.len(), &|range: Range<usize>| {
+            let mut patch = Patch::default();
+            for vertex in vertices[range].iter().map(|&v| v as usize) {
+                let around = starts[vertex] as usize..starts[vertex + 1] as usize;
+                self.add_vertex(vertex, &corners[around], &mut patch);
+            }
+        });
+    }
+
     /// Sets the part of a vertex: for each cell around it the fluxes through the facets there.
     ///
     /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
-    fn add_vertex(&self, vertex: usize, patch: &mut Patch) {
-        if D == 2 && self.add_fan(vertex, &mut patch.fan) {
-            return;
-        }
-        let (corners, starts) = self.corners.get_or_init(|| self.space.corners());
-        let corners = &corners[starts[vertex] as usize..starts[vertex + 1] as usize];
+    fn add_vertex(&self, vertex: usize, corners: &[Corner], patch: &mut Patch) {
         let total: f64 = corners.iter().map(|corner| self.volume(corner.cell() as usize)).sum();
         let pressure = self.multipliers[vertex] / total;
-        let Patch { cells, matrix, multipliers, sums, .. } = patch;
+        let Patch { cells, matrix, multipliers, sums } = patch;
         cells.clear();
         multipliers.clear();
         for (k, (cell, own)) in corners.iter().map(|corner| corner.pair()).enumerate() {

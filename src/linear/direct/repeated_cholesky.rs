@@ -7,6 +7,7 @@ use super::error::FactorError;
 use super::factors::Factors;
 use super::symbolic_factor::SymbolicFactor;
 use crate::algebra::{PenalisedMatrix, SparseMatrix, Submatrix, barycentre};
+use crate::parallel::{lock, once};
 use crate::real::Real;
 
 /// Cholesky factorisation of several matrices with the same pattern: the order of elimination and the
@@ -51,7 +52,7 @@ impl RepeatedCholesky {
         let order = EliminationOrder::new(&lower, &all, self.points.as_deref())?;
         let mut lower = Submatrix::from(lower);
         let symbolic = SymbolicFactor::new(&lower, Some(order.into_unknowns()))?;
-        Factors::cholesky(&mut lower, self.symbolic.get_or_init(|| symbolic))
+        Factors::cholesky(&mut lower, once(&self.symbolic, || symbolic))
     }
 
     /// The factors `L D L^T` of a quasidefinite matrix, given by its lower triangle. The pivots of the leading rows are
@@ -68,8 +69,8 @@ impl RepeatedCholesky {
         blocks: &[u32],
     ) -> Result<Factors<T>, FactorError> {
         let n_positive = leading.size();
-        let mut last = self.last_symbolic.lock().unwrap_or_else(|error| error.into_inner());
-        let symbolic = match last.take().filter(|(last, _)| last == blocks) {
+        let last = lock(&self.last_symbolic).take();
+        let symbolic = match last.filter(|(last, _)| last == blocks) {
             Some((_, symbolic)) => symbolic,
             None => {
                 let order = match self.order.get() {
@@ -77,7 +78,7 @@ impl RepeatedCholesky {
                     None => {
                         let all: Vec<u32> = (0..n_positive as u32).collect();
                         let order = EliminationOrder::new(leading, &all, self.points.as_deref())?;
-                        self.order.get_or_init(|| order)
+                        once(&self.order, || order)
                     }
                 };
                 let order = order.with_rows_after_their_columns(&lower);
@@ -86,7 +87,7 @@ impl RepeatedCholesky {
         };
         let lower = Submatrix::from(lower);
         let factors = Factors::quasidefinite(&lower, n_positive, &symbolic);
-        *last = Some((blocks.to_vec(), symbolic));
+        *lock(&self.last_symbolic) = Some((blocks.to_vec(), symbolic));
         factors
     }
 }

@@ -6,6 +6,7 @@ use super::Solved;
 use crate::error::Error;
 use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair};
 use crate::measure::{ContactErrors, Errors, contact_difference};
+use crate::parallel::once;
 use crate::problem::Exact;
 use crate::real::{Point, Real};
 
@@ -115,7 +116,7 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
         let pair = self.primal_dual_pair()?;
         let coarser = self.adaptive.map_or_else(Vec::new, |(meshes, k)| meshes.coarser_cells(k));
         let bound = self.discretisation.error_bound_on_levels(&pair, self.values(), &coarser)?;
-        Ok(self.bound.get_or_init(|| (pair, bound, clock.elapsed().as_secs_f64())))
+        Ok(once(&self.bound, || (pair, bound, clock.elapsed().as_secs_f64())))
     }
     /// Seconds of the bound; none if it is not known, or not yet.
     pub(crate) fn bound_seconds(&self) -> Option<f64> {
