@@ -2,7 +2,7 @@
 
 use super::scales::Scales;
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::real::Real;
+use crate::real::{Real, maximum};
 
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
 ///
@@ -81,10 +81,11 @@ impl Certificate {
             && self.algebraic_bound.is_none_or(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT)
     }
 
-    /// The largest of the four violations.
+    /// The largest of the four violations; NaN if one of them is NaN, which is within no limit.
     #[must_use]
     pub fn largest(&self) -> f64 {
-        self.feasibility.max(self.multiplier).max(self.complementarity).max(self.residual)
+        let Self { feasibility, multiplier, complementarity, residual, .. } = *self;
+        [multiplier, complementarity, residual].into_iter().fold(feasibility, maximum)
     }
 }
 

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use crate::algebra::{Distribution, Inequality};
 use crate::parallel::vectors::map_chunks;
-use crate::real::Real;
+use crate::real::{Real, maximum};
 
 /// The multiple of machine epsilon times the sum of the absolute values of its terms below which an energy counts as
 /// zero.
@@ -178,9 +178,4 @@ impl Sums {
         self.energy += energy;
         self.terms += energy.abs();
     }
-}
-
-/// The larger number; NaN if one of the two is NaN.
-pub(super) fn maximum(a: f64, b: f64) -> f64 {
-    if a <= b || b.is_nan() { b } else { a }
 }

@@ -1,12 +1,12 @@
 //! The sums and maxima from which a certificate is computed, over the unknowns of one part of a mesh or of all parts.
 
 use super::certificate::{Certificate, positive_diagonal, residual};
-use super::scales::{Scales, Sums, maximum};
+use super::scales::{Scales, Sums};
 use crate::algebra::{Bound, Distribution, Inequality};
 use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::parallel::vectors::{collect, largest, map_chunks};
-use crate::real::Real;
+use crate::real::{Real, maximum};
 
 /// The certificate of `u` as a solution of the inequality.
 #[must_use]
@@ -150,7 +150,7 @@ impl Violations {
                 let d = diagonal[i];
                 diagonal_sum += d;
                 let local = LocalViolation::new(&bounds[i], u[i].to_f64(), -r[i] / d);
-                feasibility = feasibility.max(local.feasibility);
+                feasibility = maximum(feasibility, local.feasibility);
                 let changes = [local.multiplier, local.complementarity, local.residual];
                 for (square, change) in squares.iter_mut().zip(changes) {
                     *square += d * (change / unit).powi(2);
@@ -160,7 +160,7 @@ impl Violations {
         });
         for (diagonal_sum, feasibility, squares) in parts {
             sums.diagonal_sum += diagonal_sum;
-            sums.feasibility = sums.feasibility.max(feasibility);
+            sums.feasibility = maximum(sums.feasibility, feasibility);
             sums.squares.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);
         }
         sums
@@ -178,7 +178,7 @@ impl Violations {
         Self {
             unit: one.unit,
             scales: one.scales.merge(two.scales),
-            feasibility: one.feasibility.max(two.feasibility),
+            feasibility: maximum(one.feasibility, two.feasibility),
             jump_residual: maximum(one.jump_residual, two.jump_residual),
             squares: tabulate(|k| one.squares[k] + two.squares[k]),
             diagonal_sum: one.diagonal_sum + two.diagonal_sum,
@@ -232,16 +232,18 @@ impl Violations {
     pub(super) fn certificate_with_rounding(&self) -> (Certificate, f64) {
         let Scales { max_norm, energy_norm } = self.scales.scales(self.epsilon, self.unit);
         let [multiplier, complementarity, residual] = self.squares;
-        let numbers = [max_norm, energy_norm, multiplier, residual, self.jump_residual];
+        let Self { feasibility, jump_residual, .. } = *self;
+        // a bound that is not a number gives no other violation than of itself
+        let numbers = [max_norm, energy_norm, feasibility, multiplier, residual, jump_residual];
         if !numbers.iter().all(|x| x.is_finite()) {
             return (Certificate::INVALID, 0.0);
         }
         let norm = |sum: f64| sum.sqrt() / (energy_norm / self.unit);
         let certificate = Certificate::new([
-            self.feasibility / max_norm,
+            feasibility / max_norm,
             norm(multiplier),
             norm(complementarity),
-            norm(residual).max(self.jump_residual / max_norm),
+            norm(residual).max(jump_residual / max_norm),
         ]);
         (certificate, max_norm / self.unit * norm(self.diagonal_sum))
     }
@@ -290,7 +292,6 @@ fn largest_jump_residual<T: Real>(
         penalised.jump_residual(jump, |i| u[i].to_f64(), multiplier).abs()
     };
     let owned = |&jump: &usize| penalised.first_unknown(jump).is_some_and(owns);
-    // unlike f64::max this keeps a number that is not finite
     (0..jump_multipliers.len()).filter(owned).map(of_jump).fold(0.0, maximum)
 }
 
@@ -317,7 +318,8 @@ impl LocalViolation {
         } else {
             (to_upper, to_lower, -step)
         };
-        let mut local = Self { feasibility: (-gap).max(0.0), ..Self::default() };
+        let feasibility = maximum(maximum(-to_lower, -to_upper), 0.0);
+        let mut local = Self { feasibility, ..Self::default() };
         if gap > step.abs() {
             local.residual = step;
         } else if step_to_bound < 0.0 {
@@ -366,6 +368,34 @@ mod tests {
         for exponent in [-300, -30, 30, 300] {
             assert_eq!(of_unit(2.0_f64.powi(exponent)), (free, with_data), "{exponent}");
         }
+    }
+
+    /// A certificate never passes over a number that is none.
+    #[test]
+    fn what_is_not_a_number_is_within_no_limit() {
+        for which in 0..4 {
+            let mut numbers = [0.0; 4];
+            numbers[which] = f64::NAN;
+            assert!(Certificate::new(numbers).largest().is_nan(), "violation {which}");
+            assert!(!Certificate::new(numbers).is_within_limits::<f64>());
+        }
+        let not_a_number = f64::NAN;
+        let (problem, values) = problem(1.0);
+        for bound in [
+            Bound::Lower(not_a_number),
+            Bound::Upper(not_a_number),
+            Bound::Fixed(not_a_number),
+            Bound::Both(not_a_number, 1.0),
+            Bound::Both(-1.0, not_a_number),
+        ] {
+            let mut wrong = problem.clone();
+            wrong.bounds[0] = bound;
+            assert_eq!(certify(&wrong, &values), Certificate::INVALID, "{bound:?}");
+            let [one, others] =
+                [true, false].map(|own| Violations::of(&wrong, &values, &[], &|i| (i == 0) == own));
+            assert_eq!(others.merge(one).certificate(), Certificate::INVALID, "{bound:?}");
+        }
+        assert!(largest(2, |i| [1.0, not_a_number][i]).is_nan());
     }
 
     /// Parts of different sizes, and one where all is zero, in units whose squares underflow.

@@ -154,6 +154,26 @@ fn mistakes_are_found_where_they_are() {
             (3, 11),
             "source.default is NaN at (-0.",
         ),
+        (
+            format!("{BOX}[obstacle]\nlower.default = \"max(log(x - 2), 1)\"\n{SIDES}"),
+            (3, 17),
+            "obstacle.lower.default is NaN at (-0.",
+        ),
+        (
+            format!("{BOX}[source]\ndefault = \"min(0/0, 1)\"\n{SIDES}"),
+            (3, 11),
+            "source.default is NaN",
+        ),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"dirichlet\"\nvalue = \"(0/0)^0\"\n"),
+            (2, 11),
+            "boundary.left.value is NaN",
+        ),
+        (
+            format!("{BOX}[source]\ndefault = {{ value = 1, level = \"log(x)\" }}\n{SIDES}"),
+            (3, 32),
+            "source.default.level is NaN at (-0.",
+        ),
         (format!("{BOX}[coefficient]\ndefault = 0\n{SIDES}"), (3, 11), "finite and positive"),
         (format!("{BOX}[reaction]\ndefault = \"-1\"\n{SIDES}"), (3, 11), "not negative"),
         (format!("{BOX}[obstacle]\ndefault = 1\n"), (3, 1), "allowed are lower, upper"),
@@ -235,6 +255,19 @@ fn mistakes_are_found_where_they_are() {
         .unwrap();
     let error = read(&folder.0.join("two.toml")).unwrap_err();
     assert!(matches!(error, ProblemFileError::At { fault: ProblemFileFault::Missing { .. }, .. }));
+}
+
+/// What a condition leaves out need not have a value.
+#[test]
+fn branches_that_are_not_taken_do_not_count() {
+    let folder = Scratch::new("problem-branches");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let path = folder.0.join("branches.toml");
+    let load = "[source]\ndefault = \"if(x > 0 && log(x) < 0, -sqrt(x), -8)\"\n";
+    std::fs::write(&path, format!("{BOX}{load}{SIDES}")).unwrap();
+    let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("a problem in the plane") };
+    let at = |x: f64| own.problem.source.as_ref().unwrap().at(&Point::from([x, 0.5]));
+    assert_eq!([at(-0.5), at(0.25)], [-8.0, -0.5]);
 }
 
 #[test]

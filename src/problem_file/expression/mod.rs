@@ -143,6 +143,44 @@ mod tests {
     }
 
     #[test]
+    fn an_operand_that_is_not_a_number_leaves_no_number() {
+        let x = [1.0, 3.0, 5.0];
+        for text in [
+            "min(0/0, 1)",
+            "min(1, 0/0)",
+            "max(log(x - 2), 1)",
+            "max(1, y, log(x - 2))",
+            "(0/0)^0",
+            "1^(0/0)",
+            "pow(0/0, 0)",
+            "hypot(1/0, 0/0)",
+            "atan2(0/0, 1)",
+            "sign(0/0)",
+            "log(x - 2) > 0",
+            "0/0 != 0/0",
+            "!(0/0)",
+            "1 && 0/0",
+            "0/0 || 1",
+            "0/0 && 0",
+            "if(log(x - 2) < 1, 1, 2)",
+            "if(x < 2, log(x - 2), 2)",
+        ] {
+            assert!(at(text, x).is_nan(), "{text}: {}", at(text, x));
+        }
+        for (text, expected) in [
+            ("if(x > 2, log(x - 2), -1)", -1.0),
+            ("if(x < 2, 4, 0/0)", 4.0),
+            ("x > 2 && log(x - 2) > 0", 0.0),
+            ("x < 2 || log(x - 2) > 0", 1.0),
+            ("x > 2 || y", 1.0),
+            ("x < 2 && y - 3", 0.0),
+            ("min(1/0, x)", 1.0),
+        ] {
+            assert_eq!(at(text, x), expected, "{text}");
+        }
+    }
+
+    #[test]
     fn errors_have_their_place() {
         for (text, offset, words) in [
             ("", 0, "ends"),

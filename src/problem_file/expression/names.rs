@@ -69,6 +69,12 @@ fn call(name: &str, arguments: Vec<Node>) -> Result<Node, String> {
         let first = next();
         return Ok(arguments.fold(first, |a, b| Node::two(*f, a, b)));
     }
+    // operators whose second operand is not always used
+    match name {
+        "&&" => return Ok(Node::and(next(), next())),
+        "||" => return Ok(Node::or(next(), next())),
+        _ => {}
+    }
     if name == "if" {
         return match n {
             3 => Ok(Node::If(Box::new((next(), next(), next())))),

@@ -1,6 +1,6 @@
 //! The tree of an expression, and its value.
 
-use super::functions::{One, Two};
+use super::functions::{One, Two, truth};
 
 /// A node of the tree.
 #[derive(Clone, Debug)]
@@ -14,7 +14,7 @@ pub(super) enum Node {
     If(Box<(Node, Node, Node)>),
     /// A name that has no meaning yet: where it ends, counted from the end of the text.
     Name(String, usize),
-    /// A function with its arguments, before it is looked up.
+    /// A function, or one of the operators `&&` and `||`, with its arguments, before it is looked up.
     Call(String, usize, Vec<Node>),
 }
 
@@ -22,6 +22,19 @@ impl Node {
     /// A function of two nodes.
     pub fn two(operation: Two, a: Node, b: Node) -> Node {
         Node::Two(operation, Box::new((a, b)))
+    }
+
+    /// The truth value of a node.
+    fn truth(a: Node) -> Node {
+        Node::two(|a, b| truth(a != b), a, Node::Number(0.0))
+    }
+    /// Whether both nodes are true; the second is not used if the first is false.
+    pub fn and(a: Node, b: Node) -> Node {
+        Node::If(Box::new((a, Self::truth(b), Node::Number(0.0))))
+    }
+    /// Whether a node or another is true; the other is not used if the first is true.
+    pub fn or(a: Node, b: Node) -> Node {
+        Node::If(Box::new((a, Node::Number(1.0), Self::truth(b))))
     }
 
     /// Whether a variable occurs.
@@ -35,17 +48,30 @@ impl Node {
         }
     }
 
-    /// The value for values of the variables.
+    /// The value for values of the variables; NaN if an operand that is used is NaN. The branch of a condition that
+    /// is not taken is not used.
     pub fn value(&self, variables: &[f64]) -> f64 {
         let at = |node: &Node| node.value(variables);
         match self {
             Node::Number(x) => *x,
             Node::Variable(k) => variables[*k],
-            Node::One(f, a) => f(at(a)),
-            Node::Two(f, ab) => f(at(&ab.0), at(&ab.1)),
+            // `max`, `pow`, comparisons and others would make a number of an operand that is none
+            Node::One(f, a) => match at(a) {
+                a if a.is_nan() => a,
+                a => f(a),
+            },
+            Node::Two(f, ab) => match (at(&ab.0), at(&ab.1)) {
+                (a, _) if a.is_nan() => a,
+                (_, b) if b.is_nan() => b,
+                (a, b) => f(a, b),
+            },
             Node::If(parts) => {
                 let (condition, yes, no) = &**parts;
-                if at(condition) != 0.0 { at(yes) } else { at(no) }
+                match at(condition) {
+                    condition if condition.is_nan() => condition,
+                    0.0 => at(no),
+                    _ => at(yes),
+                }
             }
             // names are resolved when an expression is read
             Node::Name(..) | Node::Call(..) => f64::NAN,
