@@ -132,6 +132,18 @@ pub enum Error {
         /// The values allowed.
         allowed: String,
     },
+    /// Two schemes or two solvers of a study have one name, and so have their rows and files.
+    #[error(
+        "two {items} of the study are named {name:?}, and nothing would tell their rows apart: name each once, and give one of your own another name by {by}"
+    )]
+    EqualNames {
+        /// "schemes" or "solvers".
+        items: &'static str,
+        /// The name: of schemes the label, with constraint set and choices.
+        name: String,
+        /// The functions that name one of one's own.
+        by: &'static str,
+    },
     /// A file could not be written.
     #[error("cannot write {path}: {why}")]
     Write {
@@ -169,6 +181,11 @@ pub enum Error {
 debug_by_display!(Error);
 
 impl Error {
+    /// Two schemes of a study have one label.
+    pub(crate) fn equal_schemes(label: String) -> Self {
+        let by = "`Scheme::name` or `Scheme::choices`";
+        Self::EqualNames { items: "schemes", name: label, by }
+    }
     /// The error with the number of its cell in the whole mesh, given those of the cells of a
     /// [part](crate::mesh::Part::cells), on which it was found.
     #[must_use]

@@ -89,6 +89,36 @@ pub(super) fn check_scheme<T: Real, const D: usize>(
     }
 }
 
+/// Checks that the labels of schemes and the names of solvers tell the rows of a study apart: orders are of rows of one
+/// label and solver, and files have their names.
+///
+/// # Errors
+/// [`Error::EqualNames`].
+pub(super) fn check_names(
+    labels: impl Iterator<Item = String>,
+    solvers: impl Iterator<Item = &'static str>,
+) -> Result<(), Error> {
+    if let Some(label) = first_twice(labels) {
+        return Err(Error::equal_schemes(label));
+    }
+    first_twice(solvers).map_or(Ok(()), |name| {
+        let (items, by) = ("solvers", "`InequalitySolver::name`");
+        Err(Error::EqualNames { items, name: name.to_owned(), by })
+    })
+}
+
+/// The first item that equals one before it.
+fn first_twice<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
+    let mut before = Vec::new();
+    items.find_map(|item| match before.contains(&item) {
+        true => Some(item),
+        false => {
+            before.push(item);
+            None
+        }
+    })
+}
+
 /// Checks that the built-in domain of a scene has the parts its problem needs.
 ///
 /// # Errors

@@ -25,7 +25,7 @@ use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::AnyScheme;
-use crate::study::compatibility::{check_domain, check_fit, check_scheme};
+use crate::study::compatibility::{check_domain, check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
 #[cfg(feature = "report")]
@@ -168,7 +168,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Checks schemes, levels and mesh without assembly.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
+    /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero, [`Error::EqualNames`],
     /// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
         compiled!(
@@ -185,8 +185,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             let allowed = format!("a study needs {parameter}: at least one");
             return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
         }
+        let problems = self.problems();
+        let of_entries = self.entries.iter().zip(&problems);
+        let labels = of_entries.map(|(entry, p)| entry.scheme.label_on(p.constraint_set()));
+        check_names(labels, self.solvers().iter().map(|solver| solver.name()))?;
         self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
-        for (entry, problem) in self.entries.iter().zip(self.problems()) {
+        for (entry, problem) in self.entries.iter().zip(problems) {
             check_scheme(&*entry.scheme, problem, self.quadrature)?;
         }
         if let Some(adaptivity) = &self.adaptive {
