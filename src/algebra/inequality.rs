@@ -1,5 +1,6 @@
 //! The algebraic variational inequality.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::dirichlet_energy::DirichletEnergy;
@@ -166,7 +167,8 @@ pub struct Inequality<T> {
     pub matrix: SparseMatrix<T>,
     /// Whether `A` is symmetric, as the scheme declares.
     pub symmetric: bool,
-    /// The load `b`.
+    /// The load of the data, for every solver and every measure: `b`, or with a penalised matrix `c`, without what the
+    /// penalty makes of Dirichlet data ([`Inequality::assembled_load`]). A change of it changes the problem.
     pub load: Vec<T>,
     /// The admissible values of each unknown.
     pub bounds: Vec<Bound<T>>,
@@ -179,8 +181,9 @@ pub struct Inequality<T> {
     pub conforming_linear: bool,
     /// The initial active set.
     pub start: Start,
-    /// `A` and `b` as the sums `K + M^T S M` and `c + M^T S g`, for schemes with such a penalty:
-    /// residuals of the sums have smaller rounding errors.
+    /// `A` as the sum `K + M^T S M` with the Dirichlet data `g`, for schemes with such a penalty: then `b` is
+    /// `c + M^T S g`, and residuals of the sums have smaller rounding errors. To do without it, first replace the
+    /// load by the assembled one.
     pub penalised: Option<PenalisedMatrix<T>>,
     /// What weak Dirichlet data change in the energy `u.A u`; `None` if there are none, or if
     /// `penalised` has them.
@@ -321,13 +324,22 @@ impl<T: Real> Inequality<T> {
         let is_known = self.supports.len() == self.size() && !self.points.is_empty();
         is_known.then(|| self.supports.iter().map(node).collect()).flatten()
     }
+    /// The load `b` of the assembled matrix: with a penalised matrix `c + M^T S g`, of which `c` keeps only the digits
+    /// above the rounding of `S g`.
+    pub fn assembled_load(&self) -> Cow<'_, [T]> {
+        let Some(penalised) = &self.penalised else { return Cow::Borrowed(&self.load) };
+        // the residual of zero
+        let mut load = vec![0.0; self.size()];
+        penalised.residual(&self.load, |_| 0.0, &mut load);
+        load.into_iter().map(T::lit).collect()
+    }
     /// The residual `r = b - A u` in `f64`, of the penalised matrix where there is one.
     ///
     /// # Panics
     /// If `u` or `r` is shorter than the number of unknowns.
     pub fn residual_f64(&self, u: &[T], r: &mut [f64]) {
         match &self.penalised {
-            Some(penalised) => penalised.residual(|i| u[i].to_f64(), r),
+            Some(penalised) => penalised.residual(&self.load, |i| u[i].to_f64(), r),
             None => self.matrix.residual_f64(&self.load, u, r),
         }
     }
@@ -338,17 +350,18 @@ impl<T: Real> Inequality<T> {
     /// If `r` is shorter than the number of unknowns.
     pub fn residual_of(&self, u: &(dyn Fn(usize) -> f64 + Sync), r: &mut [f64]) {
         match &self.penalised {
-            Some(penalised) => penalised.residual(u, r),
+            Some(penalised) => penalised.residual(&self.load, u, r),
             None => self.matrix.residual_of(&self.load, u, r),
         }
     }
-    /// Whether every entry of matrix, load and bounds is finite. [`Bound::Free`] or a one-sided bound
+    /// Whether every entry of matrix, load, Dirichlet data of a penalised matrix and bounds is finite. [`Bound::Free`] or a one-sided bound
     /// stands for a bound at infinity.
     pub fn is_finite(&self) -> bool {
         let finite = |x: T| x.to_f64().is_finite();
         let are_finite = |values: &[T]| all(values.len(), |k| finite(values[k]));
         are_finite(&self.matrix.values)
             && are_finite(&self.load)
+            && self.penalised.as_ref().is_none_or(|penalised| are_finite(&penalised.jump_data))
             && self.bounds.iter().all(|bound| match *bound {
                 Bound::Free => true,
                 Bound::Fixed(x) | Bound::Lower(x) | Bound::Upper(x) => finite(x),
@@ -367,7 +380,7 @@ impl<T: Real> Inequality<T> {
     pub fn objective(&self, u: &[T]) -> f64 {
         let distribution = self.distribution();
         if let Some(penalised) = &self.penalised {
-            let own = penalised.objective(|i| u[i].to_f64(), |i| self.owns(i));
+            let own = penalised.objective(&self.load, |i| u[i].to_f64(), |i| self.owns(i));
             return sum_over_parts(distribution, own);
         }
         let own = (0..self.size())

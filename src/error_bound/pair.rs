@@ -137,7 +137,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         match (penalised, &multipliers) {
             (Some(penalised), Some(multipliers)) => {
                 let value = |i: usize| u[i].to_f64();
-                penalised.residual_with_jump_multipliers(value, |k| multipliers[k], &mut residual);
+                let (load, of_jump) = (&inequality.load, |k: usize| multipliers[k]);
+                penalised.residual_with_jump_multipliers(load, value, of_jump, &mut residual);
             }
             _ => inequality.residual_f64(u, &mut residual),
         }

@@ -112,7 +112,8 @@ pub(super) fn residual<T: Real>(
         Some(penalised) if jump_multipliers.len() == penalised.n_jumps() => {
             let (value, multiplier) =
                 (|i: usize| u[i].to_f64(), |jump: usize| jump_multipliers[jump].to_f64());
-            penalised.residual_with_jump_multipliers(value, multiplier, residual);
+            let load = &inequality.load;
+            penalised.residual_with_jump_multipliers(load, value, multiplier, residual);
         }
         _ => inequality.residual_f64(u, residual),
     }

@@ -78,8 +78,6 @@ impl Sums {
     ) -> Self {
         let scale = unit.recip();
         let Inequality { load, bounds, penalised, dirichlet_energy, .. } = inequality;
-        // the load in the residual: without Dirichlet data if the matrix is penalised
-        let load = penalised.as_ref().map_or(load, |penalised| &penalised.load);
         let mut sums = Sums::default();
         for part in map_chunks(u.len(), |range| {
             let mut part = Sums::default();

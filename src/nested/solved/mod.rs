@@ -170,7 +170,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     /// The multiplier of each unknown: its entry of `A u - b` where a bound is active, positive at
     /// lower and negative at upper bounds; zero elsewhere. Its density is in [`Solved::fields`].
     pub fn multiplier(&self) -> Vec<f64> {
-        let Inequality { matrix, load, .. } = &self.inequality;
+        let (matrix, load) = (&self.inequality.matrix, self.inequality.assembled_load());
         let at = |(i, &state): (usize, &Contact)| match state {
             Contact::Inactive => 0.0,
             _ => matrix.row_dot_f64(i, self.values()) - load[i].to_f64(),
