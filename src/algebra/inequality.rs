@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::dirichlet_energy::DirichletEnergy;
 use super::distribution::{Distribution, sum_over_parts};
+use super::free_body::{FreeBody, Sum};
 use super::index::NO_INDEX;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
@@ -192,6 +193,9 @@ pub struct Inequality<T> {
     /// unknowns, each by its nonzero entries: the constants on components of the domain that neither
     /// Dirichlet data nor a reaction hold. Only bounds stop them. Empty if the kernel is zero or unknown.
     pub kernel: Vec<Vec<(u32, T)>>,
+    /// The bodies that bounds alone hold, with the resultants of their data. If there are none, each kernel vector
+    /// is a body, and its resultant the sum of the load along it.
+    pub bodies: Vec<FreeBody>,
     /// Whether theory or a test says that `A`, or its symmetric part, is positive definite on all
     /// unknowns that are not fixed, but for the kernel.
     pub is_definite: bool,
@@ -225,6 +229,7 @@ impl<T: Real> Inequality<T> {
             penalised: None,
             dirichlet_energy: None,
             kernel: Vec::new(),
+            bodies: Vec::new(),
             is_definite: false,
             distribution: None,
         }
@@ -267,10 +272,10 @@ impl<T: Real> Inequality<T> {
         self.conforming_linear = true;
         self
     }
-    /// Sets the kernel of the matrix.
+    /// Sets the kernel of the matrix, whose vectors are then the bodies that bounds alone hold.
     #[must_use]
     pub fn with_kernel(mut self, kernel: Vec<Vec<(u32, T)>>) -> Self {
-        self.kernel = kernel;
+        (self.kernel, self.bodies) = (kernel, Vec::new());
         self
     }
     /// States that the matrix is positive definite on all unknowns that are not fixed, but for the
@@ -292,7 +297,7 @@ impl<T: Real> Inequality<T> {
     /// Whether matrix, load, bounds, penalised matrix and the supports, if there are any, have the same
     /// size, the two matrices are well formed, and the vertices of supports are among the points or,
     /// without points, below four times the number of unknowns: an array by vertices is not larger.
-    /// Entries of the kernel and terms of Dirichlet data belong to unknowns.
+    /// Entries of the kernel and terms of Dirichlet data belong to unknowns, bodies to vectors of the kernel.
     pub fn is_well_formed(&self) -> bool {
         let n_vertices = if self.points.is_empty() { 4 * self.size() } else { self.points.len() };
         self.matrix.size() == self.size()
@@ -304,6 +309,7 @@ impl<T: Real> Inequality<T> {
                 self.supports[i].vertices().iter().all(|&v| (v as usize) < n_vertices)
             })
             && self.kernel.iter().all(|w| self.is_kernel_vector(w))
+            && self.bodies.iter().all(|body| body.kernel.is_none_or(|k| k < self.kernel.len()))
             && self.dirichlet_energy.as_ref().is_none_or(|e| e.is_well_formed(self.size()))
     }
     /// Whether a vector given by its nonzero entries has one, and all belong to unknowns.
@@ -354,8 +360,8 @@ impl<T: Real> Inequality<T> {
             None => self.matrix.residual_of(&self.load, u, r),
         }
     }
-    /// Whether every entry of matrix, load, Dirichlet data of a penalised matrix and bounds is finite. [`Bound::Free`] or a one-sided bound
-    /// stands for a bound at infinity.
+    /// Whether every entry of matrix, load, Dirichlet data of a penalised matrix and bounds is finite. [`Bound::Free`]
+    /// or a one-sided bound stands for a bound at infinity.
     pub fn is_finite(&self) -> bool {
         let finite = |x: T| x.to_f64().is_finite();
         let are_finite = |values: &[T]| all(values.len(), |k| finite(values[k]));
@@ -367,6 +373,14 @@ impl<T: Real> Inequality<T> {
                 Bound::Fixed(x) | Bound::Lower(x) | Bound::Upper(x) => finite(x),
                 Bound::Both(l, u) => finite(l) && finite(u),
             })
+    }
+    /// The sum of the load along the kernel vector at a position.
+    pub(crate) fn load_along(&self, position: usize) -> f64 {
+        let mut sum = Sum::default();
+        for &(i, value) in &self.kernel[position] {
+            sum.add(value.to_f64() * self.load[i as usize].to_f64());
+        }
+        sum.value()
     }
     /// Whether every unknown has an admissible value.
     pub fn is_feasible(&self) -> bool {

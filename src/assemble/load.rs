@@ -5,6 +5,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use super::bodies::FreeBodies;
 use super::count;
 use super::cut_simplices::CutRule;
 use super::local::{traces, view};
@@ -94,11 +95,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn add_constant_source(&self, f: f64, load: &mut [T]) -> Result<(), Error> {
         count::source(1);
         let f = data::finite(f, "source", &Point::<f64, D>::zeros(), 0)?;
-        let table = self.cell_table(Rule::new(D, self.basis_degree));
-        let mean = |i: usize| -> f64 {
-            table.basis.iter().zip(&table.weights).map(|(basis, w)| w * basis.values[i]).sum()
-        };
-        let means: Vec<f64> = (0..self.per_cell()).map(|i| f * mean(i)).collect();
+        let means: Vec<f64> = self.basis_means().iter().map(|mean| f * mean).collect();
         self.fill_each_cell(load, &|cell, out| {
             let volume = self.mesh.geometry(cell).volume.to_f64();
             for (value, mean) in out.iter_mut().zip(&means) {
@@ -106,6 +103,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             Ok(())
         })
+    }
+
+    /// The means of the basis functions over a cell.
+    pub fn basis_means(&self) -> Vec<f64> {
+        let table = self.cell_table(Rule::new(D, self.basis_degree));
+        let mean = |i: usize| -> f64 {
+            table.basis.iter().zip(&table.weights).map(|(basis, w)| w * basis.values[i]).sum()
+        };
+        (0..self.per_cell()).map(mean).collect()
     }
 
     fn add_source(&self, load: &mut [T]) -> Result<(), Error> {
@@ -235,17 +241,23 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         form: &dyn FacetForm<T, D>,
         metrics: &dyn Fn() -> &'m Metrics<T>,
     ) -> Result<Vec<T>, Error> {
-        Ok(self.load_and_data(form, metrics, true)?.0)
+        let bodies = self.free_bodies()?;
+        Ok(self.load_and_data(form, metrics, &bodies, true)?.0)
     }
 
-    /// The load of all unknowns, with or without the Dirichlet data that the facet form imposes, and these data.
+    /// The load of all unknowns, with or without the Dirichlet data that the facet form imposes, and these data. The loads
+    /// of free bodies have their resultants.
     pub fn load_and_data<'m>(
         &self,
         form: &dyn FacetForm<T, D>,
         metrics: &dyn Fn() -> &'m Metrics<T>,
+        bodies: &FreeBodies,
         with_data: bool,
     ) -> Result<(Vec<T>, Vec<FacetDatum>), Error> {
         let mut by_cell = self.load_by_cell()?;
+        if !bodies.bodies.is_empty() && !by_cell.is_empty() {
+            self.correct_resultants(bodies, by_cell.to_mut());
+        }
         let mut data = Vec::new();
         if self.has_weak_data() {
             data = self.weak_data(form)?;

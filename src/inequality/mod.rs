@@ -21,7 +21,7 @@
 //! | `energy_error_bound` | [`energy_error_bound`]: a proven bound on the error of any values, by factors |
 //! | `preconditioned_error_bound` | a bound on the error of admissible values, by a preconditioner |
 //! | `scales` | the energy norm and the largest value to which violations are relative |
-//! | `recession` | whether a solution exists and is unique where only bounds hold the domain |
+//! | `recession` | whether a solution exists and is unique where only bounds hold a body |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
 //! | `step_counter` | [`StepCounter`]: the number of the present outer step of a solver |
 //! | `by_name` | [`solver_by_name`] |
@@ -57,6 +57,7 @@ pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
+pub(crate) use recession::explanation;
 pub use solution::Solution;
 pub use stage::{Stage, StageRun};
 pub use step_counter::StepCounter;

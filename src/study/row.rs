@@ -4,7 +4,7 @@ use super::part_figures::PartFigures;
 use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
-use crate::inequality::{Certificate, Outcome, StageRun};
+use crate::inequality::{Certificate, Outcome, StageRun, explanation};
 use crate::measure::{ContactErrors, Errors};
 use crate::nested::Solved;
 use crate::real::Real;
@@ -229,7 +229,10 @@ impl Row {
     ) -> Self {
         let (mesh, solution) = (solved.mesh(), solved.solution());
         let solve_seconds = solved.solve_seconds + solved.start_seconds;
+        let row = Self::new(scene, D, scheme, level, solved.outcome());
+        let explanation = explanation(solved.inequality(), solved.outcome());
         Self {
+            message: explanation.or(row.message),
             parameters: solved.discretisation().form().theory().parameters,
             linear: solution.linear_solver.to_owned(),
             cells: mesh.n_cells(),
@@ -250,7 +253,7 @@ impl Row {
             certificate: solved.certificate(),
             seconds: Seconds::new(solved.mesh_seconds, solved.assemble_seconds, solve_seconds),
             warnings: solved.warnings().to_vec(),
-            ..Self::new(scene, D, scheme, level, solved.outcome())
+            ..row
         }
     }
 

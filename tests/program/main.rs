@@ -3,6 +3,7 @@
 mod adaptive;
 mod data;
 mod dump;
+mod free_bodies;
 #[cfg(unix)]
 mod interrupt;
 mod limits;

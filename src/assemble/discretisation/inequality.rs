@@ -22,9 +22,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
     fn assemble(&self) -> Result<Inequality<T>, Error> {
         let is_penalised = self.owns_rows() && penalised::applies(self.form());
+        let free = self.space.free_bodies()?;
         // the load of a penalised matrix has no Dirichlet data
+        let metrics = || &self.prepared().0;
         let (load, data) =
-            self.space.load_and_data(self.form(), &|| &self.prepared().0, !is_penalised)?;
+            self.space.load_and_data(self.form(), &metrics, &free, !is_penalised)?;
         let bounds = self.bounds()?;
         let matrix = self.matrix();
         let dirichlet_energy = (!is_penalised && !data.is_empty())
@@ -40,7 +42,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         {
             reaction.check(self.mesh())?;
         }
-        Ok(Inequality {
+        let mut inequality = Inequality {
             matrix,
             symmetric: self.form.is_symmetric(),
             load,
@@ -56,10 +58,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             start: Start::Cold,
             penalised,
             dirichlet_energy,
-            kernel: self.space.kernel(self.form.couples()),
+            kernel: Vec::new(),
+            bodies: Vec::new(),
             is_definite: false,
             distribution: None,
-        })
+        };
+        self.space.set_kernel(&mut inequality, self.form.couples(), free);
+        Ok(inequality)
     }
     /// The bounds of all unknowns.
     ///
