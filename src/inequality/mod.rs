@@ -17,6 +17,8 @@
 //! | `interior_point/` | the interior point method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid/` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`] |
+//! | `contact_forces` | the forces of active bounds, from which everything that shows a force takes them |
+//! | `local_violation` | the violations at one unknown |
 //! | `violations` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh |
 //! | `energy_error_bound` | [`energy_error_bound`]: a proven bound on the error of any values, by factors |
 //! | `preconditioned_error_bound` | a bound on the error of admissible values, by a preconditioner |
@@ -34,9 +36,11 @@
 mod active_set;
 mod by_name;
 mod certificate;
+mod contact_forces;
 mod energy_error_bound;
 pub(crate) mod initial_guess;
 mod interior_point;
+mod local_violation;
 mod monotone_multigrid;
 mod outcome;
 mod preconditioned_error_bound;
@@ -53,6 +57,7 @@ pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
 pub(crate) use certificate::count_active;
 pub(crate) use certificate::energy_norm;
 pub use certificate::{Certificate, contact_of};
+pub(crate) use contact_forces::ContactForces;
 pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;

@@ -1,8 +1,10 @@
 //! The sums and maxima from which a certificate is computed, over the unknowns of one part of a mesh or of all parts.
 
 use super::certificate::{Certificate, positive_diagonal, residual};
+use super::contact_forces::BalancedNodes;
+use super::local_violation::{LocalViolation, touched_bound};
 use super::scales::{Scales, Sums};
-use crate::algebra::{Bound, Distribution, Inequality};
+use crate::algebra::{Bound, Contact, Distribution, Inequality, PenalisedMatrix};
 use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::parallel::vectors::{collect, largest, map_chunks};
@@ -143,13 +145,19 @@ impl Violations {
         let values = (u, &r[..], jump_multipliers);
         sums.scales = Sums::of(inequality, values, &|i| diagonal[i], sums.unit, owns);
         sums.jump_residual = largest_jump_residual(inequality, u, jump_multipliers, owns);
+        let shares = shares_of_nodes(inequality, u, &|i| -r[i] / diagonal[i]);
         let unit = sums.unit;
         let parts = map_chunks(n, |range| {
             let (mut diagonal_sum, mut feasibility, mut squares) = (0.0, 0.0_f64, [0.0; 3]);
             for i in range.filter(|&i| owns(i)) {
                 let d = diagonal[i];
                 diagonal_sum += d;
-                let local = LocalViolation::new(&bounds[i], u[i].to_f64(), -r[i] / d);
+                let (x, step) = (u[i].to_f64(), -r[i] / d);
+                let mut local = LocalViolation::new(&bounds[i], x, step);
+                if let Some((shares, penalised)) = &shares {
+                    let stiffness = penalised.stiffness_diagonal(i);
+                    local.add_share(&bounds[i], (x, step), shares[i], (stiffness, d));
+                }
                 feasibility = maximum(feasibility, local.feasibility);
                 let changes = [local.multiplier, local.complementarity, local.residual];
                 for (square, change) in squares.iter_mut().zip(changes) {
@@ -295,39 +303,21 @@ fn largest_jump_residual<T: Real>(
     (0..jump_multipliers.len()).filter(owned).map(of_jump).fold(0.0, maximum)
 }
 
-/// The violations at one unknown, each as a change of its value; see [`Certificate`].
-#[derive(Default)]
-struct LocalViolation {
-    feasibility: f64,
-    multiplier: f64,
-    complementarity: f64,
-    residual: f64,
-}
-
-impl LocalViolation {
-    /// The violations for the value `x` and `step = r_i / d_i`, which is positive where a Gauss-Seidel
-    /// correction would decrease the value.
-    fn new<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Self {
-        if let Some(value) = bound.fixed_value() {
-            return Self { feasibility: (x - value.to_f64()).abs(), ..Self::default() };
-        }
-        let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());
-        let to_upper = bound.upper().map_or(f64::INFINITY, |u| u.to_f64() - x);
-        let (gap, to_opposite, step_to_bound) = if to_lower <= to_upper {
-            (to_lower, to_upper, step)
-        } else {
-            (to_upper, to_lower, -step)
-        };
-        let feasibility = maximum(maximum(-to_lower, -to_upper), 0.0);
-        let mut local = Self { feasibility, ..Self::default() };
-        if gap > step.abs() {
-            local.residual = step;
-        } else if step_to_bound < 0.0 {
-            local.multiplier = (-step_to_bound).min(to_opposite.max(0.0));
-        }
-        local.complementarity = gap.min(step_to_bound).max(0.0);
-        local
-    }
+/// By unknown that touches a bound its share in the balance of its node ([`BalancedNodes`]), zero for the others; with the
+/// matrix that has the nodes. Each `step` is as [`LocalViolation::new`] takes it.
+fn shares_of_nodes<'a, T: Real>(
+    inequality: &'a Inequality<T>,
+    u: &[T],
+    step: &(impl Fn(usize) -> f64 + Sync),
+) -> Option<(Vec<f64>, &'a PenalisedMatrix<T>)> {
+    let nodes = BalancedNodes::of(inequality)?;
+    let bounds = &inequality.bounds;
+    let touches = collect(u.len(), |i| {
+        touched_bound(&bounds[i], u[i].to_f64(), step(i)) != Contact::Inactive
+    });
+    let mut shares = vec![0.0; u.len()];
+    nodes.share(u, &|i| touches[i], &mut shares, None);
+    inequality.penalised.as_ref().map(|penalised| (shares, penalised))
 }
 
 #[cfg(test)]

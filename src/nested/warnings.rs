@@ -1,5 +1,6 @@
 //! What a solve warns of.
 
+use super::solved::Solved;
 use crate::constraint::CellMeans;
 use crate::inequality::{Outcome, Solution};
 use crate::mesh::Mesh;
@@ -24,6 +25,41 @@ pub(super) fn short_edges<T: Real, const D: usize>(
             T::NAME
         )
     })
+}
+
+/// The largest share of its load by which the contact forces on a body may differ from the load without a warning.
+const LARGEST_IMBALANCE: f64 = 1e-6;
+
+/// Contact forces of which rounding leaves no digit, or that do not balance the load of a body that contact alone holds.
+pub(crate) fn contact_forces<T: Real, const D: usize>(
+    solved: &Solved<'_, T, D>,
+    forces: Option<&[f64]>,
+) -> Vec<String> {
+    if !solved.has_iterate() || !solved.discretisation().problem().is_constrained() {
+        return Vec::new();
+    }
+    let Some(forces) = forces else {
+        let text = "rounding in {} leaves no digit of the contact forces: resultant and errors of the multiplier are left out";
+        return vec![text.replace("{}", T::NAME)];
+    };
+    let inequality = solved.inequality();
+    let imbalance = |body: &Vec<(u32, T)>| {
+        let (mut sum, mut size) = (0.0, 0.0);
+        for &(i, value) in body {
+            let load = value.to_f64() * inequality.load[i as usize].to_f64();
+            sum += value.to_f64() * forces[i as usize] + load;
+            size += load.abs();
+        }
+        (sum, size)
+    };
+    let bodies = inequality.kernel.iter().map(imbalance);
+    let unbalanced = bodies.filter(|(sum, size)| sum.abs() > LARGEST_IMBALANCE * size);
+    let text = |(sum, size): (f64, f64)| {
+        format!(
+            "contact forces on a body that contact alone holds differ by {sum:.1e} from its load, of {size:.1e} in absolute values"
+        )
+    };
+    unbalanced.map(text).collect()
 }
 
 /// What helps a solution that took many active sets, or whose active sets changed to the end.

@@ -228,6 +228,9 @@ impl Row {
         solved: &Solved<'_, T, D>,
     ) -> Self {
         let (mesh, solution) = (solved.mesh(), solved.solution());
+        let forces = solved.multiplier();
+        let mut warnings = solved.warnings().to_vec();
+        warnings.extend(solved.warnings_on_forces(forces.as_deref()));
         let solve_seconds = solved.solve_seconds + solved.start_seconds;
         let row = Self::new(scene, D, scheme, level, solved.outcome());
         let explanation = explanation(solved.inequality(), solved.outcome());
@@ -242,7 +245,7 @@ impl Row {
             objective: solved.objective(),
             active: solved.active(),
             contact_measure: solved.contact_measure(),
-            resultant: solved.resultant(),
+            resultant: forces.map(|forces| forces.iter().sum()),
             iterations: Iterations {
                 outer: solved.outer(),
                 linear: solution.linear,
@@ -252,7 +255,7 @@ impl Row {
             },
             certificate: solved.certificate(),
             seconds: Seconds::new(solved.mesh_seconds, solved.assemble_seconds, solve_seconds),
-            warnings: solved.warnings().to_vec(),
+            warnings,
             ..row
         }
     }

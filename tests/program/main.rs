@@ -1,6 +1,7 @@
 //! The program `unilateral`, subcommand `compare`: wrong requests and right requests.
 
 mod adaptive;
+mod contact_forces;
 mod data;
 mod dump;
 mod free_bodies;

@@ -1,6 +1,7 @@
 //! Studies and what they write: scenes, reports, tables, pictures, files of fields.
 
 mod adaptive;
+mod forces;
 mod journal;
 mod links;
 mod named_schemes;

@@ -25,8 +25,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let free = self.space.free_bodies()?;
         // the load of a penalised matrix has no Dirichlet data
         let metrics = || &self.prepared().0;
-        let (load, data) =
-            self.space.load_and_data(self.form(), &metrics, &free, !is_penalised)?;
+        let (load, data) = self.space.load_and_data(self.form(), &metrics, &free, !is_penalised)?;
         let bounds = self.bounds()?;
         let matrix = self.matrix();
         let dirichlet_energy = (!is_penalised && !data.is_empty())

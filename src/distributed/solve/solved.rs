@@ -169,20 +169,12 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         let Inequality { symmetric, .. } = self.system.inequality;
         symmetric.then(|| self.system.inequality.objective(&self.solution.values))
     }
-    /// The total contact force on all parts; none without an inequality.
+    /// The total contact force on all parts: see [`Discretisation::resultant`].
     pub fn resultant(&self) -> Option<f64> {
         let System { discretisation, inequality, .. } = &self.system;
-        if !discretisation.problem().is_constrained() {
-            return None;
-        }
-        let mut residual = vec![0.0; inequality.size()];
-        inequality.residual_f64(&self.solution.values, &mut residual);
-        let multiplier = |&i: &u32| match self.solution.contact[i as usize] {
-            Contact::Inactive => 0.0,
-            _ if !inequality.bounds[i as usize].is_inequality() => 0.0,
-            _ => -residual[i as usize],
-        };
-        Some(self.sums([self.own().iter().map(multiplier).sum::<f64>()])[0])
+        let multipliers = discretisation.multipliers(inequality, &self.solution)?;
+        let own = self.own().iter().map(|&i| multipliers[i as usize]);
+        Some(self.sums([own.sum::<f64>()])[0])
     }
     /// The measure of the discrete contact set of all parts; none without an inequality.
     pub fn contact_measure(&self) -> Option<f64> {

@@ -2,28 +2,10 @@
 
 use super::entity::{ContactEntity, Place};
 use super::exact_contact::ExactContact;
-use crate::algebra::{Contact, Inequality};
+use crate::algebra::Inequality;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
 use crate::real::Real;
-
-/// The constrained unknowns in contact with their multipliers, the entries of `A u - b`; on a part of a mesh those of
-/// ghosts are of their owners, and all parts call it.
-pub(super) fn nodal_multipliers<T: Real>(
-    inequality: &Inequality<T>,
-    solution: &Solution<T>,
-) -> impl Iterator<Item = (usize, f64)> {
-    let mut residual = vec![0.0; inequality.size()];
-    inequality.residual_f64(&solution.values, &mut residual);
-    if let Some(distribution) = inequality.distribution() {
-        distribution.update(&mut residual);
-    }
-    let touches = |unknown: &usize| {
-        solution.contact[*unknown] != Contact::Inactive
-            && inequality.bounds[*unknown].is_inequality()
-    };
-    (0..inequality.size()).filter(touches).map(move |unknown| (unknown, -residual[unknown]))
-}
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The errors of the density in L1 and lumped L2 against the exact multiplier on these entities, which
@@ -36,7 +18,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         solution: &Solution<T>,
     ) -> Option<[f64; 2]> {
         let weights = self.hat_integrals(entities);
-        let mut multipliers = self.vertex_multipliers(inequality, solution, &|_| true);
+        let mut multipliers = self.vertex_multipliers(inequality, solution, &|_| true)?;
         for (entity, exact) in entities.iter().zip(exact.iter().flatten()) {
             let (measure, cell) = (self.measure_of(*entity), self.mesh.cell(entity.cell));
             for (k, local) in entity.corners::<D>().enumerate() {
@@ -51,27 +33,28 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         vertices().next().map(|_| [sum, squares.sqrt()])
     }
 
-    /// Nodal multipliers at vertices: the residual of every constrained unknown in contact that counts,
-    /// divided equally among the vertices around its node.
+    /// Nodal multipliers at vertices: those of the unknowns that count, each divided equally among the vertices around
+    /// its node. None where rounding leaves no digit.
     pub(crate) fn vertex_multipliers(
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
         counts: &dyn Fn(usize) -> bool,
-    ) -> Vec<f64> {
+    ) -> Option<Vec<f64>> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
-        let counted =
-            nodal_multipliers(inequality, solution).filter(|&(unknown, _)| counts(unknown));
-        for (unknown, multiplier) in counted {
+        let of_unknowns = self.nodal_multipliers(inequality, solution)?;
+        let counted = of_unknowns.iter().enumerate();
+        for (unknown, multiplier) in counted.filter(|(i, value)| **value != 0.0 && counts(*i)) {
             let around = inequality.supports[unknown].vertices();
             let share = multiplier / around.len() as f64;
             around.iter().for_each(|&v| multipliers[v as usize] += share);
         }
-        multipliers
+        Some(multipliers)
     }
 
     /// The density of the multiplier on cells or on facets: the mean over their vertices of the nodal
-    /// multipliers of the unknowns that count over the integrals of the hat functions on these places.
+    /// multipliers of the unknowns that count over the integrals of the hat functions on these places. Empty where rounding
+    /// leaves no digit.
     pub(crate) fn mean_densities(
         &self,
         places: &[Place],
@@ -86,7 +69,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let entities: Vec<ContactEntity> =
             places.iter().map(|&(cell, facet)| ContactEntity { cell, facet }).collect();
         let vertex = |entity: ContactEntity, k: usize| self.mesh.cell(entity.cell)[k] as usize;
-        let mut densities = self.vertex_multipliers(inequality, solution, counts);
+        let Some(mut densities) = self.vertex_multipliers(inequality, solution, counts) else {
+            return Vec::new();
+        };
         let hats = self.hat_integrals(&entities);
         densities.iter_mut().zip(hats).for_each(|(density, hat)| *density /= hat);
         let mean = |entity: ContactEntity| {

@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
+use super::warnings::contact_forces;
 use crate::algebra::{Contact, Inequality, Start};
 use crate::assemble::Discretisation;
 use crate::error::Error;
@@ -167,15 +168,12 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     pub fn contact(&self) -> &[Contact] {
         &self.solution.contact
     }
-    /// The multiplier of each unknown: its entry of `A u - b` where a bound is active, positive at
-    /// lower and negative at upper bounds; zero elsewhere. Its density is in [`Solved::fields`].
-    pub fn multiplier(&self) -> Vec<f64> {
-        let (matrix, load) = (&self.inequality.matrix, self.inequality.assembled_load());
-        let at = |(i, &state): (usize, &Contact)| match state {
-            Contact::Inactive => 0.0,
-            _ => matrix.row_dot_f64(i, self.values()) - load[i].to_f64(),
-        };
-        self.contact().iter().enumerate().map(at).collect()
+    /// The multiplier of each unknown, positive at lower and negative at upper bounds, zero elsewhere: see
+    /// [`Discretisation::multipliers`]. None without an inequality or an iterate, and where rounding leaves no digit.
+    /// Its density is in [`Solved::fields`].
+    pub fn multiplier(&self) -> Option<Vec<f64>> {
+        let multipliers = || self.discretisation.multipliers(&self.inequality, &self.solution);
+        self.has_iterate.then(multipliers).flatten()
     }
     /// Number of outer iterations on this mesh, by [`Solution::outer`]; none without an iterate.
     pub fn outer(&self) -> Option<usize> {
@@ -235,6 +233,10 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     /// Warnings by type, as text: a penalty below its proven bound, say.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+    /// What [`Solved::multiplier`] gives reason to warn of.
+    pub(crate) fn warnings_on_forces(&self, multiplier: Option<&[f64]>) -> Vec<String> {
+        contact_forces(self, multiplier)
     }
     /// The solution with the outcome of values that no solver of the library found.
     pub(super) fn found_elsewhere(mut self) -> Self {
