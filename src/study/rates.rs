@@ -20,7 +20,10 @@ pub(crate) fn rates(rows: &[&Row]) -> Vec<String> {
             points.and_then(|points| fit_order(&points)).map(|fitted| fitted.order)
         };
         let mut words = Vec::new();
-        let orders = [("bound", order(|r| r.bound.total)), ("H1", order(|r| r.error.h1))];
+        let orders = [
+            ("bound", order(|r| r.bound.discrete)),
+            ("energy norm", order(|r| r.error.broken_energy)),
+        ];
         let orders = orders.iter().filter_map(|(name, p)| Some(format!("{name} {:.2}", (*p)?)));
         let orders: Vec<String> = orders.collect();
         if !orders.is_empty() {

@@ -18,15 +18,17 @@ const INNER_KEYS: [(&str, &[&str], bool); 8] = [
     ("seconds", &["mesh", "assemble", "solve", "total"], false),
 ];
 
-const BOUND_NUMBERS: [&str; 8] = [
+const BOUND_NUMBERS: [&str; 10] = [
     "total",
     "distance",
+    "discrete",
     "mismatch",
     "obstacle",
     "contact",
     "oscillation",
     "algebra",
     "effectivity",
+    "effectivity_of_v",
 ];
 
 /// Every key is there, with a value of its type.
@@ -71,7 +73,16 @@ fn check_row(row: &Value) {
     assert!(row["certificate"].get("algebraic_bound").is_some());
     let bound = &row["bound"];
     assert!(bound["total"].is_number() != bound["reason"].is_string(), "{bound}");
-    assert!(bound["total"].is_number() != bound["guaranteed"].is_null(), "{bound}");
+    assert!(bound["total"].is_number() == bound["guaranteed"].is_boolean(), "{bound}");
+    if let Some(unproven) = bound["unproven"].as_array() {
+        assert_eq!(bound["guaranteed"], unproven.is_empty(), "{bound}");
+        let number = |key: &str| bound[key].as_f64().unwrap();
+        assert!(number("discrete") <= number("total") + number("distance"), "{bound}");
+        let error = row["error"]["broken_energy"].as_f64();
+        if let (Some(error), Some(effectivity)) = (error, bound["effectivity"].as_f64()) {
+            assert_eq!(number("discrete") / error, effectivity, "{bound}");
+        }
+    }
 }
 
 #[test]

@@ -241,7 +241,7 @@ fn bounds_far_from_the_error_say_why() {
     assert!(row.bound.effectivity > Some(3.0), "{:?}", row.bound);
     let says = |row: &Row, text: &str| row.warnings.iter().any(|w| w.contains(text));
     assert!(
-        says(&row, "times the error: ") && says(&row, " % of its square is "),
+        says(&row, "times the error: ") && says(&row, " % of the square of `total` is "),
         "{:?}",
         row.warnings
     );

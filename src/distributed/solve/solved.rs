@@ -11,7 +11,7 @@ use crate::distributed::agree::{agree, agree_on_data};
 use crate::distributed::error::ExchangeError;
 use crate::distributed::exchange::Exchange;
 use crate::distributed::merge::merge_all;
-use crate::error_bound::{BoundFigures, ErrorBound, PrimalDualPair};
+use crate::error_bound::{BoundFigures, ErrorBound, PrimalDualPair, TrueErrors};
 use crate::inequality::{
     Certificate, Outcome, Solution, certify_with_jump_multipliers, energy_norm,
 };
@@ -243,10 +243,11 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         });
         let has_exact = discretisation.problem().exact.is_some();
         let errors = if has_exact { squares.norms() } else { Errors::default() };
-        let error = (has_exact && bound.is_ok()).then(|| squares.of_function());
+        let of_v = (has_exact && bound.is_ok()).then(|| squares.of_function());
+        let true_errors = TrueErrors { of_solution: errors.broken_energy, of_v };
         let System { inequality, .. } = &self.system;
         let energy_norm = energy_norm(inequality, u, &self.solution.jump_multipliers);
-        Ok((errors, BoundFigures::of_solution(bound, error, energy_norm), seconds))
+        Ok((errors, BoundFigures::of_solution(bound, true_errors, energy_norm), seconds))
     }
     /// The errors against the exact solution; none without one.
     ///

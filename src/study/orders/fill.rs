@@ -47,7 +47,7 @@ fn order(coarse: &Row, fine: &Row) -> Orders {
         h1: of(coarse.error.h1, fine.error.h1),
         energy: of(coarse.error.energy, fine.error.energy),
         max: of(coarse.error.max, fine.error.max),
-        bound: of(coarse.bound.total, fine.bound.total),
+        bound: of(coarse.bound.discrete, fine.bound.discrete),
         multiplier_l1: of(coarse.contact.multiplier_l1, fine.contact.multiplier_l1),
         multiplier_l2: of(coarse.contact.multiplier_l2, fine.contact.multiplier_l2),
     }

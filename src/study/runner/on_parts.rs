@@ -82,7 +82,7 @@ impl<const D: usize> Study<'_, f64, D> {
                 row.solver = if checks.by_engine { "engine" } else { "active-set" }.to_owned();
                 if let Some(at) = &failure {
                     (row.error, row.against) = (Errors::default(), None);
-                    row.bound.effectivity = None;
+                    (row.bound.effectivity, row.bound.effectivity_of_v) = (None, None);
                     row.expected_order = ExpectedOrders::default();
                     row.warnings.push(format!(
                         "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
@@ -229,7 +229,8 @@ impl<const D: usize> Study<'_, f64, D> {
         }
         let in_bound = process.exchange.largest(&[in_bound])?[0];
         let mut warnings = warnings(solved);
-        warnings.extend(bound.remark().filter(|_| solved.converged()));
+        let against = (has_iterate && problem.exact.is_some()).then_some("exact");
+        warnings.extend(bound.remark(against).filter(|_| solved.converged()));
         let PartSeconds { mesh, assemble, number, start, solve } = parts.seconds;
         let row = Row {
             parameters: solved.discretisation().form().theory().parameters,
@@ -238,7 +239,7 @@ impl<const D: usize> Study<'_, f64, D> {
             unknowns: Some(unknowns as usize),
             nonzeros: Some(nonzeros as usize),
             mesh_size: solved.part().mesh.mesh_size(),
-            against: (has_iterate && problem.exact.is_some()).then(|| "exact".to_owned()),
+            against: against.map(str::to_owned),
             error,
             objective: if has_iterate { solved.objective() } else { None },
             energy,
