@@ -59,6 +59,20 @@ pub enum Error {
         /// The smaller upper bound.
         upper: f64,
     },
+    /// Lower bounds exceed upper ones at a point of the finest mesh of a study.
+    #[error(
+        "no function is admissible: at {at}, in cell {cell} of the finest mesh, the lower bound {lower} exceeds the upper bound {upper}"
+    )]
+    BoundsCross {
+        /// The cell.
+        cell: u64,
+        /// The point, as coordinates in parentheses.
+        at: String,
+        /// The larger lower bound.
+        lower: f64,
+        /// The smaller upper bound.
+        upper: f64,
+    },
     /// No unknown of the constraint set can carry the bounds of an inequality.
     #[error(
         "bounds on {constraint} cannot impose {condition}: the element has no such values; choose {allowed}"
@@ -192,7 +206,8 @@ impl Error {
     pub fn in_whole_mesh(mut self, cells: &[u64]) -> Self {
         if let Self::DataNotFinite { cell, .. }
         | Self::CoefficientNotPositive { cell, .. }
-        | Self::EmptyConstraint { cell, .. } = &mut self
+        | Self::EmptyConstraint { cell, .. }
+        | Self::BoundsCross { cell, .. } = &mut self
             && let Some(&of_whole) = cells.get(*cell as usize)
         {
             *cell = of_whole;

@@ -86,7 +86,7 @@ impl Outcome {
             Error::DataNotFinite { .. } | Error::CoefficientNotPositive { .. } => {
                 Some(Outcome::NotFinite)
             }
-            Error::EmptyConstraint { .. } => Some(Outcome::Infeasible),
+            Error::EmptyConstraint { .. } | Error::BoundsCross { .. } => Some(Outcome::Infeasible),
             Error::Parameter { .. } => Some(Outcome::OutOfRange),
             _ => None,
         }

@@ -97,6 +97,7 @@ impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
     /// Fills in energy, bound and errors, and why there are none.
     pub fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
         row.energy = solved.energy()?;
+        row.set_penetration(solved.penetration()?);
         match (self.reference, self.failure) {
             (Some(Ok((reference, name))), _) => {
                 row.error = solved.difference(reference)?;

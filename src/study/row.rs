@@ -1,11 +1,13 @@
 //! Rows of a report: the figures of one scene, scheme and level each.
 
+use std::collections::BTreeMap;
+
 use super::part_figures::PartFigures;
 use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome, StageRun, explanation};
-use crate::measure::{ContactErrors, Errors};
+use crate::measure::{ContactErrors, Errors, Penetration};
 use crate::nested::Solved;
 use crate::real::Real;
 use crate::scheme::ExpectedOrders;
@@ -163,6 +165,14 @@ pub struct Row {
     pub contact_measure: Option<f64>,
     /// Total contact force, positive where a lower bound pushes upward; null without an inequality.
     pub resultant: Option<f64>,
+    /// The same for each obstacle (`lower`, `upper`) and each contact group by its name; old reports have none.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub resultants: Option<BTreeMap<String, f64>>,
+    /// How far the solution lies beyond an obstacle or a gap, the largest value over cells and contact facets, negative
+    /// where it reaches none: [`Discretisation::penetration`](crate::assemble::Discretisation::penetration). Null without
+    /// an inequality; old reports have none.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub penetration: Option<f64>,
     /// Iteration counts.
     pub iterations: Iterations,
     /// The certificate.
@@ -211,6 +221,8 @@ impl Row {
             active: None,
             contact_measure: None,
             resultant: None,
+            resultants: None,
+            penetration: None,
             iterations: Iterations::default(),
             certificate: Certificate::INVALID,
             seconds: Seconds::default(),
@@ -246,6 +258,7 @@ impl Row {
             active: solved.active(),
             contact_measure: solved.contact_measure(),
             resultant: forces.map(|forces| forces.iter().sum()),
+            resultants: solved.resultants(),
             iterations: Iterations {
                 outer: solved.outer(),
                 linear: solution.linear,
@@ -258,6 +271,12 @@ impl Row {
             warnings,
             ..row
         }
+    }
+
+    /// Sets the penetration, with its warning.
+    pub(super) fn set_penetration(&mut self, found: Option<Penetration>) {
+        self.penetration = found.map(|found| found.largest()).filter(|most| most.is_finite());
+        self.warnings.extend(found.and_then(|found| found.remark()));
     }
 
     /// The row with the outcome that an error of the data stands for, and the message of the error.

@@ -12,7 +12,8 @@ const LOAD: f64 = 0.493411;
 fn forces_on_a_body_of_large_contrast_balance_its_load_or_a_warning_says_so() {
     let scratch = Scratch::new("contrast-forces");
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/problems/contrast_forces.toml");
-    let options = "--scheme p1,p2,cr,sipg,wopsip,wopsip:facet-means,nipg,ldg --levels 0,1,2 --quiet";
+    let options =
+        "--scheme p1,p2,cr,sipg,wopsip,wopsip:facet-means,nipg,ldg --levels 0,1,2 --quiet";
     scratch.run(&format!("{} {options}", file.display()));
     let report = super::run::read_json(&scratch.0.join("out/report.json"));
     let mut n_balanced = 0;

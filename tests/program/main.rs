@@ -9,6 +9,7 @@ mod free_bodies;
 mod interrupt;
 mod limits;
 mod meshes;
+mod obstacles;
 mod output;
 mod over_processes;
 mod own_problems;

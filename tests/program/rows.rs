@@ -50,7 +50,10 @@ fn check_row(row: &Value) {
             "mesh_size" => value.is_f64(),
             "theta" | "tolerance" => value.is_f64() || value.is_null(),
             "objective" => value.is_number() || value.is_null(),
-            "energy" | "contact_measure" | "resultant" => value.is_f64() || !converged,
+            "energy" | "contact_measure" | "resultant" | "penetration" => {
+                value.is_f64() || !converged
+            }
+            "resultants" => value.is_object() || !converged,
             _ => value.is_object(),
         };
         assert!(row.get(key).is_some() && fits, "{key}: {value}");

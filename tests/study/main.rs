@@ -1,5 +1,6 @@
 //! Studies and what they write: scenes, reports, tables, pictures, files of fields.
 
+mod active_bounds;
 mod adaptive;
 mod forces;
 mod journal;

@@ -1,7 +1,7 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 33] = [
+pub const ROW_KEYS: [&str; 35] = [
     "scene",
     "dimension",
     "scheme",
@@ -31,6 +31,8 @@ pub const ROW_KEYS: [&str; 33] = [
     "active",
     "contact_measure",
     "resultant",
+    "resultants",
+    "penetration",
     "iterations",
     "certificate",
     "seconds",

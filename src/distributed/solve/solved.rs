@@ -1,5 +1,6 @@
 //! The result of a solve over the parts of a mesh.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Instant;
 
@@ -15,7 +16,7 @@ use crate::error_bound::{BoundFigures, ErrorBound, PrimalDualPair, TrueErrors};
 use crate::inequality::{
     Certificate, Outcome, Solution, certify_with_jump_multipliers, energy_norm,
 };
-use crate::measure::{Errors, SquaredErrors};
+use crate::measure::{Errors, Penetration, SquaredErrors};
 use crate::mesh::Part;
 
 /// A discrete solution on one part of a mesh. Errors, totals and certificate are those of all parts; the
@@ -176,12 +177,42 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         let own = self.own().iter().map(|&i| multipliers[i as usize]);
         Some(self.sums([own.sum::<f64>()])[0])
     }
+    /// The resultant of each obstacle and each contact group on all parts, see [`Discretisation::resultants`]; none
+    /// without an inequality.
+    pub fn resultants(&self) -> Option<BTreeMap<String, f64>> {
+        let System { discretisation, inequality, .. } = &self.system;
+        let mut is_own = vec![false; inequality.size()];
+        self.own().iter().for_each(|&i| is_own[i as usize] = true);
+        let own: [&dyn Fn(usize) -> bool; 2] = [&|i| is_own[i], &|cell| self.part.owns(cell)];
+        let mut resultants = discretisation.resultants_of(inequality, &self.solution, own)?;
+        // all parts have the groups of the whole mesh, but not all have facets of each
+        for name in discretisation.names_of_resultants() {
+            let of_all = resultants.entry(name).or_default();
+            *of_all = self.sums([*of_all])[0];
+        }
+        Some(resultants)
+    }
     /// The measure of the discrete contact set of all parts; none without an inequality.
     pub fn contact_measure(&self) -> Option<f64> {
         let System { discretisation, inequality, .. } = &self.system;
         let counts = |cell: usize| self.part.owns(cell);
         let own = discretisation.contact_measure_of(inequality, &self.solution, &counts)?;
         Some(self.sums([own])[0])
+    }
+    /// How far the solution lies beyond obstacles and gaps on all parts, see [`Discretisation::penetration`]; none without
+    /// an inequality.
+    ///
+    /// # Errors
+    /// [`ExchangeError::Failed`] in all parts for data that are not finite.
+    pub fn penetration(&self) -> Result<Option<Penetration>, ExchangeError> {
+        let part = self.part;
+        let u = &self.solution.values;
+        let own = self.system.discretisation.penetration_of(u, &|cell| part.owns(cell));
+        let Some(own) = agree_on_data(own, &part.cells, self.exchange())? else { return Ok(None) };
+        let most = self.exchange().largest(&own.numbers())?;
+        let mut numbers = own.numbers();
+        numbers.iter_mut().zip(most).for_each(|(number, most)| *number = most);
+        Ok(Some(own.with_numbers(numbers)))
     }
     /// The energy of the solution on all parts, by one formula for every scheme: see
     /// [`Discretisation::energy`].

@@ -32,7 +32,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             return contact;
         }
         let weights = self.hat_integrals(&entities);
-        let multipliers = self.vertex_multipliers(inequality, solution, &|_| true);
+        let multipliers = self.vertex_multipliers(inequality, solution);
         let given = self.dirichlet_groups();
         let density = |v: usize| {
             let multiplier = multipliers.as_ref().map(|multipliers| multipliers[v]);

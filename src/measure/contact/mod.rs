@@ -11,12 +11,12 @@ mod entity;
 mod exact_contact;
 mod free_boundary;
 mod multiplier_density;
+mod multiplier_parts;
 mod nodal_multipliers;
 mod point_grid;
 
 pub(crate) use difference::contact_difference;
 pub use discrete_contact::DiscreteContact;
-pub(super) use entity::Place;
 
 use std::ops::Range;
 
@@ -120,7 +120,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         )(self, inequality, solution, counts)
     }
 
-    /// The total contact force: the multiplier tested with the function one, which is the sum of the
+    /// The total contact force, of all obstacles and gaps: the multiplier tested with the function one, which is the sum of the
     /// entries of `A u - b` at the constrained unknowns in contact, because every unknown is the value or a
     /// mean of the function. It is positive where a lower bound pushes upward. None without an inequality, and
     /// where rounding leaves no digit. Nodes with weakly imposed Dirichlet data do not count: where an obstacle

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::Solved;
 use crate::error::Error;
 use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair, TrueErrors};
-use crate::measure::{ContactErrors, Errors, contact_difference};
+use crate::measure::{ContactErrors, Errors, Penetration, contact_difference};
 use crate::parallel::once;
 use crate::problem::Exact;
 use crate::real::{Point, Real};
@@ -88,6 +88,17 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
         match self.has_iterate {
             true => self.discretisation.contact_errors(&self.inequality, &self.solution),
             false => Ok(ContactErrors::default()),
+        }
+    }
+    /// How far the solution lies beyond obstacles and gaps, between its nodes too: see
+    /// [`penetration`](crate::assemble::Discretisation::penetration). None without an inequality or an iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn penetration(&self) -> Result<Option<Penetration>, Error> {
+        match self.has_iterate {
+            true => self.discretisation.penetration(self.values()),
+            false => Ok(None),
         }
     }
     /// An admissible function and an equilibrated flux: see

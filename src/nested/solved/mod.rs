@@ -4,6 +4,7 @@
 mod files;
 mod measures;
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -209,6 +210,12 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     pub fn resultant(&self) -> Option<f64> {
         let resultant = || self.discretisation.resultant(&self.inequality, &self.solution);
         self.has_iterate.then(resultant).flatten()
+    }
+    /// The resultant of each obstacle and each contact group, see [`Discretisation::resultants`]; none where there is no
+    /// resultant.
+    pub fn resultants(&self) -> Option<BTreeMap<String, f64>> {
+        let resultants = || self.discretisation.resultants(&self.inequality, &self.solution);
+        self.has_iterate.then(resultants).flatten()
     }
     /// The certificate: violations of the complementarity conditions.
     pub fn certificate(&self) -> Certificate {

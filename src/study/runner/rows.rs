@@ -11,6 +11,7 @@ use crate::nested::{NestedIteration, Phase, Solved};
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::{AnyScheme, ExpectedOrders};
+use crate::study::crossing::Crossing;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
 use crate::study::memory::peak_memory_bytes;
@@ -46,6 +47,22 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
                 Ok((row, 0.0))
             }
         }
+    }
+
+    /// The row of a problem whose bounds cross on the finest mesh, on one level of these hierarchies.
+    pub(super) fn row_of_crossing<'p>(
+        &self,
+        nested: &[NestedIteration<'p, T, D>],
+        of: (&Entry<'_, T, D>, &'p Problem<D>),
+        level: usize,
+        crossing: &Crossing<D>,
+    ) -> Result<Row, Error> {
+        let mut on_level = nested.iter().filter_map(|n| Some((n.position(level)?, n)));
+        let Some((position, nested)) = on_level.next() else {
+            unreachable!("a hierarchy has the level")
+        };
+        let place = (level, nested.mesh(position));
+        self.row_without(of, place, nested.solver_name(), None, crossing.error())
     }
 
     /// The row that the data of a problem leave on a mesh.
