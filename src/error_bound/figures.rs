@@ -4,6 +4,7 @@ use std::fmt::Display;
 
 use super::estimate::Unproven;
 use super::{BoundParts, ErrorBound};
+use crate::measure::Rounding;
 
 /// Effectivities that differ from one by less are one but for rounding.
 const ROUNDING: f64 = 1e-8;
@@ -79,13 +80,16 @@ impl BoundFigures {
         }
     }
 
-    /// The figures of a bound and, unless they are rounding, of the true errors for a solution with this energy norm.
+    /// The figures of a bound and, unless they are rounding, of the true errors for a solution with this energy norm and
+    /// these rounding errors.
     pub(crate) fn of_solution<E: Display>(
         bound: Result<&ErrorBound, E>,
         TrueErrors { of_solution, of_v }: TrueErrors,
-        energy_norm: f64,
+        (energy_norm, rounding): (f64, Option<Rounding>),
     ) -> Self {
-        let known = |error: Option<f64>| error.filter(|e| *e > ERROR_ROUNDING * energy_norm);
+        let rounding = rounding.and_then(|rounding| rounding.error.broken_energy).unwrap_or(0.0);
+        let least = rounding.max(ERROR_ROUNDING * energy_norm);
+        let known = |error: Option<f64>| error.filter(|error| *error > least);
         let errors = TrueErrors { of_solution: known(of_solution), of_v: known(of_v) };
         Self::new(bound, errors)
     }

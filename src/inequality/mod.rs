@@ -55,8 +55,8 @@ mod violations;
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
 pub(crate) use certificate::count_active;
-pub(crate) use certificate::energy_norm;
 pub use certificate::{Certificate, contact_of};
+pub(crate) use certificate::{energy_norm, positive_diagonal};
 pub(crate) use contact_forces::ContactForces;
 pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
@@ -75,7 +75,7 @@ use crate::real::Real;
 
 /// A solver of the algebraic variational inequality.
 pub trait InequalitySolver<T: Real>: Sync {
-    /// The name in reports and options.
+    /// The name in reports and options; the solvers of a study must have different ones.
     fn name(&self) -> &'static str;
     /// Solves the inequality; a failure is an [`Outcome`].
     fn solve(&self, inequality: &Inequality<T>) -> Solution<T>;

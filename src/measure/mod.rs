@@ -14,6 +14,7 @@ mod kinks;
 mod norms;
 mod order;
 mod penetration;
+mod rounding;
 mod squared_errors;
 
 pub(crate) use admissible::Admissible;
@@ -26,4 +27,5 @@ pub use fields::Fields;
 pub use order::FittedOrder;
 pub(crate) use order::{fit_order, observed_order};
 pub use penetration::Penetration;
+pub use rounding::Rounding;
 pub use squared_errors::SquaredErrors;

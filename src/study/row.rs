@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome, StageRun, explanation};
-use crate::measure::{ContactErrors, Errors, Penetration};
+use crate::measure::{ContactErrors, Errors, Penetration, Rounding};
 use crate::nested::Solved;
 use crate::real::Real;
 use crate::scheme::ExpectedOrders;
@@ -146,7 +146,10 @@ pub struct Row {
     /// Distances of multiplier and contact set, keys of the row itself.
     #[cfg_attr(feature = "report", serde(flatten))]
     pub contact: ContactErrors,
-    /// Observed order against the previous level of the same scene and label.
+    /// Rounding errors in the figures of the row: figures that are no larger have no orders. Old reports have none.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub rounding: Option<Rounding>,
+    /// Observed order against the previous level of the same scene and label; none where an error is rounding.
     pub order: Orders,
     /// Orders that theory promises.
     pub expected_order: ExpectedOrders,
@@ -213,6 +216,7 @@ impl Row {
             against: None,
             error: Errors::default(),
             contact: ContactErrors::default(),
+            rounding: None,
             order: Orders::default(),
             expected_order: ExpectedOrders::default(),
             objective: None,
@@ -267,6 +271,7 @@ impl Row {
                 stages: solution.stages.clone(),
             },
             certificate: solved.certificate(),
+            rounding: solved.rounding(),
             seconds: Seconds::new(solved.mesh_seconds, solved.assemble_seconds, solve_seconds),
             warnings,
             ..row
@@ -309,6 +314,31 @@ impl Row {
     pub(crate) fn seconds_with_bound(&self) -> f64 {
         let beside = self.seconds.bound.filter(|_| self.theta.is_none());
         self.seconds.total + beside.unwrap_or(0.0)
+    }
+    /// The errors of the row that are more than rounding, each under the name of its order.
+    pub(crate) fn errors_above_rounding(&self) -> Orders {
+        let Self { error, contact, bound, rounding, .. } = self;
+        let of = rounding.map_or_else(Errors::default, |rounding| rounding.error);
+        let force = rounding.map(|rounding| rounding.force);
+        let above = |error: Option<f64>, rounding: Option<f64>| {
+            error.filter(|error| rounding.is_none_or(|rounding| *error > rounding))
+        };
+        // where the space contains the solution all errors are rounding, whatever their size
+        let is_exact =
+            error.broken_energy.is_some() && above(error.broken_energy, of.broken_energy).is_none();
+        let errors = if is_exact { Errors::default() } else { *error };
+        // of a function and of a flux
+        let of_bound = of.broken_energy.map(|rounding| 2.0 * rounding);
+        let multiplier_l1 = above(contact.multiplier_l1, force);
+        Orders {
+            l2: above(errors.l2, of.l2),
+            h1: above(errors.h1, of.h1),
+            energy: above(errors.energy, of.energy),
+            max: above(errors.max, of.max),
+            bound: above(bound.discrete, of_bound),
+            multiplier_l1,
+            multiplier_l2: contact.multiplier_l2.filter(|_| multiplier_l1.is_some()),
+        }
     }
     /// The reference against which the errors are; none where they are against the exact solution.
     pub fn reference(&self) -> Option<&str> {

@@ -6,6 +6,7 @@ mod forces;
 mod journal;
 mod links;
 mod named_schemes;
+mod noise;
 mod one_problem;
 mod pictures;
 mod problem_files;

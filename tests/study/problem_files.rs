@@ -165,7 +165,7 @@ fn mistakes_are_found_where_they_are() {
             "source.default is NaN",
         ),
         (
-            format!("{BOX}[boundary.left]\nkind = \"dirichlet\"\nvalue = \"(0/0)^0\"\n"),
+            format!("{BOX}{}", SIDES.replacen("x * y", "(0/0)^0", 1)),
             (2, 11),
             "boundary.left.value is NaN",
         ),

@@ -16,7 +16,7 @@ use crate::error_bound::{BoundFigures, ErrorBound, PrimalDualPair, TrueErrors};
 use crate::inequality::{
     Certificate, Outcome, Solution, certify_with_jump_multipliers, energy_norm,
 };
-use crate::measure::{Errors, Penetration, SquaredErrors};
+use crate::measure::{Errors, Penetration, Rounding, SquaredErrors};
 use crate::mesh::Part;
 
 /// A discrete solution on one part of a mesh. Errors, totals and certificate are those of all parts; the
@@ -262,7 +262,6 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     /// [`ExchangeError::Failed`] in all parts for data that are not finite.
     pub(crate) fn errors_and_bound(&self) -> Result<(Errors, BoundFigures, f64), ExchangeError> {
         let discretisation = &self.system.discretisation;
-        let u = &self.solution.values;
         let clock = Instant::now();
         let bound = self.pair_and_bound();
         let seconds = clock.elapsed().as_secs_f64();
@@ -276,9 +275,18 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         let errors = if has_exact { squares.norms() } else { Errors::default() };
         let of_v = (has_exact && bound.is_ok()).then(|| squares.of_function());
         let true_errors = TrueErrors { of_solution: errors.broken_energy, of_v };
+        let sizes = (self.energy_norm(), self.rounding());
+        Ok((errors, BoundFigures::of_solution(bound, true_errors, sizes), seconds))
+    }
+    fn energy_norm(&self) -> f64 {
         let System { inequality, .. } = &self.system;
-        let energy_norm = energy_norm(inequality, u, &self.solution.jump_multipliers);
-        Ok((errors, BoundFigures::of_solution(bound, true_errors, energy_norm), seconds))
+        energy_norm(inequality, &self.solution.values, &self.solution.jump_multipliers)
+    }
+    /// Rounding errors in the figures of the solution over all parts.
+    pub fn rounding(&self) -> Option<Rounding> {
+        let System { discretisation, inequality, .. } = &self.system;
+        let of = (self.sizes()[0] as usize, self.energy_norm());
+        discretisation.rounding(inequality, &self.solution.values, of)
     }
     /// The errors against the exact solution; none without one.
     ///

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::Solved;
 use crate::error::Error;
 use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair, TrueErrors};
-use crate::measure::{ContactErrors, Errors, Penetration, contact_difference};
+use crate::measure::{ContactErrors, Errors, Penetration, Rounding, contact_difference};
 use crate::parallel::once;
 use crate::problem::Exact;
 use crate::real::{Point, Real};
@@ -156,6 +156,11 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// The figures of the bound.
     fn figures(&self, errors: TrueErrors) -> BoundFigures {
         let bound = self.pair_and_bound().map(|(_, bound, _)| bound);
-        BoundFigures::of_solution(bound, errors, self.energy_norm())
+        BoundFigures::of_solution(bound, errors, (self.energy_norm(), self.rounding()))
+    }
+    /// Rounding errors in the figures of the solution; none without an iterate.
+    pub fn rounding(&self) -> Option<Rounding> {
+        let of = (self.mesh().n_cells(), self.has_iterate.then(|| self.energy_norm())?);
+        self.discretisation.rounding(&self.inequality, self.values(), of)
     }
 }

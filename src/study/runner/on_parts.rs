@@ -274,6 +274,7 @@ impl<const D: usize> Study<'_, f64, D> {
             mesh_size: solved.part().mesh.mesh_size(),
             against: against.map(str::to_owned),
             error,
+            rounding: if has_iterate { solved.rounding() } else { None },
             objective: if has_iterate { solved.objective() } else { None },
             energy,
             active: if has_iterate { Some(solved.active() as usize) } else { None },
