@@ -314,6 +314,27 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(PartOfBound { totals, choice, friedrichs, squares, unproven })
     }
 
+    /// The degree of the rule for the terms of cells: exact for polynomial data, at least that of the load elsewhere.
+    fn degree_of_terms(&self, of_pair: usize) -> usize {
+        let data = [
+            &self.data.source,
+            &self.data.reaction,
+            &self.data.coefficient,
+            &self.data.lower,
+            &self.data.upper,
+        ];
+        let degrees = data.map(|data| self.degree_of(data));
+        let [source, reaction, coefficient, lower, upper] = degrees.map(Option::unwrap_or_default);
+        let least = match degrees.iter().all(Option::is_some) {
+            true => 0,
+            false => self.cell_degree,
+        };
+        // squares of flux, load and reaction, and multipliers times distances from obstacles
+        let squares = (2 * (coefficient + of_pair)).max(2 * source);
+        let of_obstacles = of_pair - 1 + of_pair.max(lower).max(upper);
+        squares.max(2 * (reaction + of_pair)).max(of_obstacles).max(least)
+    }
+
     /// The terms of the cells that count, by chunk, as they come: copies of them would cost more than their sums.
     fn terms_of_bound(
         &self,
@@ -321,16 +342,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         friedrichs: Option<f64>,
         counts: Counts<'_>,
     ) -> Result<Vec<Vec<CellTerms>>, NoBound> {
-        let stated = self.problem.data_degree.unwrap_or(0);
-        let degree = 2 * (stated + pair.degree);
-        let data = [&self.data.source, &self.data.reaction, &self.data.coefficient];
-        let obstacles = [&self.data.lower, &self.data.upper];
-        let mut all = data.iter().chain(&obstacles);
-        // exact for constants, also for the products with functions of the pair
-        let is_constant =
-            stated == 0 && all.all(|data| data.every(&|datum| datum.constant().is_some()));
-        let least = if is_constant { 0 } else { self.cell_degree };
-        let table = self.cell_table(Rule::new(D, degree.max(least)));
+        let table = self.cell_table(Rule::new(D, self.degree_of_terms(pair.degree)));
         let has_level = self.data.source.any(&|f| f.level().is_some());
         let cut = has_level.then(|| CutRule::new(D, self.cell_degree));
         let boundary = self.boundary_terms(pair)?;

@@ -3,9 +3,10 @@
 use super::solved::Solved;
 use crate::constraint::CellMeans;
 use crate::inequality::{Outcome, Solution};
-use crate::mesh::Mesh;
-use crate::problem::Problem;
-use crate::real::Real;
+use crate::input::excerpt;
+use crate::mesh::{BoundaryPart, Mesh, describe_point};
+use crate::problem::{DataOnMesh, Problem};
+use crate::real::{Real, point_f64};
 use crate::scheme::AnyScheme;
 
 /// More outer steps than a solve takes on any scene but with bounds at nodes of broken quadratics.
@@ -60,6 +61,56 @@ pub(crate) fn contact_forces<T: Real, const D: usize>(
         )
     };
     unbalanced.map(text).collect()
+}
+
+/// Dirichlet values that differ by less than this share of the largest one are equal but for rounding.
+const AGREEMENT: f64 = 1e-9;
+
+/// For each two groups whose Dirichlet values differ at a vertex where they meet a sentence with the first such vertex:
+/// no function of finite energy takes both values.
+pub(super) fn dirichlet_jumps<T: Real, const D: usize>(
+    problem: &Problem<D>,
+    mesh: &Mesh<T, D>,
+) -> Vec<String> {
+    let Some(data) =
+        DataOnMesh::new(problem, mesh).ok().filter(|d| D > 1 && d.dirichlet.has_names())
+    else {
+        return Vec::new();
+    };
+    let of_facets = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Dirichlet);
+    let mut values: Vec<(u32, usize, f64)> = Vec::new();
+    for facet in of_facets {
+        let group = usize::from(facet.group);
+        for v in mesh.facet_vertices(facet.cell as usize, usize::from(facet.local)) {
+            let x = point_f64(&mesh.vertices()[v as usize]);
+            values.push((v, group, data.dirichlet.of(group).map_or(0.0, |u| u.at(&x))));
+        }
+    }
+    let largest = values.iter().fold(0.0, |largest: f64, (.., value)| largest.max(value.abs()));
+    values.sort_by_key(|&(v, group, _)| (v, group));
+    values.dedup_by_key(|&mut (v, group, _)| (v, group));
+    let mut pairs = Vec::new();
+    let mut sentences = Vec::new();
+    for at_vertex in values.chunk_by(|a, b| a.0 == b.0) {
+        let &(v, first, value) = &at_vertex[0];
+        let others = at_vertex.iter().filter(|other| (other.2 - value).abs() > AGREEMENT * largest);
+        for &(_, other, of_other) in others {
+            if pairs.contains(&(first, other)) {
+                continue;
+            }
+            pairs.push((first, other));
+            let name = |group: usize| {
+                mesh.boundary_groups()[group].names.first().map(excerpt).unwrap_or_default()
+            };
+            let x = describe_point(&point_f64(&mesh.vertices()[v as usize]));
+            sentences.push(format!(
+                "the Dirichlet values of `{}` and `{}` differ where they meet, {value} and {of_other} at {x}: no function of finite energy takes both, energies grow with the mesh, and bounds are not proven",
+                name(first),
+                name(other),
+            ));
+        }
+    }
+    sentences
 }
 
 /// What helps a solution that took many active sets, or whose active sets changed to the end.

@@ -218,7 +218,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     }
     // the errors say the rest where they are known, and lines stay within their width
     if has_effectivity {
-        columns.push(number("effect.", |r| fixed(r.bound.effectivity)));
+        columns.push(number("effect.", |r| marked(r, fixed(r.bound.effectivity))));
     } else if !is_adaptive && has_bound {
         columns.push(number("bound", |r| marked(r, digits(r.bound.discrete, 1))));
     }
@@ -231,7 +231,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
         // the largest violation, where NaN counts as larger than any number
         let all = [c.feasibility, c.multiplier, c.complementarity, c.residual];
         let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
-        scientific(Some(all.into_iter().fold(0.0, worse)).filter(|c| c.is_finite()))
+        digits(Some(all.into_iter().fold(0.0, worse)).filter(|c| c.is_finite()), 1)
     }));
     columns.push(number("assem.", |r| seconds(r.seconds.assemble)));
     columns.push(number("solve", |r| seconds(r.seconds.solve)));
@@ -241,9 +241,10 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     columns
 }
 
-/// A bound with a mark where a term of it is not proven.
+/// A bound, or a ratio of it, with a mark where a term of it is not proven.
 fn marked(row: &Row, bound: String) -> String {
-    if row.bound.guaranteed == Some(false) { bound + "*" } else { bound }
+    let is_marked = bound != NONE && row.bound.guaranteed == Some(false);
+    if is_marked { bound + "*" } else { bound }
 }
 
 /// What the marks of bounds mean, where there are any.

@@ -9,7 +9,8 @@ use unilateral::quadrature::Rule;
 
 /// Every scheme that has a bound.
 const SCHEMES: &str = "p1 p2 cr sipg nipg iipg ldg br2 bmmpr wopsip wopsip:facet-means \
-    sipg:facet-means wopsip@eta=1e4 sipg-p2 nipg-p2 ldg-p2 wopsip-p2";
+    sipg:facet-means wopsip@eta=1e4 ldg-switch sipg-p2 nipg-p2 iipg-p2 ldg-p2 br2-p2 \
+    bmmpr-p2 wopsip-p2";
 
 fn scheme_of<const D: usize>(name: &str) -> (NamedScheme, Box<dyn AnyScheme<f64, D>>) {
     let named: NamedScheme = name.parse().unwrap();

@@ -85,19 +85,17 @@ fn room_between_two_bounds_under_a_balanced_load_leaves_many_solutions() {
     }
 }
 
-/// An upper obstacle that is never touched changes nothing.
+/// The forces are those without the upper obstacle, which is never touched.
 #[test]
 fn a_small_resultant_is_carried() {
     // the last one has four digits in a load of one, and forces are differences of such loads
     for (small, share) in [(1e-7, 0.01), (1e-9, 0.01), (1e-12, 0.1)] {
-        for obstacle in [FAR_ABOVE, ""] {
-            let text = format!("{SQUARE}{}{obstacle}", source(&format!("x - 0.5 - {small:e}")));
-            let rows = rows_of("nearly-square", &text, "--levels 0,1,2");
-            all_have_resultant(&format!("square {small:e} {obstacle}"), &rows, (small, share));
-            let text = format!("{}{obstacle}", string(1.0 - small));
-            let rows = rows_of("nearly-string", &text, "--levels 1,2,8,17");
-            all_have_resultant(&format!("string {small:e} {obstacle}"), &rows, (small, share));
-        }
+        let text = format!("{SQUARE}{}{FAR_ABOVE}", source(&format!("x - 0.5 - {small:e}")));
+        let rows = rows_of("nearly-square", &text, "--levels 0,1,2");
+        all_have_resultant(&format!("square {small:e}"), &rows, (small, share));
+        let text = format!("{}{FAR_ABOVE}", string(1.0 - small));
+        let rows = rows_of("nearly-string", &text, "--levels 1,2,8,17");
+        all_have_resultant(&format!("string {small:e}"), &rows, (small, share));
     }
 }
 
@@ -122,13 +120,13 @@ fn the_error_of_a_rule_does_not_decide() {
     for load in ["sin(2*pi*x)", "sqrt(x)-2/3", "if(x < 0.3, 7/3, -1)"] {
         for bounds in [lower, both] {
             let text = format!("{NEUMANN}{}{bounds}", source(load));
-            all_are(load, &rows_of("balanced", &text, "--levels 1,2,5"), "not-unique");
+            all_are(load, &rows_of("balanced", &text, "--levels 1,2,3"), "not-unique");
             let interval = format!(
                 "box = [[0], [1]]\n[boundary.left]\nkind = \"neumann\"\n\
                  [boundary.right]\nkind = \"neumann\"\n{}{bounds}",
                 source(load)
             );
-            all_are(load, &rows_of("balanced-1d", &interval, "--levels 1,2,5,8,17"), "not-unique");
+            all_are(load, &rows_of("balanced-1d", &interval, "--levels 1,2,8"), "not-unique");
         }
     }
 }

@@ -43,7 +43,7 @@ fn a_gap_below_the_obstacle_has_no_force() {
 #[test]
 fn multipliers_of_regions_are_those_of_their_obstacles() {
     let scratch = Scratch::new("regions");
-    let mut check = |name: &str, schemes: &str, levels: &str, least: f64| {
+    let check = |name: &str, schemes: &str, levels: &str, least: f64| {
         let options = format!("{} --scheme {schemes} --levels {levels}", data(name));
         let report = scratch.report(&options);
         for series in series(&report, levels.split(',').count()) {

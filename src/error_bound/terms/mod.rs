@@ -114,6 +114,11 @@ fn integral_of_square(sum: f64) -> f64 {
     if sum < 0.0 { 0.0 } else { sum }
 }
 
+/// The square of two norms, by their squares, to which a share of two others is added.
+fn with_share(squares: [f64; 2], share: f64, others: [f64; 2]) -> f64 {
+    squares.iter().zip(others).map(|(square, other)| (square.sqrt() + share * other).powi(2)).sum()
+}
+
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The admissible function in a cell.
     pub(super) fn admissible_in(&self, pair: &PrimalDualPair, cell: usize) -> Admissible<'_, D> {
@@ -313,14 +318,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 false => [by_gradient * of_load + of_trace, 0.0],
             }
         });
-        let square = |squares: [f64; 2], factor: f64, added: [f64; 2]| -> f64 {
-            squares.iter().zip(added).map(|(s, o)| (s.sqrt() + factor * o).powi(2)).sum()
-        };
         CellTerms {
             mismatch: mismatch + from_values,
-            with_oscillation: map_entries(oscillation, |o| square([mismatch, from_values], 1.0, o)),
+            with_oscillation: map_entries(oscillation, |o| {
+                with_share([mismatch, from_values], 1.0, o)
+            }),
             from_midpoint: map_entries(oscillation, |o| {
-                square([from_midpoint, 0.25 * from_values], 0.5, o)
+                with_share([from_midpoint, 0.25 * from_values], 0.5, o)
             }),
             obstacle,
             ratio,

@@ -14,6 +14,11 @@ pub(crate) struct SyntaxError {
 pub(super) fn resolve(node: Node, length: usize, variables: &[&str]) -> Result<Node, SyntaxError> {
     let of = |node| resolve(node, length, variables);
     Ok(match node {
+        Node::Negative(a) => Node::Negative(Box::new(of(*a)?)),
+        Node::Arithmetic(operator, ab) => {
+            let (a, b) = *ab;
+            Node::arithmetic(operator, of(a)?, of(b)?)
+        }
         Node::One(f, a) => Node::One(f, Box::new(of(*a)?)),
         Node::Two(f, ab) => {
             let (a, b) = *ab;

@@ -1,6 +1,6 @@
 //! The tree of an expression, and its value.
 
-use super::functions::{One, Two, truth};
+use super::functions::{One, Two, power, truth};
 
 /// A node of the tree.
 #[derive(Clone, Debug)]
@@ -8,6 +8,8 @@ pub(super) enum Node {
     Number(f64),
     /// By its position in the list of variables.
     Variable(usize),
+    Negative(Box<Node>),
+    Arithmetic(Operator, Box<(Node, Node)>),
     One(One, Box<Node>),
     Two(Two, Box<(Node, Node)>),
     /// Condition, value if it is not zero, value if it is.
@@ -18,7 +20,33 @@ pub(super) enum Node {
     Call(String, usize, Vec<Node>),
 }
 
+/// An operation that makes polynomials of polynomials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Operator {
+    Plus,
+    Minus,
+    Times,
+    Over,
+    Power,
+}
+
+impl Operator {
+    fn value(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Plus => a + b,
+            Self::Minus => a - b,
+            Self::Times => a * b,
+            Self::Over => a / b,
+            Self::Power => power(a, b),
+        }
+    }
+}
+
 impl Node {
+    /// An operation on two nodes.
+    pub fn arithmetic(operator: Operator, a: Node, b: Node) -> Node {
+        Node::Arithmetic(operator, Box::new((a, b)))
+    }
     /// A function of two nodes.
     pub fn two(operation: Two, a: Node, b: Node) -> Node {
         Node::Two(operation, Box::new((a, b)))
@@ -42,9 +70,36 @@ impl Node {
         match self {
             Node::Number(_) => false,
             Node::Variable(_) | Node::Name(..) | Node::Call(..) => true,
-            Node::One(_, a) => a.has_variables(),
-            Node::Two(_, ab) => ab.0.has_variables() || ab.1.has_variables(),
+            Node::One(_, a) | Node::Negative(a) => a.has_variables(),
+            Node::Two(_, ab) | Node::Arithmetic(_, ab) => {
+                ab.0.has_variables() || ab.1.has_variables()
+            }
             Node::If(parts) => [&parts.0, &parts.1, &parts.2].into_iter().any(Node::has_variables),
+        }
+    }
+
+    /// The degree of the expression as a polynomial in the first `dimension` variables, the others being constants;
+    /// none if it is no sum, product, quotient by a number or whole power of such.
+    pub fn degree(&self, dimension: usize) -> Option<usize> {
+        let of = |node: &Node| node.degree(dimension);
+        match self {
+            Node::Variable(k) => Some(usize::from(*k < dimension)),
+            Node::Negative(a) => of(a),
+            Node::Arithmetic(operator, ab) => {
+                let (a, b) = &**ab;
+                match operator {
+                    Operator::Plus | Operator::Minus => Some(of(a)?.max(of(b)?)),
+                    Operator::Times => of(a)?.checked_add(of(b)?),
+                    Operator::Over => of(a).filter(|_| of(b) == Some(0)),
+                    Operator::Power if b.has_variables() => None,
+                    Operator::Power => {
+                        let exponent = b.value(&[]);
+                        let is_whole = exponent >= 0.0 && exponent.fract() == 0.0;
+                        of(a)?.checked_mul(exponent as usize).filter(|_| is_whole)
+                    }
+                }
+            }
+            other => (!other.has_variables()).then_some(0),
         }
     }
 
@@ -55,16 +110,16 @@ impl Node {
         match self {
             Node::Number(x) => *x,
             Node::Variable(k) => variables[*k],
+            Node::Negative(a) => -at(a),
             // `max`, `pow`, comparisons and others would make a number of an operand that is none
             Node::One(f, a) => match at(a) {
                 a if a.is_nan() => a,
                 a => f(a),
             },
-            Node::Two(f, ab) => match (at(&ab.0), at(&ab.1)) {
-                (a, _) if a.is_nan() => a,
-                (_, b) if b.is_nan() => b,
-                (a, b) => f(a, b),
-            },
+            Node::Arithmetic(operator, ab) => {
+                of_numbers(at(&ab.0), at(&ab.1), |a, b| operator.value(a, b))
+            }
+            Node::Two(f, ab) => of_numbers(at(&ab.0), at(&ab.1), f),
             Node::If(parts) => {
                 let (condition, yes, no) = &**parts;
                 match at(condition) {
@@ -76,5 +131,14 @@ impl Node {
             // names are resolved when an expression is read
             Node::Name(..) | Node::Call(..) => f64::NAN,
         }
+    }
+}
+
+/// A function of two values; NaN if one of them is.
+fn of_numbers(a: f64, b: f64, f: impl Fn(f64, f64) -> f64) -> f64 {
+    match (a, b) {
+        (a, _) if a.is_nan() => a,
+        (_, b) if b.is_nan() => b,
+        _ => f(a, b),
     }
 }

@@ -73,6 +73,8 @@ pub struct Study<'a, T: Real, const D: usize> {
     mesh: Option<Mesh<T, D>>,
     /// The result of [`check_fit`] for the given mesh, once known.
     fit: OnceCell<Option<String>>,
+    /// Why a stated solution does not solve the problem, or none, as the first row found it.
+    doubt: OnceCell<Option<String>>,
     reference: Option<Reference<'a, T, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
@@ -139,6 +141,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             adaptive: None,
             mesh: None,
             fit: OnceCell::new(),
+            doubt: OnceCell::new(),
             reference: None,
             solvers: Vec::new(),
             quadrature: DataQuadrature::default(),

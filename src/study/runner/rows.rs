@@ -10,6 +10,8 @@ use crate::mesh::Mesh;
 use crate::nested::{NestedIteration, Phase, Solved};
 use crate::problem::Problem;
 use crate::real::Real;
+use crate::scenes::check::Violation;
+use crate::scenes::check_exact_on;
 use crate::scheme::{AnyScheme, ExpectedOrders};
 use crate::study::crossing::Crossing;
 #[cfg(feature = "report")]
@@ -149,9 +151,31 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         let problem = solved.discretisation().problem();
         let mut row = self.named(entry, problem, row, measured.failure);
         match measured.measure(&mut row, solved) {
-            Ok(()) => Ok(row),
+            Ok(()) => {
+                let is_measured = row.against.as_deref() == Some("exact");
+                row.warnings.extend(self.doubt(solved).filter(|_| is_measured));
+                Ok(row)
+            }
             Err(error) => row.with_error(error),
         }
+    }
+
+    /// Why the solution that is stated for a problem with data by name does not solve it, if that is found on the mesh
+    /// of the first row. Scenes are tested by [`check_scene`](crate::scenes::check_scene).
+    fn doubt(&self, solved: &Solved<'_, T, D>) -> Option<String> {
+        let problem = solved.discretisation().problem();
+        let found = || {
+            let name = &self.scene.name;
+            let violation = match problem.has_named_data() {
+                true => check_exact_on(name, problem, solved.mesh()).err()?,
+                false => return None,
+            };
+            let Violation { condition, at, by, .. } = violation;
+            Some(format!(
+                "the stated solution does not solve this problem: not fulfilled: {condition}; at {at:.4?} off by {by:.2e}"
+            ))
+        };
+        self.doubt.get_or_init(found).clone()
     }
 
     /// The row with the names of constraint set and label and the promised orders.
