@@ -6,8 +6,8 @@
 //! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
 //! discontinuous linear functions. `dense`: small dense matrices. `row`: rows in the making.
 //! `dirichlet_energy`: the part of an energy that weak Dirichlet data determine.
-//! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `inequality`: bounds, supports of unknowns and the
-//! inequality. `index`: the missing index.
+//! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `inequality`: bounds,
+//! supports of unknowns and the inequality. `index`: the missing index.
 
 pub(crate) mod dense;
 mod dirichlet_energy;

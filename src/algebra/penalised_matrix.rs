@@ -186,7 +186,8 @@ impl<T: Real> PenalisedMatrix<T> {
         self.residual_with_jump_multipliers(load, u, |k| multipliers[k], r);
     }
 
-    /// The energy `u.A u / 2 - b.u` with a load `c`, which is `u.K u / 2 - c.u + (M u - g).S (M u - g) / 2 - g.S g / 2`.
+    /// The energy `u.A u / 2 - b.u` with a load `c`, which is `u.K u / 2 - c.u + (M u - g).S (M u - g) / 2 - g.S g /
+    /// 2`.
     ///
     /// Of one part of a mesh it has the terms of unknowns for which `counts` is true, and of jumps whose first
     /// unknown is one of them.

@@ -245,8 +245,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(self.load_and_data(form, metrics, &bodies, true)?.0)
     }
 
-    /// The load of all unknowns, with or without the Dirichlet data that the facet form imposes, and these data. The loads
-    /// of free bodies have their resultants.
+    /// The load of all unknowns, with or without the Dirichlet data that the facet form imposes, and these data. The
+    /// loads of free bodies have their resultants.
     pub fn load_and_data<'m>(
         &self,
         form: &dyn FacetForm<T, D>,

@@ -21,11 +21,11 @@ pub(super) struct NodeForce {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The contact forces: that of each node in contact with a gap, divided by measure among those of its contact facets
-    /// whose gap binds it and, in the plane, if there are any, all of whose nodes are in contact: the other facet of a
-    /// node is open there. In space facets around the end of contact are many, and few of them are in contact whole.
-    /// A node of a quadratic that Dirichlet data pin beside nodes in contact has no force of its own: the part of
-    /// the flux of the discrete function `u` stands for it, and any number would do.
+    /// The contact forces: that of each node in contact with a gap, divided by measure among those of its contact
+    /// facets whose gap binds it and, in the plane, if there are any, all of whose nodes are in contact: the other
+    /// facet of a node is open there. In space facets around the end of contact are many, and few of them are in
+    /// contact whole. A node of a quadratic that Dirichlet data pin beside nodes in contact has no force of its own:
+    /// the part of the flux of the discrete function `u` stands for it, and any number would do.
     pub(super) fn contact_forces(
         &self,
         inequality: &Inequality<T>,

@@ -80,8 +80,8 @@ impl BoundFigures {
         }
     }
 
-    /// The figures of a bound and, unless they are rounding, of the true errors for a solution with this energy norm and
-    /// these rounding errors.
+    /// The figures of a bound and, unless they are rounding, of the true errors for a solution with this energy norm
+    /// and these rounding errors.
     pub(crate) fn of_solution<E: Display>(
         bound: Result<&ErrorBound, E>,
         TrueErrors { of_solution, of_v }: TrueErrors,

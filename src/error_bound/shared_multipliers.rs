@@ -35,8 +35,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Some((0..n_cells * n).map(|k| number((k / n, k % n))).collect())
     }
 
-    /// Adds multipliers, by unknown, to what cells have: of a node each cell whose obstacle acts there has the part of its
-    /// volume, among those in contact if there are any.
+    /// Adds multipliers, by unknown, to what cells have: of a node each cell whose obstacle acts there has the part of
+    /// its volume, among those in contact if there are any.
     pub(super) fn add_multipliers(
         &self,
         multipliers: &[f64],

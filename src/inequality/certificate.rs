@@ -37,9 +37,9 @@ pub struct Certificate {
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub feasibility: f64,
     /// Dual norm, divided by `E`, of the multipliers of active unknowns with the wrong sign. A multiplier counts at
-    /// most as much as one whose step reaches the opposite bound, where its sign would be right. With a penalised matrix
-    /// `K + M^T S M` the forces of nodes count too, which follow from balances without `S`, in the dual norm of the
-    /// diagonal of `K`: the diagonal of `A` contains the penalty, beside which a wrong force is small.
+    /// most as much as one whose step reaches the opposite bound, where its sign would be right. With a penalised
+    /// matrix `K + M^T S M` the forces of nodes count too, which follow from balances without `S`, in the dual norm of
+    /// the diagonal of `K`: the diagonal of `A` contains the penalty, beside which a wrong force is small.
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub multiplier: f64,
     /// `(sum d_i min(gap_i, s_i)^2)^(1/2)` divided by `E`, the sum over all `i` with positive gap

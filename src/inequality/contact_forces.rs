@@ -1,24 +1,29 @@
 //! The contact forces of unknowns: everything that shows a force takes it from here.
 
 use super::Solution;
-use super::certificate::residual;
-use crate::algebra::{Contact, Inequality, JumpTerm, PenalisedMatrix};
+use super::certificate::{positive_diagonal, residual};
+use crate::algebra::{Bound, Contact, Inequality, JumpTerm, PenalisedMatrix};
 use crate::parallel::vectors::collect;
 use crate::real::Real;
 
-/// Forces have no digit where their rounding errors may exceed this share of them.
-const LARGEST_ROUNDING: f64 = 0.1;
+/// Forces have no digit where their errors may exceed this share of them.
+const LARGEST_ERROR: f64 = 0.1;
+
+/// Forces that are known up to this share of the load, rounding in double precision, have digits even where they vanish.
+const NO_LOAD: f64 = 8.0 * f64::EPSILON;
 
 /// The forces with which active bounds hold their unknowns, the entries of `r = A u - b`.
 ///
-/// For a [`PenalisedMatrix`] `r = K u + M^T p - c`. Jump multipliers that are computed as `p = S (M u - g)` lose `eps S`
-/// to cancellation: with a large weight more than the force. Forces therefore follow from balances. Unknowns that jumps
-/// subtract from one another are the *copies* of a node: at a vertex those of the cells around it, of facet means those
-/// of both sides. In the sum over the copies of a node `M^T p` cancels, whatever `p` is, and copies without contact have
-/// no force: the sum of `K u - c` over all copies is the force of those in contact, which share it equally.
+/// For a [`PenalisedMatrix`] `r = K u + M^T p - c`. Jump multipliers that are computed as `p = S (M u - g)` lose `eps
+/// S` to cancellation: with a large weight more than the force. Forces therefore follow from balances. Unknowns that
+/// jumps subtract from one another are the *copies* of a node: at a vertex those of the cells around it, of facet means
+/// those of both sides. In the sum over the copies of a node `M^T p` cancels, whatever `p` is, and copies without
+/// contact have no force: the sum of `K u - c` over all copies is the force of those in contact, which share it
+/// equally.
 ///
-/// Where a jump has an unknown without a counterpart (on weakly imposed Dirichlet data, or for means over cells) and on
-/// one part of a mesh, `p` is that of the solver, or `S (M u - g)` where the solver has none.
+/// Where a jump has an unknown without a counterpart (on weakly imposed Dirichlet data, or for means over cells), where
+/// copies touch different bounds or have one admissible value, and on one part of a mesh, `p` is that of the solver, or
+/// `S (M u - g)` where the solver has none.
 pub(crate) struct ContactForces {
     /// By unknown, positive where a lower bound pushes upward; zero without an active inequality.
     pub values: Vec<f64>,
@@ -30,8 +35,11 @@ impl ContactForces {
     /// The forces of a solution. All parts of a distributed inequality call it.
     pub fn of<T: Real>(inequality: &Inequality<T>, solution: &Solution<T>) -> Self {
         let Solution { values: u, contact, jump_multipliers, .. } = solution;
-        let is_active =
-            |i: usize| inequality.bounds[i].is_inequality() && contact[i] != Contact::Inactive;
+        let state = |i: usize| match inequality.bounds[i].is_inequality() {
+            true => contact[i],
+            false => Contact::Inactive,
+        };
+        let is_active = |i: usize| state(i) != Contact::Inactive;
         let mut r = vec![0.0; u.len()];
         residual(inequality, u, jump_multipliers, &mut r);
         let force = |i: usize| if is_active(i) { -r[i] } else { 0.0 };
@@ -40,7 +48,7 @@ impl ContactForces {
         let mut forces = Self { values: collect(u.len(), force), rounding: collect(u.len(), size) };
         if let Some(nodes) = BalancedNodes::of(inequality) {
             let Self { values, rounding } = &mut forces;
-            nodes.share(u, &is_active, values, Some(rounding));
+            nodes.share(u, &state, values, Some(rounding));
         }
         if let Some(distribution) = inequality.distribution() {
             distribution.update(&mut forces.values);
@@ -48,22 +56,51 @@ impl ContactForces {
         forces
     }
 
-    /// Whether rounding leaves a digit of the forces of the unknowns that `counts`, in the sum of absolute values over all
-    /// parts.
+    /// Whether rounding and what the solver leaves are less than a tenth of the forces of the unknowns that `counts`,
+    /// in the sum of absolute values over all parts. The solver leaves a residual that is small beside the energy of
+    /// the whole problem; by the inequality of Cauchy and Schwarz the forces of unknowns at a bound, or as near to one
+    /// as the limit of the certificate, may be off by it times the root of the sum of their diagonal entries.
     pub fn have_digits<T: Real>(
         &self,
         inequality: &Inequality<T>,
+        solution: &Solution<T>,
         counts: impl Fn(usize) -> bool,
     ) -> bool {
-        let mut sums = [0.0; 2];
+        let mut largest = [solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max)];
+        if let Some(distribution) = inequality.distribution() {
+            distribution.largest(&mut largest);
+        }
+        let slack = T::CERTIFICATE_LIMIT * largest[0];
+        let mut sums = [0.0; 4];
         for i in (0..self.values.len()).filter(|&i| inequality.owns(i) && counts(i)) {
+            sums[3] += inequality.load[i].to_f64().abs();
             sums[0] += self.values[i].abs();
             sums[1] += self.rounding[i];
+            if is_near(&inequality.bounds[i], solution.values[i], slack) {
+                sums[2] += stiffness_diagonal(inequality, i);
+            }
         }
         if let Some(distribution) = inequality.distribution() {
             distribution.sum(&mut sums);
         }
-        sums[1] <= LARGEST_ROUNDING * sums[0]
+        let [forces, rounding, diagonal, load] = sums;
+        let error = rounding + solution.dual_residual * diagonal.sqrt();
+        error <= LARGEST_ERROR * forces || error <= NO_LOAD * load
+    }
+}
+
+/// Whether a value is at a bound that is an inequality, but for the slack.
+fn is_near<T: Real>(bound: &Bound<T>, x: T, slack: f64) -> bool {
+    let x = x.to_f64();
+    let is_above = bound.lower().is_some_and(|l| x - l.to_f64() <= slack);
+    is_above || bound.upper().is_some_and(|u| u.to_f64() - x <= slack)
+}
+
+/// The diagonal entry of the matrix, without a penalty that is kept apart.
+fn stiffness_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -> f64 {
+    match &inequality.penalised {
+        Some(penalised) => penalised.stiffness_diagonal(i),
+        None => positive_diagonal(inequality, i),
     }
 }
 
@@ -130,39 +167,71 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
             let unknown = if term.here == no_unknown { term.there } else { term.here };
             is_balanced[node[unknown as usize] as usize] = false;
         }
+        // a copy with one admissible value has a force of any sign
+        for (i, bound) in inequality.bounds.iter().enumerate() {
+            if bound.fixed_value().is_some() {
+                is_balanced[node[i] as usize] = false;
+            }
+        }
         Some(Self { penalised, load: &inequality.load, node, is_balanced })
     }
 
-    /// Replaces the forces of active copies of balanced nodes by equal shares in the sum of `K u - c` over all copies, and
-    /// the sizes of rounding errors by those of the shares.
+    /// Replaces the forces of active copies by equal shares in the sum of `K u - c` over all copies of their node, and
+    /// the sizes of rounding errors by those of the shares, where the node is balanced and its active copies touch
+    /// bounds of one side.
     pub fn share(
         &self,
         u: &[T],
-        is_active: &impl Fn(usize) -> bool,
+        state: &impl Fn(usize) -> Contact,
         forces: &mut [f64],
         mut rounding_errors: Option<&mut Vec<f64>>,
     ) {
-        // by node the number of active copies, the sum over all copies, and that of squared terms
-        let mut sums = vec![(0_u32, 0.0, 0.0); self.node.len()];
-        for i in (0..self.node.len()).filter(|&i| is_active(i)) {
-            sums[self.node[i] as usize].0 += 1;
-        }
-        for (i, &node) in self.node.iter().enumerate() {
-            let (n_active, force, terms) = &mut sums[node as usize];
-            if *n_active > 0 && self.is_balanced[node as usize] {
-                let stiffness = self.penalised.stiffness(i, |j| u[j].to_f64());
-                *force += stiffness - self.load[i].to_f64();
-                *terms += squared_stiffness_terms(self.penalised, i, u);
+        let mut sums = vec![SumOverCopies::default(); self.node.len()];
+        for (i, &node) in
+            self.node.iter().enumerate().filter(|(_, n)| self.is_balanced[**n as usize])
+        {
+            match state(i) {
+                Contact::Lower => sums[node as usize].n_lower += 1,
+                Contact::Upper => sums[node as usize].n_upper += 1,
+                Contact::Inactive => {}
             }
         }
         for (i, &node) in self.node.iter().enumerate() {
-            if is_active(i) && self.is_balanced[node as usize] {
-                let (n_active, force, terms) = sums[node as usize];
-                forces[i] = force / f64::from(n_active);
+            let sum = &mut sums[node as usize];
+            if sum.n_sharing().is_some() {
+                let stiffness = self.penalised.stiffness(i, |j| u[j].to_f64());
+                sum.force += stiffness - self.load[i].to_f64();
+                sum.terms += squared_stiffness_terms(self.penalised, i, u);
+            }
+        }
+        for (i, &node) in self.node.iter().enumerate() {
+            let sum = sums[node as usize];
+            if let Some(n) = sum.n_sharing().filter(|_| state(i) != Contact::Inactive) {
+                forces[i] = sum.force / n;
                 if let Some(rounding_errors) = &mut rounding_errors {
-                    rounding_errors[i] = rounding::<T>(terms) / f64::from(n_active);
+                    rounding_errors[i] = rounding::<T>(sum.terms) / n;
                 }
             }
+        }
+    }
+}
+
+/// The copies of a node that touch bounds, and the sums over all copies of `K u - c` and of the squares of its terms.
+#[derive(Clone, Copy, Default)]
+struct SumOverCopies {
+    n_lower: u32,
+    n_upper: u32,
+    force: f64,
+    terms: f64,
+}
+
+impl SumOverCopies {
+    /// The number of copies that share the force: those of one side, none if there are some of both.
+    fn n_sharing(&self) -> Option<f64> {
+        match (self.n_lower, self.n_upper) {
+            (0, 0) => None,
+            (n, 0) | (0, n) => Some(f64::from(n)),
+            _ => None,
         }
     }
 }
@@ -187,8 +256,7 @@ mod tests {
     use crate::real::Point;
     use crate::scheme::Wopsip;
 
-    /// Jump multipliers moved by any numbers on facets between cells: neither shares of nodes nor their sum change,
-    /// which without the balances they do.
+    /// Jump multipliers moved by any numbers: the forces of balanced nodes do not change, those of others do.
     fn moved_multipliers<const D: usize>(problem: Problem<D>) {
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         let mesh = Mesh::<f64, D>::kuhn_box(&domain, [3; D]).unwrap();
@@ -199,10 +267,8 @@ mod tests {
         let number = |k: usize| ((7 * k * k + 3 * k) % 23) as f64 - 11.0;
         let values: Vec<f64> = (0..inequality.size()).map(number).collect();
         let multipliers = penalised.jump_multipliers(|i| values[i]);
-        let is_shared = |jump: usize| penalised.blocks_of_jump(jump).iter().all(Option::is_some);
-        let moved: Vec<f64> = (0..penalised.n_jumps())
-            .map(|k| multipliers[k] + if is_shared(k) { 1e3 * number(k + 1) } else { 0.0 })
-            .collect();
+        let moved: Vec<f64> =
+            (0..penalised.n_jumps()).map(|k| multipliers[k] + 1e3 * number(k + 1)).collect();
         let contact = (0..inequality.size())
             .map(|i| if i % 3 == 0 { Contact::Lower } else { Contact::Inactive })
             .collect();
@@ -223,7 +289,7 @@ mod tests {
             }
         }
         assert!(n_balanced > 0 && n_moved > 0, "{n_balanced} {n_moved}");
-        // an active copy alone has the residual with the multipliers that leave the other copies in balance
+        // the residual with any multipliers has the same sum over copies
         let mut residual = vec![0.0; inequality.size()];
         let (u, load) = (|i: usize| solution.values[i], &inequality.load);
         penalised.residual_with_jump_multipliers(load, u, |k| moved[k], &mut residual);

@@ -18,8 +18,7 @@
 //! | `monotone_multigrid/` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`] |
 //! | `contact_forces` | the forces of active bounds, from which everything that shows a force takes them |
-//! | `local_violation` | the violations at one unknown |
-//! | `violations` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh |
+//! | `violations/` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh; the violations at one unknown |
 //! | `energy_error_bound` | [`energy_error_bound`]: a proven bound on the error of any values, by factors |
 //! | `preconditioned_error_bound` | a bound on the error of admissible values, by a preconditioner |
 //! | `scales` | the energy norm and the largest value to which violations are relative |
@@ -40,7 +39,6 @@ mod contact_forces;
 mod energy_error_bound;
 pub(crate) mod initial_guess;
 mod interior_point;
-mod local_violation;
 mod monotone_multigrid;
 mod outcome;
 mod preconditioned_error_bound;

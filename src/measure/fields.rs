@@ -21,7 +21,7 @@ pub struct Fields {
     /// Density of an obstacle's multiplier in each cell: the mean over the vertices of the cell of the
     /// nodal multipliers of the unknowns to which the obstacle of its region gives the active bound, gathered at
     /// vertices, over the integrals of hat functions. Its integral over the domain is the sum of these multipliers.
-    /// Empty without an obstacle.
+    /// Not a number where rounding leaves no digit; empty without an obstacle.
     pub multiplier: Vec<f64>,
     /// Share of each cell's constrained unknowns in contact.
     pub contact: Vec<f64>,
@@ -98,12 +98,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Fields {
             u: self.vertex_values(u),
             obstacle: self.problem.has_obstacle().then_some(obstacle),
-            multiplier: of_obstacles
-                .map_or_else(Vec::new, |of| self.densities_of_obstacles(inequality, of)),
+            multiplier: match of_obstacles {
+                Some(of) => self.densities_of_obstacles(inequality, of),
+                None if self.problem.has_obstacle() => vec![f64::NAN; n_cells],
+                None => Vec::new(),
+            },
             contact: (0..n_cells).map(share).collect(),
             midpoints: self.midpoint_values(u),
             discrete_contact: self.discrete_contact(inequality, solution),
-            pressure: of_gaps.map_or_else(Vec::new, |of| self.densities_of_gaps(inequality, of)),
+            pressure: match of_gaps {
+                Some(of) => self.densities_of_gaps(inequality, of),
+                None => vec![f64::NAN; contact_boundary.len()],
+            },
             gap: contact_boundary.iter().map(|&place| self.mean_gap(place, u)).collect(),
             bound: Vec::new(),
             contact_boundary,

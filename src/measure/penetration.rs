@@ -14,7 +14,7 @@ use crate::mesh::{BoundaryPart, edge_vertices};
 use crate::parallel::cells;
 use crate::problem::{DataByGroup, DatumRef};
 use crate::quadrature::facet_to_cell;
-use crate::real::{Point, Real};
+use crate::real::{Point, Real, point_f64};
 
 /// Beyond a bound by more than this share of the largest distance from it there is a warning.
 const SHARE_OF_DISTANCE: f64 = 0.1;
@@ -22,7 +22,7 @@ const SHARE_OF_DISTANCE: f64 = 0.1;
 /// With affine data there is one from this share of the largest value of the function on.
 const SHARE_OF_VALUE: f64 = 1e-6;
 
-/// What is below this many units of rounding of the largest value of the function is rounding.
+/// What is below this many units of rounding of the size of the function is rounding.
 const ROUNDINGS: f64 = 1e3;
 
 /// The names of lower obstacles, upper obstacles and gaps.
@@ -40,8 +40,8 @@ pub struct Penetration {
     largest_value: f64,
     /// For each of the three whether its data, and all others of the problem, are known to be affine.
     is_affine: [bool; 3],
-    /// The unit of rounding.
-    epsilon: f64,
+    /// What is below this is rounding.
+    rounding: f64,
 }
 
 impl Penetration {
@@ -51,12 +51,13 @@ impl Penetration {
         away: [f64::NEG_INFINITY; 3],
         largest_value: 0.0,
         is_affine: [false; 3],
-        epsilon: f64::EPSILON,
+        rounding: 0.0,
     };
 
     /// How far the function lies beyond a bound at most: negative where it reaches none.
     pub fn largest(&self) -> f64 {
-        self.beyond.into_iter().fold(f64::NEG_INFINITY, f64::max)
+        // a distance of zero has no sign
+        self.beyond.into_iter().fold(f64::NEG_INFINITY, f64::max) + 0.0
     }
 
     /// The numbers of which over several parts of a mesh the largest count.
@@ -73,7 +74,7 @@ impl Penetration {
     /// A warning, if the function lies beyond a bound by more than a tenth of its largest distance from it; or, with
     /// affine data, by more than a millionth of its largest value.
     pub(crate) fn remark(&self) -> Option<String> {
-        let rounding = self.epsilon * ROUNDINGS * self.largest_value;
+        let rounding = self.rounding;
         let of_value = (SHARE_OF_VALUE * self.largest_value).max(rounding);
         let found = (0..3).filter_map(|k| {
             let (beyond, away) = (self.beyond[k], self.away[k].max(0.0));
@@ -111,9 +112,9 @@ impl Penetration {
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// How far a discrete function lies beyond obstacles and gaps: in each cell beyond the obstacles of its region, on
-    /// each contact facet beyond the gap of its group. It is looked at at vertices, midpoints of edges and the points of
-    /// the rule for loads, on facets of that for Neumann data; at vertices alone where function and datum are affine:
-    /// there it is exact. None without an inequality.
+    /// each contact facet beyond the gap of its group. It is looked at at vertices, midpoints of edges and the points
+    /// of the rule for loads, on facets of that for Neumann data; at vertices alone where function and datum are
+    /// affine: there it is exact. None without an inequality.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
@@ -178,12 +179,27 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
         let is_affine = self.has_affine_data();
+        let largest_value = u.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max);
+        // a solution that vanishes is as large as rounding of what its load would do
+        let size = largest_value.max(self.size_of_load());
         Ok(Penetration {
-            largest_value: u.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max),
+            largest_value,
             is_affine: data.map(|data| is_affine && self.is_affine(data)),
-            epsilon: T::EPSILON,
+            rounding: T::EPSILON * ROUNDINGS * size,
             ..found
         })
+    }
+
+    /// The size of a function with the load: the largest quotient of load and coefficient, at barycentres of cells,
+    /// times the square of the diameter of the mesh.
+    fn size_of_load(&self) -> f64 {
+        let of_cell = |cell: usize| {
+            let x = point_f64(&self.mesh.barycentre(cell));
+            let load = self.data.source.of(self.mesh.region(cell)).map_or(0.0, |f| f.at(&x));
+            load.abs() / self.alpha(cell).to_f64()
+        };
+        let largest = (0..self.mesh.n_cells()).map(of_cell).fold(0.0, f64::max);
+        largest * self.mesh.domain_diameter().powi(2)
     }
 
     /// What a cell adds.
@@ -250,21 +266,27 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         points.map(|point| (point, self.basis_at(&point))).collect()
     }
 
+    /// Whether a degree of a datum, or the one stated for all data without a degree of their own, is at most one.
+    fn is_affine_degree(&self, degree: Option<usize>) -> bool {
+        degree.or(self.problem.data_degree).is_some_and(|degree| degree <= 1)
+    }
+
     /// Whether a datum is known to be affine wherever it is given.
     fn is_affine(&self, data: &DataByGroup<'_, D>) -> bool {
-        let is_stated = self.problem.data_degree.is_some_and(|degree| degree <= 1);
-        is_stated || data.every(&|f| f.constant().is_some())
+        data.every(&|datum| self.is_affine_degree(datum.degree()))
     }
 
     /// Whether all data but obstacles and gaps are known to be affine.
     fn has_affine_data(&self) -> bool {
         let data = &self.data;
         let has = |part| self.mesh.has_part(part);
-        let is_stated = self.problem.data_degree.is_some_and(|degree| degree <= 1);
-        let neumann = data.neumann.is_given() && data.neumann.every(&|f| f.constant().is_some());
+        // without Neumann data an exact solution gives the flux
+        let is_known = data.neumann.is_given() || self.problem.exact.is_none();
+        let flux_is_affine = data.neumann.every(&|flux| self.is_affine_degree(flux.degree()))
+            && (is_known || self.is_affine_degree(None));
         [&data.coefficient, &data.source, &data.reaction].into_iter().all(|d| self.is_affine(d))
             && (!has(BoundaryPart::Dirichlet) || self.is_affine(&data.dirichlet))
-            && (is_stated || neumann || !has(BoundaryPart::Neumann))
+            && (!has(BoundaryPart::Neumann) || flux_is_affine)
     }
 }
 

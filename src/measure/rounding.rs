@@ -23,12 +23,13 @@ const PER_CELL: f64 = 0.25;
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Rounding {
-    /// In errors of the solution: in the energy norms `a eps U (sum d_i)^(1/2)`, `d` the diagonal of the matrix, for
-    /// the broken one `k`; `a eps n U / 4` in the maximum, `L^(D/2)` times that in L2, `4 / L` times that again in H1.
+    /// In errors of the solution: `a eps U (sum k_i)^(1/2)` in the broken energy norm; in the norm of the scheme
+    /// `eps U (sum d_i)^(1/2) / 4` besides, `d` the diagonal of the matrix, because jumps of rounded values are rounded
+    /// once; `a eps n U / 16` in the maximum, `L^(D/2)` times that in L2, `16 / L` times that again in H1.
     pub error: Errors,
     /// In energies: `a eps (E^2 + U sum |c_i|)`, `E` the energy norm of the solution.
     pub energy: f64,
-    /// In contact forces, whose rounding errors have random signs: `a eps (U (sum k_i^2)^(1/2) + sum |c_i|)`.
+    /// In contact forces, whose rounding errors have random signs: `a eps (U (sum k_i^2)^(1/2) + sum |c_i|) / 8`.
     pub force: f64,
 }
 
@@ -72,17 +73,17 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let value = maximum(largest[0], of_load);
         let per_cell = if D == 1 || self.space.degree > 1 { PER_CELL } else { 0.0 };
         let one = (ROUNDINGS + per_cell * n) * T::EPSILON;
-        let max = 0.25 * one * n * value;
+        let max = one * n * value / 16.0;
         let l2 = max * length.powf(0.5 * dimension);
         let error = Errors {
             l2: Some(l2),
-            h1: Some(4.0 * l2 / length),
-            energy: Some(one * value * diagonal.sqrt()),
+            h1: Some(16.0 * l2 / length),
+            energy: Some(value * (one * stiffness.sqrt() + 0.25 * T::EPSILON * diagonal.sqrt())),
             broken_energy: Some(one * value * stiffness.sqrt()),
             max: Some(max),
         };
         let energy = one * (energy_norm * energy_norm + value * force);
-        let force = one * (value * squares.sqrt() + force);
+        let force = one * (value * squares.sqrt() + force) / 8.0;
         let is_finite = [l2 / length, energy, force, diagonal].iter().all(|x| x.is_finite());
         is_finite.then_some(Rounding { error, energy, force })
     }

@@ -28,11 +28,20 @@ pub(super) fn short_edges<T: Real, const D: usize>(
     })
 }
 
-/// The largest share of its load by which the contact forces on a body may differ from the load without a warning.
+/// That contact forces are left out, in a scalar of this name.
+pub(crate) fn no_digits_of_forces(scalar: &str) -> String {
+    format!(
+        "rounding in {scalar} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out"
+    )
+}
+
+/// The largest share of its load by which the contact forces on a body may differ from the load without a warning; in
+/// single precision the root of machine epsilon.
 const LARGEST_IMBALANCE: f64 = 1e-6;
 
-/// Contact forces of which rounding leaves no digit, or that do not balance the load of a body that contact alone holds.
-pub(crate) fn contact_forces<T: Real, const D: usize>(
+/// Contact forces of which rounding leaves no digit, or that do not balance the load of a body that contact alone
+/// holds.
+pub(crate) fn warnings_of_forces<T: Real, const D: usize>(
     solved: &Solved<'_, T, D>,
     forces: Option<&[f64]>,
 ) -> Vec<String> {
@@ -40,8 +49,7 @@ pub(crate) fn contact_forces<T: Real, const D: usize>(
         return Vec::new();
     }
     let Some(forces) = forces else {
-        let text = "rounding in {} leaves no digit of the contact forces: resultant and errors of the multiplier are left out";
-        return vec![text.replace("{}", T::NAME)];
+        return vec![no_digits_of_forces(T::NAME)];
     };
     let inequality = solved.inequality();
     let imbalance = |body: &Vec<(u32, T)>| {
@@ -54,7 +62,8 @@ pub(crate) fn contact_forces<T: Real, const D: usize>(
         (sum, size)
     };
     let bodies = inequality.kernel.iter().map(imbalance);
-    let unbalanced = bodies.filter(|(sum, size)| sum.abs() > LARGEST_IMBALANCE * size);
+    let largest = LARGEST_IMBALANCE.max(T::EPSILON.sqrt());
+    let unbalanced = bodies.filter(|(sum, size)| sum.abs() > largest * size);
     let text = |(sum, size): (f64, f64)| {
         format!(
             "contact forces on a body that contact alone holds differ by {sum:.1e} from its load, of {size:.1e} in absolute values"

@@ -32,6 +32,7 @@ pub enum BoundaryFlux<const D: usize> {
 
 impl<const D: usize> BoundaryFlux<D> {
     /// The value of a constant.
+    #[cfg(feature = "problem-files")]
     pub(crate) fn constant(&self) -> Option<f64> {
         match self {
             BoundaryFlux::Constant(c) => Some(*c),

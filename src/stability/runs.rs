@@ -69,8 +69,8 @@ pub(crate) fn solved<'a, const D: usize>(
 }
 
 /// What contact forces and the fluxes through facets with weakly imposed Dirichlet data leave of the load, less the
-/// reaction, over the sum of absolute loads. None without forces or without jump multipliers of the solver, which are the
-/// fluxes.
+/// reaction, over the sum of absolute loads. None without forces or without jump multipliers of the solver, which are
+/// the fluxes.
 pub(crate) fn imbalance<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> Option<f64> {
     let (inequality, solution) = (solved.inequality(), solved.solution());
     let penalised = inequality.penalised.as_ref()?;

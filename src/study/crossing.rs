@@ -106,8 +106,8 @@ impl Points {
     }
 
     /// What is seen of lower and upper bounds on a mesh: obstacles at vertices, midpoints of edges and
-    /// these points of cells, gaps at vertices, midpoints of edges and these points of contact facets. At vertices and on
-    /// edges the bounds of all cells and contact facets around count together.
+    /// these points of cells, gaps at vertices, midpoints of edges and these points of contact facets. At vertices and
+    /// on edges the bounds of all cells and contact facets around count together.
     pub fn look<T: Real, const D: usize>(
         &self,
         problem: &Problem<D>,

@@ -8,7 +8,7 @@ use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome, StageRun, explanation};
 use crate::measure::{ContactErrors, Errors, Penetration, Rounding};
-use crate::nested::Solved;
+use crate::nested::{Solved, warnings_of_forces};
 use crate::real::Real;
 use crate::scheme::ExpectedOrders;
 
@@ -172,8 +172,8 @@ pub struct Row {
     #[cfg_attr(feature = "report", serde(default))]
     pub resultants: Option<BTreeMap<String, f64>>,
     /// How far the solution lies beyond an obstacle or a gap, the largest value over cells and contact facets, negative
-    /// where it reaches none: [`Discretisation::penetration`](crate::assemble::Discretisation::penetration). Null without
-    /// an inequality; old reports have none.
+    /// where it reaches none: [`Discretisation::penetration`](crate::assemble::Discretisation::penetration). Null
+    /// without an inequality; old reports have none.
     #[cfg_attr(feature = "report", serde(default))]
     pub penetration: Option<f64>,
     /// Iteration counts.
@@ -246,7 +246,7 @@ impl Row {
         let (mesh, solution) = (solved.mesh(), solved.solution());
         let forces = solved.multiplier();
         let mut warnings = solved.warnings().to_vec();
-        warnings.extend(solved.warnings_on_forces(forces.as_deref()));
+        warnings.extend(warnings_of_forces(solved, forces.as_deref()));
         let solve_seconds = solved.solve_seconds + solved.start_seconds;
         let row = Self::new(scene, D, scheme, level, solved.outcome());
         let explanation = explanation(solved.inequality(), solved.outcome());

@@ -11,7 +11,8 @@ const LOAD: f64 = 0.493411;
 #[test]
 fn forces_on_a_body_of_large_contrast_balance_its_load_or_a_warning_says_so() {
     let scratch = Scratch::new("contrast-forces");
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/problems/contrast_forces.toml");
+    let file =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/problems/contrast_forces.toml");
     let options =
         "--scheme p1,p2,cr,sipg,wopsip,wopsip:facet-means,nipg,ldg --levels 0,1,2 --quiet";
     scratch.run(&format!("{} {options}", file.display()));
@@ -19,11 +20,14 @@ fn forces_on_a_body_of_large_contrast_balance_its_load_or_a_warning_says_so() {
     let mut n_balanced = 0;
     assert_eq!(rows(&report).len(), 24);
     for row in rows(&report).iter().filter(|row| row["status"] == "converged") {
-        let resultant = row["resultant"].as_f64().unwrap();
+        let resultant = row["resultant"].as_f64();
         let warnings = row["warnings"].to_string();
-        let is_balanced = (resultant - LOAD).abs() < 2e-6 * LOAD;
-        let is_told = warnings.contains("contact forces on a body that contact alone holds differ");
-        assert_ne!(is_balanced, is_told, "{} {}: {resultant}", row["label"], row["level"]);
+        let is_balanced = resultant.is_some_and(|found| (found - LOAD).abs() < 2e-6 * LOAD);
+        let is_told = warnings.contains(match resultant {
+            Some(_) => "contact forces on a body that contact alone holds differ",
+            None => "no digit of the contact forces",
+        });
+        assert_ne!(is_balanced, is_told, "{} {}: {resultant:?}", row["label"], row["level"]);
         n_balanced += usize::from(is_balanced);
     }
     assert!(n_balanced > 0);

@@ -317,7 +317,7 @@ fn files_of_an_earlier_request_go() {
 
 /// Problems of the test data, with their meshes.
 fn of_tests(name: &str) -> String {
-    format!("{}/tests/data/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
 }
 
 fn warns(row: &Value, text: &str) -> bool {

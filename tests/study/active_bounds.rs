@@ -23,8 +23,8 @@ fn integrals(fields: &Fields, mesh: &Mesh<f64, 2>) -> [f64; 2] {
     [fields.multiplier.iter().enumerate().map(of_cell).sum(), facets.map(of_facet).sum()]
 }
 
-/// Where the obstacle gives the bound there is no pressure on the contact side, also where the gap is equal; where the gap
-/// is above it, forces of both add up to the resultant.
+/// Where the obstacle gives the bound there is no pressure on the contact side, also where the gap is equal; where the
+/// gap is above it, forces of both add up to the resultant.
 #[test]
 fn multipliers_belong_to_the_datum_of_the_bound() {
     for name in SCHEMES.split_whitespace() {
@@ -51,8 +51,8 @@ fn multipliers_belong_to_the_datum_of_the_bound() {
     }
 }
 
-/// A vertex of two groups with the same gap is divided by the measure of their facets; one of two gaps belongs to the higher
-/// one.
+/// A vertex of two groups with the same gap is divided by the measure of their facets; one of two gaps belongs to the
+/// higher one.
 #[test]
 fn a_vertex_of_two_groups_is_divided_by_their_facets() {
     let corner = Point::<f64, 2>::new(1.0, 2.0);

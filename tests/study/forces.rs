@@ -30,6 +30,14 @@ fn near(found: Option<f64>, right: Option<f64>, share: f64, what: &str) {
     assert!((found - right).abs() <= share * right.abs(), "{what}: {found} for {right}");
 }
 
+/// The forces of a row are null, with a warning.
+fn is_left_out(row: &Row, what: &str) {
+    assert_eq!(row.resultant, None, "{what}");
+    assert_eq!([row.contact.multiplier_l1, row.contact.multiplier_l2], [None; 2], "{what}");
+    let is_told = |warning: &String| warning.contains("no digit of the contact forces");
+    assert!(row.warnings.iter().any(is_told), "{what}: {:?}", row.warnings);
+}
+
 /// Multipliers of jumps from differences of single precision values have no digit here: 4.1 was found for the resultant
 /// 6.28 of radial-2d at level 256, and 2.19 for the error 0.008 of its multiplier.
 fn single_precision(levels: &[usize]) {
@@ -39,9 +47,19 @@ fn single_precision(levels: &[usize]) {
             let double = rows::<f64>(scene(), Wopsip::default(), on_means, levels);
             for (single, double) in single.iter().zip(&double) {
                 let what = format!("{} {} {}", single.scene, single.label, single.level);
+                if double.scene == "contrast-2d" {
+                    // the energy of the stiff half hides the forces on the other one from the certificate of `f32`
+                    is_left_out(single, &what);
+                    continue;
+                }
                 near(single.resultant, double.resultant, 0.01, &format!("{what}, resultant"));
                 let [found, right] = [single, double].map(|row| row.contact.multiplier_l1);
-                near(found, right, 0.1, &format!("{what}, multiplier"));
+                // within the certificate of `f32` one more unknown is active at an end of contact of hertz-2d, and forces
+                // there are a fifth of the error on the finest mesh of signorini-2d
+                let is_fine = double.scene == "signorini-2d" && double.level >= 256;
+                let has_other_end = (double.scene == "hertz-2d" || is_fine) && !on_means;
+                let share = if has_other_end { 0.3 } else { 0.1 };
+                near(found, right, share, &format!("{what}, multiplier"));
             }
         }
     }

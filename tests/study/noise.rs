@@ -53,7 +53,7 @@ fn a_solution_that_vanishes_has_no_orders() {
     }
 }
 
-/// What is no noise keeps its order: down to errors of 1e-9 in double and 1e-4 in single precision.
+/// What is no noise keeps its order, in both scalars.
 #[test]
 fn errors_above_rounding_keep_their_orders() {
     let double = rows::<f64, 1>(scenes::parabola_1d(), &["p1", "sipg", "wopsip"], &[64, 1024]);

@@ -1,8 +1,8 @@
 //! Where obstacles give the bound that is active: the multiplier of an unknown belongs to that bound.
 //!
-//! Of several data that bind an unknown below the largest counts, above the smallest: obstacles of the regions around it
-//! and the gaps of its contact facets. The datum that the bound of the unknown equals is found again here, since nothing
-//! but the bound itself is kept.
+//! Of several data that bind an unknown below the largest counts, above the smallest: obstacles of the regions around
+//! it and the gaps of its contact facets. The datum that the bound of the unknown equals is found again here, since
+//! nothing but the bound itself is kept.
 
 use std::ops::Range;
 
@@ -30,8 +30,8 @@ pub(crate) struct ActiveObstacles {
 }
 
 impl ActiveObstacles {
-    /// Whether a cell carries a part of the multiplier that obstacles have at its unknown `i`. Of each unknown some cell
-    /// does.
+    /// Whether a cell carries a part of the multiplier that obstacles have at its unknown `i`. Of each unknown some
+    /// cell does.
     pub fn act_in(&self, cell: usize, i: usize) -> bool {
         self.in_cells.get(cell).is_none_or(|bits| bits >> i & 1 == 1)
     }
@@ -42,8 +42,8 @@ impl ActiveObstacles {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// Where obstacles give the active bounds. Where obstacle and gap are equal it is the obstacle; of equal obstacles of
-    /// two regions both do.
+    /// Where obstacles give the active bounds. Where obstacle and gap are equal it is the obstacle; of equal obstacles
+    /// of two regions both do.
     pub(crate) fn active_obstacles(
         &self,
         bounds: &[Bound<T>],

@@ -199,8 +199,8 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         let own = discretisation.contact_measure_of(inequality, &self.solution, &counts)?;
         Some(self.sums([own])[0])
     }
-    /// How far the solution lies beyond obstacles and gaps on all parts, see [`Discretisation::penetration`]; none without
-    /// an inequality.
+    /// How far the solution lies beyond obstacles and gaps on all parts, see [`Discretisation::penetration`]; none
+    /// without an inequality.
     ///
     /// # Errors
     /// [`ExchangeError::Failed`] in all parts for data that are not finite.

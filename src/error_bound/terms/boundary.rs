@@ -74,8 +74,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         square.sqrt() * self.mesh.cell_diameter(place.0).to_f64()
     }
 
-    /// The rule for the square of Neumann data less the flux, and for contact forces times distances from the gap: exact
-    /// for polynomial data.
+    /// The rule for the square of Neumann data less the flux, and for contact forces times distances from the gap:
+    /// exact for polynomial data.
     fn rule_of_facets(&self, of_pair: usize) -> Cow<'_, Rule> {
         let of_gap = self.degree_of(&self.data.gap).unwrap_or_default();
         let of_neumann = 2 * self.neumann_degree().unwrap_or_default().max(of_pair - 1);

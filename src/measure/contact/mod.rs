@@ -120,8 +120,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         )(self, inequality, solution, counts)
     }
 
-    /// The total contact force, of all obstacles and gaps: the multiplier tested with the function one, which is the sum of the
-    /// entries of `A u - b` at the constrained unknowns in contact, because every unknown is the value or a
+    /// The total contact force, of all obstacles and gaps: the multiplier tested with the function one, which is the
+    /// sum of the entries of `A u - b` at the constrained unknowns in contact, because every unknown is the value or a
     /// mean of the function. It is positive where a lower bound pushes upward. None without an inequality, and
     /// where rounding leaves no digit. Nodes with weakly imposed Dirichlet data do not count: where an obstacle
     /// equals the datum, their entries contain the flux through the boundary.

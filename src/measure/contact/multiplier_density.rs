@@ -33,8 +33,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         vertices().next().map(|_| [sum, squares.sqrt()])
     }
 
-    /// Nodal multipliers at vertices: that of each unknown divided equally among the vertices around its node. None where
-    /// rounding leaves no digit.
+    /// Nodal multipliers at vertices: that of each unknown divided equally among the vertices around its node. None
+    /// where rounding leaves no digit.
     pub(crate) fn vertex_multipliers(
         &self,
         inequality: &Inequality<T>,

@@ -31,10 +31,10 @@ pub(crate) struct Multipliers {
 type Own<'c> = [&'c dyn Fn(usize) -> bool; 2];
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
-    /// The resultant of each obstacle (`lower`, `upper`) and of each contact group by its name; their sum is that of all
-    /// ([`Discretisation::resultant`]). The multiplier of an unknown belongs to the datum that gives its active bound:
-    /// where obstacle and gap are equal to the obstacle, where gaps of several groups are, to each by the measure of its
-    /// facets there. None without an inequality, and where rounding leaves no digit.
+    /// The resultant of each obstacle (`lower`, `upper`) and of each contact group by its name; their sum is that of
+    /// all ([`Discretisation::resultant`]). The multiplier of an unknown belongs to the datum that gives its active
+    /// bound: where obstacle and gap are equal to the obstacle, where gaps of several groups are, to each by the
+    /// measure of its facets there. None without an inequality, and where rounding leaves no digit.
     ///
     /// # Panics
     /// If the solution has fewer values than there are unknowns.
@@ -167,7 +167,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         parts
     }
 
-    /// The parts of the multipliers of gaps on all contact facets: by measure among the facets whose gap gives the bound.
+    /// The parts of the multipliers of gaps on all contact facets: by measure among the facets whose gap gives the
+    /// bound.
     fn parts_of_gaps(&self, bounds: &[Bound<T>], of: &Multipliers) -> Vec<Part> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let mut parts = Vec::new();
@@ -226,9 +227,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         self.densities(&facets.collect::<Vec<_>>(), &parts, inequality)
     }
 
-    /// The density of multipliers on cells or on facets, group by group: the mean over their vertices of what acts on the
-    /// group there, each part divided equally among the vertices around its node, over the integrals of the hat functions
-    /// on the group.
+    /// The density of multipliers on cells or on facets, group by group: the mean over their vertices of what acts on
+    /// the group there, each part divided equally among the vertices around its node, over the integrals of the hat
+    /// functions on the group.
     fn densities(
         &self,
         places: &[(Place, usize)],

@@ -8,10 +8,10 @@ use crate::parallel::vectors::collect;
 use crate::real::Real;
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// By unknown the force of its active bound, positive where a lower bound pushes upward. It is zero without contact,
-    /// and at nodes on facets with weakly imposed Dirichlet data: there the entry of `A u - b` contains the flux through
-    /// the boundary. None where rounding leaves no digit. On a part of a mesh ghosts have the forces of their owners, and
-    /// all parts call it.
+    /// By unknown the force of its active bound, positive where a lower bound pushes upward. It is zero without
+    /// contact, and at nodes on facets with weakly imposed Dirichlet data: there the entry of `A u - b` contains the
+    /// flux through the boundary. None where rounding leaves no digit. On a part of a mesh ghosts have the forces of
+    /// their owners, and all parts call it.
     pub(crate) fn nodal_multipliers(
         &self,
         inequality: &Inequality<T>,
@@ -20,7 +20,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let forces = ContactForces::of(inequality, solution);
         let on_data = self.on_weak_data(&inequality.supports);
         let counts = |i: usize| !on_data.get(i).is_some_and(|&is_left_out| is_left_out);
-        let have_digits = forces.have_digits(inequality, counts);
+        let have_digits = forces.have_digits(inequality, solution, counts);
         let value = |i: usize| if counts(i) { forces.values[i] } else { 0.0 };
         have_digits.then(|| collect(forces.values.len(), value))
     }

@@ -10,7 +10,6 @@ use std::sync::OnceLock;
 
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
-use super::warnings::contact_forces;
 use crate::algebra::{Contact, Inequality, Start};
 use crate::assemble::Discretisation;
 use crate::error::Error;
@@ -89,6 +88,10 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         if solution.outcome == Outcome::Converged && !is_within_limits {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
+        }
+        if has_iterate {
+            let norm = energy_norm(&inequality, &solution.values, &solution.jump_multipliers);
+            solution.dual_residual = certificate.largest() * norm;
         }
         Self {
             mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
@@ -211,8 +214,8 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let resultant = || self.discretisation.resultant(&self.inequality, &self.solution);
         self.has_iterate.then(resultant).flatten()
     }
-    /// The resultant of each obstacle and each contact group, see [`Discretisation::resultants`]; none where there is no
-    /// resultant.
+    /// The resultant of each obstacle and each contact group, see [`Discretisation::resultants`]; none where there is
+    /// no resultant.
     pub fn resultants(&self) -> Option<BTreeMap<String, f64>> {
         let resultants = || self.discretisation.resultants(&self.inequality, &self.solution);
         self.has_iterate.then(resultants).flatten()
@@ -240,10 +243,6 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     /// Warnings by type, as text: a penalty below its proven bound, say.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
-    }
-    /// What [`Solved::multiplier`] gives reason to warn of.
-    pub(crate) fn warnings_on_forces(&self, multiplier: Option<&[f64]>) -> Vec<String> {
-        contact_forces(self, multiplier)
     }
     /// The solution with the outcome of values that no solver of the library found.
     pub(super) fn found_elsewhere(mut self) -> Self {

@@ -7,8 +7,8 @@ use crate::study::row::{Orders, Row};
 /// of the same scene, label, constraint and solver. It is that in the mesh size; on adaptive meshes `-D` times the
 /// slope in unknowns.
 ///
-/// The order is none if one of the two rows did not converge, or has no error or one that is rounding. Rows further back are
-/// never used, since the table would not show it.
+/// The order is none if one of the two rows did not converge, or has no error or one that is rounding. Rows further
+/// back are never used, since the table would not show it.
 pub fn fill_orders(rows: &mut [Row]) {
     let orders: Vec<Orders> = rows
         .iter()

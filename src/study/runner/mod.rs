@@ -1,6 +1,7 @@
 //! A study: schemes on a scene, level by level.
 
 mod adaptive;
+mod crossing;
 mod judge;
 mod memory;
 mod on_parts;
@@ -26,7 +27,6 @@ use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::AnyScheme;
 use crate::study::compatibility::{check_domain, check_fit, check_names, check_scheme};
-use crate::study::crossing::{Crossing, Points};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
 #[cfg(feature = "report")]
@@ -346,35 +346,6 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
         let measured = Measured { failure: failure.as_deref(), reference: None };
         Ok(vec![self.row(&mut nested, (entry, &problem), level, measured)?])
-    }
-
-    /// Where lower bounds exceed upper ones on the finest meshes, at the points of all schemes.
-    fn find_crossing(&self, hierarchies: &[Hierarchy<T, D>]) -> Result<Option<Crossing<D>>, Error> {
-        let Some(points) = self.points_of_bounds()? else { return Ok(None) };
-        for hierarchy in hierarchies {
-            let seen = points.look(&self.scene.problem, hierarchy.finest())?;
-            let found = seen.crossing::<T>(seen.size());
-            if found.is_some() {
-                return Ok(found);
-            }
-        }
-        Ok(None)
-    }
-
-    /// The points of all schemes at which bounds are compared; none where no bounds can cross.
-    fn points_of_bounds(&self) -> Result<Option<Points>, Error> {
-        let problem = &self.scene.problem;
-        if problem.upper.is_none() && problem.named.upper.is_empty() {
-            return Ok(None);
-        }
-        let without_data =
-            Problem { constraint_set: problem.constraint_set.clone(), ..Problem::new() };
-        let mut points = Points::default();
-        let entries = self.entries.iter().map(|entry| (&entry.scheme, &entry.set));
-        for (scheme, set) in entries.chain(self.reference.iter().map(|of| (&of.scheme, &of.set))) {
-            points.add(&**scheme, &with_set(&without_data, set), self.quadrature)?;
-        }
-        Ok(Some(points))
     }
 
     /// The meshes of all levels: in one hierarchy with those of a reference.

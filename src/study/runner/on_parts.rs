@@ -12,7 +12,7 @@ use crate::error_bound::BoundFigures;
 use crate::inequality::Outcome;
 use crate::measure::Errors;
 use crate::mesh::{Layers, Part};
-use crate::nested::{Hierarchy, descending};
+use crate::nested::{Hierarchy, descending, no_digits_of_forces};
 use crate::problem::Problem;
 use crate::scheme::ExpectedOrders;
 #[cfg(feature = "report")]
@@ -249,6 +249,7 @@ impl<const D: usize> Study<'_, f64, D> {
             false => (Errors::default(), BoundFigures::default(), 0.0),
         };
         let energy = if has_iterate { Some(solved.energy()?) } else { None };
+        let resultant = if has_iterate { solved.resultant() } else { None };
         let penetration = if has_iterate { solved.penetration()? } else { None };
         let mut parts = self.part_figures(solved, unknowns, process)?;
         if verify {
@@ -262,6 +263,9 @@ impl<const D: usize> Study<'_, f64, D> {
         }
         let in_bound = process.exchange.largest(&[in_bound])?[0];
         let mut warnings = warnings(solved);
+        if has_iterate && problem.is_constrained() && resultant.is_none() {
+            warnings.push(no_digits_of_forces("f64"));
+        }
         let against = (has_iterate && problem.exact.is_some()).then_some("exact");
         warnings.extend(bound.remark(against).filter(|_| solved.converged()));
         let PartSeconds { mesh, assemble, number, start, solve } = parts.seconds;
@@ -279,7 +283,7 @@ impl<const D: usize> Study<'_, f64, D> {
             energy,
             active: if has_iterate { Some(solved.active() as usize) } else { None },
             contact_measure: if has_iterate { solved.contact_measure() } else { None },
-            resultant: if has_iterate { solved.resultant() } else { None },
+            resultant,
             resultants: if has_iterate { solved.resultants() } else { None },
             iterations: Iterations {
                 outer: has_iterate.then_some(solution.outer),

@@ -14,7 +14,7 @@ pub(super) fn touched_bound<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Con
     }
 }
 
-/// The violations at one unknown, each as a change of its value; see [`Certificate`](super::Certificate).
+/// The violations at one unknown, each as a change of its value; see [`Certificate`](crate::inequality::Certificate).
 #[derive(Default)]
 pub(super) struct LocalViolation {
     pub feasibility: f64,
@@ -48,8 +48,9 @@ impl LocalViolation {
         local
     }
 
-    /// Counts the share of an unknown in the force of its node, if its sign is wrong, as a multiplier. Its step is relative
-    /// to the diagonal of the stiffness `K`; the change is that with the same energy in the diagonal `d` of `A`.
+    /// Counts the share of an unknown in the force of its node, if its sign is wrong, as a multiplier. Its step is
+    /// relative to the diagonal of the stiffness `K`; the change is that with the same energy in the diagonal `d` of
+    /// `A`.
     pub fn add_share<T: Real>(
         &mut self,
         bound: &Bound<T>,

@@ -1,14 +1,16 @@
 //! The sums and maxima from which a certificate is computed, over the unknowns of one part of a mesh or of all parts.
 
+mod local_violation;
+
 use super::certificate::{Certificate, positive_diagonal, residual};
 use super::contact_forces::BalancedNodes;
-use super::local_violation::{LocalViolation, touched_bound};
 use super::scales::{Scales, Sums};
-use crate::algebra::{Bound, Contact, Distribution, Inequality, PenalisedMatrix};
+use crate::algebra::{Bound, Distribution, Inequality, PenalisedMatrix};
 use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::parallel::vectors::{collect, largest, map_chunks};
 use crate::real::{Real, maximum};
+use local_violation::{LocalViolation, touched_bound};
 
 /// The certificate of `u` as a solution of the inequality.
 #[must_use]
@@ -44,7 +46,9 @@ pub(crate) fn certify_with_rounding<T: Real>(
     u: &[T],
     jump_multipliers: &[T],
 ) -> (Certificate, f64) {
-    let own = Violations::at(inequality, u, jump_multipliers, &|i| inequality.owns(i));
+    let has_all_copies = inequality.distribution().is_none();
+    let owns = |i: usize| inequality.owns(i);
+    let own = Violations::at(inequality, u, jump_multipliers, &owns, has_all_copies);
     match inequality.distribution() {
         Some(distribution) => own.over_parts(distribution),
         None => own,
@@ -97,7 +101,8 @@ impl Violations {
     /// With the jump multipliers `p` of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) the residual is
     /// `c - K u - M^T p`, without the rounding of differences of values, and the largest `|g - M u + p / s|`, `s`
     /// the weight of a jump, is divided by `U`. Without jump multipliers, or if their number is not that of the
-    /// jumps, `p = S (M u - g)`.
+    /// jumps, `p = S (M u - g)`. The forces of nodes, which [`certify`] counts besides, need all copies of a node and
+    /// are no part of these violations.
     #[must_use]
     pub fn of<T: Real>(
         inequality: &Inequality<T>,
@@ -108,17 +113,19 @@ impl Violations {
         compiled!(
             T: fn(&Inequality<T>, &[T], &[T], &(dyn Fn(usize) -> bool + Sync)) -> Violations
                 = |inequality, u, multipliers, owns| {
-                    Violations::at(inequality, u, multipliers, &|i| owns(i))
+                    Violations::at(inequality, u, multipliers, &|i| owns(i), false)
                 }
         )(inequality, u, jump_multipliers, owns)
     }
 
-    /// [`Violations::of`] without the dispatch to a compiled instance.
+    /// [`Violations::of`] without the dispatch to a compiled instance; with the forces of nodes, whose sums over copies
+    /// parts of a mesh do not have, if `has_all_copies`.
     pub(super) fn at<T: Real>(
         inequality: &Inequality<T>,
         u: &[T],
         jump_multipliers: &[T],
         owns: &(impl Fn(usize) -> bool + Sync),
+        has_all_copies: bool,
     ) -> Self {
         let n = inequality.size();
         let mut sums = Self {
@@ -145,7 +152,8 @@ impl Violations {
         let values = (u, &r[..], jump_multipliers);
         sums.scales = Sums::of(inequality, values, &|i| diagonal[i], sums.unit, owns);
         sums.jump_residual = largest_jump_residual(inequality, u, jump_multipliers, owns);
-        let shares = shares_of_nodes(inequality, u, &|i| -r[i] / diagonal[i]);
+        let steps = |i: usize| -r[i] / diagonal[i];
+        let shares = has_all_copies.then(|| shares_of_nodes(inequality, u, &steps)).flatten();
         let unit = sums.unit;
         let parts = map_chunks(n, |range| {
             let (mut diagonal_sum, mut feasibility, mut squares) = (0.0, 0.0_f64, [0.0; 3]);
@@ -312,11 +320,9 @@ fn shares_of_nodes<'a, T: Real>(
 ) -> Option<(Vec<f64>, &'a PenalisedMatrix<T>)> {
     let nodes = BalancedNodes::of(inequality)?;
     let bounds = &inequality.bounds;
-    let touches = collect(u.len(), |i| {
-        touched_bound(&bounds[i], u[i].to_f64(), step(i)) != Contact::Inactive
-    });
+    let touched = collect(u.len(), |i| touched_bound(&bounds[i], u[i].to_f64(), step(i)));
     let mut shares = vec![0.0; u.len()];
-    nodes.share(u, &|i| touches[i], &mut shares, None);
+    nodes.share(u, &|i| touched[i], &mut shares, None);
     inequality.penalised.as_ref().map(|penalised| (shares, penalised))
 }
 
