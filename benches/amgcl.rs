@@ -59,7 +59,8 @@ fn write_system(path: &Path, inequality: &Inequality<f64>) -> std::io::Result<()
     for n in sizes.iter().chain(&starts).chain(&columns) {
         file.write_all(&n.to_ne_bytes())?;
     }
-    for x in values.iter().chain(free.iter().map(|&i| &inequality.load[i])) {
+    let load = inequality.assembled_load();
+    for x in values.iter().chain(free.iter().map(|&i| &load[i])) {
         file.write_all(&x.to_ne_bytes())?;
     }
     file.flush()
@@ -71,7 +72,7 @@ fn relative_residual(inequality: &Inequality<f64>, solution: &Solution<f64>) -> 
     inequality.residual_f64(&solution.values, &mut residual);
     let free = free_unknowns(inequality);
     let norm = |v: &[f64]| free.iter().map(|&i| v[i] * v[i]).sum::<f64>().sqrt();
-    norm(&residual) / norm(&inequality.load)
+    norm(&residual) / norm(&inequality.assembled_load())
 }
 
 /// A system on a mesh, and what its rounds have taken.

@@ -19,7 +19,8 @@ impl<T: Real> InequalitySolver<T> for ProjectedSor {
         self.solve_from(inequality, &InitialGuess::default())
     }
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-        let Inequality { matrix, load, bounds, .. } = inequality;
+        let Inequality { matrix, bounds, .. } = inequality;
+        let load = inequality.assembled_load();
         let zeros = || vec![T::lit(0.0); bounds.len()];
         let mut u = guess.values.clone().filter(|u| u.len() == bounds.len()).unwrap_or_else(zeros);
         let mut sweeps = 0;

@@ -59,6 +59,20 @@ pub enum Error {
         /// The smaller upper bound.
         upper: f64,
     },
+    /// Lower bounds exceed upper ones at a point of the finest mesh of a study.
+    #[error(
+        "no function is admissible: at {at}, in cell {cell} of the finest mesh, the lower bound {lower} exceeds the upper bound {upper}"
+    )]
+    BoundsCross {
+        /// The cell.
+        cell: u64,
+        /// The point, as coordinates in parentheses.
+        at: String,
+        /// The larger lower bound.
+        lower: f64,
+        /// The smaller upper bound.
+        upper: f64,
+    },
     /// No unknown of the constraint set can carry the bounds of an inequality.
     #[error(
         "bounds on {constraint} cannot impose {condition}: the element has no such values; choose {allowed}"
@@ -132,6 +146,18 @@ pub enum Error {
         /// The values allowed.
         allowed: String,
     },
+    /// Two schemes or two solvers of a study have one name, and so have their rows and files.
+    #[error(
+        "two {items} of the study are named {name:?}, and nothing would tell their rows apart: name each once, and give one of your own another name by {by}"
+    )]
+    EqualNames {
+        /// "schemes" or "solvers".
+        items: &'static str,
+        /// The name: of schemes the label, with constraint set and choices.
+        name: String,
+        /// The functions that name one of one's own.
+        by: &'static str,
+    },
     /// A file could not be written.
     #[error("cannot write {path}: {why}")]
     Write {
@@ -169,13 +195,19 @@ pub enum Error {
 debug_by_display!(Error);
 
 impl Error {
+    /// Two schemes of a study have one label.
+    pub(crate) fn equal_schemes(label: String) -> Self {
+        let by = "`Scheme::name` or `Scheme::choices`";
+        Self::EqualNames { items: "schemes", name: label, by }
+    }
     /// The error with the number of its cell in the whole mesh, given those of the cells of a
     /// [part](crate::mesh::Part::cells), on which it was found.
     #[must_use]
     pub fn in_whole_mesh(mut self, cells: &[u64]) -> Self {
         if let Self::DataNotFinite { cell, .. }
         | Self::CoefficientNotPositive { cell, .. }
-        | Self::EmptyConstraint { cell, .. } = &mut self
+        | Self::EmptyConstraint { cell, .. }
+        | Self::BoundsCross { cell, .. } = &mut self
             && let Some(&of_whole) = cells.get(*cell as usize)
         {
             *cell = of_whole;

@@ -70,3 +70,9 @@ pub type Point<T, const D: usize> = nalgebra::SVector<T, D>;
 pub(crate) fn point_f64<T: Real, const D: usize>(x: &Point<T, D>) -> Point<f64, D> {
     Point::from_fn(|k, _| x[k].to_f64())
 }
+
+/// The larger number; NaN if one of the two is NaN, which [`f64::max`] drops.
+#[inline(always)]
+pub(crate) fn maximum(a: f64, b: f64) -> f64 {
+    if a <= b || b.is_nan() { b } else { a }
+}

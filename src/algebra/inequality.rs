@@ -1,9 +1,11 @@
 //! The algebraic variational inequality.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::dirichlet_energy::DirichletEnergy;
 use super::distribution::{Distribution, sum_over_parts};
+use super::free_body::{FreeBody, Sum};
 use super::index::NO_INDEX;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
@@ -166,7 +168,8 @@ pub struct Inequality<T> {
     pub matrix: SparseMatrix<T>,
     /// Whether `A` is symmetric, as the scheme declares.
     pub symmetric: bool,
-    /// The load `b`.
+    /// The load of the data, for every solver and every measure: `b`, or with a penalised matrix `c`, without what the
+    /// penalty makes of Dirichlet data ([`Inequality::assembled_load`]). A change of it changes the problem.
     pub load: Vec<T>,
     /// The admissible values of each unknown.
     pub bounds: Vec<Bound<T>>,
@@ -179,8 +182,9 @@ pub struct Inequality<T> {
     pub conforming_linear: bool,
     /// The initial active set.
     pub start: Start,
-    /// `A` and `b` as the sums `K + M^T S M` and `c + M^T S g`, for schemes with such a penalty:
-    /// residuals of the sums have smaller rounding errors.
+    /// `A` as the sum `K + M^T S M` with the Dirichlet data `g`, for schemes with such a penalty: then `b` is
+    /// `c + M^T S g`, and residuals of the sums have smaller rounding errors. To do without it, first replace the
+    /// load by the assembled one.
     pub penalised: Option<PenalisedMatrix<T>>,
     /// What weak Dirichlet data change in the energy `u.A u`; `None` if there are none, or if
     /// `penalised` has them.
@@ -189,6 +193,9 @@ pub struct Inequality<T> {
     /// unknowns, each by its nonzero entries: the constants on components of the domain that neither
     /// Dirichlet data nor a reaction hold. Only bounds stop them. Empty if the kernel is zero or unknown.
     pub kernel: Vec<Vec<(u32, T)>>,
+    /// The bodies that bounds alone hold, with the resultants of their data. If there are none, each kernel vector
+    /// is a body, and its resultant the sum of the load along it.
+    pub bodies: Vec<FreeBody>,
     /// Whether theory or a test says that `A`, or its symmetric part, is positive definite on all
     /// unknowns that are not fixed, but for the kernel.
     pub is_definite: bool,
@@ -222,6 +229,7 @@ impl<T: Real> Inequality<T> {
             penalised: None,
             dirichlet_energy: None,
             kernel: Vec::new(),
+            bodies: Vec::new(),
             is_definite: false,
             distribution: None,
         }
@@ -264,10 +272,10 @@ impl<T: Real> Inequality<T> {
         self.conforming_linear = true;
         self
     }
-    /// Sets the kernel of the matrix.
+    /// Sets the kernel of the matrix, whose vectors are then the bodies that bounds alone hold.
     #[must_use]
     pub fn with_kernel(mut self, kernel: Vec<Vec<(u32, T)>>) -> Self {
-        self.kernel = kernel;
+        (self.kernel, self.bodies) = (kernel, Vec::new());
         self
     }
     /// States that the matrix is positive definite on all unknowns that are not fixed, but for the
@@ -289,7 +297,7 @@ impl<T: Real> Inequality<T> {
     /// Whether matrix, load, bounds, penalised matrix and the supports, if there are any, have the same
     /// size, the two matrices are well formed, and the vertices of supports are among the points or,
     /// without points, below four times the number of unknowns: an array by vertices is not larger.
-    /// Entries of the kernel and terms of Dirichlet data belong to unknowns.
+    /// Entries of the kernel and terms of Dirichlet data belong to unknowns, bodies to vectors of the kernel.
     pub fn is_well_formed(&self) -> bool {
         let n_vertices = if self.points.is_empty() { 4 * self.size() } else { self.points.len() };
         self.matrix.size() == self.size()
@@ -301,6 +309,7 @@ impl<T: Real> Inequality<T> {
                 self.supports[i].vertices().iter().all(|&v| (v as usize) < n_vertices)
             })
             && self.kernel.iter().all(|w| self.is_kernel_vector(w))
+            && self.bodies.iter().all(|body| body.kernel.is_none_or(|k| k < self.kernel.len()))
             && self.dirichlet_energy.as_ref().is_none_or(|e| e.is_well_formed(self.size()))
     }
     /// Whether a vector given by its nonzero entries has one, and all belong to unknowns.
@@ -321,13 +330,22 @@ impl<T: Real> Inequality<T> {
         let is_known = self.supports.len() == self.size() && !self.points.is_empty();
         is_known.then(|| self.supports.iter().map(node).collect()).flatten()
     }
+    /// The load `b` of the assembled matrix: with a penalised matrix `c + M^T S g`, of which `c` keeps only the digits
+    /// above the rounding of `S g`.
+    pub fn assembled_load(&self) -> Cow<'_, [T]> {
+        let Some(penalised) = &self.penalised else { return Cow::Borrowed(&self.load) };
+        // the residual of zero
+        let mut load = vec![0.0; self.size()];
+        penalised.residual(&self.load, |_| 0.0, &mut load);
+        load.into_iter().map(T::lit).collect()
+    }
     /// The residual `r = b - A u` in `f64`, of the penalised matrix where there is one.
     ///
     /// # Panics
     /// If `u` or `r` is shorter than the number of unknowns.
     pub fn residual_f64(&self, u: &[T], r: &mut [f64]) {
         match &self.penalised {
-            Some(penalised) => penalised.residual(|i| u[i].to_f64(), r),
+            Some(penalised) => penalised.residual(&self.load, |i| u[i].to_f64(), r),
             None => self.matrix.residual_f64(&self.load, u, r),
         }
     }
@@ -338,22 +356,31 @@ impl<T: Real> Inequality<T> {
     /// If `r` is shorter than the number of unknowns.
     pub fn residual_of(&self, u: &(dyn Fn(usize) -> f64 + Sync), r: &mut [f64]) {
         match &self.penalised {
-            Some(penalised) => penalised.residual(u, r),
+            Some(penalised) => penalised.residual(&self.load, u, r),
             None => self.matrix.residual_of(&self.load, u, r),
         }
     }
-    /// Whether every entry of matrix, load and bounds is finite. [`Bound::Free`] or a one-sided bound
-    /// stands for a bound at infinity.
+    /// Whether every entry of matrix, load, Dirichlet data of a penalised matrix and bounds is finite. [`Bound::Free`]
+    /// or a one-sided bound stands for a bound at infinity.
     pub fn is_finite(&self) -> bool {
         let finite = |x: T| x.to_f64().is_finite();
         let are_finite = |values: &[T]| all(values.len(), |k| finite(values[k]));
         are_finite(&self.matrix.values)
             && are_finite(&self.load)
+            && self.penalised.as_ref().is_none_or(|penalised| are_finite(&penalised.jump_data))
             && self.bounds.iter().all(|bound| match *bound {
                 Bound::Free => true,
                 Bound::Fixed(x) | Bound::Lower(x) | Bound::Upper(x) => finite(x),
                 Bound::Both(l, u) => finite(l) && finite(u),
             })
+    }
+    /// The sum of the load along the kernel vector at a position.
+    pub(crate) fn load_along(&self, position: usize) -> f64 {
+        let mut sum = Sum::default();
+        for &(i, value) in &self.kernel[position] {
+            sum.add(value.to_f64() * self.load[i as usize].to_f64());
+        }
+        sum.value()
     }
     /// Whether every unknown has an admissible value.
     pub fn is_feasible(&self) -> bool {
@@ -367,7 +394,7 @@ impl<T: Real> Inequality<T> {
     pub fn objective(&self, u: &[T]) -> f64 {
         let distribution = self.distribution();
         if let Some(penalised) = &self.penalised {
-            let own = penalised.objective(|i| u[i].to_f64(), |i| self.owns(i));
+            let own = penalised.objective(&self.load, |i| u[i].to_f64(), |i| self.owns(i));
             return sum_over_parts(distribution, own);
         }
         let own = (0..self.size())

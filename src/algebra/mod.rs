@@ -6,12 +6,13 @@
 //! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
 //! discontinuous linear functions. `dense`: small dense matrices. `row`: rows in the making.
 //! `dirichlet_energy`: the part of an energy that weak Dirichlet data determine.
-//! `distribution`: unknowns in several processes. `inequality`: bounds, supports of unknowns and the
-//! inequality. `index`: the missing index.
+//! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `inequality`: bounds,
+//! supports of unknowns and the inequality. `index`: the missing index.
 
 pub(crate) mod dense;
 mod dirichlet_energy;
 mod distribution;
+mod free_body;
 mod index;
 mod inequality;
 mod matrix;
@@ -24,6 +25,8 @@ mod submatrix;
 pub use dirichlet_energy::{DirichletEnergy, DirichletTerm};
 pub use distribution::Distribution;
 pub(crate) use distribution::{any_part, sum_over_parts};
+pub use free_body::FreeBody;
+pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
 pub(crate) use index::NO_INDEX;
 pub(crate) use inequality::barycentre;
 pub use inequality::{Bound, Contact, Inequality, Start, Support};

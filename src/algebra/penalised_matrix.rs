@@ -5,7 +5,9 @@ use crate::parallel::vectors::for_each_chunk;
 use super::index::NO_INDEX;
 use crate::real::Real;
 
-/// The matrix `A = K + M^T S M` and the load `b = c + M^T S g`, stored by `K`, `M`, `S`, `c` and `g`.
+/// The matrix `A = K + M^T S M`, stored by `K`, `M` and `S`, and the Dirichlet data `g` that it imposes: the load of
+/// `A` is `b = c + M^T S g` for the load `c` of the other data, which is that of the
+/// [`Inequality`](super::Inequality::load).
 ///
 /// `K` is block diagonal with dense blocks (the stiffness of cells), `M u` are the jumps of means
 /// over facets, `S` is the positive diagonal of penalty weights, `g` the Dirichlet data.
@@ -22,8 +24,6 @@ pub struct PenalisedMatrix<T> {
     pub block_size: usize,
     /// `K`: its blocks one after the other, each by rows, positive semidefinite.
     pub blocks: Vec<T>,
-    /// `c`.
-    pub load: Vec<T>,
     /// Start of each row of `M` in `terms`, and the number of terms at the end.
     pub term_starts: Vec<u32>,
     /// The rows of `M` one after the other. In a row all [`JumpTerm::here`] belong to one block, all
@@ -53,6 +53,11 @@ impl<T> JumpTerm<T> {
 }
 
 impl<T: Real> PenalisedMatrix<T> {
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.blocks.len() / self.block_size
+    }
+
     /// Number of jumps: rows of `M`.
     pub fn n_jumps(&self) -> usize {
         self.weights.len()
@@ -76,7 +81,6 @@ impl<T: Real> PenalisedMatrix<T> {
         self.block_size > 0
             && size.is_multiple_of(self.block_size)
             && self.blocks.len() == size * self.block_size
-            && self.load.len() == size
             && self.jump_data.len() == n
             && self.term_starts.len() == n + 1
             && self.term_starts.first() == Some(&0)
@@ -149,16 +153,17 @@ impl<T: Real> PenalisedMatrix<T> {
         multipliers
     }
 
-    /// The residual `r = c - K u - M^T p` with jump multipliers `p`.
+    /// The residual `r = c - K u - M^T p` with a load `c` and jump multipliers `p`.
     pub fn residual_with_jump_multipliers(
         &self,
+        load: &[T],
         u: impl Fn(usize) -> f64 + Sync,
         jump_multipliers: impl Fn(usize) -> f64,
         r: &mut [f64],
     ) {
         for_each_chunk(r, |range, r| {
             for (r, i) in r.iter_mut().zip(range) {
-                *r = self.load[i].to_f64() - self.stiffness(i, &u);
+                *r = load[i].to_f64() - self.stiffness(i, &u);
             }
         });
         for jump in 0..self.n_jumps() {
@@ -175,40 +180,45 @@ impl<T: Real> PenalisedMatrix<T> {
         }
     }
 
-    /// The residual `r = b - A u`.
-    pub fn residual(&self, u: impl Fn(usize) -> f64 + Sync, r: &mut [f64]) {
+    /// The residual `r = b - A u` with a load `c`.
+    pub fn residual(&self, load: &[T], u: impl Fn(usize) -> f64 + Sync, r: &mut [f64]) {
         let multipliers = self.jump_multipliers(&u);
-        self.residual_with_jump_multipliers(u, |k| multipliers[k], r);
+        self.residual_with_jump_multipliers(load, u, |k| multipliers[k], r);
     }
 
-    /// The energy `u.A u / 2 - b.u`, which is `u.K u / 2 - c.u + (M u - g).S (M u - g) / 2 - g.S g / 2`.
+    /// The energy `u.A u / 2 - b.u` with a load `c`, which is `u.K u / 2 - c.u + (M u - g).S (M u - g) / 2 - g.S g /
+    /// 2`.
     ///
     /// Of one part of a mesh it has the terms of unknowns for which `counts` is true, and of jumps whose first
     /// unknown is one of them.
-    pub fn objective(&self, u: impl Fn(usize) -> f64, counts: impl Fn(usize) -> bool) -> f64 {
-        let of_unknown = |i: usize| u(i) * (0.5 * self.stiffness(i, &u) - self.load[i].to_f64());
+    pub fn objective(
+        &self,
+        load: &[T],
+        u: impl Fn(usize) -> f64,
+        counts: impl Fn(usize) -> bool,
+    ) -> f64 {
+        let of_unknown = |i: usize| u(i) * (0.5 * self.stiffness(i, &u) - load[i].to_f64());
         let of_jump = |k: usize| {
             let g = self.jump_data[k].to_f64();
             let jump = self.jump(k, &u) - g;
             0.5 * self.weights[k].to_f64() * (jump * jump - g * g)
         };
         let is_counted = |&k: &usize| self.first_unknown(k).is_some_and(&counts);
-        let unknowns = (0..self.load.len()).filter(|&i| counts(i));
+        let unknowns = (0..load.len()).filter(|&i| counts(i));
         unknowns.map(of_unknown).sum::<f64>()
             + (0..self.n_jumps()).filter(is_counted).map(of_jump).sum::<f64>()
     }
 
-    /// The scale of energies `u.K u + p.(S^-1 p) + Σ |c_i u_i|` with jump multipliers `p`.
+    /// The scale of energies `u.K u + p.(S^-1 p) + Σ |c_i u_i|` with a load `c` and jump multipliers `p`.
     pub fn energy(
         &self,
+        load: &[T],
         u: impl Fn(usize) -> f64 + Sync,
         jump_multipliers: impl Fn(usize) -> f64,
     ) -> f64 {
-        let of_unknown =
-            |i: usize| u(i) * self.stiffness(i, &u) + (u(i) * self.load[i].to_f64()).abs();
+        let of_unknown = |i: usize| u(i) * self.stiffness(i, &u) + (u(i) * load[i].to_f64()).abs();
         let of_jump = |k: usize| jump_multipliers(k).powi(2) / self.weights[k].to_f64();
-        (0..self.load.len()).map(of_unknown).sum::<f64>()
-            + (0..self.n_jumps()).map(of_jump).sum::<f64>()
+        (0..load.len()).map(of_unknown).sum::<f64>() + (0..self.n_jumps()).map(of_jump).sum::<f64>()
     }
 
     /// The sum `p.g` of the jump multipliers `p = S (M u - g)`, or of the given ones if there are as many

@@ -28,7 +28,7 @@ impl<T: Real> SidePenalties<T> {
     /// The penalties of a matrix; `None` if the unknowns of the matrix are not those of discontinuous linear
     /// functions in two or three dimensions, or if the matrix penalises another moment of a jump than the mean.
     pub fn new(penalised: &PenalisedMatrix<T>, supports: &[Support]) -> Option<Self> {
-        let (n, cell_size) = (penalised.load.len(), penalised.block_size);
+        let (n, cell_size) = (penalised.size(), penalised.block_size);
         if !(3..=4).contains(&cell_size) || supports.len() != n || n == 0 {
             return None;
         }

@@ -5,6 +5,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use super::bodies::FreeBodies;
 use super::count;
 use super::cut_simplices::CutRule;
 use super::local::{traces, view};
@@ -94,11 +95,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn add_constant_source(&self, f: f64, load: &mut [T]) -> Result<(), Error> {
         count::source(1);
         let f = data::finite(f, "source", &Point::<f64, D>::zeros(), 0)?;
-        let table = self.cell_table(Rule::new(D, self.basis_degree));
-        let mean = |i: usize| -> f64 {
-            table.basis.iter().zip(&table.weights).map(|(basis, w)| w * basis.values[i]).sum()
-        };
-        let means: Vec<f64> = (0..self.per_cell()).map(|i| f * mean(i)).collect();
+        let means: Vec<f64> = self.basis_means().iter().map(|mean| f * mean).collect();
         self.fill_each_cell(load, &|cell, out| {
             let volume = self.mesh.geometry(cell).volume.to_f64();
             for (value, mean) in out.iter_mut().zip(&means) {
@@ -106,6 +103,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             Ok(())
         })
+    }
+
+    /// The means of the basis functions over a cell.
+    pub fn basis_means(&self) -> Vec<f64> {
+        let table = self.cell_table(Rule::new(D, self.basis_degree));
+        let mean = |i: usize| -> f64 {
+            table.basis.iter().zip(&table.weights).map(|(basis, w)| w * basis.values[i]).sum()
+        };
+        (0..self.per_cell()).map(mean).collect()
     }
 
     fn add_source(&self, load: &mut [T]) -> Result<(), Error> {
@@ -235,23 +241,30 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         form: &dyn FacetForm<T, D>,
         metrics: &dyn Fn() -> &'m Metrics<T>,
     ) -> Result<Vec<T>, Error> {
-        Ok(self.load_and_data(form, metrics, &mut |_| {})?.0)
+        let bodies = self.free_bodies()?;
+        Ok(self.load_and_data(form, metrics, &bodies, true)?.0)
     }
 
-    /// The load of all unknowns and the Dirichlet data that the facet form imposes; `before` sees
-    /// the load of cells without them, empty if there is none.
+    /// The load of all unknowns, with or without the Dirichlet data that the facet form imposes, and these data. The
+    /// loads of free bodies have their resultants.
     pub fn load_and_data<'m>(
         &self,
         form: &dyn FacetForm<T, D>,
         metrics: &dyn Fn() -> &'m Metrics<T>,
-        before: &mut dyn FnMut(&[T]),
+        bodies: &FreeBodies,
+        with_data: bool,
     ) -> Result<(Vec<T>, Vec<FacetDatum>), Error> {
         let mut by_cell = self.load_by_cell()?;
-        before(&by_cell);
+        if !bodies.bodies.is_empty() && !by_cell.is_empty() {
+            self.correct_resultants(bodies, by_cell.to_mut());
+        }
         let mut data = Vec::new();
         if self.has_weak_data() {
+            data = self.weak_data(form)?;
+        }
+        if with_data && !data.is_empty() {
             let by_cell = by_cell.to_mut();
-            data = self.add_dirichlet(form, by_cell)?;
+            self.add_dirichlet(form, &data, by_cell);
             if form.is_lifted() {
                 self.add_lifted(form, metrics(), &data, by_cell);
             }
@@ -259,25 +272,27 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok((self.gather_load(by_cell), data))
     }
 
-    /// Dirichlet data as the trial trace of the facet form; returns their moments.
-    fn add_dirichlet(
-        &self,
-        form: &dyn FacetForm<T, D>,
-        load: &mut [T],
-    ) -> Result<Vec<FacetDatum>, Error> {
-        let n = self.per_cell();
+    /// The moments of Dirichlet data that the facet form imposes, facet by facet.
+    fn weak_data(&self, form: &dyn FacetForm<T, D>) -> Result<Vec<FacetDatum>, Error> {
         let degree = form.moments(self.basis_degree);
-        let table = self.facet_table(degree);
         let moments = FacetMoments::new(D, degree, &self.facet_rule);
-        let mut data = Vec::new();
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Dirichlet) {
+        let of_facet = |((cell, local), group)| {
+            Ok((cell, (local, self.dirichlet_moments(&moments, (cell, local), group)?)))
+        };
+        self.grouped_facets_of(BoundaryPart::Dirichlet).map(of_facet).collect()
+    }
+
+    /// Dirichlet data as the trial trace of the facet form.
+    fn add_dirichlet(&self, form: &dyn FacetForm<T, D>, data: &[FacetDatum], load: &mut [T]) {
+        let n = self.per_cell();
+        let table = self.facet_table(form.moments(self.basis_degree));
+        for &(cell, (local, ref values)) in data {
             let metric = self.metric(cell);
             let here = self.side(cell, local, &metric);
             let facet = view(self.mesh, &here, None);
             let penalty = form.penalty(&facet);
-            let values = self.dirichlet_moments(&moments, (cell, local), group)?;
             let out = &mut load[cell * n..(cell + 1) * n];
-            for (k, (basis, &value)) in table.on(local).iter().zip(&values).enumerate() {
+            for (k, (basis, &value)) in table.on(local).iter().zip(values).enumerate() {
                 let weighted = self.flux_derivatives((cell, local), None, T::lit(1.0), k);
                 let test = traces(form, &facet, &here, true, (basis, weighted.as_ref()), n);
                 let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
@@ -286,9 +301,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     *out += facet.measure * form.integrand(&facet, v, datum, penalty);
                 }
             }
-            data.push((cell, (local, values)));
         }
-        Ok(data)
     }
 
     /// What the products of lifts make of Dirichlet data.

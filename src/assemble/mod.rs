@@ -7,6 +7,7 @@
 //! unknowns are gathered from local matrices. Both ways are parallel, without locks, and give the
 //! same bits for any number of threads.
 
+mod bodies;
 mod chosen_element;
 pub(crate) mod count;
 pub(crate) mod cut_simplices;

@@ -15,10 +15,6 @@ use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
 use crate::real::Real;
 
-/// The load; the load without Dirichlet data where the penalised form of the matrix is kept; and
-/// Dirichlet data.
-pub(crate) type Loads<T> = (Vec<T>, Option<Vec<T>>, Vec<FacetDatum>);
-
 /// Moments up to this share of the largest are what quadrature leaves of zero, and differences up to
 /// this share are none.
 const ROUNDING: f64 = 1e-12;
@@ -28,17 +24,14 @@ pub(crate) fn applies<T: Real, const D: usize>(form: &dyn FacetForm<T, D>) -> bo
     !form.uses_flux() && !form.is_lifted() && form.is_symmetric()
 }
 
-/// The parts: stiffness and reaction by cells, jumps of moments over facets with their weights, the
-/// load without Dirichlet data by cells (empty for none), Dirichlet data.
+/// The parts: stiffness and reaction by cells, jumps of moments over facets with their weights, Dirichlet data.
 pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
     form: &dyn FacetForm<T, D>,
     (metrics, weights): (&Metrics<T>, &FacetCoefficients<T>),
-    mut load: Vec<T>,
-    dirichlet: Vec<FacetDatum>,
+    dirichlet: &[FacetDatum],
 ) -> PenalisedMatrix<T> {
-    load.resize(space.dofs.size(), T::lit(0.0));
-    let mut dirichlet = by_facet(&dirichlet).into_iter().peekable();
+    let mut dirichlet = by_facet(dirichlet).into_iter().peekable();
     let table = space.facet_table(form.moments(space.basis_degree));
     let templates = Templates::new(D, &space.nodes, &table);
     let of_degree: Vec<T> = table.degrees.iter().map(|&k| T::lit(form.moment_weight(k))).collect();
@@ -46,7 +39,6 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     let mut out = PenalisedMatrix {
         block_size: space.per_cell(),
         blocks: blocks(space, metrics),
-        load,
         term_starts: Vec::with_capacity(n_jumps + 1),
         terms: Vec::with_capacity(n_jumps * templates.most_terms()),
         weights: Vec::with_capacity(n_jumps),

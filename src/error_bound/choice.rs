@@ -16,6 +16,8 @@ pub(super) struct Choice {
     pub least_ratio: f64,
     /// The square of mismatch and oscillation.
     pub with_oscillation: f64,
+    /// The square of the distance of the discrete function from the midpoint, with half of the oscillation.
+    pub from_midpoint: f64,
     /// Twice the complementarity of obstacles.
     pub obstacle: f64,
     /// The part of the solver.
@@ -32,11 +34,12 @@ impl Choice {
         coarser: &[CoarserCells<'_, T, D>],
         constant: f64,
     ) -> Self {
-        let (mut with_oscillation, mut obstacle) = (0.0, 0.0);
+        let (mut with_oscillation, mut from_midpoint, mut obstacle) = (0.0, 0.0, 0.0);
         let of_solver = |terms: &CellTerms| {
             let volume = terms.volume;
             let is_left = terms.ratio >= least_ratio;
             with_oscillation += terms.with_oscillation[usize::from(is_left)];
+            from_midpoint += terms.from_midpoint[usize::from(is_left)];
             obstacle += if is_left { 0.0 } else { terms.obstacle };
             let integral = if is_left { terms.unbalanced * volume } else { 0.0 };
             Unbalanced { integral, volume, least_coefficient: terms.least_coefficient }
@@ -46,7 +49,7 @@ impl Choice {
         unbalanced.extend(terms.iter().flatten().map(of_solver));
         let is_balanced = unbalanced.iter().all(|cell| cell.integral == 0.0);
         let algebra = dual_norm(unbalanced, coarser, constant);
-        Self { least_ratio, with_oscillation, obstacle, algebra, is_balanced }
+        Self { least_ratio, with_oscillation, from_midpoint, obstacle, algebra, is_balanced }
     }
 
     /// That of all cells in which no obstacle presses, which needs no coarser meshes; the part of the solver is that
@@ -83,6 +86,13 @@ impl Choice {
     /// The square of the bound without contact.
     pub fn square(&self) -> f64 {
         self.flux_square() + self.obstacle
+    }
+
+    /// The bound on the error of the discrete function, with this part of contact: the radius of the ball around the
+    /// midpoint that contains the solution, and the distance of the discrete function from the midpoint.
+    pub fn of_discrete(&self, contact: f64) -> f64 {
+        let radius = 0.5 * (self.flux_square() + 2.0 * (self.obstacle + contact)).sqrt();
+        radius + self.from_midpoint.sqrt() + 0.5 * self.algebra
     }
 
     /// What a cell adds to the square of the bound, without the part of the solver.

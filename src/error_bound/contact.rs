@@ -1,13 +1,11 @@
 //! The forces on contact facets.
 
 use crate::algebra::{Contact, Inequality};
+use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::{Place, Space};
 use crate::mesh::BoundaryPart;
 use crate::quadrature::facet_to_cell;
 use crate::real::{Real, point_f64};
-
-/// Gaps whose difference is below this share of them are equal but for rounding, also of single precision.
-const AGREEMENT: f64 = 1e-5;
 
 /// The part of the contact force of a node that acts on one of its contact facets.
 #[derive(Clone, Copy, Debug)]
@@ -23,25 +21,31 @@ pub(super) struct NodeForce {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The contact forces: that of each node in contact, divided by measure among those of its contact facets
-    /// whose gap binds it and, in the plane, if there are any, all of whose nodes are in contact: the other facet of a
-    /// node is open there. In space facets around the end of contact are many, and few of them are in contact whole.
-    /// A node of a quadratic that Dirichlet data pin beside nodes in contact has no force of its own: the part of
-    /// the flux of the discrete function `u` stands for it, and any number would do.
+    /// The contact forces: that of each node in contact with a gap, divided by measure among those of its contact
+    /// facets whose gap binds it and, in the plane, if there are any, all of whose nodes are in contact: the other
+    /// facet of a node is open there. In space facets around the end of contact are many, and few of them are in
+    /// contact whole. A node of a quadratic that Dirichlet data pin beside nodes in contact has no force of its own:
+    /// the part of the flux of the discrete function `u` stands for it, and any number would do.
     pub(super) fn contact_forces(
         &self,
         inequality: &Inequality<T>,
         contact: &[Contact],
-        residual: &[f64],
+        (residual, obstacles): (&[f64], &ActiveObstacles),
         u: &[T],
     ) -> Vec<NodeForce> {
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let mut forces: Vec<NodeForce> = Vec::new();
         // of each unknown the best rank of its facets, and the measure of those
         let mut best = vec![(0, 0.0); if self.problem.has_gap() { residual.len() } else { 0 }];
         let mut ranks = Vec::new();
-        let is_in_contact = |unknown: usize| contact.get(unknown) != Some(&Contact::Inactive);
+        // where an obstacle gives the bound the force is that of the obstacle
+        let is_in_contact = |unknown: usize| {
+            contact.get(unknown) != Some(&Contact::Inactive) && !obstacles.act_at(unknown)
+        };
         for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
-            let Some(gap) = self.data.gap.of(group) else { continue };
+            if self.data.gap.of(group).is_none() {
+                continue;
+            }
             let measure = self.facet_measure((cell, local));
             let unknown_of = |node: usize| self.dofs.of(cell, node);
             let is_bound = |unknown: usize| inequality.bounds[unknown].is_inequality();
@@ -52,14 +56,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 n_touching += usize::from(is_in_contact(unknown_of(node)));
             }
             let (is_closed, is_open) = (n_touching == n_bound, n_bound > 0 && n_touching == 0);
-            for (node, _) in self.bounded_nodes_on(local) {
+            for (node, by) in self.bounded_nodes_on(local) {
                 let unknown = unknown_of(node);
                 if is_bound(unknown) {
                     if is_in_contact(unknown) {
-                        let point = self.node_point(cell, &self.nodes[node]);
-                        let bound = inequality.bounds[unknown].lower().map(Real::to_f64);
-                        let is_binding = bound.is_none_or(|b| agree(b, gap.at(&point)))
-                            || self.nodes[node].point().is_none();
+                        let bound = inequality.bounds[unknown];
+                        let is_binding = self.gap_gives((cell, group), (node, by), &terms, bound);
                         let is_end = D < 3 && !is_closed;
                         let rank = 1 + 2 * usize::from(is_binding) + usize::from(!is_end);
                         match &mut best[unknown] {
@@ -115,9 +117,4 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         sum
     }
-}
-
-/// Whether two numbers are equal but for rounding.
-fn agree(a: f64, b: f64) -> bool {
-    (a - b).abs() <= AGREEMENT * a.abs().max(b.abs())
 }

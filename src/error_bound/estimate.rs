@@ -60,9 +60,11 @@ pub struct BoundParts {
 pub struct ErrorBound {
     /// Bound on the energy norm of `u - v`, `u` the exact solution and `v` the admissible function.
     pub total: f64,
-    /// The distance of `v` from the discrete solution in the broken energy norm: `total + distance` bounds
-    /// the broken energy norm of its error.
+    /// The distance of `v` from the discrete solution `u_h` in the broken energy norm.
     pub distance: f64,
+    /// Bound on the broken energy norm of `u - u_h`: that of the midpoint of function and flux, at most `total +
+    /// distance`. See the guide, [`bound`](crate::guide::bound).
+    pub discrete: f64,
     /// Of what `total` is made.
     pub parts: BoundParts,
     /// The share of each cell in the square of `total`, without the part of the solver.
@@ -214,9 +216,12 @@ impl ErrorBound {
             return Err(NoBound::NotFinite);
         }
         let share = |part: f64| if square > 0.0 { part / square } else { 0.0 };
+        let (total, distance) = (square.sqrt(), distance.sqrt());
         Ok(Self {
-            total: square.sqrt(),
-            distance: distance.sqrt(),
+            total,
+            distance,
+            // the sum is never less but for rounding, and where a rule has weights of both signs
+            discrete: choice.of_discrete(contact).min(total + distance),
             parts: BoundParts {
                 mismatch: share(mismatch),
                 obstacle: share(obstacle),
@@ -247,17 +252,23 @@ impl<const D: usize> PartOfBound<D> {
     pub fn over_parts(self, distribution: &dyn Distribution) -> Result<ErrorBound, NoBound> {
         let Self { mut totals, mut choice, friedrichs, squares, unproven } = self;
         totals.add_over_parts(distribution);
-        let mut sums = [choice.with_oscillation, choice.obstacle, choice.algebra.powi(2)];
+        let mut sums = [
+            choice.with_oscillation,
+            choice.from_midpoint,
+            choice.obstacle,
+            choice.algebra.powi(2),
+        ];
         distribution.sum(&mut sums);
         let of_all = [Unproven::Quadrature, Unproven::Boundary, Unproven::Obstacle];
         let mut is_found = of_all.map(|term| f64::from(u8::from(unproven.contains(&term))));
         distribution.largest(&mut is_found);
         let constant = totals.constant(friedrichs.over_parts(distribution).constant())?;
-        [choice.with_oscillation, choice.obstacle] = [sums[0], sums[1]];
-        choice.algebra = if constant.is_finite() { constant * sums[2].sqrt() } else { 0.0 };
+        let of_solver;
+        [choice.with_oscillation, choice.from_midpoint, choice.obstacle, of_solver] = sums;
+        choice.algebra = if constant.is_finite() { constant * of_solver.sqrt() } else { 0.0 };
         let found = of_all.into_iter().zip(is_found).filter(|(_, is_found)| *is_found != 0.0);
         let mut unproven: Vec<Unproven> = found.map(|(term, _)| term).collect();
-        if constant.is_infinite() && sums[2] > 0.0 {
+        if constant.is_infinite() && of_solver > 0.0 {
             unproven.push(Unproven::Algebra);
         }
         ErrorBound::new(&totals, &choice, squares, unproven)
@@ -303,6 +314,27 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(PartOfBound { totals, choice, friedrichs, squares, unproven })
     }
 
+    /// The degree of the rule for the terms of cells: exact for polynomial data, at least that of the load elsewhere.
+    fn degree_of_terms(&self, of_pair: usize) -> usize {
+        let data = [
+            &self.data.source,
+            &self.data.reaction,
+            &self.data.coefficient,
+            &self.data.lower,
+            &self.data.upper,
+        ];
+        let degrees = data.map(|data| self.degree_of(data));
+        let [source, reaction, coefficient, lower, upper] = degrees.map(Option::unwrap_or_default);
+        let least = match degrees.iter().all(Option::is_some) {
+            true => 0,
+            false => self.cell_degree,
+        };
+        // squares of flux, load and reaction, and multipliers times distances from obstacles
+        let squares = (2 * (coefficient + of_pair)).max(2 * source);
+        let of_obstacles = of_pair - 1 + of_pair.max(lower).max(upper);
+        squares.max(2 * (reaction + of_pair)).max(of_obstacles).max(least)
+    }
+
     /// The terms of the cells that count, by chunk, as they come: copies of them would cost more than their sums.
     fn terms_of_bound(
         &self,
@@ -310,16 +342,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         friedrichs: Option<f64>,
         counts: Counts<'_>,
     ) -> Result<Vec<Vec<CellTerms>>, NoBound> {
-        let stated = self.problem.data_degree.unwrap_or(0);
-        let degree = 2 * (stated + pair.degree);
-        let data = [&self.data.source, &self.data.reaction, &self.data.coefficient];
-        let obstacles = [&self.data.lower, &self.data.upper];
-        let mut all = data.iter().chain(&obstacles);
-        // exact for constants, also for the products with functions of the pair
-        let is_constant =
-            stated == 0 && all.all(|data| data.every(&|datum| datum.constant().is_some()));
-        let least = if is_constant { 0 } else { self.cell_degree };
-        let table = self.cell_table(Rule::new(D, degree.max(least)));
+        let table = self.cell_table(Rule::new(D, self.degree_of_terms(pair.degree)));
         let has_level = self.data.source.any(&|f| f.level().is_some());
         let cut = has_level.then(|| CutRule::new(D, self.cell_degree));
         let boundary = self.boundary_terms(pair)?;

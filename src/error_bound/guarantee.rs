@@ -13,6 +13,9 @@ use crate::real::{Real, point_f64};
 /// Numbers that differ by less than this share are equal but for rounding.
 const AGREEMENT: f64 = 1e-12;
 
+/// The highest degree of data that the rules of a bound follow.
+const HIGHEST_DEGREE: usize = 12;
+
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The terms that are not proven; the arguments say whether the term of the solver is, and whether the bound from
     /// below for the reaction is positive or zero. Facets count with their cells.
@@ -22,17 +25,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         [is_algebra_proven, has_reaction_bound]: [bool; 2],
         counts: Counts<'_>,
     ) -> Vec<Unproven> {
-        let (data, stated) = (&self.data, self.problem.data_degree);
+        let data = &self.data;
         let is_below = |data: &DataByGroup<'_, D>, degree: usize| {
-            is_constant(data) || stated.is_some_and(|stated| stated <= degree)
+            self.degree_of(data).is_some_and(|d| d <= degree)
         };
         let integrands = [&data.source, &data.lower, &data.upper, &data.gap];
         let has_jumps = data.source.any(&|f| f.level().is_some());
-        let is_inexact = self.has_inexact_facets(pair)
+        let is_inexact = self.has_inexact_facets()
             || has_jumps
             || !is_below(&data.coefficient, 0)
             || !(is_below(&data.reaction, 2) && has_reaction_bound)
-            || integrands.iter().any(|data| !is_below(data, usize::MAX));
+            || integrands.iter().any(|data| self.degree_of(data).is_none());
         let obstacles = [&data.lower, &data.upper, &data.gap];
         let is_curved = obstacles.iter().any(|d| !is_below(d, pair.degree));
         // linear data and obstacles: Bernstein coefficients are means of values at vertices
@@ -58,25 +61,36 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
     }
 
-    /// Whether integrals of Neumann data or contact over facets need not be exact. A facet of an interval is a point.
-    fn has_inexact_facets(&self, pair: &PrimalDualPair) -> bool {
-        let (neumann, gap) = (&self.data.neumann, &self.data.gap);
+    /// The degree of data that are polynomials in cells, the largest one; none where one is unknown or too high to be
+    /// integrated.
+    pub(super) fn degree_of(&self, data: &DataByGroup<'_, D>) -> Option<usize> {
+        self.largest_degree(data.all().map(|datum| datum.degree()))
+    }
+    /// The degree of Neumann data on facets, likewise; that of the flux of an exact solution is unknown.
+    pub(super) fn neumann_degree(&self) -> Option<usize> {
+        let flux = |group| self.data.neumann.of(group);
+        let mut facets = self.grouped_facets_of(BoundaryPart::Neumann);
+        let is_exact =
+            self.problem.exact.is_some() && facets.any(|(_, group)| flux(group).is_none());
+        let of_exact = is_exact.then_some(None);
+        self.largest_degree(self.data.neumann.all().map(|flux| flux.degree()).chain(of_exact))
+    }
+    fn largest_degree(&self, mut degrees: impl Iterator<Item = Option<usize>>) -> Option<usize> {
         let stated = self.problem.data_degree;
-        let has = |part| D > 1 && self.mesh.has_part(part);
-        let [has_neumann, has_contact] =
-            map_entries([BoundaryPart::Neumann, BoundaryPart::Contact], has);
-        let has_neumann = has_neumann && self.problem.has_neumann_data();
-        let is_constant = neumann.every(&|f| f.constant().is_some());
-        if has_neumann && stated.is_none() && !(is_constant && self.problem.exact.is_none()) {
-            return true;
-        }
-        // the square of a datum less the flux; the flux times the distance of the function from the gap
-        let stated = stated.unwrap_or(0);
-        let of_neumann = 2 * stated.max(pair.degree - 1);
-        let of_contact = pair.degree - 1 + stated.max(pair.degree);
-        let degrees = [(has_neumann, of_neumann), (has_contact && gap.is_given(), of_contact)];
-        let degree = degrees.iter().filter(|(has, _)| *has).map(|(_, degree)| *degree).max();
-        degree.is_some_and(|d| !self.facet_rule.moments(D - 1, d).all(|m| m.is_exact()))
+        degrees
+            .try_fold(0, |largest, degree| Some(largest.max(degree.or(stated)?)))
+            .filter(|degree| *degree <= HIGHEST_DEGREE)
+    }
+
+    /// Whether the integrals of Neumann data over facets need not be those of the flux. A facet of an interval is a
+    /// point.
+    fn has_inexact_facets(&self) -> bool {
+        D > 1
+            && self.mesh.has_part(BoundaryPart::Neumann)
+            && self.problem.has_neumann_data()
+            && self.neumann_degree().is_none_or(|degree| {
+                !self.facet_rule.moments(D - 1, degree).all(|moment| moment.is_exact())
+            })
     }
 
     /// Whether the Bernstein coefficients of a quadratic on all edges exceed those of obstacles and gaps, but for
@@ -125,9 +139,4 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 })
         })
     }
-}
-
-/// Whether a datum is a number wherever it is given.
-fn is_constant<const D: usize>(data: &DataByGroup<'_, D>) -> bool {
-    data.every(&|f| f.constant().is_some())
 }

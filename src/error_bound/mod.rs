@@ -32,7 +32,7 @@ mod terms;
 
 pub(crate) use algebra::CoarserCells;
 pub use estimate::{BoundParts, ErrorBound, Unproven};
-pub use figures::{BoundFigures, Guaranteed};
+pub use figures::{BoundFigures, TrueErrors};
 pub use pair::PrimalDualPair;
 
 use crate::error::Error;

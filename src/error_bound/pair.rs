@@ -5,9 +5,11 @@ use std::cell::OnceCell;
 use super::NoBound;
 use super::contact::NodeForce;
 use crate::algebra::Inequality;
+use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
 use crate::assemble::local::zero_local;
 use crate::assemble::space::Space;
+use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::metric::CellMetric;
 use crate::element::Entity;
 use crate::inequality::Solution;
@@ -137,14 +139,17 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         match (penalised, &multipliers) {
             (Some(penalised), Some(multipliers)) => {
                 let value = |i: usize| u[i].to_f64();
-                penalised.residual_with_jump_multipliers(value, |k| multipliers[k], &mut residual);
+                let (load, of_jump) = (&inequality.load, |k: usize| multipliers[k]);
+                penalised.residual_with_jump_multipliers(load, value, of_jump, &mut residual);
             }
             _ => inequality.residual_f64(u, &mut residual),
         }
         if let Some(distribution) = &inequality.distribution {
             distribution.update(&mut residual);
         }
-        let forces = space.contact_forces(inequality, &solution.contact, &residual, u);
+        let obstacles = &space.active_obstacles(&inequality.bounds, &solution.contact);
+        let of_solver = (&residual[..], obstacles);
+        let forces = space.contact_forces(inequality, &solution.contact, of_solver, u);
         let multipliers = multipliers.as_deref();
         let function = space.admissible_function(u, (&inequality.bounds, &solution.contact));
         let computed = OnceCell::new();
@@ -153,10 +158,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             None => computed.get_or_init(|| Neighbours::new(space.mesh)),
         };
         let flux = if space.degree == 2 {
-            let of_solver = (&residual[..], multipliers);
             self.quadratic_flux(
                 (inequality, solution),
-                of_solver,
+                (of_solver, multipliers),
                 &forces,
                 &function,
                 neighbours(),
@@ -165,13 +169,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             let mut flux = if self.owns_rows() {
                 self.facet_fluxes(u, multipliers, 1)?
             } else if space.is_conforming_linear() {
-                space.patch_fluxes(u, &residual, &forces, neighbours())?
+                space.patch_fluxes(u, of_solver, &forces, neighbours())?
             } else {
-                space.crouzeix_raviart_fluxes(u)?
+                space.crouzeix_raviart_fluxes(u, obstacles)?
             };
             space.set_boundary_fluxes(&forces, &mut flux)?;
             if space.problem.has_obstacle() {
-                let multipliers = space.multipliers_by_cell(&residual, &solution.contact, &forces);
+                let multipliers = space.multipliers_by_cell(of_solver, &solution.contact, &forces);
                 let cells = (neighbours(), counts);
                 space.exchange_linears(&function, &multipliers, cells, &mut flux);
             }
@@ -184,7 +188,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     fn quadratic_flux(
         &self,
         (inequality, solution): (&Inequality<T>, &Solution<T>),
-        (residual, multipliers): (&[f64], Option<&[f64]>),
+        (of_solver, multipliers): ((&[f64], &ActiveObstacles), Option<&[f64]>),
         forces: &[NodeForce],
         function: &PrimalDualPair,
         neighbours: &Neighbours,
@@ -199,7 +203,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             false => space.node_numbers(&function.edges),
         };
         let states = (&inequality.bounds[..], &solution.contact[..]);
-        let mut loads = space.cell_loads(u, residual, states, forces, numbers)?;
+        let mut loads = space.cell_loads(u, of_solver, states, forces, numbers)?;
         let mut flux = if has_facet_fluxes {
             space.densities_of_moments(&self.facet_fluxes(u, multipliers, D)?)
         } else {
@@ -275,17 +279,26 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         residual
     }
 
-    /// The fluxes of the element of Crouzeix and Raviart, without those of Neumann data and contact.
-    fn crouzeix_raviart_fluxes(&self, u: &[T]) -> Result<Vec<f64>, NoBound> {
+    /// The fluxes of the element of Crouzeix and Raviart, without those of Neumann data and contact. Of two cells that
+    /// both carry a part of the multiplier of their facet, or neither, each has half of it.
+    fn crouzeix_raviart_fluxes(
+        &self,
+        u: &[T],
+        obstacles: &ActiveObstacles,
+    ) -> Result<Vec<f64>, NoBound> {
         let load = self.load_by_cell()?;
         let n_cells = self.mesh.n_cells();
         let mut own = vec![0.0; n_cells * (D + 1)];
+        let mut unknown_of_facet = [0; 4];
+        for (i, node) in self.nodes.iter().enumerate() {
+            if let Entity::Facet(local) = node.entity() {
+                unknown_of_facet[local] = i;
+            }
+        }
         for (cell, own) in own.chunks_exact_mut(D + 1).enumerate() {
             let residual = self.cell_residual(cell, &self.metric(cell), u, &load);
-            for (i, node) in self.nodes.iter().enumerate() {
-                if let Entity::Facet(local) = node.entity() {
-                    own[local] = residual[i];
-                }
+            for (own, &i) in own.iter_mut().zip(&unknown_of_facet) {
+                *own = residual[i];
             }
         }
         let mut flux = own.clone();
@@ -296,7 +309,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 {
                     let facet = cell * (D + 1) + local;
                     let across = other as usize * (D + 1) + there as usize;
-                    flux[facet] = 0.5 * (own[facet] - own[across]);
+                    let act = map_entries([(cell, local), (other as usize, there as usize)], {
+                        |(cell, local)| obstacles.act_in(cell, unknown_of_facet[local])
+                    });
+                    flux[facet] = match act {
+                        [true, false] => -own[across],
+                        [false, true] => own[facet],
+                        _ => 0.5 * (own[facet] - own[across]),
+                    };
                 }
             }
         }

@@ -21,6 +21,7 @@ use super::shared_multipliers::SharedNodes;
 use crate::algebra::{Bound, Contact};
 use crate::arrays::{map_entries, tabulate};
 use crate::assemble::local::zero_local;
+use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::{Place, Space};
 use crate::mesh::{BoundaryPart, edge_vertices};
 use crate::parallel::cells;
@@ -81,7 +82,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn cell_loads(
         &self,
         u: &[T],
-        residual: &[f64],
+        (residual, obstacles): (&[f64], &ActiveObstacles),
         (bounds, contact): (&[Bound<T>], &[Contact]),
         forces: &[NodeForce],
         numbers: Option<Vec<u32>>,
@@ -94,7 +95,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut values = given.clone();
         let shared = match numbers {
             Some(numbers) => {
-                Some(self.add_multipliers(&multipliers, (bounds, contact), numbers, &mut values))
+                let states = (bounds, contact, obstacles);
+                Some(self.add_multipliers(&multipliers, states, numbers, &mut values))
             }
             None => {
                 for (k, value) in values.iter_mut().enumerate() {

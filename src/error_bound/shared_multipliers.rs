@@ -5,6 +5,7 @@
 
 use crate::algebra::{Bound, Contact};
 use crate::assemble::space::Space;
+use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::BoundaryPart;
 use crate::real::Real;
 
@@ -34,12 +35,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Some((0..n_cells * n).map(|k| number((k / n, k % n))).collect())
     }
 
-    /// Adds multipliers, by unknown, to what cells have: of a node each cell has the part of its volume, among those in
-    /// contact if there are any.
+    /// Adds multipliers, by unknown, to what cells have: of a node each cell whose obstacle acts there has the part of
+    /// its volume, among those in contact if there are any.
     pub(super) fn add_multipliers(
         &self,
         multipliers: &[f64],
-        (bounds, contact): (&[Bound<T>], &[Contact]),
+        (bounds, contact, obstacles): (&[Bound<T>], &[Contact], &ActiveObstacles),
         numbers: Vec<u32>,
         values: &mut [f64],
     ) -> SharedNodes {
@@ -47,18 +48,28 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
         let held: Vec<bool> = self.cells_in_contact(bounds, contact);
         let n_nodes = numbers.iter().max().map_or(0, |&most| most as usize + 1);
-        let mut around = vec![[0.0; 2]; n_nodes];
+        // of broken functions, copies that no obstacle binds have no part
+        let acts = |cell: usize, i: usize| {
+            let is_bound = || bounds[self.dofs.of(cell, i)].is_inequality();
+            obstacles.act_in(cell, i) && (!self.broken || is_bound())
+        };
+        // the volumes of cells: of all, of those whose obstacle acts, of those in contact among them
+        let mut around = vec![[0.0; 3]; n_nodes];
+        let rank = |cell: usize, i: usize| match acts(cell, i) {
+            true => 1 + usize::from(held[cell]),
+            false => 0,
+        };
         let mut sums = vec![0.0; n_nodes];
         let mut surrounded = vec![contact.len() == bounds.len(); n_nodes];
         for (cell, nodes) in numbers.chunks_exact(n).enumerate() {
             let volume = volume(cell);
             for (i, &node) in nodes.iter().enumerate() {
                 let (node, unknown) = (node as usize, self.dofs.of(cell, i));
-                around[node][usize::from(held[cell])] += volume;
+                around[node][rank(cell, i)] += volume;
                 // a shared unknown has one multiplier
                 let before = if self.broken { sums[node] } else { 0.0 };
                 sums[node] = before + multipliers[unknown];
-                surrounded[node] &= held[cell] && bounds[unknown].is_inequality();
+                surrounded[node] &= rank(cell, i) == 2 && bounds[unknown].is_inequality();
             }
         }
         for f in self.mesh.boundary() {
@@ -71,13 +82,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let of_cells = numbers.chunks_exact(n).zip(values.chunks_exact_mut(n));
         for (cell, (nodes, values)) in of_cells.enumerate() {
             let volume = volume(cell);
-            for (&node, value) in nodes.iter().zip(values) {
-                let [free, in_contact] = around[node as usize];
-                let part = match in_contact > 0.0 {
-                    true => f64::from(u8::from(held[cell])) * volume / in_contact,
-                    false => volume / free,
-                };
-                *value += part * sums[node as usize];
+            for (i, (&node, value)) in nodes.iter().zip(values).enumerate() {
+                let of_ranks = around[node as usize];
+                let best = (0..3).rev().find(|&rank| of_ranks[rank] > 0.0).unwrap_or(0);
+                if rank(cell, i) == best {
+                    *value += volume / of_ranks[best] * sums[node as usize];
+                }
             }
         }
         SharedNodes { numbers, surrounded }

@@ -57,7 +57,8 @@ fn write_files_with<T: Real>(
     write_places: &dyn Fn(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<(), Error> {
     fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
-    let Inequality { matrix, load, bounds, .. } = inequality;
+    let Inequality { matrix, bounds, .. } = inequality;
+    let load = inequality.assembled_load();
     let text = |name: &str, write: &dyn Fn(&mut dyn Write) -> std::io::Result<()>| {
         replace(&directory.join(name), |draft| {
             let mut file = BufWriter::new(File::create(draft)?);

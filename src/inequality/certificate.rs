@@ -2,7 +2,7 @@
 
 use super::scales::Scales;
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::real::Real;
+use crate::real::{Real, maximum};
 
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
 ///
@@ -37,7 +37,9 @@ pub struct Certificate {
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub feasibility: f64,
     /// Dual norm, divided by `E`, of the multipliers of active unknowns with the wrong sign. A multiplier counts at
-    /// most as much as one whose step reaches the opposite bound, where its sign would be right.
+    /// most as much as one whose step reaches the opposite bound, where its sign would be right. With a penalised
+    /// matrix `K + M^T S M` the forces of nodes count too, which follow from balances without `S`, in the dual norm of
+    /// the diagonal of `K`: the diagonal of `A` contains the penalty, beside which a wrong force is small.
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub multiplier: f64,
     /// `(sum d_i min(gap_i, s_i)^2)^(1/2)` divided by `E`, the sum over all `i` with positive gap
@@ -81,10 +83,11 @@ impl Certificate {
             && self.algebraic_bound.is_none_or(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT)
     }
 
-    /// The largest of the four violations.
+    /// The largest of the four violations; NaN if one of them is NaN, which is within no limit.
     #[must_use]
     pub fn largest(&self) -> f64 {
-        self.feasibility.max(self.multiplier).max(self.complementarity).max(self.residual)
+        let Self { feasibility, multiplier, complementarity, residual, .. } = *self;
+        [multiplier, complementarity, residual].into_iter().fold(feasibility, maximum)
     }
 }
 
@@ -111,7 +114,8 @@ pub(super) fn residual<T: Real>(
         Some(penalised) if jump_multipliers.len() == penalised.n_jumps() => {
             let (value, multiplier) =
                 (|i: usize| u[i].to_f64(), |jump: usize| jump_multipliers[jump].to_f64());
-            penalised.residual_with_jump_multipliers(value, multiplier, residual);
+            let load = &inequality.load;
+            penalised.residual_with_jump_multipliers(load, value, multiplier, residual);
         }
         _ => inequality.residual_f64(u, residual),
     }

@@ -17,11 +17,12 @@
 //! | `interior_point/` | the interior point method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid/` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`] |
-//! | `violations` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh |
+//! | `contact_forces` | the forces of active bounds, from which everything that shows a force takes them |
+//! | `violations/` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh; the violations at one unknown |
 //! | `energy_error_bound` | [`energy_error_bound`]: a proven bound on the error of any values, by factors |
 //! | `preconditioned_error_bound` | a bound on the error of admissible values, by a preconditioner |
 //! | `scales` | the energy norm and the largest value to which violations are relative |
-//! | `recession` | whether a solution exists and is unique where only bounds hold the domain |
+//! | `recession` | whether a solution exists and is unique where only bounds hold a body |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
 //! | `step_counter` | [`StepCounter`]: the number of the present outer step of a solver |
 //! | `by_name` | [`solver_by_name`] |
@@ -34,6 +35,7 @@
 mod active_set;
 mod by_name;
 mod certificate;
+mod contact_forces;
 mod energy_error_bound;
 pub(crate) mod initial_guess;
 mod interior_point;
@@ -51,12 +53,14 @@ mod violations;
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
 pub(crate) use certificate::count_active;
-pub(crate) use certificate::energy_norm;
 pub use certificate::{Certificate, contact_of};
+pub(crate) use certificate::{energy_norm, positive_diagonal};
+pub(crate) use contact_forces::ContactForces;
 pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
+pub(crate) use recession::explanation;
 pub use solution::Solution;
 pub use stage::{Stage, StageRun};
 pub use step_counter::StepCounter;
@@ -69,7 +73,7 @@ use crate::real::Real;
 
 /// A solver of the algebraic variational inequality.
 pub trait InequalitySolver<T: Real>: Sync {
-    /// The name in reports and options.
+    /// The name in reports and options; the solvers of a study must have different ones.
     fn name(&self) -> &'static str;
     /// Solves the inequality; a failure is an [`Outcome`].
     fn solve(&self, inequality: &Inequality<T>) -> Solution<T>;

@@ -24,8 +24,7 @@ pub enum Outcome {
     NotCoercive,
     /// The matrix is singular on the inactive unknowns.
     Singular,
-    /// The load pulls a part of the domain, which only bounds hold, away from them: the energy has no
-    /// minimum.
+    /// The load pulls a body, which only bounds hold, away from them: the energy has no minimum.
     NoSolution,
     /// The load on a part of the domain that only bounds hold is balanced: the values are one of many
     /// solutions, which differ by a constant there.
@@ -87,7 +86,7 @@ impl Outcome {
             Error::DataNotFinite { .. } | Error::CoefficientNotPositive { .. } => {
                 Some(Outcome::NotFinite)
             }
-            Error::EmptyConstraint { .. } => Some(Outcome::Infeasible),
+            Error::EmptyConstraint { .. } | Error::BoundsCross { .. } => Some(Outcome::Infeasible),
             Error::Parameter { .. } => Some(Outcome::OutOfRange),
             _ => None,
         }
@@ -118,10 +117,10 @@ impl Outcome {
                 "the matrix is singular to working precision on the inactive unknowns"
             }
             Outcome::NoSolution => {
-                "no solution: the load pulls a part of the domain, which only its bounds hold, away from them"
+                "no solution: the load pulls a body, which only its bounds hold, away from them"
             }
             Outcome::NotUnique => {
-                "not unique: the load on a part of the domain that only its bounds hold is balanced; the values are one of the solutions, which differ there by a constant"
+                "not unique: the load on a body that only its bounds hold is balanced; the values are one of the solutions, which differ there by a constant"
             }
             Outcome::NotFinite => "a number of the data or of an iterate is not finite",
             Outcome::OutOfRange => {

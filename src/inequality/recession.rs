@@ -1,124 +1,247 @@
-//! Directions in which the energy does not grow: whether a solution exists, and whether it is unique.
+//! Bodies that bounds alone hold: whether a solution exists, and whether it is unique.
 //!
-//! `A` is positive semidefinite with the kernel of [`Inequality::kernel`]: constants on components of the domain that
-//! neither Dirichlet data nor a reaction hold. A kernel vector `w` is a direction of recession if no bound limits
-//! `t > 0` in `u + t w`. The energy along `u + t w` is linear in `t` with slope `-b.w`: a load with `b.w > 0` pulls the
-//! component away and there is no solution; for `b.w = 0` a solution may be moved along `w`; for `b.w < 0` the load
-//! presses the component against its bounds. (Fichera, Atti Accad. Naz. Lincei 7 (1964); Lions, Stampacchia, Comm. Pure
-//! Appl. Math. 20 (1967) 493-519, section 5.)
+//! Along a constant on a [`FreeBody`] the energy is linear, with the resultant of the load, negated, as slope. A
+//! resultant that no bound opposes pulls the body away, and there is no solution; one that presses the body against
+//! bounds is carried by them. Where the data, as integrated, do not tell the resultant from zero, a solution may be
+//! moved as far as there is room between the bounds. (Fichera, Atti Accad. Naz. Lincei 7 (1964); Lions, Stampacchia,
+//! Comm. Pure Appl. Math. 20 (1967) 493-519, section 5.)
 
+use super::validation::check_input;
 use super::{Outcome, Solution};
-use crate::algebra::{Bound, Inequality};
+use crate::algebra::{Bound, FreeBody, Inequality, RESULTANT_ROUNDING};
 use crate::real::Real;
 
-/// The multiple of machine epsilon times the sum of the absolute values of its terms below which a
-/// resultant of the load counts as zero.
-const ROUNDING: f64 = 64.0;
-
-/// The energy along a kernel vector and its negative, within the bounds.
+/// What the load does to a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Motion {
-    /// Bounded below, with a bounded set of minimisers: bounds stop both directions, or the one of the load.
-    Stopped,
-    /// Without a lower bound: no bound stops the direction of the load.
+    /// It presses the body against lower bounds.
+    Down,
+    /// It presses the body against upper bounds.
+    Up,
+    /// No bound stops the direction of the load.
     Unbounded,
-    /// Constant, because the load is balanced; bounds stop one direction at most.
-    Balanced,
+    /// The data do not tell the resultant from zero.
+    Undecided,
 }
 
-/// Solves an inequality by `solve` if there is no kernel vector or all of them are [`Motion::Stopped`]. Else the
-/// outcome is [`Outcome::NoSolution`] with admissible values if one is [`Motion::Unbounded`], or [`Outcome::NotUnique`]
-/// with a solution: that of the problem in which components with a balanced load have no bounds and one prescribed
-/// value, moved along the kernel vectors until all bounds hold.
+/// A body with what the load does to it.
+struct Tested {
+    body: FreeBody,
+    resultant: f64,
+    motion: Motion,
+}
+
+/// The bodies that bounds alone hold. A body with an unknown between bounds that coincide is held.
+fn tested<T: Real>(inequality: &Inequality<T>) -> Vec<Tested> {
+    let bodies = match inequality.bodies.is_empty() {
+        true => (0..inequality.kernel.len()).map(|k| body_of(inequality, k)).collect(),
+        false => inequality.bodies.clone(),
+    };
+    let is_fixed = |&(i, _): &(u32, T)| inequality.bounds[i as usize].fixed_value().is_some();
+    let is_held = |body: &FreeBody| {
+        body.kernel.is_some_and(|vector| inequality.kernel[vector].iter().any(is_fixed))
+    };
+    let free = bodies.into_iter().filter(|body| !is_held(body));
+    free.map(|body| {
+        let resultant = present_resultant(&body, inequality);
+        let motion = match resultant {
+            r if r.abs() <= body.uncertainty => Motion::Undecided,
+            r if r < 0.0 && body.stops_below => Motion::Down,
+            r if r > 0.0 && body.stops_above => Motion::Up,
+            _ => Motion::Unbounded,
+        };
+        Tested { body, resultant, motion }
+    })
+    .collect()
+}
+
+/// The body of the kernel vector at a position, by load and bounds alone: the uncertainty is rounding.
+fn body_of<T: Real>(inequality: &Inequality<T>, position: usize) -> FreeBody {
+    let (mut stops_below, mut stops_above, mut terms) = (false, false, 0.0);
+    for &(i, value) in &inequality.kernel[position] {
+        let (value, bound) = (value.to_f64(), &inequality.bounds[i as usize]);
+        let (below, above) = (bound.lower().is_some(), bound.upper().is_some());
+        stops_below |= if value > 0.0 { below } else { above };
+        stops_above |= if value > 0.0 { above } else { below };
+        terms += (value * inequality.load[i as usize].to_f64()).abs();
+    }
+    let resultant = inequality.load_along(position);
+    FreeBody {
+        kernel: Some(position),
+        resultant,
+        uncertainty: RESULTANT_ROUNDING * T::EPSILON * terms,
+        stops_below,
+        stops_above,
+        assembled: resultant,
+    }
+}
+
+/// The resultant of the present load on a body.
+fn present_resultant<T: Real>(body: &FreeBody, inequality: &Inequality<T>) -> f64 {
+    let added = body.kernel.map_or(0.0, |k| inequality.load_along(k) - body.assembled);
+    body.resultant + added
+}
+
+/// Solves an inequality by `solve`, unless bodies that bounds alone hold have no solution ([`Outcome::NoSolution`],
+/// with admissible values) or many ([`Outcome::NotUnique`], with one of them).
+///
+/// Bounds that the load does not press against are left out of a first solve: those of a body that the load presses
+/// against its other bounds, and all bounds of a body with an undecided resultant, of which one value is prescribed
+/// instead. This is a solution if the values, moved by a constant where the resultant is undecided, are within the
+/// bounds left out. Else these bounds act, and the next solve has them.
 pub(crate) fn solve_with_kernel<T: Real>(
     inequality: &Inequality<T>,
-    solve: impl FnOnce(&Inequality<T>) -> Solution<T>,
+    solve: impl Fn(&Inequality<T>) -> Solution<T>,
 ) -> Solution<T> {
-    // the solver returns the outcome of an inequality that is not well formed
-    if inequality.kernel.is_empty() || !inequality.is_well_formed() {
+    if inequality.kernel.is_empty() && inequality.bodies.is_empty() {
         return solve(inequality);
     }
-    let motions: Vec<Motion> = inequality.kernel.iter().map(|w| motion(inequality, w)).collect();
-    if motions.iter().any(|motion| matches!(motion, Motion::Unbounded)) {
+    if let Err(outcome) = check_input(inequality) {
+        return Solution::without_iterate(inequality, outcome);
+    }
+    let tested = tested(inequality);
+    if tested.iter().any(|tested| tested.motion == Motion::Unbounded) {
         return Solution::without_iterate(inequality, Outcome::NoSolution);
     }
-    let of_kernel = inequality.kernel.iter().zip(&motions);
-    let balanced: Vec<&[(u32, T)]> = of_kernel
-        .filter(|(_, motion)| matches!(motion, Motion::Balanced))
-        .map(|(w, _)| w.as_slice())
-        .collect();
-    if balanced.is_empty() {
-        return solve(inequality);
-    }
-    let mut fixed = inequality.clone();
-    fixed.kernel.clear();
-    for kernel_vector in &balanced {
-        for &(i, _) in *kernel_vector {
-            fixed.bounds[i as usize] = Bound::Free;
+    let mut relaxed = relaxations(inequality, &tested);
+    let (mut outer, mut linear, mut stages) = (0, 0, Vec::new());
+    let mut solution = loop {
+        let mut solution = match relaxed.is_empty() {
+            true => solve(inequality),
+            false => solve(&relax(inequality, &relaxed)),
+        };
+        (outer, linear) = (outer + solution.outer, linear + solution.linear);
+        stages.append(&mut solution.stages);
+        let n_relaxed = relaxed.len();
+        relaxed.retain(|&(vector, motion)| {
+            let entries = &inequality.kernel[vector];
+            match motion {
+                Motion::Undecided => move_within_bounds(inequality, entries, &mut solution.values),
+                _ => are_admissible(inequality, entries, &solution.values),
+            }
+        });
+        if relaxed.len() == n_relaxed {
+            break solution;
         }
-        fixed.bounds[kernel_vector[0].0 as usize] = Bound::Fixed(T::lit(0.0));
-    }
-    let mut solution = solve(&fixed);
-    if solution.outcome == Outcome::Converged {
-        for kernel_vector in balanced {
-            move_within_bounds(inequality, kernel_vector, &mut solution.values);
-        }
+    };
+    (solution.outer, solution.linear, solution.stages) = (outer, linear, stages);
+    let is_undecided = |tested: &Tested| {
+        let FreeBody { kernel, stops_below, stops_above, .. } = tested.body;
+        let has_room = relaxed.iter().any(|(vector, _)| kernel == Some(*vector));
+        tested.motion == Motion::Undecided && (has_room || !(stops_below && stops_above))
+    };
+    if solution.outcome.has_iterate() && tested.iter().any(is_undecided) {
         solution.outcome = Outcome::NotUnique;
         solution.algebraic_bound = None;
     }
     solution
 }
 
-/// The motion along a kernel vector.
-fn motion<T: Real>(inequality: &Inequality<T>, kernel_vector: &[(u32, T)]) -> Motion {
-    let (mut resultant, mut terms) = (0.0, 0.0);
-    // whether a bound stops the direction of the vector, and the opposite one
-    let (mut stops_along, mut stops_against) = (false, false);
-    for &(i, value) in kernel_vector {
-        let (i, value) = (i as usize, value.to_f64());
-        let bound = &inequality.bounds[i];
-        if bound.fixed_value().is_some() {
-            return Motion::Stopped;
+/// The kernel vectors of which bounds are left out of the first solve, with what the load does to all bodies of each.
+fn relaxations<T: Real>(inequality: &Inequality<T>, tested: &[Tested]) -> Vec<(usize, Motion)> {
+    let relaxation = |vector: usize| {
+        let mut of_vector = tested.iter().filter(|tested| tested.body.kernel == Some(vector));
+        let motion = of_vector.next()?.motion;
+        if of_vector.any(|tested| tested.motion != motion) {
+            return None;
         }
-        let term = value * inequality.load[i].to_f64();
-        resultant += term;
-        terms += term.abs();
-        let (below, above) = (bound.lower().is_some(), bound.upper().is_some());
-        stops_along |= if value > 0.0 { above } else { below };
-        stops_against |= if value > 0.0 { below } else { above };
-    }
-    if stops_along && stops_against {
-        return Motion::Stopped;
-    }
-    let tolerance = ROUNDING * T::EPSILON * terms;
-    if resultant.abs() <= tolerance {
-        Motion::Balanced
-    } else if (resultant > 0.0 && stops_along) || (resultant < 0.0 && stops_against) {
-        Motion::Stopped
-    } else {
-        Motion::Unbounded
+        let is_left_out = |&(i, _): &(u32, T)| {
+            let bound = &inequality.bounds[i as usize];
+            keep(bound, motion) != *bound
+        };
+        let is_relaxed =
+            motion == Motion::Undecided || inequality.kernel[vector].iter().any(is_left_out);
+        is_relaxed.then_some((vector, motion))
+    };
+    (0..inequality.kernel.len()).filter_map(relaxation).collect()
+}
+
+/// The bound without the sides that the load does not press against.
+fn keep<T: Real>(bound: &Bound<T>, motion: Motion) -> Bound<T> {
+    match motion {
+        Motion::Down => bound.lower().map_or(Bound::Free, Bound::Lower),
+        Motion::Up => bound.upper().map_or(Bound::Free, Bound::Upper),
+        _ => Bound::Free,
     }
 }
 
-/// Adds the multiple of a kernel vector, of smallest absolute value, with which all bounds of its unknowns hold.
+/// The inequality without the bounds left out. One value of a body with an undecided resultant is prescribed.
+fn relax<T: Real>(inequality: &Inequality<T>, relaxed: &[(usize, Motion)]) -> Inequality<T> {
+    let mut trial = inequality.clone();
+    for &(vector, motion) in relaxed {
+        let entries = &inequality.kernel[vector];
+        for &(i, _) in entries {
+            trial.bounds[i as usize] = keep(&inequality.bounds[i as usize], motion);
+        }
+        if motion == Motion::Undecided {
+            trial.bounds[entries[0].0 as usize] = Bound::Fixed(T::lit(0.0));
+        }
+    }
+    let is_pinned = |vector: usize| relaxed.contains(&(vector, Motion::Undecided));
+    let kernel = std::mem::take(&mut trial.kernel).into_iter().enumerate();
+    trial.kernel = kernel.filter(|(vector, _)| !is_pinned(*vector)).map(|(_, w)| w).collect();
+    trial.bodies.clear();
+    trial
+}
+
+/// Whether the values of the unknowns of a kernel vector are within their bounds.
+fn are_admissible<T: Real>(inequality: &Inequality<T>, entries: &[(u32, T)], values: &[T]) -> bool {
+    let is_admissible = |&(i, _): &(u32, T)| {
+        let (bound, x) = (&inequality.bounds[i as usize], values[i as usize]);
+        bound.nearest(x) == x
+    };
+    entries.iter().all(is_admissible)
+}
+
+/// Adds the multiple of a kernel vector, of smallest absolute value, with which all bounds of its unknowns hold;
+/// returns whether there is more than one such multiple, apart from rounding.
 fn move_within_bounds<T: Real>(
     inequality: &Inequality<T>,
-    kernel_vector: &[(u32, T)],
+    entries: &[(u32, T)],
     values: &mut [T],
-) {
-    let (mut least, mut most) = (f64::NEG_INFINITY, f64::INFINITY);
-    for &(i, value) in kernel_vector {
+) -> bool {
+    let (mut least, mut most, mut size) = (f64::NEG_INFINITY, f64::INFINITY, 0.0_f64);
+    for &(i, value) in entries {
         let (x, value) = (values[i as usize].to_f64(), value.to_f64());
         let bound = &inequality.bounds[i as usize];
-        let ratio = |limit: Option<T>| limit.map(|limit| (limit.to_f64() - x) / value);
+        let mut ratio = |limit: Option<T>| {
+            limit.map(|limit| {
+                size = size.max((limit.to_f64() / value).abs()).max((x / value).abs());
+                (limit.to_f64() - x) / value
+            })
+        };
         let (from_lower, from_upper) = (ratio(bound.lower()), ratio(bound.upper()));
         let (low, high) =
             if value > 0.0 { (from_lower, from_upper) } else { (from_upper, from_lower) };
         least = least.max(low.unwrap_or(f64::NEG_INFINITY));
         most = most.min(high.unwrap_or(f64::INFINITY));
     }
+    if most - least <= RESULTANT_ROUNDING * T::EPSILON * size {
+        return false;
+    }
     let multiple = 0.0_f64.max(least).min(most);
-    for &(i, value) in kernel_vector {
+    for &(i, value) in entries {
         let moved = values[i as usize] + T::lit(multiple * value.to_f64());
         values[i as usize] = inequality.bounds[i as usize].nearest(moved);
     }
+    true
+}
+
+/// What [`Outcome::NoSolution`] and [`Outcome::NotUnique`] say of an inequality, in one sentence with the resultant;
+/// `None` for other outcomes.
+pub(crate) fn explanation<T: Real>(inequality: &Inequality<T>, outcome: Outcome) -> Option<String> {
+    let motion = match outcome {
+        Outcome::NoSolution => Motion::Unbounded,
+        Outcome::NotUnique => Motion::Undecided,
+        _ => return None,
+    };
+    let tested = tested(inequality);
+    let Tested { body, resultant, .. } = tested.iter().find(|tested| tested.motion == motion)?;
+    Some(match motion {
+        Motion::Unbounded => format!("{}: its resultant is {resultant:.6e}", outcome.message()),
+        _ => format!(
+            "not unique: the data, as integrated, do not decide whether the load presses or pulls a body that only its bounds hold: its resultant is {resultant:.2e}, and up to {:.2e} it counts as none; the values are one of the solutions, which differ there by a constant",
+            body.uncertainty
+        ),
+    })
 }

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use crate::algebra::{Distribution, Inequality};
 use crate::parallel::vectors::map_chunks;
-use crate::real::Real;
+use crate::real::{Real, maximum};
 
 /// The multiple of machine epsilon times the sum of the absolute values of its terms below which an energy counts as
 /// zero.
@@ -78,8 +78,6 @@ impl Sums {
     ) -> Self {
         let scale = unit.recip();
         let Inequality { load, bounds, penalised, dirichlet_energy, .. } = inequality;
-        // the load in the residual: without Dirichlet data if the matrix is penalised
-        let load = penalised.as_ref().map_or(load, |penalised| &penalised.load);
         let mut sums = Sums::default();
         for part in map_chunks(u.len(), |range| {
             let mut part = Sums::default();
@@ -178,9 +176,4 @@ impl Sums {
         self.energy += energy;
         self.terms += energy.abs();
     }
-}
-
-/// The larger number; NaN if one of the two is NaN.
-pub(super) fn maximum(a: f64, b: f64) -> f64 {
-    if a <= b || b.is_nan() { b } else { a }
 }

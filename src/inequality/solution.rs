@@ -36,6 +36,9 @@ pub struct Solution<T> {
     /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix), which defines `S`, `M` and `g`, if the
     /// solver determines them more accurately than they follow from `values`; else empty.
     pub jump_multipliers: Vec<T>,
+    /// The largest violation of the certificate times the energy norm to which it is relative: what the solver leaves
+    /// of residuals and multipliers in the dual norm. Zero before the solution has a certificate.
+    pub(crate) dual_residual: f64,
     /// The stages of the solver that ran, in their order; empty for a solver without stages.
     pub stages: Vec<StageRun>,
 }
@@ -54,6 +57,7 @@ impl<T> Solution<T> {
             linear_solver: "direct",
             algebraic_bound: None,
             jump_multipliers: Vec::new(),
+            dual_residual: 0.0,
             stages: Vec::new(),
         }
     }

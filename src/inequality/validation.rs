@@ -1,5 +1,7 @@
 //! Checks of an inequality before it is solved.
 
+use std::borrow::Cow;
+
 use super::Outcome;
 use super::certificate::positive_diagonal;
 use crate::algebra::Inequality;
@@ -40,9 +42,10 @@ pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
 /// `a_ii`, as square roots of energies.
 fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_formed: bool) -> bool {
     let n = if is_well_formed { inequality.size() } else { 0 };
+    let load = if is_well_formed { inequality.assembled_load() } else { Cow::Borrowed(&[][..]) };
     let parts = map_chunks(n, |range| {
         range.filter(|&i| inequality.owns(i)).fold([0.0_f64; 2], |largest, i| {
-            let (bound, load) = (&inequality.bounds[i], inequality.load[i]);
+            let (bound, load) = (&inequality.bounds[i], load[i]);
             let sqrt_diagonal = positive_diagonal(inequality, i).sqrt();
             let value = bound
                 .nearest(T::lit(0.0))

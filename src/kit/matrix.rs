@@ -24,7 +24,7 @@ impl Assembled {
                 values: matrix.values.iter().map(|a| a.to_f64()).collect(),
             },
             symmetric: inequality.symmetric,
-            load: inequality.load.iter().map(|b| b.to_f64()).collect(),
+            load: inequality.assembled_load().iter().map(|b| b.to_f64()).collect(),
             supports: inequality.supports.clone(),
             free: (0..inequality.size()).filter(is_free).map(|i| i as u32).collect(),
         }

@@ -16,7 +16,7 @@ use crate::mesh::edge_vertices;
 use crate::parallel::cells;
 use crate::problem::DatumRef;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule};
-use crate::real::{Point, Real, point_f64};
+use crate::real::{Point, Real, maximum, point_f64};
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
 /// limit what it measures. Cells that the exact free boundary or a jump of load, coefficient or reaction
@@ -125,7 +125,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     true => open.push((cell, low, high)),
                     false => sum.add(&high),
                 }
-                sum.max = sum.max.max(self.largest_at_nodes(&measure, cell)?);
+                sum.max = maximum(sum.max, self.largest_at_nodes(&measure, cell)?);
             }
             Ok::<_, Error>((sum, open))
         });
@@ -133,7 +133,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for part in parts {
             let (sum, of_part) = part?;
             total.add(&sum.squares);
-            total.max = total.max.max(sum.max);
+            total.max = maximum(total.max, sum.max);
             open.extend(of_part);
         }
         let mut estimate = total;
@@ -281,7 +281,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 false => data::finite(value, "exact solution", &self.node_point(cell, node), cell)?,
             };
             let error = (u[self.dofs.of(cell, i)].to_f64() - value).abs();
-            largest = if error.is_nan() { error } else { largest.max(error) };
+            largest = maximum(largest, error);
         }
         Ok(largest)
     }

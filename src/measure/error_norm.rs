@@ -11,7 +11,7 @@ pub enum ErrorNorm {
     /// The broken energy norm, the same for all schemes: `broken_energy` of
     /// [`Errors`](super::Errors).
     Energy,
-    /// The bound on the error in the energy norm, known without the solution: `total` of
+    /// The bound on the error in the broken energy norm, known without the solution: `discrete` of
     /// [`ErrorBound`](crate::error_bound::ErrorBound).
     Bound,
 }

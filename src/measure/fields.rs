@@ -1,6 +1,6 @@
 //! Solution, obstacle, multiplier and contact set on cells, for pictures.
 
-use super::contact::{DiscreteContact, Place};
+use super::contact::DiscreteContact;
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -19,8 +19,9 @@ pub struct Fields {
     /// The obstacle at the vertices of each cell.
     pub obstacle: Option<Vec<f64>>,
     /// Density of an obstacle's multiplier in each cell: the mean over the vertices of the cell of the
-    /// nodal multipliers, gathered at vertices, over the integrals of hat functions. Its integral over the
-    /// domain is the sum of the multipliers. Empty without an obstacle.
+    /// nodal multipliers of the unknowns to which the obstacle of its region gives the active bound, gathered at
+    /// vertices, over the integrals of hat functions. Its integral over the domain is the sum of these multipliers.
+    /// Not a number where rounding leaves no digit; empty without an obstacle.
     pub multiplier: Vec<f64>,
     /// Share of each cell's constrained unknowns in contact.
     pub contact: Vec<f64>,
@@ -31,8 +32,8 @@ pub struct Fields {
     pub discrete_contact: DiscreteContact,
     /// The facets of the contact boundary: cell, and number in the cell.
     pub contact_boundary: Vec<(usize, usize)>,
-    /// The contact pressure on each of these facets: as `multiplier`, of the unknowns that the Signorini
-    /// condition binds. Its integral over the contact boundary is the total contact force.
+    /// The contact pressure on each of these facets: as `multiplier`, of the unknowns to which the gap of its boundary
+    /// group gives the active bound. Its integral over a group is the contact force there.
     pub pressure: Vec<f64>,
     /// The gap that is left on each of these facets: the mean of `u - g`.
     pub gap: Vec<f64>,
@@ -90,27 +91,25 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             true => self.facets_of(BoundaryPart::Contact).collect(),
             false => Vec::new(),
         };
-        let mut on_boundary = vec![false; self.dofs.size()];
-        for &(cell, local) in &contact_boundary {
-            let bound = self.bounded_nodes_on(local).map(|(i, _)| self.dofs.of(cell, i));
-            bound.for_each(|unknown| on_boundary[unknown] = true);
-        }
-        let facets: Vec<Place> = contact_boundary.iter().map(|&(c, k)| (c, Some(k))).collect();
-        let cells: Vec<Place> = match self.problem.has_obstacle() {
-            true => (0..self.mesh.n_cells()).map(|cell| (cell, None)).collect(),
-            false => Vec::new(),
-        };
-        let densities = |places: &[Place], of_boundary: bool| {
-            self.mean_densities(places, inequality, solution, &|k| on_boundary[k] == of_boundary)
-        };
+        let multipliers =
+            self.problem.is_constrained().then(|| self.multipliers(inequality, solution)).flatten();
+        let of_obstacles = multipliers.as_ref().filter(|_| self.problem.has_obstacle());
+        let of_gaps = multipliers.as_ref().filter(|_| self.problem.has_gap());
         Fields {
             u: self.vertex_values(u),
             obstacle: self.problem.has_obstacle().then_some(obstacle),
-            multiplier: densities(&cells, false),
+            multiplier: match of_obstacles {
+                Some(of) => self.densities_of_obstacles(inequality, of),
+                None if self.problem.has_obstacle() => vec![f64::NAN; n_cells],
+                None => Vec::new(),
+            },
             contact: (0..n_cells).map(share).collect(),
             midpoints: self.midpoint_values(u),
             discrete_contact: self.discrete_contact(inequality, solution),
-            pressure: densities(&facets, true),
+            pressure: match of_gaps {
+                Some(of) => self.densities_of_gaps(inequality, of),
+                None => vec![f64::NAN; contact_boundary.len()],
+            },
             gap: contact_boundary.iter().map(|&place| self.mean_gap(place, u)).collect(),
             bound: Vec::new(),
             contact_boundary,

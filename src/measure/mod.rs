@@ -1,4 +1,5 @@
-//! Measures of a discrete solution: error norms, multiplier, contact set, free boundary, fields.
+//! Measures of a discrete solution: error norms, multiplier, contact set, free boundary, penetration,
+//! fields.
 
 mod admissible;
 mod cell_errors;
@@ -12,6 +13,8 @@ mod fields;
 mod kinks;
 mod norms;
 mod order;
+mod penetration;
+mod rounding;
 mod squared_errors;
 
 pub(crate) use admissible::Admissible;
@@ -23,4 +26,6 @@ pub use errors::{ContactErrors, Errors};
 pub use fields::Fields;
 pub use order::FittedOrder;
 pub(crate) use order::{fit_order, observed_order};
+pub use penetration::Penetration;
+pub use rounding::Rounding;
 pub use squared_errors::SquaredErrors;

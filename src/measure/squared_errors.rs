@@ -1,6 +1,7 @@
 //! Squares of norms of the error, which add up over the parts of a mesh.
 
 use super::errors::Errors;
+use crate::real::maximum;
 
 /// Squares of the L2 norm, the broken H1 seminorm and the broken energy norm of an error, and of the energy norm
 /// of the error of a function in cells.
@@ -26,7 +27,7 @@ impl SquaredErrors {
     pub fn merge(mut self, other: Self) -> Self {
         self.add(&other.squares);
         self.of_facets += other.of_facets;
-        self.max = self.max.max(other.max);
+        self.max = maximum(self.max, other.max);
         self
     }
     /// All of it as numbers, to be sent to another part.

@@ -1,5 +1,7 @@
 //! Connected components of cells or unknowns.
 
+use super::facets::Neighbours;
+
 /// A partition of `0..n` into sets that grow by joining two members (union and find with path halving).
 pub(crate) struct Components {
     parents: Vec<u32>,
@@ -9,6 +11,14 @@ impl Components {
     /// Sets of one member each.
     pub fn new(n: usize) -> Self {
         Self { parents: (0..n as u32).collect() }
+    }
+    /// The cells of a mesh, connected through facets.
+    pub fn of_cells(neighbours: &Neighbours) -> Self {
+        let mut components = Self::new(neighbours.n_cells());
+        for cell in 0..neighbours.n_cells() {
+            neighbours.cells_across(cell).for_each(|other| components.join(cell, other));
+        }
+        components
     }
     /// The member that stands for the set of a member: the smallest one.
     pub fn find(&mut self, member: usize) -> usize {

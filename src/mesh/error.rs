@@ -179,16 +179,6 @@ pub enum MeshError {
         /// A name that is meant, or nothing.
         hint: String,
     },
-    /// A connected component has neither a Dirichlet nor a contact facet.
-    #[error(
-        "the component of {cells} cells around cell {cell} has neither a dirichlet nor a contact facet: the problem is singular there"
-    )]
-    UnsupportedComponent {
-        /// A cell of the component.
-        cell: usize,
-        /// Number of cells of the component.
-        cells: usize,
-    },
     /// The rounding of its new vertex changes the shape of half a cell.
     #[error(
         "cell {cell} cannot be bisected at {at}: the rounding of {scalar} changes the volume of its halves; mark no cell there"
@@ -219,8 +209,7 @@ impl MeshError {
             Self::VertexOutOfRange { cell, .. }
             | Self::DegenerateCell { cell, .. }
             | Self::UntaggedFacet { cell, .. }
-            | Self::TooSmallToBisect { cell, .. }
-            | Self::UnsupportedComponent { cell, .. } => vec![*cell],
+            | Self::TooSmallToBisect { cell, .. } => vec![*cell],
             Self::RepeatedCell { first, second, .. }
             | Self::OverlappingCells { first, second, .. } => vec![*first, *second],
             Self::FoldedCells { cells, .. } => cells.to_vec(),

@@ -7,7 +7,7 @@ use super::error::MeshError;
 use super::facets::Neighbours;
 use super::groups::BoundaryGroup;
 use super::simplicial::Mesh;
-use super::validate::unsupported_component;
+use super::validate::is_supported;
 use crate::instances::compiled;
 use crate::real::Real;
 
@@ -110,10 +110,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 facet.part = part;
             }
         }
-        let is_dirichlet = |part| part == BoundaryPart::Dirichlet;
-        let neighbours = Neighbours::new(&self);
-        self.is_supported =
-            unsupported_component(&neighbours, &self.boundary, is_dirichlet).is_none();
+        self.is_supported = is_supported(&Neighbours::new(&self), &self.boundary);
         Ok(self)
     }
 

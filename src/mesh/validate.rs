@@ -42,10 +42,9 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// their order.
     ///
     /// # Errors
-    /// Every [`MeshError`] but [`MeshError::UnsupportedComponent`], which depends on the problem:
-    /// see [`Mesh::check_supported`]. Vertices in errors are numbered as given. Folds across a facet
-    /// are always found, other overlaps where one of the lines through boundary facets meets them:
-    /// through all up to 64, through eight from 512 facets on.
+    /// [`MeshError`]. Vertices in errors are numbered as given. Folds across a facet are always found, other
+    /// overlaps where one of the lines through boundary facets meets them: through all up to 64, through eight
+    /// from 512 facets on.
     pub fn new(
         vertices: Vec<Point<f64, D>>,
         cells: Vec<u32>,
@@ -97,49 +96,22 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         check_folds::<D>(&cells, &neighbours, &is_positive)?;
         let (boundary, groups) = match_boundary(&vertices, &cells, &neighbours, (boundary, names))?;
         check_overlaps(&vertices, &cells, &boundary)?;
-        let is_dirichlet = |part| part == BoundaryPart::Dirichlet;
-        let is_supported = unsupported_component(&neighbours, &boundary, is_dirichlet).is_none();
+        let is_supported = is_supported(&neighbours, &boundary);
         let (vertices, cells) = drop_unused(rounded, cells);
         let groups = Arc::new(Groups { regions: vec![Vec::new()], boundary: groups });
         let cell_regions = Vec::new();
         Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole: None })
     }
-
-    /// Checks that every component of the mesh, connected through facets, has a Dirichlet or a contact
-    /// facet: otherwise a problem without reaction is singular.
-    ///
-    /// # Errors
-    /// [`MeshError::UnsupportedComponent`].
-    pub fn check_supported(&self) -> Result<(), MeshError> {
-        compiled!(T, D: fn(&Mesh<T, D>) -> Result<(), MeshError> = Mesh::find_unsupported)(self)
-    }
-    fn find_unsupported(&self) -> Result<(), MeshError> {
-        let supports = |part| part != BoundaryPart::Neumann;
-        match unsupported_component(&Neighbours::new(self), &self.boundary, supports) {
-            Some((cell, cells)) => Err(MeshError::UnsupportedComponent { cell, cells }),
-            None => Ok(()),
-        }
-    }
 }
 
-/// The first component of a mesh, connected through facets, without a boundary facet whose part supports
-/// it: its first cell and its number of cells.
-pub(super) fn unsupported_component(
-    neighbours: &Neighbours,
-    boundary: &[BoundaryFacet],
-    supports: impl Fn(BoundaryPart) -> bool,
-) -> Option<(usize, usize)> {
-    let n_cells = neighbours.n_cells();
-    let mut components = Components::new(n_cells);
-    for cell in 0..n_cells {
-        neighbours.cells_across(cell).for_each(|other| components.join(cell, other));
+/// Whether every component of a mesh, connected through facets, has a Dirichlet facet.
+pub(super) fn is_supported(neighbours: &Neighbours, boundary: &[BoundaryFacet]) -> bool {
+    let mut components = Components::of_cells(neighbours);
+    let mut has_dirichlet = vec![false; neighbours.n_cells()];
+    for facet in boundary.iter().filter(|facet| facet.part == BoundaryPart::Dirichlet) {
+        has_dirichlet[components.find(facet.cell as usize)] = true;
     }
-    let mut is_supported = vec![false; n_cells];
-    for facet in boundary.iter().filter(|facet| supports(facet.part)) {
-        is_supported[components.find(facet.cell as usize)] = true;
-    }
-    let first = (0..n_cells).find(|&cell| !is_supported[components.find(cell)])?;
-    Some((first, (first..n_cells).filter(|&cell| components.find(cell) == first).count()))
+    (0..neighbours.n_cells()).all(|cell| has_dirichlet[components.find(cell)])
 }
 
 fn check_lists<const D: usize>(vertices: &[Point<f64, D>], cells: &[u32]) -> Result<(), MeshError> {

@@ -87,11 +87,11 @@ struct LastStep {
     unknowns: usize,
     /// The number of unknowns divided by that of the step before.
     growth: f64,
-    /// The bound divided by that of the step before.
+    /// The bound on the error of the solution, divided by that of the step before.
     decrease: f64,
-    /// The bound.
-    total: f64,
-    /// The bound divided by the energy norm.
+    /// The bound on the error of the solution.
+    discrete: f64,
+    /// The bound on the error of the admissible function, divided by the energy norm.
     relative_bound: f64,
     /// The tolerance that was small enough, divided by the relative bound.
     tolerance_to_bound: f64,
@@ -111,7 +111,7 @@ struct LastStep {
 /// let steps = steps.collect::<Result<Vec<_>, _>>()?;
 /// let last = steps.last().unwrap();
 /// assert_eq!(last.stop, Some(Stop::Goal));
-/// assert!(last.solved.bound().unwrap().total <= 0.5);
+/// assert!(last.solved.bound().unwrap().discrete <= 0.5);
 /// # Ok(())
 /// # }
 /// ```
@@ -191,9 +191,10 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         }
         self.solve_seconds += solved.solve_seconds;
         if let (Some(stop), Some(goal), Some(bound)) = (stop, self.adaptivity.goal, &bound)
-            && bound.total > goal
+            && bound.discrete > goal
         {
-            let why = format!("the bound {:.2e} is above the goal {goal:?}: {stop}", bound.total);
+            let why =
+                format!("the bound {:.2e} is above the goal {goal:?}: {stop}", bound.discrete);
             solved.warnings.push(why);
         }
         if stop == Some(Stop::NoBound)
@@ -222,7 +223,7 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         let last = tolerance.and(self.last.as_ref())?;
         let is_last = number >= steps
             || last.unknowns as f64 * last.growth * last.growth > unknowns as f64
-            || goal.is_some_and(|goal| last.total * last.decrease <= goal);
+            || goal.is_some_and(|goal| last.discrete * last.decrease <= goal);
         (!is_last).then_some(last.relative_bound * last.tolerance_to_bound)
     }
 
@@ -234,8 +235,8 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         (allowed, tolerance): (f64, Option<f64>),
     ) -> LastStep {
         let last = self.last.as_ref();
-        let (unknowns, total) = (solved.values().len(), bound.total);
-        let relative_bound = total / solved.energy_norm();
+        let (unknowns, discrete) = (solved.values().len(), bound.discrete);
+        let relative_bound = bound.total / solved.energy_norm();
         let tolerance_to_bound = match (tolerance.filter(|_| solved.is_inexact()), last) {
             (Some(tolerance), _) => tolerance / relative_bound,
             (None, Some(last)) => last.tolerance_to_bound,
@@ -244,8 +245,8 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         LastStep {
             unknowns,
             growth: last.map_or(1.0, |last| unknowns as f64 / last.unknowns as f64),
-            decrease: last.map_or(1.0, |last| total / last.total),
-            total,
+            decrease: last.map_or(1.0, |last| discrete / last.discrete),
+            discrete,
             relative_bound,
             tolerance_to_bound,
         }
@@ -271,7 +272,7 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
             return Ok(Some(Stop::NotConverged));
         }
         let Some(bound) = bound else { return Ok(Some(Stop::NoBound)) };
-        if self.adaptivity.goal.is_some_and(|goal| bound.total <= goal) {
+        if self.adaptivity.goal.is_some_and(|goal| bound.discrete <= goal) {
             return Ok(Some(Stop::Goal));
         }
         let clock = Instant::now();

@@ -28,3 +28,4 @@ pub use meshes::Meshes;
 pub use p1::P1Solution;
 pub use phase::Phase;
 pub use solved::Solved;
+pub(crate) use warnings::{no_digits_of_forces, warnings_of_forces};

@@ -8,7 +8,7 @@ use super::meshes::{Meshes, unknowns};
 use super::p1::P1Solution;
 use super::phase::Phase;
 use super::solved::Solved;
-use super::warnings::{active_sets, short_edges};
+use super::warnings::{active_sets, dirichlet_jumps, short_edges};
 use crate::algebra::{Contact, Inequality, Start};
 use crate::assemble::Discretisation;
 use crate::error::Error;
@@ -72,7 +72,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             self.assembled(scheme, mesh)?;
         discretisation.forget_prepared();
         let guess = self.guess(start.as_deref(), energy_tolerance, &mut inequality);
-        let mut warnings = Vec::new();
+        let mut warnings = dirichlet_jumps(self.p1.problem, mesh);
         let penalty_below_bound = discretisation.penalty_below_bound();
         warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
         let is_adaptive = matches!(self.p1.meshes, Meshes::Adaptive(_));

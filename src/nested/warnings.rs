@@ -1,10 +1,12 @@
 //! What a solve warns of.
 
+use super::solved::Solved;
 use crate::constraint::CellMeans;
 use crate::inequality::{Outcome, Solution};
-use crate::mesh::Mesh;
-use crate::problem::Problem;
-use crate::real::Real;
+use crate::input::excerpt;
+use crate::mesh::{BoundaryPart, Mesh, describe_point};
+use crate::problem::{DataOnMesh, Problem};
+use crate::real::{Real, point_f64};
 use crate::scheme::AnyScheme;
 
 /// More outer steps than a solve takes on any scene but with bounds at nodes of broken quadratics.
@@ -24,6 +26,100 @@ pub(super) fn short_edges<T: Real, const D: usize>(
             T::NAME
         )
     })
+}
+
+/// That contact forces are left out, in a scalar of this name.
+pub(crate) fn no_digits_of_forces(scalar: &str) -> String {
+    format!(
+        "rounding in {scalar} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out"
+    )
+}
+
+/// The largest share of its load by which the contact forces on a body may differ from the load without a warning; in
+/// single precision the root of machine epsilon.
+const LARGEST_IMBALANCE: f64 = 1e-6;
+
+/// Contact forces of which rounding leaves no digit, or that do not balance the load of a body that contact alone
+/// holds.
+pub(crate) fn warnings_of_forces<T: Real, const D: usize>(
+    solved: &Solved<'_, T, D>,
+    forces: Option<&[f64]>,
+) -> Vec<String> {
+    if !solved.has_iterate() || !solved.discretisation().problem().is_constrained() {
+        return Vec::new();
+    }
+    let Some(forces) = forces else {
+        return vec![no_digits_of_forces(T::NAME)];
+    };
+    let inequality = solved.inequality();
+    let imbalance = |body: &Vec<(u32, T)>| {
+        let (mut sum, mut size) = (0.0, 0.0);
+        for &(i, value) in body {
+            let load = value.to_f64() * inequality.load[i as usize].to_f64();
+            sum += value.to_f64() * forces[i as usize] + load;
+            size += load.abs();
+        }
+        (sum, size)
+    };
+    let bodies = inequality.kernel.iter().map(imbalance);
+    let largest = LARGEST_IMBALANCE.max(T::EPSILON.sqrt());
+    let unbalanced = bodies.filter(|(sum, size)| sum.abs() > largest * size);
+    let text = |(sum, size): (f64, f64)| {
+        format!(
+            "contact forces on a body that contact alone holds differ by {sum:.1e} from its load, of {size:.1e} in absolute values"
+        )
+    };
+    unbalanced.map(text).collect()
+}
+
+/// Dirichlet values that differ by less than this share of the largest one are equal but for rounding.
+const AGREEMENT: f64 = 1e-9;
+
+/// For each two groups whose Dirichlet values differ at a vertex where they meet a sentence with the first such vertex:
+/// no function of finite energy takes both values.
+pub(super) fn dirichlet_jumps<T: Real, const D: usize>(
+    problem: &Problem<D>,
+    mesh: &Mesh<T, D>,
+) -> Vec<String> {
+    let Some(data) =
+        DataOnMesh::new(problem, mesh).ok().filter(|d| D > 1 && d.dirichlet.has_names())
+    else {
+        return Vec::new();
+    };
+    let of_facets = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Dirichlet);
+    let mut values: Vec<(u32, usize, f64)> = Vec::new();
+    for facet in of_facets {
+        let group = usize::from(facet.group);
+        for v in mesh.facet_vertices(facet.cell as usize, usize::from(facet.local)) {
+            let x = point_f64(&mesh.vertices()[v as usize]);
+            values.push((v, group, data.dirichlet.of(group).map_or(0.0, |u| u.at(&x))));
+        }
+    }
+    let largest = values.iter().fold(0.0, |largest: f64, (.., value)| largest.max(value.abs()));
+    values.sort_by_key(|&(v, group, _)| (v, group));
+    values.dedup_by_key(|&mut (v, group, _)| (v, group));
+    let mut pairs = Vec::new();
+    let mut sentences = Vec::new();
+    for at_vertex in values.chunk_by(|a, b| a.0 == b.0) {
+        let &(v, first, value) = &at_vertex[0];
+        let others = at_vertex.iter().filter(|other| (other.2 - value).abs() > AGREEMENT * largest);
+        for &(_, other, of_other) in others {
+            if pairs.contains(&(first, other)) {
+                continue;
+            }
+            pairs.push((first, other));
+            let name = |group: usize| {
+                mesh.boundary_groups()[group].names.first().map(excerpt).unwrap_or_default()
+            };
+            let x = describe_point(&point_f64(&mesh.vertices()[v as usize]));
+            sentences.push(format!(
+                "the Dirichlet values of `{}` and `{}` differ where they meet, {value} and {of_other} at {x}: no function of finite energy takes both, energies grow with the mesh, and bounds are not proven",
+                name(first),
+                name(other),
+            ));
+        }
+    }
+    sentences
 }
 
 /// What helps a solution that took many active sets, or whose active sets changed to the end.

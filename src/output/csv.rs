@@ -25,9 +25,14 @@ pub(crate) fn lines<R: Serialize>(rows: &[R]) -> String {
     text
 }
 
-/// Keys and cells of a value, depth first.
+/// The object whose keys differ from row to row: names of contact groups.
+const OF_NAMES: &str = "resultants";
+
+/// Keys and cells of a value, depth first; an object of names is one cell.
 pub(super) fn flatten(prefix: &str, value: &Value, columns: &mut Vec<(String, String)>) {
-    if let Value::Object(map) = value {
+    if let Value::Object(map) = value
+        && prefix != OF_NAMES
+    {
         for (key, inner) in map {
             let joined = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
             flatten(&joined, inner, columns);
@@ -37,11 +42,15 @@ pub(super) fn flatten(prefix: &str, value: &Value, columns: &mut Vec<(String, St
     }
 }
 
-/// The text of a value that is not an object.
+/// The text of a value in one cell.
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(s) => s.clone(),
+        Value::Object(map) => {
+            let entry = |(name, value): (&String, &Value)| format!("{name}: {}", cell(value));
+            map.iter().map(entry).collect::<Vec<_>>().join("; ")
+        }
         Value::Array(items) => items.iter().map(cell).collect::<Vec<_>>().join("; "),
         // Numbers are the shortest digits that read back to the same bits.
         other => other.to_string(),

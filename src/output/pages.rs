@@ -9,11 +9,11 @@ use super::html::{HtmlCell, HtmlPage, HtmlTable};
 use super::table::{Cell, Table};
 use crate::study::rates::rates;
 use crate::study::row::distinct;
-use crate::study::table::{Column, columns, heading, limits, scenes, totals};
+use crate::study::table::{Column, columns, heading, limits, scenes, totals, unproven};
 use crate::study::{Program, Report, Row, file_name};
 
 /// Columns of the page that are shown at first, by their keys.
-const SHOWN: [&str; 19] = [
+const SHOWN: [&str; 20] = [
     "against",
     "label",
     "level",
@@ -25,7 +25,8 @@ const SHOWN: [&str; 19] = [
     "order.l2",
     "error.h1",
     "order.h1",
-    "bound.total",
+    "error.broken_energy",
+    "bound.discrete",
     "order.bound",
     "energy",
     "contact_measure",
@@ -35,7 +36,7 @@ const SHOWN: [&str; 19] = [
     "seconds.total",
 ];
 /// Columns of tables in LaTeX: what fits into the width of a page.
-const PRINTED: [&str; 16] = [
+const PRINTED: [&str; 17] = [
     "scheme",
     "solver",
     "n",
@@ -45,6 +46,7 @@ const PRINTED: [&str; 16] = [
     "L2",
     "order",
     "H1",
+    "energy norm",
     "energy",
     "contact",
     "resultant",
@@ -141,6 +143,7 @@ impl Report {
                     .into_iter()
                     .chain(limits(&rows))
                     .chain(rates(&rows))
+                    .chain(unproven(&rows))
                     .collect(),
             });
         }
@@ -196,8 +199,8 @@ fn table(scene: &str, rows: &[&Row]) -> Table {
         format!("{}, level {}: did not converge: {}: {why}", r.label, r.level, r.status)
     });
     let warnings = rows.iter().flat_map(|r| r.warnings.iter().map(|w| format!("{}: {w}", r.label)));
-    let remarks =
-        distinct([heading(rows)].into_iter().chain(remarks).chain(warnings).chain(rates(rows)));
+    let remarks = [heading(rows)].into_iter().chain(remarks).chain(warnings);
+    let remarks = distinct(remarks.chain(rates(rows)).chain(unproven(rows)));
     with_columns(scene.to_owned(), &columns(rows), rows, remarks)
 }
 

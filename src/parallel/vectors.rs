@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::{for_each_item, map_indices, map_items};
 use crate::memory::in_large_pages;
-use crate::real::Real;
+use crate::real::{Real, maximum};
 
 /// Number of entries in a chunk. Shorter chunks cost time for scheduling, and weaken smoothers that
 /// do not couple chunks.
@@ -53,9 +53,9 @@ pub(crate) fn all(n: usize, predicate: impl Fn(usize) -> bool + Sync) -> bool {
     map_chunks(n, |mut range| range.all(&predicate)).into_iter().all(|holds| holds)
 }
 
-/// The largest of zero and the values of `work` at all indices below `n`; values that are not numbers do not count.
+/// The largest of zero and the values of `work` at all indices below `n`; NaN if one of them is NaN.
 pub(crate) fn largest(n: usize, work: impl Fn(usize) -> f64 + Sync) -> f64 {
-    map_chunks(n, |range| range.map(&work).fold(0.0, f64::max)).into_iter().fold(0.0, f64::max)
+    map_chunks(n, |range| range.map(&work).fold(0.0, maximum)).into_iter().fold(0.0, maximum)
 }
 
 /// The length of chunks that divide no group of `group` consecutive entries.

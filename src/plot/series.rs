@@ -21,7 +21,7 @@ pub(crate) enum Quantity {
     H1,
     /// Error in the broken energy norm, the same for all schemes.
     Energy,
-    /// Error bound in the energy norm.
+    /// Bound on the error in the broken energy norm.
     Bound,
 }
 
@@ -53,7 +53,7 @@ impl Quantity {
             Quantity::L2 => row.error.l2,
             Quantity::H1 => row.error.h1,
             Quantity::Energy => row.error.broken_energy,
-            Quantity::Bound => row.bound.total,
+            Quantity::Bound => row.bound.discrete,
         };
         value.filter(|x| x.is_finite() && *x > 0.0)
     }
@@ -65,7 +65,7 @@ impl Quantity {
             Quantity::H1 => row.error.is_energy_h1(),
             _ => false,
         };
-        row.bound.of_broken_energy().filter(|x| is_bounded && row.converged() && *x > 0.0)
+        row.bound.discrete.filter(|x| is_bounded && row.converged() && *x > 0.0)
     }
 
     /// The order that theory promises for this quantity. The broken energy norm and the broken H1

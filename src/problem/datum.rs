@@ -21,13 +21,29 @@ pub enum BoundaryFlux<const D: usize> {
     Constant(f64),
     /// A function that is smooth on every boundary facet, integrated by quadrature.
     Function(BoundaryField<D>),
+    /// A function that is on every boundary facet a polynomial of at most this degree.
+    Polynomial {
+        /// The values.
+        value: BoundaryField<D>,
+        /// The degree.
+        degree: usize,
+    },
 }
 
 impl<const D: usize> BoundaryFlux<D> {
     /// The value of a constant.
+    #[cfg(feature = "problem-files")]
     pub(crate) fn constant(&self) -> Option<f64> {
         match self {
             BoundaryFlux::Constant(c) => Some(*c),
+            BoundaryFlux::Function(_) | BoundaryFlux::Polynomial { .. } => None,
+        }
+    }
+    /// The degree of a polynomial, where it is known.
+    pub(crate) fn degree(&self) -> Option<usize> {
+        match self {
+            BoundaryFlux::Constant(_) => Some(0),
+            BoundaryFlux::Polynomial { degree, .. } => Some(*degree),
             BoundaryFlux::Function(_) => None,
         }
     }
@@ -35,7 +51,9 @@ impl<const D: usize> BoundaryFlux<D> {
     pub fn at(&self, x: &Point<f64, D>, normal: &Point<f64, D>) -> f64 {
         match self {
             BoundaryFlux::Constant(c) => *c,
-            BoundaryFlux::Function(f) => f(x, normal),
+            BoundaryFlux::Function(value) | BoundaryFlux::Polynomial { value, .. } => {
+                value(x, normal)
+            }
         }
     }
 }
@@ -45,6 +63,7 @@ impl<const D: usize> fmt::Debug for BoundaryFlux<D> {
         match self {
             BoundaryFlux::Constant(c) => f.debug_tuple("Constant").field(c).finish(),
             BoundaryFlux::Function(_) => f.write_str("Function(..)"),
+            BoundaryFlux::Polynomial { degree, .. } => write!(f, "Polynomial({degree})"),
         }
     }
 }
@@ -57,6 +76,14 @@ pub enum Datum<const D: usize> {
     Constant(f64),
     /// A function of space that is smooth in every cell, integrated by quadrature.
     Function(Field<D>),
+    /// A function of space that is in every cell a polynomial of at most this degree. The discretisation does not
+    /// depend on the degree; [error bounds](crate::error_bound) are guaranteed by it.
+    Polynomial {
+        /// The values.
+        value: Field<D>,
+        /// The degree.
+        degree: usize,
+    },
     /// A function of space that may jump, or have a kink, where `level` changes its sign. Cells that
     /// the zero set of `level` cuts are divided along it, see
     /// [`Problem::piecewise_source`](super::Problem::piecewise_source).
@@ -77,11 +104,28 @@ impl<const D: usize> Datum<D> {
     ) -> Self {
         Datum::Piecewise { value: Arc::new(value), level: Arc::new(level) }
     }
+    /// A function that is in every cell a polynomial of at most this degree.
+    pub fn polynomial(
+        degree: usize,
+        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Datum::Polynomial { value: Arc::new(value), degree }
+    }
     /// The value at a point.
     pub fn at(&self, x: &Point<f64, D>) -> f64 {
         match self {
             Datum::Constant(c) => *c,
-            Datum::Function(value) | Datum::Piecewise { value, .. } => value(x),
+            Datum::Function(value)
+            | Datum::Polynomial { value, .. }
+            | Datum::Piecewise { value, .. } => value(x),
+        }
+    }
+    /// The degree of a polynomial, where it is known.
+    pub(crate) fn degree(&self) -> Option<usize> {
+        match self {
+            Datum::Constant(_) => Some(0),
+            Datum::Polynomial { degree, .. } => Some(*degree),
+            Datum::Function(_) | Datum::Piecewise { .. } => None,
         }
     }
     /// The function whose zero set divides cells, if there is one.
@@ -113,6 +157,7 @@ impl<const D: usize> fmt::Debug for Datum<D> {
         match self {
             Datum::Constant(c) => f.debug_tuple("Constant").field(c).finish(),
             Datum::Function(_) => f.write_str("Function(..)"),
+            Datum::Polynomial { degree, .. } => write!(f, "Polynomial({degree})"),
             Datum::Piecewise { .. } => f.write_str("Piecewise(..)"),
         }
     }

@@ -20,6 +20,8 @@ mod exact;
 mod named;
 mod on_mesh;
 
+#[cfg(feature = "problem-files")]
+pub(crate) use datum::BoundaryField;
 pub(crate) use datum::Field;
 pub use datum::{BoundaryFlux, Datum};
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
@@ -267,11 +269,25 @@ impl<const D: usize> Problem<D> {
         self
     }
     /// States that every datum given as a function is in each cell, and on each boundary facet, a
-    /// polynomial of at most this degree. The discretisation does not depend on it:
-    /// [error bounds](crate::error_bound) are guaranteed only for data of which it is stated, or constants.
+    /// polynomial of at most this degree; for a single one see [`Datum::polynomial`]. The discretisation does not
+    /// depend on it: [error bounds](crate::error_bound) are guaranteed only for data of which it is stated, or
+    /// constants.
     #[must_use]
     pub fn polynomial_data(mut self, degree: usize) -> Self {
         self.data_degree = Some(degree);
+        self
+    }
+    /// States that obstacles and gap, as far as they are functions without a name so far, are in each cell polynomials
+    /// of at most this degree.
+    #[must_use]
+    pub fn obstacles_of_degree(mut self, degree: usize) -> Self {
+        let of_degree = |datum: Datum<D>| match datum {
+            Datum::Function(value) => Datum::Polynomial { value, degree },
+            other => other,
+        };
+        for datum in [&mut self.lower, &mut self.upper, &mut self.gap] {
+            *datum = datum.take().map(of_degree);
+        }
         self
     }
     /// Sets the exact solution and its gradient, and makes it the Dirichlet datum and, times the

@@ -139,6 +139,35 @@ impl<const D: usize> Problem<D> {
         self
     }
 
+    /// Whether some data are those of a named region or boundary group.
+    pub(crate) fn has_named_data(&self) -> bool {
+        self.named.names().next().is_some()
+    }
+    /// The data in a region with these names and on a boundary group with these names, without names.
+    pub(crate) fn in_group(&self, region: &[String], boundary: &[String]) -> Self {
+        fn first<F: Clone>(
+            named: &[(String, F)],
+            names: &[String],
+            other: &Option<F>,
+        ) -> Option<F> {
+            let found = named.iter().find(|(name, _)| names.contains(name));
+            found.map(|(_, datum)| datum.clone()).or_else(|| other.clone())
+        }
+        let named = &self.named;
+        Self {
+            coefficient: first(&named.coefficient, region, &self.coefficient),
+            source: first(&named.source, region, &self.source),
+            reaction: first(&named.reaction, region, &self.reaction),
+            lower: first(&named.lower, region, &self.lower),
+            upper: first(&named.upper, region, &self.upper),
+            dirichlet: first(&named.dirichlet, boundary, &self.dirichlet),
+            neumann: first(&named.neumann, boundary, &self.neumann),
+            gap: first(&named.gap, boundary, &self.gap),
+            named: NamedData::default(),
+            ..self.clone()
+        }
+    }
+
     /// The mesh with the parts of its boundary groups as the data of this problem say: Dirichlet where
     /// [`Problem::dirichlet_on`] names the group, and so on. Groups that the problem does not name keep
     /// their part.

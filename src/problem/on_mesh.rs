@@ -30,6 +30,13 @@ impl<'a, const D: usize> DatumRef<'a, D> {
             _ => None,
         }
     }
+    /// The degree of a polynomial, where it is known.
+    pub fn degree(self) -> Option<usize> {
+        match self {
+            Self::Datum(datum) => datum.degree(),
+            Self::Function(_) => None,
+        }
+    }
     /// The function whose zero set divides cells, if there is one.
     pub fn level(self) -> Option<&'a Field<D>> {
         match self {

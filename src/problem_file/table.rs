@@ -10,8 +10,7 @@ use super::error::{ProblemFileError, ProblemFileFault};
 use super::expression::Expression;
 use crate::input::{excerpt, read_file};
 use crate::mesh::gmsh;
-use crate::problem::{BoundaryFlux, Datum};
-use crate::real::Point;
+use crate::problem::{BoundaryField, BoundaryFlux, Datum, Field};
 
 /// A value with its place.
 pub(super) type Value<'t> = Spanned<DeValue<'t>>;
@@ -24,24 +23,36 @@ pub(super) enum Formula {
 }
 
 impl Formula {
-    /// The formula as a flux: a constant, or a function of the point and of the normal.
+    /// The formula as a flux: a constant, a polynomial on every facet, or a function of the point and of the normal.
     pub fn flux<const D: usize>(&self) -> BoundaryFlux<D> {
         match self.clone() {
             Self::Number(c) => BoundaryFlux::Constant(c),
-            Self::Expression(expression) => BoundaryFlux::Function(Arc::new(move |x, n| {
-                let mut variables = [0.0; 6];
-                variables[..D].copy_from_slice(x.as_slice());
-                variables[D..2 * D].copy_from_slice(n.as_slice());
-                expression.value(&variables[..2 * D])
-            })),
+            Self::Expression(expression) => {
+                let degree = expression.degree(D);
+                let value: BoundaryField<D> = Arc::new(move |x, n| {
+                    let mut variables = [0.0; 6];
+                    variables[..D].copy_from_slice(x.as_slice());
+                    variables[D..2 * D].copy_from_slice(n.as_slice());
+                    expression.value(&variables[..2 * D])
+                });
+                match degree {
+                    Some(degree) => BoundaryFlux::Polynomial { value, degree },
+                    None => BoundaryFlux::Function(value),
+                }
+            }
         }
     }
-    /// The formula as a datum: a constant, or a function of the point.
+    /// The formula as a datum: a constant, a polynomial, or a function of the point.
     pub fn datum<const D: usize>(&self) -> Datum<D> {
         match self.clone() {
             Self::Number(c) => Datum::Constant(c),
             Self::Expression(expression) => {
-                Datum::Function(Arc::new(move |x: &Point<f64, D>| expression.value(x.as_slice())))
+                let degree = expression.degree(D);
+                let value: Field<D> = Arc::new(move |x| expression.value(x.as_slice()));
+                match degree {
+                    Some(degree) => Datum::Polynomial { value, degree },
+                    None => Datum::Function(value),
+                }
             }
         }
     }

@@ -22,6 +22,7 @@ pub fn biactive_half_2d() -> Scene<2> {
         problem: Problem::new()
             .piecewise_source(move |x| -power(x)[2], |x| x[0])
             .obstacle_below(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(
                 Exact::new(move |x| power(x)[0], move |x| Point::from([power(x)[1], 0.0]))
                     .with_multiplier(|_| 0.0),
@@ -54,6 +55,7 @@ pub fn biactive_ring_2d() -> Scene<2> {
         problem: Problem::new()
             .piecewise_source(source, |x| (x.norm_squared() - 0.25) * (x.norm_squared() - 0.75))
             .obstacle_below(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::new(4.5).not_strictly_complementary(),
     }

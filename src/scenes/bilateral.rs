@@ -46,6 +46,7 @@ pub fn bilateral_1d() -> Scene<1> {
             .source(move |x| load(x[0]))
             .obstacle_below(|_| -M)
             .obstacle_above(|_| M)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::new(2.5),
     }

@@ -39,6 +39,7 @@ pub fn contrast<const D: usize>(contrast: f64) -> Scene<D> {
             .coefficient(move |x| alpha(x[0]))
             .constant_source(-1.0)
             .obstacle_below(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(
                 Exact::new(value, gradient)
                     .with_multiplier(|x| if x[0] <= 0.25 { 1.0 } else { 0.0 })
@@ -80,6 +81,7 @@ pub fn contrast_disc_2d(contrast: f64) -> Scene<2> {
             .piecewise_coefficient(alpha, |x| 1.0 - x.norm())
             .constant_source(-2.0)
             .obstacle_below(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(
                 Exact::new(value, gradient)
                     .with_multiplier(|x| if x.norm() <= A { 2.0 } else { 0.0 })

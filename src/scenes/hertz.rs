@@ -49,7 +49,10 @@ pub fn hertz_2d() -> Scene<2> {
         name: "hertz-2d".into(),
         summary: "Signorini without load, parabolic gap, contact on a segment",
         domain: BoxDomain::above_contact().into(),
-        problem: Problem::new().signorini(|x| -x[0] * x[0] / 2.0).solved_by(exact),
+        problem: Problem::new()
+            .signorini(|x| -x[0] * x[0] / 2.0)
+            .obstacles_of_degree(2)
+            .solved_by(exact),
         regularity: Regularity::new(2.5),
     }
 }

@@ -51,6 +51,7 @@ pub fn hertz_3d() -> Scene<3> {
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new()
             .signorini(|x| A * A - (x[0] * x[0] + x[1] * x[1]) / 2.0)
+            .obstacles_of_degree(2)
             .solved_by(exact),
         regularity: Regularity::new(2.5),
     }

@@ -59,6 +59,7 @@ pub fn lshape_2d() -> Scene<2> {
                 [0.25, 0.75, 1.25].iter().map(|circle| x.norm() - circle).product()
             })
             .obstacle_below(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(Exact::new(value, gradient).with_multiplier(pressed)),
         regularity: Regularity::new(5.0 / 3.0).not_strictly_complementary(),
     }

@@ -34,6 +34,7 @@ pub use ball::{ball_2d, ball_3d, disc_2d};
 pub use biactive::{biactive_half_2d, biactive_ring_2d};
 pub use bilateral::bilateral_1d;
 pub use catalogue::{AcceptedParameters, AnyScene, Entry, Parameters, by_name, catalogue};
+pub(crate) use check::check_exact_on;
 pub use check::check_scene;
 pub use cone::cone;
 pub use contrast::{contrast, contrast_disc_2d};

@@ -62,6 +62,7 @@ pub fn oscillating_1d() -> Scene<1> {
         problem: Problem::new()
             .source(move |x| load(x[0]))
             .obstacle_above(|_| 1.0)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::new(2.5),
     }

@@ -38,6 +38,7 @@ pub fn polynomial<const D: usize>() -> Scene<D> {
         problem: Problem::new()
             .piecewise_source(source, from_sphere)
             .obstacle_below(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::new(2.5),
     }
@@ -58,6 +59,7 @@ pub fn degenerate(k: i32) -> Scene<2> {
         problem: Problem::new()
             .piecewise_source(move |x| -power(x, k).laplacian, from_sphere)
             .obstacle_below(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(
                 Exact::new(move |x| power(x, k).value, move |x| power(x, k).gradient)
                     .with_multiplier(|_| 0.0),

@@ -73,6 +73,7 @@ fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> S
         problem: Problem::new()
             .source(move |x| -solution(x).laplacian)
             .signorini(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::new(2.5),
     }
@@ -119,6 +120,7 @@ pub fn signorini_two_2d() -> Scene<2> {
         problem: Problem::new()
             .piecewise_source(move |x| -solution(x).laplacian, |x| x[0].abs() - STEP)
             .signorini(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::new(2.5),
     }

@@ -41,7 +41,7 @@ pub fn signorini_harmonic<const D: usize>() -> Scene<D> {
         name: format!("signorini-harmonic-{D}d"),
         summary: "Signorini without load, the harmonic function r^(3/2) cos(3 theta/2)",
         domain: BoxDomain::above_contact().into(),
-        problem: Problem::new().signorini(|_| 0.0).solved_by(exact),
+        problem: Problem::new().signorini(|_| 0.0).obstacles_of_degree(0).solved_by(exact),
         regularity: Regularity::new(2.5),
     }
 }

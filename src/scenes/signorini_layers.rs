@@ -42,6 +42,7 @@ pub fn signorini_layers_2d(contrast: f64) -> Scene<2> {
             .coefficient(alpha)
             .piecewise_source(source, |x| x[0] * (x[1] - 0.5))
             .signorini(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::new(1.5),
     }

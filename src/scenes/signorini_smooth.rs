@@ -22,6 +22,7 @@ pub fn signorini_smooth(k: i32) -> Scene<2> {
         problem: Problem::new()
             .piecewise_source(move |x| -wedge_solution(x, k, 0.0).laplacian, |x| x[0])
             .signorini(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::new(f64::from(k) + 0.5),
     }
@@ -39,6 +40,7 @@ pub fn signorini_biactive_2d() -> Scene<2> {
         problem: Problem::new()
             .piecewise_source(|x| -wedge_solution(x, 2, 0.25).laplacian, |x| x[0].abs() - 0.25)
             .signorini(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(wedge(2, 0.25)),
         regularity: Regularity::new(2.5).not_strictly_complementary(),
     }
@@ -81,6 +83,7 @@ pub fn signorini_disc(k: i32) -> Scene<3> {
         problem: Problem::new()
             .piecewise_source(move |x| -solution(x).laplacian, from_circle)
             .signorini(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::new(f64::from(k) + 0.5),
     }

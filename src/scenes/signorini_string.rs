@@ -33,6 +33,7 @@ pub fn signorini_reaction_1d() -> Scene<1> {
             .source(|x| x[0].sin())
             .reaction(1.0)
             .signorini(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(exact),
         regularity: Regularity::smooth(),
     }
@@ -100,6 +101,7 @@ fn supported(
         problem: Problem::new()
             .constant_source(load)
             .signorini(|_| 0.0)
+            .obstacles_of_degree(0)
             .solved_by(exact)
             .polynomial_data(0),
         regularity,

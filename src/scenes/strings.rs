@@ -24,7 +24,8 @@ pub fn parabola_1d() -> Scene<1> {
     ];
     let problem = Problem::new()
         .constant_source(-2.0)
-        .obstacle_below(|x: &Point<f64, 1>| 8.0 * x[0] * (1.0 - x[0]) - 1.0);
+        .obstacle_below(|x: &Point<f64, 1>| 8.0 * x[0] * (1.0 - x[0]) - 1.0)
+        .obstacles_of_degree(2);
     let inside = |x: f64| 1.0 / 6.0 - (x - 0.5).abs();
     let summary = "a string under constant load over a parabola";
     string("parabola-1d", summary, problem, &PARABOLAS, inside, &[1.0 / 3.0, 2.0 / 3.0])
@@ -51,7 +52,8 @@ pub fn icelike_1d() -> Scene<1> {
     let near_end = |x: &Point<f64, 1>| (x[0] - 0.5).abs() - 0.3;
     let problem = Problem::new()
         .piecewise_source(move |x| if near_end(x) > 0.0 { -16.0 } else { 8.0 }, near_end)
-        .obstacle_below(|x: &Point<f64, 1>| x[0] * (1.0 - x[0]));
+        .obstacle_below(|x: &Point<f64, 1>| x[0] * (1.0 - x[0]))
+        .obstacles_of_degree(2);
     let summary = "a string held down near its ends and lifted between, over a parabola";
     string("icelike-1d", summary, problem, &PARABOLAS, |x| (x - 0.5).abs() - 0.4, &[0.1, 0.9])
 }

@@ -49,6 +49,7 @@ pub fn signorini_sine_2d() -> Scene<2> {
         problem: Problem::new()
             .source(|x| 2.0 * PI * (2.0 * PI * x[0]).sin())
             .signorini(|_| 0.0)
+            .obstacles_of_degree(0)
             .reference_energy(-0.461_754, 1e-6),
         regularity: Regularity::new(2.5),
     }

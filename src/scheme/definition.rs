@@ -23,7 +23,8 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
     /// Whether the exact solution satisfies the discrete equations, so that polynomials of the
     /// element's degree are reproduced; [`crate::kit`] holds a scheme to it either way.
     const CONSISTENT: bool = true;
-    /// The name users type and reports state.
+    /// The name users type and reports state. Two schemes of a study must differ in it or in their
+    /// [choices](Self::choices): a scheme with parameters puts them into one of the two.
     fn name(&self) -> &str;
     /// What distinguishes the scheme from the default one of its name, for its label in reports; nothing
     /// by default.

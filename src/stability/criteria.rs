@@ -52,6 +52,16 @@ pub const CRITERIA: &[Criterion] = &[
     ),
     of(
         "penalty-factor",
+        "multiplier-of-large-factors",
+        "The L1 error of the multiplier is at most 1.5 times that of Crouzeix-Raviart elements for eta from 10 to 1e14, in f32 to 1e11: contact forces keep their digits where the weight leaves none in differences of values. With one jumps still count, and in f32 matrices may be singular from 1e12 on: both are known to fail.",
+    ),
+    of(
+        "penalty-factor",
+        "equilibrium",
+        "Contact forces and the fluxes through facets with Dirichlet data balance the load, less the reaction: what is left is at most 1e-6 of the integral of the absolute load in f64, and 1e-3 in f32, where matrices are known to fail from 1e12 on.",
+    ),
+    of(
+        "penalty-factor",
         "condition-over-factors",
         "The condition number, preconditioned by the diagonal in means and jumps, is at most twice that at eta = 1 for all larger eta. Without preconditioning it grows like eta, and below one it is known to grow like 1/eta.",
     ),

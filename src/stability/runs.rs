@@ -68,6 +68,32 @@ pub(crate) fn solved<'a, const D: usize>(
     nested.cold_start(!is_warm).solve(&*choice.make())
 }
 
+/// What contact forces and the fluxes through facets with weakly imposed Dirichlet data leave of the load, less the
+/// reaction, over the sum of absolute loads. None without forces or without jump multipliers of the solver, which are
+/// the fluxes.
+pub(crate) fn imbalance<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> Option<f64> {
+    let (inequality, solution) = (solved.inequality(), solved.solution());
+    let penalised = inequality.penalised.as_ref()?;
+    let forces = solved.multiplier()?;
+    if solution.jump_multipliers.len() != penalised.n_jumps() {
+        return None;
+    }
+    let mut left = -forces.iter().sum::<f64>();
+    for i in 0..inequality.size() {
+        // the stiffness of a function has the sum zero
+        left += penalised.stiffness(i, |j| solution.values[j].to_f64());
+        left -= inequality.load[i].to_f64();
+    }
+    for (jump, multiplier) in solution.jump_multipliers.iter().enumerate() {
+        if penalised.blocks_of_jump(jump).iter().any(Option::is_none) {
+            let weights = penalised.terms_of(jump).iter().map(|term| term.weight.to_f64());
+            left += weights.sum::<f64>() * multiplier.to_f64();
+        }
+    }
+    let size: f64 = inequality.load.iter().map(|load| load.to_f64().abs()).sum();
+    Some(left.abs() / size)
+}
+
 /// Whether a scheme's matrix is symmetric positive definite on a mesh: 1 or 0; none if the
 /// scheme is not symmetric or the factorisation failed.
 pub(crate) fn definite<const D: usize>(

@@ -107,9 +107,15 @@ pub(crate) fn criteria(rows: &[StabilityRow]) -> Table {
     }
 }
 
-/// The criteria of errors and of definiteness over sweeps of a penalty factor.
-const OVER_FACTORS: [&str; 4] =
-    ["definite-for-every-factor", "error-of-large-factors", "inertia", "error-of-interior-penalty"];
+/// The criteria of errors, of forces and of definiteness over sweeps of a penalty factor.
+const OVER_FACTORS: [&str; 6] = [
+    "definite-for-every-factor",
+    "error-of-large-factors",
+    "multiplier-of-large-factors",
+    "equilibrium",
+    "inertia",
+    "error-of-interior-penalty",
+];
 /// The cases of these sweeps.
 const SWEEPS: [&str; 2] = ["penalty-factor", "coercivity"];
 

@@ -18,17 +18,13 @@ use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
 ///
 /// # Errors
 /// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part, or if the data of
-/// the scene are no data on the mesh: not finite, or without an admissible value; [`Error::Mesh`]
-/// if a component of the mesh has neither Dirichlet nor contact facets.
+/// the scene are no data on the mesh: not finite, or without an admissible value.
 pub fn check_fit<T: Real, const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<T, D>,
 ) -> Result<Option<String>, Error> {
     mesh.check_boundary_parts()?;
     check_contact(scene, mesh.has_part(BoundaryPart::Contact))?;
-    if !scene.problem.has_reaction() {
-        mesh.check_supported()?;
-    }
     check_data(scene, mesh)?;
     Ok(first_failure(scene, mesh))
 }
@@ -89,19 +85,42 @@ pub(super) fn check_scheme<T: Real, const D: usize>(
     }
 }
 
+/// Checks that the labels of schemes and the names of solvers tell the rows of a study apart: orders are of rows of one
+/// label and solver, and files have their names.
+///
+/// # Errors
+/// [`Error::EqualNames`].
+pub(super) fn check_names(
+    labels: impl Iterator<Item = String>,
+    solvers: impl Iterator<Item = &'static str>,
+) -> Result<(), Error> {
+    if let Some(label) = first_twice(labels) {
+        return Err(Error::equal_schemes(label));
+    }
+    first_twice(solvers).map_or(Ok(()), |name| {
+        let (items, by) = ("solvers", "`InequalitySolver::name`");
+        Err(Error::EqualNames { items, name: name.to_owned(), by })
+    })
+}
+
+/// The first item that equals one before it.
+fn first_twice<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
+    let mut before = Vec::new();
+    items.find_map(|item| match before.contains(&item) {
+        true => Some(item),
+        false => {
+            before.push(item);
+            None
+        }
+    })
+}
+
 /// Checks that the built-in domain of a scene has the parts its problem needs.
 ///
 /// # Errors
 /// [`Error::UnfitMesh`].
 pub(crate) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
-    let has = |part| scene.domain.has_part(part);
-    check_contact(scene, has(BoundaryPart::Contact))?;
-    let held = has(BoundaryPart::Contact) || has(BoundaryPart::Dirichlet);
-    if !held && !scene.problem.has_reaction() {
-        let why = "its domain has neither a dirichlet nor a contact side: the problem is singular";
-        return Err(Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() });
-    }
-    Ok(())
+    check_contact(scene, scene.domain.has_part(BoundaryPart::Contact))
 }
 
 /// Checks that there is a contact part if and only if there is a Signorini condition.

@@ -1,6 +1,7 @@
 //! Limits of figures that have no exact value, from three levels.
 
 use super::row::{Row, distinct};
+use crate::measure::Rounding;
 
 /// The limit of a figure as the mesh size tends to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,8 +73,8 @@ pub struct Extrapolated {
 }
 
 /// The limits of energy, contact measure and resultant of every series with three levels that converged,
-/// from the three finest of them. Rows of one scene, label, constraint set and solver are a series. Adaptive
-/// meshes have no limits: their sizes are not those of one family.
+/// from the three finest of them, none of figures that are all rounding. Rows of one scene, label, constraint set and
+/// solver are a series. Adaptive meshes have no limits: their sizes are not those of one family.
 #[must_use]
 pub fn extrapolate(rows: &[Row]) -> Vec<Extrapolated> {
     let key = |r: &Row| [&r.scene, &r.label, &r.constraint, &r.solver].map(String::clone);
@@ -84,18 +85,29 @@ pub fn extrapolate(rows: &[Row]) -> Vec<Extrapolated> {
             .collect();
         levels.sort_by(|a, b| b.mesh_size.total_cmp(&a.mesh_size));
         let three: &[&Row; 3] = levels.last_chunk()?;
-        let of = |figure: fn(&Row) -> Option<f64>| {
+        let of = |figure: fn(&Row) -> Option<f64>, rounding: fn(Rounding) -> f64| {
             let [a, b, c] = three.map(figure);
-            limit([a?, b?, c?], three.map(|r| r.mesh_size))
+            let figures = [a?, b?, c?];
+            let rounding = three.map(|r| r.rounding.map_or(0.0, rounding));
+            let rounding = rounding.into_iter().fold(0.0, f64::max);
+            let is_within = |x: f64| rounding > 0.0 && x.abs() <= rounding;
+            let [a, b, c] = figures;
+            if figures.into_iter().all(is_within) {
+                return None;
+            }
+            match is_within(a - b) && is_within(b - c) {
+                true => Some(Limit { value: c, order: None }),
+                false => limit(figures, three.map(|r| r.mesh_size)),
+            }
         };
         let [scene, label, _, solver] = series;
         Some(Extrapolated {
             scene,
             label,
             solver,
-            energy: of(|r| r.energy),
-            contact_measure: of(|r| r.contact_measure),
-            resultant: of(|r| r.resultant),
+            energy: of(|r| r.energy, |rounding| rounding.energy),
+            contact_measure: of(|r| r.contact_measure, |_| 0.0),
+            resultant: of(|r| r.resultant, |rounding| rounding.force),
         })
     };
     distinct(rows.iter().map(key)).into_iter().filter_map(of_series).collect()

@@ -1,6 +1,7 @@
 //! Studies: schemes side by side on a scene, their rows and reports.
 
 mod compatibility;
+mod crossing;
 mod extrapolate;
 #[cfg(feature = "report")]
 mod fields;

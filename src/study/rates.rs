@@ -14,13 +14,18 @@ pub(crate) fn rates(rows: &[&Row]) -> Vec<String> {
         let ([.., before, last], half) = (&steps[..], &steps[steps.len() / 2..]) else {
             return None;
         };
-        let order = |figure: fn(&Row) -> Option<f64>| {
+        let order = |error: fn(&Row) -> Option<f64>| {
             let points: Option<Vec<_>> =
-                half.iter().map(|row| Some((row.size(), figure(row)?))).collect();
+                half.iter().map(|row| Some((row.size(), error(row)?))).collect();
             points.and_then(|points| fit_order(&points)).map(|fitted| fitted.order)
         };
         let mut words = Vec::new();
-        let orders = [("bound", order(|r| r.bound.total)), ("H1", order(|r| r.error.h1))];
+        let broken_energy = |row: &Row| {
+            let is_rounding = row.errors_above_rounding().h1.is_none();
+            row.error.broken_energy.filter(|_| !is_rounding)
+        };
+        let bound = |row: &Row| row.errors_above_rounding().bound;
+        let orders = [("bound", order(bound)), ("energy norm", order(broken_energy))];
         let orders = orders.iter().filter_map(|(name, p)| Some(format!("{name} {:.2}", (*p)?)));
         let orders: Vec<String> = orders.collect();
         if !orders.is_empty() {

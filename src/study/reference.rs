@@ -97,8 +97,7 @@ impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
     /// Fills in energy, bound and errors, and why there are none.
     pub fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
         row.energy = solved.energy()?;
-        row.bound = solved.bound_figures(self.failure.is_none() && self.reference.is_some());
-        row.seconds.bound = solved.bound_seconds();
+        row.set_penetration(solved.penetration()?);
         match (self.reference, self.failure) {
             (Some(Ok((reference, name))), _) => {
                 row.error = solved.difference(reference)?;
@@ -116,7 +115,13 @@ impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
             }
             (None, None) => {}
         }
-        row.warnings.extend(row.bound.remark().filter(|_| row.converged()));
+        if row.against.as_deref() != Some("exact") {
+            let with_v = self.failure.is_none() && self.reference.is_some();
+            row.bound = solved.bound_figures(row.error.broken_energy, with_v);
+        }
+        row.seconds.bound = solved.bound_seconds();
+        let remark = row.bound.remark(row.against.as_deref());
+        row.warnings.extend(remark.filter(|_| row.converged()));
         Ok(())
     }
 }

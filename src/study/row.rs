@@ -1,12 +1,14 @@
 //! Rows of a report: the figures of one scene, scheme and level each.
 
+use std::collections::BTreeMap;
+
 use super::part_figures::PartFigures;
 use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
-use crate::inequality::{Certificate, Outcome, StageRun};
-use crate::measure::{ContactErrors, Errors};
-use crate::nested::Solved;
+use crate::inequality::{Certificate, Outcome, StageRun, explanation};
+use crate::measure::{ContactErrors, Errors, Penetration, Rounding};
+use crate::nested::{Solved, warnings_of_forces};
 use crate::real::Real;
 use crate::scheme::ExpectedOrders;
 
@@ -144,7 +146,10 @@ pub struct Row {
     /// Distances of multiplier and contact set, keys of the row itself.
     #[cfg_attr(feature = "report", serde(flatten))]
     pub contact: ContactErrors,
-    /// Observed order against the previous level of the same scene and label.
+    /// Rounding errors in the figures of the row: figures that are no larger have no orders. Old reports have none.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub rounding: Option<Rounding>,
+    /// Observed order against the previous level of the same scene and label; none where an error is rounding.
     pub order: Orders,
     /// Orders that theory promises.
     pub expected_order: ExpectedOrders,
@@ -163,6 +168,14 @@ pub struct Row {
     pub contact_measure: Option<f64>,
     /// Total contact force, positive where a lower bound pushes upward; null without an inequality.
     pub resultant: Option<f64>,
+    /// The same for each obstacle (`lower`, `upper`) and each contact group by its name; old reports have none.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub resultants: Option<BTreeMap<String, f64>>,
+    /// How far the solution lies beyond an obstacle or a gap, the largest value over cells and contact facets, negative
+    /// where it reaches none: [`Discretisation::penetration`](crate::assemble::Discretisation::penetration). Null
+    /// without an inequality; old reports have none.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub penetration: Option<f64>,
     /// Iteration counts.
     pub iterations: Iterations,
     /// The certificate.
@@ -203,6 +216,7 @@ impl Row {
             against: None,
             error: Errors::default(),
             contact: ContactErrors::default(),
+            rounding: None,
             order: Orders::default(),
             expected_order: ExpectedOrders::default(),
             objective: None,
@@ -211,6 +225,8 @@ impl Row {
             active: None,
             contact_measure: None,
             resultant: None,
+            resultants: None,
+            penetration: None,
             iterations: Iterations::default(),
             certificate: Certificate::INVALID,
             seconds: Seconds::default(),
@@ -228,8 +244,14 @@ impl Row {
         solved: &Solved<'_, T, D>,
     ) -> Self {
         let (mesh, solution) = (solved.mesh(), solved.solution());
+        let forces = solved.multiplier();
+        let mut warnings = solved.warnings().to_vec();
+        warnings.extend(warnings_of_forces(solved, forces.as_deref()));
         let solve_seconds = solved.solve_seconds + solved.start_seconds;
+        let row = Self::new(scene, D, scheme, level, solved.outcome());
+        let explanation = explanation(solved.inequality(), solved.outcome());
         Self {
+            message: explanation.or(row.message),
             parameters: solved.discretisation().form().theory().parameters,
             linear: solution.linear_solver.to_owned(),
             cells: mesh.n_cells(),
@@ -239,7 +261,8 @@ impl Row {
             objective: solved.objective(),
             active: solved.active(),
             contact_measure: solved.contact_measure(),
-            resultant: solved.resultant(),
+            resultant: forces.map(|forces| forces.iter().sum()),
+            resultants: solved.resultants(),
             iterations: Iterations {
                 outer: solved.outer(),
                 linear: solution.linear,
@@ -248,10 +271,17 @@ impl Row {
                 stages: solution.stages.clone(),
             },
             certificate: solved.certificate(),
+            rounding: solved.rounding(),
             seconds: Seconds::new(solved.mesh_seconds, solved.assemble_seconds, solve_seconds),
-            warnings: solved.warnings().to_vec(),
-            ..Self::new(scene, D, scheme, level, solved.outcome())
+            warnings,
+            ..row
         }
+    }
+
+    /// Sets the penetration, with its warning.
+    pub(super) fn set_penetration(&mut self, found: Option<Penetration>) {
+        self.penetration = found.map(|found| found.largest()).filter(|most| most.is_finite());
+        self.warnings.extend(found.and_then(|found| found.remark()));
     }
 
     /// The row with the outcome that an error of the data stands for, and the message of the error.
@@ -284,6 +314,31 @@ impl Row {
     pub(crate) fn seconds_with_bound(&self) -> f64 {
         let beside = self.seconds.bound.filter(|_| self.theta.is_none());
         self.seconds.total + beside.unwrap_or(0.0)
+    }
+    /// The errors of the row that are more than rounding, each under the name of its order.
+    pub(crate) fn errors_above_rounding(&self) -> Orders {
+        let Self { error, contact, bound, rounding, .. } = self;
+        let of = rounding.map_or_else(Errors::default, |rounding| rounding.error);
+        let force = rounding.map(|rounding| rounding.force);
+        let above = |error: Option<f64>, rounding: Option<f64>| {
+            error.filter(|error| rounding.is_none_or(|rounding| *error > rounding))
+        };
+        // where the space contains the solution all errors are rounding, whatever their size
+        let is_exact =
+            error.broken_energy.is_some() && above(error.broken_energy, of.broken_energy).is_none();
+        let errors = if is_exact { Errors::default() } else { *error };
+        // of a function and of a flux
+        let of_bound = of.broken_energy.map(|rounding| 2.0 * rounding);
+        let multiplier_l1 = above(contact.multiplier_l1, force);
+        Orders {
+            l2: above(errors.l2, of.l2),
+            h1: above(errors.h1, of.h1),
+            energy: above(errors.energy, of.energy),
+            max: above(errors.max, of.max),
+            bound: above(bound.discrete, of_bound),
+            multiplier_l1,
+            multiplier_l2: contact.multiplier_l2.filter(|_| multiplier_l1.is_some()),
+        }
     }
     /// The reference against which the errors are; none where they are against the exact solution.
     pub fn reference(&self) -> Option<&str> {

@@ -21,7 +21,8 @@ impl fmt::Display for Report {
 
 /// Writes one table for each scene, in the order in which scenes first occur, with a blank line
 /// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
-/// certificate, `effect.` the error bound over the true error. A row that did not converge is followed by
+/// certificate, `effect.` the error bound over the true error in the broken energy norm, `bound` the bound on that
+/// error, with a mark where a term of it is not proven. A row that did not converge is followed by
 /// the reason. Where no error is known there are columns of error bound, energy, contact measure and
 /// resultant, and their limits below; where errors are known a second table has these, for the finest level
 /// of each series, and the stages that ran.
@@ -68,7 +69,9 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     if !has_errors(rows) {
         limits(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))?;
     }
-    rates(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))?;
+    for line in rates(rows).iter().chain(&unproven(rows)) {
+        write_wrapped(f, &format!("  {line}"))?;
+    }
     let finest = |of_series| rows.iter().rfind(|r| key(r) == of_series).copied();
     let finest: Vec<&Row> = series.into_iter().filter_map(finest).collect();
     for columns in [totals(rows), of_processes(rows)].into_iter().filter(|c| !c.is_empty()) {
@@ -197,22 +200,27 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     }
     columns.push(number("unknowns", |r| whole(r.unknowns)));
     columns.push(number("outer", |r| whole(r.iterations.outer)));
+    let has_effectivity = any(|r| r.bound.effectivity);
+    let has_bound = any(|r| r.bound.discrete) && (is_adaptive || !has_effectivity);
     if is_adaptive {
-        columns.push(number("bound", |r| scientific(r.bound.total)));
+        columns.push(number("bound", |r| marked(r, scientific(r.bound.discrete))));
         columns.push(number("order", |r| fixed(r.order.bound)));
     } else if any(|r| r.error.l2) {
         columns.push(number("L2", |r| scientific(r.error.l2)));
         columns.push(number("order", |r| fixed(r.order.l2)));
     }
-    if any(|r| r.error.h1) {
+    if has_bound && rows.iter().any(|r| !r.error.is_energy_h1()) {
+        // beside a bound only the norm that it bounds
+        columns.push(number("energy norm", |r| scientific(r.error.broken_energy)));
+    } else if any(|r| r.error.h1) {
         columns.push(number("H1", |r| scientific(r.error.h1)));
         columns.push(number("order", |r| fixed(r.order.h1)));
     }
     // the errors say the rest where they are known, and lines stay within their width
-    if any(|r| r.bound.effectivity) {
-        columns.push(number("effect.", |r| fixed(r.bound.effectivity)));
-    } else if !is_adaptive && any(|r| r.bound.total) {
-        columns.push(number("bound", |r| digits(r.bound.total, 1)));
+    if has_effectivity {
+        columns.push(number("effect.", |r| marked(r, fixed(r.bound.effectivity))));
+    } else if !is_adaptive && has_bound {
+        columns.push(number("bound", |r| marked(r, digits(r.bound.discrete, 1))));
     }
     if !has_errors(rows) {
         columns.extend(of_the_solution(rows));
@@ -223,7 +231,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
         // the largest violation, where NaN counts as larger than any number
         let all = [c.feasibility, c.multiplier, c.complementarity, c.residual];
         let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
-        scientific(Some(all.into_iter().fold(0.0, worse)).filter(|c| c.is_finite()))
+        digits(Some(all.into_iter().fold(0.0, worse)).filter(|c| c.is_finite()), 1)
     }));
     columns.push(number("assem.", |r| seconds(r.seconds.assemble)));
     columns.push(number("solve", |r| seconds(r.seconds.solve)));
@@ -231,6 +239,20 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
         columns.push(number("total", |r| seconds(r.seconds.total)));
     }
     columns
+}
+
+/// A bound, or a ratio of it, with a mark where a term of it is not proven.
+fn marked(row: &Row, bound: String) -> String {
+    let is_marked = bound != NONE && row.bound.guaranteed == Some(false);
+    if is_marked { bound + "*" } else { bound }
+}
+
+/// What the marks of bounds mean, where there are any.
+pub(crate) fn unproven(rows: &[&Row]) -> Option<String> {
+    let sets =
+        distinct(rows.iter().map(|r| r.bound.unproven_words()).filter(|words| !words.is_empty()));
+    (!sets.is_empty())
+        .then(|| format!("* bound with terms that are not proven: {}", sets.join("; ")))
 }
 
 /// Energy, contact measure and resultant, where they are known.
@@ -261,8 +283,8 @@ pub(crate) fn totals(rows: &[&Row]) -> Vec<Column> {
     let names = columns.len();
     if has_errors(rows) {
         columns.extend(of_the_solution(rows));
-        if !is_adaptive && rows.iter().any(|r| r.bound.total.is_some()) {
-            columns.push(number("bound", |r| scientific(r.bound.total)));
+        if !is_adaptive && rows.iter().any(|r| r.bound.discrete.is_some()) {
+            columns.push(number("bound", |r| marked(r, scientific(r.bound.discrete))));
         }
     }
     if rows.iter().any(|r| !r.iterations.stages.is_empty()) {

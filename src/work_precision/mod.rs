@@ -260,8 +260,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// some exceed the time limit.
     ///
     /// # Errors
-    /// Those of [`Study::check`](crate::study::Study::check) of each case; [`Error::Parameter`] for two schemes of one label, and for a
-    /// reference that does not fit the levels or the memory.
+    /// Those of [`Study::check`](crate::study::Study::check) of each case; [`Error::EqualNames`]; [`Error::Parameter`]
+    /// for a reference that does not fit the levels or the memory.
     pub fn check(&self) -> Result<Vec<Case>, Error> {
         compiled!(
             const D: fn(&WorkPrecision<'_, D>) -> Result<Vec<Case>, Error> = |study| {

@@ -40,9 +40,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                         let slot = self.slot(candidate, linear, precision, meshes)?;
                         slot.study.check()?;
                         if slots.iter().any(|s| s.case == slot.case) {
-                            let variant = &slot.case.variant;
-                            let name = format!("{} on {}", variant.label, variant.constraint);
-                            return Err(wrong("schemes", name, "each must have its own label"));
+                            return Err(Error::equal_schemes(slot.case.variant.label));
                         }
                         slots
                             .push(Slot { coarser: coarser.filter(|_| meshes.1.is_none()), ..slot });

@@ -68,7 +68,7 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
             Cell::scientific(row.error.l2),
             Cell::scientific(row.error.h1),
             Cell::scientific(row.error.broken_energy),
-            Cell::scientific(row.bound.total),
+            Cell::scientific(row.bound.discrete),
             Cell::scientific(Some(certificate.into_iter().fold(0.0, worse))),
             Cell::scientific(Some(m.smallest.total)),
             megabytes(row.peak_memory_bytes.map(|b| b as f64)),

@@ -13,7 +13,7 @@ fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
         ErrorNorm::L2 => error.l2,
         ErrorNorm::H1 => error.h1,
         ErrorNorm::Energy => error.broken_energy,
-        ErrorNorm::Bound => measured.row.bound.total,
+        ErrorNorm::Bound => measured.row.bound.discrete,
     };
     value.filter(|e| measured.row.converged() && e.is_finite() && *e > 0.0)
 }

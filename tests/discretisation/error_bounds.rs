@@ -4,7 +4,7 @@ use crate::elements::ConformingP3;
 use crate::runs::small_mesh;
 use crate::support::checks::Checks;
 use crate::support::meshes::{Random, Raw};
-use unilateral::error_bound::{ErrorBound, Guaranteed, NoBound, PrimalDualPair, Unproven};
+use unilateral::error_bound::{ErrorBound, NoBound, PrimalDualPair, Unproven};
 use unilateral::mesh::{Neighbour, Neighbours, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
@@ -427,7 +427,7 @@ fn a_scene_with_constant_data_has_a_guaranteed_bound() {
         let scenes::AnyScene::One(scene) = scene else { panic!("{name}") };
         let study = Study::<f64, 1>::new(scene).scheme(ConformingP1).scheme(Sipg::default());
         for row in study.scheme(Wopsip::default()).levels([8]).run().unwrap().rows {
-            assert_eq!(row.bound.guaranteed, Some(Guaranteed::All(true)), "{name} {}", row.label);
+            assert_eq!(row.bound.guaranteed, Some(true), "{name} {}", row.label);
             let effectivity = row.bound.effectivity.unwrap();
             assert!(
                 (1.0 - 1e-9..3.0).contains(&effectivity),

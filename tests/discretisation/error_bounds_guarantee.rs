@@ -4,6 +4,7 @@ use crate::support::checks::Checks;
 use unilateral::assemble::DataQuadrature;
 use unilateral::error_bound::Unproven;
 use unilateral::prelude::*;
+use unilateral::problem::{BoundaryFlux, Datum};
 use unilateral::quadrature::VertexRule;
 
 /// The interval (0, 1) with Neumann data at both ends.
@@ -132,5 +133,38 @@ fn facet_rules_are_held_against_stated_degrees() {
         [DataQuadrature::default().facet(1), DataQuadrature::default().family(&VertexRule)]
     {
         assert!(unproven(quadrature).contains(&Unproven::Quadrature));
+    }
+}
+
+/// The rules of a bound follow the degrees of polynomial data: with these stated it has the value that rules of a high
+/// degree give.
+#[test]
+fn rules_follow_the_degrees_of_data() {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+        .side(1, 0, BoundaryPart::Contact)
+        .side(0, 1, BoundaryPart::Neumann);
+    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [2, 2]).unwrap();
+    let source = |x: &Point<f64, 2>| 40.0 * x[0].powi(12) - 20.0 * x[1].powi(11);
+    let flux = |x: &Point<f64, 2>, _: &Point<f64, 2>| 10.0 * x[1].powi(12);
+    let gap = |x: &Point<f64, 2>| -0.1 + 0.1 * x[0].powi(2);
+    let functions = Problem::new().source(source).neumann(flux).signorini(gap);
+    let mut polynomials = functions.clone();
+    polynomials.source = Some(Datum::polynomial(12, source));
+    polynomials.neumann =
+        Some(BoundaryFlux::Polynomial { value: std::sync::Arc::new(flux), degree: 12 });
+    polynomials.gap = Some(Datum::polynomial(2, gap));
+    for name in ["p1", "sipg", "p2"] {
+        let scheme: NamedScheme = name.parse().unwrap();
+        let scheme = scheme.make();
+        let bound = |problem: &Problem<2>, degree: usize| {
+            let quadrature = DataQuadrature::default().cell(26).facet(degree);
+            let mut nested = NestedIteration::new(problem, &mesh).quadrature(quadrature);
+            nested.solve(&*scheme).unwrap().bound().unwrap()
+        };
+        let (by_degrees, by_rules) = (bound(&polynomials, 15), bound(&functions, 26));
+        let far = (by_degrees.discrete / by_rules.discrete - 1.0).abs();
+        assert!(far < 1e-10, "{name}: {far:e}");
+        assert!(!by_degrees.unproven.contains(&Unproven::Quadrature), "{name}");
+        assert!(by_rules.unproven.contains(&Unproven::Quadrature), "{name}");
     }
 }

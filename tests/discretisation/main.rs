@@ -5,6 +5,7 @@ mod adaptive;
 mod elements;
 mod error_bounds;
 mod error_bounds_contact;
+mod error_bounds_discrete;
 mod error_bounds_guarantee;
 mod error_bounds_quadratics;
 mod forms;

@@ -8,7 +8,7 @@
 use std::cell::RefCell;
 use std::sync::Mutex;
 
-use unilateral::algebra::{Bound, Contact, Inequality, JumpTerm, Start};
+use unilateral::algebra::{Bound, Contact, Inequality, Start};
 use unilateral::constraint::constraint_set_by_name;
 use unilateral::error::Error;
 use unilateral::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
@@ -75,10 +75,11 @@ fn correction(
 /// The step of Jacobi's method from zero on unknowns off contact. Tolerances are relative to the energy of the values
 /// at hand: the step has that of the residual that is left, zero would leave the scale to the forces of contact.
 fn jacobi_step(left: &Inequality<f64>, contact: &[Contact]) -> Vec<f64> {
+    let load = left.assembled_load();
     let entry = |i: usize| {
         let (columns, values) = left.matrix.row(i);
         let diagonal = columns.iter().position(|&j| j as usize == i).map_or(1.0, |k| values[k]);
-        left.load[i] / diagonal
+        load[i] / diagonal
     };
     let value = |i: usize| if contact[i] == Contact::Inactive { entry(i) } else { 0.0 };
     left.bounds.iter().enumerate().map(|(i, bound)| bound.nearest(value(i))).collect()
@@ -119,21 +120,10 @@ fn inequality_left(given: &Inequality<f64>, solution: &Solution<f64>) -> Inequal
         _ => penalised.jump_multipliers(|i| u[i]),
     };
     let mut residual = vec![0.0; u.len()];
-    penalised.residual_with_jump_multipliers(|i| u[i], |k| p[k], &mut residual);
+    penalised.residual_with_jump_multipliers(&given.load, |i| u[i], |k| p[k], &mut residual);
     let data = |k: usize| penalised.jump_residual(k, |i| u[i], p[k]);
     penalised.jump_data = (0..penalised.n_jumps()).map(data).collect();
-    penalised.load = residual;
-    left.load.clone_from(&penalised.load);
-    for jump in 0..penalised.n_jumps() {
-        let multiplier = penalised.weights[jump] * penalised.jump_data[jump];
-        for term in penalised.terms_of(jump) {
-            for (unknown, weight) in [(term.here, term.weight), (term.there, -term.weight)] {
-                if unknown != JumpTerm::<f64>::NO_UNKNOWN {
-                    left.load[unknown as usize] += weight * multiplier;
-                }
-            }
-        }
-    }
+    left.load = residual;
     left
 }
 

@@ -78,7 +78,8 @@ impl<'a> Reference<'a> {
 
     /// `c - K u - M^T p`.
     fn residual(&self) -> Vec<Double> {
-        let PenalisedMatrix { block_size: n, blocks, load, .. } = self.penalised;
+        let PenalisedMatrix { block_size: n, blocks, .. } = self.penalised;
+        let load = &self.inequality.load;
         let entry = |i: usize, j: usize| -> Double { blocks[i * n + j % n].into() };
         let of_block = |i: usize| {
             let columns = i / n * n..i / n * n + n;
@@ -143,7 +144,7 @@ impl<'a> Reference<'a> {
         let [of_values, of_loads] = ROUNDING;
         let residual = self.residual();
         let largest = self.values.iter().map(|x| x.high.abs()).fold(0.0, f64::max);
-        let largest_load = self.penalised.load.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+        let largest_load = self.inequality.load.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
         let mut changes = Vec::new();
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
             let beyond = |b: f64, side: f64| (self.values[i] - b.into()).high * side;

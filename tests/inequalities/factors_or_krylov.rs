@@ -13,7 +13,12 @@ const BAND: f64 = 1e-10;
 
 /// The distance of an unknown from a change of its contact state, relative to the energy norm of the
 /// solution: its gap times the square root of its diagonal entry, or its multiplier divided by it.
-fn margin(q: &Inequality<f64>, u: &Solution<f64>, i: usize, energy_norm: f64) -> f64 {
+fn margin(
+    (q, load): (&Inequality<f64>, &[f64]),
+    u: &Solution<f64>,
+    i: usize,
+    energy_norm: f64,
+) -> f64 {
     let d = q.matrix.get(i, i);
     let value = u.values[i];
     let margin = match u.contact[i] {
@@ -21,7 +26,7 @@ fn margin(q: &Inequality<f64>, u: &Solution<f64>, i: usize, energy_norm: f64) ->
             let gap = |bound: Option<f64>| bound.map_or(f64::INFINITY, |b| (value - b).abs());
             gap(q.bounds[i].lower()).min(gap(q.bounds[i].upper())) * d.sqrt()
         }
-        _ => (q.matrix.row_dot_f64(i, &u.values) - q.load[i]).abs() / d.sqrt(),
+        _ => (q.matrix.row_dot_f64(i, &u.values) - load[i]).abs() / d.sqrt(),
     };
     margin / energy_norm
 }
@@ -37,8 +42,9 @@ fn check<const D: usize>(scene: &Scene<D>, scheme: &str, level: usize) -> usize 
         .map(|linear| ActiveSet::default().linear(linear).solve(&q));
     assert_eq!(a.outcome, b.outcome, "{what}");
     let energy: f64 = (0..q.size()).map(|i| a.values[i] * q.matrix.row_dot_f64(i, &a.values)).sum();
+    let load = q.assembled_load();
     for i in 0..q.size() {
-        let largest = [&a, &b].map(|u| margin(&q, u, i, energy.sqrt()));
+        let largest = [&a, &b].map(|u| margin((&q, &load), u, i, energy.sqrt()));
         let largest = largest[0].max(largest[1]);
         assert!(
             a.contact[i] == b.contact[i] || largest <= 10.0 * BAND,

@@ -7,6 +7,7 @@ mod exact_reference;
 mod factors_or_krylov;
 mod iterations;
 mod iterative;
+mod load;
 mod monotone_multigrid;
 mod nonsymmetric;
 mod ordering;

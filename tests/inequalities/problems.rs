@@ -148,11 +148,12 @@ pub fn random_bounds(n: usize, random: &mut Random) -> Vec<Bound<f64>> {
 /// and for those dominant by rows.
 pub fn projected_gauss_seidel(inequality: &Inequality<f64>) -> Vec<f64> {
     let n = inequality.size();
+    let load = inequality.assembled_load();
     let mut u: Vec<f64> = inequality.bounds.iter().map(|bound| bound.nearest(0.0)).collect();
     for _ in 0..200_000 {
         let mut moved = 0.0_f64;
         for i in 0..n {
-            let residual = inequality.matrix.row_dot(i, &u) - inequality.load[i];
+            let residual = inequality.matrix.row_dot(i, &u) - load[i];
             let x = inequality.bounds[i].nearest(u[i] - residual / inequality.matrix.get(i, i));
             moved = moved.max((x - u[i]).abs());
             u[i] = x;

@@ -13,7 +13,7 @@ fn meshes_follow_the_bound_to_a_goal() {
     for label in ["p1", "sipg"] {
         let of: Vec<&Value> = rows(&report).iter().filter(|row| row["label"] == label).collect();
         let bounds: Vec<f64> =
-            of.iter().map(|row| row["bound"]["total"].as_f64().unwrap()).collect();
+            of.iter().map(|row| row["bound"]["discrete"].as_f64().unwrap()).collect();
         let (last, before) = bounds.split_last().unwrap();
         assert!(*last <= 0.03 && before.iter().all(|bound| *bound > 0.03), "{bounds:?}");
         assert!(of.iter().enumerate().all(|(step, row)| row["level"] == step));
@@ -59,7 +59,7 @@ fn a_problem_of_a_file_is_refined_on_its_mesh() {
     let rows = rows(&report);
     assert_eq!(rows.len(), 6);
     assert!(rows.chunks(3).all(|steps| {
-        let bound = |row: &Value| row["bound"]["total"].as_f64().unwrap();
+        let bound = |row: &Value| row["bound"]["discrete"].as_f64().unwrap();
         bound(&steps[2]) < bound(&steps[0])
     }));
 }

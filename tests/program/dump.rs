@@ -14,7 +14,7 @@ fn judge(folder: &Path, vector: &str, options: &[&str]) -> Output {
     command("judge").arg(folder).arg(folder.join(vector)).args(options).output().unwrap()
 }
 
-/// The values of a scheme on a scene as text.
+/// The values of a scheme on a scene.
 fn solution(scheme: &dyn AnyScheme<f64, 2>, level: usize) -> Vec<f64> {
     let scene = scenes::radial::<2>(1.0);
     let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
@@ -41,6 +41,14 @@ fn a_vector_that_comes_back_has_the_row_of_the_run() {
         let [lower, upper] =
             ["lower.npy", "upper.npy"].map(|name| read_vector(folder.join(name)).unwrap());
         assert_eq!([load.len(), lower.len(), upper.len()], [n; 3]);
+        // the load of the assembled matrix, weak Dirichlet data included
+        let scene = scenes::radial::<2>(1.0);
+        let meshes = Hierarchy::of_domain(&scene.domain, 8).unwrap();
+        let of = Discretisation::new(scheme, &scene.problem, meshes.finest(), Default::default());
+        let of = of.unwrap();
+        let largest = load.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
+        let is_close = |(a, b): (&f64, f64)| (a - b).abs() <= 1e-13 * largest;
+        assert!(load.iter().zip(of.load().unwrap()).all(is_close), "{label}");
         let within = |(x, (l, u)): (&f64, (&f64, &f64))| *x >= l - 1e-9 && *x <= u + 1e-9;
         assert!(values.iter().zip(lower.iter().zip(&upper)).all(within));
         let matrix = fs::read_to_string(folder.join("matrix.mtx")).unwrap();

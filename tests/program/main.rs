@@ -1,12 +1,15 @@
 //! The program `unilateral`, subcommand `compare`: wrong requests and right requests.
 
 mod adaptive;
+mod contact_forces;
 mod data;
 mod dump;
+mod free_bodies;
 #[cfg(unix)]
 mod interrupt;
 mod limits;
 mod meshes;
+mod obstacles;
 mod output;
 mod over_processes;
 mod own_problems;

@@ -13,14 +13,6 @@ fn wrong_meshes_are_refused() {
         s.names.clear();
         s.elements = vec!["1 1 0 1 2", "5 2 0 1 2 5", "6 2 0 2 3 5", "7 2 0 3 4 5", "8 2 0 4 1 5"];
     });
-    let all_neumann = Square::with(|s| {
-        s.elements[..4].copy_from_slice(&[
-            "1 1 2 3 1 1 2",
-            "2 1 2 3 1 2 3",
-            "3 1 2 3 1 3 4",
-            "4 1 2 3 1 4 1",
-        ]);
-    });
     let cases: &[(&str, &str, String, &[&str])] = &[
         ("radial-2d", "empty", String::new(), &["not a Gmsh mesh"]),
         ("radial-2d", "prose", "Dear reader,\n".into(), &["not a Gmsh mesh", "$MeshFormat"]),
@@ -65,7 +57,6 @@ fn wrong_meshes_are_refused() {
             Square::with(|s| s.elements[7] = "8 2 2 9 1 4 1 6"),
             &["element 8", "node 6"],
         ),
-        ("radial-2d", "floating", all_neumann, &["neither a dirichlet nor a contact", "4 cells"]),
         ("radial-2d", "touching", Square::in_contact(), &["radial-2d", "\"contact\""]),
         ("signorini-2d", "free", sound.clone(), &["signorini-2d", "\"contact\""]),
         ("radial-3d", "plane", sound.clone(), &["dimension 2", "radial-3d", "--list"]),

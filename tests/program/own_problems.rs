@@ -314,3 +314,55 @@ fn files_of_an_earlier_request_go() {
     let page = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(!page.contains("p1 on radial-2d"));
 }
+
+/// Problems of the test data, with their meshes.
+fn of_tests(name: &str) -> String {
+    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn warns(row: &Value, text: &str) -> bool {
+    row["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(text))
+}
+
+/// The solution on a disc is none on the polygon of its mesh: every row says so, and a bound that is guaranteed lies
+/// below the distance from it.
+#[test]
+fn a_solution_on_the_disc_is_none_on_a_polygon() {
+    let scratch = Scratch::new("disc");
+    let schemes = "p1,p2,cr,sipg,wopsip,sipg-p2";
+    let report = scratch.report(&format!("{} --scheme {schemes} --levels 0,1", of_tests("disc0")));
+    let mut below = 0;
+    for row in rows(&report) {
+        assert_eq!(row["bound"]["guaranteed"], true, "{}", row["label"]);
+        let not_fulfilled = "the stated solution does not solve this problem: not fulfilled: \
+            Dirichlet data equal to the solution";
+        assert!(warns(row, not_fulfilled), "{row}");
+        if number(row, &["bound", "effectivity"]) < 0.999 {
+            let said = "the stated solution does not solve this problem: its distance";
+            assert!(warns(row, said), "{row}");
+            below += 1;
+        }
+    }
+    assert!(below > 0);
+    let text = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    assert!(text.contains("the stated solution does not solve this problem"), "{text}");
+}
+
+/// Dirichlet values of two groups that differ where they meet belong to no function of finite energy.
+#[test]
+fn dirichlet_values_that_jump_are_named() {
+    let scratch = Scratch::new("jump");
+    let report =
+        scratch.report(&format!("{} --scheme p1,cr,sipg,p2 --levels 2,4", of_tests("jump")));
+    for row in rows(&report) {
+        for (group, point) in [("left", "(0.000000, 1.000000)"), ("right", "(1.000000, 1.000000)")]
+        {
+            let said = format!("`{group}` and `top` differ where they meet, 0.05 and 1 at {point}");
+            assert!(warns(row, &said), "{}", row["warnings"]);
+        }
+        let unproven = row["bound"]["unproven"].as_array().unwrap();
+        assert!(unproven.contains(&"boundary".into()), "{}", row["bound"]);
+    }
+    let text = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    assert!(text.contains("bound with terms that are not proven: boundary"), "{text}");
+}

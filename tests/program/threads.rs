@@ -19,8 +19,8 @@ fn ticks(process: &Child) -> u64 {
     field(11) + field(12)
 }
 
-/// Broken schemes on meshes with fewer chunks of cells than threads: a thread that waits for its own parallel work takes
-/// up other tasks, and must not ask for a lock that it holds.
+/// Broken schemes on meshes with fewer chunks of cells than threads: a thread that waits for its own parallel work
+/// takes up other tasks, and must not ask for a lock that it holds.
 #[test]
 fn sixteen_threads_finish_small_meshes_of_broken_schemes() {
     let scratch = Scratch::new("sixteen-threads");

@@ -24,7 +24,7 @@ fn a_row_is_a_step_with_the_times_of_all_before() {
             let order = |coarse: f64, fine: f64| 2.0 * (coarse / fine).ln() / growth.ln();
             let [h1, bound] = [
                 order(before.error.h1.unwrap(), row.error.h1.unwrap()),
-                order(before.bound.total.unwrap(), row.bound.total.unwrap()),
+                order(before.bound.discrete.unwrap(), row.bound.discrete.unwrap()),
             ];
             assert!((row.order.h1.unwrap() - h1).abs() < 1e-9);
             assert!((row.order.bound.unwrap() - bound).abs() < 1e-9);
@@ -67,7 +67,7 @@ fn the_last_step_has_the_files_of_fields() {
         for label in ["p1", "wopsip"] {
             let of_label = || report.rows.iter().filter(|row| row.label == label);
             let (steps, last) = (of_label().count(), of_label().next_back().unwrap());
-            assert!(steps > 2 && last.bound.total <= Some(0.5) && last.warnings.is_empty());
+            assert!(steps > 2 && last.bound.discrete <= Some(0.5) && last.warnings.is_empty());
             expected.push(format!("radial-2d-{label}.vtu"));
             if all {
                 expected.push(format!("radial-2d-{label}.pvd"));

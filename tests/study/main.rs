@@ -1,9 +1,12 @@
 //! Studies and what they write: scenes, reports, tables, pictures, files of fields.
 
+mod active_bounds;
 mod adaptive;
+mod forces;
 mod journal;
 mod links;
 mod named_schemes;
+mod noise;
 mod one_problem;
 mod pictures;
 mod problem_files;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::scratch::Scratch;
 use unilateral::algebra::Start;
+use unilateral::facet::InteriorPenalty;
 use unilateral::inequality::{ActiveSet, InequalitySolver, MonotoneMultigrid, SOLVERS};
 use unilateral::inequality::{SolverOptions, solver_by_name};
 use unilateral::mesh::gmsh;
@@ -123,7 +124,7 @@ fn multipliers_balance_the_load() {
     let problem = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.1);
     let mesh = square(8);
     let u = solve(&problem, &mesh, &ConformingP1).unwrap();
-    let multiplier = u.multiplier();
+    let multiplier = u.multiplier().unwrap();
     assert!(u.active() > Some(0) && multiplier.iter().all(|&m| m >= -1e-12));
     // where all neighbours of a vertex are in contact its multiplier is minus its load
     let middle = mesh.vertices().iter().position(|&x| x == Point::from([0.5, 0.5])).unwrap();
@@ -166,4 +167,55 @@ fn solvers_stand_side_by_side() {
     let only = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([8]);
     let rows = only.solver(MonotoneMultigrid::default()).run().unwrap().rows;
     assert_eq!((rows.len(), &rows[0].solver[..]), (1, two));
+}
+
+/// A scheme with a parameter that its name does not tell, as far as `tells` says so.
+struct Mine {
+    factor: f64,
+    tells: bool,
+}
+
+impl<T: Real, const D: usize> Scheme<T, D> for Mine {
+    type Element = Broken<P1>;
+    type Facet = InteriorPenalty;
+    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    fn name(&self) -> &str {
+        match self.factor {
+            1.0 if self.tells => "mine-1",
+            _ => "mine",
+        }
+    }
+    fn facet(&self, mesh: &Mesh<T, D>) -> InteriorPenalty {
+        let penalty = PenaltyRule::Diameter(self.factor);
+        Scheme::<T, D>::facet(&Nipg { penalty, ..Nipg::default() }, mesh)
+    }
+}
+
+#[test]
+fn two_series_of_one_name_are_refused_before_anything_runs() {
+    let study = || Study::<f64, 2>::new(scenes::radial(1.0)).levels([4, 8]);
+    let mine = |factor, tells| Mine { factor, tells };
+    let refused = |study: Study<'_, f64, 2>, wanted: &str| {
+        let is_refused = |error: Error| match error {
+            Error::EqualNames { items, ref name, .. } => {
+                assert_eq!(format!("{items} {name}"), wanted);
+                let words = ["nothing would tell their rows apart", "give one of your own another"];
+                words.iter().all(|words| error.to_string().contains(words))
+            }
+            other => panic!("{other}"),
+        };
+        assert!(study.check().is_err_and(is_refused) && study.run().is_err_and(is_refused));
+    };
+    refused(study().scheme(mine(1.0, false)).scheme(mine(18.0, false)), "schemes mine");
+    refused(study().scheme(Sipg::default()).scheme(Sipg::default()), "schemes sipg");
+    let solver = ActiveSet::default;
+    refused(study().scheme(ConformingP1).solver(solver()).solver(solver()), "solvers active-set");
+    // names that tell them apart: each series has its own orders, that of the series alone
+    let both = study().scheme(mine(1.0, true)).scheme(mine(18.0, true)).run().unwrap();
+    for (factor, rows) in [1.0, 18.0].into_iter().zip(both.rows.chunks(2)) {
+        let alone = study().scheme(mine(factor, true)).run().unwrap();
+        assert_eq!(rows[0].order.l2, None);
+        assert_eq!(rows[1].order, alone.rows[1].order);
+        assert!(rows[1].order.h1 > Some(0.7), "{factor}: {:?}", rows[1].order);
+    }
 }

@@ -5,7 +5,7 @@ use crate::scratch::Scratch;
 use crate::support::keys::ROW_KEYS;
 use serde_json::Value;
 use std::path::Path;
-use unilateral::error_bound::{Guaranteed, Unproven};
+use unilateral::error_bound::Unproven;
 use unilateral::facet::PenaltyParameters;
 use unilateral::inequality::Outcome;
 use unilateral::measure::Errors;
@@ -39,8 +39,8 @@ fn json_has_the_keys_that_scripts_rely_on() {
     let certificate =
         ["feasibility", "multiplier", "complementarity", "residual", "algebraic_bound"];
     assert_eq!(keys(&row["certificate"]), certificate);
-    let bound = "total distance guaranteed mismatch obstacle contact oscillation algebra \
-                 effectivity reason";
+    let bound = "total distance discrete guaranteed unproven mismatch obstacle contact oscillation \
+                 algebra effectivity effectivity_of_v reason";
     assert_eq!(keys(&row["bound"]), bound.split(' ').collect::<Vec<_>>());
     assert_eq!(keys(&row["seconds"]), ["mesh", "assemble", "solve", "bound", "total"]);
     assert_eq!(json["rows"].as_array().unwrap().len(), 18);
@@ -219,7 +219,7 @@ fn plots_show_promised_orders_and_no_single_points() {
     let text = "band: up to the bound on the error";
     assert!(!has(&drawn, text));
     for row in &mut all {
-        (row.bound.total, row.bound.distance) = (Some(3.0 * row.mesh_size), Some(row.mesh_size));
+        row.bound.discrete = Some(4.0 * row.mesh_size);
     }
     assert!(has(&lines(all.clone()), text));
     assert_eq!(bands(&all), 2 * 3 * 2 + 1, "two parts of six curves, and the legend");
@@ -356,16 +356,17 @@ fn peak_memory_is_known_on_linux() {
 #[test]
 fn bounds_are_guaranteed_or_name_what_is_not_proven() {
     let mut rows = vec![row("a", "p1", 8), row("a", "p1", 16), row("a", "p2", 8)];
-    rows[0].bound.total = Some(0.5);
-    rows[0].bound.guaranteed = Some(Guaranteed::All(true));
-    rows[1].bound.total = Some(0.25);
+    rows[0].bound.discrete = Some(0.5);
+    (rows[0].bound.guaranteed, rows[0].bound.unproven) = (Some(true), Some(Vec::new()));
+    rows[1].bound.discrete = Some(0.25);
     rows[1].bound.effectivity = Some(1.75);
     let unproven = vec![Unproven::Quadrature, Unproven::Algebra];
-    rows[1].bound.guaranteed = Some(Guaranteed::Except(unproven));
+    (rows[1].bound.guaranteed, rows[1].bound.unproven) = (Some(false), Some(unproven));
     rows[2].bound.reason = Some("no flux".into());
     let written = serde_json::to_value(&rows).unwrap();
     assert_eq!(written[0]["bound"]["guaranteed"], true);
-    assert_eq!(written[1]["bound"]["guaranteed"], serde_json::json!(["quadrature", "algebra"]));
+    assert_eq!(written[1]["bound"]["guaranteed"], false);
+    assert_eq!(written[1]["bound"]["unproven"], serde_json::json!(["quadrature", "algebra"]));
     assert!(written[2]["bound"]["guaranteed"].is_null());
     let read: Vec<Row> = serde_json::from_value(written.clone()).unwrap();
     assert!(read == rows);
@@ -373,10 +374,16 @@ fn bounds_are_guaranteed_or_name_what_is_not_proven() {
     let mut old = written[0].clone();
     old.as_object_mut().unwrap().shift_remove("bound");
     let read: Row = serde_json::from_value(old).unwrap();
-    assert!(read.bound.total.is_none() && read.error == rows[0].error);
+    assert!(read.bound.discrete.is_none() && read.error == rows[0].error);
     let text = report(rows.clone()).to_string();
-    assert!(text.contains(" effect. ") && text.contains(" 1.75 "), "{text}");
+    assert!(text.contains(" effect. ") && text.contains(" 1.75* "), "{text}");
+    assert!(text.contains("* bound with terms that are not proven: quadrature, algebra"), "{text}");
+    // beside a bound stands the norm that it bounds, where that is not the H1 seminorm
     rows.iter_mut().for_each(|row| row.bound.effectivity = None);
+    let text = report(rows.clone()).to_string();
+    assert!(text.contains("  5.0e-1 ") && text.contains(" 2.5e-1* "), "{text}");
+    assert!(text.contains("H1 order") && !text.contains("energy norm"), "{text}");
+    rows[0].error.broken_energy = rows[0].error.h1.map(|h1| 2.0 * h1);
     let text = report(rows).to_string();
-    assert!(text.contains(" bound ") && text.contains(" 2.50e-1 "), "{text}");
+    assert!(!text.contains("H1 order") && text.contains(" energy norm "), "{text}");
 }

@@ -248,7 +248,7 @@ fn solution<const D: usize>(
     assert!(solved.converged());
     let path = scratch.0.join("fields.vtu");
     solved.write_vtu_with(&path, |file| file.scalar(FieldScalar::Double)).unwrap();
-    (read(&path), solved.multiplier().iter().sum())
+    (read(&path), solved.multiplier().unwrap().iter().sum())
 }
 
 #[test]
@@ -389,7 +389,7 @@ fn needs_pyvista_to_read_files() {
         solved
             .write_vtu_with(&path, |file| file.text("scheme", name).scalar(FieldScalar::Double))
             .unwrap();
-        forces.push(solved.multiplier().iter().sum::<f64>());
+        forces.push(solved.multiplier().unwrap().iter().sum::<f64>());
         path
     };
     let scenes = [scenes::signorini_2d(), scenes::radial(1.0)];

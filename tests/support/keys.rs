@@ -1,7 +1,7 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 33] = [
+pub const ROW_KEYS: [&str; 36] = [
     "scene",
     "dimension",
     "scheme",
@@ -23,6 +23,7 @@ pub const ROW_KEYS: [&str; 33] = [
     "multiplier_l2",
     "contact_area_error",
     "free_boundary_distance",
+    "rounding",
     "order",
     "expected_order",
     "objective",
@@ -31,6 +32,8 @@ pub const ROW_KEYS: [&str; 33] = [
     "active",
     "contact_measure",
     "resultant",
+    "resultants",
+    "penetration",
     "iterations",
     "certificate",
     "seconds",

@@ -21,20 +21,18 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         )(self)
     }
     fn assemble(&self) -> Result<Inequality<T>, Error> {
-        let (load, own_load, data) = self.loads()?;
+        let is_penalised = self.owns_rows() && penalised::applies(self.form());
+        let free = self.space.free_bodies()?;
+        // the load of a penalised matrix has no Dirichlet data
+        let metrics = || &self.prepared().0;
+        let (load, data) = self.space.load_and_data(self.form(), &metrics, &free, !is_penalised)?;
         let bounds = self.bounds()?;
         let matrix = self.matrix();
-        let dirichlet_energy = (own_load.is_none() && !data.is_empty())
+        let dirichlet_energy = (!is_penalised && !data.is_empty())
             .then(|| self.space.dirichlet_energy(self.form(), &|| &self.prepared().0, &data));
-        let penalised = own_load.map(|own_load| {
+        let penalised = is_penalised.then(|| {
             let (metrics, weights) = self.prepared();
-            penalised::penalised_matrix(
-                &self.space,
-                self.form(),
-                (metrics, weights),
-                own_load,
-                data,
-            )
+            penalised::penalised_matrix(&self.space, self.form(), (metrics, weights), &data)
         });
         // the loops that fill the matrix return no error: a reaction term that is not finite is
         // detected here
@@ -43,7 +41,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         {
             reaction.check(self.mesh())?;
         }
-        Ok(Inequality {
+        let mut inequality = Inequality {
             matrix,
             symmetric: self.form.is_symmetric(),
             load,
@@ -59,21 +57,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             start: Start::Cold,
             penalised,
             dirichlet_energy,
-            kernel: self.space.kernel(self.form.couples()),
+            kernel: Vec::new(),
+            bodies: Vec::new(),
             is_definite: false,
             distribution: None,
-        })
-    }
-    /// The load; if the penalised form of the matrix is kept too, the load without Dirichlet data,
-    /// and the Dirichlet data.
-    fn loads(&self) -> Result<penalised::Loads<T>, Error> {
-        let is_penalised = self.owns_rows() && penalised::applies(self.form());
-        let mut own = None;
-        let (load, data) =
-            self.space.load_and_data(self.form(), &|| &self.prepared().0, &mut |by_cell| {
-                own = is_penalised.then(|| by_cell.to_vec());
-            })?;
-        Ok((load, own, data))
+        };
+        self.space.set_kernel(&mut inequality, self.form.couples(), free);
+        Ok(inequality)
     }
     /// The bounds of all unknowns.
     ///
@@ -118,7 +108,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let (bounds, found) = self.space.bounds()?;
         Ok(once(&self.contradictions, || Contradictions::new(&bounds, found)))
     }
-    /// The load of all unknowns.
+    /// The load of all unknowns, that of the assembled matrix, with weak Dirichlet data: see
+    /// [`Inequality::assembled_load`].
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].

@@ -150,7 +150,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// What a datum imposes at a node.
-    fn bound(
+    pub(super) fn bound(
         &self,
         by: BoundBy,
         terms: &Terms,

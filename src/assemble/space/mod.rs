@@ -15,8 +15,10 @@
 //! | `diffusion` | the coefficient in a cell, on a facet and in a flux |
 //! | `reaction_term` | the reaction term of the matrix |
 //! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
+//! | `active_obstacles` | where obstacles give the bound that is active |
 //! | `supports`, `node_vertices` | the supports of basis functions, by the vertices that stand for a node |
 
+pub(crate) mod active_obstacles;
 mod any_element;
 mod bounds;
 mod coefficient;

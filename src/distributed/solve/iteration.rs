@@ -295,7 +295,8 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
         let bound = |&i: &u32| &inequality.bounds[i as usize];
         let lower = |bound: &Bound<f64>| bound.fixed_value().or(bound.lower());
         let upper = |bound: &Bound<f64>| bound.fixed_value().or(bound.upper());
-        let load: Vec<f64> = own.iter().map(|&i| inequality.load[i as usize]).collect();
+        let load = inequality.assembled_load();
+        let load: Vec<f64> = own.iter().map(|&i| load[i as usize]).collect();
         let lower: Vec<f64> =
             own.iter().map(|i| lower(bound(i)).unwrap_or(f64::NEG_INFINITY)).collect();
         let upper: Vec<f64> =

@@ -1,5 +1,6 @@
 //! The result of a solve over the parts of a mesh.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Instant;
 
@@ -11,11 +12,11 @@ use crate::distributed::agree::{agree, agree_on_data};
 use crate::distributed::error::ExchangeError;
 use crate::distributed::exchange::Exchange;
 use crate::distributed::merge::merge_all;
-use crate::error_bound::{BoundFigures, ErrorBound, PrimalDualPair};
+use crate::error_bound::{BoundFigures, ErrorBound, PrimalDualPair, TrueErrors};
 use crate::inequality::{
     Certificate, Outcome, Solution, certify_with_jump_multipliers, energy_norm,
 };
-use crate::measure::{Errors, SquaredErrors};
+use crate::measure::{Errors, Penetration, Rounding, SquaredErrors};
 use crate::mesh::Part;
 
 /// A discrete solution on one part of a mesh. Errors, totals and certificate are those of all parts; the
@@ -169,20 +170,27 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         let Inequality { symmetric, .. } = self.system.inequality;
         symmetric.then(|| self.system.inequality.objective(&self.solution.values))
     }
-    /// The total contact force on all parts; none without an inequality.
+    /// The total contact force on all parts: see [`Discretisation::resultant`].
     pub fn resultant(&self) -> Option<f64> {
         let System { discretisation, inequality, .. } = &self.system;
-        if !discretisation.problem().is_constrained() {
-            return None;
+        let multipliers = discretisation.multipliers(inequality, &self.solution)?;
+        let own = self.own().iter().map(|&i| multipliers[i as usize]);
+        Some(self.sums([own.sum::<f64>()])[0])
+    }
+    /// The resultant of each obstacle and each contact group on all parts, see [`Discretisation::resultants`]; none
+    /// without an inequality.
+    pub fn resultants(&self) -> Option<BTreeMap<String, f64>> {
+        let System { discretisation, inequality, .. } = &self.system;
+        let mut is_own = vec![false; inequality.size()];
+        self.own().iter().for_each(|&i| is_own[i as usize] = true);
+        let own: [&dyn Fn(usize) -> bool; 2] = [&|i| is_own[i], &|cell| self.part.owns(cell)];
+        let mut resultants = discretisation.resultants_of(inequality, &self.solution, own)?;
+        // all parts have the groups of the whole mesh, but not all have facets of each
+        for name in discretisation.names_of_resultants() {
+            let of_all = resultants.entry(name).or_default();
+            *of_all = self.sums([*of_all])[0];
         }
-        let mut residual = vec![0.0; inequality.size()];
-        inequality.residual_f64(&self.solution.values, &mut residual);
-        let multiplier = |&i: &u32| match self.solution.contact[i as usize] {
-            Contact::Inactive => 0.0,
-            _ if !inequality.bounds[i as usize].is_inequality() => 0.0,
-            _ => -residual[i as usize],
-        };
-        Some(self.sums([self.own().iter().map(multiplier).sum::<f64>()])[0])
+        Some(resultants)
     }
     /// The measure of the discrete contact set of all parts; none without an inequality.
     pub fn contact_measure(&self) -> Option<f64> {
@@ -190,6 +198,21 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         let counts = |cell: usize| self.part.owns(cell);
         let own = discretisation.contact_measure_of(inequality, &self.solution, &counts)?;
         Some(self.sums([own])[0])
+    }
+    /// How far the solution lies beyond obstacles and gaps on all parts, see [`Discretisation::penetration`]; none
+    /// without an inequality.
+    ///
+    /// # Errors
+    /// [`ExchangeError::Failed`] in all parts for data that are not finite.
+    pub fn penetration(&self) -> Result<Option<Penetration>, ExchangeError> {
+        let part = self.part;
+        let u = &self.solution.values;
+        let own = self.system.discretisation.penetration_of(u, &|cell| part.owns(cell));
+        let Some(own) = agree_on_data(own, &part.cells, self.exchange())? else { return Ok(None) };
+        let most = self.exchange().largest(&own.numbers())?;
+        let mut numbers = own.numbers();
+        numbers.iter_mut().zip(most).for_each(|(number, most)| *number = most);
+        Ok(Some(own.with_numbers(numbers)))
     }
     /// The energy of the solution on all parts, by one formula for every scheme: see
     /// [`Discretisation::energy`].
@@ -239,7 +262,6 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     /// [`ExchangeError::Failed`] in all parts for data that are not finite.
     pub(crate) fn errors_and_bound(&self) -> Result<(Errors, BoundFigures, f64), ExchangeError> {
         let discretisation = &self.system.discretisation;
-        let u = &self.solution.values;
         let clock = Instant::now();
         let bound = self.pair_and_bound();
         let seconds = clock.elapsed().as_secs_f64();
@@ -251,10 +273,20 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         });
         let has_exact = discretisation.problem().exact.is_some();
         let errors = if has_exact { squares.norms() } else { Errors::default() };
-        let error = (has_exact && bound.is_ok()).then(|| squares.of_function());
+        let of_v = (has_exact && bound.is_ok()).then(|| squares.of_function());
+        let true_errors = TrueErrors { of_solution: errors.broken_energy, of_v };
+        let sizes = (self.energy_norm(), self.rounding());
+        Ok((errors, BoundFigures::of_solution(bound, true_errors, sizes), seconds))
+    }
+    fn energy_norm(&self) -> f64 {
         let System { inequality, .. } = &self.system;
-        let energy_norm = energy_norm(inequality, u, &self.solution.jump_multipliers);
-        Ok((errors, BoundFigures::of_solution(bound, error, energy_norm), seconds))
+        energy_norm(inequality, &self.solution.values, &self.solution.jump_multipliers)
+    }
+    /// Rounding errors in the figures of the solution over all parts.
+    pub fn rounding(&self) -> Option<Rounding> {
+        let System { discretisation, inequality, .. } = &self.system;
+        let of = (self.sizes()[0] as usize, self.energy_norm());
+        discretisation.rounding(inequality, &self.solution.values, of)
     }
     /// The errors against the exact solution; none without one.
     ///

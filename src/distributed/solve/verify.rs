@@ -75,6 +75,7 @@ impl<const D: usize> DistributedSolved<'_, D> {
         numbers.iter().zip(values).for_each(|(&number, &value)| all_values[number] = value);
         let mut all_residuals = vec![0.0; all.size()];
         all.residual_f64(&all_values, &mut all_residuals);
+        let loads = [self.inequality(), all].map(|of| of.assembled_load());
         let mut found = Differences::default();
         for &i in self.own() {
             let i = i as usize;
@@ -87,7 +88,7 @@ impl<const D: usize> DistributedSolved<'_, D> {
             found.compared += 1;
             found.rows += u64::from(!is_same);
             let differ = |one: f64, other: f64| u64::from(one.to_bits() != other.to_bits());
-            found.loads += differ(self.inequality().load[i], all.load[number]);
+            found.loads += differ(loads[0][i], loads[1][number]);
             found.residuals += differ(residual[i], all_residuals[number]);
             let bounds = map_entries([&self.inequality().bounds[i], &all.bounds[number]], bits);
             found.bounds += u64::from(bounds[0] != bounds[1]);

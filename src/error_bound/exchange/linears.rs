@@ -3,6 +3,7 @@
 use super::{FacetOfCell, ROUNDING, Step, decrease, visit_steps};
 use crate::algebra::Contact;
 use crate::assemble::cut_simplices::in_space;
+use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact::NodeForce;
@@ -73,11 +74,12 @@ impl<const D: usize> CellInContact<D> {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the part that its
-    /// flux balances, by volume around a vertex and half on the two sides of a facet. The multipliers of inactive
+    /// flux balances, by volume around a vertex and half on the two sides of a facet, if the cell's obstacle gives the
+    /// active bound. The multipliers of inactive
     /// unknowns are set to zero: the residual of an inactive unknown is an algebraic error.
     pub(in crate::error_bound) fn multipliers_by_cell(
         &self,
-        residual: &[f64],
+        (residual, obstacles): (&[f64], &ActiveObstacles),
         contact: &[Contact],
         forces: &[NodeForce],
     ) -> Vec<f64> {
@@ -99,15 +101,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let part =
             |cell: usize| if by_volume { self.mesh.geometry(cell).volume.to_f64() } else { 1.0 };
         let mut parts = vec![0.0; multipliers.len()];
-        let presses = |cell: usize| (0..n).any(|i| multipliers[self.dofs.of(cell, i)] != 0.0);
+        let pressing = |cell: usize| {
+            let acting = (0..n).filter(move |&i| obstacles.act_in(cell, i));
+            acting.map(move |i| self.dofs.of(cell, i)).filter(|&i| multipliers[i] != 0.0)
+        };
         let mut of_cells = vec![0.0; n_cells];
-        for cell in (0..n_cells).filter(|&cell| presses(cell)) {
+        for cell in (0..n_cells).filter(|&cell| pressing(cell).next().is_some()) {
             of_cells[cell] = part(cell);
-            (0..n).for_each(|i| parts[self.dofs.of(cell, i)] += of_cells[cell]);
+            pressing(cell).for_each(|i| parts[i] += of_cells[cell]);
         }
         for (cell, of_cell) in of_cells.iter_mut().enumerate().filter(|(_, part)| **part > 0.0) {
-            let unknowns = (0..n).map(|i| self.dofs.of(cell, i));
-            *of_cell *= unknowns.map(|i| multipliers[i] / parts[i]).sum::<f64>();
+            *of_cell *= pressing(cell).map(|i| multipliers[i] / parts[i]).sum::<f64>();
         }
         of_cells
     }

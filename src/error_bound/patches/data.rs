@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::assemble::space::Space;
+use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::error_bound::NoBound;
 use crate::error_bound::contact::NodeForce;
 use crate::memory::in_large_pages;
@@ -51,6 +52,8 @@ pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
     cells: Vec<f64>,
     /// The multiplier of each vertex that belongs to obstacles.
     pub multipliers: Vec<f64>,
+    /// In which cells these act.
+    obstacles: &'s ActiveObstacles,
     /// Of each vertex one of its cells, and how many there are.
     pub one_cell: Vec<(u32, u32)>,
     /// The cells whose parts are kept.
@@ -65,7 +68,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn patches<'s>(
         &'s self,
         u: &[T],
-        residual: &[f64],
+        (residual, obstacles): (&[f64], &'s ActiveObstacles),
         forces: &[NodeForce],
         neighbours: &'s Neighbours,
     ) -> Result<Patches<'s, 's, T, D>, NoBound> {
@@ -110,6 +113,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             neighbours,
             cells: data,
             multipliers,
+            obstacles,
             one_cell,
             kept: 0..0,
             parts: Vec::new(),
@@ -170,8 +174,14 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
 
     /// What the flux of a vertex of a cell balances there, with a multiplier per volume.
     pub fn load(&self, cell: usize, own: u8, pressure: f64) -> f64 {
-        let own = self.cells[cell * numbers_of_cell(D) + D + 2 + usize::from(own)];
-        own - pressure * self.volume(cell)
+        let load = self.cells[cell * numbers_of_cell(D) + D + 2 + usize::from(own)];
+        load - pressure * self.carried(cell, own)
+    }
+
+    /// The volume over which a cell carries a part of the multiplier of one of its vertices: its own, or none where
+    /// another obstacle than that of the cell gives the active bound.
+    pub fn carried(&self, cell: usize, own: u8) -> f64 {
+        if self.obstacles.act_in(cell, own.into()) { self.volume(cell) } else { 0.0 }
     }
 
     /// Keeps the parts of these cells from now on. Every part of a kept cell is written before it is read.

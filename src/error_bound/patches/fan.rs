@@ -28,7 +28,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             return false;
         }
         let mesh = self.space.mesh;
-        let total: f64 = fan.iter().map(|of| self.volume(of.cell)).sum();
+        let total: f64 = fan.iter().map(|of| self.carried(of.cell, of.own)).sum();
         let mut pressure = self.multipliers[vertex] / total;
         let normal = |(cell, local): (usize, u8)| self.normals(cell)[usize::from(local)];
         // what the fluxes of a cell through a facet and of the next one through it sum to

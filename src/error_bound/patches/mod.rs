@@ -26,6 +26,7 @@ use super::NoBound;
 use super::contact::NodeForce;
 use crate::arrays::tabulate;
 use crate::assemble::space::Space;
+use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
@@ -41,11 +42,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(in crate::error_bound) fn patch_fluxes(
         &self,
         u: &[T],
-        residual: &[f64],
+        of_solver: (&[f64], &ActiveObstacles),
         forces: &[NodeForce],
         neighbours: &Neighbours,
     ) -> Result<Vec<f64>, NoBound> {
-        self.fluxes_by_ranges(CELLS_AT_A_TIME, self.patches(u, residual, forces, neighbours)?)
+        self.fluxes_by_ranges(CELLS_AT_A_TIME, self.patches(u, of_solver, forces, neighbours)?)
     }
 
     /// The fluxes, with the parts of `length` cells at a time.
@@ -143,7 +144,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     ///
     /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
     fn add_vertex(&self, vertex: usize, corners: &[Corner], patch: &mut Patch) {
-        let total: f64 = corners.iter().map(|corner| self.volume(corner.cell() as usize)).sum();
+        let carried = |corner: &Corner| self.carried(corner.cell() as usize, corner.own());
+        let total: f64 = corners.iter().map(carried).sum();
         let pressure = self.multipliers[vertex] / total;
         let Patch { cells, matrix, multipliers, sums } = patch;
         cells.clear();

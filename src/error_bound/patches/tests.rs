@@ -23,7 +23,9 @@ fn the_closed_form_of_a_cell_in_space_is_the_general_one() {
         Discretisation::new(&ConformingP1, &problem, &mesh, DataQuadrature::default()).unwrap();
     let n = mesh.vertices().len();
     let neighbours = Neighbours::new(&mesh);
-    let patches = of.space.patches(&numbers(n), &vec![0.0; n], &[], &neighbours).ok().unwrap();
+    let (zero, obstacles) = (vec![0.0; n], of.space.active_obstacles(&[], &[]));
+    let of_solver = (&zero[..], &obstacles);
+    let patches = of.space.patches(&numbers(n), of_solver, &[], &neighbours).ok().unwrap();
     for corner in (0..mesh.n_cells() as u32).flat_map(|cell| (0..4).map(move |own| (cell, own))) {
         let facets = [FacetOfPatch::Free; 3];
         let one = patches.free_cell_of_patch(corner, facets, 0.7);
@@ -42,8 +44,10 @@ fn ranges<const D: usize>() {
         Discretisation::new(&ConformingP1, &problem, &mesh, DataQuadrature::default()).unwrap();
     let n = mesh.vertices().len();
     let neighbours = Neighbours::new(&mesh);
+    let (zero, obstacles) = (vec![0.0; n], of.space.active_obstacles(&[], &[]));
+    let of_solver = (&zero[..], &obstacles);
     let fluxes = |length: usize| {
-        let patches = of.space.patches(&numbers(n), &vec![0.0; n], &[], &neighbours).ok().unwrap();
+        let patches = of.space.patches(&numbers(n), of_solver, &[], &neighbours).ok().unwrap();
         of.space.fluxes_by_ranges(length, patches).ok().unwrap()
     };
     let n_cells = mesh.n_cells();

@@ -1,12 +1,13 @@
 //! Integrals of a pair over the boundary.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use super::cell_flux::limit;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::{NoBound, PrimalDualPair};
 use crate::mesh::BoundaryPart;
-use crate::quadrature::facet_to_cell;
+use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Real;
 
 /// A negative contact force below this share of the largest one is rounding.
@@ -73,6 +74,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         square.sqrt() * self.mesh.cell_diameter(place.0).to_f64()
     }
 
+    /// The rule for the square of Neumann data less the flux, and for contact forces times distances from the gap:
+    /// exact for polynomial data.
+    fn rule_of_facets(&self, of_pair: usize) -> Cow<'_, Rule> {
+        let of_gap = self.degree_of(&self.data.gap).unwrap_or_default();
+        let of_neumann = 2 * self.neumann_degree().unwrap_or_default().max(of_pair - 1);
+        let degree = of_neumann.max(of_pair - 1 + of_gap.max(of_pair));
+        match self.facet_rule.moments(D - 1, degree).all(|moment| moment.is_exact()) {
+            true => Cow::Borrowed(&self.facet_rule),
+            false => Cow::Owned(Rule::new(D - 1, degree)),
+        }
+    }
+
     /// The terms of the boundary.
     pub(in crate::error_bound) fn boundary_terms(
         &self,
@@ -83,6 +96,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let has_fluxes =
             self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
         let has_gap = self.problem.has_gap();
+        let rule = self.rule_of_facets(pair.degree);
         let mut terms = BoundaryTerms {
             traces: zeros(has_fluxes || has_gap && pair.degree > 1),
             contact: zeros(has_gap),
@@ -92,7 +106,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let measure = self.facet_measure(place);
                 let flux = self.flux_on(pair, place);
                 let mut square = 0.0;
-                for (point, weight) in self.facet_rule.iter() {
+                for (point, weight) in rule.iter() {
                     let datum = self.neumann_at(place, group, point)?;
                     let flux = flux.scale * flux.at(&facet_to_cell(point, place.1)) / measure;
                     square += weight * measure * (datum - flux).powi(2);
@@ -109,7 +123,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             (least, largest) = (least.min(integral), largest.max(integral));
             let (force, left) = flux.limited(D);
             let mut sum = 0.0;
-            for (point, weight) in self.facet_rule.iter() {
+            for (point, weight) in rule.iter() {
                 let x = self.facet_point(point, place.0, place.1);
                 let point = facet_to_cell(point, place.1);
                 let (value, _) = admissible.at(&point, &x);

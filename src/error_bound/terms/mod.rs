@@ -30,6 +30,9 @@ pub(super) struct CellTerms {
     /// The square of the mismatch with the oscillation added: if what the flux leaves is a force of an
     /// obstacle, and if the solver left it.
     pub with_oscillation: [f64; 2],
+    /// The square of the distance of the discrete function from the midpoint of the two pairs, with half of the
+    /// oscillation added, in the same two cases.
+    pub from_midpoint: [f64; 2],
     /// Twice the complementarity of obstacles, if what the flux leaves is a force.
     pub obstacle: f64,
     /// The complementarity divided by the square that the cell adds if the solver left the mean: infinite where
@@ -87,6 +90,8 @@ struct CellIntegrals {
     from_values: f64,
     /// The square of the difference of the gradients of the two functions, times the coefficient.
     distance: f64,
+    /// The square of the difference of the mean of gradient and flux and the gradient of the discrete function.
+    from_midpoint: f64,
     /// The load at the first point, less the reaction. The balance is summed from it, so that a constant has no
     /// oscillation.
     first_load: Option<f64>,
@@ -107,6 +112,11 @@ struct CellIntegrals {
 /// values at rounding may be negative.
 fn integral_of_square(sum: f64) -> f64 {
     if sum < 0.0 { 0.0 } else { sum }
+}
+
+/// The square of two norms, by their squares, to which a share of two others is added.
+fn with_share(squares: [f64; 2], share: f64, others: [f64; 2]) -> f64 {
+    squares.iter().zip(others).map(|(square, other)| (square.sqrt() + share * other).powi(2)).sum()
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
@@ -202,10 +212,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let gradient = data.admissible.gradient;
         let corners =
             self.mesh.cell(cell).iter().map(|&v| point_f64(&self.mesh.vertices()[v as usize]));
-        let square = data.flux.mean_square_of_difference(gradient * alpha, corners);
+        let mean_square = |constant| data.flux.mean_square_of_difference(constant, corners.clone());
         let [lower, upper] = distances.map(|mean| data.volume * mean);
         Some(CellIntegrals {
-            mismatch: data.volume / alpha * square,
+            mismatch: data.volume / alpha * mean_square(gradient * alpha),
+            from_midpoint: 0.25 * data.volume / alpha
+                * mean_square((slope * 2.0 - gradient) * alpha),
             distance: data.volume * alpha * (gradient - slope).norm_squared(),
             first_load: Some(load),
             gaps: [[lower, 0.0, 0.0, 0.0], [upper, 0.0, 0.0, 0.0]],
@@ -243,6 +255,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             sums.from_values += weight * reaction * (discrete - value).powi(2);
             let slope = data.slope.unwrap_or_else(|| data.gradient_of(basis));
             sums.distance += weight * alpha * (gradient - slope).norm_squared();
+            let from_midpoint = (gradient * alpha + q) * 0.5 - slope * alpha;
+            sums.from_midpoint += weight * from_midpoint.norm_squared() / alpha;
             let load = data.source.map_or(0.0, |f| f.at(x)) - reaction * discrete;
             let load = load - *sums.first_load.get_or_insert(load);
             sums.square += weight * load * load;
@@ -275,8 +289,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let sums = self
             .integrals_of_constants(cell, &data, table)
             .unwrap_or_else(|| self.integrals_at_points(cell, &data, table, cut));
-        let [mismatch, from_values] =
-            map_entries([sums.mismatch, sums.from_values], integral_of_square);
+        let [mismatch, from_values, from_midpoint] =
+            map_entries([sums.mismatch, sums.from_values, sums.from_midpoint], integral_of_square);
         let by_gradient = data.admissible.diameter / (PI * sums.least_coefficient.sqrt());
         let by_value = sums.reaction_from_below.max(0.0).sqrt().recip();
         let load = sums.first_load.unwrap_or(0.0);
@@ -297,17 +311,21 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             _ => 0.0,
         };
         let of_trace = boundary.traces.get(cell).map_or(0.0, |n| n / sums.least_coefficient.sqrt());
-        let with_oscillation = map_entries([1.0 - share, 1.0], |left| {
+        let oscillation = map_entries([1.0 - share, 1.0], |left| {
             let of_load = (balance.rest + left * left * balance.variation).sqrt();
-            let [in_gradient, in_value] = match by_value < by_gradient {
+            match by_value < by_gradient {
                 true => [of_trace, by_value * of_load],
                 false => [by_gradient * of_load + of_trace, 0.0],
-            };
-            (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2)
+            }
         });
         CellTerms {
             mismatch: mismatch + from_values,
-            with_oscillation,
+            with_oscillation: map_entries(oscillation, |o| {
+                with_share([mismatch, from_values], 1.0, o)
+            }),
+            from_midpoint: map_entries(oscillation, |o| {
+                with_share([from_midpoint, 0.25 * from_values], 0.5, o)
+            }),
             obstacle,
             ratio,
             contact: boundary.contact.get(cell).map_or(0.0, |c| 2.0 * c),

@@ -230,7 +230,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
     fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
         match &self.condensation {
             Some(condensation) => condensation.residual_term_magnitudes(
-                i,
+                (i, self.inequality.load[i]),
                 &|j| iterate.values[j].to_f64(),
                 &iterate.jump_multipliers,
                 &|j| iterate.eliminated[j],
@@ -305,7 +305,7 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
             *multiplier += T::lit(*correction);
         }
         let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-        let energy = penalised.energy(|i| values[i].to_f64(), multiplier);
+        let energy = penalised.energy(&iterate.inequality.load, |i| values[i].to_f64(), multiplier);
         CorrectionSize { correction_energy, max_change, max_norm, energy, diagonal_energy }
     }
 
@@ -320,8 +320,9 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
 
     /// Sets the residual to `c - K u - M^T p`.
     fn compute_residual(&self, iterate: &mut Iterate<'_, T>) {
-        let Iterate { values, jump_multipliers, residual, .. } = iterate;
+        let Iterate { inequality, values, jump_multipliers, residual, .. } = iterate;
         let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-        self.penalised.residual_with_jump_multipliers(|i| values[i].to_f64(), multiplier, residual);
+        let (load, value) = (&inequality.load, |i: usize| values[i].to_f64());
+        self.penalised.residual_with_jump_multipliers(load, value, multiplier, residual);
     }
 }

@@ -1,5 +1,7 @@
 //! The iterate of the active set method: values, contact states, residual, and the best values so far.
 
+use std::borrow::Cow;
+
 use super::contact_state::{prescribed_value, starting_states};
 use crate::algebra::{Bound, Contact, Inequality, any_part};
 use crate::inequality::certificate::positive_diagonal;
@@ -9,7 +11,7 @@ use crate::parallel::vectors::{collect, sum_chunks};
 use crate::real::Real;
 
 /// The values and contact states of a step, and the best values of all steps.
-pub(crate) struct Iterate<'a, T> {
+pub(crate) struct Iterate<'a, T: Real> {
     pub inequality: &'a Inequality<T>,
     pub values: Vec<T>,
     /// The jump multipliers, if a linear solver has them as unknowns
@@ -32,6 +34,8 @@ pub(crate) struct Iterate<'a, T> {
     pub outer: usize,
     /// Number of iterations of the linear solver.
     pub linear: usize,
+    /// The load of the assembled matrix.
+    assembled_load: Cow<'a, [T]>,
     best: BestIterate<T>,
 }
 
@@ -74,6 +78,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             energy_norm: 1.0,
             outer: 0,
             linear: 0,
+            assembled_load: inequality.assembled_load(),
             best,
         };
         iterate.set_prescribed_values();
@@ -224,7 +229,7 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// then terms of eliminated ones and of the load.
     pub fn residual_term_magnitudes(&self, i: usize) -> [f64; 2] {
         let (columns, entries) = self.inequality.matrix.row(i);
-        let (mut free, mut eliminated) = (0.0, self.inequality.load[i].to_f64().abs());
+        let (mut free, mut eliminated) = (0.0, self.assembled_load[i].to_f64().abs());
         for (&j, a) in columns.iter().zip(entries) {
             let j = j as usize;
             let term = (a.to_f64() * self.values[j].to_f64()).abs();

@@ -58,7 +58,7 @@ impl From<LinearFailure> for End {
 /// Each step solves the linear system of the present active set and predicts a new one ([`Iterate::evaluate`]). The
 /// iteration converges if the active set predicts itself, or all violations are within the tolerance of the linear
 /// solver, and if the certificate, which does not depend on contact states, is small.
-pub(crate) struct Iteration<'s, 'i, 'a, T> {
+pub(crate) struct Iteration<'s, 'i, 'a, T: Real> {
     pub settings: &'s ActiveSet,
     pub iterate: &'i mut Iterate<'a, T>,
     pub solver: &'i mut dyn LinearSolver<T>,

@@ -3,6 +3,7 @@
 use super::iterate::Iterate;
 use crate::inequality::Outcome;
 use crate::linear::direct::FactorError;
+use crate::real::Real;
 
 /// How accurately a linear system is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +33,7 @@ impl From<FactorError> for LinearFailure {
 
 /// A solver of the systems `A_II u_I = b_I - A_IE u_E`, where `I` are the inactive unknowns and `E`
 /// the eliminated ones, which are fixed or active.
-pub(crate) trait LinearSolver<T>: Sync {
+pub(crate) trait LinearSolver<T: Real>: Sync {
     /// Relative tolerance, in the energy norm, of systems solved with [`Accuracy::Full`]; zero if only
     /// rounding limits the accuracy.
     fn tolerance(&self) -> f64;

@@ -206,6 +206,7 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
             multipliers_of_values.iter().enumerate().map(multiplier).collect();
         let Iterate { values, jump_multipliers, residual, .. } = iterate;
         penalised.residual_with_jump_multipliers(
+            &self.inequality.load,
             |i| values[i].to_f64(),
             |jump| jump_multipliers[jump].to_f64(),
             residual,

@@ -185,10 +185,11 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
     pub fn residual(&self, point: &MixedVector, residual: &mut MixedVector) -> f64 {
         let load = &self.inequality.load;
         let value = |i: usize| point.values[i];
-        let (load, energy) = match self.penalised() {
+        let energy = match self.penalised() {
             Some(penalised) => {
                 let multiplier = |jump: usize| point.jump_multipliers[jump];
-                penalised.residual_with_jump_multipliers(value, multiplier, &mut residual.values);
+                let out = &mut residual.values;
+                penalised.residual_with_jump_multipliers(load, value, multiplier, out);
                 for (r, stiffness) in residual.values.iter_mut().zip(&self.reference_stiffness) {
                     *r -= stiffness;
                 }
@@ -198,12 +199,12 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
                     *out = data + multiplier(jump) / weight;
                 }
                 let value = |i: usize| self.reference[i] + point.values[i];
-                (&penalised.load, penalised.energy(value, multiplier))
+                penalised.energy(load, value, multiplier)
             }
             None => {
                 self.inequality.residual_of(&value, &mut residual.values);
                 let terms = point.values.iter().zip(load);
-                (load, terms.map(|(x, b)| (x * b.to_f64()).abs()).sum())
+                terms.map(|(x, b)| (x * b.to_f64()).abs()).sum()
             }
         };
         let loads = load.iter().enumerate();

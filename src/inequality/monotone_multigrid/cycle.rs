@@ -1,5 +1,7 @@
 //! One cycle: sweeps of projected Gauss-Seidel and a truncated linear correction.
 
+use std::borrow::Cow;
+
 use crate::algebra::Inequality;
 use crate::inequality::Outcome;
 use crate::inequality::certificate::positive_diagonal;
@@ -12,8 +14,10 @@ use crate::parallel::vectors::{for_each_chunk, map_chunks};
 use crate::real::Real;
 
 /// The iterate of monotone multigrid, whose values are admissible, with the vectors of a cycle.
-pub(super) struct MultigridIterate<'a, T> {
+pub(super) struct MultigridIterate<'a, T: Real> {
     pub inequality: &'a Inequality<T>,
+    /// The load of the assembled matrix.
+    load: Cow<'a, [T]>,
     pub values: Vec<T>,
     /// `b - A u`; zero on eliminated unknowns.
     residual: Vec<T>,
@@ -50,6 +54,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         let zeros = vec![T::lit(0.0); n];
         Self {
             inequality,
+            load: inequality.assembled_load(),
             values,
             residual: zeros.clone(),
             correction: zeros,
@@ -94,7 +99,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     /// # Errors
     /// [`Outcome::NotCoercive`] for a diagonal entry that is not positive.
     fn gauss_seidel_sweep(&mut self) -> Result<f64, Outcome> {
-        let Inequality { matrix, load, bounds, .. } = self.inequality;
+        let Inequality { matrix, bounds, .. } = self.inequality;
         let mut sum = 0.0;
         for (i, (bound, &d)) in bounds.iter().zip(&self.diagonal).enumerate() {
             if bound.fixed_value().is_some() {
@@ -103,7 +108,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             if d <= T::lit(0.0) {
                 return Err(Outcome::NotCoercive);
             }
-            let residual = load[i] - matrix.row_dot(i, &self.values);
+            let residual = self.load[i] - matrix.row_dot(i, &self.values);
             let next = bound.nearest(self.values[i] + residual / d);
             let change = (next - self.values[i]).to_f64();
             sum += d.to_f64() * change * change;

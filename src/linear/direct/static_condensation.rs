@@ -110,7 +110,7 @@ pub(super) struct BlockInverse {
 impl<'a, T: Real> StaticCondensation<'a, T> {
     /// The condensation of a matrix, without points of its unknowns.
     pub fn new(penalised: &'a PenalisedMatrix<T>) -> Self {
-        let n_blocks = penalised.load.len() / penalised.block_size;
+        let n_blocks = penalised.size() / penalised.block_size;
         let blocks_of_jumps: Vec<[Option<u32>; 2]> =
             (0..penalised.n_jumps()).map(|jump| penalised.blocks_of_jump(jump)).collect();
         let mut starts = vec![0; n_blocks + 1];
@@ -326,14 +326,14 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     /// the load.
     pub fn residual_term_magnitudes(
         &self,
-        i: usize,
+        (i, load): (usize, T),
         u: &dyn Fn(usize) -> f64,
         p: &[T],
         is_fixed: &dyn Fn(usize) -> bool,
     ) -> [f64; 2] {
         let n = self.penalised.block_size;
         let block = i / n;
-        let (mut free, mut fixed) = (0.0, self.penalised.load[i].to_f64().abs());
+        let (mut free, mut fixed) = (0.0, load.to_f64().abs());
         for j in block * n..(block + 1) * n {
             let size = (self.penalised.blocks[i * n + j % n].to_f64() * u(j)).abs();
             *(if is_fixed(j) { &mut fixed } else { &mut free }) += size;

@@ -141,7 +141,6 @@ mod tests {
         let penalised = PenalisedMatrix {
             block_size: n,
             blocks: (0..2 * n * n).map(entry).collect(),
-            load: vec![0.0; 2 * n],
             term_starts: vec![0, half, 2 * half],
             terms,
             weights: vec![7.0, 3.0],
@@ -163,7 +162,7 @@ mod tests {
             let p: Vec<f64> = (0..2 * n).map(value).collect();
             let (mut q, mut expected) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
             // without a load the residual is the negative product
-            penalised.residual(|i| p[i], &mut expected);
+            penalised.residual(&vec![0.0; 2 * n], |i| p[i], &mut expected);
             let sum = product.rows(0..2 * n, &fixed, &p, &mut q);
             let energy: f64 = p.iter().zip(&expected).map(|(p, r)| -p * r).sum();
             assert!((sum - energy).abs() < 1e-12 * energy, "{n} {are_means}: {sum} {energy}");

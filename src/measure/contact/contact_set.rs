@@ -32,10 +32,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             return contact;
         }
         let weights = self.hat_integrals(&entities);
-        let multipliers = self.vertex_multipliers(inequality, solution, &|_| true);
+        let multipliers = self.vertex_multipliers(inequality, solution);
         let given = self.dirichlet_groups();
         let density = |v: usize| {
-            (weights[v] > 0.0 && given[v].is_none()).then(|| multipliers[v] / weights[v])
+            let multiplier = multipliers.as_ref().map(|multipliers| multipliers[v]);
+            multiplier.filter(|_| weights[v] > 0.0 && given[v].is_none()).map(|m| m / weights[v])
         };
         contact.density = (0..weights.len()).map(density).collect();
         contact

@@ -11,11 +11,12 @@ mod entity;
 mod exact_contact;
 mod free_boundary;
 mod multiplier_density;
+mod multiplier_parts;
+mod nodal_multipliers;
 mod point_grid;
 
 pub(crate) use difference::contact_difference;
 pub use discrete_contact::DiscreteContact;
-pub(super) use entity::Place;
 
 use std::ops::Range;
 
@@ -32,7 +33,6 @@ use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
 use entity::ContactEntity;
 use exact_contact::ExactContact;
-use multiplier_density::nodal_multipliers;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
 const TOUCHING: f64 = 1e-9;
@@ -120,9 +120,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         )(self, inequality, solution, counts)
     }
 
-    /// The total contact force: the multiplier tested with the function one, which is the sum of the
-    /// entries of `A u - b` at the constrained unknowns in contact, because every unknown is the value or a
-    /// mean of the function. It is positive where a lower bound pushes upward. None without an inequality.
+    /// The total contact force, of all obstacles and gaps: the multiplier tested with the function one, which is the
+    /// sum of the entries of `A u - b` at the constrained unknowns in contact, because every unknown is the value or a
+    /// mean of the function. It is positive where a lower bound pushes upward. None without an inequality, and
+    /// where rounding leaves no digit. Nodes with weakly imposed Dirichlet data do not count: where an obstacle
+    /// equals the datum, their entries contain the flux through the boundary.
     ///
     /// Where only contact holds the body, without Dirichlet part and reaction, it is the negative of the
     /// total load, for every scheme: constants have no energy. It approximates the integral of the
@@ -131,9 +133,20 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If the solution has fewer values than there are unknowns.
     pub fn resultant(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Option<f64> {
-        let multipliers = || nodal_multipliers(inequality, solution);
-        let sum = || multipliers().fold(0.0, |sum, (_, multiplier)| sum + multiplier);
-        self.space.problem.is_constrained().then(sum)
+        self.multipliers(inequality, solution).map(|multipliers| multipliers.iter().sum())
+    }
+
+    /// By unknown the force of its active bound: see [`Discretisation::resultant`].
+    ///
+    /// # Panics
+    /// If the solution has fewer values than there are unknowns.
+    pub fn multipliers(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Option<Vec<f64>> {
+        let multipliers = || self.space.nodal_multipliers(inequality, solution);
+        self.space.problem.is_constrained().then(multipliers).flatten()
     }
 }
 

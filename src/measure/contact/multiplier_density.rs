@@ -1,29 +1,11 @@
 //! The multiplier as a density at vertices.
 
-use super::entity::{ContactEntity, Place};
+use super::entity::ContactEntity;
 use super::exact_contact::ExactContact;
-use crate::algebra::{Contact, Inequality};
+use crate::algebra::Inequality;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
 use crate::real::Real;
-
-/// The constrained unknowns in contact with their multipliers, the entries of `A u - b`; on a part of a mesh those of
-/// ghosts are of their owners, and all parts call it.
-pub(super) fn nodal_multipliers<T: Real>(
-    inequality: &Inequality<T>,
-    solution: &Solution<T>,
-) -> impl Iterator<Item = (usize, f64)> {
-    let mut residual = vec![0.0; inequality.size()];
-    inequality.residual_f64(&solution.values, &mut residual);
-    if let Some(distribution) = inequality.distribution() {
-        distribution.update(&mut residual);
-    }
-    let touches = |unknown: &usize| {
-        solution.contact[*unknown] != Contact::Inactive
-            && inequality.bounds[*unknown].is_inequality()
-    };
-    (0..inequality.size()).filter(touches).map(move |unknown| (unknown, -residual[unknown]))
-}
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The errors of the density in L1 and lumped L2 against the exact multiplier on these entities, which
@@ -36,7 +18,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         solution: &Solution<T>,
     ) -> Option<[f64; 2]> {
         let weights = self.hat_integrals(entities);
-        let mut multipliers = self.vertex_multipliers(inequality, solution, &|_| true);
+        let mut multipliers = self.vertex_multipliers(inequality, solution)?;
         for (entity, exact) in entities.iter().zip(exact.iter().flatten()) {
             let (measure, cell) = (self.measure_of(*entity), self.mesh.cell(entity.cell));
             for (k, local) in entity.corners::<D>().enumerate() {
@@ -51,48 +33,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         vertices().next().map(|_| [sum, squares.sqrt()])
     }
 
-    /// Nodal multipliers at vertices: the residual of every constrained unknown in contact that counts,
-    /// divided equally among the vertices around its node.
+    /// Nodal multipliers at vertices: that of each unknown divided equally among the vertices around its node. None
+    /// where rounding leaves no digit.
     pub(crate) fn vertex_multipliers(
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
-        counts: &dyn Fn(usize) -> bool,
-    ) -> Vec<f64> {
+    ) -> Option<Vec<f64>> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
-        let counted =
-            nodal_multipliers(inequality, solution).filter(|&(unknown, _)| counts(unknown));
-        for (unknown, multiplier) in counted {
+        let of_unknowns = self.nodal_multipliers(inequality, solution)?;
+        for (unknown, multiplier) in of_unknowns.iter().enumerate().filter(|(_, m)| **m != 0.0) {
             let around = inequality.supports[unknown].vertices();
             let share = multiplier / around.len() as f64;
             around.iter().for_each(|&v| multipliers[v as usize] += share);
         }
-        multipliers
-    }
-
-    /// The density of the multiplier on cells or on facets: the mean over their vertices of the nodal
-    /// multipliers of the unknowns that count over the integrals of the hat functions on these places.
-    pub(crate) fn mean_densities(
-        &self,
-        places: &[Place],
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
-        counts: &dyn Fn(usize) -> bool,
-    ) -> Vec<f64> {
-        // other parts of a mesh may have places
-        if places.is_empty() && inequality.distribution().is_none() {
-            return Vec::new();
-        }
-        let entities: Vec<ContactEntity> =
-            places.iter().map(|&(cell, facet)| ContactEntity { cell, facet }).collect();
-        let vertex = |entity: ContactEntity, k: usize| self.mesh.cell(entity.cell)[k] as usize;
-        let mut densities = self.vertex_multipliers(inequality, solution, counts);
-        let hats = self.hat_integrals(&entities);
-        densities.iter_mut().zip(hats).for_each(|(density, hat)| *density /= hat);
-        let mean = |entity: ContactEntity| {
-            let sum: f64 = entity.corners::<D>().map(|k| densities[vertex(entity, k)]).sum();
-            sum / (entity.dimension::<D>() + 1) as f64
-        };
-        entities.into_iter().map(mean).collect()
+        Some(multipliers)
     }
 }

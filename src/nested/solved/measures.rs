@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::Solved;
 use crate::error::Error;
-use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair};
-use crate::measure::{ContactErrors, Errors, contact_difference};
+use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair, TrueErrors};
+use crate::measure::{ContactErrors, Errors, Penetration, Rounding, contact_difference};
 use crate::parallel::once;
 use crate::problem::Exact;
 use crate::real::{Point, Real};
@@ -90,6 +90,17 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
             false => Ok(ContactErrors::default()),
         }
     }
+    /// How far the solution lies beyond obstacles and gaps, between its nodes too: see
+    /// [`penetration`](crate::assemble::Discretisation::penetration). None without an inequality or an iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn penetration(&self) -> Result<Option<Penetration>, Error> {
+        match self.has_iterate {
+            true => self.discretisation.penetration(self.values()),
+            false => Ok(None),
+        }
+    }
     /// An admissible function and an equilibrated flux: see
     /// [`primal_dual_pair`](crate::assemble::Discretisation::primal_dual_pair).
     ///
@@ -122,10 +133,12 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     pub(crate) fn bound_seconds(&self) -> Option<f64> {
         self.bound.get().map(|(_, _, seconds)| *seconds)
     }
-    /// The figures of the bound, with its effectivity if asked for and the exact solution is known.
-    pub(crate) fn bound_figures(&self, with_effectivity: bool) -> BoundFigures {
-        let pair = self.pair_and_bound().ok().filter(|_| with_effectivity);
-        self.figures(pair.and_then(|(pair, ..)| self.discretisation.error_of_pair(pair)))
+    /// The figures of the bound, with the error of the solution where it is known and, if asked for, that of `v` where
+    /// the exact solution is.
+    pub(crate) fn bound_figures(&self, of_solution: Option<f64>, with_v: bool) -> BoundFigures {
+        let pair = self.pair_and_bound().ok().filter(|_| with_v);
+        let of_v = pair.and_then(|(pair, ..)| self.discretisation.error_of_pair(pair));
+        self.figures(TrueErrors { of_solution, of_v })
     }
     /// The errors against the exact solution, and the figures of the bound with its effectivity.
     ///
@@ -133,15 +146,21 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// [`Error::DataNotFinite`].
     pub(crate) fn errors_and_bound_figures(&self) -> Result<(Errors, BoundFigures), Error> {
         let pair = self.pair_and_bound().ok().map(|(pair, ..)| pair);
-        let (errors, error) = match self.has_iterate {
+        let (errors, of_v) = match self.has_iterate {
             true => self.discretisation.errors_and_error_of_pair(Some(self.values()), pair)?,
             false => (Errors::default(), None),
         };
-        Ok((errors, self.figures(error)))
+        let of_solution = errors.broken_energy;
+        Ok((errors, self.figures(TrueErrors { of_solution, of_v })))
     }
     /// The figures of the bound.
-    fn figures(&self, error: Option<f64>) -> BoundFigures {
+    fn figures(&self, errors: TrueErrors) -> BoundFigures {
         let bound = self.pair_and_bound().map(|(_, bound, _)| bound);
-        BoundFigures::of_solution(bound, error, self.energy_norm())
+        BoundFigures::of_solution(bound, errors, (self.energy_norm(), self.rounding()))
+    }
+    /// Rounding errors in the figures of the solution; none without an iterate.
+    pub fn rounding(&self) -> Option<Rounding> {
+        let of = (self.mesh().n_cells(), self.has_iterate.then(|| self.energy_norm())?);
+        self.discretisation.rounding(&self.inequality, self.values(), of)
     }
 }

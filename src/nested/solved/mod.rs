@@ -4,6 +4,7 @@
 mod files;
 mod measures;
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -88,6 +89,10 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
         }
+        if has_iterate {
+            let norm = energy_norm(&inequality, &solution.values, &solution.jump_multipliers);
+            solution.dual_residual = certificate.largest() * norm;
+        }
         Self {
             mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
             discretisation,
@@ -167,15 +172,12 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     pub fn contact(&self) -> &[Contact] {
         &self.solution.contact
     }
-    /// The multiplier of each unknown: its entry of `A u - b` where a bound is active, positive at
-    /// lower and negative at upper bounds; zero elsewhere. Its density is in [`Solved::fields`].
-    pub fn multiplier(&self) -> Vec<f64> {
-        let Inequality { matrix, load, .. } = &self.inequality;
-        let at = |(i, &state): (usize, &Contact)| match state {
-            Contact::Inactive => 0.0,
-            _ => matrix.row_dot_f64(i, self.values()) - load[i].to_f64(),
-        };
-        self.contact().iter().enumerate().map(at).collect()
+    /// The multiplier of each unknown, positive at lower and negative at upper bounds, zero elsewhere: see
+    /// [`Discretisation::multipliers`]. None without an inequality or an iterate, and where rounding leaves no digit.
+    /// Its density is in [`Solved::fields`].
+    pub fn multiplier(&self) -> Option<Vec<f64>> {
+        let multipliers = || self.discretisation.multipliers(&self.inequality, &self.solution);
+        self.has_iterate.then(multipliers).flatten()
     }
     /// Number of outer iterations on this mesh, by [`Solution::outer`]; none without an iterate.
     pub fn outer(&self) -> Option<usize> {
@@ -211,6 +213,12 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     pub fn resultant(&self) -> Option<f64> {
         let resultant = || self.discretisation.resultant(&self.inequality, &self.solution);
         self.has_iterate.then(resultant).flatten()
+    }
+    /// The resultant of each obstacle and each contact group, see [`Discretisation::resultants`]; none where there is
+    /// no resultant.
+    pub fn resultants(&self) -> Option<BTreeMap<String, f64>> {
+        let resultants = || self.discretisation.resultants(&self.inequality, &self.solution);
+        self.has_iterate.then(resultants).flatten()
     }
     /// The certificate: violations of the complementarity conditions.
     pub fn certificate(&self) -> Certificate {

@@ -68,25 +68,30 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                         let found = parts.get(key);
                         let found =
                             found.ok_or_else(|| self.source.error(value.span().start, missing))?;
-                        self.source.formula(key, found, variables)
+                        Ok((self.source.formula(key, found, variables)?, found.span().start))
                     };
                     let level = part("level", "an expression that vanishes where the datum jumps")?;
-                    (part("value", "the datum")?, Some(level))
+                    (part("value", "the datum")?.0, Some(level))
                 }
             };
             let region = (group != DEFAULT).then_some(&group[..]);
-            let given = piecewise(&formula, level.as_ref());
+            let given = piecewise(&formula, level.as_ref().map(|(level, _)| level));
             self.problem = set(std::mem::take(&mut self.problem), region, given);
-            self.entries.push(Entry {
-                datum: format!("{name}.{group}"),
+            let entry = |what: &str, offset, (allowed, at_vertices), formula: &Formula| Entry {
+                datum: format!("{name}.{group}{what}"),
                 group: region.map(str::to_owned),
                 is_boundary: false,
                 others: groups.clone(),
                 at_vertices,
-                offset: if region.is_some() { key.span().start } else { value.span().start },
+                offset,
                 allowed,
                 value: formula.flux(),
-            });
+            };
+            if let Some((level, offset)) = &level {
+                self.entries.push(entry(".level", *offset, (Allowed::Finite, true), level));
+            }
+            let offset = if region.is_some() { key.span().start } else { value.span().start };
+            self.entries.push(entry("", offset, (allowed, at_vertices), &formula));
         }
         Ok(())
     }

@@ -8,8 +8,8 @@ use winnow::error::{ModalError, ParserError};
 use winnow::prelude::*;
 use winnow::token::{literal, one_of, take_while};
 
-use super::functions::{power, truth};
-use super::node::Node;
+use super::functions::truth;
+use super::node::{Node, Operator};
 
 /// An error of the parser.
 #[derive(Debug)]
@@ -51,18 +51,29 @@ macro_rules! of_two {
     };
 }
 
+/// An operation that makes polynomials of polynomials, as an infix operator applies it to nodes.
+macro_rules! arithmetic {
+    ($operator:ident) => {
+        |_: &mut _, a, b| Ok(Node::arithmetic(Operator::$operator, a, b))
+    };
+}
+
 /// An expression of any precedence, and the white space after it.
 pub(super) fn sum(input: &mut &str) -> Parsed<Node> {
     let sign = alt((
-        ('-', multispace0).value(Prefix(9, |_: &mut _, a| Ok(Node::One(|a| -a, Box::new(a))))),
+        ('-', multispace0).value(Prefix(9, |_: &mut _, a| Ok(Node::Negative(Box::new(a))))),
         ('+', multispace0).value(Prefix(9, |_: &mut _, a| Ok(a))),
         ('!', multispace0)
             .value(Prefix(9, |_: &mut _, a| Ok(Node::One(|a| truth(a == 0.0), Box::new(a))))),
     ));
     let operator = |text: &'static str| (literal(text), multispace0);
     let logic = alt((
-        operator("||").value(Infix::Left(2, of_two!(|a, b| truth(a != 0.0 || b != 0.0)))),
-        operator("&&").value(Infix::Left(3, of_two!(|a, b| truth(a != 0.0 && b != 0.0)))),
+        operator("||").value(Infix::Left(2, |_: &mut _, a, b| {
+            Ok(Node::Call("||".to_owned(), 0, vec![a, b]))
+        })),
+        operator("&&").value(Infix::Left(3, |_: &mut _, a, b| {
+            Ok(Node::Call("&&".to_owned(), 0, vec![a, b]))
+        })),
         operator("<=").value(Infix::Neither(4, of_two!(|a, b| truth(a <= b)))),
         operator(">=").value(Infix::Neither(4, of_two!(|a, b| truth(a >= b)))),
         operator("==").value(Infix::Neither(4, of_two!(|a, b| truth(a == b)))),
@@ -71,12 +82,12 @@ pub(super) fn sum(input: &mut &str) -> Parsed<Node> {
         operator(">").value(Infix::Neither(4, of_two!(|a, b| truth(a > b)))),
     ));
     let arithmetic = alt((
-        operator("+").value(Infix::Left(6, of_two!(|a, b| a + b))),
-        operator("-").value(Infix::Left(6, of_two!(|a, b| a - b))),
-        operator("**").value(Infix::Right(11, of_two!(power))),
-        operator("*").value(Infix::Left(8, of_two!(|a, b| a * b))),
-        operator("/").value(Infix::Left(8, of_two!(|a, b| a / b))),
-        operator("^").value(Infix::Right(11, of_two!(power))),
+        operator("+").value(Infix::Left(6, arithmetic!(Plus))),
+        operator("-").value(Infix::Left(6, arithmetic!(Minus))),
+        operator("**").value(Infix::Right(11, arithmetic!(Power))),
+        operator("*").value(Infix::Left(8, arithmetic!(Times))),
+        operator("/").value(Infix::Left(8, arithmetic!(Over))),
+        operator("^").value(Infix::Right(11, arithmetic!(Power))),
     ));
     expression(operand).prefix(sign).infix(alt((logic, arithmetic))).parse_next(input)
 }

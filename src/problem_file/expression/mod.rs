@@ -66,6 +66,10 @@ impl Expression {
     pub fn value(&self, variables: &[f64]) -> f64 {
         self.0.value(variables)
     }
+    /// The degree of a polynomial in the first `dimension` variables, the others being constants.
+    pub fn degree(&self, dimension: usize) -> Option<usize> {
+        self.0.degree(dimension)
+    }
     /// The value of an expression without variables.
     pub fn constant(&self) -> Option<f64> {
         (!self.0.has_variables()).then(|| self.0.value(&[]))
@@ -139,6 +143,72 @@ mod tests {
         ] {
             let found = at(text, x);
             assert!((found - expected).abs() <= 1e-14 * expected.abs(), "{text}: {found}");
+        }
+    }
+
+    #[test]
+    fn an_operand_that_is_not_a_number_leaves_no_number() {
+        let x = [1.0, 3.0, 5.0];
+        for text in [
+            "min(0/0, 1)",
+            "min(1, 0/0)",
+            "max(log(x - 2), 1)",
+            "max(1, y, log(x - 2))",
+            "(0/0)^0",
+            "1^(0/0)",
+            "pow(0/0, 0)",
+            "hypot(1/0, 0/0)",
+            "atan2(0/0, 1)",
+            "sign(0/0)",
+            "log(x - 2) > 0",
+            "0/0 != 0/0",
+            "!(0/0)",
+            "1 && 0/0",
+            "0/0 || 1",
+            "0/0 && 0",
+            "if(log(x - 2) < 1, 1, 2)",
+            "if(x < 2, log(x - 2), 2)",
+        ] {
+            assert!(at(text, x).is_nan(), "{text}: {}", at(text, x));
+        }
+        for (text, expected) in [
+            ("if(x > 2, log(x - 2), -1)", -1.0),
+            ("if(x < 2, 4, 0/0)", 4.0),
+            ("x > 2 && log(x - 2) > 0", 0.0),
+            ("x < 2 || log(x - 2) > 0", 1.0),
+            ("x > 2 || y", 1.0),
+            ("x < 2 && y - 3", 0.0),
+            ("min(1/0, x)", 1.0),
+        ] {
+            assert_eq!(at(text, x), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn polynomials_have_their_degree() {
+        let variables = ["x", "y", "nx", "ny"];
+        for (text, degree) in [
+            ("0.1 + 0.3 * x", Some(1)),
+            ("-x^2 * y - (x + y)^3 / 2", Some(3)),
+            ("(x * y)^2 * (x - 1)**3", Some(7)),
+            ("x^0 + sqrt(2) * sin(pi)", Some(0)),
+            ("x * nx + y * ny", Some(1)),
+            ("nx / ny", Some(0)),
+            ("x^(1 + 1)", Some(2)),
+            ("(x^12)^2", Some(24)),
+            ("x^(1e30) * y", None),
+            ("x^-1", None),
+            ("x^0.5", None),
+            ("2^x", None),
+            ("1 / x", None),
+            ("abs(x)", None),
+            ("sin(x) + y", None),
+            ("if(x < 0.5, 0, 1)", None),
+            ("min(x, y)", None),
+            ("x > 0", None),
+        ] {
+            let found = Expression::parse(text, &variables).unwrap().degree(2);
+            assert_eq!(found, degree, "{text}");
         }
     }
 

@@ -14,6 +14,11 @@ pub(crate) struct SyntaxError {
 pub(super) fn resolve(node: Node, length: usize, variables: &[&str]) -> Result<Node, SyntaxError> {
     let of = |node| resolve(node, length, variables);
     Ok(match node {
+        Node::Negative(a) => Node::Negative(Box::new(of(*a)?)),
+        Node::Arithmetic(operator, ab) => {
+            let (a, b) = *ab;
+            Node::arithmetic(operator, of(a)?, of(b)?)
+        }
         Node::One(f, a) => Node::One(f, Box::new(of(*a)?)),
         Node::Two(f, ab) => {
             let (a, b) = *ab;
@@ -68,6 +73,12 @@ fn call(name: &str, arguments: Vec<Node>) -> Result<Node, String> {
         }
         let first = next();
         return Ok(arguments.fold(first, |a, b| Node::two(*f, a, b)));
+    }
+    // operators whose second operand is not always used
+    match name {
+        "&&" => return Ok(Node::and(next(), next())),
+        "||" => return Ok(Node::or(next(), next())),
+        _ => {}
     }
     if name == "if" {
         return match n {

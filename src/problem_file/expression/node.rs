@@ -1,6 +1,6 @@
 //! The tree of an expression, and its value.
 
-use super::functions::{One, Two};
+use super::functions::{One, Two, power, truth};
 
 /// A node of the tree.
 #[derive(Clone, Debug)]
@@ -8,20 +8,61 @@ pub(super) enum Node {
     Number(f64),
     /// By its position in the list of variables.
     Variable(usize),
+    Negative(Box<Node>),
+    Arithmetic(Operator, Box<(Node, Node)>),
     One(One, Box<Node>),
     Two(Two, Box<(Node, Node)>),
     /// Condition, value if it is not zero, value if it is.
     If(Box<(Node, Node, Node)>),
     /// A name that has no meaning yet: where it ends, counted from the end of the text.
     Name(String, usize),
-    /// A function with its arguments, before it is looked up.
+    /// A function, or one of the operators `&&` and `||`, with its arguments, before it is looked up.
     Call(String, usize, Vec<Node>),
 }
 
+/// An operation that makes polynomials of polynomials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Operator {
+    Plus,
+    Minus,
+    Times,
+    Over,
+    Power,
+}
+
+impl Operator {
+    fn value(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Plus => a + b,
+            Self::Minus => a - b,
+            Self::Times => a * b,
+            Self::Over => a / b,
+            Self::Power => power(a, b),
+        }
+    }
+}
+
 impl Node {
+    /// An operation on two nodes.
+    pub fn arithmetic(operator: Operator, a: Node, b: Node) -> Node {
+        Node::Arithmetic(operator, Box::new((a, b)))
+    }
     /// A function of two nodes.
     pub fn two(operation: Two, a: Node, b: Node) -> Node {
         Node::Two(operation, Box::new((a, b)))
+    }
+
+    /// The truth value of a node.
+    fn truth(a: Node) -> Node {
+        Node::two(|a, b| truth(a != b), a, Node::Number(0.0))
+    }
+    /// Whether both nodes are true; the second is not used if the first is false.
+    pub fn and(a: Node, b: Node) -> Node {
+        Node::If(Box::new((a, Self::truth(b), Node::Number(0.0))))
+    }
+    /// Whether a node or another is true; the other is not used if the first is true.
+    pub fn or(a: Node, b: Node) -> Node {
+        Node::If(Box::new((a, Node::Number(1.0), Self::truth(b))))
     }
 
     /// Whether a variable occurs.
@@ -29,26 +70,75 @@ impl Node {
         match self {
             Node::Number(_) => false,
             Node::Variable(_) | Node::Name(..) | Node::Call(..) => true,
-            Node::One(_, a) => a.has_variables(),
-            Node::Two(_, ab) => ab.0.has_variables() || ab.1.has_variables(),
+            Node::One(_, a) | Node::Negative(a) => a.has_variables(),
+            Node::Two(_, ab) | Node::Arithmetic(_, ab) => {
+                ab.0.has_variables() || ab.1.has_variables()
+            }
             Node::If(parts) => [&parts.0, &parts.1, &parts.2].into_iter().any(Node::has_variables),
         }
     }
 
-    /// The value for values of the variables.
+    /// The degree of the expression as a polynomial in the first `dimension` variables, the others being constants;
+    /// none if it is no sum, product, quotient by a number or whole power of such.
+    pub fn degree(&self, dimension: usize) -> Option<usize> {
+        let of = |node: &Node| node.degree(dimension);
+        match self {
+            Node::Variable(k) => Some(usize::from(*k < dimension)),
+            Node::Negative(a) => of(a),
+            Node::Arithmetic(operator, ab) => {
+                let (a, b) = &**ab;
+                match operator {
+                    Operator::Plus | Operator::Minus => Some(of(a)?.max(of(b)?)),
+                    Operator::Times => of(a)?.checked_add(of(b)?),
+                    Operator::Over => of(a).filter(|_| of(b) == Some(0)),
+                    Operator::Power if b.has_variables() => None,
+                    Operator::Power => {
+                        let exponent = b.value(&[]);
+                        let is_whole = exponent >= 0.0 && exponent.fract() == 0.0;
+                        of(a)?.checked_mul(exponent as usize).filter(|_| is_whole)
+                    }
+                }
+            }
+            other => (!other.has_variables()).then_some(0),
+        }
+    }
+
+    /// The value for values of the variables; NaN if an operand that is used is NaN. The branch of a condition that
+    /// is not taken is not used.
     pub fn value(&self, variables: &[f64]) -> f64 {
         let at = |node: &Node| node.value(variables);
         match self {
             Node::Number(x) => *x,
             Node::Variable(k) => variables[*k],
-            Node::One(f, a) => f(at(a)),
-            Node::Two(f, ab) => f(at(&ab.0), at(&ab.1)),
+            Node::Negative(a) => -at(a),
+            // `max`, `pow`, comparisons and others would make a number of an operand that is none
+            Node::One(f, a) => match at(a) {
+                a if a.is_nan() => a,
+                a => f(a),
+            },
+            Node::Arithmetic(operator, ab) => {
+                of_numbers(at(&ab.0), at(&ab.1), |a, b| operator.value(a, b))
+            }
+            Node::Two(f, ab) => of_numbers(at(&ab.0), at(&ab.1), f),
             Node::If(parts) => {
                 let (condition, yes, no) = &**parts;
-                if at(condition) != 0.0 { at(yes) } else { at(no) }
+                match at(condition) {
+                    condition if condition.is_nan() => condition,
+                    0.0 => at(no),
+                    _ => at(yes),
+                }
             }
             // names are resolved when an expression is read
             Node::Name(..) | Node::Call(..) => f64::NAN,
         }
+    }
+}
+
+/// A function of two values; NaN if one of them is.
+fn of_numbers(a: f64, b: f64, f: impl Fn(f64, f64) -> f64) -> f64 {
+    match (a, b) {
+        (a, _) if a.is_nan() => a,
+        (_, b) if b.is_nan() => b,
+        _ => f(a, b),
     }
 }

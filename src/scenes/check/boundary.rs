@@ -4,7 +4,7 @@ use super::evaluator::Evaluator;
 use super::samples::{BoundaryPoint, boundary};
 use super::stated;
 use super::violation::{Condition, Violation};
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryPart, Domain};
 
 /// Error allowed in boundary conditions, relative to the scales of value and flux.
 const EXACT: f64 = 1e-8;
@@ -17,34 +17,44 @@ const JUMP: f64 = 1e-3;
 /// Boundary data are those of the solution, and contact sides satisfy the Signorini conditions.
 pub(super) fn check<const D: usize>(
     evaluator: &Evaluator<'_, D>,
+    domain: &Domain<D>,
     samples: usize,
 ) -> Result<(), Violation> {
-    let (value, flux) = (EXACT * evaluator.scales.value, EXACT * evaluator.scales.flux);
-    let problem = &evaluator.scene.problem;
-    for point in boundary(&evaluator.scene.domain, samples) {
+    for point in boundary(domain, samples) {
         check_limit(evaluator, &point)?;
-        let BoundaryPoint { x, normal, part } = point;
-        let outflow = evaluator.flux(&x).dot(&normal);
-        match (part, &problem.neumann, &problem.gap) {
-            (BoundaryPart::Dirichlet, _, _) => {
-                let error = (problem.dirichlet_at(&x) - evaluator.value(&x)).abs();
-                evaluator.require(Condition::Dirichlet, &x, error, value)?;
-            }
-            (BoundaryPart::Neumann, Some(q), _) => {
-                let error = (q.at(&x, &normal) - outflow).abs();
-                evaluator.require(Condition::Neumann, &x, error, flux)?;
-            }
-            (BoundaryPart::Contact, _, Some(g)) => {
-                let above = evaluator.value(&x) - g.at(&x);
-                evaluator.require(Condition::Gap, &x, -above, value)?;
-                evaluator.require(Condition::ContactFlux, &x, -outflow, flux)?;
-                if above > value {
-                    evaluator.require(Condition::ContactComplementarity, &x, outflow, flux)?;
-                }
-                stated::check_on_boundary(evaluator, &x, above, outflow)?;
-            }
-            _ => {}
+        check_at(evaluator, &point, EXACT)?;
+    }
+    Ok(())
+}
+
+/// The condition at a point of the boundary, up to this share of the scales of value and flux.
+pub(super) fn check_at<const D: usize>(
+    evaluator: &Evaluator<'_, D>,
+    &BoundaryPoint { x, normal, part }: &BoundaryPoint<D>,
+    exact: f64,
+) -> Result<(), Violation> {
+    let (value, flux) = (exact * evaluator.scales.value, exact * evaluator.scales.flux);
+    let problem = evaluator.problem;
+    let outflow = evaluator.flux(&x).dot(&normal);
+    match (part, &problem.neumann, &problem.gap) {
+        (BoundaryPart::Dirichlet, _, _) => {
+            let error = (problem.dirichlet_at(&x) - evaluator.value(&x)).abs();
+            evaluator.require(Condition::Dirichlet, &x, error, value)?;
         }
+        (BoundaryPart::Neumann, Some(q), _) => {
+            let error = (q.at(&x, &normal) - outflow).abs();
+            evaluator.require(Condition::Neumann, &x, error, flux)?;
+        }
+        (BoundaryPart::Contact, _, Some(g)) => {
+            let above = evaluator.value(&x) - g.at(&x);
+            evaluator.require(Condition::Gap, &x, -above, value)?;
+            evaluator.require(Condition::ContactFlux, &x, -outflow, flux)?;
+            if above > value {
+                evaluator.require(Condition::ContactComplementarity, &x, outflow, flux)?;
+            }
+            stated::check_on_boundary(evaluator, &x, above, outflow)?;
+        }
+        _ => {}
     }
     Ok(())
 }

@@ -21,7 +21,7 @@ pub(super) fn check<const D: usize>(
         match part {
             BoundaryPart::Dirichlet => check_dirichlet(scene, &x)?,
             BoundaryPart::Contact if scene.problem.gap.is_none() => {
-                return Err(Violation::new(scene, Condition::GapGiven, &x, f64::NAN, 0.0));
+                return Err(Violation::new(&scene.name, Condition::GapGiven, &x, f64::NAN, 0.0));
             }
             BoundaryPart::Neumann => {
                 if let Some(q) = &scene.problem.neumann {
@@ -43,7 +43,7 @@ fn finite<const D: usize>(
     if value.is_finite() {
         return Ok(());
     }
-    Err(Violation::new(scene, Condition::Finite(datum), x, value, 0.0))
+    Err(Violation::new(&scene.name, Condition::Finite(datum), x, value, 0.0))
 }
 
 fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), Violation> {
@@ -70,7 +70,7 @@ fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), V
     let reaction = problem.reaction.as_ref().map_or(0.0, |c| c.at(x));
     for (value, passes) in [(alpha, alpha > 0.0), (reaction, reaction >= 0.0)] {
         if !passes {
-            return Err(Violation::new(scene, Condition::Ellipticity, x, value, 0.0));
+            return Err(Violation::new(&scene.name, Condition::Ellipticity, x, value, 0.0));
         }
     }
     let (lower, upper) = bounds(scene, x);
@@ -105,5 +105,5 @@ fn in_order<const D: usize>(
     if a - b <= allowed {
         return Ok(());
     }
-    Err(Violation::new(scene, Condition::Admissible, x, a - b, allowed))
+    Err(Violation::new(&scene.name, Condition::Admissible, x, a - b, allowed))
 }

@@ -1,14 +1,14 @@
 //! Evaluation of the data and the exact solution of a scene, and their scales.
 
 use super::violation::{Condition, Violation};
-use crate::problem::Exact;
+use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::scene::Scene;
 
 /// Distance to an obstacle that counts as contact, relative to the value.
 pub(super) const TOUCHING: f64 = 1e-8;
 
 /// Largest absolute values at the sample points; tolerances are multiples of them.
+#[derive(Clone, Copy)]
 pub(super) struct Scales {
     /// Shortest side of the domain, or radius of a disc.
     pub length: f64,
@@ -22,18 +22,40 @@ pub(super) struct Scales {
     pub force: f64,
 }
 
-/// A scene with its exact solution and scales.
+impl Scales {
+    /// Scales of none, to be compared with others.
+    pub const NONE: Self = Self { length: 0.0, value: 0.0, slope: 0.0, flux: 0.0, force: 0.0 };
+    /// The larger ones of each.
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            length: self.length.max(other.length),
+            value: self.value.max(other.value),
+            slope: self.slope.max(other.slope),
+            flux: self.flux.max(other.flux),
+            force: self.force.max(other.force),
+        }
+    }
+}
+
+/// A problem with its exact solution and scales.
 pub(super) struct Evaluator<'a, const D: usize> {
-    pub scene: &'a Scene<D>,
+    /// The name of the scene.
+    pub name: &'a str,
+    pub problem: &'a Problem<D>,
     pub exact: &'a Exact<D>,
     pub scales: Scales,
 }
 
 impl<'a, const D: usize> Evaluator<'a, D> {
-    pub fn new(scene: &'a Scene<D>, exact: &'a Exact<D>, points: &[Point<f64, D>]) -> Self {
-        let length = scene.domain.length();
+    /// With the scales at these points of a domain of this length.
+    pub fn new(
+        name: &'a str,
+        (problem, exact): (&'a Problem<D>, &'a Exact<D>),
+        length: f64,
+        points: &[Point<f64, D>],
+    ) -> Self {
         let scales = Scales { length, value: 0.0, slope: 0.0, flux: 0.0, force: 0.0 };
-        let mut evaluator = Self { scene, exact, scales };
+        let mut evaluator = Self { name, problem, exact, scales };
         let largest = |size: &dyn Fn(&Point<f64, D>) -> f64| {
             points.iter().map(|x| size(x).abs()).fold(0.0, f64::max)
         };
@@ -54,25 +76,25 @@ impl<'a, const D: usize> Evaluator<'a, D> {
         (self.exact.gradient)(x)
     }
     pub fn coefficient(&self, x: &Point<f64, D>) -> f64 {
-        self.scene.problem.coefficient.as_ref().map_or(1.0, |alpha| alpha.at(x))
+        self.problem.coefficient.as_ref().map_or(1.0, |alpha| alpha.at(x))
     }
     /// `alpha grad u`.
     pub fn flux(&self, x: &Point<f64, D>) -> Point<f64, D> {
         self.gradient(x) * self.coefficient(x)
     }
     pub fn source(&self, x: &Point<f64, D>) -> f64 {
-        self.scene.problem.source.as_ref().map_or(0.0, |f| f.at(x))
+        self.problem.source.as_ref().map_or(0.0, |f| f.at(x))
     }
     pub fn reaction(&self, x: &Point<f64, D>) -> f64 {
-        self.scene.problem.reaction.as_ref().map_or(0.0, |c| c.at(x))
+        self.problem.reaction.as_ref().map_or(0.0, |c| c.at(x))
     }
     /// `u - psi_lower`, infinite without obstacle.
     pub fn above_lower(&self, x: &Point<f64, D>) -> f64 {
-        self.scene.problem.lower.as_ref().map_or(f64::INFINITY, |psi| self.value(x) - psi.at(x))
+        self.problem.lower.as_ref().map_or(f64::INFINITY, |psi| self.value(x) - psi.at(x))
     }
     /// `psi_upper - u`, infinite without obstacle.
     pub fn below_upper(&self, x: &Point<f64, D>) -> f64 {
-        self.scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi.at(x) - self.value(x))
+        self.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi.at(x) - self.value(x))
     }
     /// A violation unless `by <= allowed`; a violation if `by` is not a number.
     pub fn require(
@@ -85,7 +107,7 @@ impl<'a, const D: usize> Evaluator<'a, D> {
         if by <= allowed {
             Ok(())
         } else {
-            Err(Violation::new(self.scene, condition, at, by, allowed))
+            Err(Violation::new(self.name, condition, at, by, allowed))
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::evaluator::{Evaluator, TOUCHING};
 use super::samples::sees;
 use super::violation::{Condition, Violation};
+use crate::mesh::Domain;
 use crate::real::Point;
 
 /// Length to which segments are bisected, relative to the shortest side.
@@ -18,9 +19,9 @@ const KINK: f64 = 1e-3;
 /// active.
 pub(super) fn check<const D: usize>(
     evaluator: &Evaluator<'_, D>,
+    domain: &Domain<D>,
     points: &[Point<f64, D>],
 ) -> Result<(), Violation> {
-    let domain = &evaluator.scene.domain;
     for pair in points.windows(2).filter(|pair| sees(domain, &pair[0], &pair[1])) {
         check_value(evaluator, pair[0], pair[1])?;
         check_flux(evaluator, pair[0], pair[1])?;

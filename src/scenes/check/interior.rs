@@ -18,14 +18,16 @@ const REACH: f64 = 2e-3;
 pub(super) fn check_gradient<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     points: &[Point<f64, D>],
+    depth: &dyn Fn(&Point<f64, D>) -> f64,
 ) -> Result<(), Violation> {
     let slope = evaluator.scales.slope;
     let mut skipped = Skipped::default();
     for x in points {
+        let reach = reach(evaluator, depth(x));
         let stated = evaluator.gradient(x);
         for axis in 0..D {
             let along = |t: f64| evaluator.value(&shifted(x, axis, t));
-            match settled_derivative(along, reach(evaluator, x), SETTLED * slope) {
+            match settled_derivative(along, reach, SETTLED * slope) {
                 Some(found) => {
                     let error = (found - stated[axis]).abs();
                     evaluator.require(Condition::Gradient, x, error, DERIVATIVE * slope)?;
@@ -55,32 +57,46 @@ pub(super) fn check_obstacles<const D: usize>(
 pub(super) fn check_multiplier<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     points: &[Point<f64, D>],
+    depth: &dyn Fn(&Point<f64, D>) -> f64,
 ) -> Result<(), Violation> {
-    let touching = TOUCHING * evaluator.scales.value;
-    let allowed = DERIVATIVE * evaluator.scales.force;
     let mut skipped = Skipped::default();
     for x in points {
-        let Some(multiplier) = multiplier(evaluator, x) else {
+        if !check_multiplier_at(evaluator, x, depth(x))? {
             skipped.note(x);
-            continue;
-        };
-        let (condition, by) =
-            match (evaluator.above_lower(x) <= touching, evaluator.below_upper(x) <= touching) {
-                (false, false) => (Condition::Equation, multiplier.abs()),
-                (true, false) => (Condition::MultiplierSign, -multiplier),
-                (false, true) => (Condition::MultiplierSign, multiplier),
-                (true, true) => (Condition::MultiplierSign, 0.0),
-            };
-        evaluator.require(condition, x, by, allowed)?;
-        stated::check_inside(evaluator, x, multiplier, allowed)?;
+        }
     }
     skipped.check(evaluator, points.len())
 }
 
+/// Checks the multiplier at a point of this distance from the boundary. Returns whether it is known there.
+pub(super) fn check_multiplier_at<const D: usize>(
+    evaluator: &Evaluator<'_, D>,
+    x: &Point<f64, D>,
+    depth: f64,
+) -> Result<bool, Violation> {
+    let touching = TOUCHING * evaluator.scales.value;
+    let allowed = DERIVATIVE * evaluator.scales.force;
+    let Some(multiplier) = multiplier(evaluator, x, depth) else { return Ok(false) };
+    let (condition, by) =
+        match (evaluator.above_lower(x) <= touching, evaluator.below_upper(x) <= touching) {
+            (false, false) => (Condition::Equation, multiplier.abs()),
+            (true, false) => (Condition::MultiplierSign, -multiplier),
+            (false, true) => (Condition::MultiplierSign, multiplier),
+            (true, true) => (Condition::MultiplierSign, 0.0),
+        };
+    evaluator.require(condition, x, by, allowed)?;
+    stated::check_inside(evaluator, x, multiplier, allowed)?;
+    Ok(true)
+}
+
 /// `-div(alpha grad u) + c u - f`; none where differences of the flux do not settle.
-fn multiplier<const D: usize>(evaluator: &Evaluator<'_, D>, x: &Point<f64, D>) -> Option<f64> {
+fn multiplier<const D: usize>(
+    evaluator: &Evaluator<'_, D>,
+    x: &Point<f64, D>,
+    depth: f64,
+) -> Option<f64> {
     let tolerance = SETTLED * evaluator.scales.force;
-    let reach = reach(evaluator, x);
+    let reach = reach(evaluator, depth);
     let mut divergence = 0.0;
     for axis in 0..D {
         let along = |t: f64| evaluator.flux(&shifted(x, axis, t))[axis];
@@ -96,8 +112,8 @@ fn shifted<const D: usize>(x: &Point<f64, D>, axis: usize, by: f64) -> Point<f64
 }
 
 /// Largest stencil inside the domain: outside a scene may be undefined.
-fn reach<const D: usize>(evaluator: &Evaluator<'_, D>, x: &Point<f64, D>) -> f64 {
-    (REACH * evaluator.scales.length).min(0.9 * evaluator.scene.domain.depth(x))
+fn reach<const D: usize>(evaluator: &Evaluator<'_, D>, depth: f64) -> f64 {
+    (REACH * evaluator.scales.length).min(0.9 * depth)
 }
 
 /// Number of derivatives that did not settle, and the last point of one.

@@ -12,13 +12,16 @@ mod differences;
 mod evaluator;
 mod interfaces;
 mod interior;
+mod on_mesh;
 mod samples;
 mod stated;
 mod violation;
 
+pub(crate) use on_mesh::check_exact_on;
 pub use violation::{Condition, Violation};
 
 use super::scene::Scene;
+use crate::real::Point;
 use evaluator::Evaluator;
 
 /// Tests data and exact solution of a scene against each other, at `samples` quasi-random points of its
@@ -50,11 +53,14 @@ pub fn check_scene<const D: usize>(scene: &Scene<D>, samples: usize) -> Result<(
     let inside = samples::inside(&scene.domain, samples);
     data::check(scene, &inside, samples)?;
     let Some(exact) = &scene.problem.exact else { return Ok(()) };
-    let evaluator = Evaluator::new(scene, exact, &inside);
-    interior::check_gradient(&evaluator, &inside)?;
-    interfaces::check(&evaluator, &inside)?;
+    let domain = &scene.domain;
+    let data = (&scene.problem, exact);
+    let evaluator = Evaluator::new(&scene.name, data, domain.length(), &inside);
+    let depth = |x: &Point<f64, D>| domain.depth(x);
+    interior::check_gradient(&evaluator, &inside, &depth)?;
+    interfaces::check(&evaluator, domain, &inside)?;
     interior::check_obstacles(&evaluator, &inside)?;
-    interior::check_multiplier(&evaluator, &inside)?;
-    boundary::check(&evaluator, samples)?;
+    interior::check_multiplier(&evaluator, &inside, &depth)?;
+    boundary::check(&evaluator, domain, samples)?;
     stated::check_free_boundary(&evaluator, &inside)
 }

@@ -17,7 +17,7 @@ pub(super) fn check_inside<const D: usize>(
     multiplier: f64,
     allowed: f64,
 ) -> Result<(), Violation> {
-    if !evaluator.scene.problem.has_obstacle() {
+    if !evaluator.problem.has_obstacle() {
         return Ok(());
     }
     check_multiplier(evaluator, x, multiplier, allowed)?;

@@ -4,7 +4,6 @@ use std::fmt;
 
 use crate::readable_debug::debug_by_display;
 use crate::real::Point;
-use crate::scenes::scene::Scene;
 
 /// A condition on a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,13 +107,13 @@ debug_by_display!(Violation);
 
 impl Violation {
     pub(super) fn new<const D: usize>(
-        scene: &Scene<D>,
+        scene: &str,
         condition: Condition,
         at: &Point<f64, D>,
         by: f64,
         allowed: f64,
     ) -> Self {
         let at = at.iter().copied().collect();
-        Self { scene: scene.name.clone(), condition, at, by, allowed }
+        Self { scene: scene.to_owned(), condition, at, by, allowed }
     }
 }

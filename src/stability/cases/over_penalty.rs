@@ -1,17 +1,21 @@
-//! The over-penalty factor over fourteen powers of ten.
+//! The over-penalty factor over fourteen powers of ten, and contact forces over larger ones.
 
 use crate::error::Error;
+use crate::nested::{Hierarchy, NestedIteration};
+use crate::real::Real;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, Penalty};
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, jump, of, quotient};
-use crate::stability::runs::{definite, row};
+use crate::stability::runs::{definite, imbalance, row, solver};
+use crate::study::Row;
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
     let level = plan.pick_of(8, 32, 32);
     let all: Vec<i32> = (-4..=10).collect();
     let exponents: Vec<i32> = plan.pick_of(vec![-4, 2], vec![-4, 0, 2, 6, 10], all);
+    let large: Vec<i32> = plan.pick_of(vec![2], vec![2, 8, 14], (0..=14).collect());
     let problems: [fn() -> Scene<2>; 2] = [scenes::polynomial::<2>, scenes::signorini_2d];
     for scheme in ["wopsip", "wopsip:facet-means"] {
         for make in problems {
@@ -19,6 +23,13 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
                 let choice = Choice::new(scheme, Penalty::Eta(10.0_f64.powi(exponent)));
                 plan.add("penalty-factor", choice, &make().name, move |c, sink| {
                     factor(make, c, exponent, level, sink)
+                });
+            }
+            for &exponent in &large {
+                let choice = Choice::new(scheme, Penalty::Eta(10.0_f64.powi(exponent)));
+                plan.add("penalty-factor", choice, &make().name, move |c, sink| {
+                    forces::<f64>(make, c, exponent, sink)?;
+                    forces::<f32>(make, c, exponent, sink)
                 });
             }
         }
@@ -62,5 +73,52 @@ fn factor(
         .underlying("jump part of the error", of(&ours, jump))
         .detail(of(&ours, jump).map_or_else(|| figures(&ours), |j| format!("jump part {j:.2e}")));
     sink(jumps.measured(scaled));
+    Ok(())
+}
+
+/// The largest imbalance of forces in double precision, and in single precision.
+const LARGEST_IMBALANCE: [f64; 2] = [1e-6, 1e-3];
+
+/// The level of forces: on coarser meshes the contact sets of vertices and of facet means differ by more than by
+/// rounding.
+const LEVEL_OF_FORCES: usize = 32;
+
+/// The power of ten from which on factors in single precision may be singular.
+const SINGULAR_IN_SINGLE: i32 = 12;
+
+fn forces<T: Real>(
+    make: fn() -> Scene<2>,
+    choice: &Choice,
+    exponent: i32,
+    sink: Sink<'_>,
+) -> Result<(), Error> {
+    let (eta, level) = (10.0_f64.powi(exponent), LEVEL_OF_FORCES);
+    let scene = make();
+    let claim = |name| {
+        let of = RowBuilder::new(name, choice).on(&scene.name).precision(T::NAME);
+        of.level(level).at("eta", eta)
+    };
+    // the factors of the active set have no quarter of the digits of single precision
+    let is_singular = T::NAME == "f32" && exponent >= SINGULAR_IN_SINGLE;
+    let ours = row::<T, 2>(make(), choice, level)?;
+    let means = row::<f64, 2>(make(), &Choice::default("cr"), level)?;
+    let l1 = |row: &Row| row.contact.multiplier_l1;
+    let error = claim("multiplier-of-large-factors")
+        .quantity("L1 error of the multiplier over that of cr")
+        .at_most(1.5)
+        .known_to_fail(exponent < 1 || is_singular)
+        .underlying("L1 error of the multiplier", of(&ours, l1))
+        .detail(figures(&ours));
+    sink(error.measured(quotient(of(&ours, l1), of(&means, l1))));
+    let problem = choice.constrain(scene.problem.clone());
+    let meshes = Hierarchy::<T, 2>::of_domain(&scene.domain, level)?;
+    let mut nested = NestedIteration::new(&problem, &meshes).solver(solver());
+    let left = imbalance(&nested.solve(&*choice.make())?);
+    let [double, single] = LARGEST_IMBALANCE;
+    let equilibrium = claim("equilibrium")
+        .quantity("load less reaction, forces and fluxes, over the absolute load")
+        .at_most(if T::NAME == "f64" { double } else { single })
+        .known_to_fail(is_singular);
+    sink(equilibrium.measured(left));
     Ok(())
 }

@@ -3,11 +3,11 @@
 use std::fmt;
 
 use crate::inequality::Outcome;
-use crate::measure::{ErrorNorm, FittedOrder, fit_order};
+use crate::measure::{ErrorNorm, Errors, FittedOrder, fit_order};
 use crate::readable_debug::debug_by_display;
 use crate::scheme::ExpectedOrders;
 use crate::study::report::Report;
-use crate::study::row::{Row, distinct, sort_by_level};
+use crate::study::row::{Orders, Row, distinct, sort_by_level};
 
 /// An error of this share of the mesh size, of solutions whose size is one, is rounding.
 const ROUNDING: f64 = 1e-8;
@@ -95,7 +95,7 @@ pub struct ObservedOrders {
     pub h1: Option<FittedOrder>,
     /// The orders that theory promises.
     pub promised: ExpectedOrders,
-    /// Norms in which the error on the finest level is rounding.
+    /// Norms in which the error on the finest level, or on all levels, is rounding.
     pub exact: Vec<ErrorNorm>,
     /// Levels that did not converge, with the typed reason.
     pub failures: Vec<(usize, Outcome)>,
@@ -221,24 +221,32 @@ impl ObservedOrders {
         let failures = failed.map(|row| (row.level, row.status)).collect();
         let finest = *sorted.last()?;
         sorted.retain(|row| row.converged());
-        let fit = |norm: fn(&Row) -> Option<f64>| {
-            let points: Option<Vec<(f64, f64)>> =
-                sorted.iter().map(|row| Some((row.size(), norm(row)?))).collect();
-            fit_order(&points?)
+        // errors that are rounding tell no order
+        let fit = |norm: fn(&Errors) -> Option<f64>, above: fn(&Orders) -> Option<f64>| {
+            sorted.iter().map(|row| norm(&row.error)).collect::<Option<Vec<_>>>()?;
+            let point = |row: &&Row| Some((row.size(), above(&row.errors_above_rounding())?));
+            fit_order(&sorted.iter().filter_map(point).collect::<Vec<_>>())
         };
-        let errors = [(ErrorNorm::L2, finest.error.l2), (ErrorNorm::H1, finest.error.h1)];
-        let is_rounding = |error: Option<f64>| {
-            error.is_some_and(|error| error <= ROUNDING * finest.mesh_size.min(1.0))
+        let is_exact = |norm: fn(&Errors) -> Option<f64>, above: fn(&Orders) -> Option<f64>| {
+            let is_small = |error: f64| error <= ROUNDING * finest.mesh_size.min(1.0);
+            let are_rounding =
+                || sorted.iter().all(|r| above(&r.errors_above_rounding()).is_none());
+            let finest = sorted.last().and_then(|row| norm(&row.error));
+            finest.is_some_and(|error| is_small(error) || are_rounding())
         };
+        let exact = [
+            (ErrorNorm::L2, is_exact(|e| e.l2, |above| above.l2)),
+            (ErrorNorm::H1, is_exact(|e| e.h1, |above| above.h1)),
+        ];
         Some(Self {
             scene: finest.scene.clone(),
             label: finest.label.clone(),
             constraint: finest.constraint.clone(),
             levels: sorted.iter().map(|row| row.level).collect(),
-            l2: fit(|row| row.error.l2),
-            h1: fit(|row| row.error.h1),
+            l2: fit(|e| e.l2, |above| above.l2),
+            h1: fit(|e| e.h1, |above| above.h1),
             promised: finest.expected_order,
-            exact: errors.into_iter().filter(|e| is_rounding(e.1)).map(|e| e.0).collect(),
+            exact: exact.into_iter().filter(|e| e.1).map(|e| e.0).collect(),
             failures,
         })
     }

@@ -7,8 +7,8 @@ use crate::study::row::{Orders, Row};
 /// of the same scene, label, constraint and solver. It is that in the mesh size; on adaptive meshes `-D` times the
 /// slope in unknowns.
 ///
-/// The order is none if one of the two rows did not converge or has no error. Rows further back are
-/// never used, since the table would not show it.
+/// The order is none if one of the two rows did not converge, or has no error or one that is rounding. Rows further
+/// back are never used, since the table would not show it.
 pub fn fill_orders(rows: &mut [Row]) {
     let orders: Vec<Orders> = rows
         .iter()
@@ -41,14 +41,15 @@ fn order(coarse: &Row, fine: &Row) -> Orders {
     if !coarse.converged() || !fine.converged() {
         return Orders::default();
     }
+    let (c, f) = (coarse.errors_above_rounding(), fine.errors_above_rounding());
     let of = |c: Option<f64>, f: Option<f64>| observed_order(c?, f?, coarse.size(), fine.size());
     Orders {
-        l2: of(coarse.error.l2, fine.error.l2),
-        h1: of(coarse.error.h1, fine.error.h1),
-        energy: of(coarse.error.energy, fine.error.energy),
-        max: of(coarse.error.max, fine.error.max),
-        bound: of(coarse.bound.total, fine.bound.total),
-        multiplier_l1: of(coarse.contact.multiplier_l1, fine.contact.multiplier_l1),
-        multiplier_l2: of(coarse.contact.multiplier_l2, fine.contact.multiplier_l2),
+        l2: of(c.l2, f.l2),
+        h1: of(c.h1, f.h1),
+        energy: of(c.energy, f.energy),
+        max: of(c.max, f.max),
+        bound: of(c.bound, f.bound),
+        multiplier_l1: of(c.multiplier_l1, f.multiplier_l1),
+        multiplier_l2: of(c.multiplier_l2, f.multiplier_l2),
     }
 }

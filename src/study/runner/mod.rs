@@ -1,6 +1,7 @@
 //! A study: schemes on a scene, level by level.
 
 mod adaptive;
+mod crossing;
 mod judge;
 mod memory;
 mod on_parts;
@@ -25,7 +26,7 @@ use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::AnyScheme;
-use crate::study::compatibility::{check_domain, check_fit, check_scheme};
+use crate::study::compatibility::{check_domain, check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
 #[cfg(feature = "report")]
@@ -72,6 +73,8 @@ pub struct Study<'a, T: Real, const D: usize> {
     mesh: Option<Mesh<T, D>>,
     /// The result of [`check_fit`] for the given mesh, once known.
     fit: OnceCell<Option<String>>,
+    /// Why a stated solution does not solve the problem, or none, as the first row found it.
+    doubt: OnceCell<Option<String>>,
     reference: Option<Reference<'a, T, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
@@ -138,6 +141,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             adaptive: None,
             mesh: None,
             fit: OnceCell::new(),
+            doubt: OnceCell::new(),
             reference: None,
             solvers: Vec::new(),
             quadrature: DataQuadrature::default(),
@@ -168,7 +172,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Checks schemes, levels and mesh without assembly.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
+    /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero, [`Error::EqualNames`],
     /// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
         compiled!(
@@ -185,8 +189,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             let allowed = format!("a study needs {parameter}: at least one");
             return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
         }
+        let problems = self.problems();
+        let of_entries = self.entries.iter().zip(&problems);
+        let labels = of_entries.map(|(entry, p)| entry.scheme.label_on(p.constraint_set()));
+        check_names(labels, self.solvers().iter().map(|solver| solver.name()))?;
         self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
-        for (entry, problem) in self.entries.iter().zip(self.problems()) {
+        for (entry, problem) in self.entries.iter().zip(problems) {
             check_scheme(&*entry.scheme, problem, self.quadrature)?;
         }
         if let Some(adaptivity) = &self.adaptive {
@@ -231,7 +239,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         };
         let problems = self.problems();
         let reference_problem = self.reference_problem();
-        let reference = self.find_reference(&reference_problem, &hierarchies);
+        let crossing = self.find_crossing(&hierarchies)?;
+        let reference = match crossing {
+            None => self.find_reference(&reference_problem, &hierarchies),
+            Some(_) => None,
+        };
         let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
             .solvers()
             .iter()
@@ -251,7 +263,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
                     let (failure, reference) = (failure.as_deref(), reference.as_ref());
                     let measured = Measured { failure, reference };
-                    let (row, _) = self.row(nested, (entry, problem), level, measured)?;
+                    let of = (entry, problem);
+                    let row = match &crossing {
+                        None => self.row(nested, of, level, measured)?.0,
+                        Some(crossing) => self.row_of_crossing(nested, of, level, crossing)?,
+                    };
                     self.finish(row, &mut rows)?;
                 }
             }

@@ -5,13 +5,14 @@ use std::path::Path;
 use super::{Entry, Progress, Study};
 use crate::distributed::{
     Differences, DistributedIteration, DistributedSolved, ExchangeError, PartHierarchy, Process,
+    agree,
 };
 use crate::error::{Error, write_error};
 use crate::error_bound::BoundFigures;
 use crate::inequality::Outcome;
 use crate::measure::Errors;
 use crate::mesh::{Layers, Part};
-use crate::nested::{Hierarchy, descending};
+use crate::nested::{Hierarchy, descending, no_digits_of_forces};
 use crate::problem::Problem;
 use crate::scheme::ExpectedOrders;
 #[cfg(feature = "report")]
@@ -58,6 +59,7 @@ impl<const D: usize> Study<'_, f64, D> {
             let of_levels = DistributedIteration::new(problem, &of.hierarchy, process.clone());
             nested.push(of_levels.quadrature(self.quadrature).by_engine(checks.by_engine));
         }
+        let admissible = self.check_crossing_on_parts(&hierarchies, process)?;
         let mut rows = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&problems) {
             let label = entry.scheme.label_on(problem.constraint_set());
@@ -70,6 +72,12 @@ impl<const D: usize> Study<'_, f64, D> {
                     unreachable!("a hierarchy has the level")
                 };
                 nested.replace_constraint_set(problem);
+                if let Err(error) = &admissible {
+                    let (of, place) = ((entry, problem), (level, nested.part(position)));
+                    let row = self.row_of_failure(of, place, error, (process, checks));
+                    self.finish_on_parts(row, &mut rows, process)?;
+                    continue;
+                }
                 let solved = nested.solve_on(position, &*entry.scheme);
                 let measured = solved.as_ref().map_err(Clone::clone).and_then(|solved| {
                     let verify = checks.verify;
@@ -82,7 +90,7 @@ impl<const D: usize> Study<'_, f64, D> {
                 row.solver = if checks.by_engine { "engine" } else { "active-set" }.to_owned();
                 if let Some(at) = &failure {
                     (row.error, row.against) = (Errors::default(), None);
-                    row.bound.effectivity = None;
+                    (row.bound.effectivity, row.bound.effectivity_of_v) = (None, None);
                     row.expected_order = ExpectedOrders::default();
                     row.warnings.push(format!(
                         "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
@@ -96,6 +104,30 @@ impl<const D: usize> Study<'_, f64, D> {
             }
         }
         Ok(self.report(rows))
+    }
+
+    /// The error of all parts if lower bounds exceed upper ones on a part of the finest meshes.
+    fn check_crossing_on_parts(
+        &self,
+        hierarchies: &[PartsOfLevels<D>],
+        process: &Process,
+    ) -> Result<Result<(), ExchangeError>, Error> {
+        let Some(points) = self.points_of_bounds()? else { return Ok(Ok(())) };
+        let look_at = |of: &PartsOfLevels<D>| {
+            let part = of.hierarchy.part(of.levels.len() - 1);
+            let own = points.look(&self.scene.problem, &part.mesh);
+            let seen = agree(own, &*process.exchange)?;
+            let size = process.exchange.largest(&[seen.size()])?[0];
+            let own = seen.crossing::<f64>(size);
+            let own = own.map_or(Ok(()), |found| Err(found.error().in_whole_mesh(&part.cells)));
+            agree(own, &*process.exchange).map_err(|error| match error {
+                ExchangeError::Failed { part, message, .. } => {
+                    ExchangeError::Failed { part, message, outcome: Some(Outcome::Infeasible) }
+                }
+                other => other,
+            })
+        };
+        Ok(hierarchies.iter().try_for_each(look_at))
     }
 
     /// The parts of the fewest hierarchies that have all levels.
@@ -217,6 +249,8 @@ impl<const D: usize> Study<'_, f64, D> {
             false => (Errors::default(), BoundFigures::default(), 0.0),
         };
         let energy = if has_iterate { Some(solved.energy()?) } else { None };
+        let resultant = if has_iterate { solved.resultant() } else { None };
+        let penetration = if has_iterate { solved.penetration()? } else { None };
         let mut parts = self.part_figures(solved, unknowns, process)?;
         if verify {
             let whole = self.coarsest().build(level).map_err(|error| ExchangeError::Failed {
@@ -229,22 +263,28 @@ impl<const D: usize> Study<'_, f64, D> {
         }
         let in_bound = process.exchange.largest(&[in_bound])?[0];
         let mut warnings = warnings(solved);
-        warnings.extend(bound.remark().filter(|_| solved.converged()));
+        if has_iterate && problem.is_constrained() && resultant.is_none() {
+            warnings.push(no_digits_of_forces("f64"));
+        }
+        let against = (has_iterate && problem.exact.is_some()).then_some("exact");
+        warnings.extend(bound.remark(against).filter(|_| solved.converged()));
         let PartSeconds { mesh, assemble, number, start, solve } = parts.seconds;
-        let row = Row {
+        let mut row = Row {
             parameters: solved.discretisation().form().theory().parameters,
             linear: solution.linear_solver.to_owned(),
             cells: cells as usize,
             unknowns: Some(unknowns as usize),
             nonzeros: Some(nonzeros as usize),
             mesh_size: solved.part().mesh.mesh_size(),
-            against: (has_iterate && problem.exact.is_some()).then(|| "exact".to_owned()),
+            against: against.map(str::to_owned),
             error,
+            rounding: if has_iterate { solved.rounding() } else { None },
             objective: if has_iterate { solved.objective() } else { None },
             energy,
             active: if has_iterate { Some(solved.active() as usize) } else { None },
             contact_measure: if has_iterate { solved.contact_measure() } else { None },
-            resultant: if has_iterate { solved.resultant() } else { None },
+            resultant,
+            resultants: if has_iterate { solved.resultants() } else { None },
             iterations: Iterations {
                 outer: has_iterate.then_some(solution.outer),
                 linear: solution.linear,
@@ -263,6 +303,7 @@ impl<const D: usize> Study<'_, f64, D> {
             ranks: Some(parts),
             ..Row::new(&self.scene.name, D, entry.scheme.name(), level, solved.outcome())
         };
+        row.set_penetration(penetration);
         Ok(self.named(entry, problem, row, None))
     }
 

@@ -10,7 +10,10 @@ use crate::mesh::Mesh;
 use crate::nested::{NestedIteration, Phase, Solved};
 use crate::problem::Problem;
 use crate::real::Real;
+use crate::scenes::check::Violation;
+use crate::scenes::check_exact_on;
 use crate::scheme::{AnyScheme, ExpectedOrders};
+use crate::study::crossing::Crossing;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
 use crate::study::memory::peak_memory_bytes;
@@ -46,6 +49,22 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
                 Ok((row, 0.0))
             }
         }
+    }
+
+    /// The row of a problem whose bounds cross on the finest mesh, on one level of these hierarchies.
+    pub(super) fn row_of_crossing<'p>(
+        &self,
+        nested: &[NestedIteration<'p, T, D>],
+        of: (&Entry<'_, T, D>, &'p Problem<D>),
+        level: usize,
+        crossing: &Crossing<D>,
+    ) -> Result<Row, Error> {
+        let mut on_level = nested.iter().filter_map(|n| Some((n.position(level)?, n)));
+        let Some((position, nested)) = on_level.next() else {
+            unreachable!("a hierarchy has the level")
+        };
+        let place = (level, nested.mesh(position));
+        self.row_without(of, place, nested.solver_name(), None, crossing.error())
     }
 
     /// The row that the data of a problem leave on a mesh.
@@ -132,9 +151,31 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         let problem = solved.discretisation().problem();
         let mut row = self.named(entry, problem, row, measured.failure);
         match measured.measure(&mut row, solved) {
-            Ok(()) => Ok(row),
+            Ok(()) => {
+                let is_measured = row.against.as_deref() == Some("exact");
+                row.warnings.extend(self.doubt(solved).filter(|_| is_measured));
+                Ok(row)
+            }
             Err(error) => row.with_error(error),
         }
+    }
+
+    /// Why the solution that is stated for a problem with data by name does not solve it, if that is found on the mesh
+    /// of the first row. Scenes are tested by [`check_scene`](crate::scenes::check_scene).
+    fn doubt(&self, solved: &Solved<'_, T, D>) -> Option<String> {
+        let problem = solved.discretisation().problem();
+        let found = || {
+            let name = &self.scene.name;
+            let violation = match problem.has_named_data() {
+                true => check_exact_on(name, problem, solved.mesh()).err()?,
+                false => return None,
+            };
+            let Violation { condition, at, by, .. } = violation;
+            Some(format!(
+                "the stated solution does not solve this problem: not fulfilled: {condition}; at {at:.4?} off by {by:.2e}"
+            ))
+        };
+        self.doubt.get_or_init(found).clone()
     }
 
     /// The row with the names of constraint set and label and the promised orders.

@@ -127,7 +127,7 @@ fn same_matrix_and_load(a: &Inequality<f64>, b: &Inequality<f64>) {
     for (a, b) in a.matrix.values.iter().zip(&b.matrix.values) {
         assert!((a - b).abs() < 1e-13 * largest, "matrix: {a} and {b}");
     }
-    for (a, b) in a.load.iter().zip(&b.load) {
+    for (a, b) in a.assembled_load().iter().zip(&*b.assembled_load()) {
         assert!((a - b).abs() < 1e-13 * largest, "load: {a} and {b}");
     }
 }

@@ -301,9 +301,9 @@ fn wrong_requests_are_refused_before_anything_runs() {
     let share = Adaptivity::default().theta(2.0);
     assert!(message(tiny().levels([4]).adaptive(share)).contains("share of marked cells"));
     assert!(message(tiny().levels([0, 4])).contains("at least one subdivision"));
-    assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("must have its own label"));
+    assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("tell their rows apart"));
     let named: NamedScheme = "wopsip@factor=1".parse().unwrap();
-    assert!(message(tiny().named_scheme(&named).levels([4])).contains("must have its own label"));
+    assert!(message(tiny().named_scheme(&named).levels([4])).contains("tell their rows apart"));
 }
 
 #[test]

@@ -322,7 +322,7 @@ fn the_basis_with_the_cell_mean_spans_the_quadratics() {
         };
         let form = |of: &unilateral::algebra::Inequality<f64>, u: &[f64], v: &[f64]| {
             let rows = (0..of.size()).map(|i| v[i] * of.matrix.row_dot(i, u));
-            let load: f64 = of.load.iter().zip(v).map(|(b, v)| b * v).sum();
+            let load: f64 = of.assembled_load().iter().zip(v).map(|(b, v)| b * v).sum();
             [rows.sum::<f64>(), load]
         };
         let (a, b) = (form(&mean, &u, &v), form(&nodal, &nodal_values(&u), &nodal_values(&v)));

@@ -1,12 +1,16 @@
 //! The sums and maxima from which a certificate is computed, over the unknowns of one part of a mesh or of all parts.
 
+mod local_violation;
+
 use super::certificate::{Certificate, positive_diagonal, residual};
-use super::scales::{Scales, Sums, maximum};
-use crate::algebra::{Bound, Distribution, Inequality};
+use super::contact_forces::BalancedNodes;
+use super::scales::{Scales, Sums};
+use crate::algebra::{Bound, Distribution, Inequality, PenalisedMatrix};
 use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::parallel::vectors::{collect, largest, map_chunks};
-use crate::real::Real;
+use crate::real::{Real, maximum};
+use local_violation::{LocalViolation, touched_bound};
 
 /// The certificate of `u` as a solution of the inequality.
 #[must_use]
@@ -42,7 +46,9 @@ pub(crate) fn certify_with_rounding<T: Real>(
     u: &[T],
     jump_multipliers: &[T],
 ) -> (Certificate, f64) {
-    let own = Violations::at(inequality, u, jump_multipliers, &|i| inequality.owns(i));
+    let has_all_copies = inequality.distribution().is_none();
+    let owns = |i: usize| inequality.owns(i);
+    let own = Violations::at(inequality, u, jump_multipliers, &owns, has_all_copies);
     match inequality.distribution() {
         Some(distribution) => own.over_parts(distribution),
         None => own,
@@ -95,7 +101,8 @@ impl Violations {
     /// With the jump multipliers `p` of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) the residual is
     /// `c - K u - M^T p`, without the rounding of differences of values, and the largest `|g - M u + p / s|`, `s`
     /// the weight of a jump, is divided by `U`. Without jump multipliers, or if their number is not that of the
-    /// jumps, `p = S (M u - g)`.
+    /// jumps, `p = S (M u - g)`. The forces of nodes, which [`certify`] counts besides, need all copies of a node and
+    /// are no part of these violations.
     #[must_use]
     pub fn of<T: Real>(
         inequality: &Inequality<T>,
@@ -106,17 +113,19 @@ impl Violations {
         compiled!(
             T: fn(&Inequality<T>, &[T], &[T], &(dyn Fn(usize) -> bool + Sync)) -> Violations
                 = |inequality, u, multipliers, owns| {
-                    Violations::at(inequality, u, multipliers, &|i| owns(i))
+                    Violations::at(inequality, u, multipliers, &|i| owns(i), false)
                 }
         )(inequality, u, jump_multipliers, owns)
     }
 
-    /// [`Violations::of`] without the dispatch to a compiled instance.
+    /// [`Violations::of`] without the dispatch to a compiled instance; with the forces of nodes, whose sums over copies
+    /// parts of a mesh do not have, if `has_all_copies`.
     pub(super) fn at<T: Real>(
         inequality: &Inequality<T>,
         u: &[T],
         jump_multipliers: &[T],
         owns: &(impl Fn(usize) -> bool + Sync),
+        has_all_copies: bool,
     ) -> Self {
         let n = inequality.size();
         let mut sums = Self {
@@ -143,14 +152,21 @@ impl Violations {
         let values = (u, &r[..], jump_multipliers);
         sums.scales = Sums::of(inequality, values, &|i| diagonal[i], sums.unit, owns);
         sums.jump_residual = largest_jump_residual(inequality, u, jump_multipliers, owns);
+        let steps = |i: usize| -r[i] / diagonal[i];
+        let shares = has_all_copies.then(|| shares_of_nodes(inequality, u, &steps)).flatten();
         let unit = sums.unit;
         let parts = map_chunks(n, |range| {
             let (mut diagonal_sum, mut feasibility, mut squares) = (0.0, 0.0_f64, [0.0; 3]);
             for i in range.filter(|&i| owns(i)) {
                 let d = diagonal[i];
                 diagonal_sum += d;
-                let local = LocalViolation::new(&bounds[i], u[i].to_f64(), -r[i] / d);
-                feasibility = feasibility.max(local.feasibility);
+                let (x, step) = (u[i].to_f64(), -r[i] / d);
+                let mut local = LocalViolation::new(&bounds[i], x, step);
+                if let Some((shares, penalised)) = &shares {
+                    let stiffness = penalised.stiffness_diagonal(i);
+                    local.add_share(&bounds[i], (x, step), shares[i], (stiffness, d));
+                }
+                feasibility = maximum(feasibility, local.feasibility);
                 let changes = [local.multiplier, local.complementarity, local.residual];
                 for (square, change) in squares.iter_mut().zip(changes) {
                     *square += d * (change / unit).powi(2);
@@ -160,7 +176,7 @@ impl Violations {
         });
         for (diagonal_sum, feasibility, squares) in parts {
             sums.diagonal_sum += diagonal_sum;
-            sums.feasibility = sums.feasibility.max(feasibility);
+            sums.feasibility = maximum(sums.feasibility, feasibility);
             sums.squares.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);
         }
         sums
@@ -178,7 +194,7 @@ impl Violations {
         Self {
             unit: one.unit,
             scales: one.scales.merge(two.scales),
-            feasibility: one.feasibility.max(two.feasibility),
+            feasibility: maximum(one.feasibility, two.feasibility),
             jump_residual: maximum(one.jump_residual, two.jump_residual),
             squares: tabulate(|k| one.squares[k] + two.squares[k]),
             diagonal_sum: one.diagonal_sum + two.diagonal_sum,
@@ -232,16 +248,18 @@ impl Violations {
     pub(super) fn certificate_with_rounding(&self) -> (Certificate, f64) {
         let Scales { max_norm, energy_norm } = self.scales.scales(self.epsilon, self.unit);
         let [multiplier, complementarity, residual] = self.squares;
-        let numbers = [max_norm, energy_norm, multiplier, residual, self.jump_residual];
+        let Self { feasibility, jump_residual, .. } = *self;
+        // a bound that is not a number gives no other violation than of itself
+        let numbers = [max_norm, energy_norm, feasibility, multiplier, residual, jump_residual];
         if !numbers.iter().all(|x| x.is_finite()) {
             return (Certificate::INVALID, 0.0);
         }
         let norm = |sum: f64| sum.sqrt() / (energy_norm / self.unit);
         let certificate = Certificate::new([
-            self.feasibility / max_norm,
+            feasibility / max_norm,
             norm(multiplier),
             norm(complementarity),
-            norm(residual).max(self.jump_residual / max_norm),
+            norm(residual).max(jump_residual / max_norm),
         ]);
         (certificate, max_norm / self.unit * norm(self.diagonal_sum))
     }
@@ -290,42 +308,22 @@ fn largest_jump_residual<T: Real>(
         penalised.jump_residual(jump, |i| u[i].to_f64(), multiplier).abs()
     };
     let owned = |&jump: &usize| penalised.first_unknown(jump).is_some_and(owns);
-    // unlike f64::max this keeps a number that is not finite
     (0..jump_multipliers.len()).filter(owned).map(of_jump).fold(0.0, maximum)
 }
 
-/// The violations at one unknown, each as a change of its value; see [`Certificate`].
-#[derive(Default)]
-struct LocalViolation {
-    feasibility: f64,
-    multiplier: f64,
-    complementarity: f64,
-    residual: f64,
-}
-
-impl LocalViolation {
-    /// The violations for the value `x` and `step = r_i / d_i`, which is positive where a Gauss-Seidel
-    /// correction would decrease the value.
-    fn new<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Self {
-        if let Some(value) = bound.fixed_value() {
-            return Self { feasibility: (x - value.to_f64()).abs(), ..Self::default() };
-        }
-        let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());
-        let to_upper = bound.upper().map_or(f64::INFINITY, |u| u.to_f64() - x);
-        let (gap, to_opposite, step_to_bound) = if to_lower <= to_upper {
-            (to_lower, to_upper, step)
-        } else {
-            (to_upper, to_lower, -step)
-        };
-        let mut local = Self { feasibility: (-gap).max(0.0), ..Self::default() };
-        if gap > step.abs() {
-            local.residual = step;
-        } else if step_to_bound < 0.0 {
-            local.multiplier = (-step_to_bound).min(to_opposite.max(0.0));
-        }
-        local.complementarity = gap.min(step_to_bound).max(0.0);
-        local
-    }
+/// By unknown that touches a bound its share in the balance of its node ([`BalancedNodes`]), zero for the others; with the
+/// matrix that has the nodes. Each `step` is as [`LocalViolation::new`] takes it.
+fn shares_of_nodes<'a, T: Real>(
+    inequality: &'a Inequality<T>,
+    u: &[T],
+    step: &(impl Fn(usize) -> f64 + Sync),
+) -> Option<(Vec<f64>, &'a PenalisedMatrix<T>)> {
+    let nodes = BalancedNodes::of(inequality)?;
+    let bounds = &inequality.bounds;
+    let touched = collect(u.len(), |i| touched_bound(&bounds[i], u[i].to_f64(), step(i)));
+    let mut shares = vec![0.0; u.len()];
+    nodes.share(u, &|i| touched[i], &mut shares, None);
+    inequality.penalised.as_ref().map(|penalised| (shares, penalised))
 }
 
 #[cfg(test)]
@@ -366,6 +364,34 @@ mod tests {
         for exponent in [-300, -30, 30, 300] {
             assert_eq!(of_unit(2.0_f64.powi(exponent)), (free, with_data), "{exponent}");
         }
+    }
+
+    /// A certificate never passes over a number that is none.
+    #[test]
+    fn what_is_not_a_number_is_within_no_limit() {
+        for which in 0..4 {
+            let mut numbers = [0.0; 4];
+            numbers[which] = f64::NAN;
+            assert!(Certificate::new(numbers).largest().is_nan(), "violation {which}");
+            assert!(!Certificate::new(numbers).is_within_limits::<f64>());
+        }
+        let not_a_number = f64::NAN;
+        let (problem, values) = problem(1.0);
+        for bound in [
+            Bound::Lower(not_a_number),
+            Bound::Upper(not_a_number),
+            Bound::Fixed(not_a_number),
+            Bound::Both(not_a_number, 1.0),
+            Bound::Both(-1.0, not_a_number),
+        ] {
+            let mut wrong = problem.clone();
+            wrong.bounds[0] = bound;
+            assert_eq!(certify(&wrong, &values), Certificate::INVALID, "{bound:?}");
+            let [one, others] =
+                [true, false].map(|own| Violations::of(&wrong, &values, &[], &|i| (i == 0) == own));
+            assert_eq!(others.merge(one).certificate(), Certificate::INVALID, "{bound:?}");
+        }
+        assert!(largest(2, |i| [1.0, not_a_number][i]).is_nan());
     }
 
     /// Parts of different sizes, and one where all is zero, in units whose squares underflow.

@@ -1,0 +1,319 @@
+//! The contact forces of unknowns: everything that shows a force takes it from here.
+
+use super::Solution;
+use super::certificate::{positive_diagonal, residual};
+use crate::algebra::{Bound, Contact, Inequality, JumpTerm, PenalisedMatrix};
+use crate::parallel::vectors::collect;
+use crate::real::Real;
+
+/// Forces have no digit where their errors may exceed this share of them.
+const LARGEST_ERROR: f64 = 0.1;
+
+/// Forces that are known up to this share of the load, rounding in double precision, have digits even where they vanish.
+const NO_LOAD: f64 = 8.0 * f64::EPSILON;
+
+/// The forces with which active bounds hold their unknowns, the entries of `r = A u - b`.
+///
+/// For a [`PenalisedMatrix`] `r = K u + M^T p - c`. Jump multipliers that are computed as `p = S (M u - g)` lose `eps
+/// S` to cancellation: with a large weight more than the force. Forces therefore follow from balances. Unknowns that
+/// jumps subtract from one another are the *copies* of a node: at a vertex those of the cells around it, of facet means
+/// those of both sides. In the sum over the copies of a node `M^T p` cancels, whatever `p` is, and copies without
+/// contact have no force: the sum of `K u - c` over all copies is the force of those in contact, which share it
+/// equally.
+///
+/// Where a jump has an unknown without a counterpart (on weakly imposed Dirichlet data, or for means over cells), where
+/// copies touch different bounds or have one admissible value, and on one part of a mesh, `p` is that of the solver, or
+/// `S (M u - g)` where the solver has none.
+pub(crate) struct ContactForces {
+    /// By unknown, positive where a lower bound pushes upward; zero without an active inequality.
+    pub values: Vec<f64>,
+    /// By unknown the size of the rounding error of its force.
+    rounding: Vec<f64>,
+}
+
+impl ContactForces {
+    /// The forces of a solution. All parts of a distributed inequality call it.
+    pub fn of<T: Real>(inequality: &Inequality<T>, solution: &Solution<T>) -> Self {
+        let Solution { values: u, contact, jump_multipliers, .. } = solution;
+        let state = |i: usize| match inequality.bounds[i].is_inequality() {
+            true => contact[i],
+            false => Contact::Inactive,
+        };
+        let is_active = |i: usize| state(i) != Contact::Inactive;
+        let mut r = vec![0.0; u.len()];
+        residual(inequality, u, jump_multipliers, &mut r);
+        let force = |i: usize| if is_active(i) { -r[i] } else { 0.0 };
+        let terms = |i: usize| squared_terms(inequality, i, u, jump_multipliers);
+        let size = |i: usize| if is_active(i) { rounding::<T>(terms(i)) } else { 0.0 };
+        let mut forces = Self { values: collect(u.len(), force), rounding: collect(u.len(), size) };
+        if let Some(nodes) = BalancedNodes::of(inequality) {
+            let Self { values, rounding } = &mut forces;
+            nodes.share(u, &state, values, Some(rounding));
+        }
+        if let Some(distribution) = inequality.distribution() {
+            distribution.update(&mut forces.values);
+        }
+        forces
+    }
+
+    /// Whether rounding and what the solver leaves are less than a tenth of the forces of the unknowns that `counts`,
+    /// in the sum of absolute values over all parts. The solver leaves a residual that is small beside the energy of
+    /// the whole problem; by the inequality of Cauchy and Schwarz the forces of unknowns at a bound, or as near to one
+    /// as the limit of the certificate, may be off by it times the root of the sum of their diagonal entries.
+    pub fn have_digits<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+        counts: impl Fn(usize) -> bool,
+    ) -> bool {
+        let mut largest = [solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max)];
+        if let Some(distribution) = inequality.distribution() {
+            distribution.largest(&mut largest);
+        }
+        let slack = T::CERTIFICATE_LIMIT * largest[0];
+        let mut sums = [0.0; 4];
+        for i in (0..self.values.len()).filter(|&i| inequality.owns(i) && counts(i)) {
+            sums[3] += inequality.load[i].to_f64().abs();
+            sums[0] += self.values[i].abs();
+            sums[1] += self.rounding[i];
+            if is_near(&inequality.bounds[i], solution.values[i], slack) {
+                sums[2] += stiffness_diagonal(inequality, i);
+            }
+        }
+        if let Some(distribution) = inequality.distribution() {
+            distribution.sum(&mut sums);
+        }
+        let [forces, rounding, diagonal, load] = sums;
+        let error = rounding + solution.dual_residual * diagonal.sqrt();
+        error <= LARGEST_ERROR * forces || error <= NO_LOAD * load
+    }
+}
+
+/// Whether a value is at a bound that is an inequality, but for the slack.
+fn is_near<T: Real>(bound: &Bound<T>, x: T, slack: f64) -> bool {
+    let x = x.to_f64();
+    let is_above = bound.lower().is_some_and(|l| x - l.to_f64() <= slack);
+    is_above || bound.upper().is_some_and(|u| u.to_f64() - x <= slack)
+}
+
+/// The diagonal entry of the matrix, without a penalty that is kept apart.
+fn stiffness_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -> f64 {
+    match &inequality.penalised {
+        Some(penalised) => penalised.stiffness_diagonal(i),
+        None => positive_diagonal(inequality, i),
+    }
+}
+
+/// The size of the rounding error of a sum with these squared terms, whose values are rounded.
+fn rounding<T: Real>(squared_terms: f64) -> f64 {
+    0.5 * T::EPSILON * squared_terms.sqrt()
+}
+
+/// The sum of the squares of the terms of row `i` of `A u`; of `K u` where jump multipliers are known beside `u`.
+fn squared_terms<T: Real>(
+    inequality: &Inequality<T>,
+    i: usize,
+    u: &[T],
+    jump_multipliers: &[T],
+) -> f64 {
+    match &inequality.penalised {
+        Some(penalised) if jump_multipliers.len() == penalised.n_jumps() => {
+            squared_stiffness_terms(penalised, i, u)
+        }
+        _ => {
+            let (columns, entries) = inequality.matrix.row(i);
+            let product = |(&j, a): (&u32, &T)| a.to_f64() * u[j as usize].to_f64();
+            columns.iter().zip(entries).map(product).map(|term| term * term).sum()
+        }
+    }
+}
+
+fn squared_stiffness_terms<T: Real>(penalised: &PenalisedMatrix<T>, i: usize, u: &[T]) -> f64 {
+    let n = penalised.block_size;
+    let (row, values) = (&penalised.blocks[i * n..][..n], &u[i / n * n..][..n]);
+    row.iter().zip(values).map(|(a, u)| (a.to_f64() * u.to_f64()).powi(2)).sum()
+}
+
+/// The nodes of a penalised matrix in the sum over whose copies the jump multipliers cancel.
+pub(super) struct BalancedNodes<'a, T> {
+    penalised: &'a PenalisedMatrix<T>,
+    load: &'a [T],
+    /// By unknown one of the copies of its node, the same for all of them.
+    node: Vec<u32>,
+    /// By this copy whether every jump of the node has a counterpart of the same weight.
+    is_balanced: Vec<bool>,
+}
+
+impl<'a, T: Real> BalancedNodes<'a, T> {
+    /// The nodes; none without a penalised matrix and on one part of several, which does not have all copies.
+    pub fn of(inequality: &'a Inequality<T>) -> Option<Self> {
+        let penalised = inequality.penalised.as_ref()?;
+        if inequality.distribution().is_some() {
+            return None;
+        }
+        let no_unknown = JumpTerm::<T>::NO_UNKNOWN;
+        let mut node: Vec<u32> = (0..inequality.size() as u32).collect();
+        for term in penalised.terms.iter().filter(|t| ![t.here, t.there].contains(&no_unknown)) {
+            let [one, other] = [term.here, term.there].map(|i| root(&mut node, i));
+            // the smaller number, whatever the order of jumps
+            node[one.max(other) as usize] = one.min(other);
+        }
+        for i in 0..node.len() {
+            // the node of a smaller number is known
+            node[i] = node[node[i] as usize];
+        }
+        let mut is_balanced = vec![true; node.len()];
+        for term in penalised.terms.iter().filter(|t| [t.here, t.there].contains(&no_unknown)) {
+            let unknown = if term.here == no_unknown { term.there } else { term.here };
+            is_balanced[node[unknown as usize] as usize] = false;
+        }
+        // a copy with one admissible value has a force of any sign
+        for (i, bound) in inequality.bounds.iter().enumerate() {
+            if bound.fixed_value().is_some() {
+                is_balanced[node[i] as usize] = false;
+            }
+        }
+        Some(Self { penalised, load: &inequality.load, node, is_balanced })
+    }
+
+    /// Replaces the forces of active copies by equal shares in the sum of `K u - c` over all copies of their node, and
+    /// the sizes of rounding errors by those of the shares, where the node is balanced and its active copies touch
+    /// bounds of one side.
+    pub fn share(
+        &self,
+        u: &[T],
+        state: &impl Fn(usize) -> Contact,
+        forces: &mut [f64],
+        mut rounding_errors: Option<&mut Vec<f64>>,
+    ) {
+        let mut sums = vec![SumOverCopies::default(); self.node.len()];
+        for (i, &node) in
+            self.node.iter().enumerate().filter(|(_, n)| self.is_balanced[**n as usize])
+        {
+            match state(i) {
+                Contact::Lower => sums[node as usize].n_lower += 1,
+                Contact::Upper => sums[node as usize].n_upper += 1,
+                Contact::Inactive => {}
+            }
+        }
+        for (i, &node) in self.node.iter().enumerate() {
+            let sum = &mut sums[node as usize];
+            if sum.n_sharing().is_some() {
+                let stiffness = self.penalised.stiffness(i, |j| u[j].to_f64());
+                sum.force += stiffness - self.load[i].to_f64();
+                sum.terms += squared_stiffness_terms(self.penalised, i, u);
+            }
+        }
+        for (i, &node) in self.node.iter().enumerate() {
+            let sum = sums[node as usize];
+            if let Some(n) = sum.n_sharing().filter(|_| state(i) != Contact::Inactive) {
+                forces[i] = sum.force / n;
+                if let Some(rounding_errors) = &mut rounding_errors {
+                    rounding_errors[i] = rounding::<T>(sum.terms) / n;
+                }
+            }
+        }
+    }
+}
+
+/// The copies of a node that touch bounds, and the sums over all copies of `K u - c` and of the squares of its terms.
+#[derive(Clone, Copy, Default)]
+struct SumOverCopies {
+    n_lower: u32,
+    n_upper: u32,
+    force: f64,
+    terms: f64,
+}
+
+impl SumOverCopies {
+    /// The number of copies that share the force: those of one side, none if there are some of both.
+    fn n_sharing(&self) -> Option<f64> {
+        match (self.n_lower, self.n_upper) {
+            (0, 0) => None,
+            (n, 0) | (0, n) => Some(f64::from(n)),
+            _ => None,
+        }
+    }
+}
+
+/// The smallest number known of the node of an unknown; shortens the path to it.
+fn root(node: &mut [u32], mut i: u32) -> u32 {
+    while node[i as usize] != i {
+        node[i as usize] = node[node[i as usize] as usize];
+        i = node[i as usize];
+    }
+    i
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assemble::{DataQuadrature, Discretisation};
+    use crate::constraint::{FacetMeans, Nodes};
+    use crate::inequality::Outcome;
+    use crate::mesh::{BoxDomain, Mesh};
+    use crate::problem::Problem;
+    use crate::real::Point;
+    use crate::scheme::Wopsip;
+
+    /// Jump multipliers moved by any numbers: the forces of balanced nodes do not change, those of others do.
+    fn moved_multipliers<const D: usize>(problem: Problem<D>) {
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let mesh = Mesh::<f64, D>::kuhn_box(&domain, [3; D]).unwrap();
+        let scheme = Wopsip::default();
+        let of = Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
+        let inequality = of.inequality().unwrap();
+        let penalised = inequality.penalised.as_ref().unwrap();
+        let number = |k: usize| ((7 * k * k + 3 * k) % 23) as f64 - 11.0;
+        let values: Vec<f64> = (0..inequality.size()).map(number).collect();
+        let multipliers = penalised.jump_multipliers(|i| values[i]);
+        let moved: Vec<f64> =
+            (0..penalised.n_jumps()).map(|k| multipliers[k] + 1e3 * number(k + 1)).collect();
+        let contact = (0..inequality.size())
+            .map(|i| if i % 3 == 0 { Contact::Lower } else { Contact::Inactive })
+            .collect();
+        let solution = Solution::new(values, contact, Outcome::Converged);
+        let nodes = BalancedNodes::of(&inequality).unwrap();
+        let forces = |multipliers: &[f64]| {
+            let solution = solution.clone().jump_multipliers(multipliers.to_vec());
+            ContactForces::of(&inequality, &solution).values
+        };
+        let (one, other) = (forces(&multipliers), forces(&moved));
+        let (mut n_balanced, mut n_moved) = (0, 0);
+        for i in 0..inequality.size() {
+            if nodes.is_balanced[nodes.node[i] as usize] {
+                assert_eq!(one[i], other[i], "{i}");
+                n_balanced += usize::from(one[i] != 0.0);
+            } else {
+                n_moved += usize::from(one[i] != other[i]);
+            }
+        }
+        assert!(n_balanced > 0 && n_moved > 0, "{n_balanced} {n_moved}");
+        // the residual with any multipliers has the same sum over copies
+        let mut residual = vec![0.0; inequality.size()];
+        let (u, load) = (|i: usize| solution.values[i], &inequality.load);
+        penalised.residual_with_jump_multipliers(load, u, |k| moved[k], &mut residual);
+        let is_active = |i: usize| solution.contact[i] != Contact::Inactive;
+        for node in (0..inequality.size()).filter(|&i| nodes.node[i] as usize == i) {
+            let copies = (node..inequality.size()).filter(|&i| nodes.node[i] as usize == node);
+            if nodes.is_balanced[node] && copies.clone().any(is_active) {
+                let force: f64 = copies.clone().map(|i| one[i]).sum();
+                let sum: f64 = copies.map(|i| residual[i]).sum();
+                assert!((force + sum).abs() <= 1e-9, "{node}: {force} {sum}");
+            }
+        }
+    }
+
+    #[test]
+    fn forces_at_nodes_do_not_depend_on_jump_multipliers() {
+        moved_multipliers::<2>(
+            Problem::new().constant_source(-1.0).obstacle_below(|_| -0.1).on(Nodes),
+        );
+        moved_multipliers::<2>(
+            Problem::new().constant_source(-1.0).obstacle_below(|_| -0.1).on(FacetMeans),
+        );
+        moved_multipliers::<3>(
+            Problem::new().constant_source(-1.0).obstacle_below(|_| -0.1).on(Nodes),
+        );
+    }
+}

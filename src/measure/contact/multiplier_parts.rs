@@ -1,0 +1,264 @@
+//! Multipliers divided among the data that give the active bounds, and among the cells and facets on which these act.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::entity::{ContactEntity, Place};
+use crate::algebra::{Bound, Contact, Inequality};
+use crate::assemble::Discretisation;
+use crate::assemble::space::Space;
+use crate::assemble::space::active_obstacles::ActiveObstacles;
+use crate::inequality::Solution;
+use crate::instances::compiled;
+use crate::mesh::BoundaryPart;
+use crate::real::Real;
+
+/// What of the multiplier of an unknown acts on one of several cells or contact facets.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// The position of the cell or facet among these.
+    place: usize,
+    unknown: usize,
+    value: f64,
+}
+
+/// Multipliers in contact by unknown, and which of them obstacles have.
+pub(crate) struct Multipliers {
+    by_unknown: Vec<f64>,
+    obstacles: ActiveObstacles,
+}
+
+/// Which unknowns and which cells count: all, or those of a part of a mesh.
+type Own<'c> = [&'c dyn Fn(usize) -> bool; 2];
+
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+    /// The resultant of each obstacle (`lower`, `upper`) and of each contact group by its name; their sum is that of
+    /// all ([`Discretisation::resultant`]). The multiplier of an unknown belongs to the datum that gives its active
+    /// bound: where obstacle and gap are equal to the obstacle, where gaps of several groups are, to each by the
+    /// measure of its facets there. None without an inequality, and where rounding leaves no digit.
+    ///
+    /// # Panics
+    /// If the solution has fewer values than there are unknowns.
+    pub fn resultants(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Option<BTreeMap<String, f64>> {
+        self.resultants_of(inequality, solution, [&|_| true, &|_| true])
+    }
+
+    /// The names of the resultants, each once, in their order.
+    pub(crate) fn names_of_resultants(&self) -> BTreeSet<String> {
+        self.space.names_of_resultants().into_iter().collect()
+    }
+
+    /// The resultants of the unknowns and, for contact groups, of the facets of cells that count.
+    pub(crate) fn resultants_of(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+        own: Own<'_>,
+    ) -> Option<BTreeMap<String, f64>> {
+        compiled!(
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &Inequality<T>,
+                &Solution<T>,
+                Own<'_>,
+            ) -> Option<BTreeMap<String, f64>>
+                = |of, inequality, solution, own| of.space.resultants(inequality, solution, own)
+        )(self, inequality, solution, own)
+    }
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    fn resultants(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+        [of_unknowns, of_cells]: Own<'_>,
+    ) -> Option<BTreeMap<String, f64>> {
+        if !self.problem.is_constrained() {
+            return None;
+        }
+        let mut sums: BTreeMap<String, f64> =
+            self.names_of_resultants().into_iter().map(|name| (name, 0.0)).collect();
+        let multipliers = self.multipliers(inequality, solution)?;
+        for (unknown, value) in multipliers.by_unknown.iter().enumerate() {
+            if *value != 0.0 && multipliers.obstacles.act_at(unknown) && of_unknowns(unknown) {
+                let is_upper = solution.contact[unknown] == Contact::Upper;
+                let name = if is_upper { "upper" } else { "lower" };
+                *sums.entry(name.to_owned()).or_default() += value;
+            }
+        }
+        let names: Vec<String> =
+            (0..self.mesh.boundary_groups().len()).map(|group| self.name_of_gap(group)).collect();
+        let facets: Vec<((usize, usize), usize)> =
+            self.grouped_facets_of(BoundaryPart::Contact).collect();
+        for part in self.parts_of_gaps(&inequality.bounds, &multipliers) {
+            let ((cell, _), group) = facets[part.place];
+            if of_cells(cell) {
+                *sums.entry(names[group].clone()).or_default() += part.value;
+            }
+        }
+        Some(sums)
+    }
+
+    /// The names of all resultants: the same on all parts of a mesh.
+    fn names_of_resultants(&self) -> Vec<String> {
+        let obstacles = [("lower", &self.data.lower), ("upper", &self.data.upper)];
+        let given = obstacles.into_iter().filter(|(_, data)| data.is_given());
+        let mut names: Vec<String> = given.map(|(name, _)| name.to_owned()).collect();
+        for (group, of_group) in self.mesh.boundary_groups().iter().enumerate() {
+            let is_contact = of_group.part == Some(BoundaryPart::Contact);
+            if is_contact && self.data.gap.of(group).is_some() {
+                names.push(self.name_of_gap(group));
+            }
+        }
+        names
+    }
+
+    /// The name under which the contact force of a boundary group is shown.
+    fn name_of_gap(&self, group: usize) -> String {
+        let names = &self.mesh.boundary_groups()[group].names;
+        let given = self.problem.named.gap.iter().map(|(name, _)| name);
+        let name = given.chain(names).find(|name| names.contains(name));
+        match name.map(String::as_str) {
+            None => "contact".to_owned(),
+            Some(name @ ("lower" | "upper")) => format!("{name} (contact)"),
+            Some(name) => name.to_owned(),
+        }
+    }
+
+    /// The multipliers of a solution, none where rounding leaves no digit; all parts of a mesh call it.
+    pub(crate) fn multipliers(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Option<Multipliers> {
+        let by_unknown = self.nodal_multipliers(inequality, solution)?;
+        let obstacles = self.active_obstacles(&inequality.bounds, &solution.contact);
+        Some(Multipliers { by_unknown, obstacles })
+    }
+
+    /// The parts of the multipliers of obstacles in all cells: that of a shared unknown by volume among the cells whose
+    /// obstacle gives the bound.
+    fn parts_of_obstacles(&self, of: &Multipliers) -> Vec<Part> {
+        let n_cells = self.mesh.n_cells();
+        let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
+        let acting = |cell: usize| {
+            let unknowns = (0..self.per_cell()).map(move |i| (i, self.dofs.of(cell, i)));
+            let presses = |unknown: usize| of.by_unknown[unknown] != 0.0;
+            unknowns
+                .filter(move |(_, k)| presses(*k) && of.obstacles.act_at(*k))
+                .filter(move |(i, _)| of.obstacles.act_in(cell, *i))
+                .map(|(_, unknown)| unknown)
+        };
+        let mut totals = vec![0.0; of.by_unknown.len()];
+        for cell in 0..n_cells {
+            acting(cell).for_each(|unknown| totals[unknown] += volume(cell));
+        }
+        let mut parts = Vec::new();
+        for cell in 0..n_cells {
+            parts.extend(acting(cell).map(|unknown| {
+                let value = of.by_unknown[unknown] * (volume(cell) / totals[unknown]);
+                Part { place: cell, unknown, value }
+            }));
+        }
+        parts
+    }
+
+    /// The parts of the multipliers of gaps on all contact facets: by measure among the facets whose gap gives the
+    /// bound.
+    fn parts_of_gaps(&self, bounds: &[Bound<T>], of: &Multipliers) -> Vec<Part> {
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let mut parts = Vec::new();
+        // of each unknown whether a gap gives the bound, and the measure of its facets with the best answer
+        let mut best = vec![(false, 0.0); if self.problem.has_gap() { bounds.len() } else { 0 }];
+        let mut gives_of_part = Vec::new();
+        let facets = self.grouped_facets_of(BoundaryPart::Contact).enumerate();
+        for (place, ((cell, local), group)) in
+            facets.filter(|(_, (_, group))| self.data.gap.of(*group).is_some())
+        {
+            let measure = self.facet_measure((cell, local));
+            for node in self.bounded_nodes_on(local) {
+                let unknown = self.dofs.of(cell, node.0);
+                if of.by_unknown[unknown] == 0.0 || of.obstacles.act_at(unknown) {
+                    continue;
+                }
+                let gives = self.gap_gives((cell, group), node, &terms, bounds[unknown]);
+                match &mut best[unknown] {
+                    (of_best, all) if *of_best == gives => *all += measure,
+                    lower if gives => *lower = (true, measure),
+                    _ => {}
+                }
+                parts.push(Part { place, unknown, value: measure });
+                gives_of_part.push(gives);
+            }
+        }
+        for (part, gives) in parts.iter_mut().zip(gives_of_part) {
+            let (of_best, all) = best[part.unknown];
+            let share = if gives == of_best { part.value / all } else { 0.0 };
+            part.value = share * of.by_unknown[part.unknown];
+        }
+        parts
+    }
+
+    /// The density of the multipliers of obstacles in each cell, by regions where obstacles have names.
+    pub(crate) fn densities_of_obstacles(
+        &self,
+        inequality: &Inequality<T>,
+        of: &Multipliers,
+    ) -> Vec<f64> {
+        let by_region = self.data.lower.has_names() || self.data.upper.has_names();
+        let group = |cell: usize| if by_region { self.mesh.region(cell) } else { 0 };
+        let cells = (0..self.mesh.n_cells()).map(|cell| ((cell, None), group(cell)));
+        self.densities(&cells.collect::<Vec<_>>(), &self.parts_of_obstacles(of), inequality)
+    }
+
+    /// The density of the multipliers of gaps on each contact facet, by groups.
+    pub(crate) fn densities_of_gaps(
+        &self,
+        inequality: &Inequality<T>,
+        of: &Multipliers,
+    ) -> Vec<f64> {
+        let facets = self.grouped_facets_of(BoundaryPart::Contact);
+        let facets = facets.map(|((cell, local), group)| ((cell, Some(local)), group));
+        let parts = self.parts_of_gaps(&inequality.bounds, of);
+        self.densities(&facets.collect::<Vec<_>>(), &parts, inequality)
+    }
+
+    /// The density of multipliers on cells or on facets, group by group: the mean over their vertices of what acts on
+    /// the group there, each part divided equally among the vertices around its node, over the integrals of the hat
+    /// functions on the group.
+    fn densities(
+        &self,
+        places: &[(Place, usize)],
+        parts: &[Part],
+        inequality: &Inequality<T>,
+    ) -> Vec<f64> {
+        let mut groups: Vec<usize> = places.iter().map(|(_, group)| *group).collect();
+        groups.sort_unstable();
+        groups.dedup();
+        let mut densities = vec![0.0; places.len()];
+        for group in groups {
+            let of_group: Vec<usize> =
+                (0..places.len()).filter(|&k| places[k].1 == group).collect();
+            let entity = |k: usize| ContactEntity { cell: places[k].0.0, facet: places[k].0.1 };
+            let entities: Vec<ContactEntity> = of_group.iter().map(|&k| entity(k)).collect();
+            let mut at_vertices = vec![0.0; self.mesh.vertices().len()];
+            for part in parts.iter().filter(|part| places[part.place].1 == group) {
+                let around = inequality.supports[part.unknown].vertices();
+                let share = part.value / around.len() as f64;
+                around.iter().for_each(|&v| at_vertices[v as usize] += share);
+            }
+            let hats = self.hat_integrals(&entities);
+            at_vertices.iter_mut().zip(hats).for_each(|(density, hat)| *density /= hat);
+            for (&k, entity) in of_group.iter().zip(&entities) {
+                let corners = entity.corners::<D>().map(|c| self.mesh.cell(entity.cell)[c]);
+                let sum: f64 = corners.map(|v| at_vertices[v as usize]).sum();
+                densities[k] = sum / (entity.dimension::<D>() + 1) as f64;
+            }
+        }
+        densities
+    }
+}

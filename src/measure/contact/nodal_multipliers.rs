@@ -1,0 +1,49 @@
+//! The multipliers of unknowns that are shown: contact forces where they are known.
+
+use crate::algebra::{Inequality, Support};
+use crate::assemble::space::Space;
+use crate::inequality::{ContactForces, Solution};
+use crate::mesh::BoundaryPart;
+use crate::parallel::vectors::collect;
+use crate::real::Real;
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// By unknown the force of its active bound, positive where a lower bound pushes upward. It is zero without
+    /// contact, and at nodes on facets with weakly imposed Dirichlet data: there the entry of `A u - b` contains the
+    /// flux through the boundary. None where rounding leaves no digit. On a part of a mesh ghosts have the forces of
+    /// their owners, and all parts call it.
+    pub(crate) fn nodal_multipliers(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Option<Vec<f64>> {
+        let forces = ContactForces::of(inequality, solution);
+        let on_data = self.on_weak_data(&inequality.supports);
+        let counts = |i: usize| !on_data.get(i).is_some_and(|&is_left_out| is_left_out);
+        let have_digits = forces.have_digits(inequality, solution, counts);
+        let value = |i: usize| if counts(i) { forces.values[i] } else { 0.0 };
+        have_digits.then(|| collect(forces.values.len(), value))
+    }
+
+    /// By unknown whether its node is on a facet with weakly imposed Dirichlet data; empty without such data.
+    fn on_weak_data(&self, supports: &[Support]) -> Vec<bool> {
+        if self.pins || !self.mesh.has_part(BoundaryPart::Dirichlet) {
+            return Vec::new();
+        }
+        let mut vertices = vec![false; self.mesh.vertices().len()];
+        let mut others: Vec<&[u32]> = Vec::new();
+        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+            for i in self.nodes_on(local) {
+                match supports[self.dofs.of(cell, i)].vertices() {
+                    &[v] => vertices[v as usize] = true,
+                    several => others.push(several),
+                }
+            }
+        }
+        others.sort_unstable();
+        collect(supports.len(), |i| match supports[i].vertices() {
+            &[v] => vertices[v as usize],
+            several => others.binary_search(&several).is_ok(),
+        })
+    }
+}

@@ -1,0 +1,299 @@
+//! How far a discrete function lies beyond obstacles and gaps, between its nodes too.
+
+use std::ops::Range;
+
+use super::cell_errors::Counts;
+use crate::assemble::Discretisation;
+use crate::assemble::cut_simplices::in_space;
+use crate::assemble::space::data::finite;
+use crate::assemble::space::tables::BasisAt;
+use crate::assemble::space::{Place, Space};
+use crate::error::Error;
+use crate::instances::compiled;
+use crate::mesh::{BoundaryPart, edge_vertices};
+use crate::parallel::cells;
+use crate::problem::{DataByGroup, DatumRef};
+use crate::quadrature::facet_to_cell;
+use crate::real::{Point, Real, point_f64};
+
+/// Beyond a bound by more than this share of the largest distance from it there is a warning.
+const SHARE_OF_DISTANCE: f64 = 0.1;
+
+/// With affine data there is one from this share of the largest value of the function on.
+const SHARE_OF_VALUE: f64 = 1e-6;
+
+/// What is below this many units of rounding of the size of the function is rounding.
+const ROUNDINGS: f64 = 1e3;
+
+/// The names of lower obstacles, upper obstacles and gaps.
+const NAMES: [&str; 3] = ["the lower obstacle", "the upper obstacle", "the gap"];
+
+/// How far a function lies beyond lower obstacles, upper obstacles and gaps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Penetration {
+    /// The largest value of `psi - u`, `u - Psi` and `g - u`.
+    beyond: [f64; 3],
+    /// The largest values of the opposite.
+    away: [f64; 3],
+    /// The largest value of the function.
+    largest_value: f64,
+    /// For each of the three whether its data, and all others of the problem, are known to be affine.
+    is_affine: [bool; 3],
+    /// What is below this is rounding.
+    rounding: f64,
+}
+
+impl Penetration {
+    /// Nothing seen yet.
+    const NONE: Self = Self {
+        beyond: [f64::NEG_INFINITY; 3],
+        away: [f64::NEG_INFINITY; 3],
+        largest_value: 0.0,
+        is_affine: [false; 3],
+        rounding: 0.0,
+    };
+
+    /// How far the function lies beyond a bound at most: negative where it reaches none.
+    pub fn largest(&self) -> f64 {
+        // a distance of zero has no sign
+        self.beyond.into_iter().fold(f64::NEG_INFINITY, f64::max) + 0.0
+    }
+
+    /// The numbers of which over several parts of a mesh the largest count.
+    pub(crate) fn numbers(&self) -> [f64; 7] {
+        let ([a, b, c], [d, e, f]) = (self.beyond, self.away);
+        [a, b, c, d, e, f, self.largest_value]
+    }
+
+    /// The penetration with these numbers.
+    pub(crate) fn with_numbers(self, [a, b, c, d, e, f, largest_value]: [f64; 7]) -> Self {
+        Self { beyond: [a, b, c], away: [d, e, f], largest_value, ..self }
+    }
+
+    /// A warning, if the function lies beyond a bound by more than a tenth of its largest distance from it; or, with
+    /// affine data, by more than a millionth of its largest value.
+    pub(crate) fn remark(&self) -> Option<String> {
+        let rounding = self.rounding;
+        let of_value = (SHARE_OF_VALUE * self.largest_value).max(rounding);
+        let found = (0..3).filter_map(|k| {
+            let (beyond, away) = (self.beyond[k], self.away[k].max(0.0));
+            let end = match beyond > rounding {
+                true if beyond > SHARE_OF_DISTANCE * away => {
+                    format!("more than a tenth of its largest distance from it, {away:.1e}")
+                }
+                true if self.is_affine[k] && beyond > of_value => {
+                    format!("with affine data: its largest value is {:.1e}", self.largest_value)
+                }
+                _ => return None,
+            };
+            Some(format!("the solution lies beyond {} by {beyond:.1e}, {end}", NAMES[k]))
+        });
+        let found: Vec<String> = found.collect();
+        (!found.is_empty()).then(|| found.join("; "))
+    }
+
+    /// What a value adds at a point where a datum is given, above which the function lies with the sign one.
+    fn add(&mut self, k: usize, sign: f64, [value, datum]: [f64; 2]) {
+        let away = sign * (value - datum);
+        self.beyond[k] = self.beyond[k].max(-away);
+        self.away[k] = self.away[k].max(away);
+    }
+
+    /// Both together.
+    fn merged(mut self, other: &Self) -> Self {
+        for k in 0..3 {
+            self.beyond[k] = self.beyond[k].max(other.beyond[k]);
+            self.away[k] = self.away[k].max(other.away[k]);
+        }
+        self
+    }
+}
+
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+    /// How far a discrete function lies beyond obstacles and gaps: in each cell beyond the obstacles of its region, on
+    /// each contact facet beyond the gap of its group. It is looked at at vertices, midpoints of edges and the points
+    /// of the rule for loads, on facets of that for Neumann data; at vertices alone where function and datum are
+    /// affine: there it is exact. None without an inequality.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
+    pub fn penetration(&self, u: &[T]) -> Result<Option<Penetration>, Error> {
+        self.penetration_of(u, &|_| true)
+    }
+
+    /// The penetration in the cells that count, those of a part of a mesh, and on their facets.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub(crate) fn penetration_of(
+        &self,
+        u: &[T],
+        counts: Counts<'_>,
+    ) -> Result<Option<Penetration>, Error> {
+        compiled!(
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &[T],
+                Counts<'_>,
+            ) -> Result<Option<Penetration>, Error>
+                = |of, u, counts| {
+                    let is_constrained = of.problem().is_constrained();
+                    is_constrained.then(|| of.space.penetration(u, counts)).transpose()
+                }
+        )(self, u, counts)
+    }
+}
+
+/// Points of a cell with the basis there.
+type Points = Vec<([f64; 4], BasisAt<f64>)>;
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    fn penetration(&self, u: &[T], counts: Counts<'_>) -> Result<Penetration, Error> {
+        let data = [&self.data.lower, &self.data.upper, &self.data.gap];
+        let is_linear = self.basis_degree == 1;
+        let at_vertices = data.map(|data| is_linear && self.is_affine(data));
+        let in_cells = self.points_of_cell(at_vertices[0] && at_vertices[1]);
+        let of_chunk = |cells: Range<usize>| {
+            let mut found = Penetration::NONE;
+            for cell in cells.filter(|&cell| counts(cell)) {
+                self.add_penetration(cell, u, &in_cells, &mut found)?;
+            }
+            Ok::<Penetration, Error>(found)
+        };
+        let mut found = Penetration::NONE;
+        if self.problem.has_obstacle() {
+            for of_chunk in cells::map(self.mesh.n_cells(), &of_chunk) {
+                found = found.merged(&of_chunk?);
+            }
+        }
+        let on_facets: Vec<Points> =
+            (0..D + 1).map(|local| self.points_of_facet(local, at_vertices[2])).collect();
+        for (place, group) in self.grouped_facets_of(BoundaryPart::Contact) {
+            let gap = self.data.gap.of(group).filter(|_| counts(place.0));
+            if let Some(gap) = gap {
+                self.add_penetration_on(place, gap, u, &on_facets[place.1], &mut found)?;
+            }
+        }
+        let is_affine = self.has_affine_data();
+        let largest_value = u.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max);
+        // a solution that vanishes is as large as rounding of what its load would do
+        let size = largest_value.max(self.size_of_load());
+        Ok(Penetration {
+            largest_value,
+            is_affine: data.map(|data| is_affine && self.is_affine(data)),
+            rounding: T::EPSILON * ROUNDINGS * size,
+            ..found
+        })
+    }
+
+    /// The size of a function with the load: the largest quotient of load and coefficient, at barycentres of cells,
+    /// times the square of the diameter of the mesh.
+    fn size_of_load(&self) -> f64 {
+        let of_cell = |cell: usize| {
+            let x = point_f64(&self.mesh.barycentre(cell));
+            let load = self.data.source.of(self.mesh.region(cell)).map_or(0.0, |f| f.at(&x));
+            load.abs() / self.alpha(cell).to_f64()
+        };
+        let largest = (0..self.mesh.n_cells()).map(of_cell).fold(0.0, f64::max);
+        largest * self.mesh.domain_diameter().powi(2)
+    }
+
+    /// What a cell adds.
+    fn add_penetration(
+        &self,
+        cell: usize,
+        u: &[T],
+        points: &Points,
+        found: &mut Penetration,
+    ) -> Result<(), Error> {
+        let region = self.mesh.region(cell);
+        let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
+        if bounds.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
+        for (point, basis) in points {
+            let (value, x) = (basis.value(&values), in_space(point, &corners));
+            for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
+                if let Some(bound) = bounds[k] {
+                    let bound = finite(bound.at(&x), "obstacle", &x, cell)?;
+                    found.add(k, sign, [value, bound]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What a contact facet adds.
+    fn add_penetration_on(
+        &self,
+        (cell, _): Place,
+        gap: DatumRef<'_, D>,
+        u: &[T],
+        points: &Points,
+        found: &mut Penetration,
+    ) -> Result<(), Error> {
+        let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
+        for (point, basis) in points {
+            let x: Point<f64, D> = in_space(point, &corners);
+            let gap = finite(gap.at(&x), "gap", &x, cell)?;
+            found.add(2, 1.0, [basis.value(&values), gap]);
+        }
+        Ok(())
+    }
+
+    /// The points of a cell at which a function is held against obstacles.
+    fn points_of_cell(&self, are_vertices_enough: bool) -> Points {
+        let ends = (0..D + 1).map(|k| [k; 2]);
+        let edges = edge_vertices(D).iter().copied().filter(|_| !are_vertices_enough);
+        let rule = self.cell_rule.points.iter().copied().filter(|_| !are_vertices_enough);
+        let points = ends.chain(edges).map(middle).chain(rule);
+        points.map(|point| (point, self.basis_at(&point))).collect()
+    }
+
+    /// The points of a facet at which a function is held against a gap.
+    fn points_of_facet(&self, local: usize, are_vertices_enough: bool) -> Points {
+        let on_facet = move |ends: &[usize; 2]| !ends.contains(&local);
+        let ends = (0..D + 1).map(|k| [k; 2]).filter(on_facet);
+        let edges = edge_vertices(D).iter().copied().filter(on_facet);
+        let rule = self.facet_rule.points.iter().map(|point| facet_to_cell(point, local));
+        let between = edges.map(middle).chain(rule).filter(|_| !are_vertices_enough);
+        let points = ends.map(middle).chain(between);
+        points.map(|point| (point, self.basis_at(&point))).collect()
+    }
+
+    /// Whether a degree of a datum, or the one stated for all data without a degree of their own, is at most one.
+    fn is_affine_degree(&self, degree: Option<usize>) -> bool {
+        degree.or(self.problem.data_degree).is_some_and(|degree| degree <= 1)
+    }
+
+    /// Whether a datum is known to be affine wherever it is given.
+    fn is_affine(&self, data: &DataByGroup<'_, D>) -> bool {
+        data.every(&|datum| self.is_affine_degree(datum.degree()))
+    }
+
+    /// Whether all data but obstacles and gaps are known to be affine.
+    fn has_affine_data(&self) -> bool {
+        let data = &self.data;
+        let has = |part| self.mesh.has_part(part);
+        // without Neumann data an exact solution gives the flux
+        let is_known = data.neumann.is_given() || self.problem.exact.is_none();
+        let flux_is_affine = data.neumann.every(&|flux| self.is_affine_degree(flux.degree()))
+            && (is_known || self.is_affine_degree(None));
+        [&data.coefficient, &data.source, &data.reaction].into_iter().all(|d| self.is_affine(d))
+            && (!has(BoundaryPart::Dirichlet) || self.is_affine(&data.dirichlet))
+            && (!has(BoundaryPart::Neumann) || flux_is_affine)
+    }
+}
+
+/// The middle of two vertices, or a vertex.
+fn middle([a, b]: [usize; 2]) -> [f64; 4] {
+    let mut point = [0.0; 4];
+    point[a] += 0.5;
+    point[b] += 0.5;
+    point
+}

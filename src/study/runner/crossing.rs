@@ -1,0 +1,42 @@
+//! Bounds that cross, before the first row.
+
+use super::{Study, with_set};
+use crate::error::Error;
+use crate::nested::Hierarchy;
+use crate::problem::Problem;
+use crate::real::Real;
+use crate::study::crossing::{Crossing, Points};
+
+impl<T: Real, const D: usize> Study<'_, T, D> {
+    /// Where lower bounds exceed upper ones on the finest meshes, at the points of all schemes.
+    pub(super) fn find_crossing(
+        &self,
+        hierarchies: &[Hierarchy<T, D>],
+    ) -> Result<Option<Crossing<D>>, Error> {
+        let Some(points) = self.points_of_bounds()? else { return Ok(None) };
+        for hierarchy in hierarchies {
+            let seen = points.look(&self.scene.problem, hierarchy.finest())?;
+            let found = seen.crossing::<T>(seen.size());
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        Ok(None)
+    }
+
+    /// The points of all schemes at which bounds are compared; none where no bounds can cross.
+    pub(super) fn points_of_bounds(&self) -> Result<Option<Points>, Error> {
+        let problem = &self.scene.problem;
+        if problem.upper.is_none() && problem.named.upper.is_empty() {
+            return Ok(None);
+        }
+        let without_data =
+            Problem { constraint_set: problem.constraint_set.clone(), ..Problem::new() };
+        let mut points = Points::default();
+        let entries = self.entries.iter().map(|entry| (&entry.scheme, &entry.set));
+        for (scheme, set) in entries.chain(self.reference.iter().map(|of| (&of.scheme, &of.set))) {
+            points.add(&**scheme, &with_set(&without_data, set), self.quadrature)?;
+        }
+        Ok(Some(points))
+    }
+}

@@ -1,0 +1,106 @@
+//! Problems with several obstacles and gaps: whose the multipliers are, what lies between the nodes, what crosses.
+
+use super::run::{Scratch, read_json, rows, stderr};
+use serde_json::Value;
+
+fn data(name: &str) -> String {
+    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn number(row: &Value, keys: &[&str]) -> f64 {
+    let value = keys.iter().fold(row, |value, key| &value[*key]);
+    value.as_f64().unwrap_or_else(|| panic!("{keys:?} is {value} in {}", row["label"]))
+}
+
+/// The rows of each series, coarsest first.
+fn series(report: &Value, n_levels: usize) -> Vec<Vec<Value>> {
+    rows(report).chunks(n_levels).map(<[Value]>::to_vec).collect()
+}
+
+/// A contact side whose gap lies below the obstacle is a Neumann side without flux: it has no force, and the bound is
+/// the same.
+#[test]
+fn a_gap_below_the_obstacle_has_no_force() {
+    let scratch = Scratch::new("gap-below");
+    let options = "--scheme p1,p2,cr,sipg,wopsip,wopsip:facet-means,nipg,ldg --levels 16";
+    let found = scratch.report(&format!("{} {options}", data("gap_below_obstacle")));
+    let text = std::fs::read_to_string(data("gap_below_obstacle")).unwrap();
+    let neumann = text.replace("\"contact\"\ngap = -0.3", "\"neumann\"\nflux = 0.0");
+    assert_ne!(neumann, text);
+    let free = scratch.report(&format!("{} {options}", scratch.file("free.toml", &neumann)));
+    for (row, free) in rows(&found).iter().zip(rows(&free)) {
+        let label = &row["label"];
+        assert_eq!(row["resultants"]["bottom"], 0.0, "{label}");
+        assert_eq!(row["resultants"]["lower"], row["resultant"], "{label}");
+        let [total, of_free] = [row, free].map(|row| number(row, &["bound", "total"]));
+        println!("{label}: {total:.4e}, Neumann {of_free:.4e}");
+        assert!((total / of_free - 1.0).abs() < 0.01, "{label}: {total} {of_free}");
+    }
+}
+
+/// Where regions meet, each cell is charged what its own obstacle carries: the bound of conforming functions has order
+/// one, and with an obstacle in one region alone it falls as with the same one everywhere.
+#[test]
+fn multipliers_of_regions_are_those_of_their_obstacles() {
+    let scratch = Scratch::new("regions");
+    let check = |name: &str, schemes: &str, levels: &str, least: f64| {
+        let options = format!("{} --scheme {schemes} --levels {levels}", data(name));
+        let report = scratch.report(&options);
+        for series in series(&report, levels.split(',').count()) {
+            for pair in series.windows(2) {
+                let [coarse, fine] = [0, 1].map(|k| number(&pair[k], &["bound", "total"]));
+                println!("{name}, {}: {coarse:.4e}, {fine:.4e}", pair[0]["label"]);
+                assert!(coarse > least * fine, "{name} {}: {coarse} {fine}", pair[0]["label"]);
+            }
+        }
+    };
+    check("region_obstacle", "p1,cr,sipg,wopsip", "0,1,2", 1.8);
+    check("region_obstacle", "p2,wopsip-p2", "0,1", 1.8);
+    check("obstacle_one_region", "p1,cr,sipg,p2", "0,1", 1.3);
+    check("obstacle_everywhere", "p1,p2", "0,1", 1.3);
+    check("p2_flux_on_obstacle", "p1,p2,sipg-p2", "0,1", 1.3);
+}
+
+/// Quadratics with bounds at nodes that touch an obstacle everywhere leave it between the nodes, and the row says so.
+#[test]
+fn quadratics_between_their_nodes() {
+    let scratch = Scratch::new("between-nodes");
+    let schemes = "p2,p2:midpoints,sipg-p2,p1,sipg-p2:cell-means";
+    let options = format!("{} --scheme {schemes} --levels 4", data("contact_everywhere"));
+    let report = scratch.report(&options);
+    for (k, row) in rows(&report).iter().enumerate() {
+        let found = number(row, &["penetration"]);
+        println!("{}: {found:.3e} {}", row["label"], row["warnings"]);
+        let is_said = row["warnings"].to_string().contains("lies beyond the lower obstacle by");
+        let is_beyond = k < 3;
+        assert_eq!(is_said, is_beyond, "{}: {}", row["label"], row["warnings"]);
+        match is_beyond {
+            true => assert!((1e-4..1e-2).contains(&found), "{}: {found}", row["label"]),
+            false => assert!(found.abs() < 1e-12, "{}: {found}", row["label"]),
+        }
+    }
+}
+
+/// Obstacles that cross at a point of the finest mesh leave no row of the table solved; points that see nothing claim
+/// nothing.
+#[test]
+fn obstacles_that_cross_are_found_before_the_first_row() {
+    let schemes = "p1,p2,cr,sipg,wopsip:facet-means";
+    for (name, levels) in [("cross", "1,2,8,17"), ("cross_bump", "0,1,2,3")] {
+        let scratch = Scratch::new(name);
+        let output = scratch.run(&format!("{} --scheme {schemes} --levels {levels}", data(name)));
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        let report = read_json(&scratch.0.join("out/report.json"));
+        assert_eq!(rows(&report).len(), 5 * 4);
+        for row in rows(&report) {
+            let key = (&row["label"], &row["level"]);
+            assert_eq!(row["status"], "infeasible", "{key:?}");
+            let message = row["message"].as_str().unwrap();
+            assert!(message.contains("of the finest mesh, the lower bound"), "{message}");
+            assert!(row["energy"].is_null() && row["penetration"].is_null(), "{key:?}");
+        }
+    }
+    let scratch = Scratch::new("cross-unseen");
+    let report = scratch.report(&format!("{} --scheme {schemes} --levels 1,2,8", data("cross")));
+    assert!(rows(&report).iter().all(|row| row["status"] == "converged"));
+}

@@ -1,0 +1,92 @@
+//! Figures that are rounding errors have no orders.
+
+use unilateral::inequality::Outcome;
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::study::Row;
+
+/// Schemes whose spaces contain the linear functions, and solve them exactly.
+const EXACT: [&str; 8] = ["p1", "p2", "cr", "sipg", "nipg", "ldg", "br2", "sipg-p2"];
+
+fn rows<T: Real, const D: usize>(scene: Scene<D>, schemes: &[&str], levels: &[usize]) -> Vec<Row> {
+    let study = Study::<T, D>::new(scene).levels(levels.iter().copied());
+    let add = |study: Study<'static, T, D>, name: &&str| study.named_scheme(&name.parse().unwrap());
+    let rows = schemes.iter().fold(study, add).run().unwrap().rows;
+    assert!(rows.iter().all(|row| row.status == Outcome::Converged));
+    rows
+}
+
+fn linear<const D: usize>() -> Scene<D> {
+    let gradient: Point<f64, D> = Point::from_fn(|k, _| 2.0 - k as f64);
+    let problem = Problem::new().exact(move |x| 1.0 + gradient.dot(x), move |_| gradient);
+    Scene::new("linear", BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), problem)
+}
+
+/// Errors that differ by chance from level to level.
+#[test]
+fn a_function_of_the_space_has_no_orders() {
+    fn check<T: Real, const D: usize>(levels: &[usize]) {
+        for row in rows::<T, D>(linear(), &EXACT, levels) {
+            let what = format!("{} {D}D, {} {}: {row:?}", T::NAME, row.label, row.level);
+            assert_eq!(row.order, Default::default(), "{what}");
+            assert_eq!(row.bound.effectivity, None, "{what}");
+        }
+    }
+    check::<f64, 1>(&[16, 64, 256]);
+    check::<f64, 2>(&[4, 8, 16]);
+    check::<f64, 3>(&[2, 4]);
+    check::<f32, 1>(&[16, 64]);
+    check::<f32, 2>(&[4, 8, 16]);
+}
+
+/// The membrane lies on its obstacle: values, energies and errors are zero but for rounding.
+#[test]
+fn a_solution_that_vanishes_has_no_orders() {
+    let problem = Problem::new().constant_source(-1.0).obstacle_below(|_| 0.0);
+    let problem = problem.exact(|_| 0.0, |_| Point::zeros());
+    let square = BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let scene = Scene::new("zero", square, problem);
+    let schemes = ["p1", "p2", "cr", "sipg", "sipg-p2", "wopsip", "wopsip-p2"];
+    for row in rows::<f64, 2>(scene, &schemes, &[4, 8, 16]) {
+        let of = row.order;
+        assert_eq!([of.l2, of.h1, of.energy, of.max], [None; 4], "{}: {row:?}", row.label);
+    }
+}
+
+/// What is no noise keeps its order, in both scalars.
+#[test]
+fn errors_above_rounding_keep_their_orders() {
+    let double = rows::<f64, 1>(scenes::parabola_1d(), &["p1", "sipg", "wopsip"], &[64, 1024]);
+    let single = rows::<f32, 2>(scenes::radial(1.0), &["p1", "sipg", "wopsip"], &[16, 32]);
+    for row in [double, single].concat().iter().skip(1).step_by(2) {
+        let of = row.order;
+        let all = [of.l2, of.h1, of.energy, of.bound, of.multiplier_l1];
+        assert!(all.iter().all(Option::is_some), "{}: {row:?}", row.label);
+    }
+}
+
+/// Limits of energies and forces: none of figures that are rounding, no order of differences that are.
+#[test]
+fn noise_is_not_extrapolated() {
+    let study = |problem| {
+        let square = BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let study = Study::<f64, 2>::new(Scene::new("membrane", square, problem));
+        let schemes = ["sipg", "wopsip-p2"].map(|name| name.parse().unwrap());
+        let study = schemes.iter().fold(study, |study, scheme| study.named_scheme(scheme));
+        study.levels([4, 8, 16]).run().unwrap()
+    };
+    let on_obstacle = Problem::new().constant_source(-1.0).obstacle_below(|_| 0.0);
+    for of in study(on_obstacle).extrapolated() {
+        assert_eq!(of.energy, None, "{of:?}");
+    }
+    let mut report = study(Problem::new().constant_source(-1.0));
+    let [a, b, c] = [0, 1, 2].map(|k: usize| report.rows[k].energy.unwrap());
+    assert!(report.extrapolated()[0].energy.is_some_and(|limit| limit.order > Some(1.5)));
+    // the same differences, as rounding of a thousand times the energy
+    for row in &mut report.rows {
+        let rounding = row.rounding.as_mut().unwrap();
+        rounding.energy = 2.0 * (a - b).abs().max((b - c).abs());
+    }
+    let limit = report.extrapolated()[0].energy.unwrap();
+    assert_eq!((limit.value, limit.order), (c, None));
+}
