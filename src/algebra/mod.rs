@@ -6,9 +6,10 @@
 //! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
 //! discontinuous linear functions. `dense`: small dense matrices. `row`: rows in the making.
 //! `dirichlet_energy`: the part of an energy that weak Dirichlet data determine.
-//! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `inequality`: bounds,
-//! supports of unknowns and the inequality. `index`: the missing index.
+//! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
+//! unknown. `inequality`: supports of unknowns and the inequality. `index`: the missing index.
 
+mod bound;
 pub(crate) mod dense;
 mod dirichlet_energy;
 mod distribution;
@@ -22,6 +23,7 @@ mod row;
 mod side_penalties;
 mod submatrix;
 
+pub use bound::{Bound, Contact};
 pub use dirichlet_energy::{DirichletEnergy, DirichletTerm};
 pub use distribution::Distribution;
 pub(crate) use distribution::{any_part, sum_over_parts};
@@ -29,7 +31,7 @@ pub use free_body::FreeBody;
 pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
 pub(crate) use index::NO_INDEX;
 pub(crate) use inequality::barycentre;
-pub use inequality::{Bound, Contact, Inequality, Start, Support};
+pub use inequality::{Inequality, Start, Support};
 pub use matrix::SparseMatrix;
 pub use penalised_matrix::{JumpTerm, PenalisedMatrix};
 pub(crate) use rectangular_matrix::{RectangularMatrix, SparseSum, galerkin_product};

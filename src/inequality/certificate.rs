@@ -133,6 +133,14 @@ pub(crate) fn positive_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -
     if largest > 0.0 { largest } else { 1.0 }
 }
 
+/// The diagonal entry of row `i` as a positive scale, without a penalty that is kept apart.
+pub(crate) fn stiffness_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -> f64 {
+    match &inequality.penalised {
+        Some(penalised) => penalised.stiffness_diagonal(i),
+        None => positive_diagonal(inequality, i),
+    }
+}
+
 /// The contact states of values from a solver that has no contact states: an unknown is active at the nearer bound if
 /// its gap is at most the Gauss-Seidel step `r_i / d_i` towards this bound. An unknown whose bounds coincide is active
 /// at its lower bound.
@@ -148,8 +156,7 @@ pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> 
             return Contact::Lower;
         }
         let (x, step) = (u[i].to_f64(), -residual[i] / positive_diagonal(inequality, i));
-        let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());
-        let to_upper = bound.upper().map_or(f64::INFINITY, |u| u.to_f64() - x);
+        let [to_lower, to_upper] = bound.distances(x);
         if to_lower <= to_upper && to_lower <= step {
             Contact::Lower
         } else if to_upper < to_lower && to_upper <= -step {

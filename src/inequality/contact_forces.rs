@@ -1,8 +1,9 @@
 //! The contact forces of unknowns: everything that shows a force takes it from here.
 
 use super::Solution;
-use super::certificate::{positive_diagonal, residual};
-use crate::algebra::{Bound, Contact, Inequality, JumpTerm, PenalisedMatrix};
+use super::certificate::{residual, stiffness_diagonal};
+use crate::algebra::{Contact, Inequality, JumpTerm, PenalisedMatrix};
+use crate::mesh::Components;
 use crate::parallel::vectors::collect;
 use crate::real::Real;
 
@@ -71,12 +72,16 @@ impl ContactForces {
             distribution.largest(&mut largest);
         }
         let slack = T::CERTIFICATE_LIMIT * largest[0];
+        let is_near = |i: usize| {
+            let bound = &inequality.bounds[i];
+            bound.distances(solution.values[i].to_f64()).iter().any(|distance| *distance <= slack)
+        };
         let mut sums = [0.0; 4];
         for i in (0..self.values.len()).filter(|&i| inequality.owns(i) && counts(i)) {
             sums[3] += inequality.load[i].to_f64().abs();
             sums[0] += self.values[i].abs();
             sums[1] += self.rounding[i];
-            if is_near(&inequality.bounds[i], solution.values[i], slack) {
+            if is_near(i) {
                 sums[2] += stiffness_diagonal(inequality, i);
             }
         }
@@ -86,21 +91,6 @@ impl ContactForces {
         let [forces, rounding, diagonal, load] = sums;
         let error = rounding + solution.dual_residual * diagonal.sqrt();
         error <= LARGEST_ERROR * forces || error <= NO_LOAD * load
-    }
-}
-
-/// Whether a value is at a bound that is an inequality, but for the slack.
-fn is_near<T: Real>(bound: &Bound<T>, x: T, slack: f64) -> bool {
-    let x = x.to_f64();
-    let is_above = bound.lower().is_some_and(|l| x - l.to_f64() <= slack);
-    is_above || bound.upper().is_some_and(|u| u.to_f64() - x <= slack)
-}
-
-/// The diagonal entry of the matrix, without a penalty that is kept apart.
-fn stiffness_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -> f64 {
-    match &inequality.penalised {
-        Some(penalised) => penalised.stiffness_diagonal(i),
-        None => positive_diagonal(inequality, i),
     }
 }
 
@@ -152,16 +142,11 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
             return None;
         }
         let no_unknown = JumpTerm::<T>::NO_UNKNOWN;
-        let mut node: Vec<u32> = (0..inequality.size() as u32).collect();
+        let mut nodes = Components::new(inequality.size());
         for term in penalised.terms.iter().filter(|t| ![t.here, t.there].contains(&no_unknown)) {
-            let [one, other] = [term.here, term.there].map(|i| root(&mut node, i));
-            // the smaller number, whatever the order of jumps
-            node[one.max(other) as usize] = one.min(other);
+            nodes.join(term.here as usize, term.there as usize);
         }
-        for i in 0..node.len() {
-            // the node of a smaller number is known
-            node[i] = node[node[i] as usize];
-        }
+        let node: Vec<u32> = (0..inequality.size()).map(|i| nodes.find(i) as u32).collect();
         let mut is_balanced = vec![true; node.len()];
         for term in penalised.terms.iter().filter(|t| [t.here, t.there].contains(&no_unknown)) {
             let unknown = if term.here == no_unknown { term.there } else { term.here };
@@ -234,15 +219,6 @@ impl SumOverCopies {
             _ => None,
         }
     }
-}
-
-/// The smallest number known of the node of an unknown; shortens the path to it.
-fn root(node: &mut [u32], mut i: u32) -> u32 {
-    while node[i as usize] != i {
-        node[i as usize] = node[node[i as usize] as usize];
-        i = node[i as usize];
-    }
-    i
 }
 
 #[cfg(test)]

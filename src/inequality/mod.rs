@@ -54,7 +54,7 @@ pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
 pub(crate) use certificate::count_active;
 pub use certificate::{Certificate, contact_of};
-pub(crate) use certificate::{energy_norm, positive_diagonal};
+pub(crate) use certificate::{energy_norm, positive_diagonal, stiffness_diagonal};
 pub(crate) use contact_forces::ContactForces;
 pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;

@@ -198,7 +198,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let load = self.data.source.of(self.mesh.region(cell)).map_or(0.0, |f| f.at(&x));
             load.abs() / self.alpha(cell).to_f64()
         };
-        let largest = (0..self.mesh.n_cells()).map(of_cell).fold(0.0, f64::max);
+        let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
+        let largest = cells::map(self.mesh.n_cells(), &of_chunk).into_iter().fold(0.0, f64::max);
         largest * self.mesh.domain_diameter().powi(2)
     }
 

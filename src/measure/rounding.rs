@@ -3,7 +3,7 @@
 use super::errors::Errors;
 use crate::algebra::Inequality;
 use crate::assemble::Discretisation;
-use crate::inequality::positive_diagonal;
+use crate::inequality::{positive_diagonal, stiffness_diagonal};
 use crate::parallel::vectors::map_chunks;
 use crate::real::{Real, maximum};
 
@@ -50,7 +50,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             let (mut largest, mut sums) = (0.0, [0.0; 5]);
             for i in range.filter(|&i| inequality.owns(i)) {
                 let d = positive_diagonal(inequality, i);
-                let k = inequality.penalised.as_ref().map_or(d, |p| p.stiffness_diagonal(i));
+                let k = stiffness_diagonal(inequality, i);
                 largest = maximum(largest, u[i].to_f64().abs());
                 let terms = [d, k, k * k, load[i].abs(), load[i] * load[i] / k];
                 sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);

@@ -5,8 +5,7 @@ use crate::real::{Real, maximum};
 
 /// The bound that the value `x` touches: the nearer one, if its gap is at most the step. None for a fixed unknown.
 pub(super) fn touched_bound<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Contact {
-    let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());
-    let to_upper = bound.upper().map_or(f64::INFINITY, |u| u.to_f64() - x);
+    let [to_lower, to_upper] = bound.distances(x);
     match bound.fixed_value() {
         None if to_lower <= to_upper && to_lower <= step.abs() => Contact::Lower,
         None if to_upper < to_lower && to_upper <= step.abs() => Contact::Upper,
@@ -30,8 +29,7 @@ impl LocalViolation {
         if let Some(value) = bound.fixed_value() {
             return Self { feasibility: (x - value.to_f64()).abs(), ..Self::default() };
         }
-        let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());
-        let to_upper = bound.upper().map_or(f64::INFINITY, |u| u.to_f64() - x);
+        let [to_lower, to_upper] = bound.distances(x);
         let (gap, to_opposite, step_to_bound) = if to_lower <= to_upper {
             (to_lower, to_upper, step)
         } else {
