@@ -3,7 +3,7 @@
 use super::free_boundary;
 use super::scene::Scene;
 use crate::mesh::{BoundaryPart, BoxDomain};
-use crate::problem::{Exact, Problem};
+use crate::problem::{BoundaryFlux, Exact, Problem};
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -62,7 +62,7 @@ pub fn radial_quarter_2d() -> Scene<2> {
         name: "radial-quarter-2d".into(),
         summary: "a quarter of radial-2d, with Neumann sides on the axes of symmetry",
         domain: domain.into(),
-        problem: scene.problem.neumann(|_, _| 0.0),
+        problem: Problem { neumann: Some(BoundaryFlux::Constant(0.0)), ..scene.problem },
         regularity: scene.regularity,
     }
 }

@@ -100,6 +100,15 @@ fn obstacles_that_cross_are_found_before_the_first_row() {
             assert!(row["energy"].is_null() && row["penetration"].is_null(), "{key:?}");
         }
     }
+    // adaptive refinement has no finest mesh: the first one is looked at
+    let scratch = Scratch::new("cross-adaptive");
+    let options = format!("{} --scheme p1,sipg --levels 17 --adaptive steps=2", data("cross"));
+    assert_eq!(scratch.run(&options).status.code(), Some(1));
+    let report = read_json(&scratch.0.join("out/report.json"));
+    let of_row =
+        |row: &Value| [&row["label"], &row["status"]].map(|text| text.as_str().unwrap().to_owned());
+    let found: Vec<[String; 2]> = rows(&report).iter().map(of_row).collect();
+    assert_eq!(found, [["p1", "infeasible"], ["sipg", "infeasible"]]);
     let scratch = Scratch::new("cross-unseen");
     let report = scratch.report(&format!("{} --scheme {schemes} --levels 1,2,8", data("cross")));
     assert!(rows(&report).iter().all(|row| row["status"] == "converged"));

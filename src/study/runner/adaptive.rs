@@ -98,6 +98,8 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         let mut rows = Vec::new();
         let mut add = |row| self.finish(row, &mut rows);
         let first = self.first_mesh()?;
+        // no finest mesh is asked for: the first one is looked at, later ones by their rows
+        let crossing = self.find_crossing([&first])?;
         let measured = Measured { failure, reference: None };
         for (entry, problem) in self.entries.iter().zip(&self.problems()) {
             let label = entry.scheme.label_on(problem.constraint_set());
@@ -107,7 +109,11 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
                 let mut steps = AdaptiveIteration::new(nested, &*entry.scheme, adaptivity)?;
                 for level in 0.. {
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                    let step = match steps.next() {
+                    let step = match &crossing {
+                        Some(crossing) => Some(Err(crossing.error())),
+                        None => steps.next(),
+                    };
+                    let step = match step {
                         Some(Ok(step)) => step,
                         Some(Err(error)) => {
                             let place = (level, meshes.finest());

@@ -2,20 +2,23 @@
 
 use super::{Study, with_set};
 use crate::error::Error;
-use crate::nested::Hierarchy;
+use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::study::crossing::{Crossing, Points};
 
 impl<T: Real, const D: usize> Study<'_, T, D> {
-    /// Where lower bounds exceed upper ones on the finest meshes, at the points of all schemes.
-    pub(super) fn find_crossing(
+    /// Where lower bounds exceed upper ones on these meshes, at the points of all schemes.
+    pub(super) fn find_crossing<'m>(
         &self,
-        hierarchies: &[Hierarchy<T, D>],
-    ) -> Result<Option<Crossing<D>>, Error> {
+        meshes: impl IntoIterator<Item = &'m Mesh<T, D>>,
+    ) -> Result<Option<Crossing<D>>, Error>
+    where
+        T: 'm,
+    {
         let Some(points) = self.points_of_bounds()? else { return Ok(None) };
-        for hierarchy in hierarchies {
-            let seen = points.look(&self.scene.problem, hierarchy.finest())?;
+        for mesh in meshes {
+            let seen = points.look(&self.scene.problem, mesh)?;
             let found = seen.crossing::<T>(seen.size());
             if found.is_some() {
                 return Ok(found);

@@ -239,7 +239,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         };
         let problems = self.problems();
         let reference_problem = self.reference_problem();
-        let crossing = self.find_crossing(&hierarchies)?;
+        let crossing = self.find_crossing(hierarchies.iter().map(Hierarchy::finest))?;
         let reference = match crossing {
             None => self.find_reference(&reference_problem, &hierarchies),
             Some(_) => None,
