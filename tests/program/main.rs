@@ -5,6 +5,7 @@ mod contact_forces;
 mod data;
 mod dump;
 mod free_bodies;
+mod hard_rows;
 #[cfg(unix)]
 mod interrupt;
 mod limits;

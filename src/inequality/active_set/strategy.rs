@@ -21,7 +21,7 @@
 //! For an inequality that is distributed over the parts of a mesh only the first stage runs.
 //!
 //! Thresholds within a stage are defined with the stage: the numbers of steps without progress in [`ActiveSet`],
-//! `STAGNATION_CYCLES` in `monotone_multigrid/iteration`, `MAX_STEPS` in `interior_point`. `solve/stage_runs` runs a
+//! `PATIENCE` in `solve/stage_runs`, `MAX_STEPS` in `interior_point`. `solve/stage_runs` runs a
 //! stage.
 
 use super::iteration::End;

@@ -20,7 +20,7 @@ const REDUCTION: f64 = 0.1;
 
 /// Number of cycles without halving the change of a cycle after which the certificate and the bound on the error are
 /// examined although the change exceeds the tolerance: changes of the size of rounding do not decrease.
-pub(in crate::inequality) const STAGNATION_CYCLES: usize = 10;
+const STAGNATION_CYCLES: usize = 10;
 
 impl<T: Real> MultigridIterate<'_, T> {
     /// Iterates until the change of a cycle is within the tolerance, and the certificate and the bound on the algebraic

@@ -20,7 +20,6 @@ use crate::algebra::Inequality;
 use crate::instances::compiled;
 use crate::real::Real;
 use cycle::MultigridIterate;
-pub(super) use iteration::STAGNATION_CYCLES;
 pub use settings::MonotoneMultigrid;
 
 impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
