@@ -19,6 +19,7 @@ mod stability;
 mod tables;
 mod totals;
 mod vtu;
+mod vtu_readers;
 mod work_precision;
 
 #[path = "../support"]

@@ -146,7 +146,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.fields.directory = Some(directory.into());
         self
     }
-    /// Sets the scalar of coordinates and fields in files; 32 bits otherwise.
+    /// Sets the scalar of fields in files; 32 bits otherwise. Coordinates have 64 bits always.
     #[cfg(feature = "report")]
     #[must_use]
     pub fn field_scalar(mut self, scalar: FieldScalar) -> Self {

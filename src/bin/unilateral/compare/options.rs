@@ -91,7 +91,7 @@ pub struct Options {
     /// Also write a table of observed against promised orders here, in Markdown
     #[arg(long, value_name = "FILE")]
     pub orders: Option<PathBuf>,
-    /// Scalar of coordinates and fields in .vtu files
+    /// Scalar of fields in .vtu files; coordinates have f64 always
     #[arg(long, value_parser = ["f32", "f64"], default_value = "f32")]
     pub fields: String,
     /// No .vtu files
