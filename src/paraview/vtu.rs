@@ -38,6 +38,9 @@ type Function<'a, const D: usize> = &'a (dyn Fn(&Point<f64, D>) -> f64 + 'a);
 /// A function of space that may jump between cells: of the number of a cell and a point in it.
 type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<f64, D>) -> f64 + 'a>;
 
+/// Data on facets: their name, the facets as cell and number in the cell, and a value for each.
+type OnFacets<'a> = (&'a str, &'a [(usize, usize)], &'a [f64]);
+
 /// A function on the cells of a mesh with further fields, to be written as a `.vtu` file.
 ///
 /// ```
@@ -63,7 +66,7 @@ pub struct VtuFile<'a, const D: usize> {
     functions: Vec<(&'a str, InCell<'a, D>)>,
     exact: Option<InCell<'a, D>>,
     on_cells: Vec<(&'a str, &'a [f64])>,
-    on_facets: Vec<(&'a str, &'a [(usize, usize)], &'a [f64])>,
+    on_facets: Vec<OnFacets<'a>>,
     numbers: Vec<(String, f64)>,
     scalar: FieldScalar,
 }

@@ -8,6 +8,7 @@ mod free_bodies;
 #[cfg(unix)]
 mod interrupt;
 mod limits;
+mod mesh_faults;
 mod meshes;
 mod obstacles;
 mod output;
