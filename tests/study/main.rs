@@ -2,6 +2,7 @@
 
 mod active_bounds;
 mod adaptive;
+mod boundary_data;
 mod forces;
 mod journal;
 mod links;

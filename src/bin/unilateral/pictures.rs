@@ -37,9 +37,9 @@ pub struct Options {
     /// Scheme as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]
     #[arg(long, default_value = "wopsip")]
     scheme: NamedScheme,
-    /// Subdivisions of the scene's shortest side, by default 16, in space 8; on a mesh: refinements, by
+    /// On a box: subdivisions of its shortest side, by default 16, in space 8; on a mesh of a file: refinements, by
     /// default none
-    #[arg(long, value_name = "N")]
+    #[arg(long, visible_alias = "levels", value_name = "N")]
     level: Option<usize>,
     /// Draw every mesh of a refinement that follows the error bound, as for compare; --level N then sets the first mesh,
     /// by default 4 subdivisions

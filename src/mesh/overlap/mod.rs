@@ -2,6 +2,8 @@
 
 mod facet_search;
 
+#[cfg(feature = "problem-files")]
+pub(crate) use facet_search::FacetSearch;
 pub(super) use facet_search::lie_on_others;
 
 use super::boundary::BoundaryFacet;
