@@ -123,9 +123,7 @@ pub enum MeshError {
         at: String,
     },
     /// A facet of the boundary is in no group.
-    #[error(
-        "boundary facet {vertices:?} of cell {cell}, at {at}, is in no group: put it in one; the names dirichlet, neumann, contact say what holds there, for other names a problem does"
-    )]
+    #[error("boundary facet {vertices:?} of cell {cell}, at {at}, is in no group: {}", remedy(*coincident))]
     UntaggedFacet {
         /// Vertices of the facet.
         vertices: Vec<u32>,
@@ -133,6 +131,8 @@ pub enum MeshError {
         cell: usize,
         /// Barycentre of the facet, as coordinates in parentheses.
         at: String,
+        /// How many facets of the boundary lie on others; zero if this one does not.
+        coincident: usize,
     },
     /// A facet is in two parts.
     #[error("facet {vertices:?} is in two boundary parts, {first} and {second}")]
@@ -194,6 +194,19 @@ pub enum MeshError {
 }
 
 debug_by_display!(MeshError);
+
+/// What to do with a boundary facet in no group.
+fn remedy(coincident: usize) -> String {
+    match coincident {
+        0 => "put it in one; the names dirichlet, neumann, contact say what holds there, for other names a problem does".to_owned(),
+        n => format!(
+            "it lies on another one, with nodes of its own, as {n} facets do; {UNITE}, or put both sides of a slit in groups"
+        ),
+    }
+}
+
+/// What to do with facets that lie on each other.
+pub(crate) const UNITE: &str = "let parts that were meshed apart share their nodes (in Gmsh by BooleanFragments or Coherence before meshing)";
 
 impl MeshError {
     /// The error for a boundary group of undecided part with these names.

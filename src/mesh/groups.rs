@@ -24,13 +24,16 @@ pub(in crate::mesh) struct Groups {
     pub regions: Vec<Vec<String>>,
     /// The boundary groups.
     pub boundary: Vec<BoundaryGroup>,
+    /// The names of groups that have facets between two cells.
+    pub inside: Vec<String>,
 }
 
 impl Groups {
     /// One region without names, and boundary groups of one name each with these parts.
     pub fn of_boundary(boundary: impl IntoIterator<Item = (String, BoundaryPart)>) -> Self {
         let group = |(name, part)| BoundaryGroup { names: vec![name], part: Some(part) };
-        Self { regions: vec![Vec::new()], boundary: boundary.into_iter().map(group).collect() }
+        let boundary = boundary.into_iter().map(group).collect();
+        Self { regions: vec![Vec::new()], boundary, inside: Vec::new() }
     }
 }
 

@@ -43,6 +43,8 @@ pub use facets::{Facets, Neighbour, Neighbours};
 pub use geometry::CellGeometry;
 pub(crate) use geometry::describe_point;
 pub use groups::BoundaryGroup;
+#[cfg(feature = "problem-files")]
+pub(crate) use overlap::FacetSearch;
 pub use part::{Across, Extent, Layers, Part};
 pub use refine::Refinement;
 pub use simplicial::Mesh;

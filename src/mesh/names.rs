@@ -33,6 +33,12 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         &self.groups.boundary
     }
 
+    /// The names of groups that have facets between two cells: these facets were left out, for data are given
+    /// on the boundary only.
+    pub fn groups_inside(&self) -> &[String] {
+        &self.groups.inside
+    }
+
     /// The mesh with the regions and boundary groups of another one, which has the same cells.
     #[cfg(feature = "report")]
     pub(crate) fn with_names_of<S>(mut self, other: &Mesh<S, D>) -> Self {

@@ -8,7 +8,7 @@ use super::error::MeshError;
 use super::facets::{CELL_LIMIT, Neighbours};
 use super::geometry::{CellGeometry, describe_point};
 use super::groups::{BoundaryGroup, Groups, NameSets};
-use super::overlap::{check_folds, check_overlaps};
+use super::overlap::{check_folds, check_overlaps, lie_on_others};
 use super::simplicial::Mesh;
 use crate::arrays::tabulate;
 use crate::input::excerpt;
@@ -98,7 +98,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         check_overlaps(&vertices, &cells, &boundary)?;
         let is_supported = is_supported(&neighbours, &boundary);
         let (vertices, cells) = drop_unused(rounded, cells);
-        let groups = Arc::new(Groups { regions: vec![Vec::new()], boundary: groups });
+        let groups = Arc::new(groups);
         let cell_regions = Vec::new();
         Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole: None })
     }
@@ -196,7 +196,7 @@ fn match_boundary<const D: usize>(
     cells: &[u32],
     neighbours: &Neighbours,
     (grouped, names): (&[GroupedFacet<D>], &[String]),
-) -> Result<(Vec<BoundaryFacet>, Vec<BoundaryGroup>), MeshError> {
+) -> Result<(Vec<BoundaryFacet>, Groups), MeshError> {
     let facet = |c: usize, local: usize| -> [u32; D] {
         let cell = &cells[c * (D + 1)..(c + 1) * (D + 1)];
         tabulate(|k| cell[k + usize::from(k >= local)])
@@ -210,6 +210,7 @@ fn match_boundary<const D: usize>(
     let mut sets = NameSets::new(names);
     let mut set_of: Vec<Option<usize>> = vec![None; open.len()];
     let mut inside: Option<Vec<[u32; D]>> = None;
+    let mut has_inner = vec![false; names.len()];
     for (tag, t) in grouped.iter().enumerate() {
         let group = usize::from(t.group);
         let Some(name) = names.get(group) else {
@@ -229,6 +230,7 @@ fn match_boundary<const D: usize>(
             });
             let is_inside = inside.binary_search(&key).is_ok();
             if is_inside && BoundaryPart::from_name(name).is_none() {
+                has_inner[group] = true;
                 continue;
             }
             let why = if is_inside { "lies between two cells" } else { "belongs to no cell" };
@@ -255,7 +257,8 @@ fn match_boundary<const D: usize>(
         let Some(set) = set else {
             let sum = key.iter().fold(Point::<f64, D>::zeros(), |s, &v| s + vertices[v as usize]);
             let at = describe_point(&(sum / D as f64));
-            return Err(MeshError::UntaggedFacet { vertices: key.to_vec(), cell, at });
+            let coincident = coincident(vertices, &open, key);
+            return Err(MeshError::UntaggedFacet { vertices: key.to_vec(), cell, at, coincident });
         };
         sets_used.resize(sets_used.len().max(set + 1), None);
         let group = *sets_used[set].get_or_insert_with(|| {
@@ -271,7 +274,23 @@ fn match_boundary<const D: usize>(
         return Err(MeshError::TooLarge { what, count, limit });
     }
     BoundaryFacet::sort(&mut boundary);
-    Ok((boundary, groups))
+    let inside = names.iter().zip(has_inner).filter(|(_, has)| *has).map(|(name, _)| name.clone());
+    let inside = inside.collect();
+    Ok((boundary, Groups { regions: vec![Vec::new()], boundary: groups, inside }))
+}
+
+/// How many facets of the boundary lie on others, if this one does.
+fn coincident<const D: usize>(
+    vertices: &[Point<f64, D>],
+    open: &[OpenFacet<D>],
+    facet: [u32; D],
+) -> usize {
+    let facets: Vec<[u32; D]> = open.iter().map(|(vertices, ..)| *vertices).collect();
+    let lie_on_others = lie_on_others(vertices, &facets);
+    match facets.iter().zip(&lie_on_others).any(|(other, lies)| *other == facet && *lies) {
+        true => lie_on_others.iter().filter(|lies| **lies).count(),
+        false => 0,
+    }
 }
 
 fn drop_unused<T: Real, const D: usize>(

@@ -209,14 +209,19 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
         // 32-bit indices number the unknowns and matrix entries of a discontinuous space
         let limit = f64::from(u32::MAX) / ((D + 1) * (D + 1) * (D + 2)) as f64;
         if cells > limit {
-            let allowed =
-                format!("it would have {cells:.1e} cells, at most {limit:.1e} are possible");
+            let kind = match self {
+                Self::Domain(_) => "subdivisions of the shortest side",
+                Self::Mesh(_) => "refinements of the mesh",
+            };
+            let allowed = format!(
+                "so many {kind} would make {cells:.1e} cells, at most {limit:.1e} are possible"
+            );
             return refuse("level", level.to_string(), allowed);
         }
         // the constructor of an input mesh checks its cells
         let Self::Domain(domain) = self else { return Ok(()) };
         if level == 0 {
-            let allowed = "a built-in mesh has at least one subdivision".to_owned();
+            let allowed = "a built-in mesh has at least one subdivision of its shortest side; refinements, from 0, are those of a mesh file".to_owned();
             return refuse("level", "0".to_owned(), allowed);
         }
         // squares and volumes of cells, and their reciprocals, must be in the range of the scalar

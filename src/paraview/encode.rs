@@ -28,7 +28,8 @@ pub(super) fn doubles(list: &mut dyn Iterator<Item = f64>) -> Vec<u8> {
 /// A file under construction: its text, and the arrays that follow it.
 pub(super) struct Arrays {
     pub text: Vec<u8>,
-    data: Vec<u8>,
+    /// For each array where in the text its offset belongs, and its data.
+    data: Vec<(usize, Vec<u8>)>,
 }
 
 impl Arrays {
@@ -36,9 +37,8 @@ impl Arrays {
         Self { text: Vec::new(), data: Vec::new() }
     }
 
-    /// Adds an array: in the text its name and where its data begin; in the data the number of blocks, the
-    /// length of a block and of the last one if that is shorter, the compressed length of each, all with 64
-    /// bits, and the blocks.
+    /// Adds an array: in the text its name; in the data the number of blocks, the length of a block and of the
+    /// last one if that is shorter, the compressed length of each, all with 64 bits, and the blocks.
     pub fn push(
         &mut self,
         kind: &str,
@@ -59,20 +59,32 @@ impl Arrays {
         if components > 1 {
             write!(self.text, " NumberOfComponents=\"{components}\"")?;
         }
-        writeln!(self.text, " format=\"appended\" offset=\"{}\"/>", self.data.len())?;
+        write!(self.text, " format=\"appended\" offset=\"")?;
         let lengths = [blocks.len(), BLOCK, bytes.len() % BLOCK];
-        for length in lengths.into_iter().chain(blocks.iter().map(Vec::len)) {
-            self.data.extend((length as u64).to_le_bytes());
-        }
-        self.data.extend(blocks.into_iter().flatten());
-        Ok(())
+        let lengths = lengths.into_iter().chain(blocks.iter().map(Vec::len));
+        let mut data: Vec<u8> = lengths.flat_map(|length| (length as u64).to_le_bytes()).collect();
+        data.extend(blocks.into_iter().flatten());
+        self.data.push((self.text.len(), data));
+        writeln!(self.text, "\"/>")
     }
 
     /// Writes the text, the data after an underscore, and the end of the file.
+    ///
+    /// The data stand in the reverse order of the text. meshio 5 searches the text for the array at each offset,
+    /// and gives the array that it finds another offset: an array that stands before the one that is meant would be
+    /// found in its place.
     pub fn write(&self, w: &mut impl Write) -> io::Result<()> {
-        w.write_all(&self.text)?;
+        let mut offset: usize = self.data.iter().map(|(_, data)| data.len()).sum();
+        let mut done = 0;
+        for (place, data) in &self.data {
+            offset -= data.len();
+            w.write_all(&self.text[done..*place])?;
+            write!(w, "{offset}")?;
+            done = *place;
+        }
+        w.write_all(&self.text[done..])?;
         w.write_all(b"<AppendedData encoding=\"raw\">\n_")?;
-        w.write_all(&self.data)?;
+        self.data.iter().rev().try_for_each(|(_, data)| w.write_all(data))?;
         w.write_all(b"\n</AppendedData>\n</VTKFile>\n")
     }
 }

@@ -10,7 +10,7 @@ const VTK_EDGES: [&[[usize; 2]]; 4] =
 /// Numbers of the format for points, lines, triangles and tetrahedra, linear and quadratic.
 const VTK_TYPES: [[u8; 2]; 4] = [[1, 1], [3, 21], [5, 22], [10, 24]];
 
-/// The cells of a mesh, then some of its facets, on points that the cells share or that each has for
+/// The cells of a mesh, then the facets of its boundary, on points that the cells share or that each has for
 /// itself.
 pub(super) struct Grid<const D: usize> {
     pub points: Vec<Point<f64, D>>,
@@ -32,12 +32,7 @@ impl<const D: usize> Grid<D> {
     /// The grid of a function with `n` values in each cell: at the vertices, then at the midpoints of
     /// the edges if the function is quadratic. Cells share their points if the function is continuous up
     /// to its relative rounding.
-    pub fn new(
-        mesh: &Mesh<f64, D>,
-        (u, epsilon): (&[f64], f64),
-        n: usize,
-        facets: &[(usize, usize)],
-    ) -> Self {
+    pub fn new(mesh: &Mesh<f64, D>, (u, epsilon): (&[f64], f64), n: usize) -> Self {
         let is_quadratic = n > D + 1;
         let (sources, numbers) = shared(mesh, (u, epsilon), n)
             .unwrap_or_else(|| ((0..u.len()).collect(), (0..u.len() as u32).collect()));
@@ -67,7 +62,8 @@ impl<const D: usize> Grid<D> {
             }
             grid.push(&numbers[cell * n..(cell + 1) * n], &corners, is_quadratic);
         }
-        for &(cell, local) in facets {
+        for facet in mesh.boundary() {
+            let (cell, local) = (facet.cell as usize, usize::from(facet.local));
             let mut corners: Vec<usize> = (0..D + 1).filter(|&k| k != local).collect();
             // in space the normal points outwards
             let with_opposite = [&corners[..], &[local]].concat();

@@ -2,6 +2,7 @@
 
 mod encode;
 mod grid;
+mod groups;
 mod pvd;
 mod vtu;
 

@@ -12,15 +12,16 @@ use std::path::{Path, PathBuf};
 
 use super::encode::{Arrays, doubles, integers, singles};
 use super::grid::{Grid, values_per_cell};
+use super::groups::{array_names, members};
 use super::pvd::escape;
 use crate::arrays::map_entries;
 use crate::error::Error;
 use crate::files::{replace, replace_text};
 use crate::instances::compiled;
-use crate::mesh::Mesh;
+use crate::mesh::{BoundaryFacet, Mesh};
 use crate::real::{Point, Real};
 
-/// The scalar of the numbers in a file of fields.
+/// The scalar of the fields in a file; coordinates have 64 bits always.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FieldScalar {
@@ -36,6 +37,9 @@ type Function<'a, const D: usize> = &'a (dyn Fn(&Point<f64, D>) -> f64 + 'a);
 
 /// A function of space that may jump between cells: of the number of a cell and a point in it.
 type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<f64, D>) -> f64 + 'a>;
+
+/// Data on facets: their name, the facets as cell and number in the cell, and a value for each.
+type OnFacets<'a> = (&'a str, &'a [(usize, usize)], &'a [f64]);
 
 /// A function on the cells of a mesh with further fields, to be written as a `.vtu` file.
 ///
@@ -62,9 +66,7 @@ pub struct VtuFile<'a, const D: usize> {
     functions: Vec<(&'a str, InCell<'a, D>)>,
     exact: Option<InCell<'a, D>>,
     on_cells: Vec<(&'a str, &'a [f64])>,
-    facets: &'a [(usize, usize)],
-    on_facets: Vec<(&'a str, &'a [f64])>,
-    texts: Vec<(String, String)>,
+    on_facets: Vec<OnFacets<'a>>,
     numbers: Vec<(String, f64)>,
     scalar: FieldScalar,
 }
@@ -73,7 +75,7 @@ impl<const D: usize> fmt::Debug for VtuFile<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("VtuFile")
             .field("cells", &self.mesh.n_cells())
-            .field("facets", &self.facets.len())
+            .field("boundary facets", &self.mesh.boundary().len())
             .field("scalar", &self.scalar)
             .finish_non_exhaustive()
     }
@@ -93,9 +95,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             functions: Vec::new(),
             exact: None,
             on_cells: Vec::new(),
-            facets: &[],
             on_facets: Vec::new(),
-            texts: Vec::new(),
             numbers: Vec::new(),
             scalar: FieldScalar::default(),
         }
@@ -131,19 +131,14 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         self.on_cells.push((name, values));
         self
     }
-    /// Adds facets (cell, number in the cell) as linear cells of dimension `D - 1` after those of the mesh.
-    pub fn facets(mut self, facets: &'a [(usize, usize)]) -> Self {
-        self.facets = facets;
-        self
-    }
-    /// Adds cell data with one value for each of the [`facets`](Self::facets).
-    pub fn on_facets(mut self, name: &'a str, values: &'a [f64]) -> Self {
-        self.on_facets.push((name, values));
-        self
-    }
-    /// Adds a text to the field data.
-    pub fn text(mut self, name: &str, text: &str) -> Self {
-        self.texts.push((name.to_owned(), text.to_owned()));
+    /// Adds cell data with one value for each of these facets (cell, number in the cell) of the boundary.
+    pub fn on_facets(
+        mut self,
+        name: &'a str,
+        facets: &'a [(usize, usize)],
+        values: &'a [f64],
+    ) -> Self {
+        self.on_facets.push((name, facets, values));
         self
     }
     /// Adds a number to the field data.
@@ -151,17 +146,20 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         self.numbers.push((name.to_owned(), value));
         self
     }
-    /// Sets the scalar of coordinates and fields; 32 bits otherwise.
+    /// Sets the scalar of fields; 32 bits otherwise. Coordinates have 64 bits always, for a domain may be small
+    /// against its distance from the origin.
     pub fn scalar(mut self, scalar: FieldScalar) -> Self {
         self.scalar = scalar;
         self
     }
 
     /// Writes the file, and its folder if there is none; it takes the place of an earlier one when it is
-    /// whole. Points have three
-    /// coordinates, missing ones zero. The cell data `dimension` is that of each cell, `D` for the cells
+    /// whole. Points have three coordinates, missing ones zero. The facets of the boundary are linear cells of
+    /// dimension `D - 1` after those of the mesh. The cell data `dimension` is that of each cell, `D` for the cells
     /// of the mesh and `D - 1` for facets. Cell data of one name on cells and on facets are one array;
-    /// where there is no value they are not a number.
+    /// where there is no value they are not a number. Each named group of cells or of boundary facets is an array of
+    /// small integers, called by its name: one in the group, zero elsewhere. Where a field has the name, `_group`
+    /// follows it.
     ///
     /// # Errors
     /// [`Error::Write`] if a field has not the length that the mesh needs, or the file cannot be written.
@@ -174,8 +172,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     fn write_checked(&self, path: &Path) -> Result<(), Error> {
         let written = replace(path, |draft| {
             let n = self.check()?;
-            let arrays =
-                self.arrays(&Grid::new(&self.mesh, (self.u, self.epsilon), n, self.facets))?;
+            let arrays = self.arrays(&Grid::new(&self.mesh, (self.u, self.epsilon), n))?;
             let mut file = BufWriter::new(File::create(draft)?);
             arrays.write(&mut file)?;
             file.flush()
@@ -193,12 +190,17 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             FieldScalar::Single => "Float32",
             FieldScalar::Double => "Float64",
         };
-        let array =
-            |name: &str| format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escape(name));
+        let typed = |kind: &str, name: &str| {
+            format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escape(name))
+        };
+        let array = |name: &str| typed(kind, name);
         let functions = self.functions.iter().map(|(name, _)| *name);
         let of_points = functions.chain(self.exact.as_ref().map(|_| "error")).chain(["u"]);
         let of_points: String = of_points.map(array).collect();
-        let of_cells: String = self.cell_names().into_iter().map(array).collect();
+        let mut of_cells: String = self.cell_names().into_iter().map(array).collect();
+        let names = ["dimension".to_owned()].into_iter();
+        let names = names.chain(self.groups().into_iter().map(|(name, _)| name));
+        of_cells.extend(names.map(|name| typed("UInt8", &name)));
         let directory = path.parent().unwrap_or(Path::new(""));
         let source = |part: &PathBuf| {
             let name = part.strip_prefix(directory).unwrap_or(part).display().to_string();
@@ -209,8 +211,8 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" \
              byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
              <PUnstructuredGrid GhostLevel=\"0\">\n<PPointData Scalars=\"u\">\n{of_points}</PPointData>\n\
-             <PCellData>\n{of_cells}<PDataArray type=\"UInt8\" Name=\"dimension\"/>\n</PCellData>\n\
-             <PPoints>\n<PDataArray type=\"{kind}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
+             <PCellData>\n{of_cells}</PCellData>\n\
+             <PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
              {sources}</PUnstructuredGrid>\n</VTKFile>\n"
         );
         replace_text(path, &text).map(drop)
@@ -219,16 +221,23 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     /// The names of cell data, each once.
     fn cell_names(&self) -> Vec<&'a str> {
         let mut names: Vec<&str> = Vec::new();
-        for (name, _) in self.on_cells.iter().chain(&self.on_facets) {
-            if !names.contains(name) {
+        let on_facets = self.on_facets.iter().map(|(name, ..)| *name);
+        for name in self.on_cells.iter().map(|(name, _)| *name).chain(on_facets) {
+            if !names.contains(&name) {
                 names.push(name);
             }
         }
         names
     }
 
+    /// The groups of the mesh: the name of the array of each, and its own.
+    fn groups(&self) -> Vec<(String, &str)> {
+        let fields = self.cell_names().into_iter().chain(["dimension"]);
+        array_names(&self.mesh, fields.map(str::to_owned).collect())
+    }
+
     /// Number of values of each cell. Refuses a field whose length does not fit the mesh, and facets that
-    /// the mesh does not have.
+    /// are not on its boundary.
     fn check(&self) -> io::Result<usize> {
         let refuse = |why: String| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
         let wrong = |name: &str, length: usize, needed: usize| {
@@ -240,15 +249,27 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         if self.u.len() != cells * n {
             return wrong("u", self.u.len(), cells * n);
         }
-        for (fields, needed) in [(&self.on_cells, cells), (&self.on_facets, self.facets.len())] {
-            if let Some((name, values)) = fields.iter().find(|(_, v)| v.len() != needed) {
-                return wrong(name, values.len(), needed);
+        if let Some((name, values)) = self.on_cells.iter().find(|(_, v)| v.len() != cells) {
+            return wrong(name, values.len(), cells);
+        }
+        for (name, facets, values) in &self.on_facets {
+            if values.len() != facets.len() {
+                return wrong(name, values.len(), facets.len());
+            }
+            if let Some((cell, local)) = facets.iter().find(|place| self.position(place).is_none())
+            {
+                return refuse(format!(
+                    "field {name}: facet {local} of cell {cell} is not on the boundary of the mesh"
+                ));
             }
         }
-        match self.facets.iter().find(|&&(cell, local)| cell >= cells || local > D) {
-            Some((cell, local)) => refuse(format!("the mesh has no facet {local} of cell {cell}")),
-            None => Ok(n),
-        }
+        Ok(n)
+    }
+
+    /// The position of a facet in the list of the boundary.
+    fn position(&self, &(cell, local): &(usize, usize)) -> Option<usize> {
+        let place = |f: &BoundaryFacet| (f.cell as usize, usize::from(f.local));
+        self.mesh.boundary().binary_search_by_key(&(cell, local), place).ok()
     }
 
     /// The text of the file and its arrays.
@@ -269,14 +290,14 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         let per_cell = self.u.len() / self.mesh.n_cells();
         for (name, f) in &self.functions {
             let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
-            self.push_floats(to, name, 1, &mut places.map(|(cell, x)| f(cell, x)))?;
+            self.push_floats(to, name, &mut places.map(|(cell, x)| f(cell, x)))?;
         }
         if let Some(exact) = &self.exact {
             let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
             let error = u.iter().zip(places).map(|(u, (cell, x))| u - exact(cell, x));
-            self.push_floats(to, "error", 1, &mut error.map(|e| self.shortened(e)))?;
+            self.push_floats(to, "error", &mut error.map(|e| self.shortened(e)))?;
         }
-        self.push_floats(to, "u", 1, &mut u.iter().copied())?;
+        self.push_floats(to, "u", &mut u.iter().copied())?;
         writeln!(to.text, "</PointData>\n<CellData>")?;
         self.push_cell_data(to)?;
         writeln!(to.text, "</CellData>\n<Points>")?;
@@ -285,7 +306,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             coordinates.extend_from_slice(x.as_slice());
             coordinates.resize(coordinates.len() + 3 - D, 0.0);
         }
-        self.push_floats(to, "Points", 3, &mut coordinates.into_iter())?;
+        to.push("Float64", "Points", 3, &doubles(&mut coordinates.into_iter()))?;
         writeln!(to.text, "</Points>\n<Cells>")?;
         let corners = integers(&mut grid.connectivity.iter().map(|&k| i64::from(k)));
         to.push("Int64", "connectivity", 1, &corners)?;
@@ -298,16 +319,6 @@ impl<'a, const D: usize> VtuFile<'a, D> {
 
     fn push_field_data(&self, to: &mut Arrays) -> io::Result<()> {
         writeln!(to.text, "<FieldData>")?;
-        for (name, text) in &self.texts {
-            // a text is a list of its bytes, with a zero at the end
-            let codes: Vec<String> = text.bytes().chain([0]).map(|b| b.to_string()).collect();
-            let (name, codes) = (escape(name), codes.join(" "));
-            writeln!(
-                to.text,
-                "<DataArray type=\"String\" Name=\"{name}\" NumberOfTuples=\"1\" \
-                 format=\"ascii\">\n{codes}\n</DataArray>"
-            )?;
-        }
         for (name, value) in &self.numbers {
             let name = escape(name);
             writeln!(
@@ -320,17 +331,26 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     }
 
     fn push_cell_data(&self, to: &mut Arrays) -> io::Result<()> {
-        let (cells, facets) = (self.mesh.n_cells(), self.facets.len());
-        let of = |fields: &[(&str, &'a [f64])], name: &str, length: usize| {
-            let found = fields.iter().find(|(other, _)| *other == name).map(|(_, v)| *v);
-            found.map_or_else(|| vec![f64::NAN; length], <[f64]>::to_vec)
-        };
+        let (cells, facets) = (self.mesh.n_cells(), self.mesh.boundary().len());
         for name in self.cell_names() {
-            let values = [of(&self.on_cells, name, cells), of(&self.on_facets, name, facets)];
-            self.push_floats(to, name, 1, &mut values.concat().into_iter())?;
+            let mut all = vec![f64::NAN; cells + facets];
+            if let Some((_, values)) = self.on_cells.iter().find(|(other, _)| *other == name) {
+                all[..cells].copy_from_slice(values);
+            }
+            if let Some((_, places, values)) = self.on_facets.iter().find(|f| f.0 == name) {
+                for (place, value) in places.iter().zip(*values) {
+                    let position = self.position(place).expect("facets have been checked");
+                    all[cells + position] = *value;
+                }
+            }
+            self.push_floats(to, name, &mut all.into_iter())?;
         }
         let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
-        to.push("UInt8", "dimension", 1, &dimensions)
+        to.push("UInt8", "dimension", 1, &dimensions)?;
+        for (name, group) in self.groups() {
+            to.push("UInt8", &escape(&name), 1, &members(&self.mesh, group))?;
+        }
+        Ok(())
     }
 
     /// A number with four digits if files have 32 bits: an error is not known better, and digits that mean
@@ -347,13 +367,12 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         &self,
         to: &mut Arrays,
         name: &str,
-        components: usize,
         values: &mut dyn Iterator<Item = f64>,
     ) -> io::Result<()> {
         let (kind, bytes) = match self.scalar {
             FieldScalar::Single => ("Float32", singles(values)),
             FieldScalar::Double => ("Float64", doubles(values)),
         };
-        to.push(kind, &escape(name), components, &bytes)
+        to.push(kind, &escape(name), 1, &bytes)
     }
 }

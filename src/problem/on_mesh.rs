@@ -124,7 +124,7 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
     /// group of undecided part, [`Error::UnboundBoundary`] for one of another part than that of its data.
     pub fn new<T: Real>(problem: &'a Problem<D>, mesh: &'a Mesh<T, D>) -> Result<Self, Error> {
         mesh.check_boundary_parts()?;
-        Self::of_groups(problem, mesh.regions(), mesh.boundary_groups())
+        Self::of_groups(problem, mesh.regions(), mesh.boundary_groups(), mesh.groups_inside())
     }
 
     /// The data of a problem in regions and boundary groups, whatever the scalar of the mesh.
@@ -132,6 +132,7 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
         problem: &'a Problem<D>,
         regions: &[Vec<String>],
         boundary: &[BoundaryGroup],
+        inside: &[String],
     ) -> Result<Self, Error> {
         let named = &problem.named;
         let regions: Vec<&[String]> = regions.iter().map(|names| &names[..]).collect();
@@ -139,7 +140,8 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
         for (name, is_boundary) in named.names() {
             let all = if is_boundary { &groups } else { &regions };
             if !all.iter().any(|names| names.iter().any(|n| n == name)) {
-                return Err(unknown_group(name, is_boundary, all));
+                let is_inside = is_boundary && inside.iter().any(|n| n == name);
+                return Err(unknown_group(name, (is_boundary, is_inside), all));
             }
         }
         for group in boundary {
@@ -184,7 +186,11 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
 }
 
 /// The error for a name that no region or boundary group has.
-fn unknown_group(name: &str, is_boundary: bool, groups: &[&[String]]) -> Error {
+fn unknown_group(
+    name: &str,
+    (is_boundary, is_inside): (bool, bool),
+    groups: &[&[String]],
+) -> Error {
     let mut known: Vec<String> = groups.iter().copied().flatten().map(excerpt).collect();
     known.sort_unstable();
     known.dedup();
@@ -192,6 +198,10 @@ fn unknown_group(name: &str, is_boundary: bool, groups: &[&[String]]) -> Error {
         kind: if is_boundary { "boundary group" } else { "region" },
         name: excerpt(name),
         known: match &known[..] {
+            known if is_inside => {
+                let known = known.join(", ");
+                format!("it lies inside the domain, between two cells; the boundary has {known}")
+            }
             [] => "it has none with a name".to_owned(),
             known => format!("it has {}", known.join(", ")),
         },

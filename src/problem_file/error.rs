@@ -137,9 +137,19 @@ pub enum ProblemFileFault {
         /// The names that there are.
         known: String,
     },
+    /// The file has data for a group of facets between two cells.
+    #[error(
+        "`{name}` lies inside the domain, between two cells: data are given on the boundary only, where the mesh has {known}"
+    )]
+    GroupInside {
+        /// The name.
+        name: String,
+        /// The names of the boundary groups.
+        known: String,
+    },
     /// The file does not say what holds on a boundary group of the mesh.
     #[error(
-        "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann or contact"
+        "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann or contact, or [boundary.default] for all groups without one"
     )]
     MissingBoundary {
         /// The name.

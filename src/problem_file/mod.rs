@@ -14,7 +14,7 @@
 //! [obstacle]                         # lower, upper, or both
 //! lower.default = "0.2 - x^2 - y^2"
 //!
-//! [boundary.bore]                    # every boundary group of the mesh
+//! [boundary.bore]                    # by boundary group of the mesh
 //! kind = "dirichlet"
 //! value = 0.0
 //! [boundary.teeth]
@@ -22,7 +22,9 @@
 //! flux = "x * nx"                    # nx, ny, nz: the outward unit normal
 //! [boundary.foot]
 //! kind = "contact"
-//! gap = "0.01 * x^2"
+//! gap = "0.01 * x^2"                 # may use the normal as well
+//! [boundary.default]                 # every boundary group without a table of its own
+//! kind = "neumann"
 //!
 //! [exact]                            # where the solution is known
 //! value = "x * y"
@@ -30,7 +32,7 @@
 //! ```
 //!
 //! The sides of a box are its boundary groups: `left` and `right` across the first axis, `bottom` and `top`
-//! across the second, `back` and `front` across the third. What is absent is zero, the coefficient one,
+//! across the second, `back` and `front` across the third, the lower end first. What is absent is zero, the coefficient one,
 //! an obstacle none. Where two Dirichlet groups meet, the first in the file gives the value. Expressions
 //! have `+ - * / ^`, comparisons, `&& || !`, the constants `pi` and `e`, and functions of which an error
 //! message lists the names; `if(condition, yes, no)` among them.

@@ -9,11 +9,20 @@ use toml::de::{DeTable, DeValue};
 use super::error::{ProblemFileError, ProblemFileFault};
 use super::expression::Expression;
 use crate::input::{excerpt, read_file};
-use crate::mesh::gmsh;
+use crate::mesh::{FacetSearch, gmsh};
 use crate::problem::{BoundaryField, BoundaryFlux, Datum, Field};
+use crate::real::Point;
 
 /// A value with its place.
 pub(super) type Value<'t> = Spanned<DeValue<'t>>;
+
+/// The corners of a facet and its outward unit normal.
+pub(super) type FacetWithNormal<const D: usize> = ([Point<f64, D>; D], Point<f64, D>);
+
+/// Normals that differ by less are one.
+const SAME_NORMAL: f64 = 1e-12;
+/// A point lies in a facet up to this share of the extent of the boundary group: meshes may be rounded to 32 bits.
+const IN_FACET: f64 = 1e-6;
 
 /// A number or an expression.
 #[derive(Clone, Debug)]
@@ -29,17 +38,36 @@ impl Formula {
             Self::Number(c) => BoundaryFlux::Constant(c),
             Self::Expression(expression) => {
                 let degree = expression.degree(D);
-                let value: BoundaryField<D> = Arc::new(move |x, n| {
-                    let mut variables = [0.0; 6];
-                    variables[..D].copy_from_slice(x.as_slice());
-                    variables[D..2 * D].copy_from_slice(n.as_slice());
-                    expression.value(&variables[..2 * D])
-                });
+                let value: BoundaryField<D> = Arc::new(move |x, n| expression.on_boundary(x, n));
                 match degree {
                     Some(degree) => BoundaryFlux::Polynomial { value, degree },
                     None => BoundaryFlux::Function(value),
                 }
             }
+        }
+    }
+    /// The formula as a datum on these facets of the boundary, of the point and of their normals. Where facets with
+    /// different normals meet, it is the largest of their values.
+    pub fn datum_on<const D: usize>(&self, facets: Vec<FacetWithNormal<D>>) -> Datum<D> {
+        let expression = match self {
+            Self::Expression(expression) if expression.has_variables(D) => expression.clone(),
+            _ => return self.datum(),
+        };
+        let (corners, normals): (Vec<_>, Vec<_>) = facets.into_iter().unzip();
+        let normal = normals.first().copied().unwrap_or_else(Point::zeros);
+        if normals.iter().any(|other| (other - normal).norm() > SAME_NORMAL) {
+            let search = FacetSearch::new(corners, IN_FACET);
+            return Datum::Function(Arc::new(move |x| {
+                let of_facets =
+                    search.containing(x).map(|k| expression.on_boundary(x, &normals[k]));
+                of_facets.fold(f64::NAN, f64::max)
+            }));
+        }
+        let degree = expression.degree(D);
+        let value: Field<D> = Arc::new(move |x| expression.on_boundary(x, &normal));
+        match degree {
+            Some(degree) => Datum::Polynomial { value, degree },
+            None => Datum::Function(value),
         }
     }
     /// The formula as a datum: a constant, a polynomial, or a function of the point.

@@ -12,7 +12,8 @@ use crate::real::Real;
 /// A scheme as users write it, `NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]`: for instance
 /// `wopsip:facet-means@factor=10,weight=anisotropic`. The keys are the fields of [`SchemeOptions`];
 /// [`keys_of_scheme`] says which of them a scheme takes. Displayed as its label, in which nothing
-/// stands that is default, so that two ways to write one scheme have one label.
+/// stands that is default, so that two ways to write one scheme have one label. In a [list](Self::list) a choice
+/// that is default stands in the label if it was written beside other choices of the same scheme.
 ///
 /// ```
 /// use unilateral::scheme::NamedScheme;
@@ -24,6 +25,8 @@ pub struct NamedScheme {
     name: &'static str,
     placement: Option<&'static str>,
     options: SchemeOptions,
+    /// Whether all choices written stand in the label.
+    shows_all: bool,
 }
 
 /// What is wrong with a scheme as a user wrote it.
@@ -105,7 +108,7 @@ impl FromStr for NamedScheme {
         let Some(&(name, _)) = SCHEMES.iter().find(|known| known.0 == name) else {
             return Err(SchemeNameError::Unknown { name: name.to_owned() });
         };
-        let mut scheme = Self { name, placement: None, options: SchemeOptions::default() };
+        let mut scheme = Self::plain(name);
         if let Some(placement) = placement {
             scheme.placement = Some(scheme.placed(text, placement)?);
         }
@@ -119,7 +122,7 @@ impl FromStr for NamedScheme {
 impl fmt::Display for NamedScheme {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let set = self.constraint_set().unwrap_or_else(|| Arc::new(Nodes));
-        f.write_str(&self.make::<f64, 2>().label_on(&set))
+        f.write_str(&self.make::<f64, 2>().label_with(&set, self.shown_choices()))
     }
 }
 
@@ -151,16 +154,23 @@ impl NamedScheme {
                 }
             }
         }
+        let written = schemes.clone();
+        for scheme in &mut schemes {
+            let is_other = |other: &Self| {
+                other.name == scheme.name
+                    && ![scheme.options, SchemeOptions::default()].contains(&other.options)
+            };
+            scheme.shows_all = written.iter().any(is_other);
+        }
         Ok(schemes)
     }
     /// Every scheme with its own choices.
     pub fn all() -> Vec<Self> {
-        let of = |known: &(&'static str, _)| Self {
-            name: known.0,
-            placement: None,
-            options: SchemeOptions::default(),
-        };
-        SCHEMES.iter().map(of).collect()
+        SCHEMES.iter().map(|known| Self::plain(known.0)).collect()
+    }
+    /// The scheme of a name with its own choices.
+    fn plain(name: &'static str) -> Self {
+        Self { name, placement: None, options: SchemeOptions::default(), shows_all: false }
     }
     /// The name of the scheme, without placement and choices.
     pub const fn name(&self) -> &'static str {
@@ -169,6 +179,10 @@ impl NamedScheme {
     /// The choices written.
     pub fn options(&self) -> &SchemeOptions {
         &self.options
+    }
+    /// The choices that stand in the label, where those that are default are among them.
+    pub(crate) fn shown_choices(&self) -> Option<SchemeOptions> {
+        self.shows_all.then_some(self.options)
     }
     /// The scheme with the penalty of these options if none is written and the scheme takes it.
     #[must_use]

@@ -41,7 +41,6 @@ impl FieldFiles {
         };
         replace(&path(level), |draft| {
             solved.write_vtu_against(draft, reference, |file| {
-                let file = file.text("scene", scene).text("scheme", label);
                 file.number("level", level as f64).scalar(self.scalar)
             })
         })?;

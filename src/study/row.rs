@@ -111,6 +111,9 @@ pub struct Row {
     pub label: String,
     /// Subdivisions of the shortest side, or number of refinements of a mesh file or of adaptive refinement.
     pub level: usize,
+    /// What levels count: `subdivisions`, `refinements`, or `steps` of adaptive refinement.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub level_kind: Option<String>,
     /// Share of the error bound that each adaptive refinement marks; null for uniform meshes. Times of
     /// such a row are those of all its steps so far.
     #[cfg_attr(feature = "report", serde(default))]
@@ -202,6 +205,7 @@ impl Row {
             constraint: String::new(),
             label: scheme.to_owned(),
             level,
+            level_kind: None,
             theta: None,
             tolerance: None,
             parameters: PenaltyParameters::default(),

@@ -120,10 +120,15 @@ pub(crate) fn limits(rows: &[&Row]) -> Vec<String> {
     lines
 }
 
-/// The heading after the name of the scene: solvers, and the orders that theory promises.
+/// The heading after the name of the scene: what levels count, solvers, and the orders that theory promises.
 pub(crate) fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
-    let mut text = format!("solver {}", solvers.join(", "));
+    let mut text = match rows.first().and_then(|row| row.level_kind.as_deref()) {
+        Some("subdivisions") => "n subdivisions of the shortest side; ".to_owned(),
+        Some("refinements") => "n refinements of the mesh; ".to_owned(),
+        _ => String::new(),
+    };
+    text += &format!("solver {}", solvers.join(", "));
     let references = distinct(rows.iter().filter_map(|r| r.reference()));
     if !references.is_empty() {
         text += &format!("; errors against {}", references.join(", "));

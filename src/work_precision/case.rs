@@ -6,7 +6,7 @@ use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::mesh::{BoundaryFacet, Mesh, TaggedFacet};
 use crate::real::Real;
-use crate::scheme::{AnyScheme, NamedScheme};
+use crate::scheme::{AnyScheme, NamedScheme, SchemeOptions};
 use crate::study::{MemoryEstimate, Row, Study, peak_memory_bytes};
 
 use super::measured::Phases;
@@ -40,18 +40,20 @@ pub(crate) struct Candidate<'a, const D: usize> {
     pub single: Arc<dyn AnyScheme<f32, D> + 'a>,
     /// Its constraint set, if that is not the problem's.
     pub set: Option<Arc<dyn ConstraintSet>>,
+    /// The choices in its label, if those that are default are among them.
+    pub shown: Option<SchemeOptions>,
 }
 
 impl<'a, const D: usize> Candidate<'a, D> {
     /// A scheme of either scalar.
     pub fn new(scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a) -> Self {
         let scheme = Arc::new(scheme);
-        Self { double: scheme.clone(), single: scheme, set: None }
+        Self { double: scheme.clone(), single: scheme, set: None, shown: None }
     }
     /// A scheme as users write it.
     pub fn named(scheme: &NamedScheme) -> Self {
         let (double, single) = (scheme.make().into(), scheme.make().into());
-        Self { double, single, set: scheme.constraint_set() }
+        Self { double, single, set: scheme.constraint_set(), shown: scheme.shown_choices() }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::inequality::ActiveSet;
 use crate::linear::LinearMethod;
 use crate::nested::Adaptivity;
 use crate::real::Real;
-use crate::scheme::AnyScheme;
+use crate::scheme::{AnyScheme, SchemeOptions};
 use crate::study::{Study, available_memory_bytes};
 
 /// A case, its study, and its results so far.
@@ -63,7 +63,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         precision: Precision,
         meshes: (usize, Option<Adaptivity>),
     ) -> Result<Slot<'s, D>, Error> {
-        let set = candidate.set.clone();
+        let set = (candidate.set.clone(), candidate.shown);
         let (case, study) = match precision {
             Precision::Double => {
                 let (case, mut study) =
@@ -88,7 +88,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     fn one_study<'s, T: Real>(
         &'s self,
         scheme: Arc<dyn AnyScheme<T, D> + 's>,
-        set: Option<Arc<dyn ConstraintSet>>,
+        (set, shown): (Option<Arc<dyn ConstraintSet>>, Option<SchemeOptions>),
         linear: LinearMethod,
         (level, adaptivity): (usize, Option<Adaptivity>),
     ) -> (Case, Study<'s, T, D>) {
@@ -100,14 +100,14 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             scene: scene.name.clone(),
             scheme: scheme.name().to_owned(),
             constraint: constraint.unwrap_or_else(|| in_force.name().to_owned()),
-            label: scheme.label_on(in_force),
+            label: scheme.label_with(in_force, shown),
             linear_asked: name.to_owned(),
             precision: T::NAME.to_owned(),
             meshes: if adaptivity.is_some() { ADAPTIVE } else { UNIFORM }.to_owned(),
         };
         let mut study = Study::<T, D>::new(scene)
             .solver(ActiveSet::default().linear(linear))
-            .shared_scheme(scheme, set)
+            .shared_scheme(scheme, set, shown)
             .levels([level]);
         if let Some(adaptivity) = adaptivity {
             study = study.adaptive(adaptivity);
@@ -125,7 +125,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             study = study.on_mesh(mesh.clone());
         }
         for candidate in &self.candidates {
-            study = study.shared_scheme(candidate.double.clone(), candidate.set.clone());
+            let Candidate { double, set, shown, .. } = candidate;
+            study = study.shared_scheme(double.clone(), set.clone(), *shown);
         }
         if self.precisions.contains(&Precision::Single) {
             let allowed =

@@ -9,6 +9,7 @@ mod hard_rows;
 #[cfg(unix)]
 mod interrupt;
 mod limits;
+mod mesh_faults;
 mod meshes;
 mod obstacles;
 mod output;

@@ -1,6 +1,7 @@
 //! Wrong requests.
 
 use super::run::{Scratch, command, refused, stderr, stdout};
+use super::square::Square;
 
 #[test]
 fn wrong_options_are_refused() {
@@ -25,7 +26,7 @@ fn wrong_options_are_refused() {
         ("--linear magic", &["unknown linear solver \"magic\"", "direct"]),
         ("--constraint edges", &["edges", "vertices", "facet-means"]),
         ("--precision f16", &["f16", "f64", "f32"]),
-        ("--levels 0", &["level = 0", "at least one"]),
+        ("--levels 0", &["level = 0", "at least one subdivision", "refinements, from 0"]),
         ("--levels 4,0", &["level = 0", "at least one"]),
         ("--levels 1000000000", &["level = 1000000000", "cells", "at most"]),
         ("--levels 99999999999999999999", &["99999999999999999999", whole]),
@@ -148,4 +149,32 @@ fn a_picture_of_nothing_is_no_wrong_request() {
     let message = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(message.contains("nothing to draw"), "{message}");
+}
+
+/// One name of the option does for the other, and help and tables say what its numbers count.
+#[test]
+fn levels_are_subdivisions_of_boxes_and_refinements_of_meshes() {
+    let scratch = Scratch::new("levels");
+    let mesh = scratch.file("square.msh", &Square::sound());
+    for (command_name, options) in [
+        ("compare", "--level 4,8 --no-fields"),
+        ("work-precision", "--level 4 --rounds 1 --subject p1"),
+        ("pictures", "--levels 4"),
+    ] {
+        let mut program = command(command_name);
+        program.args(["--scene", "radial-2d", "--scheme", "p1", "--out", &scratch.path("out")]);
+        let output = program.args(options.split_whitespace()).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{command_name}: {}", stderr(&output));
+        if command_name == "compare" {
+            assert!(stdout(&output).starts_with("radial-2d: n subdivisions of the shortest side;"));
+        }
+        let help = stdout(&command(command_name).arg("--help").output().unwrap());
+        let words = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        for part in ["On a box", "subdivisions of its shortest side", "refinements"] {
+            assert!(words.contains(part), "{command_name}: no {part} in {words}");
+        }
+    }
+    let on_mesh = format!("--scene radial-2d --mesh {mesh} --scheme p1 --levels 0,1 --no-fields");
+    let tables = stdout(&scratch.run(&on_mesh));
+    assert!(tables.starts_with("radial-2d: n refinements of the mesh;"), "{tables}");
 }

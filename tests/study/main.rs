@@ -2,6 +2,7 @@
 
 mod active_bounds;
 mod adaptive;
+mod boundary_data;
 mod forces;
 mod journal;
 mod links;
@@ -19,6 +20,7 @@ mod stability;
 mod tables;
 mod totals;
 mod vtu;
+mod vtu_readers;
 mod work_precision;
 
 #[path = "../support"]

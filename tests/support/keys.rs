@@ -1,13 +1,14 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 36] = [
+pub const ROW_KEYS: [&str; 37] = [
     "scene",
     "dimension",
     "scheme",
     "constraint",
     "label",
     "level",
+    "level_kind",
     "theta",
     "tolerance",
     "parameters",

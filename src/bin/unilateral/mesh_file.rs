@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use unilateral::mesh::{BoundaryPart, Mesh, MeshError, gmsh};
+use unilateral::mesh::gmsh::{self, GmshWarning};
+use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
 use unilateral::real::Real;
 
 use crate::shared::{Request, read};
@@ -37,10 +38,15 @@ impl MeshFile {
     ) -> Request<Mesh<T, D>> {
         let path = self.path.as_deref().unwrap_or(Path::new(""));
         let read = gmsh::parse::<T, D>(bytes).map_err(|e| format!("{}: {e}", path.display()))?;
-        for warning in &read.warnings {
-            warn(format!("warning: {}: {warning}", path.display()));
-        }
+        warn_of(&read.warnings, path, warn);
         with_parts(read.mesh, path, &self.boundary)
+    }
+}
+
+/// Sends the warnings of a mesh file to `warn`.
+pub fn warn_of(warnings: &[GmshWarning], path: &Path, warn: &dyn Fn(String)) {
+    for warning in warnings {
+        warn(format!("warning: {}: {warning}", path.display()));
     }
 }
 
@@ -54,8 +60,11 @@ pub fn with_parts<T: Real, const D: usize>(
     let groups: Vec<&str> =
         mesh.boundary_groups().iter().flat_map(|g| &g.names).map(String::as_str).collect();
     if let Some((group, _)) = boundary.iter().find(|(name, _)| !groups.contains(&&name[..])) {
-        let groups = groups.join(", ");
-        return Err(format!("--boundary: {file} has no group {group}; it has {groups}"));
+        let why = match mesh.groups_inside().contains(group) {
+            true => format!("{group} lies inside the domain, between two cells; the boundary"),
+            false => format!("{file} has no group {group}; it"),
+        };
+        return Err(format!("--boundary: {why} has {}", groups.join(", ")));
     }
     let part_of = |name: &str| {
         let given = boundary.iter().find(|(group, _)| group == name);

@@ -20,7 +20,7 @@ use crate::adaptive::adaptivity;
 use crate::mesh_file::MeshFile;
 use crate::posed::Posed;
 use crate::shared::{
-    Failure, Request, end_at_interrupt, fields_with_bound, make_directory, print, print_to, scene,
+    Failure, Request, end_at_interrupt, fields_with_bound, make_directory, print, scene, warn,
 };
 
 /// Draws the solution of a scheme on a scene, or on a problem of your own
@@ -37,9 +37,9 @@ pub struct Options {
     /// Scheme as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]
     #[arg(long, default_value = "wopsip")]
     scheme: NamedScheme,
-    /// Subdivisions of the scene's shortest side, by default 16, in space 8; on a mesh: refinements, by
+    /// On a box: subdivisions of its shortest side, by default 16, in space 8; on a mesh of a file: refinements, by
     /// default none
-    #[arg(long, value_name = "N")]
+    #[arg(long, visible_alias = "levels", value_name = "N")]
     level: Option<usize>,
     /// Draw every mesh of a refinement that follows the error bound, as for compare; --level N then sets the first mesh,
     /// by default 4 subdivisions
@@ -77,9 +77,6 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
 
 /// Draws one level, and writes the fields of the series.
 fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Failure> {
-    let warn = |warning: String| {
-        let _ = print_to(std::io::stderr(), &format!("{warning}\n"));
-    };
     let mesh = options.mesh.read(&warn)?;
     let study = |warn: &dyn Fn(String)| -> Request<Study<'_, f64, D>> {
         let study = posed.clone().study(warn)?.named_scheme(&options.scheme);

@@ -5,6 +5,7 @@ use unilateral::real::Real;
 use unilateral::scenes::Scene;
 use unilateral::study::Study;
 
+use crate::mesh_file::warn_of;
 use crate::shared::Request;
 use unilateral::work_precision::WorkPrecision;
 
@@ -54,9 +55,7 @@ impl<const D: usize> Posed<D> {
         let read = own.mesh::<T>().map_err(|e| e.to_string())?;
         match (own.geometry, read) {
             (Geometry::File { path, .. }, Some(read)) => {
-                for warning in &read.warnings {
-                    warn(format!("warning: {}: {warning}", path.display()));
-                }
+                warn_of(&read.warnings, &path, warn);
                 Study::of_problem(&own.name, own.problem, read.mesh)
                     .map_err(|e| format!("{}: {e}", path.display()))
             }
@@ -65,7 +64,8 @@ impl<const D: usize> Posed<D> {
         }
     }
     /// A study of work against precision of the problem, without schemes.
-    pub fn work_precision<'a>(self) -> Request<WorkPrecision<'a, D>> {
+    /// Warnings of the mesh file go to `warn`.
+    pub fn work_precision<'a>(self, warn: &dyn Fn(String)) -> Request<WorkPrecision<'a, D>> {
         let own = match self {
             Self::Scene(scene) => return Ok(WorkPrecision::new(move || scene.clone())),
             Self::Own(own) => own,
@@ -73,6 +73,7 @@ impl<const D: usize> Posed<D> {
         let read = own.mesh::<f64>().map_err(|e| e.to_string())?;
         match (own.geometry, read) {
             (Geometry::File { path, .. }, Some(read)) => {
+                warn_of(&read.warnings, &path, warn);
                 WorkPrecision::of_problem(&own.name, own.problem, read.mesh)
                     .map_err(|e| format!("{}: {e}", path.display()))
             }

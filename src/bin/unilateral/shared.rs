@@ -86,6 +86,11 @@ pub fn print_to(mut stream: impl Write, text: &str) -> Request<()> {
     }
 }
 
+/// Prints a warning to standard error.
+pub fn warn(warning: String) {
+    let _ = writeln!(std::io::stderr(), "{warning}");
+}
+
 /// Prints an error to standard error.
 pub fn complain(message: &str) {
     let _ = writeln!(std::io::stderr(), "error: {message}");

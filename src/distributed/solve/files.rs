@@ -14,8 +14,8 @@ use crate::problem::DataOnMesh;
 impl<const D: usize> DistributedSolved<'_, D> {
     /// Writes the fields on own cells as `STEM.N.vtu`, `N` the number of the part, and, the first process, the
     /// list of all parts as `STEM.pvtu`; all parts call it. The fields are those of one process
-    /// ([`Solved::write_vtu_with`](crate::nested::Solved::write_vtu_with)), without error bound, regions and the contact
-    /// state of facets.
+    /// ([`Solved::write_vtu_with`](crate::nested::Solved::write_vtu_with)), without error bound and the contact state
+    /// of facets.
     ///
     /// # Errors
     /// [`ExchangeError::Failed`] in all parts if one cannot write its file.
@@ -83,7 +83,7 @@ impl<const D: usize> DistributedSolved<'_, D> {
             file = file.on_cells("multiplier", &multiplier).on_cells("contact", &contact);
         }
         if problem.has_gap() {
-            file = file.facets(&facets).on_facets("pressure", &pressure).on_facets("gap", &gap);
+            file = file.on_facets("pressure", &facets, &pressure).on_facets("gap", &facets, &gap);
         }
         file.write(&pieces[part.number as usize])?;
         if part.number == 0 { file.write_list(list, pieces) } else { Ok(()) }

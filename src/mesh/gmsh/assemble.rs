@@ -1,14 +1,16 @@
 //! The mesh of a file, from its contents.
 
-use super::contents::{Contents, Membership};
+use super::contents::{Contents, Membership, Simplices};
 use super::element_types::Shape;
 use super::error::{GmshError, GmshWarning};
 use super::node_index::NodeIndex;
-use crate::arrays::map_entries;
+use crate::arrays::{map_entries, tabulate};
+use crate::input::excerpt;
 use crate::mesh::error::MeshError;
+use crate::mesh::overlap::lie_on_others;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::GroupedFacet;
-use crate::real::{Point, Real};
+use crate::real::{Point, Real, point_f64};
 
 /// A mesh read from a file, and the warnings of the reader.
 #[derive(Clone, Debug)]
@@ -49,7 +51,8 @@ pub(super) fn assemble<T: Real, const D: usize>(
     used.zip(numbers).for_each(|((&tag, _), number)| node_tags[number as usize] = tag);
     let tags = &contents.simplices[D].tags;
     let element_tags = order.iter().map(|&cell| tags[elements[cell as usize]]).collect();
-    Ok(GmshMesh { mesh, node_tags, element_tags, warnings: warnings(contents, D) })
+    let warnings = warnings(contents, &mesh);
+    Ok(GmshMesh { mesh, node_tags, element_tags, warnings })
 }
 
 /// The error of a mesh by the elements and nodes of the file, given the elements of cells and of facets.
@@ -133,25 +136,23 @@ fn cells_of<const D: usize>(contents: &Contents, index: &NodeIndex) -> Result<Ce
         regions: Vec::new(),
         of_cells: Vec::with_capacity(simplices.tags.len()),
     };
+    let first = first_listings::<D>(simplices);
     for (run, membership) in simplices.runs() {
         let names = names_of(contents, D, membership);
         let region = cells.region(names.clone())?;
-        for element in run.clone() {
-            let corners = &simplices.corners[element * (D + 1)..(element + 1) * (D + 1)];
-            // MSH 2.2 lists an element that is in several groups once for each of them.
-            if let Membership::Group(_) = membership
-                && element == run.start
-                && element > 0
-                && simplices.corners[(element - 1) * (D + 1)..element * (D + 1)] == *corners
-                && let Some(&last) = cells.of_cells.last()
+        for element in run {
+            if let Some(cell) =
+                first.get(element).and_then(|e| cells.elements.binary_search(e).ok())
             {
-                let both = [&cells.regions[usize::from(last)][..], &names].concat();
-                let region = cells.region(both)?;
-                cells.of_cells.pop();
-                cells.of_cells.push(region);
-                continue;
+                let known = usize::from(cells.of_cells[cell]);
+                // a cell that is listed twice in one group is an error of the mesh
+                if !names.iter().all(|name| cells.regions[known].contains(name)) {
+                    let both = [&cells.regions[known][..], &names].concat();
+                    cells.of_cells[cell] = cells.region(both)?;
+                    continue;
+                }
             }
-            for &node in corners {
+            for &node in &simplices.corners[element * (D + 1)..(element + 1) * (D + 1)] {
                 let vertex = index.find(node);
                 cells
                     .vertices
@@ -162,6 +163,29 @@ fn cells_of<const D: usize>(contents: &Contents, index: &NodeIndex) -> Result<Ce
         }
     }
     Ok(cells)
+}
+
+/// For each element the first with the same corners, in MSH 2.2, which lists an element of several groups once
+/// for each of them; nothing if all elements have the same groups.
+fn first_listings<const D: usize>(simplices: &Simplices) -> Vec<usize> {
+    let is_listed_by_group =
+        matches!(simplices.memberships[..], [(_, Membership::Group(_)), _, ..]);
+    if !is_listed_by_group {
+        return Vec::new();
+    }
+    let mut elements: Vec<([u64; 4], usize)> = Vec::with_capacity(simplices.tags.len());
+    for (element, corners) in simplices.corners.chunks_exact(D + 1).enumerate() {
+        let mut sorted = [0; 4];
+        sorted[..=D].copy_from_slice(corners);
+        sorted[..=D].sort_unstable();
+        elements.push((sorted, element));
+    }
+    elements.sort_unstable();
+    let mut first: Vec<usize> = (0..elements.len()).collect();
+    for same in elements.chunk_by(|(a, _), (b, _)| a == b) {
+        same.iter().for_each(|&(_, element)| first[element] = same[0].1);
+    }
+    first
 }
 
 fn unknown_node(contents: &Contents, dimension: usize, element: usize, node: u64) -> GmshError {
@@ -265,7 +289,7 @@ fn vertices_of(error: &MeshError) -> Vec<usize> {
     }
 }
 
-fn warnings(contents: &Contents, dimension: usize) -> Vec<GmshWarning> {
+fn warnings<T: Real, const D: usize>(contents: &Contents, mesh: &Mesh<T, D>) -> Vec<GmshWarning> {
     let name =
         map_entries([Shape::Point, Shape::Line, Shape::Triangle, Shape::Tetrahedron], Shape::name);
     let straightened = |d: usize| {
@@ -276,5 +300,19 @@ fn warnings(contents: &Contents, dimension: usize) -> Vec<GmshWarning> {
             count,
         })
     };
-    straightened(dimension).chain(straightened(dimension - 1)).collect()
+    let mut warnings: Vec<GmshWarning> = straightened(D).chain(straightened(D - 1)).collect();
+    let facets = mesh.boundary().iter().map(|f| {
+        let mut vertices = mesh.facet_vertices(f.cell as usize, usize::from(f.local));
+        tabulate(|_| vertices.next().expect("a facet has as many vertices as dimensions"))
+    });
+    let points: Vec<Point<f64, D>> = mesh.vertices().iter().map(point_f64).collect();
+    let coincident = lie_on_others(&points, &facets.collect::<Vec<[u32; D]>>());
+    let count = coincident.iter().filter(|lies| **lies).count();
+    warnings.extend((count > 0).then_some(GmshWarning::Coincident { count }));
+    let on_boundary =
+        |name: &&String| mesh.boundary_groups().iter().any(|g| g.names.contains(name));
+    let inside = mesh.groups_inside().iter().filter(on_boundary);
+    warnings.extend(inside.map(|name| GmshWarning::Inside { group: excerpt(name) }));
+    warnings.extend(contents.is_periodic.then_some(GmshWarning::Periodic));
+    warnings
 }

@@ -107,6 +107,8 @@ pub(super) struct Contents {
     pub(super) nodes: Nodes,
     /// The simplices, by dimension.
     pub(super) simplices: [Simplices; 4],
+    /// Whether the file has a section of periodic boundaries.
+    pub(super) is_periodic: bool,
 }
 
 impl Contents {
@@ -117,6 +119,7 @@ impl Contents {
             entities: HashMap::new(),
             nodes: Nodes::default(),
             simplices: Default::default(),
+            is_periodic: false,
         }
     }
     /// The largest dimension of an element that is not a point.

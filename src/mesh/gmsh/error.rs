@@ -1,7 +1,7 @@
 //! Errors and warnings of the reader.
 
 use super::position::{ElementPosition, FilePosition};
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, UNITE};
 use crate::readable_debug::debug_by_display;
 use std::path::PathBuf;
 
@@ -286,6 +286,18 @@ pub enum GmshWarning {
         /// Their number.
         count: usize,
     },
+    /// Boundary facets lie on each other, each with nodes of its own.
+    Coincident {
+        /// Their number.
+        count: usize,
+    },
+    /// Some facets of a boundary group lie between two cells.
+    Inside {
+        /// The name of the group.
+        group: String,
+    },
+    /// The file says which nodes correspond to each other on periodic boundaries.
+    Periodic,
 }
 
 impl std::fmt::Display for GmshWarning {
@@ -294,6 +306,17 @@ impl std::fmt::Display for GmshWarning {
             GmshWarning::Straightened { name, order, count } => write!(
                 f,
                 "{count} elements of type {name} of order {order} are read as straight ones by their corner nodes"
+            ),
+            GmshWarning::Coincident { count } => write!(
+                f,
+                "{count} facets of the boundary lie on others with different nodes, so the two sides are not connected there: {UNITE}, unless a slit is meant"
+            ),
+            GmshWarning::Inside { group } => write!(
+                f,
+                "some facets of group {group} lie inside the domain, between two cells, and are left out: data are given on the boundary only"
+            ),
+            GmshWarning::Periodic => f.write_str(
+                "section $Periodic is not used: the two sides of a periodic boundary are not tied to each other",
             ),
         }
     }

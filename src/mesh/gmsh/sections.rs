@@ -39,12 +39,19 @@ pub(super) fn read_contents(bytes: &[u8], wanted: Wanted) -> Result<Contents, Gm
             (b"$PartitionedEntities", Version::Four) => {
                 return Err(GmshError::Partitioned { position });
             }
-            (b"$Nodes", _) => {
+            (b"$Periodic", _) => {
+                contents.is_periodic = true;
+                source.skip_section()?;
+            }
+            (b"$Nodes", _) | (b"$ParametricNodes", Version::Two) => {
                 has_nodes = true;
                 match version {
                     _ if !wants_all => source.skip_section()?,
                     Version::Four => version_four::read_nodes(&mut source, &mut contents)?,
-                    Version::Two => version_two::read_nodes(&mut source, &mut contents)?,
+                    Version::Two => {
+                        let is_parametric = name == b"$ParametricNodes";
+                        version_two::read_nodes(&mut source, &mut contents, is_parametric)?;
+                    }
                 }
             }
             (b"$Elements", _) => {

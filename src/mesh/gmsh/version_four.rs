@@ -155,7 +155,7 @@ pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Res
     source.end_section("elements", announced)
 }
 
-fn entity_dimension(source: &mut Source) -> Result<usize, GmshError> {
+pub(super) fn entity_dimension(source: &mut Source) -> Result<usize, GmshError> {
     let expected = "the dimension of an entity, 0 to 3";
     match source.integer(expected)? {
         dimension @ 0..=3 => Ok(dimension as usize),

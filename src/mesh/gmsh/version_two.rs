@@ -4,6 +4,7 @@ use super::contents::{Contents, Membership, simplex_dimension, type_properties};
 use super::element_types::TypeProperties;
 use super::error::GmshError;
 use super::source::Source;
+use super::version_four::entity_dimension;
 
 /// The number of records of a section: text in every file, on a line of its own.
 fn read_count(source: &mut Source, expected: &'static str) -> Result<u64, GmshError> {
@@ -14,8 +15,12 @@ fn read_count(source: &mut Source, expected: &'static str) -> Result<u64, GmshEr
     Ok(count)
 }
 
-/// Reads the nodes.
-pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
+/// Reads the nodes, which may each have a geometric entity and their coordinates on it.
+pub(super) fn read_nodes(
+    source: &mut Source,
+    contents: &mut Contents,
+    is_parametric: bool,
+) -> Result<(), GmshError> {
     let announced = read_count(source, "the number of nodes")?;
     source.check_room("nodes", announced, 28)?;
     contents.nodes.reserve(source.capacity(announced, 8));
@@ -28,6 +33,13 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
             source.real("coordinate y")?,
             source.real("coordinate z")?,
         ];
+        if is_parametric {
+            let dimension = entity_dimension(source)?;
+            source.integer("the tag of an entity")?;
+            // in a volume the coordinates are those of space
+            let coordinates = if dimension < 3 { dimension as u64 } else { 0 };
+            source.skip(coordinates, 8, "a parametric coordinate")?;
+        }
         source.end_record()?;
         contents.nodes.push(source, mark, node, point)?;
     }

@@ -44,10 +44,11 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// there are both, `error`, which is `u` less the exact solution where that is known (for rows of a study
     /// with a reference: less the reference). Cell data of obstacle problems: `multiplier` and `contact` of
     /// [`Fields`](crate::measure::Fields); of all for which there is one, `bound`, the share of the cell in the square
-    /// of the error bound ([`ErrorBound::cells`](crate::error_bound::ErrorBound::cells)). Signorini problems have the
-    /// facets of the contact boundary as further cells with `pressure` and `gap` of these fields and `contact`, which
-    /// is one on facets in contact as a whole; the integral of `pressure` over the cells of `dimension` `D - 1` is the
-    /// total contact force.
+    /// of the error bound ([`ErrorBound::cells`](crate::error_bound::ErrorBound::cells)). The facets of the boundary
+    /// are further cells, of `dimension` `D - 1`. Those of the contact boundary have `pressure` and `gap` of these
+    /// fields and `contact`, which is one on facets in contact as a whole; the integral of `pressure` over them is the
+    /// total contact force. Each region and each boundary group is an array called by its name, one in the group and
+    /// zero elsewhere.
     ///
     /// # Errors
     /// [`Error::Write`], also without an iterate.
@@ -94,10 +95,6 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
         let state = |place| if touching.next_if_eq(&place).is_some() { 1.0 } else { 0.0 };
         let in_contact: Vec<f64> = fields.contact_boundary.iter().map(state).collect();
         let (mesh, data) = (self.mesh(), DataOnMesh::new(problem, self.mesh())?);
-        let regions: Vec<f64> = match mesh.regions().len() {
-            1 => Vec::new(),
-            _ => (0..mesh.n_cells()).map(|cell| mesh.region(cell) as f64).collect(),
-        };
         let shares = self.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
         let mut file = VtuFile::new(mesh, &u);
         let bounds = [&data.lower, &data.upper].into_iter().filter(|bound| bound.is_given());
@@ -105,9 +102,6 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
             file = file.function_in_cells(name, |cell, x| {
                 bound.of(mesh.region(cell)).map_or(f64::NAN, |bound| bound.at(x))
             });
-        }
-        if !regions.is_empty() {
-            file = file.on_cells("region", &regions);
         }
         if !shares.is_empty() {
             file = file.on_cells("bound", &shares);
@@ -125,11 +119,12 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
             file = file.on_cells("contact", &fields.contact);
         }
         if problem.has_gap() {
-            file = file.facets(&fields.contact_boundary).on_facets("pressure", &fields.pressure);
-            file = file.on_facets("gap", &fields.gap);
-        }
-        if problem.has_gap() && !problem.has_obstacle() {
-            file = file.on_facets("contact", &in_contact);
+            let facets = &fields.contact_boundary;
+            file = file.on_facets("pressure", facets, &fields.pressure);
+            file = file.on_facets("gap", facets, &fields.gap);
+            if !problem.has_obstacle() {
+                file = file.on_facets("contact", facets, &in_contact);
+            }
         }
         complete(file).write(path)
     }

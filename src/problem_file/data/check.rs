@@ -105,7 +105,12 @@ impl<const D: usize> Checks<'_, '_, D> {
                 known.sort_unstable();
                 known.dedup();
                 let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-                let fault = ProblemFileFault::UnknownGroup { kind, name: excerpt(name), known };
+                let is_inside = entry.is_boundary && mesh.groups_inside().contains(name);
+                let name = excerpt(name);
+                let fault = match is_inside {
+                    true => ProblemFileFault::GroupInside { name, known },
+                    false => ProblemFileFault::UnknownGroup { kind, name, known },
+                };
                 return Err(self.source.error(entry.offset, fault));
             }
         }

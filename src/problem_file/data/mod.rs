@@ -7,8 +7,9 @@ use toml::de::DeTable;
 use super::error::{ProblemFileError, ProblemFileFault};
 use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
+use crate::arrays::tabulate;
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, BoxDomain, SIDES, gmsh};
+use crate::mesh::{BoundaryFacet, BoundaryPart, BoxDomain, Mesh, SIDES, gmsh};
 use crate::problem::{Datum, Problem};
 use crate::real::Point;
 use check::{Allowed, Checks, Entry};
@@ -37,10 +38,23 @@ struct Builder<'s, 't, const D: usize> {
     problem: Problem<D>,
     entries: Vec<Entry<D>>,
     parts: Vec<(String, BoundaryPart)>,
+    /// What is given on boundary groups without a table of their own.
+    on_other_groups: Option<OnGroup>,
+    /// The gaps of the problem, in their order.
+    gaps: Vec<Formula>,
     /// Whether the file has the exact solution.
     has_exact: bool,
     /// Where the file has its gradient.
     gradient_offset: usize,
+}
+
+/// What a file gives on a boundary group.
+struct OnGroup {
+    part: BoundaryPart,
+    formula: Formula,
+    /// Its name in the file.
+    datum: String,
+    offset: usize,
 }
 
 type Done<V = ()> = Result<V, ProblemFileError>;
@@ -119,61 +133,113 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let boundary = self.source.table("boundary", value)?;
         for (key, value) in boundary.iter() {
             let group = key.get_ref().to_string();
-            let table = self.source.table(&group, value)?;
-            let kinds = "\"dirichlet\", \"neumann\" or \"contact\"";
-            let Some(kind) = table.get("kind") else {
-                let missing = ProblemFileFault::Missing { key: "kind", purpose: kinds };
-                return Err(self.source.error(key.span().start, missing));
-            };
-            let part = BoundaryPart::from_name(self.source.string("kind", kind)?)
-                .ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?;
-            if BoundaryPart::from_name(&group).is_some_and(|named| named != part) {
-                let expected = "what the name of the group says: dirichlet, neumann and contact fix their kind";
-                return Err(self.source.wrong_type("kind", kind, expected));
+            let given = self.on_group(&group, key.span().start, value)?;
+            match group == DEFAULT {
+                true => self.on_other_groups = Some(given),
+                false => self.put_on(&group, &given),
             }
-            let name = match part {
-                BoundaryPart::Dirichlet => "value",
-                BoundaryPart::Neumann => "flux",
-                BoundaryPart::Contact => "gap",
-            };
-            self.source.allow(table, &["kind", name])?;
-            let is_flux = part == BoundaryPart::Neumann;
-            let variables = match is_flux {
-                true => [&VARIABLES[0][..D], &VARIABLES[1][..D]].concat(),
-                false => VARIABLES[0][..D].to_vec(),
-            };
-            let formula = match table.get(name) {
-                Some(value) => self.source.formula(name, value, &variables)?,
-                None if self.has_exact && part != BoundaryPart::Contact => {
-                    let purpose = "the exact solution does not stand for data that are left out";
-                    let missing = ProblemFileFault::Missing { key: name, purpose };
-                    return Err(self.source.error(key.span().start, missing));
-                }
-                None => Formula::Number(0.0),
-            };
-            let mut problem = std::mem::take(&mut self.problem);
-            let function = formula.flux::<D>();
-            self.problem = match part {
-                BoundaryPart::Dirichlet => problem.dirichlet_on(&group, formula.datum()),
-                BoundaryPart::Contact => problem.signorini_on(&group, formula.datum()),
-                BoundaryPart::Neumann => {
-                    problem.named.neumann.push((group.clone(), function.clone()));
-                    problem
-                }
-            };
-            self.entries.push(Entry {
-                datum: format!("boundary.{group}.{name}"),
-                group: Some(group.clone()),
-                is_boundary: true,
-                others: Vec::new(),
-                at_vertices: !is_flux,
-                offset: key.span().start,
-                allowed: Allowed::Finite,
-                value: function,
-            });
-            self.parts.push((group, part));
         }
         Ok(())
+    }
+
+    /// Reads the table of a boundary group.
+    fn on_group(&self, group: &str, offset: usize, value: &Value<'t>) -> Done<OnGroup> {
+        let table = self.source.table(group, value)?;
+        let kinds = "\"dirichlet\", \"neumann\" or \"contact\"";
+        let Some(kind) = table.get("kind") else {
+            let missing = ProblemFileFault::Missing { key: "kind", purpose: kinds };
+            return Err(self.source.error(offset, missing));
+        };
+        let part = BoundaryPart::from_name(self.source.string("kind", kind)?)
+            .ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?;
+        if BoundaryPart::from_name(group).is_some_and(|named| named != part) {
+            let expected =
+                "what the name of the group says: dirichlet, neumann and contact fix their kind";
+            return Err(self.source.wrong_type("kind", kind, expected));
+        }
+        let (name, takes_normal) = match part {
+            BoundaryPart::Dirichlet => ("value", false),
+            BoundaryPart::Neumann => ("flux", true),
+            BoundaryPart::Contact => ("gap", true),
+        };
+        self.source.allow(table, &["kind", name])?;
+        let variables = match takes_normal {
+            true => [&VARIABLES[0][..D], &VARIABLES[1][..D]].concat(),
+            false => VARIABLES[0][..D].to_vec(),
+        };
+        let formula = match table.get(name) {
+            Some(value) => self.source.formula(name, value, &variables)?,
+            None if self.has_exact && part != BoundaryPart::Contact => {
+                let purpose = "the exact solution does not stand for data that are left out";
+                let missing = ProblemFileFault::Missing { key: name, purpose };
+                return Err(self.source.error(offset, missing));
+            }
+            None => Formula::Number(0.0),
+        };
+        Ok(OnGroup { part, formula, datum: format!("boundary.{group}.{name}"), offset })
+    }
+
+    /// Puts what is given on a boundary group into the problem.
+    fn put_on(&mut self, group: &str, given: &OnGroup) {
+        let OnGroup { part, formula, datum, offset } = given;
+        let mut problem = std::mem::take(&mut self.problem);
+        self.problem = match part {
+            BoundaryPart::Dirichlet => problem.dirichlet_on(group, formula.datum()),
+            BoundaryPart::Contact => {
+                self.gaps.push(formula.clone());
+                problem.signorini_on(group, formula.datum())
+            }
+            BoundaryPart::Neumann => {
+                problem.named.neumann.push((group.to_owned(), formula.flux()));
+                problem
+            }
+        };
+        self.entries.push(Entry {
+            datum: datum.clone(),
+            group: Some(group.to_owned()),
+            is_boundary: true,
+            others: Vec::new(),
+            at_vertices: *part != BoundaryPart::Neumann,
+            offset: *offset,
+            allowed: Allowed::Finite,
+            value: formula.flux(),
+        });
+        self.parts.push((group.to_owned(), *part));
+    }
+
+    /// Puts what is given by default on the boundary groups without a table of their own. A group whose name fixes
+    /// another kind, or whose names all belong to groups with tables too, is left without data.
+    fn complete(&mut self, groups: &[Vec<String>]) {
+        let Some(given) = self.on_other_groups.take() else { return };
+        let named = self.parts.clone();
+        let has_table = |names: &Vec<String>| named.iter().any(|(group, _)| names.contains(group));
+        let (with_table, without): (Vec<_>, Vec<_>) = groups.iter().partition(|g| has_table(g));
+        for names in without {
+            let is_own = |name: &&String| {
+                let of_part = BoundaryPart::from_name(name).is_none_or(|part| part == given.part);
+                of_part && !with_table.iter().any(|group| group.contains(name))
+            };
+            if let Some(name) = names.iter().find(is_own)
+                && self.parts.iter().all(|(known, _)| known != name)
+            {
+                self.put_on(name, &given);
+            }
+        }
+    }
+
+    /// Gives gaps that depend on the normal those of the facets of their groups.
+    fn put_normals(&mut self, mesh: &Mesh<f64, D>) {
+        for ((group, datum), formula) in self.problem.named.gap.iter_mut().zip(&self.gaps) {
+            let groups = mesh.boundary_groups();
+            let is_meant = |f: &&BoundaryFacet| groups[usize::from(f.group)].names.contains(group);
+            let facets = mesh.boundary().iter().filter(is_meant).map(|f| {
+                let (cell, local) = (f.cell as usize, usize::from(f.local));
+                let vertices: Vec<u32> = mesh.facet_vertices(cell, local).collect();
+                let corners = tabulate(|k| mesh.vertices()[vertices[k] as usize]);
+                (corners, mesh.geometry(cell).normal(local))
+            });
+            *datum = formula.datum_on(facets.collect());
+        }
     }
 
     fn exact(&mut self, value: &Value<'t>) -> Done {
@@ -226,6 +292,8 @@ pub(super) fn problem<'t, const D: usize>(
         problem: Problem::<D>::new(),
         entries: Vec::new(),
         parts: Vec::new(),
+        on_other_groups: None,
+        gaps: Vec::new(),
         has_exact: root.contains_key("exact"),
         gradient_offset: 0,
     };
@@ -264,12 +332,17 @@ pub(super) fn problem<'t, const D: usize>(
     }
     let geometry = match place {
         Place::File { path, bytes, offset, .. } => {
-            let read = gmsh::parse(bytes).map_err(|e| source.mesh_error(*offset, path, e))?;
+            let read = gmsh::parse::<f64, D>(bytes);
+            let read = read.map_err(|e| source.mesh_error(*offset, path, e))?;
+            let groups = read.mesh.boundary_groups().iter().map(|group| group.names.clone());
+            builder.complete(&groups.collect::<Vec<_>>());
             Geometry::File { path: path.clone(), bytes: bytes.clone(), read: Box::new(read) }
         }
         Place::Box { corners } => {
             let [lower, upper] =
                 [0, 1].map(|k| Point::<f64, D>::from_fn(|axis, _| corners[k][axis]));
+            builder
+                .complete(&SIDES[..2 * D].iter().map(|&s| vec![s.to_owned()]).collect::<Vec<_>>());
             let mut domain = BoxDomain::dirichlet(lower, upper);
             for (name, part) in &builder.parts {
                 if let Some(side) = SIDES[..2 * D].iter().position(|side| side == name) {
@@ -279,12 +352,14 @@ pub(super) fn problem<'t, const D: usize>(
             Geometry::Box(domain)
         }
     };
-    let own = OwnProblem { name, problem: builder.problem.clone(), geometry };
+    let mut own = OwnProblem { name, problem: builder.problem.clone(), geometry };
     let failed = |error: Error| ProblemFileError::Problem {
         path: source.path.into(),
         source: Box::new(error),
     };
     let mesh = own.sample_mesh().map_err(failed)?;
+    builder.put_normals(&mesh);
+    own.problem.clone_from(&builder.problem);
     let Builder { problem, entries, parts, gradient_offset, .. } = &builder;
     let gradient_offset = *gradient_offset;
     Checks { source, problem, entries, parts, gradient_offset }.run(&mesh)?;

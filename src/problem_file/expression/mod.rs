@@ -17,6 +17,7 @@ use winnow::ascii::multispace0;
 use winnow::combinator::preceded;
 use winnow::prelude::*;
 
+use crate::real::Point;
 use grammar::{Left, sum};
 use names::{SyntaxError, resolve};
 use node::Node;
@@ -72,7 +73,18 @@ impl Expression {
     }
     /// The value of an expression without variables.
     pub fn constant(&self) -> Option<f64> {
-        (!self.0.has_variables()).then(|| self.0.value(&[]))
+        (!self.has_variables(0)).then(|| self.0.value(&[]))
+    }
+    /// Whether a variable occurs, of those from this position of their list on.
+    pub fn has_variables(&self, first: usize) -> bool {
+        self.0.has_variables(first)
+    }
+    /// The value at a point of the boundary with this outward normal.
+    pub fn on_boundary<const D: usize>(&self, x: &Point<f64, D>, normal: &Point<f64, D>) -> f64 {
+        let mut variables = [0.0; 6];
+        variables[..D].copy_from_slice(x.as_slice());
+        variables[D..2 * D].copy_from_slice(normal.as_slice());
+        self.value(&variables[..2 * D])
     }
 }
 

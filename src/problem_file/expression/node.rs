@@ -65,16 +65,16 @@ impl Node {
         Node::If(Box::new((a, Node::Number(1.0), Self::truth(b))))
     }
 
-    /// Whether a variable occurs.
-    pub fn has_variables(&self) -> bool {
+    /// Whether a variable occurs, of those from this position of their list on.
+    pub fn has_variables(&self, first: usize) -> bool {
+        let has = |node: &Node| node.has_variables(first);
         match self {
             Node::Number(_) => false,
-            Node::Variable(_) | Node::Name(..) | Node::Call(..) => true,
-            Node::One(_, a) | Node::Negative(a) => a.has_variables(),
-            Node::Two(_, ab) | Node::Arithmetic(_, ab) => {
-                ab.0.has_variables() || ab.1.has_variables()
-            }
-            Node::If(parts) => [&parts.0, &parts.1, &parts.2].into_iter().any(Node::has_variables),
+            Node::Variable(k) => *k >= first,
+            Node::Name(..) | Node::Call(..) => true,
+            Node::One(_, a) | Node::Negative(a) => has(a),
+            Node::Two(_, ab) | Node::Arithmetic(_, ab) => has(&ab.0) || has(&ab.1),
+            Node::If(parts) => has(&parts.0) || has(&parts.1) || has(&parts.2),
         }
     }
 
@@ -91,7 +91,7 @@ impl Node {
                     Operator::Plus | Operator::Minus => Some(of(a)?.max(of(b)?)),
                     Operator::Times => of(a)?.checked_add(of(b)?),
                     Operator::Over => of(a).filter(|_| of(b) == Some(0)),
-                    Operator::Power if b.has_variables() => None,
+                    Operator::Power if b.has_variables(0) => None,
                     Operator::Power => {
                         let exponent = b.value(&[]);
                         let is_whole = exponent >= 0.0 && exponent.fract() == 0.0;
@@ -99,7 +99,7 @@ impl Node {
                     }
                 }
             }
-            other => (!other.has_variables()).then_some(0),
+            other => (!other.has_variables(0)).then_some(0),
         }
     }
 

@@ -102,7 +102,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         let crossing = self.find_crossing([&first])?;
         let measured = Measured { failure, reference: None };
         for (entry, problem) in self.entries.iter().zip(&self.problems()) {
-            let label = entry.scheme.label_on(problem.constraint_set());
+            let label = entry.label(problem);
             for solver in self.solvers() {
                 let meshes = AdaptiveMeshes::new(first.clone());
                 let nested = self.with_settings(NestedIteration::new(problem, &meshes), &solver);

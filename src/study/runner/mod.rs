@@ -25,7 +25,7 @@ use crate::nested::{Adaptivity, Coarsest, Hierarchy, NestedIteration, Phase, Sol
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
-use crate::scheme::AnyScheme;
+use crate::scheme::{AnyScheme, SchemeOptions};
 use crate::study::compatibility::{check_domain, check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
@@ -98,9 +98,15 @@ type EachSolution<'a, T, const D: usize> =
 struct Entry<'a, T: Real, const D: usize> {
     scheme: Arc<dyn AnyScheme<T, D> + 'a>,
     set: Option<Arc<dyn ConstraintSet>>,
+    /// The choices in its label, if those that are default are among them.
+    shown: Option<SchemeOptions>,
 }
 
 impl<T: Real, const D: usize> Entry<'_, T, D> {
+    /// The label of its rows.
+    fn label(&self, problem: &Problem<D>) -> String {
+        self.scheme.label_with(problem.constraint_set(), self.shown)
+    }
     /// The problem with the constraint set of the entry.
     fn problem(&self, problem: &Problem<D>) -> Problem<D> {
         with_set(problem, &self.set)
@@ -191,7 +197,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
         let problems = self.problems();
         let of_entries = self.entries.iter().zip(&problems);
-        let labels = of_entries.map(|(entry, p)| entry.scheme.label_on(p.constraint_set()));
+        let labels = of_entries.map(|(entry, p)| entry.label(p));
         check_names(labels, self.solvers().iter().map(|solver| solver.name()))?;
         self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
         for (entry, problem) in self.entries.iter().zip(problems) {
@@ -253,7 +259,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let mut rows = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&problems) {
             for nested in &mut by_solver {
-                let label = entry.scheme.label_on(problem.constraint_set());
+                let label = entry.label(problem);
                 for &level in &self.levels {
                     if let Some(row) = kept.next().flatten() {
                         (self.observer)(Progress::Kept(&row));
@@ -305,7 +311,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     pub fn keys(&self) -> Vec<RowKey> {
         let mut keys = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&self.problems()) {
-            let label = entry.scheme.label_on(problem.constraint_set());
+            let label = entry.label(problem);
             for solver in self.solvers() {
                 keys.extend(self.row_levels().into_iter().map(|level| RowKey {
                     scene: self.scene.name.clone(),

@@ -62,7 +62,7 @@ impl<const D: usize> Study<'_, f64, D> {
         let admissible = self.check_crossing_on_parts(&hierarchies, process)?;
         let mut rows = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&problems) {
-            let label = entry.scheme.label_on(problem.constraint_set());
+            let label = entry.label(problem);
             for &level in &self.levels {
                 (self.observer)(Progress::Started(&self.scene.name, &label, level));
                 let found = hierarchies.iter().zip(&mut nested).find_map(|(of, nested)| {
@@ -318,7 +318,7 @@ impl<const D: usize> Study<'_, f64, D> {
     ) -> Result<(), Error> {
         match &self.fields.directory {
             Some(directory) if self.levels.iter().max() == Some(&level) && solved.has_iterate() => {
-                let label = entry.scheme.label_on(problem.constraint_set());
+                let label = entry.label(problem);
                 let stem = file_name(&format!("{}-{label}", self.scene.name));
                 let list = directory.join(format!("{stem}.pvtu"));
                 solved

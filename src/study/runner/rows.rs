@@ -102,7 +102,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         solver: &str,
         measured: Measured<'_, 'p, T, D>,
     ) -> Result<Row, Error> {
-        let label = entry.scheme.label_on(solved.discretisation().problem().constraint_set());
+        let label = entry.label(solved.discretisation().problem());
         let name = match self.solvers.len() {
             0 | 1 => label.clone(),
             _ => format!("{label}-{solver}"),
@@ -187,9 +187,15 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         failure: Option<&str>,
     ) -> Row {
         let (scheme, set) = (&*entry.scheme, problem.constraint_set());
+        let kind = match self.mesh {
+            _ if self.adaptive.is_some() => "steps",
+            Some(_) => "refinements",
+            None => "subdivisions",
+        };
         Row {
+            level_kind: Some(kind.to_owned()),
             constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
-            label: scheme.label_on(set),
+            label: entry.label(problem),
             expected_order: self.expected_orders(scheme, set, failure),
             ..row
         }

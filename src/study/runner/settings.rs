@@ -15,7 +15,7 @@ use crate::nested::Solved;
 #[cfg(feature = "report")]
 use crate::paraview::FieldScalar;
 use crate::real::Real;
-use crate::scheme::{AnyScheme, NamedScheme};
+use crate::scheme::{AnyScheme, NamedScheme, SchemeOptions};
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
 use crate::study::reference::Reference;
@@ -61,7 +61,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
     pub fn scheme(self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
-        self.shared_scheme(Arc::new(scheme), None)
+        self.shared_scheme(Arc::new(scheme), None, None)
     }
     /// Adds a scheme with a constraint set of its own, so that one scheme may stand beside itself with
     /// other bounds.
@@ -71,12 +71,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         scheme: impl AnyScheme<T, D> + 'a,
         set: impl ConstraintSet + 'static,
     ) -> Self {
-        self.shared_scheme(Arc::new(scheme), Some(Arc::new(set)))
+        self.shared_scheme(Arc::new(scheme), Some(Arc::new(set)), None)
     }
     /// Adds a scheme chosen at run time, with the constraint set of the problem.
     #[must_use]
     pub fn boxed_scheme(self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
-        self.shared_scheme(scheme.into(), None)
+        self.shared_scheme(scheme.into(), None, None)
     }
     /// Adds a scheme chosen at run time, with a constraint set of its own.
     #[must_use]
@@ -85,20 +85,21 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         scheme: Box<dyn AnyScheme<T, D> + 'a>,
         set: impl ConstraintSet + 'static,
     ) -> Self {
-        self.shared_scheme(scheme.into(), Some(Arc::new(set)))
+        self.shared_scheme(scheme.into(), Some(Arc::new(set)), None)
     }
     /// Adds a scheme as users write it; without a placement it has the constraint set of the problem.
     #[must_use]
     pub fn named_scheme(self, scheme: &NamedScheme) -> Self {
-        self.shared_scheme(scheme.make().into(), scheme.constraint_set())
+        self.shared_scheme(scheme.make().into(), scheme.constraint_set(), scheme.shown_choices())
     }
-    /// Adds a scheme that other studies have too.
+    /// Adds a scheme that other studies have too, with its own constraint set and the choices in its label.
     pub(crate) fn shared_scheme(
         mut self,
         scheme: Arc<dyn AnyScheme<T, D> + 'a>,
         set: Option<Arc<dyn ConstraintSet>>,
+        shown: Option<SchemeOptions>,
     ) -> Self {
-        self.entries.push(Entry { scheme, set });
+        self.entries.push(Entry { scheme, set, shown });
         self
     }
     /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
@@ -146,7 +147,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.fields.directory = Some(directory.into());
         self
     }
-    /// Sets the scalar of coordinates and fields in files; 32 bits otherwise.
+    /// Sets the scalar of fields in files; 32 bits otherwise. Coordinates have 64 bits always.
     #[cfg(feature = "report")]
     #[must_use]
     pub fn field_scalar(mut self, scalar: FieldScalar) -> Self {

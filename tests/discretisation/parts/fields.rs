@@ -4,6 +4,7 @@ use super::gathered::process;
 use std::collections::HashMap;
 use unilateral::distributed::{DistributedIteration, PartHierarchy, in_process};
 use unilateral::mesh::Layers;
+use unilateral::paraview::FieldScalar;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 
@@ -64,4 +65,36 @@ fn multipliers_beside_a_cut_are_those_of_the_whole() {
         panic!("two dimensions")
     };
     holds(&signorini);
+}
+
+/// The files of all parts have the arrays that their list names, the groups of the mesh among them.
+#[test]
+fn files_of_parts_have_the_arrays_of_their_list() {
+    let scene = scenes::signorini_2d();
+    let mesh: Mesh<f64, 2> = scene.domain.mesh(4).unwrap();
+    let folder = std::env::temp_dir().join(format!("unilateral-parts-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    in_process(3, |number, exchange| {
+        let process = process(number, exchange);
+        let by = (1, Layers::across_vertices(1));
+        let meshes = PartHierarchy::new(&mesh, None, by, &process).unwrap();
+        let mut nested = DistributedIteration::new(&scene.problem, &meshes, process);
+        let solved = nested.solve_on(1, &ConformingP1).unwrap();
+        solved.write_vtu(&folder, "fields", FieldScalar::Single).unwrap();
+    });
+    let list = std::fs::read_to_string(folder.join("fields.pvtu")).unwrap();
+    let arrays = list.split("<PDataArray ").skip(1).map(|rest| rest.split('/').next().unwrap());
+    let arrays: Vec<&str> = arrays.collect();
+    for name in ["pressure", "dimension", "left", "right", "bottom", "top"] {
+        assert!(list.contains(&format!("Name=\"{name}\"")), "{list}");
+    }
+    assert!(list.contains("type=\"Float64\" Name=\"Points\""), "{list}");
+    for part in 0..3 {
+        let bytes = std::fs::read(folder.join(format!("fields.{part}.vtu"))).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        for array in &arrays {
+            assert!(text.contains(&format!("<DataArray {}", array.trim())), "part {part}: {array}");
+        }
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
 }

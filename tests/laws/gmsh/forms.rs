@@ -77,7 +77,23 @@ fn parametric_nodes_are_read_by_their_position() {
     let sample = Sample { parametric: true, ..square() };
     for form in FORMS {
         assert_eq!(parse::<2>(&sample.four(form)).mesh.vertices(), plain.vertices());
+        assert_eq!(parse::<2>(&sample.two(form)).mesh.vertices(), plain.vertices());
     }
+    let file = include_bytes!("../../data/problems/h_par22.msh");
+    assert_eq!(parse::<2>(file).mesh.vertices().len(), 31);
+}
+
+/// Version 2.2 lists a cell once for each of its groups, wherever in the file; version 4.1 lists it once.
+#[test]
+fn a_cell_in_two_groups_is_one_cell() {
+    let read = parse::<2>(include_bytes!("../../data/problems/twocellgroups.msh"));
+    let again = parse::<2>(gmsh::to_text(&read.mesh).as_bytes());
+    for mesh in [&read.mesh, &again.mesh] {
+        let names = |cell: usize| mesh.regions()[mesh.region(cell)].join(" ");
+        let cells = |expected: &str| (0..mesh.n_cells()).filter(|&c| names(c) == expected).count();
+        assert_eq!(["soft sub", "soft", "stiff"].map(cells), [16, 0, 16], "{:?}", mesh.regions());
+    }
+    assert!(read.element_tags.iter().all(|&tag| tag <= 48));
 }
 
 #[test]

@@ -169,13 +169,20 @@ impl Sample {
     pub fn two(&self, form: Form) -> Vec<u8> {
         let mut out = Out { form, bytes: Vec::new() };
         out.header("2.2", &self.names);
-        out.text(&format!("$Nodes\n{}\n", self.nodes.len()));
-        for (tag, x) in &self.nodes {
+        let section = if self.parametric { "ParametricNodes" } else { "Nodes" };
+        out.text(&format!("${section}\n{}\n", self.nodes.len()));
+        for (k, (tag, x)) in self.nodes.iter().enumerate() {
             out.int(*tag as i32);
             x.iter().for_each(|&x| out.real(x));
+            if self.parametric {
+                // on entities of all dimensions, of which curves and surfaces have coordinates
+                out.int((k % 4) as i32);
+                out.int(1);
+                (0..[0, 1, 2, 0][k % 4]).for_each(|_| out.real(0.125));
+            }
             out.end_line();
         }
-        out.close("Nodes");
+        out.close(section);
         let count: usize =
             self.blocks.iter().map(|b| b.elements.len() * b.groups.len().max(1)).sum();
         out.text(&format!("$Elements\n{count}\n"));

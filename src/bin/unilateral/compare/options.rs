@@ -29,8 +29,9 @@ pub struct Options {
     /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]], or `all`; --list names the keys of each
     #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
     pub schemes: Vec<String>,
-    /// Subdivisions of the scene's shortest side; with --mesh: uniform refinements, from 0
-    #[arg(long, value_delimiter = ',', value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
+    /// On a box, a scene's own or that of a problem: subdivisions of its shortest side, from 1; on a mesh of a file:
+    /// uniform refinements, from 0
+    #[arg(long, visible_alias = "level", value_delimiter = ',', value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
     pub levels: Vec<usize>,
     /// Meshes that follow the error bound in place of levels, until the bound is GOAL; or keys:
     /// theta=0.5,steps=20,unknowns=1e6,goal=GOAL,tolerance=0.1 (the share of the bound that the
@@ -91,7 +92,7 @@ pub struct Options {
     /// Also write a table of observed against promised orders here, in Markdown
     #[arg(long, value_name = "FILE")]
     pub orders: Option<PathBuf>,
-    /// Scalar of coordinates and fields in .vtu files
+    /// Scalar of fields in .vtu files; coordinates have f64 always
     #[arg(long, value_parser = ["f32", "f64"], default_value = "f32")]
     pub fields: String,
     /// No .vtu files

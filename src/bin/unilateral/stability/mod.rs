@@ -15,9 +15,10 @@ use std::path::Path;
 
 pub use options::Options;
 
-use crate::mesh_file::with_parts;
+use crate::mesh_file::{warn_of, with_parts};
 use crate::shared::{
-    Failure, bar, check_writable, end_at_interrupt, make_directory, print, tick, use_threads, write,
+    Failure, bar, check_writable, end_at_interrupt, make_directory, print, tick, use_threads, warn,
+    write,
 };
 use unilateral::mesh::gmsh;
 use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
@@ -49,6 +50,9 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         });
     for path in &options.meshes {
         let read = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        if !options.quiet {
+            warn_of(&read.warnings, path, &warn);
+        }
         let mesh = with_parts(read.mesh, path, &options.boundary)?;
         study = study.mesh(&name_of(path), mesh);
     }

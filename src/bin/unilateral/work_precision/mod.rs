@@ -28,7 +28,7 @@ use crate::adaptive::words;
 use crate::posed::Posed;
 use crate::shared::{
     Failure, Request, bar, check_writable, end_at_interrupt, make_directory, print, print_to, read,
-    tick, use_threads, write,
+    tick, use_threads, warn, write,
 };
 
 /// The label of which the verdicts speak by default.
@@ -160,9 +160,16 @@ fn prepare<'a, const D: usize>(
         );
         print_to(std::io::stderr(), &text)?;
     }
-    let mesh = options.mesh.read(&|_| {})?;
+    // warnings of a mesh are those of its first scene
+    let is_first = labels.borrow().is_empty();
+    let warn = |warning| {
+        if is_first && !options.quiet {
+            warn(warning)
+        }
+    };
+    let mesh = options.mesh.read(&warn)?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
-    let mut study = posed.work_precision()?.levels(options.levels(D, has_mesh));
+    let mut study = posed.work_precision(&warn)?.levels(options.levels(D, has_mesh));
     if let Some(mesh) = mesh {
         study = study.on_mesh(mesh);
     }

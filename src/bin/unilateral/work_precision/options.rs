@@ -43,8 +43,8 @@ pub struct Options {
     /// Ratio of coefficients, for scenes that take one
     #[arg(long, value_name = "X", requires = "scenes")]
     pub contrast: Option<f64>,
-    /// Subdivisions of the scene's shortest side, or refinements of the mesh
-    #[arg(long, value_delimiter = ',', value_name = "N[,N...]")]
+    /// On a box: subdivisions of its shortest side, from 1; on a mesh of a file: uniform refinements, from 0
+    #[arg(long, visible_alias = "level", value_delimiter = ',', value_name = "N[,N...]")]
     levels: Vec<usize>,
     /// Also run on meshes that follow the error bound, from the coarsest level on: the bound to reach, or keys such
     /// as theta=0.5,steps=12,unknowns=1e6

@@ -1,5 +1,11 @@
 //! Cells that overlap: folds across facets, and parts of a mesh that lie on each other.
 
+mod facet_search;
+
+#[cfg(feature = "problem-files")]
+pub(crate) use facet_search::FacetSearch;
+pub(super) use facet_search::lie_on_others;
+
 use super::boundary::BoundaryFacet;
 use super::error::MeshError;
 use super::facets::{Neighbour, Neighbours};

@@ -1,0 +1,128 @@
+//! Search for the facets that a point lies in, and for facets of the boundary that lie on each other: between parts
+//! of a domain that were meshed apart, each with nodes of its own, or at a slit.
+
+use crate::arrays::tabulate;
+use crate::real::Point;
+
+/// Points of facets that lie on each other are nearer than this share of the extent of all facets.
+const COINCIDENT: f64 = 1e-8;
+
+/// A place of a grid, whose boxes have two to the first number as their size.
+type Place<const D: usize> = (i32, [i64; D]);
+
+/// Facets by place: each is listed for the boxes that it touches of the grid whose boxes are as large as it is,
+/// which are few, whatever the sizes of the others.
+pub(crate) struct FacetSearch<const D: usize> {
+    corners: Vec<[Point<f64, D>; D]>,
+    lower: Point<f64, D>,
+    /// A point lies in a facet if it is nearer to it than this, and its barycentric coordinates are above
+    /// minus the share.
+    near: f64,
+    share: f64,
+    places: Vec<(Place<D>, usize)>,
+    sizes: Vec<i32>,
+}
+
+impl<const D: usize> FacetSearch<D> {
+    /// The facets with these corners; points are in a facet up to a share of the extent of all.
+    pub fn new(corners: Vec<[Point<f64, D>; D]>, share: f64) -> Self {
+        let extreme = |of: fn(f64, f64) -> f64, all: &[[Point<f64, D>; D]]| {
+            let points = all.iter().flatten().copied();
+            points.reduce(|a, x| a.zip_map(&x, of)).unwrap_or_else(Point::zeros)
+        };
+        let lower = extreme(f64::min, &corners);
+        let near = (share * (extreme(f64::max, &corners) - lower).norm()).max(f64::MIN_POSITIVE);
+        let mut found = Self { corners, lower, near, share, places: Vec::new(), sizes: Vec::new() };
+        for (number, facet) in found.corners.iter().enumerate() {
+            let [least, most] = [f64::min, f64::max].map(|of| extreme(of, &[*facet]));
+            let size = ((most - least).max() + 2.0 * near).log2().ceil() as i32;
+            let ends = [least.add_scalar(-near), most.add_scalar(near)];
+            let ends = ends.map(|end| found.place(&end, size));
+            for corner in 0..1 << D {
+                found.places.push(((size, tabulate(|k| ends[corner >> k & 1][k])), number));
+            }
+        }
+        found.places.sort_unstable();
+        found.places.dedup();
+        found.sizes = found.places.iter().map(|((size, _), _)| *size).collect();
+        found.sizes.dedup();
+        found
+    }
+
+    /// The box of a point in the grid of a size.
+    fn place(&self, x: &Point<f64, D>, size: i32) -> [i64; D] {
+        tabulate(|k| ((x[k] - self.lower[k]) / f64::from(size).exp2()).floor() as i64)
+    }
+
+    /// The facets that a point lies in.
+    pub fn containing(&self, x: &Point<f64, D>) -> impl Iterator<Item = usize> {
+        self.sizes.iter().flat_map(move |&size| {
+            let key = (size, self.place(x, size));
+            let start = self.places.partition_point(|(place, _)| *place < key);
+            let here = self.places[start..].iter().take_while(move |(place, _)| *place == key);
+            here.map(|(_, facet)| *facet).filter(|&facet| self.is_in(facet, x))
+        })
+    }
+
+    fn is_in(&self, facet: usize, x: &Point<f64, D>) -> bool {
+        let corners = &self.corners[facet];
+        let edges = [1, 2].map(|k| if k < D { corners[k] - corners[0] } else { Point::zeros() });
+        let from = x - corners[0];
+        let [aa, ab, bb] = [[0, 0], [0, 1], [1, 1]].map(|[i, j]| edges[i].dot(&edges[j]));
+        let [ax, bx] = edges.map(|edge| edge.dot(&from));
+        let [s, t] = match D {
+            1 => [0.0; 2],
+            2 => [ax / aa, 0.0],
+            _ => [ax * bb - bx * ab, bx * aa - ax * ab].map(|x| x / (aa * bb - ab * ab)),
+        };
+        let is_inside = [s, t, 1.0 - s - t].iter().all(|&b| b > -self.share);
+        is_inside && (from - edges[0] * s - edges[1] * t).norm() <= self.near
+    }
+}
+
+/// For each facet whether its barycentre lies on another one.
+pub(in crate::mesh) fn lie_on_others<const D: usize>(
+    vertices: &[Point<f64, D>],
+    facets: &[[u32; D]],
+) -> Vec<bool> {
+    let corners = facets.iter().map(|facet| tabulate(|k| vertices[facet[k] as usize]));
+    let search = FacetSearch::new(corners.collect(), COINCIDENT);
+    let lies_on_other = |facet: usize| {
+        let middle = search.corners[facet].iter().sum::<Point<f64, D>>() / D as f64;
+        search.containing(&middle).any(|other| other != facet)
+    };
+    (0..facets.len()).map(lies_on_other).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lie_on_others;
+    use crate::real::Point;
+
+    #[test]
+    fn facets_lie_on_each_other_whatever_their_sizes() {
+        // an edge over two others, one beside them, one above them, one that shares a vertex
+        let points = [[0.0, 0.0], [1.0, 0.0], [0.25, 0.0], [2.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
+        let points = points.map(Point::from);
+        let facets = [[0, 1], [0, 2], [1, 2], [1, 3], [4, 5], [3, 5]];
+        let found = lie_on_others(&points, &facets);
+        assert_eq!(found, [true, true, true, false, false, false]);
+        // in a line of nodes, and far from the origin
+        let points = [0.0, 1.0, 1.0, 2.0].map(|x| Point::from([x + 5e6]));
+        assert_eq!(lie_on_others(&points, &[[0], [1], [2], [3]]), [false, true, true, false]);
+        // a triangle in a larger one, and one across it
+        let points = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.2, 0.2, 0.0],
+            [0.3, 0.2, 0.0],
+            [0.2, 0.3, 0.0],
+            [0.2, 0.5, 1.0],
+            [0.2, 0.5, -2.0],
+        ];
+        let points = points.map(Point::from);
+        let found = lie_on_others(&points, &[[0, 1, 2], [3, 4, 5], [0, 6, 7]]);
+        assert_eq!(found, [false, true, false]);
+    }
+}

@@ -1,0 +1,101 @@
+//! What problem files give on the boundary: by default, and by the normal.
+
+use super::scratch::Scratch;
+use std::path::{Path, PathBuf};
+use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::prelude::*;
+use unilateral::problem_file::{AnyOwnProblem, Geometry, OwnProblem, ProblemFileError, read};
+
+/// A problem in the plane.
+fn problem(folder: &Scratch, text: &str) -> Result<OwnProblem<2>, ProblemFileError> {
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let path = folder.0.join("problem.toml");
+    std::fs::write(&path, text).unwrap();
+    match read(&path)? {
+        AnyOwnProblem::Two(own) => Ok(own),
+        _ => panic!("a problem in the plane"),
+    }
+}
+
+fn mesh_file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/problems").join(name)
+}
+
+const DEFAULT: &str = "[boundary.default]\nkind = \"neumann\"\nflux = \"x\"\n";
+
+#[test]
+fn groups_without_a_table_have_what_is_given_by_default() {
+    let folder = Scratch::new("boundary-default");
+    let left = "[boundary.left]\nkind = \"dirichlet\"\n";
+    let own = problem(&folder, &format!("box = [[0, 0], [1, 1]]\n{DEFAULT}{left}")).unwrap();
+    let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+    let (fixed, free) = (BoundaryPart::Dirichlet, BoundaryPart::Neumann);
+    assert_eq!(domain.sides, [[fixed, free], [free, free]]);
+    let mesh = mesh_file("holes.msh");
+    let outer = "[boundary.outer]\nkind = \"dirichlet\"\n";
+    let of_mesh = format!("mesh = {:?}\n{outer}", mesh.display().to_string());
+    let own = problem(&folder, &format!("{of_mesh}{DEFAULT}")).unwrap();
+    let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let groups = mesh.boundary_groups().iter();
+    let mut parts: Vec<_> = groups.map(|g| (g.names.join(" "), g.part)).collect();
+    parts.sort_by(|a, b| a.0.cmp(&b.0));
+    assert_eq!(parts, [("bore".to_owned(), Some(free)), ("outer".to_owned(), Some(fixed))]);
+
+    let refused = |text: &str| problem(&folder, text).unwrap_err().to_string();
+    assert!(refused(&of_mesh).contains("boundary group `bore` of the mesh is missing"));
+    let wrong = refused(&format!("{of_mesh}{}", DEFAULT.replace("flux", "gap")));
+    assert!(wrong.contains("unknown key `gap`") && wrong.contains("problem.toml:6:"), "{wrong}");
+}
+
+/// A gap on a straight side has one normal, which stands for a number.
+#[test]
+fn gaps_may_use_the_normal_of_a_side() {
+    let folder = Scratch::new("gap-of-a-side");
+    let solution = |gap: &str| {
+        let contact = format!("[boundary.bottom]\nkind = \"contact\"\ngap = {gap}\n");
+        let rest = DEFAULT.replace("neumann", "dirichlet").replace("flux", "value");
+        let source = "[source]\ndefault = -10\n";
+        let rest = rest.replace("\"x\"", "0");
+        let own = problem(&folder, &format!("box = [[0, 0], [1, 1]]\n{contact}{rest}{source}"));
+        let own = own.unwrap();
+        let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+        let mesh = Mesh::<f64, 2>::kuhn_box(domain, [8, 8]).unwrap();
+        let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
+        assert!(solved.converged() && solved.active() > Some(0));
+        solved.values().to_vec()
+    };
+    assert_eq!(solution("\"0.05 * ny * (1 + nx)\""), solution("-0.05"));
+    assert_ne!(solution("\"0.06 * ny\""), solution("-0.05"));
+}
+
+/// On a boundary of many normals each facet has its own, in all refinements of the mesh.
+#[test]
+fn gaps_may_use_the_normals_of_a_curved_boundary() {
+    let folder = Scratch::new("gap-of-a-bore");
+    let mesh = mesh_file("holes.msh");
+    let text = format!(
+        "mesh = {:?}\n[boundary.outer]\nkind = \"dirichlet\"\n[boundary.bore]\nkind = \"contact\"\n\
+         gap = \"-1 + x - 0.1 * nx + 0.3 * y * ny\"\n[source]\ndefault = -1\n",
+        mesh.display().to_string()
+    );
+    let own = problem(&folder, &text).unwrap();
+    let single = own.mesh::<f32>().unwrap().unwrap().mesh;
+    let mut mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let mut normals = Vec::new();
+    for level in 0..2 {
+        let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
+        assert!(solved.converged());
+        let fields = solved.fields().unwrap();
+        for (&(cell, local), distance) in fields.contact_boundary.iter().zip(&fields.gap) {
+            let (x, n) = (mesh.facet_barycentre(cell, local), mesh.geometry(cell).normal(local));
+            // along a facet solution and gap are linear
+            let gap = -1.0 + x[0] - 0.1 * n[0] + 0.3 * x[1] * n[1];
+            let expected = solved.value_at(&x).unwrap() - gap;
+            assert!((distance - expected).abs() < 1e-9, "level {level}: {x} {distance} {expected}");
+            normals.push(n);
+        }
+        mesh = mesh.refine().unwrap().0;
+    }
+    assert!(normals.iter().any(|n| (n - normals[0]).norm() > 1.0));
+    assert!(solve(&own.problem, &single, &ConformingP1).unwrap().converged());
+}
