@@ -146,6 +146,21 @@ pub enum Error {
         /// The values allowed.
         allowed: String,
     },
+    /// A run would need more memory than the machine, the limits of the process and its control group leave.
+    #[error(
+        "{run}: would need about {:.1} GB of memory, {:.1} GB are available; choose {remedy}",
+        .needed / 1e9, .available / 1e9
+    )]
+    NotEnoughMemory {
+        /// The scheme, with its level or number of unknowns.
+        run: String,
+        /// The estimate in bytes, of the whole process.
+        needed: f64,
+        /// Bytes that the process may have in all.
+        available: f64,
+        /// What needs less.
+        remedy: &'static str,
+    },
     /// Two schemes or two solvers of a study have one name, and so have their rows and files.
     #[error(
         "two {items} of the study are named {name:?}, and nothing would tell their rows apart: name each once, and give one of your own another name by {by}"

@@ -123,17 +123,16 @@ impl Report {
                 cells.push((place, found));
             }
             // constant columns are in the title of the table, empty ones nowhere
-            let names = cells.first().map_or(Vec::new(), |(_, row)| {
-                row.iter().map(|(key, _)| key.clone()).enumerate().collect::<Vec<_>>()
-            });
-            let is_there = |at: usize| cells.iter().any(|(_, row)| !row[at].1.is_empty());
-            let names: Vec<(usize, String)> = names
-                .into_iter()
-                .filter(|(at, key)| is_there(*at) && key != "scene" && key != "dimension")
-                .collect();
-            let columns = names.iter().map(|(_, key)| place_of(&mut keys, key)).collect();
+            let mut names = distinct(cells.iter().flat_map(|(_, row)| row.iter().map(|of| &of.0)));
+            // objects of a row that failed are null and have no keys
+            let text = |row: &[(String, String)], name: &str| {
+                row.iter().find(|(key, _)| key == name).map_or(String::new(), |of| of.1.clone())
+            };
+            let is_there = |key: &str| cells.iter().any(|(_, row)| !text(row, key).is_empty());
+            names.retain(|key| is_there(key) && *key != "scene" && *key != "dimension");
+            let columns = names.iter().map(|key| place_of(&mut keys, key)).collect();
             let rows_of_table = cells.iter().map(|(place, row)| {
-                (*place, names.iter().map(|(at, _)| html_cell(&row[*at].1)).collect())
+                (*place, names.iter().map(|key| html_cell(&text(row, key))).collect())
             });
             tables.push(HtmlTable {
                 title: format!("{scene}, dimension {}", rows[0].dimension),

@@ -10,6 +10,8 @@ mod interrupt;
 mod limits;
 mod meshes;
 mod obstacles;
+#[cfg(unix)]
+mod one_run;
 mod output;
 mod over_processes;
 mod own_problems;

@@ -5,6 +5,7 @@ mod adaptive;
 mod forces;
 mod journal;
 mod links;
+mod memory;
 mod named_schemes;
 mod noise;
 mod one_problem;

@@ -65,11 +65,6 @@ pub fn end_at_interrupt(left: &'static str) -> Request<()> {
     .map_err(|e| format!("cannot handle interrupts: {e}"))
 }
 
-/// Makes a directory where there is none, before the work.
-pub fn make_directory(path: &Path) -> Request<()> {
-    fs::create_dir_all(path).map_err(|e| cannot_write(path, e))
-}
-
 /// An observed order that falls below the promised one by no more than this counts as kept.
 pub const ORDER_TOLERANCE: f64 = 0.1;
 

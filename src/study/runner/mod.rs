@@ -31,6 +31,7 @@ use crate::study::compatibility::{check_domain, check_fit, check_names, check_sc
 use crate::study::fields::FieldFiles;
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
+use crate::study::memory::memory_of_process;
 use crate::study::orders::fill_orders;
 use crate::study::reference::{Measured, Reference};
 use crate::study::report::{Program, Report};
@@ -184,7 +185,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Checks schemes, levels and mesh. Returns the point at which the exact solution of the scene
     /// breaks the contact condition of a given mesh.
     fn where_exact_fails(&self) -> Result<Option<String>, Error> {
-        let lengths = [("schemes", self.entries.len()), ("levels", self.row_levels().len())];
+        let levels = self.levels.len() + usize::from(self.adaptive.is_some());
+        let lengths = [("schemes", self.entries.len()), ("levels", levels)];
         if let Some(&(parameter, _)) = lengths.iter().find(|(_, length)| *length == 0) {
             let allowed = format!("a study needs {parameter}: at least one");
             return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
@@ -203,6 +205,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             let domain = self.mesh.is_none().then_some(&self.scene.domain);
             reference.check(domain, &self.levels)?;
             self.coarsest().check(reference.level)?;
+            self.check_level(&*reference.scheme, reference.level, memory_of_process())?;
         }
         let Some(mesh) = &self.mesh else {
             return check_domain(&self.scene).map(|()| None);
@@ -217,7 +220,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Runs every scheme with every solver on every level.
     ///
     /// # Errors
-    /// Errors of [`Self::check`], and [`Error::Write`] for fields and journal. A run that fails is no
+    /// Errors of [`Self::check`], and [`Error::Write`] for the journal, and after the last row for fields and
+    /// inequalities. A run that fails is no
     /// error: its row has the outcome and the message, also where data are not finite on a mesh, or leave
     /// no room for a solution.
     pub fn run(&self) -> Result<Report, Error> {
@@ -233,9 +237,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
         let kept: Vec<Option<Row>> = self.keys().iter().map(|key| self.kept(key)).collect();
         (self.observer)(Progress::Entered(Phase::Mesh));
+        let available = memory_of_process();
         let hierarchies = match kept.iter().all(Option::is_some) {
             true => Vec::new(),
-            false => self.hierarchies()?,
+            false => self.hierarchies(available)?,
         };
         let problems = self.problems();
         let reference_problem = self.reference_problem();
@@ -250,9 +255,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             .map(|solver| hierarchies.iter().map(|h| self.nested(h, solver)).collect())
             .collect();
         let mut kept = kept.into_iter();
-        let mut rows = Vec::new();
+        let (mut rows, mut unwritten) = (Vec::new(), None);
         for (entry, problem) in self.entries.iter().zip(&problems) {
-            for nested in &mut by_solver {
+            for (nested, solver) in by_solver.iter_mut().zip(self.solvers()) {
                 let label = entry.scheme.label_on(problem.constraint_set());
                 for &level in &self.levels {
                     if let Some(row) = kept.next().flatten() {
@@ -264,26 +269,40 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                     let (failure, reference) = (failure.as_deref(), reference.as_ref());
                     let measured = Measured { failure, reference };
                     let of = (entry, problem);
-                    let row = match &crossing {
-                        None => self.row(nested, of, level, measured)?.0,
-                        Some(crossing) => self.row_of_crossing(nested, of, level, crossing)?,
+                    // no more than in the beginning, when meshes that do not fit were not built
+                    let available =
+                        available.and_then(|bytes| Some(bytes.min(memory_of_process()?)));
+                    let fits = self.check_level(&*entry.scheme, level, available);
+                    let (row, solved) = match (fits, &crossing) {
+                        (Err(error), _) => {
+                            let place = (level, self.coarsest().cells(level));
+                            (self.row_without_memory(of, place, solver.name(), error)?, None)
+                        }
+                        (_, None) => self.row(nested, of, level, measured)?,
+                        (_, Some(crossing)) => {
+                            (self.row_of_crossing(nested, of, level, crossing)?, None)
+                        }
                     };
-                    self.finish(row, &mut rows)?;
+                    let row = self.finish(row, &mut rows)?;
+                    if let Some(solved) = &solved {
+                        let levels = &self.levels;
+                        self.write_files(row, levels, solved, measured, &mut unwritten)?;
+                    }
                 }
             }
         }
-        Ok(self.report(rows))
+        unwritten.map_or_else(|| Ok(self.report(rows)), Err)
     }
 
     /// Adds a row that is finished.
-    fn finish(&self, row: Row, rows: &mut Vec<Row>) -> Result<(), Error> {
+    fn finish<'r>(&self, row: Row, rows: &'r mut Vec<Row>) -> Result<&'r Row, Error> {
         #[cfg(feature = "report")]
         if let Some(journal) = self.journal {
             journal.add(&row)?;
         }
         (self.observer)(Progress::Finished(&row));
         rows.push(row);
-        Ok(())
+        Ok(&rows[rows.len() - 1])
     }
 
     /// The report of all rows.
@@ -300,14 +319,15 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect()
     }
 
-    /// What tells the rows of the study apart, in the order in which they run. Adaptive refinement may end
-    /// before the last step.
+    /// What tells the rows of the study apart, in the order in which they run; none of adaptive refinement, whose
+    /// number of steps is not known before.
     pub fn keys(&self) -> Vec<RowKey> {
         let mut keys = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&self.problems()) {
             let label = entry.scheme.label_on(problem.constraint_set());
             for solver in self.solvers() {
-                keys.extend(self.row_levels().into_iter().map(|level| RowKey {
+                let levels = self.levels.iter().filter(|_| self.adaptive.is_none());
+                keys.extend(levels.map(|&level| RowKey {
                     scene: self.scene.name.clone(),
                     label: label.clone(),
                     solver: solver.name().to_owned(),
@@ -345,13 +365,22 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let hierarchy = self.coarsest().build(level)?;
         let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
         let measured = Measured { failure: failure.as_deref(), reference: None };
-        Ok(vec![self.row(&mut nested, (entry, &problem), level, measured)?])
+        let (row, solved) = self.row(&mut nested, (entry, &problem), level, measured)?;
+        Ok(vec![(row, solved.map_or(0.0, |solved| solved.start_seconds))])
     }
 
-    /// The meshes of all levels: in one hierarchy with those of a reference.
-    fn hierarchies(&self) -> Result<Vec<Hierarchy<T, D>>, Error> {
+    /// The meshes of all levels on which a scheme fits into so many bytes: in one hierarchy with those of a reference.
+    fn hierarchies(&self, available: Option<u64>) -> Result<Vec<Hierarchy<T, D>>, Error> {
         match &self.reference {
-            None => self.coarsest().build_all(&self.levels),
+            None => {
+                let mut levels = self.levels.clone();
+                levels.retain(|&level| {
+                    let fits =
+                        |of: &Entry<'_, T, D>| self.check_level(&*of.scheme, level, available);
+                    self.entries.iter().any(|entry| fits(entry).is_ok())
+                });
+                self.coarsest().build_all(&levels)
+            }
             Some(reference) => {
                 let coarsest = self.levels.iter().copied().min().unwrap_or(1);
                 Ok(vec![self.coarsest().build_from(reference.level, coarsest)?])

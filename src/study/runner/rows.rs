@@ -22,15 +22,15 @@ use crate::study::row::Row;
 use crate::study::setting::setting;
 
 impl<T: Real, const D: usize> Study<'_, T, D> {
-    /// Solves one scheme on one level of these hierarchies. Returns the row, and the seconds of its start
-    /// from coarser levels.
+    /// Solves one scheme on one level of these hierarchies. Returns the row and the solution; none where the data left
+    /// none.
     pub(super) fn row<'p>(
         &self,
         nested: &mut [NestedIteration<'p, T, D>],
         (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
         level: usize,
         measured: Measured<'_, 'p, T, D>,
-    ) -> Result<(Row, f64), Error> {
+    ) -> Result<(Row, Option<Solved<'p, T, D>>), Error> {
         let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
         let Some((position, nested)) = on_level.next() else {
             unreachable!("a hierarchy has the level")
@@ -39,14 +39,14 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         nested.replace_constraint_set(problem);
         match nested.solve_on(position, &*entry.scheme) {
             Ok(solved) => {
-                let row = self.row_of(entry, (level, &self.levels), &solved, solver, measured)?;
-                Ok((row, solved.start_seconds))
+                let row = self.row_of(entry, level, &solved, solver, measured)?;
+                Ok((row, Some(solved)))
             }
             Err(error) => {
                 let place = (level, nested.mesh(position));
                 let row =
                     self.row_without((entry, problem), place, solver, measured.failure, error)?;
-                Ok((row, 0.0))
+                Ok((row, None))
             }
         }
     }
@@ -93,50 +93,55 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         self.named(entry, problem, without_solution, failure).with_error(error)
     }
 
-    /// The row of a solution, after its files are written; `levels` are those that have files.
+    /// The row of a solution.
     pub(super) fn row_of<'p>(
         &self,
         entry: &Entry<'_, T, D>,
-        (level, levels): (usize, &[usize]),
+        level: usize,
         solved: &Solved<'p, T, D>,
         solver: &str,
         measured: Measured<'_, 'p, T, D>,
     ) -> Result<Row, Error> {
-        let label = entry.scheme.label_on(solved.discretisation().problem().constraint_set());
+        (self.observer)(Progress::Entered(Phase::Measures));
+        let row = self.measured_row(entry, level, solved, measured)?;
+        let (solver, peak_memory_bytes) = (solver.to_owned(), peak_memory_bytes());
+        Ok(Row { solver, peak_memory_bytes, ..row })
+    }
+
+    /// Writes the files of a solution whose row is finished; `levels` are those that have files. The first file that
+    /// cannot be written goes to `unwritten`: it is no reason for the other rows not to run.
+    ///
+    /// # Errors
+    /// Those of the function for each solution.
+    #[cfg_attr(not(feature = "report"), expect(unused_variables))]
+    pub(super) fn write_files<'p>(
+        &self,
+        row: &Row,
+        levels: &[usize],
+        solved: &Solved<'p, T, D>,
+        measured: Measured<'_, 'p, T, D>,
+        unwritten: &mut Option<Error>,
+    ) -> Result<(), Error> {
+        let Row { scene, label, solver, level, .. } = row;
         let name = match self.solvers.len() {
             0 | 1 => label.clone(),
             _ => format!("{label}-{solver}"),
         };
         #[cfg(feature = "report")]
-        let written = {
+        {
             let reference = measured.reference.and_then(|found| found.as_ref().ok());
             let reference = reference.map(|(reference, _)| reference);
-            let of = (&self.scene.name[..], &name[..]);
-            let mut written = self.fields.write(of, level, levels, solved, reference);
-            if let (Ok(()), Some(directory)) = (&written, &self.inequalities) {
-                let name = format!("{}-{label}-{level}", self.scene.name);
-                let folder = directory.join(file_name(&name));
-                written = write_inequality(folder, solved.inequality(), solved.mesh());
-            }
-            written
-        };
-        #[cfg(not(feature = "report"))]
-        let _ = levels;
-        if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
-            f(&name, level, solved)?;
+            let fields = self.fields.write((scene, &name), *level, levels, solved, reference);
+            let dumped = self.inequalities.as_ref().map_or(Ok(()), |directory| {
+                let folder = directory.join(file_name(&format!("{scene}-{label}-{level}")));
+                write_inequality(folder, solved.inequality(), solved.mesh())
+            });
+            *unwritten = unwritten.take().or(fields.err()).or(dumped.err());
         }
-        (self.observer)(Progress::Entered(Phase::Measures));
-        let row = self.measured_row(entry, level, solved, measured)?;
-        let (solver, peak_memory_bytes) = (solver.to_owned(), peak_memory_bytes());
-        let row = Row { solver, peak_memory_bytes, ..row };
-        #[cfg(feature = "report")]
-        if let (Err(_), Some(journal)) = (&written, self.journal) {
-            // the study ends, and the row is finished
-            journal.add(&row)?;
+        match self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
+            Some(f) => f(&name, *level, solved),
+            None => Ok(()),
         }
-        #[cfg(feature = "report")]
-        written?;
-        Ok(row)
     }
 
     /// The row of a solution with its errors and totals, without solver and memory.

@@ -17,7 +17,7 @@ use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
 use unilateral::real::Real;
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Journal, Row, RowKey, Study, available_memory_bytes, file_name};
+use unilateral::study::{Journal, Row, RowKey, Study, file_name};
 
 /// A study that has been checked.
 pub struct Run<'a> {
@@ -101,21 +101,7 @@ pub fn prepare<'a, T: Real, const D: usize>(
     }
     match study.check() {
         Err(Error::UnfitMesh { .. }) if !options.scenes_are_named() => return Ok(None),
-        other => other.map_err(|e| format!("{place}: {e}"))?,
-    }
-    if let (Some(need), Some(free)) = (study.memory_estimate(), available_memory_bytes())
-        && need.bytes > free as f64
-    {
-        let (run, less) = match &options.adaptive {
-            Some(of) => (format!("{} unknowns", of.unknowns), "fewer unknowns"),
-            None => (format!("level {}", need.level), "a lower level"),
-        };
-        return Err(format!(
-            "scene {name}, scheme {}, {run}: would need about {:.1} GB of memory, {:.1} GB are available; choose {less}",
-            need.scheme,
-            need.bytes / 1e9,
-            free as f64 / 1e9
-        ));
+        other => other.and_then(|()| study.check_memory()).map_err(|e| format!("{place}: {e}"))?,
     }
     let keys = study.keys();
     // how many steps a bound takes is not known before

@@ -16,8 +16,9 @@ use std::path::Path;
 pub use options::Options;
 
 use crate::mesh_file::with_parts;
+use crate::one_run::take_directory;
 use crate::shared::{
-    Failure, bar, check_writable, end_at_interrupt, make_directory, print, tick, use_threads, write,
+    Failure, bar, check_writable, end_at_interrupt, print, tick, use_threads, write,
 };
 use unilateral::mesh::gmsh;
 use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
@@ -54,7 +55,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     }
     study.check().map_err(|e| e.to_string())?;
     check_writable(&options.markdown)?;
-    make_directory(&options.out)?;
+    take_directory(&options.out)?;
     end_at_interrupt("the report has the rows so far and is not complete")?;
     let report = study.run().map_err(Failure::of_work)?;
     bar.finish_and_clear();

@@ -25,10 +25,11 @@ use unilateral::work_precision::{
 };
 
 use crate::adaptive::words;
+use crate::one_run::take_directory;
 use crate::posed::Posed;
 use crate::shared::{
-    Failure, Request, bar, check_writable, end_at_interrupt, make_directory, print, print_to, read,
-    tick, use_threads, write,
+    Failure, Request, bar, check_writable, end_at_interrupt, print, print_to, read, tick,
+    use_threads, write,
 };
 
 /// The label of which the verdicts speak by default.
@@ -83,7 +84,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         );
     }
     check_writable(&options.save)?;
-    make_directory(&options.out)?;
+    take_directory(&options.out)?;
     end_at_interrupt("the report has the runs so far and is not complete")?;
     // rows of an earlier request do not stand for this one
     report.write_data(&options.out).map_err(Failure::of_work)?;
