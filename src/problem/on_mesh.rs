@@ -3,7 +3,7 @@
 use super::Problem;
 use super::datum::{BoundaryFlux, Datum, Field};
 use crate::error::Error;
-use crate::input::excerpt;
+use crate::input::{excerpt, excerpts};
 use crate::mesh::{BoundaryGroup, BoundaryPart, Mesh, MeshError};
 use crate::real::{Point, Real};
 
@@ -185,15 +185,12 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
 
 /// The error for a name that no region or boundary group has.
 fn unknown_group(name: &str, is_boundary: bool, groups: &[&[String]]) -> Error {
-    let mut known: Vec<String> = groups.iter().copied().flatten().map(excerpt).collect();
-    known.sort_unstable();
-    known.dedup();
     Error::UnknownGroup {
         kind: if is_boundary { "boundary group" } else { "region" },
         name: excerpt(name),
-        known: match &known[..] {
-            [] => "it has none with a name".to_owned(),
-            known => format!("it has {}", known.join(", ")),
+        known: match &excerpts(groups.iter().copied().flatten())[..] {
+            "" => "it has none with a name".to_owned(),
+            known => format!("it has {known}"),
         },
     }
 }

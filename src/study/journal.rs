@@ -18,7 +18,8 @@ const ROWS: &str = "report.jsonl";
 /// The rows of a run in a directory: `report.jsonl` has each finished row as one line of JSON, written
 /// before the next row begins, and `report.json` the program, with `"complete": false`. However the run
 /// ends, [`Report::read`] finds the rows, and [`Journal::resume`] goes on from them. A run that ends of
-/// itself replaces `report.json` by the whole report ([`Report::write`]).
+/// itself replaces `report.json` by the whole report ([`Report::write`]). Two runs at a time need two directories:
+/// the program `unilateral` locks its own.
 ///
 /// ```
 /// use unilateral::prelude::*;
@@ -207,7 +208,10 @@ impl Report {
                 false => "delete it to begin anew".to_owned(),
             };
             let (line, column) = (why.line(), why.column());
-            read_error(&path, format!("it is damaged at line {line}, column {column}: {rest}"))
+            read_error(
+                &path,
+                format!("it is no report, or damaged, at line {line}, column {column}: {rest}"),
+            )
         })?;
         if !report.complete && lines.exists() {
             report.rows = rows_of(&lines)?;

@@ -73,7 +73,11 @@ fn messages_quote_foreign_text_in_part_only() {
             ("compare", "--levels"),
             ("work-precision", "--scene"),
             ("work-precision", "--scheme"),
+            ("work-precision", "--against"),
+            ("work-precision", "--subject"),
             ("stability", "--case"),
+            ("stability", "--scheme"),
+            ("stability", "--mesh"),
             ("pictures", "--scene"),
             ("pictures", "--scheme"),
         ] {
@@ -92,6 +96,8 @@ fn messages_quote_foreign_text_in_part_only() {
             let wall = Square::sound().replace("\"dirichlet\"", &format!("\"{word}\""));
             let wall = scratch.file("wall.msh", &wall);
             check_message(&scratch.run_split(&["--mesh", &wall]), "a group");
+            let boundary = ["--mesh", &wall, "--boundary", &format!("{word}s=neumann")];
+            check_message(&scratch.run_split(&boundary), "--boundary");
             let section = Square::sound().replace("$Elements", &format!("${word}\n$Elements"));
             let section = scratch.file("section.msh", &section);
             check_message(&scratch.run_split(&["--mesh", &section]), "a section");

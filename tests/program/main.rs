@@ -9,6 +9,7 @@ mod free_bodies;
 mod interrupt;
 mod limits;
 mod meshes;
+mod messages;
 mod obstacles;
 #[cfg(unix)]
 mod one_run;

@@ -135,7 +135,7 @@ fn another_request_is_refused_and_nothing_changes() {
     fs::write(scratch.0.join("report.json"), "{\"program\"").unwrap();
     let error = Journal::resume(&scratch.0, program(), &keys).unwrap_err().to_string();
     let expected =
-        "report.json: it is damaged at line 1, column 10: delete it, the rows are also in";
+        "report.json: it is no report, or damaged, at line 1, column 10: delete it, the rows are";
     assert!(error.contains(expected), "{error}");
 }
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use unilateral::input::{excerpt, excerpts};
 use unilateral::mesh::{BoundaryPart, Mesh, MeshError, gmsh};
 use unilateral::real::Real;
 
@@ -54,7 +55,7 @@ pub fn with_parts<T: Real, const D: usize>(
     let groups: Vec<&str> =
         mesh.boundary_groups().iter().flat_map(|g| &g.names).map(String::as_str).collect();
     if let Some((group, _)) = boundary.iter().find(|(name, _)| !groups.contains(&&name[..])) {
-        let groups = groups.join(", ");
+        let (group, groups) = (excerpt(group), excerpts(groups));
         return Err(format!("--boundary: {file} has no group {group}; it has {groups}"));
     }
     let part_of = |name: &str| {

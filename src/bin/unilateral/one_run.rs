@@ -1,14 +1,14 @@
 //! One directory has one run at a time.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use unilateral::input::excerpt;
 use unilateral::output::Provenance;
 
-use crate::shared::{Request, cannot_write, print_to};
+use crate::shared::{Request, cannot_write, warn};
 
 /// The file of a directory that its run locks. It names the process and stays; what keeps others out is the lock.
 const LOCK: &str = ".lock";
@@ -34,9 +34,7 @@ pub fn take_directory(path: &Path) -> Request<()> {
         // some file systems have no locks
         Err(TryLockError::Error(why)) => {
             let path = path.display();
-            let text =
-                format!("warning: {path} cannot be locked, start no other run there: {why}\n");
-            print_to(io::stderr(), &text)?;
+            warn(&format!("warning: {path} cannot be locked, start no other run there: {why}"));
         }
     }
     let since = Provenance::now(0).date.map_or_else(String::new, |date| format!(" since {date}"));

@@ -20,9 +20,7 @@ use crate::adaptive::adaptivity;
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
 use crate::posed::Posed;
-use crate::shared::{
-    Failure, Request, end_at_interrupt, fields_with_bound, print, print_to, scene,
-};
+use crate::shared::{Failure, Request, end_at_interrupt, fields_with_bound, print, scene, warn};
 
 /// Draws the solution of a scheme on a scene, or on a problem of your own
 #[derive(Args, Debug)]
@@ -78,9 +76,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
 
 /// Draws one level, and writes the fields of the series.
 fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Failure> {
-    let warn = |warning: String| {
-        let _ = print_to(std::io::stderr(), &format!("{warning}\n"));
-    };
+    let warn = |warning: String| warn(&warning);
     let mesh = options.mesh.read(&warn)?;
     let study = |warn: &dyn Fn(String)| -> Request<Study<'_, f64, D>> {
         let study = posed.clone().study(warn)?.named_scheme(&options.scheme);

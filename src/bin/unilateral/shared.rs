@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use unilateral::input::{excerpt, read_file};
+use unilateral::input::{beginning, excerpt, read_file};
 use unilateral::measure::Fields;
 use unilateral::nested::Solved;
 use unilateral::real::Real;
@@ -81,9 +81,17 @@ pub fn print_to(mut stream: impl Write, text: &str) -> Request<()> {
     }
 }
 
-/// Prints an error to standard error.
+/// Prints an error to standard error, in one line.
 pub fn complain(message: &str) {
-    let _ = writeln!(std::io::stderr(), "error: {message}");
+    warn(&format!("error: {message}"));
+}
+
+/// Prints one line to standard error. No path or name in it is longer than this many characters.
+pub fn warn(message: &str) {
+    const LONGEST: usize = 300;
+    let words: Vec<String> =
+        message.split(' ').map(|word| beginning(word.as_bytes(), LONGEST)).collect();
+    let _ = writeln!(std::io::stderr(), "{}", words.join(" "));
 }
 
 pub fn read(path: &Path) -> Request<Vec<u8>> {

@@ -8,6 +8,7 @@ use super::error::{ProblemFileError, ProblemFileFault};
 use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
 use crate::error::Error;
+use crate::input::beginning;
 use crate::mesh::{BoundaryPart, BoxDomain, SIDES, gmsh};
 use crate::problem::{Datum, Problem};
 use crate::real::Point;
@@ -210,6 +211,9 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     }
 }
 
+/// Characters of the name of a problem, at most.
+const LONGEST_NAME: usize = 80;
+
 /// The problem of a file, in its dimension.
 pub(super) fn problem<'t, const D: usize>(
     source: &Source<'t>,
@@ -218,9 +222,11 @@ pub(super) fn problem<'t, const D: usize>(
 ) -> Done<OwnProblem<D>> {
     source.allow(root, &KEYS)?;
     let name = match root.get("name") {
-        Some(name) => source.string("name", name)?.to_owned(),
-        None => source.path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        Some(name) => source.string("name", name)?.into(),
+        None => source.path.file_stem().unwrap_or_default().to_string_lossy(),
     };
+    // it stands in tables, plots and names of files
+    let name = beginning(name.as_bytes(), LONGEST_NAME);
     let mut builder = Builder {
         source,
         problem: Problem::<D>::new(),

@@ -269,20 +269,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                     let (failure, reference) = (failure.as_deref(), reference.as_ref());
                     let measured = Measured { failure, reference };
                     let of = (entry, problem);
-                    // no more than in the beginning, when meshes that do not fit were not built
-                    let available =
-                        available.and_then(|bytes| Some(bytes.min(memory_of_process()?)));
-                    let fits = self.check_level(&*entry.scheme, level, available);
-                    let (row, solved) = match (fits, &crossing) {
-                        (Err(error), _) => {
-                            let place = (level, self.coarsest().cells(level));
-                            (self.row_without_memory(of, place, solver.name(), error)?, None)
-                        }
-                        (_, None) => self.row(nested, of, level, measured)?,
-                        (_, Some(crossing)) => {
-                            (self.row_of_crossing(nested, of, level, crossing)?, None)
-                        }
-                    };
+                    let why_not = (&crossing, available);
+                    let place = (level, solver.name());
+                    let (row, solved) = self.row_or_reason(nested, of, place, measured, why_not)?;
                     let row = self.finish(row, &mut rows)?;
                     if let Some(solved) = &solved {
                         let levels = &self.levels;
@@ -292,17 +281,6 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             }
         }
         unwritten.map_or_else(|| Ok(self.report(rows)), Err)
-    }
-
-    /// Adds a row that is finished.
-    fn finish<'r>(&self, row: Row, rows: &'r mut Vec<Row>) -> Result<&'r Row, Error> {
-        #[cfg(feature = "report")]
-        if let Some(journal) = self.journal {
-            journal.add(&row)?;
-        }
-        (self.observer)(Progress::Finished(&row));
-        rows.push(row);
-        Ok(&rows[rows.len() - 1])
     }
 
     /// The report of all rows.

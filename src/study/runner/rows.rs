@@ -16,12 +16,45 @@ use crate::scheme::{AnyScheme, ExpectedOrders};
 use crate::study::crossing::Crossing;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
-use crate::study::memory::peak_memory_bytes;
+use crate::study::memory::{memory_of_process, peak_memory_bytes};
 use crate::study::reference::Measured;
 use crate::study::row::Row;
 use crate::study::setting::setting;
 
 impl<T: Real, const D: usize> Study<'_, T, D> {
+    /// Adds a row that is finished.
+    pub(super) fn finish<'r>(&self, row: Row, rows: &'r mut Vec<Row>) -> Result<&'r Row, Error> {
+        #[cfg(feature = "report")]
+        if let Some(journal) = self.journal {
+            journal.add(&row)?;
+        }
+        (self.observer)(Progress::Finished(&row));
+        rows.push(row);
+        Ok(&rows[rows.len() - 1])
+    }
+
+    /// The row of one scheme on one level of these hierarchies, with its solution: none where it does not fit into so
+    /// many bytes, the most of the beginning, or bounds cross.
+    pub(super) fn row_or_reason<'p>(
+        &self,
+        nested: &mut [NestedIteration<'p, T, D>],
+        of: (&Entry<'_, T, D>, &'p Problem<D>),
+        (level, solver): (usize, &str),
+        measured: Measured<'_, 'p, T, D>,
+        (crossing, available): (&Option<Crossing<D>>, Option<u64>),
+    ) -> Result<(Row, Option<Solved<'p, T, D>>), Error> {
+        // meshes that did not fit in the beginning were not built
+        let available = available.and_then(|bytes| Some(bytes.min(memory_of_process()?)));
+        if let Err(error) = self.check_level(&*of.0.scheme, level, available) {
+            let cells = self.coarsest().cells(level);
+            return Ok((self.row_without_memory(of, (level, cells), solver, error)?, None));
+        }
+        match crossing {
+            None => self.row(nested, of, level, measured),
+            Some(crossing) => Ok((self.row_of_crossing(nested, of, level, crossing)?, None)),
+        }
+    }
+
     /// Solves one scheme on one level of these hierarchies. Returns the row and the solution; none where the data left
     /// none.
     pub(super) fn row<'p>(
@@ -52,7 +85,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     }
 
     /// The row of a problem whose bounds cross on the finest mesh, on one level of these hierarchies.
-    pub(super) fn row_of_crossing<'p>(
+    fn row_of_crossing<'p>(
         &self,
         nested: &[NestedIteration<'p, T, D>],
         of: (&Entry<'_, T, D>, &'p Problem<D>),

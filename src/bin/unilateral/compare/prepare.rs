@@ -23,7 +23,7 @@ use unilateral::study::{Journal, Row, RowKey, Study, file_name};
 pub struct Run<'a> {
     /// What tells its rows apart.
     pub keys: Vec<RowKey>,
-    /// Scene and mesh, for messages.
+    /// Problem file, or scene and mesh, for messages.
     pub place: String,
     /// Runs it.
     pub run: Box<dyn FnOnce(&'a Journal) -> Result<Vec<Row>, Error> + 'a>,
@@ -94,7 +94,7 @@ pub fn prepare<'a, T: Real, const D: usize>(
     if let Some((scheme, level)) = &options.reference {
         study = study.named_reference(scheme, *level);
     }
-    let mut place = format!("scene {name}");
+    let mut place = place(options, &name);
     if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh.path) {
         place = format!("{}, {place}", path.display());
         study = study.on_mesh(options.mesh.parse(bytes, &|warning| watcher.warn_once(warning))?);
@@ -110,6 +110,14 @@ pub fn prepare<'a, T: Real, const D: usize>(
     }
     let run = move |journal| Ok(study.journal(journal).run()?.rows);
     Ok(Some(Run { keys, place, run: Box::new(run) }))
+}
+
+/// What a message is about: the file of a problem, or a scene.
+pub fn place(options: &Options, name: &str) -> String {
+    match &options.problem {
+        Some(path) => path.display().to_string(),
+        None => format!("scene {name}"),
+    }
 }
 
 /// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.

@@ -28,8 +28,8 @@ use crate::adaptive::words;
 use crate::one_run::take_directory;
 use crate::posed::Posed;
 use crate::shared::{
-    Failure, Request, bar, check_writable, end_at_interrupt, print, print_to, read, tick,
-    use_threads, write,
+    Failure, Request, bar, check_writable, end_at_interrupt, print, read, tick, use_threads, warn,
+    write,
 };
 
 /// The label of which the verdicts speak by default.
@@ -156,10 +156,9 @@ fn prepare<'a, const D: usize>(
     };
     if !posed.has_exact() && options.reference.is_none() && !options.quiet {
         let reference = "--reference N measures against a fine solution";
-        let text = format!(
-            "warning: {place}: only bounds are reached, for no error is known; {reference}\n"
-        );
-        print_to(std::io::stderr(), &text)?;
+        warn(&format!(
+            "warning: {place}: only bounds are reached, for no error is known; {reference}"
+        ));
     }
     let mesh = options.mesh.read(&|_| {})?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
