@@ -114,4 +114,11 @@ fn a_file_that_cannot_be_written_costs_no_row() {
     let rows = Report::read(scratch.0.join("out")).unwrap().rows;
     assert_eq!(rows.iter().filter(|row| row.converged()).count(), 8, "{message}");
     assert!(Path::new(&scratch.path("out/radial-1d-cr.vtu")).is_file());
+    // what was in the way is gone: the fields are written, and the rows stay
+    fs::remove_dir(&field).unwrap();
+    let resume = "--scene radial-1d,radial-2d --scheme p1,cr --levels 4,8 --resume";
+    let output = scratch.run(resume);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(field.is_file());
+    assert!(Report::read(scratch.0.join("out")).unwrap().rows == rows);
 }

@@ -235,20 +235,19 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         if let Some(adaptivity) = self.adaptive {
             return self.run_adaptive(adaptivity, failure.as_deref());
         }
-        let kept: Vec<Option<Row>> = self.keys().iter().map(|key| self.kept(key)).collect();
+        let kept: Vec<(Option<Row>, bool)> = self.keys().iter().map(|key| self.kept(key)).collect();
         (self.observer)(Progress::Entered(Phase::Mesh));
         let available = memory_of_process();
-        let hierarchies = match kept.iter().all(Option::is_some) {
+        let hierarchies = match kept.iter().all(|of| of.1) {
             true => Vec::new(),
             false => self.hierarchies(available)?,
         };
         let problems = self.problems();
         let reference_problem = self.reference_problem();
         let crossing = self.find_crossing(&hierarchies)?;
-        let reference = match crossing {
-            None => self.find_reference(&reference_problem, &hierarchies),
-            Some(_) => None,
-        };
+        let find_reference = || self.find_reference(&reference_problem, &hierarchies);
+        let reference = crossing.is_none().then(find_reference).flatten();
+        let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
             .solvers()
             .iter()
@@ -260,19 +259,23 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             for (nested, solver) in by_solver.iter_mut().zip(self.solvers()) {
                 let label = entry.scheme.label_on(problem.constraint_set());
                 for &level in &self.levels {
-                    if let Some(row) = kept.next().flatten() {
+                    let (kept, is_whole) = kept.next().unwrap_or_default();
+                    if let Some(row) = kept.clone() {
                         (self.observer)(Progress::Kept(&row));
                         rows.push(row);
+                    }
+                    if is_whole {
                         continue;
                     }
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                    let (failure, reference) = (failure.as_deref(), reference.as_ref());
-                    let measured = Measured { failure, reference };
                     let of = (entry, problem);
                     let why_not = (&crossing, available);
                     let place = (level, solver.name());
                     let (row, solved) = self.row_or_reason(nested, of, place, measured, why_not)?;
-                    let row = self.finish(row, &mut rows)?;
+                    let row = match &kept {
+                        Some(row) => row,
+                        None => self.finish(row, &mut rows)?,
+                    };
                     if let Some(solved) = &solved {
                         let levels = &self.levels;
                         self.write_files(row, levels, solved, measured, &mut unwritten)?;
@@ -316,14 +319,16 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         keys
     }
 
-    /// The row that the journal has from an earlier run.
+    /// The row that the journal has from an earlier run, and whether its files are there.
     #[cfg(feature = "report")]
-    fn kept(&self, key: &RowKey) -> Option<Row> {
-        self.journal?.take(key)
+    fn kept(&self, key: &RowKey) -> (Option<Row>, bool) {
+        let row = self.journal.and_then(|journal| journal.take(key));
+        let is_whole = row.as_ref().is_some_and(|row| !self.lacks_files(row));
+        (row, is_whole)
     }
     #[cfg(not(feature = "report"))]
-    fn kept(&self, _: &RowKey) -> Option<Row> {
-        None
+    fn kept(&self, _: &RowKey) -> (Option<Row>, bool) {
+        (None, false)
     }
 
     /// Runs the first scheme with the first solver on the first level with a new hierarchy, so that no

@@ -141,6 +141,22 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         Ok(Row { solver, peak_memory_bytes, ..row })
     }
 
+    /// What tells the files of a row apart from others of its scene and level.
+    fn name_of_files(&self, row: &Row) -> String {
+        match self.solvers.len() {
+            0 | 1 => row.label.clone(),
+            _ => format!("{}-{}", row.label, row.solver),
+        }
+    }
+
+    /// Whether the fields of a row of an earlier run are wanted and not there: the run ended before they were written.
+    #[cfg(feature = "report")]
+    pub(super) fn lacks_files(&self, row: &Row) -> bool {
+        let name = self.name_of_files(row);
+        let lacks = self.fields.lack((&row.scene, &name), row.level, &self.levels);
+        lacks && row.status.has_iterate()
+    }
+
     /// Writes the files of a solution whose row is finished; `levels` are those that have files. The first file that
     /// cannot be written goes to `unwritten`: it is no reason for the other rows not to run.
     ///
@@ -155,11 +171,8 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         measured: Measured<'_, 'p, T, D>,
         unwritten: &mut Option<Error>,
     ) -> Result<(), Error> {
-        let Row { scene, label, solver, level, .. } = row;
-        let name = match self.solvers.len() {
-            0 | 1 => label.clone(),
-            _ => format!("{label}-{solver}"),
-        };
+        let Row { scene, label, level, .. } = row;
+        let name = self.name_of_files(row);
         #[cfg(feature = "report")]
         {
             let reference = measured.reference.and_then(|found| found.as_ref().ok());
