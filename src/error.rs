@@ -22,7 +22,7 @@ pub enum Error {
     #[error(transparent)]
     Quadrature(#[from] QuadratureError),
     /// A datum is not a finite number at a point where it is evaluated.
-    #[error("{datum} is {value} at {at} in cell {cell}: data of a scene must be finite")]
+    #[error("{datum} is {value} at {at} in cell {cell}: data must be finite")]
     DataNotFinite {
         /// Name of the datum: "source", "dirichlet", "obstacle", ...
         datum: &'static str,
@@ -45,7 +45,7 @@ pub enum Error {
     },
     /// Two constraints leave no admissible value.
     #[error(
-        "no admissible value in cell {cell} near {at}: lower bound {lower} exceeds upper bound {upper}"
+        "no admissible value in cell {cell} near {at}: the {}, {lower}, exceeds the {}, {upper}", of[0], of[1]
     )]
     EmptyConstraint {
         /// The unknown; on a [part](crate::mesh::Part) its number there.
@@ -58,10 +58,12 @@ pub enum Error {
         lower: f64,
         /// The smaller upper bound.
         upper: f64,
+        /// What the two are: "lower obstacle", "gap", "Dirichlet value on `wall`".
+        of: Box<[String; 2]>,
     },
     /// Lower bounds exceed upper ones at a point of the finest mesh of a study.
     #[error(
-        "no function is admissible: at {at}, in cell {cell} of the finest mesh, the lower bound {lower} exceeds the upper bound {upper}"
+        "no function is admissible: at {at}, a point of the finest mesh, the lower bound {lower} exceeds the upper bound {upper}"
     )]
     BoundsCross {
         /// The cell.
@@ -124,7 +126,7 @@ pub enum Error {
         why: String,
     },
     /// Mesh and scene disagree.
-    #[error("mesh does not fit scene {scene}: {why}")]
+    #[error("the mesh does not fit {scene}: {why}")]
     UnfitMesh {
         /// Name of the scene.
         scene: String,
@@ -145,6 +147,21 @@ pub enum Error {
         value: String,
         /// The values allowed.
         allowed: String,
+    },
+    /// A run would need more memory than the machine, the limits of the process and its control group leave.
+    #[error(
+        "{run}: would need about {:.1} GB of memory, {:.1} GB are available; choose {remedy}",
+        .needed / 1e9, .available / 1e9
+    )]
+    NotEnoughMemory {
+        /// The scheme, with its level or number of unknowns.
+        run: String,
+        /// The estimate in bytes, of the whole process.
+        needed: f64,
+        /// Bytes that the process may have in all.
+        available: f64,
+        /// What needs less.
+        remedy: &'static str,
     },
     /// Two schemes or two solvers of a study have one name, and so have their rows and files.
     #[error(

@@ -33,15 +33,36 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>> {
 }
 
 /// Foreign text for a message: at most 40 characters, an ellipsis in place of the rest, control
-/// characters and bytes that are not UTF-8 replaced by U+FFFD.
+/// characters as escapes, bytes that are not UTF-8 replaced by U+FFFD.
 pub fn excerpt(text: impl AsRef<[u8]>) -> String {
-    const LONGEST: usize = 40;
-    let bytes = text.as_ref();
+    beginning(text.as_ref(), 40)
+}
+
+/// As [`excerpt`], with so many characters.
+pub fn beginning(bytes: &[u8], longest: usize) -> String {
     // no character is longer than four bytes
-    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * LONGEST + 4)]);
-    let shown = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-    let rest = text.chars().nth(LONGEST).map(|_| '…');
-    text.chars().take(LONGEST).map(shown).chain(rest).collect()
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * longest + 4)]);
+    let rest = text.chars().nth(longest).map(|_| '…');
+    let mut shown = String::new();
+    for c in text.chars().take(longest).chain(rest) {
+        match c.is_control() {
+            true => shown.extend(c.escape_default()),
+            false => shown.push(c),
+        }
+    }
+    shown
+}
+
+/// Foreign names in a list: excerpts of the first twenty in alphabetical order, and how many more there are.
+pub fn excerpts<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
+    const MOST: usize = 20;
+    let mut names: Vec<String> = names.into_iter().map(|name| excerpt(name.as_ref())).collect();
+    names.sort_unstable();
+    names.dedup();
+    let more = names.len().saturating_sub(MOST);
+    names.truncate(MOST);
+    let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+    names.join(", ") + &rest
 }
 
 /// A number, NaN for null: reports have null for numbers that are not finite.
@@ -62,17 +83,25 @@ pub(crate) fn number_or_infinity<'de, D: serde::Deserializer<'de>>(
 
 #[cfg(test)]
 mod tests {
-    use super::excerpt;
+    use super::{excerpt, excerpts};
 
     #[test]
     fn foreign_text_is_short_and_printable() {
         assert_eq!(excerpt("contact"), "contact");
-        assert_eq!(excerpt("a\u{1b}[31m\nb\u{85}"), "a\u{fffd}[31m\u{fffd}b\u{fffd}");
+        assert_eq!(excerpt("a\u{1b}[31m\nb\u{85}"), "a\\u{1b}[31m\\nb\\u{85}");
         assert_eq!(excerpt(b"\xffend"), "\u{fffd}end");
         for c in ["x", "é", "漢", "🦀"] {
             assert_eq!(excerpt(c.repeat(40)), c.repeat(40));
             assert_eq!(excerpt(c.repeat(41)), c.repeat(40) + "…");
             assert_eq!(excerpt(c.repeat(100_000)), c.repeat(40) + "…");
         }
+        assert_eq!(excerpts(["b", "a", "b"]), "a, b");
+        let many: Vec<String> = (100..200).map(|k| format!("{k}{}", "x".repeat(1000))).collect();
+        let shown = excerpts(&many);
+        assert!(
+            shown.starts_with("100xx")
+                && shown.ends_with("…, 119xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx… and 80 more"),
+            "{shown}"
+        );
     }
 }

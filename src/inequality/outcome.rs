@@ -88,6 +88,7 @@ impl Outcome {
             }
             Error::EmptyConstraint { .. } | Error::BoundsCross { .. } => Some(Outcome::Infeasible),
             Error::Parameter { .. } => Some(Outcome::OutOfRange),
+            Error::NotEnoughMemory { .. } => Some(Outcome::OutOfMemory),
             _ => None,
         }
     }

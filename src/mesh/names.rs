@@ -8,6 +8,7 @@ use super::facets::Neighbours;
 use super::groups::BoundaryGroup;
 use super::simplicial::Mesh;
 use super::validate::is_supported;
+use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::real::Real;
 
@@ -102,7 +103,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 match known {
                     Some((first, other)) if other != found => {
                         return Err(MeshError::GroupInTwoParts {
-                            groups: Box::new([first.to_owned(), name.clone()]),
+                            groups: Box::new([first, name].map(excerpt)),
                             parts: [other.name(), found.name()],
                         });
                     }

@@ -7,7 +7,9 @@ use serde_json::Value;
 use super::csv::flatten;
 use super::html::{HtmlCell, HtmlPage, HtmlTable};
 use super::table::{Cell, Table};
+use crate::input::beginning;
 use crate::study::rates::rates;
+use crate::study::remarks::{failure, warnings};
 use crate::study::row::distinct;
 use crate::study::table::{Column, columns, heading, limits, scenes, totals, unproven};
 use crate::study::{Program, Report, Row, file_name};
@@ -123,17 +125,16 @@ impl Report {
                 cells.push((place, found));
             }
             // constant columns are in the title of the table, empty ones nowhere
-            let names = cells.first().map_or(Vec::new(), |(_, row)| {
-                row.iter().map(|(key, _)| key.clone()).enumerate().collect::<Vec<_>>()
-            });
-            let is_there = |at: usize| cells.iter().any(|(_, row)| !row[at].1.is_empty());
-            let names: Vec<(usize, String)> = names
-                .into_iter()
-                .filter(|(at, key)| is_there(*at) && key != "scene" && key != "dimension")
-                .collect();
-            let columns = names.iter().map(|(_, key)| place_of(&mut keys, key)).collect();
+            let mut names = distinct(cells.iter().flat_map(|(_, row)| row.iter().map(|of| &of.0)));
+            // objects of a row that failed are null and have no keys
+            let text = |row: &[(String, String)], name: &str| {
+                row.iter().find(|(key, _)| key == name).map_or(String::new(), |of| of.1.clone())
+            };
+            let is_there = |key: &str| cells.iter().any(|(_, row)| !text(row, key).is_empty());
+            names.retain(|key| is_there(key) && *key != "scene" && *key != "dimension");
+            let columns = names.iter().map(|key| place_of(&mut keys, key)).collect();
             let rows_of_table = cells.iter().map(|(place, row)| {
-                (*place, names.iter().map(|(at, _)| html_cell(&row[*at].1)).collect())
+                (*place, names.iter().map(|key| html_cell(&text(row, key))).collect())
             });
             tables.push(HtmlTable {
                 title: format!("{scene}, dimension {}", rows[0].dimension),
@@ -161,7 +162,10 @@ impl Report {
         HtmlPage {
             title: "Comparison of schemes".to_owned(),
             paragraphs: vec![self.heading()],
-            columns: keys.iter().map(|key| (key.clone(), SHOWN.contains(&&**key))).collect(),
+            columns: keys
+                .iter()
+                .map(|key| (beginning(key.as_bytes(), 80), SHOWN.contains(&&**key)))
+                .collect(),
             series: series.iter().map(name).collect(),
             tables,
             drawings: Vec::new(),
@@ -193,12 +197,14 @@ fn html_cell(text: &str) -> HtmlCell {
 
 /// The table of a scene.
 fn table(scene: &str, rows: &[&Row]) -> Table {
-    let failed = rows.iter().filter(|r| !r.converged());
-    let remarks = failed.map(|r| {
-        let why = r.message.as_deref().unwrap_or(r.status.message());
-        format!("{}, level {}: did not converge: {}: {why}", r.label, r.level, r.status)
+    let failed = || rows.iter().filter(|r| !r.converged()).map(|r| (r, failure(r)));
+    let remarks = distinct(failed().map(|of| of.1)).into_iter().map(|why| {
+        let of = failed().filter(|of| of.1 == why);
+        let of: Vec<String> = of.map(|(r, _)| format!("{}, level {}", r.label, r.level)).collect();
+        format!("{}: {why}", of.join("; "))
     });
-    let warnings = rows.iter().flat_map(|r| r.warnings.iter().map(|w| format!("{}: {w}", r.label)));
+    let warnings =
+        warnings(rows).into_iter().map(|(labels, warning)| format!("{labels}: {warning}"));
     let remarks = [heading(rows)].into_iter().chain(remarks).chain(warnings);
     let remarks = distinct(remarks.chain(rates(rows)).chain(unproven(rows)));
     with_columns(scene.to_owned(), &columns(rows), rows, remarks)

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::Problem;
 use super::datum::{BoundaryFlux, Datum};
+use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, Mesh, MeshError};
 use crate::real::{Point, Real};
@@ -187,7 +188,7 @@ impl<const D: usize> Problem<D> {
             let own = BoundaryPart::from_name(name).map(|part| (name, part));
             let first = own.or_else(|| all.iter().copied().find(|(other, _)| *other == name));
             if let Some((first, other)) = first.filter(|(_, other)| *other != part) {
-                let groups = Box::new([first.to_owned(), name.to_owned()]);
+                let groups = Box::new([first, name].map(excerpt));
                 return Err(MeshError::GroupInTwoParts {
                     groups,
                     parts: [other.name(), part.name()],

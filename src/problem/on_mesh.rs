@@ -3,7 +3,7 @@
 use super::Problem;
 use super::datum::{BoundaryFlux, Datum, Field};
 use crate::error::Error;
-use crate::input::excerpt;
+use crate::input::{excerpt, excerpts};
 use crate::mesh::{BoundaryGroup, BoundaryPart, Mesh, MeshError};
 use crate::real::{Point, Real};
 
@@ -191,19 +191,15 @@ fn unknown_group(
     (is_boundary, is_inside): (bool, bool),
     groups: &[&[String]],
 ) -> Error {
-    let mut known: Vec<String> = groups.iter().copied().flatten().map(excerpt).collect();
-    known.sort_unstable();
-    known.dedup();
     Error::UnknownGroup {
         kind: if is_boundary { "boundary group" } else { "region" },
         name: excerpt(name),
-        known: match &known[..] {
+        known: match &excerpts(groups.iter().copied().flatten())[..] {
             known if is_inside => {
-                let known = known.join(", ");
                 format!("it lies inside the domain, between two cells; the boundary has {known}")
             }
-            [] => "it has none with a name".to_owned(),
-            known => format!("it has {}", known.join(", ")),
+            "" => "it has none with a name".to_owned(),
+            known => format!("it has {known}"),
         },
     }
 }

@@ -53,10 +53,12 @@ impl<const D: usize> OwnProblem<D> {
         read.mesh = self.problem.bind_boundary(read.mesh)?;
         Ok(Some(read))
     }
-    /// A mesh to hold the data against.
+    /// A mesh to hold the data against, of a box one with few cells, whatever its sides.
     pub(super) fn sample_mesh(&self) -> Result<Mesh<f64, D>, Error> {
         match &self.geometry {
-            Geometry::Box(domain) => Ok(Mesh::kuhn_box(domain, domain.counts(4))?),
+            Geometry::Box(domain) => {
+                Ok(Mesh::kuhn_box(domain, domain.counts(4).map(|n| n.min(64)))?)
+            }
             Geometry::File { read, .. } => Ok(read.mesh.clone()),
         }
     }

@@ -127,10 +127,10 @@ pub(crate) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error
 fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), Error> {
     let why = match (scene.problem.has_gap(), contact) {
         (true, false) => {
-            "the scene has a Signorini condition, but the mesh has no contact part: no group named \"contact\" or with a gap"
+            "the problem has a Signorini condition, but the mesh has no contact part: no group named \"contact\" or with a gap"
         }
         (false, true) => {
-            "the mesh has a contact part (the group \"contact\"), but the scene has no Signorini condition"
+            "the mesh has a contact part (the group \"contact\"), but the problem has no Signorini condition"
         }
         _ => return Ok(()),
     };

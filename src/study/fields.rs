@@ -18,6 +18,26 @@ pub(super) struct FieldFiles {
 }
 
 impl FieldFiles {
+    /// The file of a level: `SCENE-LABEL.vtu` of the finest, `SCENE-LABEL-LEVEL.vtu` of others; none where no fields of
+    /// the level are wanted.
+    fn path(
+        &self,
+        (scene, label): (&str, &str),
+        level: usize,
+        levels: &[usize],
+    ) -> Option<PathBuf> {
+        let (directory, stem) = (self.directory.as_ref()?, file_name(&format!("{scene}-{label}")));
+        match levels.iter().max() == Some(&level) {
+            true => Some(directory.join(format!("{stem}.vtu"))),
+            false => self.all_levels.then(|| directory.join(format!("{stem}-{level}.vtu"))),
+        }
+    }
+
+    /// Whether the file of a level is wanted and not there, as after a run that ended while it was written.
+    pub fn lack(&self, of: (&str, &str), level: usize, levels: &[usize]) -> bool {
+        self.path(of, level, levels).is_some_and(|path| !path.exists())
+    }
+
     /// Writes the fields of a solution if its level is wanted: `SCENE-LABEL.vtu` for the finest of the
     /// levels; with all levels also `SCENE-LABEL-LEVEL.vtu` for the others and `SCENE-LABEL.pvd`, which
     /// lists the files that are there. Where there is a reference the error is the difference from it.
@@ -29,17 +49,12 @@ impl FieldFiles {
         solved: &Solved<'_, T, D>,
         reference: Option<&Solved<'_, T, D>>,
     ) -> Result<(), Error> {
-        let finest = levels.iter().max();
-        let Some(directory) = &self.directory else { return Ok(()) };
-        if !solved.has_iterate() || !(self.all_levels || finest == Some(&level)) {
+        let path = |level: usize| self.path((scene, label), level, levels);
+        let (Some(directory), Some(file)) = (&self.directory, path(level)) else { return Ok(()) };
+        if !solved.has_iterate() {
             return Ok(());
         }
-        let stem = file_name(&format!("{scene}-{label}"));
-        let path = |level: usize| match finest == Some(&level) {
-            true => directory.join(format!("{stem}.vtu")),
-            false => directory.join(format!("{stem}-{level}.vtu")),
-        };
-        replace(&path(level), |draft| {
+        replace(&file, |draft| {
             solved.write_vtu_against(draft, reference, |file| {
                 file.number("level", level as f64).scalar(self.scalar)
             })
@@ -47,10 +62,11 @@ impl FieldFiles {
         if !self.all_levels {
             return Ok(());
         }
-        let mut done: Vec<usize> = levels.iter().copied().filter(|&l| path(l).exists()).collect();
+        let mut done: Vec<usize> = levels.to_vec();
         done.sort_unstable();
-        let series: Vec<(f64, PathBuf)> =
-            done.into_iter().map(|level| (level as f64, path(level))).collect();
+        let files = done.into_iter().filter_map(|level| Some((level as f64, path(level)?)));
+        let series: Vec<(f64, PathBuf)> = files.filter(|(_, path)| path.exists()).collect();
+        let stem = file_name(&format!("{scene}-{label}"));
         let list = directory.join(format!("{stem}.pvd"));
         replace(&list, |draft| write_pvd(draft, &series)).map(|_| ())
     }

@@ -18,7 +18,8 @@ const ROWS: &str = "report.jsonl";
 /// The rows of a run in a directory: `report.jsonl` has each finished row as one line of JSON, written
 /// before the next row begins, and `report.json` the program, with `"complete": false`. However the run
 /// ends, [`Report::read`] finds the rows, and [`Journal::resume`] goes on from them. A run that ends of
-/// itself replaces `report.json` by the whole report ([`Report::write`]).
+/// itself replaces `report.json` by the whole report ([`Report::write`]). Two runs at a time need two directories:
+/// the program `unilateral` locks its own.
 ///
 /// ```
 /// use unilateral::prelude::*;
@@ -62,7 +63,8 @@ impl Journal {
     }
 
     /// The journal of a directory with its rows, for a run that asks for rows with these keys
-    /// ([`Study::keys`](super::Study::keys)); an empty one where there is none.
+    /// ([`Study::keys`](super::Study::keys)); an empty one where there is none. Rows without a `report.json` say
+    /// themselves what they are; that their program is this one is for the caller to know.
     ///
     /// # Errors
     /// [`Error::OtherRequest`] if version, precision, number of runs or request of the program are not
@@ -74,10 +76,10 @@ impl Journal {
         keys: &[RowKey],
     ) -> Result<Self, Error> {
         let directory = directory.as_ref();
-        if !directory.join(REPORT).exists() {
-            return Self::create(directory, program);
-        }
-        let Report { program: earlier, rows, .. } = Report::read(directory)?;
+        let (earlier, rows) = match directory.join(REPORT).exists() {
+            true => Report::read(directory).map(|report| (report.program, report.rows))?,
+            false => (program.clone(), rows_of(&directory.join(ROWS))?),
+        };
         let words = |p: &Program| {
             let own = [&p.name, &p.version, &p.precision].map(String::clone);
             let own = ["program", "version", "precision"].map(str::to_owned).into_iter().zip(own);
@@ -132,7 +134,7 @@ impl Journal {
     /// Adds a finished row. The row is in the system's hands when the call returns.
     ///
     /// # Errors
-    /// [`Error::Write`], also after [`Journal::close`]; the lines before stay whole.
+    /// [`Error::Write`], which closes the journal, and after [`Journal::close`]; the lines before stay whole.
     pub fn add(&self, row: &Row) -> Result<(), Error> {
         let mut rows = self.rows();
         if rows.is_closed {
@@ -143,6 +145,7 @@ impl Journal {
         if let Err(why) = rows.file.write_all(line.as_bytes()) {
             // a reader leaves out the rest of a line that stays
             let _ = rows.file.set_len(rows.length);
+            rows.is_closed = true;
             return Err(write_error(&self.path, why));
         }
         rows.length += line.len() as u64;
@@ -161,6 +164,11 @@ impl Journal {
         let row = rows.kept.remove(at);
         rows.finished.push(row.clone());
         Some(row)
+    }
+
+    /// Whether no row is added any more.
+    pub fn is_closed(&self) -> bool {
+        self.rows().is_closed
     }
 
     /// The incomplete report, to which no row is added any more: a study that runs in another thread ends
@@ -194,15 +202,38 @@ impl Report {
     pub fn read(directory: impl AsRef<Path>) -> Result<Self, Error> {
         let (path, lines) = (directory.as_ref().join(REPORT), directory.as_ref().join(ROWS));
         let bytes = read_file(&path).map_err(|why| read_error(&path, why))?;
-        let mut report: Self =
-            serde_json::from_slice(&bytes).map_err(|why| read_error(&path, why))?;
+        let mut report: Self = serde_json::from_slice(&bytes).map_err(|why| {
+            let rest = match lines.exists() {
+                true => format!("delete it, the rows are also in {ROWS}"),
+                false => "delete it to begin anew".to_owned(),
+            };
+            let (line, column) = (why.line(), why.column());
+            read_error(
+                &path,
+                format!("it is no report, or damaged, at line {line}, column {column}: {rest}"),
+            )
+        })?;
         if !report.complete && lines.exists() {
-            let bytes = read_file(&lines).map_err(|why| read_error(&lines, why))?;
-            let whole = bytes.iter().rposition(|&b| b == b'\n').map_or(0, |end| end + 1);
-            let rows = serde_json::Deserializer::from_slice(&bytes[..whole]).into_iter();
-            report.rows = rows.collect::<Result<_, _>>().map_err(|why| read_error(&lines, why))?;
+            report.rows = rows_of(&lines)?;
             fill_orders(&mut report.rows);
         }
         Ok(report)
     }
+}
+
+/// The rows of a file of lines, none where there is no file, without a last line that has no end.
+fn rows_of(path: &Path) -> Result<Vec<Row>, Error> {
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let bytes = read_file(path).map_err(|why| read_error(path, why))?;
+    let lines = bytes.split_inclusive(|&b| b == b'\n').filter(|line| line.ends_with(b"\n"));
+    let row = |(at, line): (usize, &[u8])| {
+        serde_json::from_slice(line).map_err(|why| {
+            let (line, column) = (at + 1, why.column());
+            let rest = "delete the line, its row runs again";
+            read_error(path, format!("line {line} is no row (column {column}): {rest}"))
+        })
+    };
+    lines.enumerate().map(row).collect()
 }

@@ -14,6 +14,7 @@ mod orders;
 mod part_figures;
 pub(crate) mod rates;
 mod reference;
+pub(crate) mod remarks;
 pub(crate) mod report;
 pub(crate) mod row;
 mod runner;

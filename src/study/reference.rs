@@ -106,7 +106,7 @@ impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
             }
             (Some(Err(why)), _) => row.warnings.push(format!("{why}: no errors")),
             (None, Some(at)) => row.warnings.push(format!(
-                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+                "the exact solution breaks the contact condition of this mesh at {at}: no errors"
             )),
             (None, None) if solved.discretisation().problem().exact.is_some() => {
                 (row.error, row.bound) = solved.errors_and_bound_figures()?;

@@ -5,6 +5,7 @@ use std::fmt;
 use super::extrapolate::{Limit, extrapolate};
 use super::part_figures::PartFigures;
 use super::rates::rates;
+use super::remarks::{failure, warnings};
 use super::report::Report;
 use super::row::{Row, distinct};
 
@@ -49,6 +50,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     lines.write(f, |c| c.name.to_owned())?;
     let key = |r: &Row| [&r.label, &r.constraint, &r.solver].map(String::clone);
     let series = distinct(rows.iter().map(|r| key(r)));
+    let mut told = Vec::new();
     for (i, of_series) in series.iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
@@ -56,15 +58,17 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
         for row in rows.iter().filter(|r| key(r) == *of_series) {
             lines.write(f, |c| (c.cell)(row))?;
             if !row.converged() {
-                let message = row.message.as_deref().unwrap_or(row.status.message());
-                write_wrapped(f, &format!("  ^ did not converge: {}: {message}", row.status))?;
+                let message = failure(row);
+                match told.contains(&message) {
+                    true => writeln!(f, "  ^ did not converge: {}, as above", row.status)?,
+                    false => write_wrapped(f, &format!("  ^ {message}"))?,
+                }
+                told.push(message);
             }
         }
     }
-    for warning in distinct(
-        rows.iter().flat_map(|r| r.warnings.iter().map(|w| (r.label.as_str(), w.as_str()))),
-    ) {
-        write_wrapped(f, &format!("  warning, {}: {}", warning.0, warning.1))?;
+    for (labels, warning) in warnings(rows) {
+        write_wrapped(f, &format!("  warning, {labels}: {warning}"))?;
     }
     if !has_errors(rows) {
         limits(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))?;
@@ -122,7 +126,10 @@ pub(crate) fn limits(rows: &[&Row]) -> Vec<String> {
 
 /// The heading after the name of the scene: what levels count, solvers, and the orders that theory promises.
 pub(crate) fn heading(rows: &[&Row]) -> String {
-    let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
+    let solvers = distinct(rows.iter().map(|r| match &r.linear[..] {
+        "" => r.solver.clone(),
+        linear => format!("{}/{linear}", r.solver),
+    }));
     let mut text = match rows.first().and_then(|row| row.level_kind.as_deref()) {
         Some("subdivisions") => "n subdivisions of the shortest side; ".to_owned(),
         Some("refinements") => "n refinements of the mesh; ".to_owned(),

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::mesh::{BoundaryFacet, Mesh, TaggedFacet};
 use crate::real::Real;
 use crate::scheme::{AnyScheme, NamedScheme, SchemeOptions};
-use crate::study::{MemoryEstimate, Row, Study, peak_memory_bytes};
+use crate::study::{Row, Study, peak_memory_bytes};
 
 use super::measured::Phases;
 
@@ -71,11 +71,11 @@ impl<const D: usize> OneStudy<'_, D> {
             Self::Single(study) => study.check(),
         }
     }
-    /// The memory that the study will need.
-    pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
+    /// Checks that the study fits into the memory.
+    pub fn check_memory(&self) -> Result<(), Error> {
         match self {
-            Self::Double(study) => study.memory_estimate(),
-            Self::Single(study) => study.memory_estimate(),
+            Self::Double(study) => study.check_memory(),
+            Self::Single(study) => study.check_memory(),
         }
     }
     /// Runs the study with nothing known from before: the row, or those of all adaptive steps, and the phases of

@@ -261,13 +261,15 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     ///
     /// # Errors
     /// Those of [`Study::check`](crate::study::Study::check) of each case; [`Error::EqualNames`]; [`Error::Parameter`]
-    /// for a reference that does not fit the levels or the memory.
+    /// for a reference that does not fit the levels; [`Error::NotEnoughMemory`], which [`Self::run`] has for the
+    /// reference only: it lists the other cases that do not fit.
     pub fn check(&self) -> Result<Vec<Case>, Error> {
         compiled!(
             const D: fn(&WorkPrecision<'_, D>) -> Result<Vec<Case>, Error> = |study| {
-                let cases = study.slots()?.into_iter().map(|slot| slot.case).collect();
+                let slots = study.slots()?;
                 study.study_against_reference()?;
-                Ok(cases)
+                slots.iter().try_for_each(|slot| slot.study.check_memory())?;
+                Ok(slots.into_iter().map(|slot| slot.case).collect())
             }
         )(self)
     }

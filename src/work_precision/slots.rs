@@ -12,7 +12,7 @@ use crate::linear::LinearMethod;
 use crate::nested::Adaptivity;
 use crate::real::Real;
 use crate::scheme::{AnyScheme, SchemeOptions};
-use crate::study::{Study, available_memory_bytes};
+use crate::study::Study;
 
 /// A case, its study, and its results so far.
 pub(super) struct Slot<'s, const D: usize> {
@@ -135,14 +135,6 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         }
         let (scheme, set) = (reference.double.clone(), reference.set.clone());
         let study = study.shared_reference(scheme, set, *level);
-        if let (Some(need), Some(free)) = (study.memory_estimate(), available_memory_bytes())
-            && need.bytes > free as f64
-        {
-            let (need, free) = (need.bytes / 1e9, free as f64 / 1e9);
-            let allowed =
-                format!("it would need about {need:.1} GB of memory, {free:.1} GB are available");
-            return Err(wrong("level of the reference", level.to_string(), &allowed));
-        }
         study.check()?;
         Ok(Some(study))
     }
@@ -159,11 +151,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 return Some(format!("not run: level {level} took {seconds:.1} s"));
             }
         }
-        let (need, free) = (slots[k].study.memory_estimate()?, available_memory_bytes()?);
-        (need.bytes > free as f64).then(|| {
-            let (need, free) = (need.bytes / 1e9, free as f64 / 1e9);
-            format!("not run: would need about {need:.1} GB of memory, {free:.1} GB are available")
-        })
+        slots[k].study.check_memory().err().map(|why| format!("not run: {why}"))
     }
 }
 

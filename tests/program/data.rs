@@ -75,9 +75,13 @@ fn coefficients_must_be_positive_and_obstacles_leave_room() {
     }
     let crossed = Problem::new().obstacle_below(|_| 0.5).obstacle_above(|x| 1.0 - x[0]);
     let over_datum = Problem::new().obstacle_below(|_| 0.5);
-    for (problem, upper) in [(crossed, "exceeds the upper bound"), (over_datum, "exceeds upper")] {
-        let messages = failed(problem, Outcome::Infeasible);
-        assert!(messages.iter().all(|m| m.contains("lower bound") && m.contains(upper)));
+    for (problem, words) in [
+        (crossed, ["the lower bound", "exceeds the upper bound"]),
+        (over_datum, ["the lower obstacle, 0.5", "exceeds the Dirichlet value on `"]),
+    ] {
+        for message in failed(problem, Outcome::Infeasible) {
+            assert!(words.iter().all(|word| message.contains(word)), "{message}");
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Rows that are hard to solve, with the work that they may take: counts, which do not depend on the machine.
 
-use super::run::{Scratch, read_json, rows};
+use super::run::{Scratch, rows};
 use serde_json::Value;
 
 /// A row: the options of its request, and at most so many active sets and steps of all stages, iterations of linear

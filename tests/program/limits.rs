@@ -73,7 +73,11 @@ fn messages_quote_foreign_text_in_part_only() {
             ("compare", "--levels"),
             ("work-precision", "--scene"),
             ("work-precision", "--scheme"),
+            ("work-precision", "--against"),
+            ("work-precision", "--subject"),
             ("stability", "--case"),
+            ("stability", "--scheme"),
+            ("stability", "--mesh"),
             ("pictures", "--scene"),
             ("pictures", "--scheme"),
         ] {
@@ -92,6 +96,8 @@ fn messages_quote_foreign_text_in_part_only() {
             let wall = Square::sound().replace("\"dirichlet\"", &format!("\"{word}\""));
             let wall = scratch.file("wall.msh", &wall);
             check_message(&scratch.run_split(&["--mesh", &wall]), "a group");
+            let boundary = ["--mesh", &wall, "--boundary", &format!("{word}s=neumann")];
+            check_message(&scratch.run_split(&boundary), "--boundary");
             let section = Square::sound().replace("$Elements", &format!("${word}\n$Elements"));
             let section = scratch.file("section.msh", &section);
             check_message(&scratch.run_split(&["--mesh", &section]), "a section");
@@ -102,9 +108,15 @@ fn messages_quote_foreign_text_in_part_only() {
 /// The program under limits that a shell sets.
 #[cfg(target_os = "linux")]
 fn limited(scratch: &Scratch, limit: &str, options: &str) -> Output {
+    limited_command(scratch, limit, "compare", options)
+}
+
+/// The same of any command.
+#[cfg(target_os = "linux")]
+fn limited_command(scratch: &Scratch, limit: &str, command: &str, options: &str) -> Output {
     Command::new("sh")
         .args(["-c", &format!("ulimit {limit} && exec \"$0\" \"$@\"")])
-        .args([env!("CARGO_BIN_EXE_unilateral"), "compare", "--out", &scratch.path("out")])
+        .args([env!("CARGO_BIN_EXE_unilateral"), command, "--out", &scratch.path("out")])
         .args(options.split(' '))
         .output()
         .unwrap()
@@ -144,5 +156,31 @@ fn a_limit_of_the_process_is_known_before_the_work() {
         );
         assert_eq!(output.status.code(), Some(0), "{limit}: {}", stderr(&output));
         std::fs::remove_dir_all(scratch.0.join("out")).unwrap();
+    }
+}
+
+/// Of a box whose sides differ by 1e7 no mesh is built to look at the data.
+#[test]
+#[cfg(target_os = "linux")]
+fn no_command_begins_what_does_not_fit() {
+    let scratch = Scratch::new("every-command");
+    let long = format!("{}/tests/data/problems/aspect_box.toml", env!("CARGO_MANIFEST_DIR"));
+    let needs = "would need about";
+    for (command, options, expected) in [
+        ("compare", format!("{long} --levels 1"), needs),
+        ("compare", long.clone(), "cells, at most"),
+        ("compare", "--scene lshape-2d --scheme sipg --adaptive unknowns=1e9".to_owned(), needs),
+        ("compare", "--scheme p1 --scene radial-2d --levels 4 --reference 4096".to_owned(), needs),
+        ("pictures", "--level 4000".to_owned(), needs),
+        ("pictures", "--level 4 --series 8,4000".to_owned(), needs),
+        ("pictures", format!("{long} --level 1"), needs),
+        ("work-precision", "--scene radial-2d --levels 8,4000".to_owned(), needs),
+        ("work-precision", format!("{long} --levels 1 --quiet"), needs),
+    ] {
+        let output = limited_command(&scratch, "-v 5000000", command, &options);
+        let what = format!("{command} {options}");
+        check_message(&output, &what);
+        assert!(stderr(&output).contains(expected), "{what}: {}", stderr(&output));
+        assert!(!scratch.0.join("out").exists(), "{what}");
     }
 }

@@ -11,7 +11,10 @@ mod interrupt;
 mod limits;
 mod mesh_faults;
 mod meshes;
+mod messages;
 mod obstacles;
+#[cfg(unix)]
+mod one_run;
 mod output;
 mod over_processes;
 mod own_problems;

@@ -130,6 +130,7 @@ fn the_report_has_every_key_and_file() {
 
     let endings = ["json", "jsonl", "csv", "md", "tex", "html"];
     let mut files: Vec<String> = endings.map(|ending| format!("report.{ending}")).into();
+    files.push(".lock".to_owned());
     for plot in ["convergence", "work_precision"] {
         files.extend(["svg", "png"].map(|ending| format!("{plot}.{ending}")));
     }

@@ -133,8 +133,37 @@ fn another_request_is_refused_and_nothing_changes() {
     threads.threads = 7;
     Journal::resume(&scratch.0, threads, &keys).unwrap();
     fs::write(scratch.0.join("report.json"), "{\"program\"").unwrap();
-    let error = Journal::resume(&scratch.0, program(), &keys).unwrap_err();
-    assert!(matches!(error, Error::Read { .. }), "{error}");
+    let error = Journal::resume(&scratch.0, program(), &keys).unwrap_err().to_string();
+    let expected =
+        "report.json: it is no report, or damaged, at line 1, column 10: delete it, the rows are";
+    assert!(error.contains(expected), "{error}");
+}
+
+#[test]
+fn rows_without_their_report_are_taken_up() {
+    let scratch = Scratch::new("journal-alone");
+    let journal = Journal::create(&scratch.0, program()).unwrap();
+    let whole = study().journal(&journal).run().unwrap();
+    fs::remove_file(scratch.0.join("report.json")).unwrap();
+    let keys = study().keys();
+    let error = Journal::resume(&scratch.0, program(), &keys[..3]).unwrap_err().to_string();
+    assert!(error.contains("a row of sipg by active-set on radial-2d at level 4"), "{error}");
+    let resumed = Journal::resume(&scratch.0, program(), &keys).unwrap();
+    let again = study().journal(&resumed).run().unwrap();
+    assert!(again.rows == whole.rows);
+    // a line that is no row is named
+    fs::remove_file(scratch.0.join("report.json")).unwrap();
+    let path = scratch.0.join("report.jsonl");
+    let lines = scratch.read("report.jsonl");
+    let lines: Vec<&str> = lines.lines().collect();
+    fs::write(&path, [lines[0], "{\"scene\": 3}", lines[2], ""].join("\n")).unwrap();
+    let error = Journal::resume(&scratch.0, program(), &keys).unwrap_err().to_string();
+    let expected =
+        "report.jsonl: line 2 is no row (column 11): delete the line, its row runs again";
+    assert!(error.contains(expected), "{error}");
+    fs::write(&path, [lines[0], lines[2], ""].join("\n")).unwrap();
+    let resumed = Journal::resume(&scratch.0, program(), &keys).unwrap();
+    assert_eq!(resumed.report().rows.len(), 2);
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod boundary_data;
 mod forces;
 mod journal;
 mod links;
+mod memory;
 mod named_schemes;
 mod noise;
 mod one_problem;

@@ -83,9 +83,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     fn checked_bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         let (bounds, found) = self.space.bounds()?;
         if self.mesh().is_part() {
-            once(&self.contradictions, || Contradictions::new(&bounds, found));
+            once(&self.contradictions, || Contradictions::new(&bounds, found, self.mesh()));
         } else if !found.is_empty() {
-            let found = Contradictions::new(&bounds, found);
+            let found = Contradictions::new(&bounds, found, self.mesh());
             found.check(found.size(), &|_| true)?;
         }
         Ok(bounds)
@@ -106,7 +106,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             return Ok(found);
         }
         let (bounds, found) = self.space.bounds()?;
-        Ok(once(&self.contradictions, || Contradictions::new(&bounds, found)))
+        Ok(once(&self.contradictions, || Contradictions::new(&bounds, found, self.mesh())))
     }
     /// The load of all unknowns, that of the assembled matrix, with weak Dirichlet data: see
     /// [`Inequality::assembled_load`].

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Mutex;
 
-use super::contradictions::{BoundedNode, Contradiction};
+use super::contradictions::{BoundedNode, Contradiction, DIRICHLET};
 use super::{Space, Terms, data};
 use crate::algebra::Bound;
 use crate::assemble::count;
@@ -131,7 +131,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 // the node at the vertex, where the element has one, else one of the facet
                 let node = self.nodes_on(local).take(k + 1).last();
                 let unknown = node.map_or(0, |i| self.dofs.of(cell, i));
-                BoundedNode { unknown, cell, x }.compare(gap.at(&x), datum, found);
+                let of = (["gap", DIRICHLET], Some(dirichlet));
+                BoundedNode { unknown, cell, x }.compare(of, [gap.at(&x), datum], found);
             }
             for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
@@ -189,10 +190,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 // curved obstacle the value at the barycentre may lie above the mean of a datum
                 // that touches it
                 if let Some(psi) = lowers.of(region) {
-                    node.compare(at("obstacle", &|x| psi.at(x))?, value, found);
+                    let of = (["lower obstacle", DIRICHLET], Some(group));
+                    node.compare(of, [at("obstacle", &|x| psi.at(x))?, value], found);
                 }
                 if let Some(psi) = uppers.of(region) {
-                    node.compare(value, at("obstacle", &|x| psi.at(x))?, found);
+                    let of = ([DIRICHLET, "upper obstacle"], Some(group));
+                    node.compare(of, [value, at("obstacle", &|x| psi.at(x))?], found);
                 }
                 bounds[unknown] = Bound::Fixed(T::lit(value));
             }
@@ -234,7 +237,7 @@ fn between<T: Real, const D: usize>(
         (Some(l), None) => Bound::Lower(T::lit(l)),
         (None, Some(u)) => Bound::Upper(T::lit(u)),
         (Some(l), Some(u)) => {
-            node.compare(l, u, found);
+            node.compare((["lower bound", "upper bound"], None), [l, u], found);
             Bound::Both(T::lit(l), T::lit(l.max(u)))
         }
     }

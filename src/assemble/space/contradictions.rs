@@ -2,8 +2,12 @@
 
 use crate::algebra::Bound;
 use crate::error::Error;
-use crate::mesh::describe_point;
+use crate::input::excerpt;
+use crate::mesh::{BoundaryGroup, Mesh, describe_point};
 use crate::real::{Point, Real};
+
+/// What a value is that a boundary group imposes.
+pub(crate) const DIRICHLET: &str = "Dirichlet value";
 
 /// Two bounds contradict each other if they do so by more than this share of the largest datum: less is
 /// rounding in the data.
@@ -17,6 +21,8 @@ const RELATIVE_SLACK: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub struct Contradictions<const D: usize> {
     found: Vec<Contradiction<D>>,
+    /// The names of boundary groups.
+    groups: Vec<String>,
     size: f64,
     relative_slack: f64,
 }
@@ -27,6 +33,9 @@ pub(crate) struct Contradiction<const D: usize> {
     pub node: BoundedNode<D>,
     pub lower: f64,
     pub upper: f64,
+    /// What the two are, and the group of a Dirichlet value.
+    pub of: [&'static str; 2],
+    pub group: Option<usize>,
 }
 
 /// A node at which bounds are compared.
@@ -40,9 +49,14 @@ pub(crate) struct BoundedNode<const D: usize> {
 
 impl<const D: usize> BoundedNode<D> {
     /// Notes two values of which the first must not exceed the second.
-    pub fn compare(self, lower: f64, upper: f64, found: &mut Vec<Contradiction<D>>) {
+    pub fn compare(
+        self,
+        (of, group): ([&'static str; 2], Option<usize>),
+        [lower, upper]: [f64; 2],
+        found: &mut Vec<Contradiction<D>>,
+    ) {
         if lower > upper {
-            found.push(Contradiction { node: self, lower, upper });
+            found.push(Contradiction { node: self, lower, upper, of, group });
         }
     }
 }
@@ -51,12 +65,16 @@ impl<const D: usize> Contradictions<D> {
     pub(in crate::assemble) fn new<T: Real>(
         bounds: &[Bound<T>],
         found: Vec<Contradiction<D>>,
+        mesh: &Mesh<T, D>,
     ) -> Self {
+        let name = |group: &BoundaryGroup| group.names.first().map(excerpt).unwrap_or_default();
+        let groups = mesh.boundary_groups().iter().filter(|_| !found.is_empty());
+        let groups = groups.map(name).collect();
         let mut size = size_of(bounds);
         for contradiction in &found {
             size = size.max(contradiction.lower.abs()).max(contradiction.upper.abs());
         }
-        Self { found, size, relative_slack: RELATIVE_SLACK.max(16.0 * T::EPSILON) }
+        Self { found, groups, size, relative_slack: RELATIVE_SLACK.max(16.0 * T::EPSILON) }
     }
     /// The largest absolute value of a bound.
     pub fn size(&self) -> f64 {
@@ -70,9 +88,16 @@ impl<const D: usize> Contradictions<D> {
         let slack = self.relative_slack * size;
         let mut own = self.found.iter().filter(|found| owns(found.node.cell));
         match own.find(|found| found.lower - found.upper > slack) {
-            Some(&Contradiction { node: BoundedNode { unknown, cell, x }, lower, upper }) => {
+            Some(&Contradiction { node, lower, upper, of, group }) => {
+                let BoundedNode { unknown, cell, x } = node;
                 let (cell, at) = (cell as u64, describe_point(&x));
-                Err(Error::EmptyConstraint { unknown, cell, at, lower, upper })
+                let name = group.and_then(|group| self.groups.get(group));
+                let on = |of: &str| match name.filter(|name| of == DIRICHLET && !name.is_empty()) {
+                    Some(name) => format!("{of} on `{name}`"),
+                    None => of.to_owned(),
+                };
+                let of = Box::new(of.map(on));
+                Err(Error::EmptyConstraint { unknown, cell, at, lower, upper, of })
             }
             None => Ok(()),
         }

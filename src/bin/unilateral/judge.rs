@@ -191,5 +191,5 @@ fn row<T: Real, const D: usize>(
     if let Some((scheme, level)) = reference {
         study = study.named_reference(scheme, *level);
     }
-    study.judge(values).map_err(|e| e.to_string())
+    study.check_memory().and_then(|()| study.judge(values)).map_err(|e| e.to_string())
 }

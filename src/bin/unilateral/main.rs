@@ -8,6 +8,7 @@ mod adaptive;
 mod compare;
 mod judge;
 mod mesh_file;
+mod one_run;
 mod orders;
 mod pictures;
 mod posed;
@@ -20,6 +21,8 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
+#[cfg(unix)]
+use nix::sys::signal::{SigSet, Signal};
 use shared::{Failure, Request, check_environment, complain, print};
 use unilateral::input::excerpt;
 
@@ -45,6 +48,8 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    #[cfg(unix)]
+    take_full_files_as_errors();
     match parse().map_err(Failure::from).and_then(run) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
@@ -58,6 +63,15 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// Lets a write beyond the largest size of a file (`ulimit -f`) fail, as on a full disk; by default a signal ends the
+/// process. All threads inherit this.
+#[cfg(unix)]
+fn take_full_files_as_errors() {
+    let mut signals = SigSet::empty();
+    signals.add(Signal::SIGXFSZ);
+    signals.thread_block().expect("the signal exists");
 }
 
 fn complain_unless_empty(message: &str) {

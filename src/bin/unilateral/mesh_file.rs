@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use unilateral::input::{excerpt, excerpts};
 use unilateral::mesh::gmsh::{self, GmshWarning};
 use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
 use unilateral::real::Real;
@@ -60,11 +61,13 @@ pub fn with_parts<T: Real, const D: usize>(
     let groups: Vec<&str> =
         mesh.boundary_groups().iter().flat_map(|g| &g.names).map(String::as_str).collect();
     if let Some((group, _)) = boundary.iter().find(|(name, _)| !groups.contains(&&name[..])) {
-        let why = match mesh.groups_inside().contains(group) {
+        let is_inside = mesh.groups_inside().contains(group);
+        let (group, groups) = (excerpt(group), excerpts(groups));
+        let why = match is_inside {
             true => format!("{group} lies inside the domain, between two cells; the boundary"),
             false => format!("{file} has no group {group}; it"),
         };
-        return Err(format!("--boundary: {why} has {}", groups.join(", ")));
+        return Err(format!("--boundary: {why} has {groups}"));
     }
     let part_of = |name: &str| {
         let given = boundary.iter().find(|(group, _)| group == name);

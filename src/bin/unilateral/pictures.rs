@@ -18,10 +18,9 @@ use unilateral::study::{Row, Study, file_name};
 
 use crate::adaptive::adaptivity;
 use crate::mesh_file::MeshFile;
+use crate::one_run::take_directory;
 use crate::posed::Posed;
-use crate::shared::{
-    Failure, Request, end_at_interrupt, fields_with_bound, make_directory, print, scene, warn,
-};
+use crate::shared::{Failure, Request, end_at_interrupt, fields_with_bound, print, scene, warn};
 
 /// Draws the solution of a scheme on a scene, or on a problem of your own
 #[derive(Args, Debug)]
@@ -77,6 +76,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
 
 /// Draws one level, and writes the fields of the series.
 fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Failure> {
+    let warn = |warning: String| warn(&warning);
     let mesh = options.mesh.read(&warn)?;
     let study = |warn: &dyn Fn(String)| -> Request<Study<'_, f64, D>> {
         let study = posed.clone().study(warn)?.named_scheme(&options.scheme);
@@ -110,13 +110,13 @@ fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Fail
         written.borrow_mut().extend(draw_one(options, &title, &stem, solved, slice)?);
         Ok(())
     });
-    picture.check().map_err(|e| e.to_string())?;
+    picture.check().and_then(|()| picture.check_memory()).map_err(|e| e.to_string())?;
     let series = study(&|_| {})?.levels(options.series.clone()).fields_to(&options.out);
     let series = series.fields_of_all_levels();
     if !options.series.is_empty() {
-        series.check().map_err(|e| e.to_string())?;
+        series.check().and_then(|()| series.check_memory()).map_err(|e| e.to_string())?;
     }
-    make_directory(&options.out)?;
+    take_directory(&options.out)?;
     end_at_interrupt("pictures and fields that are finished are there")?;
     let mut rows = picture.run().map_err(Failure::of_work)?.rows;
     if let (true, Some(row)) = (written.borrow().is_empty(), rows.first()) {

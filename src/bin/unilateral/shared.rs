@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use unilateral::input::{excerpt, read_file};
+use unilateral::input::{beginning, excerpt, read_file};
 use unilateral::measure::Fields;
 use unilateral::nested::Solved;
 use unilateral::real::Real;
@@ -65,11 +65,6 @@ pub fn end_at_interrupt(left: &'static str) -> Request<()> {
     .map_err(|e| format!("cannot handle interrupts: {e}"))
 }
 
-/// Makes a directory where there is none, before the work.
-pub fn make_directory(path: &Path) -> Request<()> {
-    fs::create_dir_all(path).map_err(|e| cannot_write(path, e))
-}
-
 /// An observed order that falls below the promised one by no more than this counts as kept.
 pub const ORDER_TOLERANCE: f64 = 0.1;
 
@@ -86,14 +81,17 @@ pub fn print_to(mut stream: impl Write, text: &str) -> Request<()> {
     }
 }
 
-/// Prints a warning to standard error.
-pub fn warn(warning: String) {
-    let _ = writeln!(std::io::stderr(), "{warning}");
+/// Prints an error to standard error, in one line.
+pub fn complain(message: &str) {
+    warn(&format!("error: {message}"));
 }
 
-/// Prints an error to standard error.
-pub fn complain(message: &str) {
-    let _ = writeln!(std::io::stderr(), "error: {message}");
+/// Prints one line to standard error. No path or name in it is longer than this many characters.
+pub fn warn(message: &str) {
+    const LONGEST: usize = 300;
+    let words: Vec<String> =
+        message.split(' ').map(|word| beginning(word.as_bytes(), LONGEST)).collect();
+    let _ = writeln!(std::io::stderr(), "{}", words.join(" "));
 }
 
 pub fn read(path: &Path) -> Request<Vec<u8>> {

@@ -1,6 +1,6 @@
 //! Names and values of a problem file, held against the mesh.
 
-use crate::input::excerpt;
+use crate::input::{excerpt, excerpts};
 use crate::mesh::BoundaryPart;
 use crate::mesh::{Mesh, describe_point};
 use crate::problem::{BoundaryFlux, Problem};
@@ -101,10 +101,8 @@ impl<const D: usize> Checks<'_, '_, D> {
             };
             let Some(name) = &entry.group else { continue };
             if !known.iter().any(|names| names.contains(name)) {
-                let mut known: Vec<String> = known.iter().copied().flatten().map(excerpt).collect();
-                known.sort_unstable();
-                known.dedup();
-                let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+                let known = excerpts(known.iter().copied().flatten());
+                let known = if known.is_empty() { "none".to_owned() } else { known };
                 let is_inside = entry.is_boundary && mesh.groups_inside().contains(name);
                 let name = excerpt(name);
                 let fault = match is_inside {

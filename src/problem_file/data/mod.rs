@@ -9,6 +9,7 @@ use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
 use crate::arrays::tabulate;
 use crate::error::Error;
+use crate::input::beginning;
 use crate::mesh::{BoundaryFacet, BoundaryPart, BoxDomain, Mesh, SIDES, gmsh};
 use crate::problem::{Datum, Problem};
 use crate::real::Point;
@@ -276,6 +277,9 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     }
 }
 
+/// Characters of the name of a problem, at most.
+const LONGEST_NAME: usize = 80;
+
 /// The problem of a file, in its dimension.
 pub(super) fn problem<'t, const D: usize>(
     source: &Source<'t>,
@@ -284,9 +288,11 @@ pub(super) fn problem<'t, const D: usize>(
 ) -> Done<OwnProblem<D>> {
     source.allow(root, &KEYS)?;
     let name = match root.get("name") {
-        Some(name) => source.string("name", name)?.to_owned(),
-        None => source.path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        Some(name) => source.string("name", name)?.into(),
+        None => source.path.file_stem().unwrap_or_default().to_string_lossy(),
     };
+    // it stands in tables, plots and names of files
+    let name = beginning(name.as_bytes(), LONGEST_NAME);
     let mut builder = Builder {
         source,
         problem: Problem::<D>::new(),

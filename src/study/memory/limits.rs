@@ -21,6 +21,13 @@ pub(super) fn left_to_process() -> Option<u64> {
     below_limits(&limits?, &status?, rayon::current_num_threads() as u64 * PER_THREAD)
 }
 
+/// The limits on address space and data less what threads reserve, in bytes; none without such limits.
+pub(super) fn limit_of_process() -> Option<u64> {
+    let limits = read_to_string("/proc/self/limits").ok()?;
+    let nothing_used = "VmSize: 0 kB\nVmData: 0 kB\n";
+    below_limits(&limits, nothing_used, rayon::current_num_threads() as u64 * PER_THREAD)
+}
+
 /// The memory below the limits, in bytes, from the texts of the files `limits` and `status` of a process;
 /// `reserved` bytes of address space count as used.
 fn below_limits(limits: &str, status: &str, reserved: u64) -> Option<u64> {

@@ -7,7 +7,7 @@ use crate::element::Layout;
 #[cfg(any(test, target_os = "linux"))]
 use limits::kilobytes;
 #[cfg(target_os = "linux")]
-use limits::{left_to_group, left_to_process};
+use limits::{left_to_group, left_to_process, limit_of_process};
 
 /// The largest resident set of this process so far, if the system reports it: on Linux the peak the
 /// kernel keeps (`VmHWM`), elsewhere nothing.
@@ -39,6 +39,23 @@ pub fn available_memory_bytes() -> Option<u64> {
 pub fn available_memory_bytes() -> Option<u64> {
     let machine = kilobytes(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:");
     [machine, left_to_process(), left_to_group()].into_iter().flatten().min()
+}
+
+/// The memory that this process may have in all: what is available to it.
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn memory_of_process() -> Option<u64> {
+    available_memory_bytes()
+}
+
+/// The memory that this process may have in all, in bytes: what it has and what machine and control groups leave, and
+/// no more than its limits.
+#[cfg(target_os = "linux")]
+pub(crate) fn memory_of_process() -> Option<u64> {
+    let text = |file| std::fs::read_to_string(file).ok();
+    let own = kilobytes(&text("/proc/self/status")?, "VmRSS:")?;
+    let machine = kilobytes(&text("/proc/meminfo")?, "MemAvailable:");
+    let left = [machine, left_to_group()].into_iter().flatten().map(|left| left + own);
+    left.chain(limit_of_process()).min()
 }
 
 /// Estimated memory of the largest run of a study.

@@ -7,6 +7,7 @@ use crate::nested::{AdaptiveIteration, AdaptiveMeshes, AdaptiveStep, Adaptivity}
 use crate::nested::{NestedIteration, Phase};
 use crate::real::Real;
 use crate::scheme::ExpectedOrders;
+use crate::study::memory::memory_of_process;
 use crate::study::reference::Measured;
 use crate::study::report::Report;
 use crate::study::row::{Row, Seconds};
@@ -39,14 +40,6 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         self
     }
 
-    /// The levels of all rows that may come: those set, or one for each step.
-    pub(super) fn row_levels(&self) -> Vec<usize> {
-        match &self.adaptive {
-            Some(adaptivity) => (0..=adaptivity.steps).collect(),
-            None => self.levels.clone(),
-        }
-    }
-
     /// The level of the first mesh of adaptive refinement.
     pub(super) fn first_level(&self) -> usize {
         let default = if self.mesh.is_some() { 0 } else { FIRST_LEVEL };
@@ -77,6 +70,9 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
             return refuse("domain of an adaptive study", "a disc".to_owned(), allowed);
         }
         self.coarsest().check(self.first_level())?;
+        for entry in &self.entries {
+            self.check_level(&*entry.scheme, self.first_level(), memory_of_process())?;
+        }
         let mesh = self.first_mesh()?;
         for (entry, problem) in self.entries.iter().zip(self.problems()) {
             let of_entry = NestedIteration::new(&problem, &mesh).check_bound(&*entry.scheme);
@@ -95,8 +91,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         failure: Option<&str>,
     ) -> Result<Report, Error> {
         (self.observer)(Progress::Entered(Phase::Mesh));
-        let mut rows = Vec::new();
-        let mut add = |row| self.finish(row, &mut rows);
+        let (mut rows, mut unwritten) = (Vec::new(), None);
         let first = self.first_mesh()?;
         // no finest mesh is asked for: the first one is looked at, later ones by their rows
         let crossing = self.find_crossing([&first])?;
@@ -109,6 +104,13 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
                 let mut steps = AdaptiveIteration::new(nested, &*entry.scheme, adaptivity)?;
                 for level in 0.. {
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
+                    let cells = meshes.finest().n_cells();
+                    if let Err(error) = self.check_step(&*entry.scheme, (level, cells)) {
+                        let (of, place) = ((entry, problem), (level, cells as f64));
+                        let row = self.row_without_memory(of, place, solver.name(), error)?;
+                        self.finish(Row { theta: Some(adaptivity.theta), ..row }, &mut rows)?;
+                        break;
+                    }
                     let step = match &crossing {
                         Some(crossing) => Some(Err(crossing.error())),
                         None => steps.next(),
@@ -120,24 +122,25 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
                             let name = solver.name();
                             let of = (entry, problem);
                             let row = self.row_without(of, place, name, failure, error)?;
-                            add(Row { theta: Some(adaptivity.theta), ..row })?;
+                            self.finish(Row { theta: Some(adaptivity.theta), ..row }, &mut rows)?;
                             break;
                         }
                         None => break,
                     };
+                    let row = self.row_of(entry, level, &step.solved, solver.name(), measured)?;
+                    let row = adaptive_row(row, &step, adaptivity.theta);
+                    let row = self.finish(row, &mut rows)?;
                     // files are named after the last step: whether there is another one is known
                     let last = level + usize::from(step.stop.is_none());
                     let levels: Vec<usize> = (0..=last).collect();
-                    let at = (level, &levels[..]);
-                    let row = self.row_of(entry, at, &step.solved, solver.name(), measured)?;
-                    add(adaptive_row(row, &step, adaptivity.theta))?;
+                    self.write_files(row, &levels, &step.solved, measured, &mut unwritten)?;
                     if step.stop.is_some() {
                         break;
                     }
                 }
             }
         }
-        Ok(self.report(rows))
+        unwritten.map_or_else(|| Ok(self.report(rows)), Err)
     }
 }
 

@@ -26,7 +26,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
             unreachable!("checked above")
         };
         let problem = entry.problem(&self.scene.problem);
-        let hierarchies = self.hierarchies()?;
+        let hierarchies = self.hierarchies(None)?;
         let mut on_level = hierarchies.iter().filter_map(|h| Some((h.position(level)?, h)));
         let Some((position, hierarchy)) = on_level.next() else {
             unreachable!("a hierarchy has the level")

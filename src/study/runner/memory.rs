@@ -1,15 +1,22 @@
 //! The memory that the runs of a study will need.
 
-use super::Study;
-use crate::element::Layout;
+use super::{Entry, Study};
+use crate::error::Error;
+use crate::inequality::Outcome;
 use crate::instances::compiled;
+use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
-use crate::study::memory::{MemoryEstimate, estimate, estimate_without_factors, unknowns_about};
+use crate::study::memory::{
+    MemoryEstimate, estimate, estimate_without_factors, memory_of_process, peak_memory_bytes,
+    unknowns_about,
+};
+use crate::study::row::Row;
 
 impl<T: Real, const D: usize> Study<'_, T, D> {
     /// An estimate of the memory of the largest run, with factors if the solver computes them from
-    /// the start; none for a study without schemes or levels.
+    /// the start; none for a study without schemes or levels. Of adaptive refinement the largest run has as many
+    /// unknowns as are allowed, and at least those of its first mesh.
     pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
         compiled!(
             T, D: fn(&Study<'_, T, D>) -> Option<MemoryEstimate>
@@ -17,26 +24,106 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         )(self)
     }
     fn estimate_memory(&self) -> Option<MemoryEstimate> {
-        let obstacle = self.scene.problem.has_obstacle();
-        let solvers = self.solvers();
-        let bytes = |layout: Layout, cells: f64| {
-            let unknowns = unknowns_about(D, layout, cells) as usize;
-            match D > 1 && solvers.iter().all(|s| s.uses_coarse_spaces(unknowns)) {
-                true => estimate_without_factors(D, layout, cells, size_of::<T>()),
-                false => estimate(D, layout, cells, obstacle, size_of::<T>()),
-            }
+        let level = match &self.adaptive {
+            Some(_) => self.first_level(),
+            None => self.levels.iter().copied().max()?,
         };
-        let of = |scheme: &dyn AnyScheme<T, D>, level: usize| {
-            let cells = match &self.adaptive {
-                Some(of) => of.unknowns as f64 / unknowns_about(D, scheme.layout(), 1.0),
-                None => self.coarsest().cells(level),
-            };
-            let bytes = bytes(scheme.layout(), cells);
+        let run = |scheme: &dyn AnyScheme<T, D>, level: usize| {
+            let most = self
+                .adaptive
+                .map_or(0.0, |of| of.unknowns as f64 / unknowns_about(D, scheme.layout(), 1.0));
+            let bytes = self.memory_of(scheme, self.coarsest().cells(level).max(most));
             MemoryEstimate { bytes, scheme: scheme.name().to_owned(), level }
         };
-        let finest = self.row_levels().into_iter().max()?;
-        let reference = self.reference.iter().map(|r| of(&*r.scheme, r.level));
-        let runs = self.entries.iter().map(|e| of(&*e.scheme, finest));
+        let runs = self.entries.iter().map(|entry| run(&*entry.scheme, level));
+        let reference = self.reference.iter().map(|of| run(&*of.scheme, of.level));
         runs.chain(reference).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
+    }
+
+    /// Bytes that the process needs for a scheme on so many cells.
+    fn memory_of(&self, scheme: &dyn AnyScheme<T, D>, cells: f64) -> f64 {
+        let layout = scheme.layout();
+        let unknowns = unknowns_about(D, layout, cells) as usize;
+        let solvers = self.solvers();
+        match D > 1 && solvers.iter().all(|s| s.uses_coarse_spaces(unknowns)) {
+            true => estimate_without_factors(D, layout, cells, size_of::<T>()),
+            false => {
+                let obstacle = self.scene.problem.has_obstacle();
+                estimate(D, layout, cells, obstacle, size_of::<T>())
+            }
+        }
+    }
+
+    /// Checks before any mesh is built that the largest run fits into the memory that the machine, the limits of the
+    /// process and its control group leave. A study that runs all the same has rows `out-of-memory` for runs that do
+    /// not fit.
+    ///
+    /// # Errors
+    /// [`Error::NotEnoughMemory`].
+    pub fn check_memory(&self) -> Result<(), Error> {
+        let Some(MemoryEstimate { bytes, scheme, level }) = self.memory_estimate() else {
+            return Ok(());
+        };
+        let what = match &self.adaptive {
+            Some(of) => format!("{} unknowns", of.unknowns),
+            None => format!("level {level}"),
+        };
+        shortage(bytes, memory_of_process(), || format!("scheme {scheme}, {what}"), self.remedy())
+    }
+    fn remedy(&self) -> &'static str {
+        if self.adaptive.is_some() { "fewer unknowns" } else { "a lower level" }
+    }
+
+    /// Checks that a scheme on a level fits into so many bytes.
+    pub(super) fn check_level(
+        &self,
+        scheme: &dyn AnyScheme<T, D>,
+        level: usize,
+        available: Option<u64>,
+    ) -> Result<(), Error> {
+        let run = || format!("scheme {}, level {level}", scheme.name());
+        let bytes = self.memory_of(scheme, self.coarsest().cells(level));
+        shortage(bytes, available, run, self.remedy())
+    }
+    /// Checks that a scheme on the next mesh of adaptive refinement fits into the memory.
+    pub(super) fn check_step(
+        &self,
+        scheme: &dyn AnyScheme<T, D>,
+        (step, cells): (usize, usize),
+    ) -> Result<(), Error> {
+        let run = || format!("scheme {}, step {step} with {cells} cells", scheme.name());
+        shortage(self.memory_of(scheme, cells as f64), memory_of_process(), run, self.remedy())
+    }
+
+    /// The row of a run that does not fit into the memory, on so many cells.
+    pub(super) fn row_without_memory(
+        &self,
+        (entry, problem): (&Entry<'_, T, D>, &Problem<D>),
+        (level, cells): (usize, f64),
+        solver: &str,
+        error: Error,
+    ) -> Result<Row, Error> {
+        let row = Row {
+            cells: cells as usize,
+            solver: solver.to_owned(),
+            peak_memory_bytes: peak_memory_bytes(),
+            ..Row::new(&self.scene.name, D, entry.scheme.name(), level, Outcome::OutOfMemory)
+        };
+        self.named(entry, problem, row, None).with_error(error)
+    }
+}
+
+/// Refuses a run that needs more bytes than there are, where the system tells.
+fn shortage(
+    needed: f64,
+    available: Option<u64>,
+    run: impl Fn() -> String,
+    remedy: &'static str,
+) -> Result<(), Error> {
+    match available.map(|bytes| bytes as f64) {
+        Some(available) if needed > available => {
+            Err(Error::NotEnoughMemory { run: run(), needed, available, remedy })
+        }
+        _ => Ok(()),
     }
 }

@@ -31,6 +31,7 @@ use crate::study::compatibility::{check_domain, check_fit, check_names, check_sc
 use crate::study::fields::FieldFiles;
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
+use crate::study::memory::memory_of_process;
 use crate::study::orders::fill_orders;
 use crate::study::reference::{Measured, Reference};
 use crate::study::report::{Program, Report};
@@ -190,7 +191,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Checks schemes, levels and mesh. Returns the point at which the exact solution of the scene
     /// breaks the contact condition of a given mesh.
     fn where_exact_fails(&self) -> Result<Option<String>, Error> {
-        let lengths = [("schemes", self.entries.len()), ("levels", self.row_levels().len())];
+        let levels = self.levels.len() + usize::from(self.adaptive.is_some());
+        let lengths = [("schemes", self.entries.len()), ("levels", levels)];
         if let Some(&(parameter, _)) = lengths.iter().find(|(_, length)| *length == 0) {
             let allowed = format!("a study needs {parameter}: at least one");
             return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
@@ -209,6 +211,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             let domain = self.mesh.is_none().then_some(&self.scene.domain);
             reference.check(domain, &self.levels)?;
             self.coarsest().check(reference.level)?;
+            self.check_level(&*reference.scheme, reference.level, memory_of_process())?;
         }
         let Some(mesh) = &self.mesh else {
             return check_domain(&self.scene).map(|()| None);
@@ -223,7 +226,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Runs every scheme with every solver on every level.
     ///
     /// # Errors
-    /// Errors of [`Self::check`], and [`Error::Write`] for fields and journal. A run that fails is no
+    /// Errors of [`Self::check`], and [`Error::Write`] for the journal, and after the last row for fields and
+    /// inequalities. A run that fails is no
     /// error: its row has the outcome and the message, also where data are not finite on a mesh, or leave
     /// no room for a solution.
     pub fn run(&self) -> Result<Report, Error> {
@@ -237,59 +241,55 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         if let Some(adaptivity) = self.adaptive {
             return self.run_adaptive(adaptivity, failure.as_deref());
         }
-        let kept: Vec<Option<Row>> = self.keys().iter().map(|key| self.kept(key)).collect();
+        let kept: Vec<(Option<Row>, bool)> = self.keys().iter().map(|key| self.kept(key)).collect();
         (self.observer)(Progress::Entered(Phase::Mesh));
-        let hierarchies = match kept.iter().all(Option::is_some) {
+        let available = memory_of_process();
+        let hierarchies = match kept.iter().all(|of| of.1) {
             true => Vec::new(),
-            false => self.hierarchies()?,
+            false => self.hierarchies(available)?,
         };
         let problems = self.problems();
         let reference_problem = self.reference_problem();
         let crossing = self.find_crossing(hierarchies.iter().map(Hierarchy::finest))?;
-        let reference = match crossing {
-            None => self.find_reference(&reference_problem, &hierarchies),
-            Some(_) => None,
-        };
+        let find_reference = || self.find_reference(&reference_problem, &hierarchies);
+        let reference = crossing.is_none().then(find_reference).flatten();
+        let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
             .solvers()
             .iter()
             .map(|solver| hierarchies.iter().map(|h| self.nested(h, solver)).collect())
             .collect();
         let mut kept = kept.into_iter();
-        let mut rows = Vec::new();
+        let (mut rows, mut unwritten) = (Vec::new(), None);
         for (entry, problem) in self.entries.iter().zip(&problems) {
-            for nested in &mut by_solver {
+            for (nested, solver) in by_solver.iter_mut().zip(self.solvers()) {
                 let label = entry.label(problem);
                 for &level in &self.levels {
-                    if let Some(row) = kept.next().flatten() {
+                    let (kept, is_whole) = kept.next().unwrap_or_default();
+                    if let Some(row) = kept.clone() {
                         (self.observer)(Progress::Kept(&row));
                         rows.push(row);
+                    }
+                    if is_whole {
                         continue;
                     }
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                    let (failure, reference) = (failure.as_deref(), reference.as_ref());
-                    let measured = Measured { failure, reference };
                     let of = (entry, problem);
-                    let row = match &crossing {
-                        None => self.row(nested, of, level, measured)?.0,
-                        Some(crossing) => self.row_of_crossing(nested, of, level, crossing)?,
+                    let why_not = (&crossing, available);
+                    let place = (level, solver.name());
+                    let (row, solved) = self.row_or_reason(nested, of, place, measured, why_not)?;
+                    let row = match &kept {
+                        Some(row) => row,
+                        None => self.finish(row, &mut rows)?,
                     };
-                    self.finish(row, &mut rows)?;
+                    if let Some(solved) = &solved {
+                        let levels = &self.levels;
+                        self.write_files(row, levels, solved, measured, &mut unwritten)?;
+                    }
                 }
             }
         }
-        Ok(self.report(rows))
-    }
-
-    /// Adds a row that is finished.
-    fn finish(&self, row: Row, rows: &mut Vec<Row>) -> Result<(), Error> {
-        #[cfg(feature = "report")]
-        if let Some(journal) = self.journal {
-            journal.add(&row)?;
-        }
-        (self.observer)(Progress::Finished(&row));
-        rows.push(row);
-        Ok(())
+        unwritten.map_or_else(|| Ok(self.report(rows)), Err)
     }
 
     /// The report of all rows.
@@ -306,14 +306,15 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect()
     }
 
-    /// What tells the rows of the study apart, in the order in which they run. Adaptive refinement may end
-    /// before the last step.
+    /// What tells the rows of the study apart, in the order in which they run; none of adaptive refinement, whose
+    /// number of steps is not known before.
     pub fn keys(&self) -> Vec<RowKey> {
         let mut keys = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&self.problems()) {
             let label = entry.label(problem);
             for solver in self.solvers() {
-                keys.extend(self.row_levels().into_iter().map(|level| RowKey {
+                let levels = self.levels.iter().filter(|_| self.adaptive.is_none());
+                keys.extend(levels.map(|&level| RowKey {
                     scene: self.scene.name.clone(),
                     label: label.clone(),
                     solver: solver.name().to_owned(),
@@ -324,14 +325,16 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         keys
     }
 
-    /// The row that the journal has from an earlier run.
+    /// The row that the journal has from an earlier run, and whether its files are there.
     #[cfg(feature = "report")]
-    fn kept(&self, key: &RowKey) -> Option<Row> {
-        self.journal?.take(key)
+    fn kept(&self, key: &RowKey) -> (Option<Row>, bool) {
+        let row = self.journal.and_then(|journal| journal.take(key));
+        let is_whole = row.as_ref().is_some_and(|row| !self.lacks_files(row));
+        (row, is_whole)
     }
     #[cfg(not(feature = "report"))]
-    fn kept(&self, _: &RowKey) -> Option<Row> {
-        None
+    fn kept(&self, _: &RowKey) -> (Option<Row>, bool) {
+        (None, false)
     }
 
     /// Runs the first scheme with the first solver on the first level with a new hierarchy, so that no
@@ -351,13 +354,22 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let hierarchy = self.coarsest().build(level)?;
         let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
         let measured = Measured { failure: failure.as_deref(), reference: None };
-        Ok(vec![self.row(&mut nested, (entry, &problem), level, measured)?])
+        let (row, solved) = self.row(&mut nested, (entry, &problem), level, measured)?;
+        Ok(vec![(row, solved.map_or(0.0, |solved| solved.start_seconds))])
     }
 
-    /// The meshes of all levels: in one hierarchy with those of a reference.
-    fn hierarchies(&self) -> Result<Vec<Hierarchy<T, D>>, Error> {
+    /// The meshes of all levels on which a scheme fits into so many bytes: in one hierarchy with those of a reference.
+    fn hierarchies(&self, available: Option<u64>) -> Result<Vec<Hierarchy<T, D>>, Error> {
         match &self.reference {
-            None => self.coarsest().build_all(&self.levels),
+            None => {
+                let mut levels = self.levels.clone();
+                levels.retain(|&level| {
+                    let fits =
+                        |of: &Entry<'_, T, D>| self.check_level(&*of.scheme, level, available);
+                    self.entries.iter().any(|entry| fits(entry).is_ok())
+                });
+                self.coarsest().build_all(&levels)
+            }
             Some(reference) => {
                 let coarsest = self.levels.iter().copied().min().unwrap_or(1);
                 Ok(vec![self.coarsest().build_from(reference.level, coarsest)?])

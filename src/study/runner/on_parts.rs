@@ -93,7 +93,7 @@ impl<const D: usize> Study<'_, f64, D> {
                     (row.bound.effectivity, row.bound.effectivity_of_v) = (None, None);
                     row.expected_order = ExpectedOrders::default();
                     row.warnings.push(format!(
-                        "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+                        "the exact solution breaks the contact condition of this mesh at {at}: no errors"
                     ));
                 }
                 self.finish_on_parts(row, &mut rows, process)?;

@@ -16,21 +16,54 @@ use crate::scheme::{AnyScheme, ExpectedOrders};
 use crate::study::crossing::Crossing;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
-use crate::study::memory::peak_memory_bytes;
+use crate::study::memory::{memory_of_process, peak_memory_bytes};
 use crate::study::reference::Measured;
 use crate::study::row::Row;
 use crate::study::setting::setting;
 
 impl<T: Real, const D: usize> Study<'_, T, D> {
-    /// Solves one scheme on one level of these hierarchies. Returns the row, and the seconds of its start
-    /// from coarser levels.
+    /// Adds a row that is finished.
+    pub(super) fn finish<'r>(&self, row: Row, rows: &'r mut Vec<Row>) -> Result<&'r Row, Error> {
+        #[cfg(feature = "report")]
+        if let Some(journal) = self.journal {
+            journal.add(&row)?;
+        }
+        (self.observer)(Progress::Finished(&row));
+        rows.push(row);
+        Ok(&rows[rows.len() - 1])
+    }
+
+    /// The row of one scheme on one level of these hierarchies, with its solution: none where it does not fit into so
+    /// many bytes, the most of the beginning, or bounds cross.
+    pub(super) fn row_or_reason<'p>(
+        &self,
+        nested: &mut [NestedIteration<'p, T, D>],
+        of: (&Entry<'_, T, D>, &'p Problem<D>),
+        (level, solver): (usize, &str),
+        measured: Measured<'_, 'p, T, D>,
+        (crossing, available): (&Option<Crossing<D>>, Option<u64>),
+    ) -> Result<(Row, Option<Solved<'p, T, D>>), Error> {
+        // meshes that did not fit in the beginning were not built
+        let available = available.and_then(|bytes| Some(bytes.min(memory_of_process()?)));
+        if let Err(error) = self.check_level(&*of.0.scheme, level, available) {
+            let cells = self.coarsest().cells(level);
+            return Ok((self.row_without_memory(of, (level, cells), solver, error)?, None));
+        }
+        match crossing {
+            None => self.row(nested, of, level, measured),
+            Some(crossing) => Ok((self.row_of_crossing(nested, of, level, crossing)?, None)),
+        }
+    }
+
+    /// Solves one scheme on one level of these hierarchies. Returns the row and the solution; none where the data left
+    /// none.
     pub(super) fn row<'p>(
         &self,
         nested: &mut [NestedIteration<'p, T, D>],
         (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
         level: usize,
         measured: Measured<'_, 'p, T, D>,
-    ) -> Result<(Row, f64), Error> {
+    ) -> Result<(Row, Option<Solved<'p, T, D>>), Error> {
         let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
         let Some((position, nested)) = on_level.next() else {
             unreachable!("a hierarchy has the level")
@@ -39,20 +72,20 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         nested.replace_constraint_set(problem);
         match nested.solve_on(position, &*entry.scheme) {
             Ok(solved) => {
-                let row = self.row_of(entry, (level, &self.levels), &solved, solver, measured)?;
-                Ok((row, solved.start_seconds))
+                let row = self.row_of(entry, level, &solved, solver, measured)?;
+                Ok((row, Some(solved)))
             }
             Err(error) => {
                 let place = (level, nested.mesh(position));
                 let row =
                     self.row_without((entry, problem), place, solver, measured.failure, error)?;
-                Ok((row, 0.0))
+                Ok((row, None))
             }
         }
     }
 
     /// The row of a problem whose bounds cross on the finest mesh, on one level of these hierarchies.
-    pub(super) fn row_of_crossing<'p>(
+    fn row_of_crossing<'p>(
         &self,
         nested: &[NestedIteration<'p, T, D>],
         of: (&Entry<'_, T, D>, &'p Problem<D>),
@@ -93,50 +126,68 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         self.named(entry, problem, without_solution, failure).with_error(error)
     }
 
-    /// The row of a solution, after its files are written; `levels` are those that have files.
+    /// The row of a solution.
     pub(super) fn row_of<'p>(
         &self,
         entry: &Entry<'_, T, D>,
-        (level, levels): (usize, &[usize]),
+        level: usize,
         solved: &Solved<'p, T, D>,
         solver: &str,
         measured: Measured<'_, 'p, T, D>,
     ) -> Result<Row, Error> {
-        let label = entry.label(solved.discretisation().problem());
-        let name = match self.solvers.len() {
-            0 | 1 => label.clone(),
-            _ => format!("{label}-{solver}"),
-        };
-        #[cfg(feature = "report")]
-        let written = {
-            let reference = measured.reference.and_then(|found| found.as_ref().ok());
-            let reference = reference.map(|(reference, _)| reference);
-            let of = (&self.scene.name[..], &name[..]);
-            let mut written = self.fields.write(of, level, levels, solved, reference);
-            if let (Ok(()), Some(directory)) = (&written, &self.inequalities) {
-                let name = format!("{}-{label}-{level}", self.scene.name);
-                let folder = directory.join(file_name(&name));
-                written = write_inequality(folder, solved.inequality(), solved.mesh());
-            }
-            written
-        };
-        #[cfg(not(feature = "report"))]
-        let _ = levels;
-        if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
-            f(&name, level, solved)?;
-        }
         (self.observer)(Progress::Entered(Phase::Measures));
         let row = self.measured_row(entry, level, solved, measured)?;
         let (solver, peak_memory_bytes) = (solver.to_owned(), peak_memory_bytes());
-        let row = Row { solver, peak_memory_bytes, ..row };
-        #[cfg(feature = "report")]
-        if let (Err(_), Some(journal)) = (&written, self.journal) {
-            // the study ends, and the row is finished
-            journal.add(&row)?;
+        Ok(Row { solver, peak_memory_bytes, ..row })
+    }
+
+    /// What tells the files of a row apart from others of its scene and level.
+    fn name_of_files(&self, row: &Row) -> String {
+        match self.solvers.len() {
+            0 | 1 => row.label.clone(),
+            _ => format!("{}-{}", row.label, row.solver),
         }
+    }
+
+    /// Whether the fields of a row of an earlier run are wanted and not there: the run ended before they were written.
+    #[cfg(feature = "report")]
+    pub(super) fn lacks_files(&self, row: &Row) -> bool {
+        let name = self.name_of_files(row);
+        let lacks = self.fields.lack((&row.scene, &name), row.level, &self.levels);
+        lacks && row.status.has_iterate()
+    }
+
+    /// Writes the files of a solution whose row is finished; `levels` are those that have files. The first file that
+    /// cannot be written goes to `unwritten`: it is no reason for the other rows not to run.
+    ///
+    /// # Errors
+    /// Those of the function for each solution.
+    #[cfg_attr(not(feature = "report"), expect(unused_variables))]
+    pub(super) fn write_files<'p>(
+        &self,
+        row: &Row,
+        levels: &[usize],
+        solved: &Solved<'p, T, D>,
+        measured: Measured<'_, 'p, T, D>,
+        unwritten: &mut Option<Error>,
+    ) -> Result<(), Error> {
+        let Row { scene, label, level, .. } = row;
+        let name = self.name_of_files(row);
         #[cfg(feature = "report")]
-        written?;
-        Ok(row)
+        {
+            let reference = measured.reference.and_then(|found| found.as_ref().ok());
+            let reference = reference.map(|(reference, _)| reference);
+            let fields = self.fields.write((scene, &name), *level, levels, solved, reference);
+            let dumped = self.inequalities.as_ref().map_or(Ok(()), |directory| {
+                let folder = directory.join(file_name(&format!("{scene}-{label}-{level}")));
+                write_inequality(folder, solved.inequality(), solved.mesh())
+            });
+            *unwritten = unwritten.take().or(fields.err()).or(dumped.err());
+        }
+        match self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
+            Some(f) => f(&name, *level, solved),
+            None => Ok(()),
+        }
     }
 
     /// The row of a solution with its errors and totals, without solver and memory.

@@ -162,7 +162,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self
     }
     /// Sets a function that receives every solution that has values, with its label, of several solvers as
-    /// `LABEL-SOLVER`, and its level, before the row of the solution is complete. An error ends the study.
+    /// `LABEL-SOLVER`, and its level, after the row of the solution is finished. An error ends the study.
     #[must_use]
     pub fn each_solution(
         mut self,

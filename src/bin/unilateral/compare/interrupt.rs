@@ -25,16 +25,21 @@ struct State {
     journal: Option<&'static Journal>,
     /// Whether the run has written its report.
     is_written: bool,
+    /// Whether `--resume` takes up such a run.
+    resumes: bool,
 }
 
 impl Interrupt {
     /// Lets SIGINT and SIGTERM, and Ctrl-C elsewhere, write the report with this function and end the
     /// process, also while a solve runs. A second signal ends the process at once. A panic of any thread does so
     /// too, after its message, with exit code 1: the release build does not unwind.
+    ///
+    /// Only a run that `resumes` is told so.
     pub fn install(
+        resumes: bool,
         write: impl Fn(&Report) -> Request<()> + Send + Sync + 'static,
     ) -> Request<Self> {
-        let interrupt = Self::default();
+        let interrupt = Self(Arc::new(Mutex::new(State { resumes, ..State::default() })));
         let (shared, write) = (interrupt.clone(), Arc::new(write));
         interrupt.install_panic_hook(write.clone());
         let is_second = AtomicBool::new(false);
@@ -90,10 +95,12 @@ impl Interrupt {
                 complain(&message);
             }
             journal.remove_drafts();
-            complain(&format!(
-                "{why}; {} finished rows are in the report, --resume goes on from them",
-                report.rows.len()
-            ));
+            let rows = match report.rows.len() {
+                1 => "1 finished row is".to_owned(),
+                n => format!("{n} finished rows are"),
+            };
+            let end = if state.resumes { ", --resume goes on from there" } else { "" };
+            complain(&format!("{why}; {rows} in the report{end}"));
         }
         exit(code)
     }
@@ -144,7 +151,7 @@ mod tests {
         assert_eq!(output.status.code(), Some(1), "{messages}");
         assert_eq!(fs::read_to_string(directory.join("written")).unwrap(), "1 rows");
         let place = messages.find("a deliberate panic");
-        let report = messages.find("stopped by a panic; 1 finished rows are in the report");
+        let report = messages.find("stopped by a panic; 1 finished row is in the report");
         assert!(place.is_some() && place < report, "{messages}");
         fs::remove_dir_all(directory).unwrap();
     }

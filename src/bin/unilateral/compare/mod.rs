@@ -17,12 +17,12 @@ use prepare::{Run, prepare};
 use watcher::Watcher;
 
 use crate::judge::write_requests;
+use crate::one_run::take_directory;
 use crate::shared::{
-    ORDER_TOLERANCE, Request, check_writable, complain, fingerprint, make_directory, print,
-    print_to, read, use_threads, write,
+    ORDER_TOLERANCE, Request, check_writable, complain, fingerprint, print, print_to, read,
+    use_threads, write,
 };
 
-use unilateral::error::Error;
 use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
 use unilateral::mesh::gmsh;
@@ -44,7 +44,8 @@ pub fn run(options: &Options) -> Request<bool> {
     check_numbers(options)?;
     use_threads(options.threads)?;
     let copy = options.clone();
-    let interrupt = Interrupt::install(move |report| write_all(&copy, report))?;
+    let resumes = options.adaptive.is_none() && options.dump.is_none();
+    let interrupt = Interrupt::install(resumes, move |report| write_all(&copy, report))?;
     let chosen = Chosen::new(options)?;
     match &options.precision[..] {
         "f32" => chosen.run::<f32>(options, &interrupt),
@@ -263,7 +264,7 @@ fn run_all(
             Err(error) => {
                 messages.push(format!("{place}: {error}"));
                 // the next scene could not be written either
-                if matches!(error, Error::Write { .. }) {
+                if journal.is_closed() {
                     break;
                 }
             }
@@ -293,13 +294,11 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
     Ok(Box::leak(Box::new(journal)))
 }
 
-/// Makes sure before the work, not after it, that the report can be written.
+/// Makes sure before the work, not after it, that the report can be written, and by no other run.
 fn check_output(options: &Options) -> Request<()> {
-    if let Some(directory) = &options.dump {
-        make_directory(directory)?;
-    }
     let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
-    check_writable(json.into_iter().chain(&options.orders))
+    check_writable(json.into_iter().chain(&options.orders))?;
+    options.dump.iter().chain([&options.out]).try_for_each(|directory| take_directory(directory))
 }
 
 /// Writes the report and prints its tables, of an incomplete one the files only.

@@ -10,7 +10,7 @@ use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, PartChecks, Report, Row, Study};
 
 use super::options::{Options, check_numbers};
-use super::prepare::default_levels;
+use super::prepare::{default_levels, place};
 use super::watcher::Watcher;
 use super::{Chosen, check_output, processes_of_job, program, write_all};
 use crate::posed::Posed;
@@ -155,7 +155,7 @@ impl AllRuns<'_> {
             let scalar = if is_double { FieldScalar::Double } else { FieldScalar::Single };
             study = study.fields_to(&options.out).field_scalar(scalar);
         }
-        let mut place = format!("scene {name}");
+        let mut place = place(options, &name);
         if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh.path) {
             place = format!("{}, {place}", path.display());
             study = study.on_mesh(options.mesh.parse(bytes, &warn)?);

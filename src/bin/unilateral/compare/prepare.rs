@@ -17,13 +17,13 @@ use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
 use unilateral::real::Real;
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Journal, Row, RowKey, Study, available_memory_bytes, file_name};
+use unilateral::study::{Journal, Row, RowKey, Study, file_name};
 
 /// A study that has been checked.
 pub struct Run<'a> {
     /// What tells its rows apart.
     pub keys: Vec<RowKey>,
-    /// Scene and mesh, for messages.
+    /// Problem file, or scene and mesh, for messages.
     pub place: String,
     /// Runs it.
     pub run: Box<dyn FnOnce(&'a Journal) -> Result<Vec<Row>, Error> + 'a>,
@@ -94,28 +94,14 @@ pub fn prepare<'a, T: Real, const D: usize>(
     if let Some((scheme, level)) = &options.reference {
         study = study.named_reference(scheme, *level);
     }
-    let mut place = format!("scene {name}");
+    let mut place = place(options, &name);
     if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh.path) {
         place = format!("{}, {place}", path.display());
         study = study.on_mesh(options.mesh.parse(bytes, &|warning| watcher.warn_once(warning))?);
     }
     match study.check() {
         Err(Error::UnfitMesh { .. }) if !options.scenes_are_named() => return Ok(None),
-        other => other.map_err(|e| format!("{place}: {e}"))?,
-    }
-    if let (Some(need), Some(free)) = (study.memory_estimate(), available_memory_bytes())
-        && need.bytes > free as f64
-    {
-        let (run, less) = match &options.adaptive {
-            Some(of) => (format!("{} unknowns", of.unknowns), "fewer unknowns"),
-            None => (format!("level {}", need.level), "a lower level"),
-        };
-        return Err(format!(
-            "scene {name}, scheme {}, {run}: would need about {:.1} GB of memory, {:.1} GB are available; choose {less}",
-            need.scheme,
-            need.bytes / 1e9,
-            free as f64 / 1e9
-        ));
+        other => other.and_then(|()| study.check_memory()).map_err(|e| format!("{place}: {e}"))?,
     }
     let keys = study.keys();
     // how many steps a bound takes is not known before
@@ -124,6 +110,14 @@ pub fn prepare<'a, T: Real, const D: usize>(
     }
     let run = move |journal| Ok(study.journal(journal).run()?.rows);
     Ok(Some(Run { keys, place, run: Box::new(run) }))
+}
+
+/// What a message is about: the file of a problem, or a scene.
+pub fn place(options: &Options, name: &str) -> String {
+    match &options.problem {
+        Some(path) => path.display().to_string(),
+        None => format!("scene {name}"),
+    }
 }
 
 /// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.

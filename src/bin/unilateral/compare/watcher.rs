@@ -10,7 +10,7 @@ use unilateral::inequality::StepCounter;
 use unilateral::study::{Progress, Row};
 
 use super::options::Options;
-use crate::shared::{bar, tick};
+use crate::shared::{bar, tick, warn};
 
 /// Shows progress: one line on a terminal, elsewhere a line for each finished row. Warnings of runs stand
 /// under the tables.
@@ -115,7 +115,7 @@ impl Watcher {
     }
     pub fn warn_once(&self, warning: String) {
         if !self.quiet && !self.warned.borrow().contains(&warning) {
-            let _ = writeln!(std::io::stderr(), "{warning}");
+            warn(&warning);
             self.warned.borrow_mut().push(warning);
         }
     }

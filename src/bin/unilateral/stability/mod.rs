@@ -16,9 +16,9 @@ use std::path::Path;
 pub use options::Options;
 
 use crate::mesh_file::{warn_of, with_parts};
+use crate::one_run::take_directory;
 use crate::shared::{
-    Failure, bar, check_writable, end_at_interrupt, make_directory, print, tick, use_threads, warn,
-    write,
+    Failure, bar, check_writable, end_at_interrupt, print, tick, use_threads, warn, write,
 };
 use unilateral::mesh::gmsh;
 use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
@@ -51,14 +51,14 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     for path in &options.meshes {
         let read = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
         if !options.quiet {
-            warn_of(&read.warnings, path, &warn);
+            warn_of(&read.warnings, path, &|warning| warn(&warning));
         }
         let mesh = with_parts(read.mesh, path, &options.boundary)?;
         study = study.mesh(&name_of(path), mesh);
     }
     study.check().map_err(|e| e.to_string())?;
     check_writable(&options.markdown)?;
-    make_directory(&options.out)?;
+    take_directory(&options.out)?;
     end_at_interrupt("the report has the rows so far and is not complete")?;
     let report = study.run().map_err(Failure::of_work)?;
     bar.finish_and_clear();

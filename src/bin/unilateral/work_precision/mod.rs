@@ -25,10 +25,11 @@ use unilateral::work_precision::{
 };
 
 use crate::adaptive::words;
+use crate::one_run::take_directory;
 use crate::posed::Posed;
 use crate::shared::{
-    Failure, Request, bar, check_writable, end_at_interrupt, make_directory, print, print_to, read,
-    tick, use_threads, warn, write,
+    Failure, Request, bar, check_writable, end_at_interrupt, print, read, tick, use_threads, warn,
+    write,
 };
 
 /// The label of which the verdicts speak by default.
@@ -83,7 +84,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         );
     }
     check_writable(&options.save)?;
-    make_directory(&options.out)?;
+    take_directory(&options.out)?;
     end_at_interrupt("the report has the runs so far and is not complete")?;
     // rows of an earlier request do not stand for this one
     report.write_data(&options.out).map_err(Failure::of_work)?;
@@ -155,16 +156,15 @@ fn prepare<'a, const D: usize>(
     };
     if !posed.has_exact() && options.reference.is_none() && !options.quiet {
         let reference = "--reference N measures against a fine solution";
-        let text = format!(
-            "warning: {place}: only bounds are reached, for no error is known; {reference}\n"
-        );
-        print_to(std::io::stderr(), &text)?;
+        warn(&format!(
+            "warning: {place}: only bounds are reached, for no error is known; {reference}"
+        ));
     }
     // warnings of a mesh are those of its first scene
     let is_first = labels.borrow().is_empty();
-    let warn = |warning| {
+    let warn = |warning: String| {
         if is_first && !options.quiet {
-            warn(warning)
+            warn(&warning)
         }
     };
     let mesh = options.mesh.read(&warn)?;

@@ -1,0 +1,58 @@
+//! One directory has one run at a time.
+
+use std::fs::{self, File, TryLockError};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use unilateral::input::excerpt;
+use unilateral::output::Provenance;
+
+use crate::shared::{Request, cannot_write, warn};
+
+/// The file of a directory that its run locks. It names the process and stays; what keeps others out is the lock.
+const LOCK: &str = ".lock";
+
+/// The directories of this process, with the files that it has locked.
+static TAKEN: Mutex<Vec<(PathBuf, File)>> = Mutex::new(Vec::new());
+
+/// Makes a directory where there is none, before the work, and refuses one into which another run writes. The system
+/// takes the lock back when this process ends, however it does.
+pub fn take_directory(path: &Path) -> Request<()> {
+    fs::create_dir_all(path).map_err(|e| cannot_write(path, e))?;
+    let own = fs::canonicalize(path).map_err(|e| cannot_write(path, e))?;
+    let mut taken = TAKEN.lock().unwrap_or_else(PoisonError::into_inner);
+    if taken.iter().any(|(other, _)| *other == own) {
+        return Ok(());
+    }
+    let name = path.join(LOCK);
+    let file = File::options().read(true).write(true).create(true).truncate(false).open(&name);
+    let mut file = file.map_err(|e| cannot_write(&name, e))?;
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock) => return Err(in_use(path, &mut file)),
+        // some file systems have no locks
+        Err(TryLockError::Error(why)) => {
+            let path = path.display();
+            warn(&format!("warning: {path} cannot be locked, start no other run there: {why}"));
+        }
+    }
+    let since = Provenance::now(0).date.map_or_else(String::new, |date| format!(" since {date}"));
+    let holder = format!("process {}{since}", std::process::id());
+    let written = file.set_len(0).and_then(|()| file.write_all(holder.as_bytes()));
+    written.map_err(|e| cannot_write(&name, e))?;
+    taken.push((own, file));
+    Ok(())
+}
+
+/// The message for a directory of another run.
+fn in_use(path: &Path, file: &mut File) -> String {
+    let mut holder = Vec::new();
+    // where a locked file is not read by others, the process has no name
+    let _ = file.take(200).read_to_end(&mut holder);
+    let holder = if holder.is_empty() { "another process".into() } else { excerpt(holder) };
+    let path = path.display();
+    format!(
+        "{path}: {holder} writes its report there; wait for its end, or choose another directory"
+    )
+}

@@ -1,0 +1,50 @@
+//! What is said of a problem is said once, of its file and of its groups.
+
+use super::run::{Scratch, read_json, refused, rows, stdout};
+
+fn input(name: &str) -> String {
+    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn an_obstacle_above_a_dirichlet_value_is_said_once_with_the_group() {
+    let scratch = Scratch::new("above-wall");
+    let path = input("obstacle_above_wall");
+    let output = scratch.run(&format!("{path} --scheme p1,cr --levels 2,4"));
+    assert_eq!(output.status.code(), Some(1));
+    let printed = stdout(&output);
+    let lines = printed.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+    let once = "the lower obstacle, 0.1, exceeds the Dirichlet value on `left`, 0";
+    assert_eq!(lines.matches(once).count(), 1, "{printed}");
+    assert_eq!(printed.matches("did not converge: infeasible, as above").count(), 3, "{printed}");
+    assert!(!printed.contains("active-set/\n"), "{printed}");
+    let markdown = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    assert_eq!(markdown.matches("exceeds the Dirichlet value on").count(), 1, "{markdown}");
+    assert!(markdown.contains("p1, level 2; p1, level 4; cr, level 2; cr, level 4: did not"));
+    // a message to the user of a file names the file
+    let scratch = Scratch::new("named-file");
+    refused(&scratch, &[&path, "--levels", "0"], &[&format!("error: {path}: level = 0")]);
+}
+
+/// A name of any length and with control characters is cut and shown with escapes, in tables, in files and in their
+/// names.
+#[test]
+fn names_of_problems_are_cut() {
+    let scratch = Scratch::new("long-name");
+    let rest = std::fs::read_to_string(input("obstacle_above_wall")).unwrap();
+    let rest = rest.replace("default = 0.1", "default = -0.1");
+    for name in ["x".repeat(100_000), "red\\u001b[31m\\nline".to_owned()] {
+        let path = scratch.file("own.toml", &format!("name = \"{name}\"\n{rest}"));
+        let output = scratch.run(&format!("{path} --scheme p1 --levels 2,4"));
+        assert_eq!(output.status.code(), Some(0));
+        let printed = stdout(&output);
+        assert!(!printed.chars().any(|c| c.is_control() && c != '\n'), "{printed:?}");
+        assert!(printed.lines().all(|line| line.chars().count() < 150), "{printed}");
+        let report = read_json(&scratch.0.join("out/report.json"));
+        let scene = rows(&report)[0]["scene"].as_str().unwrap();
+        assert!(scene.chars().count() <= 81 && !scene.chars().any(char::is_control), "{scene}");
+        let fields = std::fs::read_dir(scratch.0.join("out")).unwrap();
+        let is_field = |path: &std::path::Path| path.extension().is_some_and(|e| e == "vtu");
+        assert_eq!(fields.filter(|file| is_field(&file.as_ref().unwrap().path())).count(), 1);
+    }
+}
