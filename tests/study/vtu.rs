@@ -465,7 +465,7 @@ fn names_of_groups_are_told_from_those_of_fields() {
     file.write(&path).unwrap();
     let grid = read(&path);
     assert_eq!(grid.floats("CellData", "contact")[3], 0.5);
-    let other = "a &quot;b&quot;\u{fffd}\u{fffd}";
+    let other = r"a &quot;b&quot;\n\u{1}";
     for (name, facet) in [("contact_group", 3), (other, 1), ("contact_group_group", 2)] {
         let mut expected = [0; 4];
         expected[facet] = 1;
