@@ -4,6 +4,7 @@ mod adaptive;
 mod contact_forces;
 mod data;
 mod dump;
+mod figures;
 mod free_bodies;
 mod hard_rows;
 #[cfg(unix)]
