@@ -29,7 +29,13 @@ fn replace_by(
     fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let draft = directory.join(mark() + &name);
-    let written = write(&draft).map_err(|why| write_error(path, why));
+    let cause = |why: Reason| match why.downcast::<Error>().map(|error| *error) {
+        // the cause itself: nobody knows the draft
+        Ok(Error::Write { why, .. }) => why,
+        Ok(other) => other.into(),
+        Err(why) => why,
+    };
+    let written = write(&draft).map_err(|why| write_error(path, cause(why)));
     let written = written.and_then(|()| fs::rename(&draft, path).map_err(|e| write_error(path, e)));
     if written.is_err() {
         let _ = fs::remove_file(&draft);

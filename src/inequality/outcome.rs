@@ -121,7 +121,7 @@ impl Outcome {
                 "no solution: the load pulls a body, which only its bounds hold, away from them"
             }
             Outcome::NotUnique => {
-                "not unique: the load on a body that only its bounds hold is balanced; the values are one of the solutions, which differ there by a constant"
+                "the load on a body that only its bounds hold is balanced; the values are one of the solutions, which differ there by a constant"
             }
             Outcome::NotFinite => "a number of the data or of an iterate is not finite",
             Outcome::OutOfRange => {

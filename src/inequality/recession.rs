@@ -240,7 +240,7 @@ pub(crate) fn explanation<T: Real>(inequality: &Inequality<T>, outcome: Outcome)
     Some(match motion {
         Motion::Unbounded => format!("{}: its resultant is {resultant:.6e}", outcome.message()),
         _ => format!(
-            "not unique: the data, as integrated, do not decide whether the load presses or pulls a body that only its bounds hold: its resultant is {resultant:.2e}, and up to {:.2e} it counts as none; the values are one of the solutions, which differ there by a constant",
+            "the data, as integrated, do not decide whether the load presses or pulls a body that only its bounds hold: its resultant is {resultant:.2e}, and up to {:.2e} it counts as none; the values are one of the solutions, which differ there by a constant",
             body.uncertainty
         ),
     })

@@ -149,7 +149,7 @@ pub enum ProblemFileFault {
     },
     /// The file does not say what holds on a boundary group of the mesh.
     #[error(
-        "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann or contact, or [boundary.default] for all groups without one"
+        "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann or contact, or [boundary.default] for groups without one, if its kind is that of the name"
     )]
     MissingBoundary {
         /// The name.

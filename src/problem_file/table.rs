@@ -21,7 +21,8 @@ pub(super) type FacetWithNormal<const D: usize> = ([Point<f64, D>; D], Point<f64
 
 /// Normals that differ by less are one.
 const SAME_NORMAL: f64 = 1e-12;
-/// A point lies in a facet up to this share of the extent of the boundary group: meshes may be rounded to 32 bits.
+/// A point lies in a facet up to this share of the extent of the boundary group, or as far as a mesh rounded to 32 bits
+/// may be off.
 const IN_FACET: f64 = 1e-6;
 
 /// A number or an expression.
@@ -56,7 +57,11 @@ impl Formula {
         let (corners, normals): (Vec<_>, Vec<_>) = facets.into_iter().unzip();
         let normal = normals.first().copied().unwrap_or_else(Point::zeros);
         if normals.iter().any(|other| (other - normal).norm() > SAME_NORMAL) {
-            let search = FacetSearch::new(corners, IN_FACET);
+            let size = corners.iter().flatten().map(|x| x.amax()).fold(0.0, f64::max);
+            let from_first = |x: &Point<f64, D>| (x - corners[0][0]).amax();
+            let extent = corners.iter().flatten().map(from_first).fold(f64::MIN_POSITIVE, f64::max);
+            let rounding = 2.0 * f64::from(f32::EPSILON) * size / extent;
+            let search = FacetSearch::new(corners, IN_FACET.max(rounding));
             return Datum::Function(Arc::new(move |x| {
                 let of_facets =
                     search.containing(x).map(|k| expression.on_boundary(x, &normals[k]));

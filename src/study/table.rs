@@ -208,7 +208,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     let is_adaptive = is_adaptive(rows);
     columns.push(number(if is_adaptive { "step" } else { "n" }, |r| r.level.to_string()));
     if !is_adaptive {
-        columns.push(number("h", |r| scientific(Some(r.mesh_size))));
+        columns.push(number("h", |r| scientific(Some(r.mesh_size).filter(|h| h.is_finite()))));
     }
     columns.push(number("unknowns", |r| whole(r.unknowns)));
     columns.push(number("outer", |r| whole(r.iterations.outer)));

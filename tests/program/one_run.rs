@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use unilateral::study::Report;
 
-use super::run::{Scratch, command, stderr};
+use super::run::{Scratch, command, stderr, stdout};
 
 /// A run that has finished its first rows, and goes on.
 struct Running {
@@ -111,6 +111,9 @@ fn a_file_that_cannot_be_written_costs_no_row() {
     let expected = format!("error: scene radial-1d: cannot write {}: ", field.display());
     assert_eq!(message.matches(&expected).count(), 1, "{message}");
     assert!(message.contains("warning: no picture of radial-1d-cr: cannot write"), "{message}");
+    // all rows are printed, and the report is not complete
+    assert!(stdout(&output).contains("The incomplete report is in"), "{}", stdout(&output));
+    assert!(stdout(&output).contains("radial-2d: "), "{}", stdout(&output));
     let rows = Report::read(scratch.0.join("out")).unwrap().rows;
     assert_eq!(rows.iter().filter(|row| row.converged()).count(), 8, "{message}");
     assert!(Path::new(&scratch.path("out/radial-1d-cr.vtu")).is_file());
@@ -120,5 +123,10 @@ fn a_file_that_cannot_be_written_costs_no_row() {
     let output = scratch.run(resume);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(field.is_file());
+    assert!(Report::read(scratch.0.join("out")).unwrap().rows == rows);
+    // rows without their report may be those of another request
+    fs::remove_file(scratch.0.join("out/report.json")).unwrap();
+    let output = scratch.run(resume);
+    assert!(stderr(&output).contains("does not say of which problem"), "{}", stderr(&output));
     assert!(Report::read(scratch.0.join("out")).unwrap().rows == rows);
 }

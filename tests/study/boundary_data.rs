@@ -47,6 +47,36 @@ fn groups_without_a_table_have_what_is_given_by_default() {
     assert!(wrong.contains("unknown key `gap`") && wrong.contains("problem.toml:6:"), "{wrong}");
 }
 
+/// The group `rim` has the facets of `foot` and others: what is given by default is given on all of it, after the table.
+#[test]
+fn a_default_reaches_groups_that_share_facets() {
+    let folder = Scratch::new("boundary-shared");
+    let mesh = mesh_file("rim.msh").display().to_string();
+    let foot = "[boundary.foot]\nkind = \"contact\"\n";
+    let of_kind = |kind: &str| {
+        let given = format!("[boundary.default]\nkind = \"{kind}\"\n");
+        let own = problem(&folder, &format!("mesh = {mesh:?}\n{foot}{given}"));
+        let own = own.map_err(|error| error.to_string())?;
+        own.mesh::<f64>().map_err(|error| error.to_string())
+    };
+    let mesh = of_kind("contact").unwrap().unwrap().mesh;
+    assert!(mesh.boundary().iter().all(|facet| facet.part == BoundaryPart::Contact));
+    let message = of_kind("dirichlet").map(|_| ()).unwrap_err();
+    assert!(message.contains("share facets"), "{message}");
+}
+
+/// In single precision the points of a mesh far from the origin are off its facets.
+#[test]
+fn gaps_may_use_normals_far_from_the_origin() {
+    let folder = Scratch::new("gap-far-away");
+    let mesh = mesh_file("disc_far.msh").display().to_string();
+    let contact = "[boundary.rim]\nkind = \"contact\"\ngap = \"-0.1 + 0.05 * nx\"\n";
+    let text = format!("mesh = {mesh:?}\n{contact}[source]\ndefault = -8\n");
+    let own = problem(&folder, &text).unwrap();
+    let mesh = own.mesh::<f32>().unwrap().unwrap().mesh;
+    assert!(solve(&own.problem, &mesh, &ConformingP1).unwrap().converged());
+}
+
 /// A gap on a straight side has one normal, which stands for a number.
 #[test]
 fn gaps_may_use_the_normal_of_a_side() {

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use unilateral::input::excerpt;
+use unilateral::input::beginning;
 use unilateral::output::Provenance;
 
 use crate::shared::{Request, cannot_write, warn};
@@ -47,10 +47,12 @@ pub fn take_directory(path: &Path) -> Request<()> {
 
 /// The message for a directory of another run.
 fn in_use(path: &Path, file: &mut File) -> String {
+    const LONGEST: usize = 200;
     let mut holder = Vec::new();
     // where a locked file is not read by others, the process has no name
-    let _ = file.take(200).read_to_end(&mut holder);
-    let holder = if holder.is_empty() { "another process".into() } else { excerpt(holder) };
+    let _ = file.take(LONGEST as u64).read_to_end(&mut holder);
+    let holder =
+        if holder.is_empty() { "another process".into() } else { beginning(&holder, LONGEST) };
     let path = path.display();
     format!(
         "{path}: {holder} writes its report there; wait for its end, or choose another directory"

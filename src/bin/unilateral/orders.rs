@@ -121,5 +121,7 @@ fn study<const D: usize>(
     };
     let levels = levels.iter().map(|level| if quick { level / 2 } else { *level });
     let study = Study::<f64, D>::new(scene).levels(levels);
-    Ok(schemes.iter().fold(study, |study, scheme| study.named_scheme(scheme)).run()?.rows)
+    let study = schemes.iter().fold(study, |study, scheme| study.named_scheme(scheme));
+    study.check_memory()?;
+    Ok(study.run()?.rows)
 }

@@ -208,19 +208,21 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         self.parts.push((group.to_owned(), *part));
     }
 
-    /// Puts what is given by default on the boundary groups without a table of their own. A group whose name fixes
-    /// another kind, or whose names all belong to groups with tables too, is left without data.
+    /// Puts what is given by default on the boundary groups without a table of their own, by a name that no group with a
+    /// table has; where there is none, by one that also has facets of such groups, which come first. A group whose name
+    /// fixes another kind is left without data.
     fn complete(&mut self, groups: &[Vec<String>]) {
         let Some(given) = self.on_other_groups.take() else { return };
         let named = self.parts.clone();
         let has_table = |names: &Vec<String>| named.iter().any(|(group, _)| names.contains(group));
         let (with_table, without): (Vec<_>, Vec<_>) = groups.iter().partition(|g| has_table(g));
         for names in without {
-            let is_own = |name: &&String| {
-                let of_part = BoundaryPart::from_name(name).is_none_or(|part| part == given.part);
-                of_part && !with_table.iter().any(|group| group.contains(name))
+            let of_part = |name: &&String| {
+                BoundaryPart::from_name(name).is_none_or(|part| part == given.part)
             };
-            if let Some(name) = names.iter().find(is_own)
+            let is_own = |name: &&String| !with_table.iter().any(|group| group.contains(name));
+            let own = names.iter().filter(of_part).find(is_own);
+            if let Some(name) = own.or_else(|| names.iter().find(of_part))
                 && self.parts.iter().all(|(known, _)| known != name)
             {
                 self.put_on(name, &given);

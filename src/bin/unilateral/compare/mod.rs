@@ -20,7 +20,7 @@ use crate::judge::write_requests;
 use crate::one_run::take_directory;
 use crate::shared::{
     ORDER_TOLERANCE, Request, check_writable, complain, fingerprint, print, print_to, read,
-    use_threads, write,
+    use_threads, warn, write,
 };
 
 use unilateral::inequality::SOLVERS;
@@ -241,6 +241,7 @@ impl Chosen {
             false => journal.report(),
         };
         messages.extend(interrupt.at_end(|| write_all(options, &report)).err());
+        messages.extend(show(options, &report).err());
         messages.iter().for_each(|text| complain(text));
         Ok(messages.is_empty() && report.rows.iter().all(Row::converged))
     }
@@ -279,6 +280,7 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
     check_output(options)?;
     let journal = match options.resume {
         true => {
+            warn_of_unknown_request(options);
             let keys: Vec<RowKey> = runs.iter().flat_map(|run| run.keys.clone()).collect();
             Journal::resume(&options.out, program, &keys)
         }
@@ -294,6 +296,18 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
     Ok(Box::leak(Box::new(journal)))
 }
 
+/// Says that rows without their report may be those of another request: rows do not say all of theirs.
+fn warn_of_unknown_request(options: &Options) {
+    let [rows, report] = ["report.jsonl", "report.json"].map(|name| options.out.join(name));
+    if rows.exists() && !report.exists() {
+        let rows = rows.display();
+        warn(&format!(
+            "warning: {rows} does not say of which problem and options its rows are, and report.json is missing: rows of \
+             the same scene, scheme, solver and level are kept"
+        ));
+    }
+}
+
 /// Makes sure before the work, not after it, that the report can be written, and by no other run.
 fn check_output(options: &Options) -> Request<()> {
     let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
@@ -304,20 +318,28 @@ fn check_output(options: &Options) -> Request<()> {
 /// Writes the report and prints its tables, of an incomplete one the files only.
 fn write_all(options: &Options, report: &Report) -> Request<()> {
     let to_stdout = options.json.as_deref().is_some_and(|p| p.as_os_str() == "-");
-    report.write(&options.out).map_err(|e| e.to_string())?;
-    match &options.json {
-        Some(_) if to_stdout => print(&report.to_json())?,
-        Some(path) => write(path, report.to_json())?,
-        None => {}
-    }
-    if let Some(path) = &options.orders {
-        write(path, orders_table(&report.observed_orders(), ORDER_TOLERANCE))?;
-    }
-    if options.quiet || !report.complete {
+    let files = report.write(&options.out).map_err(|e| e.to_string());
+    let json = match &options.json {
+        Some(_) if to_stdout => print(&report.to_json()),
+        Some(path) => write(path, report.to_json()),
+        None => Ok(()),
+    };
+    let orders = options.orders.as_ref().map_or(Ok(()), |path| {
+        write(path, orders_table(&report.observed_orders(), ORDER_TOLERANCE))
+    });
+    files.and(json).and(orders)
+}
+
+/// Prints the tables of a run that ended of itself.
+fn show(options: &Options, report: &Report) -> Request<()> {
+    if options.quiet || report.rows.is_empty() {
         return Ok(());
     }
-    let out = options.out.display();
-    let end = format!("\nTimes are in seconds. Report, plots and fields are in {out}\n");
-    let text = report.to_string() + &end;
-    if to_stdout { print_to(std::io::stderr(), &text) } else { print(&text) }
+    let (out, is_whole) = (options.out.display(), report.complete);
+    let files = if is_whole { "Report, plots and fields are" } else { "The incomplete report is" };
+    let text = format!("{report}\nTimes are in seconds. {files} in {out}\n");
+    match options.json.as_deref().is_some_and(|path| path.as_os_str() == "-") {
+        true => print_to(std::io::stderr(), &text),
+        false => print(&text),
+    }
 }
