@@ -129,7 +129,9 @@ fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), 
         (true, false) => {
             "the problem has a Signorini condition, but the mesh has no contact part: no group named \"contact\" or with a gap"
         }
-        (false, true) => "the mesh has a contact part, but the problem has no Signorini condition",
+        (false, true) => {
+            "the mesh has a contact part (the group \"contact\"), but the problem has no Signorini condition"
+        }
         _ => return Ok(()),
     };
     Err(Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() })
