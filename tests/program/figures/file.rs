@@ -36,7 +36,11 @@ pub fn machine() -> String {
         line.split_once([':', '=']).map_or("", |(_, value)| value).trim().replace('"', "")
     };
     let processor = ["model name", "cpu family", "model\t"].map(|key| value("/proc/cpuinfo", key));
-    format!("{}; {}", processor.join(" "), value("/etc/os-release", "PRETTY_NAME"))
+    let flags = value("/proc/cpuinfo", "flags");
+    let vectors = ["avx2", "fma", "avx512f"].into_iter();
+    let vectors: Vec<&str> = vectors.filter(|v| flags.split(' ').any(|flag| flag == *v)).collect();
+    let (processor, vectors) = (processor.join(" "), vectors.join(" "));
+    format!("{processor}; {vectors}; {}", value("/etc/os-release", "PRETTY_NAME"))
 }
 
 impl Figures {
