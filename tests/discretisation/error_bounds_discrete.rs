@@ -205,6 +205,24 @@ fn oscillation_alone_is_the_error() {
     }
 }
 
+/// A load with a mean counts with a constant of Friedrichs' inequality and the least coefficient, wherever that is.
+#[test]
+fn a_load_that_no_flux_balances_counts_with_the_least_coefficient() {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [4]).unwrap();
+    let total = |alpha: fn(&Point<f64, 1>) -> f64| {
+        bound_of_zero(&Problem::new().constant_source(6.0).coefficient(alpha), &mesh).total
+    };
+    let expected = total(|_| 0.1);
+    // the error of zero is 6 / 12^(1/2) / 0.1^(1/2)
+    assert!(expected >= 6.0 / 1.2_f64.sqrt());
+    let first: fn(&Point<f64, 1>) -> f64 = |x| if x[0] < 0.25 { 0.1 } else { 5.0 };
+    for alpha in [first, |x| if x[0] > 0.75 { 0.1 } else { 5.0 }] {
+        let found = total(alpha);
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+    }
+}
+
 /// With a reaction `c` the solution is `cos(n pi x) / ((n pi)^2 + c)`, and the load counts with the smaller one of
 /// `1 / (n pi)` and `c^-1/2`.
 #[test]

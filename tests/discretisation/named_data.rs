@@ -123,6 +123,14 @@ fn the_first_datum_takes_precedence() {
         matrix.values.iter().map(|v| v.abs()).sum::<f64>()
     };
     assert!((trace(&problem) - trace(&other)).abs() > 1.0);
+    // the area of "high" is two, half of it in "left"
+    let load = |problem: Problem<2>| {
+        let of = Discretisation::new(&Wopsip::default(), &problem, &mesh, Default::default());
+        of.unwrap().inequality().unwrap().load.iter().sum::<f64>()
+    };
+    let high_first = load(Problem::new().source_in("high", 1.0).source_in("left", 0.0));
+    let left_first = load(Problem::new().source_in("left", 0.0).source_in("high", 1.0));
+    assert!((high_first - 2.0).abs() < 1e-12 && (left_first - 1.0).abs() < 1e-12);
 
     // the corner of two Dirichlet sides
     let corner = mesh.vertices().iter().position(|x| x[0] == -1.0 && x[1] == -1.0).unwrap();
