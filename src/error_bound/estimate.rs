@@ -24,8 +24,8 @@ use crate::real::Real;
 #[cfg_attr(feature = "report", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Unproven {
-    /// Integrals of data that are functions: a rule need not be exact. Least values of a reaction that is none of
-    /// degree two, or whose Bernstein coefficients are not all positive.
+    /// Integrals of data that are functions: a rule need not be exact. Least values of a reaction whose degree is not
+    /// known to be at most two, or whose Bernstein coefficients are not all positive.
     Quadrature,
     /// Dirichlet data of a higher degree than `v` on facets: `v` takes them at its nodes only.
     Boundary,

@@ -106,6 +106,12 @@ impl Journal {
         Self::with_rows(directory, program, rows)
     }
 
+    /// Whether a directory has rows alone, without the `report.json` that says of which request they are.
+    pub fn has_rows_alone(directory: impl AsRef<Path>) -> bool {
+        let [rows, report] = [ROWS, REPORT].map(|name| directory.as_ref().join(name));
+        rows.exists() && !report.exists()
+    }
+
     fn with_rows(directory: &Path, program: Program, kept: Vec<Row>) -> Result<Self, Error> {
         let path = directory.join(ROWS);
         let text: String = kept.iter().map(line).collect();

@@ -366,7 +366,7 @@ mod tests {
         }
     }
 
-    /// A certificate never passes over a number that is none.
+    /// The largest violation of a certificate is NaN if one of its violations is, so that it is within no limit.
     #[test]
     fn what_is_not_a_number_is_within_no_limit() {
         for which in 0..4 {

@@ -15,7 +15,7 @@ use crate::real::Real;
 /// What of the multiplier of an unknown acts on one of several cells or contact facets.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    /// The position of the cell or facet among these.
+    /// The position of the cell or facet in the list of cells or of contact facets.
     place: usize,
     unknown: usize,
     value: f64,

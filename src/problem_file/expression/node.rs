@@ -111,7 +111,7 @@ impl Node {
             Node::Number(x) => *x,
             Node::Variable(k) => variables[*k],
             Node::Negative(a) => -at(a),
-            // `max`, `pow`, comparisons and others would make a number of an operand that is none
+            // `max`, `pow`, comparisons and others would make a number of a NaN
             Node::One(f, a) => match at(a) {
                 a if a.is_nan() => a,
                 a => f(a),

@@ -15,7 +15,7 @@ use crate::study::row::Row;
 
 impl<T: Real, const D: usize> Study<'_, T, D> {
     /// An estimate of the memory of the largest run, with factors if the solver computes them from
-    /// the start; none for a study without schemes or levels. Of adaptive refinement the largest run has as many
+    /// the start; none for a study without schemes or levels. The largest run of adaptive refinement has as many
     /// unknowns as are allowed, and at least those of its first mesh.
     pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
         compiled!(

@@ -75,7 +75,7 @@ pub struct Study<'a, T: Real, const D: usize> {
     /// The result of [`check_fit`] for the given mesh, once known.
     fit: OnceCell<Option<String>>,
     /// Why a stated solution does not solve the problem, or none, as the first row found it.
-    doubt: OnceCell<Option<String>>,
+    not_exact: OnceCell<Option<String>>,
     reference: Option<Reference<'a, T, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
@@ -148,7 +148,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             adaptive: None,
             mesh: None,
             fit: OnceCell::new(),
-            doubt: OnceCell::new(),
+            not_exact: OnceCell::new(),
             reference: None,
             solvers: Vec::new(),
             quadrature: DataQuadrature::default(),
@@ -358,7 +358,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         Ok(vec![(row, solved.map_or(0.0, |solved| solved.start_seconds))])
     }
 
-    /// The meshes of all levels on which a scheme fits into so many bytes: in one hierarchy with those of a reference.
+    /// The meshes of all levels on which some scheme fits into the available bytes; the meshes of a reference are in the
+    /// same hierarchy as these levels.
     fn hierarchies(&self, available: Option<u64>) -> Result<Vec<Hierarchy<T, D>>, Error> {
         match &self.reference {
             None => {

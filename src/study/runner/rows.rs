@@ -33,8 +33,8 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         Ok(&rows[rows.len() - 1])
     }
 
-    /// The row of one scheme on one level of these hierarchies, with its solution: none where it does not fit into so
-    /// many bytes, the most of the beginning, or bounds cross.
+    /// The row of one scheme on one level of these hierarchies, with its solution; there is none where bounds cross, or
+    /// where the solve needs more than the bytes that were available before the first row.
     pub(super) fn row_or_reason<'p>(
         &self,
         nested: &mut [NestedIteration<'p, T, D>],
@@ -204,7 +204,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         match measured.measure(&mut row, solved) {
             Ok(()) => {
                 let is_measured = row.against.as_deref() == Some("exact");
-                row.warnings.extend(self.doubt(solved).filter(|_| is_measured));
+                row.warnings.extend(self.why_not_exact(solved).filter(|_| is_measured));
                 Ok(row)
             }
             Err(error) => row.with_error(error),
@@ -213,7 +213,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
 
     /// Why the solution that is stated for a problem with data by name does not solve it, if that is found on the mesh
     /// of the first row. Scenes are tested by [`check_scene`](crate::scenes::check_scene).
-    fn doubt(&self, solved: &Solved<'_, T, D>) -> Option<String> {
+    fn why_not_exact(&self, solved: &Solved<'_, T, D>) -> Option<String> {
         let problem = solved.discretisation().problem();
         let found = || {
             let name = &self.scene.name;
@@ -226,7 +226,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
                 "the stated solution does not solve this problem: not fulfilled: {condition}; at {at:.4?} off by {by:.2e}"
             ))
         };
-        self.doubt.get_or_init(found).clone()
+        self.not_exact.get_or_init(found).clone()
     }
 
     /// The row with the names of constraint set and label and the promised orders.

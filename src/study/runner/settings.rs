@@ -112,7 +112,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     #[must_use]
     pub fn on_mesh(mut self, mesh: Mesh<T, D>) -> Self {
         self.mesh = Some(mesh);
-        (self.fit, self.doubt) = (OnceCell::new(), OnceCell::new());
+        (self.fit, self.not_exact) = (OnceCell::new(), OnceCell::new());
         self
     }
     /// Adds a solver of the inequality; without one, the active set method runs. Several solvers stand

@@ -280,7 +280,13 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
     check_output(options)?;
     let journal = match options.resume {
         true => {
-            warn_of_unknown_request(options);
+            if Journal::has_rows_alone(&options.out) {
+                let out = options.out.display();
+                warn(&format!(
+                    "warning: {out}/report.jsonl does not say of which problem and options its rows are, and \
+                     report.json is missing: rows of the same scene, scheme, solver and level are kept"
+                ));
+            }
             let keys: Vec<RowKey> = runs.iter().flat_map(|run| run.keys.clone()).collect();
             Journal::resume(&options.out, program, &keys)
         }
@@ -294,18 +300,6 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
     let journal = journal.map_err(|e| e.to_string())?;
     // the thread that ends an interrupted run may need the journal as long as the process lives
     Ok(Box::leak(Box::new(journal)))
-}
-
-/// Says that rows without their report may be those of another request: rows do not say all of theirs.
-fn warn_of_unknown_request(options: &Options) {
-    let [rows, report] = ["report.jsonl", "report.json"].map(|name| options.out.join(name));
-    if rows.exists() && !report.exists() {
-        let rows = rows.display();
-        warn(&format!(
-            "warning: {rows} does not say of which problem and options its rows are, and report.json is missing: rows of \
-             the same scene, scheme, solver and level are kept"
-        ));
-    }
 }
 
 /// Makes sure before the work, not after it, that the report can be written, and by no other run.
