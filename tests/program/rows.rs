@@ -32,7 +32,7 @@ const BOUND_NUMBERS: [&str; 10] = [
 ];
 
 /// Every key is there, with a value of its type.
-fn check_row(row: &Value) {
+pub fn check_row(row: &Value) {
     let converged = row["status"] == "converged";
     for key in ROW_KEYS {
         let value = &row[key];
@@ -55,7 +55,7 @@ fn check_row(row: &Value) {
                 value.is_f64() || !converged
             }
             "resultants" => value.is_object() || !converged,
-            "level_kind" => value == "subdivisions",
+            "level_kind" => value.is_string(),
             _ => value.is_object(),
         };
         assert!(row.get(key).is_some() && fits, "{key}: {value}");
@@ -109,6 +109,7 @@ fn the_report_has_every_key_and_file() {
     assert_eq!(report["complete"], true);
     assert_eq!(rows(&report).len(), 2 * 4 * 2);
     rows(&report).iter().for_each(check_row);
+    rows(&report).iter().for_each(|row| assert_eq!(row["level_kind"], "subdivisions"));
 
     let csv = std::fs::read_to_string(scratch.0.join("out/report.csv")).unwrap();
     let header: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
@@ -161,29 +162,21 @@ pub fn without_times(mut report: Value) -> Value {
 }
 
 #[test]
-fn runs_repeat_whatever_the_threads() {
+fn runs_have_the_same_bits_on_any_number_of_threads() {
     let scratch = Scratch::new("threads");
     let report = |threads| {
-        let options = format!("--scheme all --levels 8,16 --quiet --threads {threads}");
+        let options = format!("--scheme all --levels 16 --quiet --threads {threads}");
         without_times(scratch.report(&options))
     };
-    let first = report(2);
-    assert_eq!(first, report(2));
-    for (one, two) in rows(&report(1)).iter().zip(rows(&first)) {
-        assert_eq!(one["active"], two["active"]);
-        for key in ["l2", "h1", "energy", "max"] {
-            let (a, b) = (one["error"][key].as_f64().unwrap(), two["error"][key].as_f64().unwrap());
-            assert!((a - b).abs() <= 1e-9 * b, "{key}: {a} and {b}");
-        }
-    }
+    assert_eq!(report(1), report(3));
 }
 
+/// Two schemes on all scenes; the file of figures has all schemes, and checks the keys of every row.
 #[test]
-fn every_scene_runs_with_every_scheme() {
+fn every_scene_runs() {
     let scratch = Scratch::new("all");
-    let report = scratch.report("--scene all --scheme all --levels 4 --quiet");
-    let schemes = unilateral::scheme::SCHEMES.len();
-    assert_eq!(rows(&report).len(), scenes::catalogue().len() * schemes);
+    let report = scratch.report("--scene all --scheme p1,wopsip --levels 4 --quiet");
+    assert_eq!(rows(&report).len(), 2 * scenes::catalogue().len());
     for dimension in 1..=3 {
         assert!(rows(&report).iter().any(|row| row["dimension"] == dimension));
     }

@@ -45,13 +45,13 @@ pub fn machine() -> String {
 
 impl Figures {
     /// The figures of the rows of a request; violations of a certificate are held against a limit.
-    pub fn of(request: &str, limit: f64, rows: impl Iterator<Item = Value>) -> Self {
+    pub fn of(request: &str, limit: f64, rows: &[Value]) -> Self {
         let mut found = Self::default();
         for row in rows {
             let word = |key: &str| row[key].as_str().unwrap().to_owned();
             let key = format!("{request},{},{},{:03}", word("scene"), word("label"), row["level"]);
-            let texts = COLUMNS.iter().map(|column| column.text(&row, limit)).collect();
-            let rounding = COLUMNS.iter().map(|column| column.rounding(&row)).collect();
+            let texts = COLUMNS.iter().map(|column| column.text(row, limit)).collect();
+            let rounding = COLUMNS.iter().map(|column| column.rounding(row)).collect();
             found.rounding.insert(key.clone(), rounding);
             assert!(found.rows.insert(key.clone(), texts).is_none(), "two rows of {key}");
         }

@@ -11,10 +11,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use super::run::{Scratch, stderr};
+use super::rows::check_row;
+use super::run::{Scratch, read_json, rows, stderr};
 use columns::COLUMNS;
 use file::{Figures, machine};
-use serde_json::Value;
 
 /// A request to `compare`, whose rows stand under its name in the file.
 struct Request {
@@ -142,11 +142,12 @@ impl Request {
         let options = place(self.options);
         let fixed = "--quiet --no-fields --threads 1";
         let output = scratch.run(&format!("{problem} --scheme {} {options} {fixed}", self.schemes));
-        let rows = std::fs::read_to_string(scratch.0.join("out/report.jsonl"));
-        let rows = rows.unwrap_or_else(|_| panic!("{}: {}", self.name, stderr(&output)));
-        let rows = rows.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+        let file = scratch.0.join("out/report.json");
+        assert!(file.exists(), "{}: {}", self.name, stderr(&output));
+        let report = read_json(&file);
+        rows(&report).iter().for_each(check_row);
         let limit = if options.contains("f32") { 1e-4 } else { 1e-9 };
-        Figures::of(self.name, limit, rows.filter(|row| row.get("level").is_some()))
+        Figures::of(self.name, limit, rows(&report))
     }
 }
 
@@ -183,6 +184,19 @@ fn compare(requests: &[&Request]) {
         if is_same_machine { ", which is of this machine" } else { "" },
         shown.join("\n")
     );
+}
+
+/// The requests have every scene of the catalogue, and every scheme in both placements.
+#[test]
+fn no_scene_and_no_scheme_is_left_out() {
+    let scenes: Vec<&str> = REQUESTS.iter().flat_map(|request| request.scenes.split(',')).collect();
+    for scene in unilateral::scenes::catalogue() {
+        assert!(scenes.contains(&&*scene.name), "{}", scene.name);
+    }
+    let schemes: Vec<&str> = LINEAR.split(',').chain(QUADRATIC.split(',')).collect();
+    for &(scheme, _) in unilateral::scheme::SCHEMES {
+        assert!(schemes.contains(&scheme), "{scheme}");
+    }
 }
 
 #[test]
