@@ -61,16 +61,6 @@ impl Support {
     }
 }
 
-/// The barycentre of points; not a number for none.
-pub(crate) fn barycentre(points: impl Iterator<Item = [f32; 3]>) -> [f32; 3] {
-    let (mut sum, mut n) = ([0.0; 3], 0.0);
-    for point in points {
-        sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += x);
-        n += 1.0;
-    }
-    sum.map(|x| x / n)
-}
-
 /// The variational inequality: `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v`
 /// within the bounds.
 ///
@@ -90,9 +80,6 @@ pub struct Inequality<T> {
     pub bounds: Vec<Bound<T>>,
     /// The support of each unknown; empty if unknown. Iterative solvers need it.
     pub supports: Vec<Support>,
-    /// The coordinates of each vertex of the mesh, missing ones zero; empty if unknown. Direct solvers
-    /// derive an order of elimination from them.
-    pub points: Vec<[f32; 3]>,
     /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
     pub conforming_linear: bool,
     /// The initial active set.
@@ -123,7 +110,7 @@ pub struct Inequality<T> {
 
 impl<T: Real> Inequality<T> {
     /// The inequality with a matrix, whether it is symmetric, a load and bounds; without supports,
-    /// points, initial active set and penalised matrix.
+    /// initial active set and penalised matrix.
     #[must_use]
     pub fn new(
         matrix: SparseMatrix<T>,
@@ -131,14 +118,13 @@ impl<T: Real> Inequality<T> {
         load: Vec<T>,
         bounds: Vec<Bound<T>>,
     ) -> Self {
-        let (supports, points, start) = (Vec::new(), Vec::new(), Start::Cold);
+        let (supports, start) = (Vec::new(), Start::Cold);
         Self {
             matrix,
             symmetric,
             load,
             bounds,
             supports,
-            points,
             conforming_linear: false,
             start,
             penalised: None,
@@ -175,12 +161,6 @@ impl<T: Real> Inequality<T> {
         self.supports = supports;
         self
     }
-    /// Replaces the coordinates of vertices.
-    #[must_use]
-    pub fn with_points(mut self, points: Vec<[f32; 3]>) -> Self {
-        self.points = points;
-        self
-    }
     /// States that unknown `i` is the value at vertex `i` of a conforming linear function.
     #[must_use]
     pub fn with_conforming_linear(mut self) -> Self {
@@ -210,18 +190,17 @@ impl<T: Real> Inequality<T> {
         (0..self.bounds.len() as u32).filter(is_free).collect()
     }
     /// Whether matrix, load, bounds, penalised matrix and the supports, if there are any, have the same
-    /// size, the two matrices are well formed, and the vertices of supports are among the points or,
-    /// without points, below four times the number of unknowns: an array by vertices is not larger.
+    /// size, the two matrices are well formed, and the vertices of supports are below four times the number of
+    /// unknowns: an array by vertices is not larger.
     /// Entries of the kernel and terms of Dirichlet data belong to unknowns, bodies to vectors of the kernel.
     pub fn is_well_formed(&self) -> bool {
-        let n_vertices = if self.points.is_empty() { 4 * self.size() } else { self.points.len() };
         self.matrix.size() == self.size()
             && self.bounds.len() == self.size()
             && self.matrix.is_well_formed()
             && self.penalised.as_ref().is_none_or(|p| p.is_well_formed(self.size()))
             && (self.supports.is_empty() || self.supports.len() == self.size())
             && all(self.supports.len(), |i| {
-                self.supports[i].vertices().iter().all(|&v| (v as usize) < n_vertices)
+                self.supports[i].vertices().iter().all(|&v| (v as usize) < 4 * self.size())
             })
             && self.kernel.iter().all(|w| self.is_kernel_vector(w))
             && self.bodies.iter().all(|body| body.kernel.is_none_or(|k| k < self.kernel.len()))
@@ -233,17 +212,6 @@ impl<T: Real> Inequality<T> {
             (i as usize) < self.size() && value.to_f64().is_finite() && value != T::lit(0.0)
         };
         !entries.is_empty() && entries.iter().all(is_valid)
-    }
-    /// The node of each unknown, the barycentre of the vertices of its support; `None` if a support or
-    /// the coordinates of a vertex are unknown.
-    pub(crate) fn points_of_unknowns(&self) -> Option<Vec<[f32; 3]>> {
-        let node = |support: &Support| {
-            let points = support.vertices().iter().filter_map(|&v| self.points.get(v as usize));
-            (points.clone().count() == support.vertices().len())
-                .then(|| barycentre(points.copied()))
-        };
-        let is_known = self.supports.len() == self.size() && !self.points.is_empty();
-        is_known.then(|| self.supports.iter().map(node).collect()).flatten()
     }
     /// The load `b` of the assembled matrix: with a penalised matrix `c + M^T S g`, of which `c` keeps only the digits
     /// above the rounding of `S g`.

@@ -30,7 +30,6 @@ pub(crate) use distribution::{any_part, sum_over_parts};
 pub use free_body::FreeBody;
 pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
 pub(crate) use index::NO_INDEX;
-pub(crate) use inequality::barycentre;
 pub use inequality::{Inequality, Start, Support};
 pub use matrix::SparseMatrix;
 pub use penalised_matrix::{JumpTerm, PenalisedMatrix};

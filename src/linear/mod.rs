@@ -15,7 +15,7 @@ pub(crate) mod krylov;
 mod method;
 pub(crate) mod precondition;
 
-pub use direct::{EliminationOrder, FactorError, Factors, is_positive_definite};
+pub use direct::{FactorError, Factors, is_positive_definite};
 pub use method::LinearMethod;
 pub use precondition::{
     BuiltInPreconditioners, CoarseLevel, CoarseSpaces, P1Level, PreconditionedSystem,

@@ -10,7 +10,6 @@ mod iterative;
 mod load;
 mod monotone_multigrid;
 mod nonsymmetric;
-mod ordering;
 mod own_preconditioner;
 mod problems;
 mod recession;

@@ -10,7 +10,7 @@ use crate::parallel::once;
 use crate::real::Real;
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
-    /// The inequality: matrix, load, bounds, supports, points.
+    /// The inequality: matrix, load, bounds, supports.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
@@ -47,12 +47,6 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             load,
             bounds,
             supports: self.supports(),
-            // in the plane an order found in space is no better for unknowns that cells share
-            points: if D == 3 || self.owns_rows() {
-                self.space.vertex_points()
-            } else {
-                Vec::new()
-            },
             conforming_linear: self.space.is_conforming_linear(),
             start: Start::Cold,
             penalised,

@@ -299,12 +299,6 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     pub fn node_terms(&self, facet_rule: &Rule, cell_rule: &Rule) -> Vec<Terms> {
         self.nodes.iter().map(|node| node.terms(facet_rule, cell_rule)).collect()
     }
-    /// Where each vertex is, to single precision, missing coordinates zero.
-    pub fn vertex_points(&self) -> Vec<[f32; 3]> {
-        let coordinate = |x: Option<&T>| x.map_or(0.0, |x| x.to_f64() as f32);
-        let point = |x: &Point<T, D>| [0, 1, 2].map(|k| coordinate(x.get(k)));
-        self.mesh.vertices().iter().map(point).collect()
-    }
     /// A discrete function at the vertices of each cell, `D + 1` values for each.
     pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
         let corners: Vec<BasisAt<f64>> = (0..=D)

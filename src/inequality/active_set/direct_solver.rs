@@ -58,10 +58,7 @@ struct CorrectionSize {
 impl<'a, T: Real> DirectSolver<'a, T> {
     /// The solver of an inequality, which must be well formed.
     pub fn new(inequality: &'a Inequality<T>, refinements: usize) -> Self {
-        let condensation = inequality.penalised.as_ref().map(|penalised| {
-            StaticCondensation::new(penalised)
-                .with_points(inequality.points_of_unknowns().as_deref())
-        });
+        let condensation = inequality.penalised.as_ref().map(StaticCondensation::new);
         Self {
             inequality,
             refinements,
@@ -85,7 +82,7 @@ impl<'a, T: Real> DirectSolver<'a, T> {
         }
         let order = match self.elimination_order.take() {
             Some(order) => order,
-            None => EliminationOrder::for_inequality(self.inequality)?,
+            None => EliminationOrder::new(matrix, &self.inequality.free_unknowns())?,
         };
         let order = self.elimination_order.insert(order);
         Factors::in_order(matrix, &self.inactive, order)

@@ -2,7 +2,6 @@
 
 use crate::algebra::{Inequality, PenalisedMatrix, Submatrix};
 use crate::inequality::certificate::positive_diagonal;
-use crate::linear::direct::EliminationOrder;
 use crate::linear::direct::{CondensedFactors, StaticCondensation};
 use crate::linear::direct::{FactorError, Factors, SymbolicFactor};
 use crate::real::Real;
@@ -45,9 +44,7 @@ struct LowerTriangle<T> {
 impl<T: Real> LowerTriangle<T> {
     fn new(inequality: &Inequality<T>, free: &[u32]) -> Result<Self, FactorError> {
         let matrix = Submatrix::lower_triangle(&inequality.matrix, free);
-        let order =
-            EliminationOrder::for_inequality(inequality)?.restricted_to(free, inequality.size());
-        let analysis = SymbolicFactor::new(&matrix, Some(order))?;
+        let analysis = SymbolicFactor::new(&matrix, None)?;
         Ok(Self { matrix, analysis })
     }
 }

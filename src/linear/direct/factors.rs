@@ -2,19 +2,20 @@
 
 use std::sync::Arc;
 
-use faer::MatMut;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::ldlt::factor::LdltError;
-use faer::linalg::cholesky::llt::factor::LltError;
+use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization};
+use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::cholesky::{
-    SymbolicCholesky, SymbolicCholeskyRaw, supernodal::SupernodalLltRef,
+    LdltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, supernodal::SupernodalLltRef,
 };
-use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu};
+use faer::sparse::linalg::lu::{
+    LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu,
+};
+use faer::{Conj, MatMut, Par, Side};
 
 use super::elimination_order::EliminationOrder;
 use super::error::{FactorError, out_of_memory};
-use super::kernels::{self, PAR};
 use super::symbolic_factor::{SymbolicFactor, transpose_view};
 use crate::algebra::{SparseMatrix, Submatrix};
 use crate::instances::compiled;
@@ -22,9 +23,11 @@ use crate::memory::in_large_pages;
 use crate::parallel::vectors::pseudorandom_signs;
 use crate::real::Real;
 
-/// A pivot counts as zero if it is at most this multiple of machine epsilon times the diagonal
-/// entry of the matrix: cancellation has then left no correct digit.
-const PIVOT_TOLERANCE: f64 = 16.0;
+/// One thread, always: sums in the same order give the same bits on every machine.
+const PAR: Par = Par::Seq;
+
+/// A matrix counts as singular if its condition number is at least the reciprocal of this multiple of machine epsilon.
+const SINGULAR: f64 = 16.0;
 
 /// The factors of a submatrix `A_II`, `I` the set of free unknowns.
 ///
@@ -83,7 +86,7 @@ impl<T: Real> Factors<T> {
     ///
     /// # Errors
     /// See [`FactorError`].
-    pub fn in_order(
+    pub(crate) fn in_order(
         matrix: &SparseMatrix<T>,
         free: &[u32],
         order: &EliminationOrder,
@@ -123,16 +126,6 @@ impl<T: Real> Factors<T> {
         })
     }
 
-    /// Number of stored entries of a Cholesky factor, zeros inside supernodes included; zero for LU
-    /// factors.
-    pub fn entries(&self) -> usize {
-        match &self.factorisation {
-            Factorisation::Cholesky { values, .. }
-            | Factorisation::Quasidefinite { values, .. } => values.len(),
-            Factorisation::Empty | Factorisation::Lu { .. } => 0,
-        }
-    }
-
     /// Number of unknowns of the factored submatrix.
     pub fn size(&self) -> usize {
         self.size
@@ -157,17 +150,21 @@ impl<T: Real> Factors<T> {
             Factorisation::Cholesky { symbolic, values } => {
                 let scratch = symbolic.solve_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
-                kernels::cholesky_solve(symbolic, values, x, MemStack::new(&mut memory));
+                let stack = MemStack::new(&mut memory);
+                LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, x, PAR, stack);
             }
             Factorisation::Quasidefinite { symbolic, values } => {
                 let scratch = symbolic.solve_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
-                kernels::quasidefinite_solve(symbolic, values, x, MemStack::new(&mut memory));
+                let stack = MemStack::new(&mut memory);
+                LdltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, x, PAR, stack);
             }
             Factorisation::Lu { symbolic, numeric } => {
                 let scratch = symbolic.solve_transpose_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
-                kernels::lu_solve_transpose(symbolic, numeric, x, MemStack::new(&mut memory));
+                let (stack, factors) =
+                    (MemStack::new(&mut memory), LuRef::new_unchecked(symbolic, numeric));
+                factors.solve_transpose_in_place_with_conj(Conj::No, x, PAR, stack);
             }
         }
     }
@@ -176,20 +173,26 @@ impl<T: Real> Factors<T> {
     ///
     /// # Errors
     /// [`FactorError::NotPositive`] if a pivot is not positive, also for a singular matrix; else
-    /// [`FactorError::Singular`] if a pivot has no significant digit; or [`FactorError::OutOfMemory`].
+    /// [`FactorError::Singular`] if the matrix is not regular; or [`FactorError::OutOfMemory`].
     fn try_cholesky(lower: &Submatrix<T>, symbolic: &SymbolicFactor) -> Result<Self, FactorError> {
         let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
         let mut values = zero_values(&symbolic)?;
         let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        kernels::cholesky(&symbolic, a, &mut values, MemStack::new(&mut memory))
+        let (stack, none) = (MemStack::new(&mut memory), LltRegularization::default());
+        symbolic
+            .factorize_numeric_llt(
+                &mut values,
+                a,
+                Side::Upper,
+                none,
+                PAR,
+                stack,
+                Default::default(),
+            )
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
-        if pivots_are_significant(&symbolic, &values, &lower.diagonal()) {
-            let factorisation = Factorisation::Cholesky { symbolic, values };
-            Ok(Self { size: lower.size(), factorisation })
-        } else {
-            Err(FactorError::Singular)
-        }
+        let factorisation = Factorisation::Cholesky { symbolic, values };
+        Self { size: lower.size(), factorisation }.if_regular(&row_norms(lower, true))
     }
 
     /// The factors `L D L^T` of a quasidefinite matrix, given by its lower triangle and the symbolic
@@ -211,11 +214,21 @@ impl<T: Real> Factors<T> {
         let mut values = zero_values(&symbolic)?;
         let scratch = symbolic.factorize_numeric_ldlt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        kernels::quasidefinite(&symbolic, a, &mut values, MemStack::new(&mut memory))
+        let (stack, none) = (MemStack::new(&mut memory), LdltRegularization::default());
+        symbolic
+            .factorize_numeric_ldlt(
+                &mut values,
+                a,
+                Side::Upper,
+                none,
+                PAR,
+                stack,
+                Default::default(),
+            )
             .map_err(|LdltError::ZeroPivot { .. }| FactorError::Singular)?;
         let diagonal = lower.diagonal();
         let is_significant = |i: usize, pivot: f64| {
-            let least = PIVOT_TOLERANCE * T::EPSILON * diagonal[i].to_f64();
+            let least = SINGULAR * T::EPSILON * diagonal[i].to_f64();
             pivot.is_finite() && if i < n_positive { pivot > least } else { pivot < 0.0 }
         };
         if all_pivots(&symbolic, &values, |i, pivot| is_significant(i, pivot.to_f64())) {
@@ -240,37 +253,53 @@ impl<T: Real> Factors<T> {
         let mut numeric = NumericLu::new();
         let scratch = symbolic.factorize_numeric_lu_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        kernels::lu(&symbolic, a, &mut numeric, MemStack::new(&mut memory)).map_err(|error| {
-            match error {
+        let stack = MemStack::new(&mut memory);
+        symbolic.factorize_numeric_lu(&mut numeric, a, PAR, stack, Default::default()).map_err(
+            |error| match error {
                 LuError::SymbolicSingular { .. } => FactorError::Singular,
                 LuError::Generic(error) => out_of_memory(error),
-            }
-        })?;
+            },
+        )?;
         let factorisation =
             Factorisation::Lu { symbolic: Box::new(symbolic), numeric: Box::new(numeric) };
-        let factors = Self { size: matrix.size(), factorisation };
-        if factors.is_regular(matrix) { Ok(factors) } else { Err(FactorError::Singular) }
+        Self { size: matrix.size(), factorisation }.if_regular(&row_norms(matrix, false))
     }
 
-    /// Whether the matrix, its rows scaled to norm one, is regular to working precision: whether the
+    /// The factors if their matrix, its rows scaled to norm one, is regular to working precision: if the
     /// solution for a right-hand side of pseudorandom signs is smaller than the reciprocal of
-    /// [`PIVOT_TOLERANCE`] times machine epsilon.
+    /// [`SINGULAR`] times machine epsilon.
     ///
-    /// Partial pivoting succeeds on singular matrices too. The norm of the solution is a lower bound of
+    /// Rounding gives singular matrices factors too. The norm of the solution is a lower bound of
     /// the condition number, so that no regular matrix is rejected, and close to the condition number
     /// for a right-hand side with a component in the direction of the smallest singular value.
-    fn is_regular(&self, matrix: &Submatrix<T>) -> bool {
-        let mut x: Vec<T> = (0..self.size)
-            .zip(pseudorandom_signs())
-            .map(|(i, is_positive)| {
-                let norm: f64 = matrix.row(i).1.iter().map(|a| a.to_f64().abs()).sum();
-                T::lit(if is_positive { norm } else { -norm })
-            })
+    ///
+    /// # Errors
+    /// [`FactorError::Singular`].
+    fn if_regular(self, row_norms: &[f64]) -> Result<Self, FactorError> {
+        let signs = row_norms.iter().zip(pseudorandom_signs());
+        let mut x: Vec<T> = signs
+            .map(|(norm, is_positive)| T::lit(if is_positive { *norm } else { -norm }))
             .collect();
         self.solve_in_place(&mut x, 1);
         // The comparison is false for numbers that are not finite.
-        x.iter().all(|x| x.to_f64().abs() * PIVOT_TOLERANCE * T::EPSILON < 1.0)
+        let is_regular = x.iter().all(|x| x.to_f64().abs() * SINGULAR * T::EPSILON < 1.0);
+        if is_regular { Ok(self) } else { Err(FactorError::Singular) }
     }
+}
+
+/// The sum of the absolute values of each row of a matrix, of which only the lower triangle is given if it is symmetric.
+fn row_norms<T: Real>(matrix: &Submatrix<T>, symmetric: bool) -> Vec<f64> {
+    let mut norms = vec![0.0; matrix.size()];
+    for i in 0..matrix.size() {
+        let (columns, values) = matrix.row(i);
+        for (&j, a) in columns.iter().zip(values) {
+            norms[i] += a.to_f64().abs();
+            if symmetric && j as usize != i {
+                norms[j as usize] += a.to_f64().abs();
+            }
+        }
+    }
+    norms
 }
 
 /// Zeros for the values of a factor.
@@ -350,21 +379,6 @@ fn indefinite_or_singular<T: Real>(
         Ok(_) => FactorError::Singular,
         Err(error) => error,
     }
-}
-
-/// Whether every pivot, the square of a diagonal entry of the factor, is significant: larger than
-/// [`PIVOT_TOLERANCE`] times machine epsilon times the corresponding entry of `diagonal`, the
-/// diagonal of the matrix.
-fn pivots_are_significant<T: Real>(
-    symbolic: &SymbolicCholesky<u32>,
-    values: &[T],
-    diagonal: &[T],
-) -> bool {
-    all_pivots(symbolic, values, |i, root| {
-        let (a, root) = (diagonal[i].to_f64(), root.to_f64());
-        // The comparison is false for numbers that are not finite.
-        root.is_finite() && root * root > PIVOT_TOLERANCE * T::EPSILON * a
-    })
 }
 
 /// Whether a condition holds for every row of a matrix and the diagonal entry of its factor.

@@ -1,24 +1,22 @@
 //! Direct solvers of linear systems.
 //!
 //! `factors`: Cholesky and LU factors of a submatrix; `symbolic_factor`: the symbolic part of Cholesky;
-//! `repeated_cholesky`: matrices with the same pattern. `elimination_order` and `nested_dissection`:
-//! orders of elimination. `static_condensation`, `block_inverse`, `null_directions`: factors of `K + M^T S M`;
-//! `condensed_solution`, `weight_correction`: solutions by them. `kernels`: the numeric kernels of faer.
+//! `repeated_cholesky`: matrices with the same pattern. `elimination_order`: an order of elimination for
+//! submatrices. `static_condensation`, `block_inverse`, `null_directions`: factors of `K + M^T S M`;
+//! `condensed_solution`, `weight_correction`: solutions by them.
 
 mod block_inverse;
 mod condensed_solution;
 mod elimination_order;
 mod error;
 mod factors;
-mod kernels;
-mod nested_dissection;
 mod null_directions;
 mod repeated_cholesky;
 mod static_condensation;
 mod symbolic_factor;
 mod weight_correction;
 
-pub use elimination_order::EliminationOrder;
+pub(crate) use elimination_order::EliminationOrder;
 pub use error::FactorError;
 pub use factors::{Factors, is_positive_definite};
 pub(crate) use static_condensation::{CondensedFactors, StaticCondensation};

@@ -108,7 +108,7 @@ pub(super) struct BlockInverse {
 }
 
 impl<'a, T: Real> StaticCondensation<'a, T> {
-    /// The condensation of a matrix, without points of its unknowns.
+    /// The condensation of a matrix.
     pub fn new(penalised: &'a PenalisedMatrix<T>) -> Self {
         let n_blocks = penalised.size() / penalised.block_size;
         let blocks_of_jumps: Vec<[Option<u32>; 2]> =
@@ -164,14 +164,6 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     /// moments of quadratic functions on a triangle are.
     pub fn has_null_directions(&self) -> bool {
         self.has_null_directions
-    }
-
-    /// Uses the points of unknowns for the order of elimination of facet means; `None` if they are
-    /// not known.
-    #[must_use]
-    pub fn with_points(mut self, points: Option<&[[f32; 3]]>) -> Self {
-        self.cholesky = RepeatedCholesky::on_jumps(self.penalised, points);
-        self
     }
 
     /// The lower triangle of the Schur complement, all values zero: facet means of the same block are coupled.

@@ -83,21 +83,13 @@ fn supports_out_of_range_are_refused_before_arrays_are_made() {
         assert_eq!(outcomes[0], outcomes[1]);
         outcomes[0]
     };
-    let points = vec![[0.0; 3]; 9];
     assert_eq!(outcome(&good().with_supports(supports(8, 9))), Outcome::Converged);
-    assert_eq!(
-        outcome(&good().with_supports(supports(8, 9)).with_points(points.clone())),
-        Outcome::Converged
-    );
     for last in [36, 4_000_000_000, u32::MAX - 1] {
         let problem = good().with_supports(supports(last, 9));
         assert!(!problem.is_well_formed());
         assert_eq!(outcome(&problem), Outcome::Malformed, "vertex {last}");
         assert_eq!(certify(&problem, &[0.0; 9]).largest(), f64::INFINITY);
     }
-    // with points, their number is that of the vertices
-    let problem = good().with_supports(supports(9, 9)).with_points(points);
-    assert_eq!(outcome(&problem), Outcome::Malformed);
     assert_eq!(outcome(&good().with_supports(supports(8, 8))), Outcome::Malformed);
 }
 
