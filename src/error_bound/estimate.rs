@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use super::algebra::CoarserCells;
-use super::choice::Choice;
 use super::friedrichs::FriedrichsData;
 use super::terms::{CellTerms, Totals};
 use super::{NoBound, PrimalDualPair};
@@ -97,25 +95,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If the pair is not one of this mesh, or `u` is shorter than the number of unknowns.
     pub fn error_bound(&self, pair: &PrimalDualPair, u: &[T]) -> Result<ErrorBound, NoBound> {
-        self.error_bound_on_levels(pair, u, &[])
-    }
-    /// As [`Self::error_bound`], with the coarser meshes of a sequence, finest first: with them what the flux
-    /// does not balance counts less.
-    pub(crate) fn error_bound_on_levels(
-        &self,
-        pair: &PrimalDualPair,
-        u: &[T],
-        coarser: &[CoarserCells<'_, T, D>],
-    ) -> Result<ErrorBound, NoBound> {
         compiled!(
             T, D: fn(
                 &Discretisation<'_, T, D>,
                 &PrimalDualPair,
                 &[T],
-                &[CoarserCells<'_, T, D>],
             ) -> Result<ErrorBound, NoBound>
-                = |of, pair, u, coarser| of.space.error_bound(pair, u, coarser)
-        )(self, pair, u, coarser)
+                = |of, pair, u| of.space.error_bound(pair, u)
+        )(self, pair, u)
     }
 
     /// The energy norm of the difference of the exact solution and the admissible function of a pair; none
@@ -202,33 +189,37 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
 }
 
 impl ErrorBound {
-    /// The bound of these sums, and the square that each cell adds.
+    /// The bound of these sums, with the part of the solver and the square that each cell adds.
     fn new(
         totals: &Totals,
-        choice: &Choice,
+        of_solver: f64,
         squares: Vec<f64>,
         unproven: Vec<Unproven>,
     ) -> Result<Self, NoBound> {
-        let &Totals { mismatch, distance, contact, least_coefficient, .. } = totals;
-        let &Choice { with_oscillation, obstacle, .. } = choice;
-        let square = choice.square() + contact;
-        if !square.is_finite() || least_coefficient <= 0.0 {
+        let &Totals { mismatch, with_oscillation, obstacle, contact, .. } = totals;
+        let of_flux = (with_oscillation.sqrt() + of_solver).powi(2);
+        let square = of_flux + obstacle + contact;
+        if !square.is_finite() || totals.least_coefficient <= 0.0 {
             return Err(NoBound::NotFinite);
         }
         let share = |part: f64| if square > 0.0 { part / square } else { 0.0 };
-        let (total, distance) = (square.sqrt(), distance.sqrt());
+        let (total, distance) = (square.sqrt(), totals.distance.sqrt());
+        // the radius of the ball around the midpoint that contains the solution, and the distance of the discrete
+        // function from the midpoint
+        let radius = 0.5 * (of_flux + 2.0 * (obstacle + contact)).sqrt();
+        let discrete = radius + totals.from_midpoint.sqrt() + 0.5 * of_solver;
         Ok(Self {
             total,
             distance,
             // the sum is never less but for rounding, and where a rule has weights of both signs
-            discrete: choice.of_discrete(contact).min(total + distance),
+            discrete: discrete.min(total + distance),
             parts: BoundParts {
                 mismatch: share(mismatch),
                 obstacle: share(obstacle),
                 contact: share(contact),
                 // differences of equal numbers but for rounding
                 oscillation: share((with_oscillation - mismatch).max(0.0)),
-                algebra: share((choice.flux_square() - with_oscillation).max(0.0)),
+                algebra: share((of_flux - with_oscillation).max(0.0)),
             },
             cells: squares.into_iter().map(share).collect(),
             unproven,
@@ -240,7 +231,6 @@ impl ErrorBound {
 #[derive(Debug)]
 pub(crate) struct PartOfBound<const D: usize> {
     totals: Totals,
-    choice: Choice,
     friedrichs: FriedrichsData<D>,
     /// What each cell adds; zero for cells that do not count.
     squares: Vec<f64>,
@@ -250,48 +240,30 @@ pub(crate) struct PartOfBound<const D: usize> {
 impl<const D: usize> PartOfBound<D> {
     /// The bound of all parts, with the shares of the cells of this one; all parts call it.
     pub fn over_parts(self, distribution: &dyn Distribution) -> Result<ErrorBound, NoBound> {
-        let Self { mut totals, mut choice, friedrichs, squares, unproven } = self;
+        let Self { mut totals, friedrichs, squares, unproven } = self;
         totals.add_over_parts(distribution);
-        let mut sums = [
-            choice.with_oscillation,
-            choice.from_midpoint,
-            choice.obstacle,
-            choice.algebra.powi(2),
-        ];
-        distribution.sum(&mut sums);
         let of_all = [Unproven::Quadrature, Unproven::Boundary, Unproven::Obstacle];
         let mut is_found = of_all.map(|term| f64::from(u8::from(unproven.contains(&term))));
         distribution.largest(&mut is_found);
-        let constant = totals.constant(friedrichs.over_parts(distribution).constant())?;
-        let of_solver;
-        [choice.with_oscillation, choice.from_midpoint, choice.obstacle, of_solver] = sums;
-        choice.algebra = if constant.is_finite() { constant * of_solver.sqrt() } else { 0.0 };
+        let of_solver = totals.of_solver(friedrichs.over_parts(distribution).constant())?;
         let found = of_all.into_iter().zip(is_found).filter(|(_, is_found)| *is_found != 0.0);
         let mut unproven: Vec<Unproven> = found.map(|(term, _)| term).collect();
-        if constant.is_infinite() && of_solver > 0.0 {
+        if of_solver.is_none() {
             unproven.push(Unproven::Algebra);
         }
-        ErrorBound::new(&totals, &choice, squares, unproven)
+        ErrorBound::new(&totals, of_solver.unwrap_or(0.0), squares, unproven)
     }
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    fn error_bound(
-        &self,
-        pair: &PrimalDualPair,
-        u: &[T],
-        coarser: &[CoarserCells<'_, T, D>],
-    ) -> Result<ErrorBound, NoBound> {
-        let friedrichs = FriedrichsData::of(self.mesh).constant();
-        let terms = self.terms_of_bound((pair, u), friedrichs, &|_| true)?;
+    fn error_bound(&self, pair: &PrimalDualPair, u: &[T]) -> Result<ErrorBound, NoBound> {
+        let terms = self.terms_of_bound((pair, u), &|_| true)?;
         let totals = Totals::of(&terms);
-        let constant = totals.constant(friedrichs)?;
-        let choice = Choice::best(&terms, coarser, constant);
-        let is_proven =
-            [constant.is_finite() || choice.is_balanced, totals.reaction_from_below >= 0.0];
+        let of_solver = totals.of_solver(FriedrichsData::of(self.mesh).constant())?;
+        let is_proven = [of_solver.is_some(), totals.reaction_from_below >= 0.0];
         let unproven = self.unproven_terms(pair, is_proven, &|_| true);
-        let squares = terms.iter().flatten().map(|t| choice.square_of(t)).collect();
-        ErrorBound::new(&totals, &choice, squares, unproven)
+        let squares = terms.iter().flatten().map(CellTerms::square).collect();
+        ErrorBound::new(&totals, of_solver.unwrap_or(0.0), squares, unproven)
     }
 
     /// What the cells that count add to a bound.
@@ -301,17 +273,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         u: &[T],
         counts: Counts<'_>,
     ) -> Result<PartOfBound<D>, NoBound> {
-        let terms = self.terms_of_bound((pair, u), None, counts)?;
-        let (totals, choice) = (Totals::of(&terms), Choice::without_obstacles(&terms));
+        let terms = self.terms_of_bound((pair, u), counts)?;
+        let totals = Totals::of(&terms);
         let is_proven = [true, totals.reaction_from_below >= 0.0];
         let unproven = self.unproven_terms(pair, is_proven, counts);
         let n_cells = self.mesh.n_cells();
         let mut squares = vec![0.0; n_cells];
         for (cell, terms) in (0..n_cells).filter(|&cell| counts(cell)).zip(terms.iter().flatten()) {
-            squares[cell] = choice.square_of(terms);
+            squares[cell] = terms.square();
         }
         let friedrichs = FriedrichsData::of(self.mesh);
-        Ok(PartOfBound { totals, choice, friedrichs, squares, unproven })
+        Ok(PartOfBound { totals, friedrichs, squares, unproven })
     }
 
     /// The degree of the rule for the terms of cells: exact for polynomial data, at least that of the load elsewhere.
@@ -339,7 +311,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn terms_of_bound(
         &self,
         (pair, u): (&PrimalDualPair, &[T]),
-        friedrichs: Option<f64>,
         counts: Counts<'_>,
     ) -> Result<Vec<Vec<CellTerms>>, NoBound> {
         let table = self.cell_table(Rule::new(D, self.degree_of_terms(pair.degree)));
@@ -348,7 +319,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let boundary = self.boundary_terms(pair)?;
         let rules = (&table, cut.as_ref());
         Ok(cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
-            let terms = |cell| self.cell_terms(pair, u, cell, rules, &boundary, friedrichs);
+            let terms = |cell| self.cell_terms(pair, u, cell, rules, &boundary);
             let mut all = Vec::with_capacity(cells.len());
             all.extend(cells.filter(|&cell| counts(cell)).map(terms));
             all

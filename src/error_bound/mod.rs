@@ -12,8 +12,6 @@
 //!
 //! [`bound`]: crate::guide::bound
 
-mod algebra;
-mod choice;
 mod contact;
 mod estimate;
 mod exchange;
@@ -30,7 +28,6 @@ mod shared_multipliers;
 mod smooth_forces;
 mod terms;
 
-pub(crate) use algebra::CoarserCells;
 pub use estimate::{BoundParts, ErrorBound, Unproven};
 pub use figures::{BoundFigures, TrueErrors};
 pub use pair::PrimalDualPair;

@@ -10,18 +10,12 @@ use super::meshes::unknowns;
 use super::phase::Phase;
 use super::solved::Solved;
 use crate::error::Error;
-use crate::error_bound::{ErrorBound, Unproven};
+use crate::error_bound::ErrorBound;
 use crate::instances::compiled;
 use crate::mesh::MeshError;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
-
-/// The first tolerance of a solve, divided by the share of the bound on the mesh before.
-const FIRST_TOLERANCE: f64 = 0.1;
-
-/// The factor by which the next tolerance is below the one that the measured error asks for.
-const REDUCTION: f64 = 0.5;
 
 /// A step of adaptive refinement: the solution on one mesh of the sequence.
 #[derive(Debug)]
@@ -33,9 +27,6 @@ pub struct AdaptiveStep<'a, T: Real, const D: usize> {
     pub solved: Solved<'a, T, D>,
     /// Why this step is the last one; none if another follows.
     pub stop: Option<Stop>,
-    /// The share that the solver's error may have in the square of the bound; none where the solution meets the
-    /// ordinary limits.
-    pub tolerance: Option<f64>,
     /// Seconds of assembly, of solves with their starts, and of bounds with marking, of this step and all
     /// before.
     pub(crate) assemble_seconds: f64,
@@ -62,8 +53,6 @@ pub struct AdaptiveIteration<'a, T: Real, const D: usize> {
     meshes: &'a AdaptiveMeshes<T, D>,
     scheme: &'a dyn AnyScheme<T, D>,
     adaptivity: Adaptivity,
-    /// What the last step says of the next one.
-    last: Option<LastStep>,
     /// The position of the next step; none after the last one.
     next: Option<usize>,
     assemble_seconds: f64,
@@ -79,22 +68,6 @@ impl<T: Real, const D: usize> fmt::Debug for AdaptiveIteration<'_, T, D> {
             .field("next", &self.next)
             .finish_non_exhaustive()
     }
-}
-
-/// A finished step, from which the next one is predicted.
-#[derive(Debug)]
-struct LastStep {
-    unknowns: usize,
-    /// The number of unknowns divided by that of the step before.
-    growth: f64,
-    /// The bound on the error of the solution, divided by that of the step before.
-    decrease: f64,
-    /// The bound on the error of the solution.
-    discrete: f64,
-    /// The bound on the error of the admissible function, divided by the energy norm.
-    relative_bound: f64,
-    /// The tolerance that was small enough, divided by the relative bound.
-    tolerance_to_bound: f64,
 }
 
 /// Solves a problem with a scheme on meshes that follow the error bound, from the finest mesh of the sequence
@@ -158,7 +131,6 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
             meshes,
             scheme,
             adaptivity,
-            last: None,
             next: Some(meshes.n_meshes() - 1),
             assemble_seconds: 0.0,
             solve_seconds: 0.0,
@@ -167,28 +139,10 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
     }
 
     fn step(&mut self, number: usize) -> Result<AdaptiveStep<'a, T, D>, Error> {
-        let mut tolerance = self.tolerance(number);
-        let mut solved = self.nested.solve_scheme(number, self.scheme, tolerance)?;
+        let mut solved = self.nested.solve_scheme(number, self.scheme)?;
         self.assemble_seconds += solved.assemble_seconds;
-        let (bound, stop) = loop {
-            let bound = self.bound(&solved);
-            let excess = self.adaptivity.tolerance.map_or(0.0, |allowed| {
-                bound.as_ref().map_or(0.0, |bound| share_of_solver(&solved, bound)) / allowed
-            });
-            let is_too_inexact = solved.is_inexact() && excess > 1.0;
-            let stop = match is_too_inexact {
-                true => None,
-                false => self.stop(number, &solved, bound.as_ref())?,
-            };
-            if tolerance.is_none() || !is_too_inexact && stop.is_none() {
-                break (bound, stop);
-            }
-            tolerance = tolerance.filter(|_| stop.is_none()).map(|t| REDUCTION * t / excess);
-            solved = self.nested.continued(solved, number, self.scheme, tolerance)?;
-        };
-        if let (Some(bound), Some(allowed)) = (&bound, self.adaptivity.tolerance) {
-            self.last = Some(self.finished(&solved, bound, (allowed, tolerance)));
-        }
+        let bound = self.bound(&solved);
+        let stop = self.stop(number, &solved, bound.as_ref())?;
         self.solve_seconds += solved.solve_seconds;
         if let (Some(stop), Some(goal), Some(bound)) = (stop, self.adaptivity.goal, &bound)
             && bound.discrete > goal
@@ -208,48 +162,11 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         Ok(AdaptiveStep {
             number,
             stop,
-            tolerance: self.adaptivity.tolerance.filter(|_| solved.is_inexact()),
             assemble_seconds: self.assemble_seconds,
             solve_seconds: self.solve_seconds + solved.start_seconds,
             bound_seconds: self.bound_seconds,
             solved,
         })
-    }
-
-    /// The tolerance of the first solve on a mesh: none for the first mesh and where this one is likely to be
-    /// the last.
-    fn tolerance(&self, number: usize) -> Option<f64> {
-        let Adaptivity { goal, steps, unknowns, tolerance, .. } = self.adaptivity;
-        let last = tolerance.and(self.last.as_ref())?;
-        let is_last = number >= steps
-            || last.unknowns as f64 * last.growth * last.growth > unknowns as f64
-            || goal.is_some_and(|goal| last.discrete * last.decrease <= goal);
-        (!is_last).then_some(last.relative_bound * last.tolerance_to_bound)
-    }
-
-    /// What a step says of the next one: by the share that the solver's error may have, and the last tolerance.
-    fn finished(
-        &self,
-        solved: &Solved<'a, T, D>,
-        bound: &ErrorBound,
-        (allowed, tolerance): (f64, Option<f64>),
-    ) -> LastStep {
-        let last = self.last.as_ref();
-        let (unknowns, discrete) = (solved.values().len(), bound.discrete);
-        let relative_bound = bound.total / solved.energy_norm();
-        let tolerance_to_bound = match (tolerance.filter(|_| solved.is_inexact()), last) {
-            (Some(tolerance), _) => tolerance / relative_bound,
-            (None, Some(last)) => last.tolerance_to_bound,
-            (None, None) => FIRST_TOLERANCE * allowed,
-        };
-        LastStep {
-            unknowns,
-            growth: last.map_or(1.0, |last| unknowns as f64 / last.unknowns as f64),
-            decrease: last.map_or(1.0, |last| discrete / last.discrete),
-            discrete,
-            relative_bound,
-            tolerance_to_bound,
-        }
     }
 
     /// The bound of a solution.
@@ -300,18 +217,6 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         }
         self.meshes.add(next).map(|()| None)
     }
-}
-
-/// The share of the solver's error in the square of a bound: the bound's own and, where that is not proven, twice
-/// the estimate of the solver divided by the bound.
-fn share_of_solver<T: Real, const D: usize>(solved: &Solved<'_, T, D>, bound: &ErrorBound) -> f64 {
-    let estimate = match bound.unproven.contains(&Unproven::Algebra) {
-        true => {
-            solved.certificate().algebraic_bound.unwrap_or(f64::INFINITY) * solved.energy_norm()
-        }
-        false => 0.0,
-    };
-    bound.parts.algebra.max(2.0 * estimate / bound.total)
 }
 
 impl<'a, T: Real, const D: usize> Iterator for AdaptiveIteration<'a, T, D> {

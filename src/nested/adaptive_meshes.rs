@@ -5,7 +5,6 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use crate::error::Error;
-use crate::error_bound::CoarserCells;
 use crate::instances::compiled;
 use crate::linear::Prolongation;
 use crate::mesh::{BisectedMesh, Mesh};
@@ -53,8 +52,6 @@ pub(super) struct Step<T, const D: usize> {
     numbers: Vec<u32>,
     /// The parents of the vertices that the mesh before does not have, in the numbers of `bisected`.
     parents: Vec<[u32; 2]>,
-    /// For each cell the cell of the mesh before that contains it.
-    ancestors: Vec<u32>,
     /// Seconds for this mesh and all before.
     seconds: f64,
     /// The prolongation from the next coarser level of multigrid, computed on demand.
@@ -80,7 +77,6 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
             numbers: (0..mesh.vertices().len() as u32).collect(),
             mesh,
             parents: Vec::new(),
-            ancestors: Vec::new(),
             seconds: clock.elapsed().as_secs_f64(),
             prolongation: OnceLock::new(),
             finer: OnceLock::new(),
@@ -141,14 +137,13 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         let clock = Instant::now();
         let finest = self.step(self.n_meshes() - 1);
         let (mut bisected, bisection) = finest.bisected.bisect(marked)?;
-        let (mut parents, mut ancestors) = (bisection.parents, bisection.ancestors);
+        let mut parents = bisection.parents;
         if D > 1 {
-            let halves = halves(finest.mesh(), bisected.mesh(), &ancestors, marked);
+            let halves = halves(finest.mesh(), bisected.mesh(), &bisection.ancestors, marked);
             let n = parents.len();
             let (again, bisection) = bisected.bisect(&halves)?;
             bisected = again;
             parents.extend_from_slice(&bisection.parents[n..]);
-            ancestors = bisection.ancestors.iter().map(|&half| ancestors[half as usize]).collect();
         }
         parents.drain(..finest.n_vertices());
         let (mesh, numbers) = bisected.mesh().in_order_of_cells();
@@ -157,7 +152,6 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
             mesh,
             numbers,
             parents,
-            ancestors,
             seconds: finest.seconds + clock.elapsed().as_secs_f64(),
             prolongation: OnceLock::new(),
             finer: OnceLock::new(),
@@ -191,17 +185,6 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
             fine[number as usize] = value;
         }
         fine
-    }
-
-    /// The meshes before a position, the finest first, each with the cell that contains each cell of the next one.
-    pub(super) fn coarser_cells(&self, position: usize) -> Vec<CoarserCells<'_, T, D>> {
-        let finer = self.steps().skip(1).take(position);
-        let pairs = self.steps().zip(finer);
-        let mut levels: Vec<_> = pairs
-            .map(|(coarse, fine)| CoarserCells { mesh: coarse.mesh(), parents: &fine.ancestors })
-            .collect();
-        levels.reverse();
-        levels
     }
 
     /// The next coarser level of multigrid: the position of the finest mesh with few enough vertices, and

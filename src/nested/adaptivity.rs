@@ -22,16 +22,12 @@ pub struct Adaptivity {
     pub steps: usize,
     /// Most unknowns; the first mesh may have more.
     pub unknowns: usize,
-    /// The share of the square of the bound that the solver's error may have on meshes that are refined
-    /// further; none solves every mesh to the ordinary limits. The last mesh is always solved to those.
-    pub tolerance: Option<f64>,
 }
 
 impl Default for Adaptivity {
-    /// A share of a half, no goal, at most 20 refinements and a million unknowns, every mesh solved to the
-    /// ordinary limits.
+    /// A share of a half, no goal, at most 20 refinements and a million unknowns.
     fn default() -> Self {
-        Self { theta: 0.5, goal: None, steps: 20, unknowns: 1_000_000, tolerance: None }
+        Self { theta: 0.5, goal: None, steps: 20, unknowns: 1_000_000 }
     }
 }
 
@@ -61,12 +57,7 @@ impl Adaptivity {
     pub fn unknowns(self, unknowns: usize) -> Self {
         Self { unknowns, ..self }
     }
-    /// Sets the share of the solver's error in the square of the bound.
-    #[must_use]
-    pub fn tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance: Some(tolerance), ..self }
-    }
-    /// Checks shares and goal.
+    /// Checks share and goal.
     ///
     /// # Errors
     /// [`Error::Parameter`].
@@ -77,9 +68,6 @@ impl Adaptivity {
         };
         if !(self.theta > 0.0 && self.theta <= 1.0) {
             return refuse("theta", self.theta, "the share of marked cells is in (0, 1]");
-        }
-        if let Some(tolerance) = self.tolerance.filter(|share| !(*share > 0.0 && *share < 1.0)) {
-            return refuse("tolerance", tolerance, "the share of the solver's error is in (0, 1)");
         }
         match self.goal {
             Some(goal) if !(goal > 0.0 && goal.is_finite()) => {

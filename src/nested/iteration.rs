@@ -201,7 +201,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
                 usize,
                 &'s dyn AnyScheme<T, D>,
             ) -> Result<Solved<'p, T, D>, Error>
-                = |nested, position, scheme| nested.solve_scheme(position, scheme, None)
+                = |nested, position, scheme| nested.solve_scheme(position, scheme)
         )(self, position, scheme)
     }
 

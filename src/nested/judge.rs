@@ -58,7 +58,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let contact = contact_of(&inequality, &values);
         let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
         let hierarchy = self.hierarchy(position);
-        let solved = Solved::new(discretisation, inequality, solution, hierarchy, None);
+        let solved = Solved::new(discretisation, inequality, solution, hierarchy);
         Ok(solved.found_elsewhere())
     }
 }

@@ -41,11 +41,9 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     fn guess(
         &self,
         start: Option<&P1Solution<T>>,
-        energy_tolerance: Option<f64>,
         inequality: &mut Inequality<T>,
     ) -> InitialGuess<T> {
         let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
-        guess.energy_tolerance = energy_tolerance;
         if let Some(start) = start {
             // a start without contact stays cold: the solver must detect a body that only contact holds
             if start.contact.iter().any(|&c| c != Contact::Inactive) {
@@ -57,12 +55,11 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         guess
     }
 
-    /// The solution on a mesh, to a tolerance on the relative error in the energy norm if there is one.
+    /// The solution on a mesh.
     pub(super) fn solve_scheme(
         &mut self,
         position: usize,
         scheme: &dyn AnyScheme<T, D>,
-        energy_tolerance: Option<f64>,
     ) -> Result<Solved<'a, T, D>, Error> {
         self.enter(Phase::Start);
         let start = self.start(position, scheme)?;
@@ -71,7 +68,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let (mut discretisation, mut inequality, assemble_seconds) =
             self.assembled(scheme, mesh)?;
         discretisation.forget_prepared();
-        let guess = self.guess(start.as_deref(), energy_tolerance, &mut inequality);
+        let guess = self.guess(start.as_deref(), &mut inequality);
         let mut warnings = dirichlet_jumps(self.p1.problem, mesh);
         let penalty_below_bound = discretisation.penalty_below_bound();
         warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
@@ -86,9 +83,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let (solution, solve_seconds) = self.run(&mut inequality, &guess);
         warnings.extend(active_sets(&solution, self.p1.problem, scheme));
         let hierarchy = self.hierarchy(position);
-        let mut solved =
-            Solved::new(discretisation, inequality, solution, hierarchy, energy_tolerance);
-        solved.adaptive = self.adaptive_meshes().map(|meshes| (meshes, position));
+        let mut solved = Solved::new(discretisation, inequality, solution, hierarchy);
         solved.warnings = warnings;
         solved.mesh_seconds = self.p1.meshes.seconds(position);
         (solved.assemble_seconds, solved.solve_seconds) = (assemble_seconds, solve_seconds);
@@ -103,32 +98,6 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             solved.coarser_levels = start.levels_solved.saturating_sub(same_mesh);
             solved.start_cycles = start.start_cycles;
             solved.start_seconds = start.seconds;
-        }
-        Ok(solved)
-    }
-
-    /// The solution of a scheme on a mesh continued from a less accurate one, to a smaller tolerance or to
-    /// the ordinary limits. Iterations and seconds are those of both.
-    pub(super) fn continued(
-        &mut self,
-        solved: Solved<'a, T, D>,
-        position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-        energy_tolerance: Option<f64>,
-    ) -> Result<Solved<'a, T, D>, Error> {
-        if !solved.has_iterate() {
-            return self.solve_scheme(position, scheme, energy_tolerance);
-        }
-        let start = self.start(position, scheme)?;
-        let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
-        guess.energy_tolerance = energy_tolerance;
-        guess.values = Some(solved.values().to_vec());
-        if let Some(start) = &start {
-            guess.coarse_spaces = start.coarse_spaces.clone();
-        }
-        let solved = solved.continued(energy_tolerance, |inequality| self.run(inequality, &guess));
-        if scheme.is_conforming_linear(solved.mesh()) {
-            self.p1.keep_solved(position, start.as_deref(), &solved);
         }
         Ok(solved)
     }

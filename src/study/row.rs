@@ -118,10 +118,6 @@ pub struct Row {
     /// such a row are those of all its steps so far.
     #[cfg_attr(feature = "report", serde(default))]
     pub theta: Option<f64>,
-    /// The share that the solver's error may have in the square of the bound, on a mesh of adaptive refinement
-    /// that was solved to that; null where the solution meets the ordinary limits.
-    #[cfg_attr(feature = "report", serde(default))]
-    pub tolerance: Option<f64>,
     /// Penalty factors in force.
     pub parameters: PenaltyParameters,
     /// Name of the solver of the inequality.
@@ -207,7 +203,6 @@ impl Row {
             level,
             level_kind: None,
             theta: None,
-            tolerance: None,
             parameters: PenaltyParameters::default(),
             solver: String::new(),
             linear: String::new(),

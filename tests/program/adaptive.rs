@@ -75,6 +75,7 @@ fn wrong_requests_are_refused() {
         ("--adaptive theta=much", &["theta takes a number", "much"]),
         ("--adaptive steps=1.5", &["steps takes a whole number", "1.5"]),
         ("--adaptive size=4", &["size=4", "theta=X", "unknowns=N"]),
+        ("--adaptive goal=1,tolerance=0.1", &["tolerance=0.1", "goal=X"]),
         ("--adaptive 0.1 --reference 64", &["--adaptive", "--reference", "cannot be used"]),
         ("--adaptive 0.1 --resume", &["--adaptive", "--resume", "cannot be used"]),
         ("--adaptive 0.1 --dump d", &["--adaptive", "--dump", "cannot be used"]),

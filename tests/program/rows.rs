@@ -49,7 +49,7 @@ pub fn check_row(row: &Value) {
             "peak_memory_bytes" => value.is_u64() || value.is_null(),
             "mesh_size" => value.is_f64(),
             "rounding" => value.is_object() || !converged,
-            "theta" | "tolerance" => value.is_f64() || value.is_null(),
+            "theta" => value.is_f64() || value.is_null(),
             "objective" => value.is_number() || value.is_null(),
             "energy" | "contact_measure" | "resultant" | "penetration" => {
                 value.is_f64() || !converged

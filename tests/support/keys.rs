@@ -1,7 +1,7 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 37] = [
+pub const ROW_KEYS: [&str; 36] = [
     "scene",
     "dimension",
     "scheme",
@@ -10,7 +10,6 @@ pub const ROW_KEYS: [&str; 37] = [
     "level",
     "level_kind",
     "theta",
-    "tolerance",
     "parameters",
     "cells",
     "unknowns",

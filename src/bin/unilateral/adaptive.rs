@@ -24,11 +24,10 @@ pub fn adaptivity(text: &str) -> Request<Adaptivity> {
             "goal" => of.goal(number()?),
             "steps" => of.steps(count()?),
             "unknowns" => of.unknowns(count()?),
-            "tolerance" => of.tolerance(number()?),
             _ => {
                 let key = excerpt(item);
                 return Err(format!(
-                    "\"{key}\" is neither a bound nor one of theta=X, goal=X, steps=N, unknowns=N, tolerance=X"
+                    "\"{key}\" is neither a bound nor one of theta=X, goal=X, steps=N, unknowns=N"
                 ));
             }
         };
@@ -42,8 +41,7 @@ fn checked(of: Adaptivity) -> Request<Adaptivity> {
 
 /// The refinement in one line, for what a report says of its request.
 pub fn words(of: &Adaptivity) -> String {
-    let Adaptivity { theta, goal, steps, unknowns, tolerance, .. } = of;
+    let Adaptivity { theta, goal, steps, unknowns, .. } = of;
     let goal = goal.map_or_else(String::new, |goal| format!(" to the bound {goal:?}"));
-    let solver = tolerance.map_or_else(String::new, |t| format!(", solver's share {t:?}"));
-    format!("theta {theta:?}{goal}, at most {steps} steps and {unknowns} unknowns{solver}")
+    format!("theta {theta:?}{goal}, at most {steps} steps and {unknowns} unknowns")
 }

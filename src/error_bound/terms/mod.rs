@@ -27,20 +27,17 @@ use crate::real::{Point, Real, point_f64};
 pub(super) struct CellTerms {
     /// The square of the mismatch.
     pub mismatch: f64,
-    /// The square of the mismatch with the oscillation added: if what the flux leaves is a force of an
-    /// obstacle, and if the solver left it.
-    pub with_oscillation: [f64; 2],
+    /// The square of the mismatch with the oscillation added.
+    pub with_oscillation: f64,
     /// The square of the distance of the discrete function from the midpoint of the two pairs, with half of the
-    /// oscillation added, in the same two cases.
-    pub from_midpoint: [f64; 2],
-    /// Twice the complementarity of obstacles, if what the flux leaves is a force.
+    /// oscillation added.
+    pub from_midpoint: f64,
+    /// Twice the complementarity of obstacles.
     pub obstacle: f64,
-    /// The complementarity divided by the square that the cell adds if the solver left the mean: infinite where
-    /// no obstacle presses in the direction of the mean, zero where no constant of Friedrichs' inequality is known.
-    pub ratio: f64,
     /// Twice the complementarity of contact.
     pub contact: f64,
-    /// The mean of what the flux leaves.
+    /// The square of the norm of what the solver left: the mean of what the flux leaves of the load where no obstacle
+    /// presses in its direction.
     pub unbalanced: f64,
     /// The square of the distance of the two functions.
     pub distance: f64,
@@ -50,8 +47,13 @@ pub(super) struct CellTerms {
     pub least_reaction: f64,
     /// A bound from below for a reaction of degree two.
     pub reaction_from_below: f64,
-    /// The volume of the cell.
-    pub volume: f64,
+}
+
+impl CellTerms {
+    /// What the cell adds to the square of the bound, without the part of the solver.
+    pub fn square(&self) -> f64 {
+        self.with_oscillation + self.obstacle + self.contact
+    }
 }
 
 /// What the integrals of a cell read.
@@ -283,7 +285,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         cell: usize,
         (table, cut): (&CellTable<f64>, Option<&CutRule>),
         boundary: &BoundaryTerms,
-        friedrichs: Option<f64>,
     ) -> CellTerms {
         let data = self.cell_data(pair, u, cell, table);
         let sums = self
@@ -295,46 +296,38 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let by_value = sums.reaction_from_below.max(0.0).sqrt().recip();
         let load = sums.first_load.unwrap_or(0.0);
         let balance = data.flux.balance(data.volume, &sums.means, sums.square, load);
-        let bound = usize::from(balance.mean < 0.0);
-        let share = limit(balance.mean, &balance.values[..data.flux.n]);
-        let mut obstacle = 0.0;
-        for (value, gap) in balance.values.iter().zip(sums.gaps[bound]).take(data.flux.n) {
-            let multiplier = balance.mean + share * (value - balance.mean);
-            obstacle += 2.0 * multiplier.abs() * gap;
-        }
-        let square_of_mean = balance.mean * balance.mean * data.volume;
-        let ratio = match (data.admissible.bounds[bound], friedrichs) {
-            (None, _) => f64::INFINITY,
-            (Some(_), Some(c)) if square_of_mean > 0.0 => {
-                obstacle * sums.least_coefficient / (c * c * square_of_mean)
-            }
-            _ => 0.0,
+        let presses = usize::from(balance.mean < 0.0);
+        // without an obstacle in its direction the mean is what the solver left
+        let has_obstacle = data.admissible.bounds[presses].is_some();
+        let share = match has_obstacle {
+            true => limit(balance.mean, &balance.values[..data.flux.n]),
+            false => 0.0,
         };
-        let of_trace = boundary.traces.get(cell).map_or(0.0, |n| n / sums.least_coefficient.sqrt());
-        let oscillation = map_entries([1.0 - share, 1.0], |left| {
-            let of_load = (balance.rest + left * left * balance.variation).sqrt();
-            match by_value < by_gradient {
-                true => [of_trace, by_value * of_load],
-                false => [by_gradient * of_load + of_trace, 0.0],
+        let mut obstacle = 0.0;
+        if has_obstacle {
+            for (value, gap) in balance.values.iter().zip(sums.gaps[presses]).take(data.flux.n) {
+                let multiplier = balance.mean + share * (value - balance.mean);
+                obstacle += 2.0 * multiplier.abs() * gap;
             }
-        });
+        }
+        let integral = if has_obstacle { 0.0 } else { balance.mean * data.volume };
+        let of_trace = boundary.traces.get(cell).map_or(0.0, |n| n / sums.least_coefficient.sqrt());
+        let of_load = (balance.rest + (1.0 - share).powi(2) * balance.variation).sqrt();
+        let oscillation = match by_value < by_gradient {
+            true => [of_trace, by_value * of_load],
+            false => [by_gradient * of_load + of_trace, 0.0],
+        };
         CellTerms {
             mismatch: mismatch + from_values,
-            with_oscillation: map_entries(oscillation, |o| {
-                with_share([mismatch, from_values], 1.0, o)
-            }),
-            from_midpoint: map_entries(oscillation, |o| {
-                with_share([from_midpoint, 0.25 * from_values], 0.5, o)
-            }),
+            with_oscillation: with_share([mismatch, from_values], 1.0, oscillation),
+            from_midpoint: with_share([from_midpoint, 0.25 * from_values], 0.5, oscillation),
             obstacle,
-            ratio,
             contact: boundary.contact.get(cell).map_or(0.0, |c| 2.0 * c),
-            unbalanced: balance.mean,
+            unbalanced: integral * integral / data.volume,
             distance: integral_of_square(sums.distance) + from_values,
             least_coefficient: sums.least_coefficient,
             least_reaction: sums.least_reaction,
             reaction_from_below: sums.reaction_from_below.min(sums.least_reaction),
-            volume: data.volume,
         }
     }
 

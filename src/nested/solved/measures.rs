@@ -125,8 +125,7 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
         }
         let clock = Instant::now();
         let pair = self.primal_dual_pair()?;
-        let coarser = self.adaptive.map_or_else(Vec::new, |(meshes, k)| meshes.coarser_cells(k));
-        let bound = self.discretisation.error_bound_on_levels(&pair, self.values(), &coarser)?;
+        let bound = self.discretisation.error_bound(&pair, self.values())?;
         Ok(once(&self.bound, || (pair, bound, clock.elapsed().as_secs_f64())))
     }
     /// Seconds of the bound; none if it is not known, or not yet.

@@ -8,9 +8,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::OnceLock;
 
-use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
-use crate::algebra::{Contact, Inequality, Start};
+use crate::algebra::{Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::error::Error;
 use crate::error_bound::{ErrorBound, PrimalDualPair};
@@ -20,10 +19,6 @@ use crate::inequality::{
 use crate::measure::Fields;
 use crate::mesh::Mesh;
 use crate::real::Real;
-
-/// The largest certificate of a solution to a tolerance, divided by the tolerance: both are relative to the
-/// energy norm.
-const CERTIFICATE_TO_TOLERANCE: f64 = 10.0;
 
 /// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
 ///
@@ -37,8 +32,6 @@ pub struct Solved<'a, T: Real, const D: usize> {
     has_iterate: bool,
     /// The hierarchy that has the mesh, and its position there.
     hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
-    /// The adaptive meshes that have the mesh, and its position there.
-    pub(super) adaptive: Option<(&'a AdaptiveMeshes<T, D>, usize)>,
     /// The bound with the pair that gives it and the seconds of both, once computed.
     bound: OnceLock<(PrimalDualPair, ErrorBound, f64)>,
     /// Seconds for the mesh and all coarser ones, if it is one of several.
@@ -65,14 +58,12 @@ impl<T: Real, const D: usize> fmt::Debug for Solved<'_, T, D> {
 }
 
 impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
-    /// A solution with its certificate. One to a tolerance on the relative error in the energy norm is within
-    /// the limits that follow from the tolerance.
+    /// A solution with its certificate.
     pub(super) fn new(
         discretisation: Discretisation<'a, T, D>,
         inequality: Inequality<T>,
         mut solution: Solution<T>,
         hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
-        energy_tolerance: Option<f64>,
     ) -> Self {
         let u = &solution.values;
         let has_iterate =
@@ -82,10 +73,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
                 .with_algebraic_bound(solution.algebraic_bound),
             false => Certificate::INVALID,
         };
-        let is_within_tolerance = energy_tolerance
-            .is_some_and(|tolerance| certificate.largest() <= CERTIFICATE_TO_TOLERANCE * tolerance);
-        let is_within_limits = is_within_tolerance || certificate.is_within_limits::<T>();
-        if solution.outcome == Outcome::Converged && !is_within_limits {
+        if solution.outcome == Outcome::Converged && !certificate.is_within_limits::<T>() {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
         }
@@ -101,7 +89,6 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             certificate,
             has_iterate,
             hierarchy,
-            adaptive: None,
             bound: OnceLock::new(),
             assemble_seconds: 0.0,
             solve_seconds: 0.0,
@@ -112,43 +99,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         }
     }
 
-    /// The solution of another run of a solver that starts from this one, to a tolerance or to the ordinary
-    /// limits. Iterations and seconds are those of all runs.
-    pub(super) fn continued(
-        mut self,
-        energy_tolerance: Option<f64>,
-        run: impl FnOnce(&mut Inequality<T>) -> (Solution<T>, f64),
-    ) -> Self {
-        self.inequality.start = Start::Contact(self.solution.contact.clone());
-        let (mut solution, seconds) = run(&mut self.inequality);
-        solution.outer += self.solution.outer;
-        solution.linear += self.solution.linear;
-        solution.stages.splice(0..0, self.solution.stages);
-        let continued = Self::new(
-            self.discretisation,
-            self.inequality,
-            solution,
-            self.hierarchy,
-            energy_tolerance,
-        );
-        Self {
-            adaptive: self.adaptive,
-            mesh_seconds: self.mesh_seconds,
-            assemble_seconds: self.assemble_seconds,
-            solve_seconds: self.solve_seconds + seconds,
-            start_seconds: self.start_seconds,
-            coarser_levels: self.coarser_levels,
-            start_cycles: self.start_cycles,
-            warnings: self.warnings,
-            ..continued
-        }
-    }
-
-    /// Whether the solution converged to a tolerance and not to the ordinary limits.
-    pub(super) fn is_inexact(&self) -> bool {
-        self.converged() && !self.certificate.is_within_limits::<T>()
-    }
-    /// The energy norm to which tolerances and certificates are relative.
+    /// The energy norm to which certificates are relative.
     pub(super) fn energy_norm(&self) -> f64 {
         energy_norm(&self.inequality, self.values(), &self.solution.jump_multipliers)
     }

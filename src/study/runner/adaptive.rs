@@ -157,6 +157,5 @@ fn adaptive_row<T: Real, const D: usize>(
         total: step.seconds(),
         ..row.seconds
     };
-    let (theta, tolerance) = (Some(theta), step.tolerance);
-    Row { theta, tolerance, seconds, expected_order: ExpectedOrders::default(), ..row }
+    Row { theta: Some(theta), seconds, expected_order: ExpectedOrders::default(), ..row }
 }

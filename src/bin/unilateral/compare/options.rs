@@ -34,8 +34,7 @@ pub struct Options {
     #[arg(long, visible_alias = "level", value_delimiter = ',', value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
     pub levels: Vec<usize>,
     /// Meshes that follow the error bound in place of levels, until the bound is GOAL; or keys:
-    /// theta=0.5,steps=20,unknowns=1e6,goal=GOAL,tolerance=0.1 (the share of the bound that the
-    /// solver's error may have on meshes before the last). --levels N then sets the first mesh
+    /// theta=0.5,steps=20,unknowns=1e6,goal=GOAL. --levels N then sets the first mesh
     #[arg(long, value_name = "GOAL|KEY=VALUE[,...]", allow_negative_numbers = true,
         value_parser = adaptivity, conflicts_with_all = ["reference", "resume", "dump"])]
     pub adaptive: Option<Adaptivity>,
