@@ -217,6 +217,21 @@ fn refinement_ends_where_it_is_told_to() {
     let (stop, _, number, unknowns, warnings) = run(Adaptivity::default().unknowns(1000));
     assert!(stop == Stop::Unknowns && unknowns <= 1000 && number > 1 && warnings == 0);
     assert_eq!(run(Adaptivity::default().steps(0)).0, Stop::Steps);
+    // the goal is one of the bound on the discrete solution, and may be reached by equality
+    let mesh = scene.domain.mesh::<f64>(4).unwrap();
+    let first = solve(&scene.problem, &mesh, &Sipg::default()).unwrap().bound().unwrap();
+    assert!(first.discrete != first.total, "{first:?}");
+    for goal in [first.discrete, first.discrete.max(first.total)] {
+        let (stop, _, number, ..) = run(Adaptivity::to_bound(goal));
+        assert_eq!((stop, number), (Stop::Goal, 0), "{goal}");
+    }
+    let below = first.discrete * (1.0 - 1e-9);
+    assert!(run(Adaptivity::to_bound(below)).2 > 0);
+    // the next mesh has as many unknowns as are allowed
+    let (_, _, _, unknowns, _) = run(Adaptivity::default().steps(1));
+    let (stop, _, number, found, _) = run(Adaptivity::default().steps(1).unknowns(unknowns));
+    assert_eq!((stop, number, found), (Stop::Steps, 1, unknowns));
+    assert_eq!(run(Adaptivity::default().steps(1).unknowns(unknowns - 1)).0, Stop::Unknowns);
     // linear solutions are exact
     let linear = |x: &Point<f64, 2>| 1.0 + x[0] - 2.0 * x[1];
     let problem = Problem::new().dirichlet(linear);

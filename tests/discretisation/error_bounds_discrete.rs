@@ -2,9 +2,12 @@
 
 use crate::support::checks::Checks;
 use crate::support::meshes::Random;
+use unilateral::algebra::Contact;
 use unilateral::assemble::DataQuadrature;
-use unilateral::error_bound::{ErrorBound, PrimalDualPair};
+use unilateral::error_bound::{ErrorBound, PrimalDualPair, Unproven};
+use unilateral::inequality::{Outcome, Solution};
 use unilateral::prelude::*;
+use unilateral::problem::Datum;
 use unilateral::quadrature::Rule;
 
 /// Every scheme that has a bound.
@@ -180,9 +183,16 @@ fn the_bound_is_that_of_the_midpoint() {
 
 /// The bound of the functions that vanish, with a flux that vanishes.
 fn bound_of_zero<const D: usize>(problem: &Problem<D>, mesh: &Mesh<f64, D>) -> ErrorBound {
+    bound_of_zero_by(&ConformingP1, problem, mesh)
+}
+
+fn bound_of_zero_by<const D: usize>(
+    scheme: &dyn AnyScheme<f64, D>,
+    problem: &Problem<D>,
+    mesh: &Mesh<f64, D>,
+) -> ErrorBound {
     let quadrature = DataQuadrature::default().cell(20);
-    let solved =
-        NestedIteration::new(problem, mesh).quadrature(quadrature).solve(&ConformingP1).unwrap();
+    let solved = NestedIteration::new(problem, mesh).quadrature(quadrature).solve(scheme).unwrap();
     let mut pair = solved.primal_dual_pair().unwrap();
     pair.function.fill(0.0);
     pair.flux.fill(0.0);
@@ -210,17 +220,115 @@ fn oscillation_alone_is_the_error() {
 fn a_load_that_no_flux_balances_counts_with_the_least_coefficient() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [4]).unwrap();
-    let total = |alpha: fn(&Point<f64, 1>) -> f64| {
-        bound_of_zero(&Problem::new().constant_source(6.0).coefficient(alpha), &mesh).total
-    };
-    let expected = total(|_| 0.1);
-    // the error of zero is 6 / 12^(1/2) / 0.1^(1/2)
-    assert!(expected >= 6.0 / 1.2_f64.sqrt());
     let first: fn(&Point<f64, 1>) -> f64 = |x| if x[0] < 0.25 { 0.1 } else { 5.0 };
-    for alpha in [first, |x| if x[0] > 0.75 { 0.1 } else { 5.0 }] {
-        let found = total(alpha);
-        assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+    // the constant of Friedrichs' inequality is 1 / pi
+    let expected = 6.0 / std::f64::consts::PI / 0.1_f64.sqrt();
+    for alpha in [first, |x| if x[0] > 0.75 { 0.1 } else { 5.0 }, |_| 0.1] {
+        let bound = bound_of_zero(&Problem::new().constant_source(6.0).coefficient(alpha), &mesh);
+        for found in [bound.total, bound.discrete] {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
     }
+    // by a reaction it counts where that gives less
+    for (reaction, expected) in [(0.5, expected), (1e4, 6.0 / 1e4_f64.sqrt())] {
+        let problem = Problem::new().constant_source(6.0).coefficient(|_| 0.1).reaction(reaction);
+        let found = bound_of_zero(&problem, &mesh).total;
+        assert!((found / expected - 1.0).abs() < 1e-12, "{reaction}: {found} {expected}");
+    }
+}
+
+/// In one cell of length two the load `x` has the mean one, for the solver, and the rest `x - 1`, for the oscillation:
+/// both count with `2 / pi`.
+#[test]
+fn a_load_counts_by_its_mean_and_by_the_rest() {
+    let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(2.0));
+    let mesh = Mesh::<f64, 1>::kuhn_box(&interval, [1]).unwrap();
+    let problem = Problem::new().source(|x: &Point<f64, 1>| x[0]);
+    let expected = 2.0 / std::f64::consts::PI * ((2.0_f64 / 3.0).sqrt() + 2.0_f64.sqrt());
+    for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 1>, &ConformingP2] {
+        let bound = bound_of_zero_by(scheme, &problem, &mesh);
+        for found in [bound.total, bound.discrete] {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{}: {found}", scheme.name());
+        }
+    }
+}
+
+/// What the flux of quadratics leaves of the load `1 - 4 x` is `4 x - 1`: a force of the obstacle `-x` with the part
+/// `2 x`, which is nowhere negative, and oscillation with the rest `2 x - 1`.
+#[test]
+fn forces_of_quadratics_have_one_sign() {
+    use std::f64::consts::PI;
+    let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 1>::kuhn_box(&interval, [1]).unwrap();
+    let problem = || Problem::<1>::new().polynomial_data(1);
+    let lower = problem().source(|x| 1.0 - 4.0 * x[0]).obstacle_below(|x| -x[0]);
+    let upper = problem().source(|x| 4.0 * x[0] - 1.0).obstacle_above(|x| x[0]);
+    let oscillation = (1.0_f64 / 3.0).sqrt() / PI;
+    // twice the integral of 2 x^2
+    let obstacle = 4.0 / 3.0;
+    let total = (oscillation.powi(2) + obstacle).sqrt();
+    let discrete = 0.5 * (oscillation.powi(2) + 2.0 * obstacle).sqrt() + 0.5 * oscillation;
+    for problem in [lower, upper] {
+        let bound = bound_of_zero_by(&ConformingP2, &problem, &mesh);
+        for (found, expected) in [(bound.total, total), (bound.discrete, discrete)] {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+}
+
+/// Zero is off a gap of minus one, and a flux that is constant presses with the force `s` there.
+#[test]
+fn a_contact_force_counts_with_the_distance_from_the_gap() {
+    let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let interval = interval.side(0, 1, BoundaryPart::Contact);
+    let mesh = Mesh::<f64, 1>::kuhn_box(&interval, [1]).unwrap();
+    let problem = Problem::new().signorini(|_| -1.0).coefficient(|_| 4.0);
+    let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
+    let mut pair = solved.primal_dual_pair().unwrap();
+    pair.function.fill(0.0);
+    for force in [0.5, 3.0] {
+        // through the facets opposite the two vertices
+        pair.flux.copy_from_slice(&[force, -force]);
+        let bound = solved.discretisation().error_bound(&pair, &[0.0; 2]).unwrap();
+        let mismatch = force * force / 4.0;
+        let total = (mismatch + 2.0 * force).sqrt();
+        let discrete = 0.5 * (mismatch + 4.0 * force).sqrt() + 0.5 * mismatch.sqrt();
+        for (found, expected) in [(bound.total, total), (bound.discrete, discrete)] {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{force}: {found} {expected}");
+        }
+    }
+}
+
+/// Of quadratics the contact force `s` on a facet from minus one to three counts with its part from zero to two, and the
+/// rest by the trace inequality.
+#[test]
+fn contact_forces_of_quadratics_have_one_sign() {
+    use std::f64::consts::PI;
+    let square =
+        BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(1, 0, BoundaryPart::Contact);
+    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [1, 1]).unwrap();
+    let problem = Problem::new().signorini(|x| -x[0]).polynomial_data(1);
+    let solved = solve(&problem, &mesh, &ConformingP2).unwrap();
+    let mut pair = solved.primal_dual_pair().unwrap();
+    pair.function.fill(0.0);
+    pair.flux.fill(0.0);
+    let f = mesh.boundary().iter().find(|f| f.part == BoundaryPart::Contact).unwrap();
+    let (cell, local) = (f.cell as usize, usize::from(f.local));
+    for (k, &v) in mesh.cell(cell).iter().enumerate().filter(|(k, _)| *k != local) {
+        pair.flux[(cell * 3 + local) * 3 + k] = 4.0 * mesh.vertices()[v as usize][0] - 1.0;
+    }
+    let bound = solved.discretisation().error_bound(&pair, &vec![0.0; solved.values().len()]);
+    let bound = bound.unwrap();
+    // twice the integral of 2 x^2
+    let contact = bound.parts.contact * bound.total.powi(2);
+    assert!((contact / (4.0 / 3.0) - 1.0).abs() < 1e-12, "{contact}");
+    // the cell has the diameter root of two and the divergence -3, 9, 0 at its vertices; 2 x - 1 is left of the force
+    let of_divergence = 2.0_f64.sqrt() / PI * 3.25_f64.sqrt();
+    let constant = (2.0 * (1.0 / (PI * PI) + 1.0 / PI) * 2.0).sqrt();
+    let expected = of_divergence + constant * (1.0_f64 / 3.0).sqrt();
+    let mismatch = bound.parts.mismatch;
+    let found = ((mismatch + bound.parts.oscillation).sqrt() - mismatch.sqrt()) * bound.total;
+    assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
 }
 
 /// With a reaction `c` the solution is `cos(n pi x) / ((n pi)^2 + c)`, and the load counts with the smaller one of
@@ -252,12 +360,15 @@ fn a_neumann_datum_counts_by_the_trace_inequality() {
         BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(1, 0, BoundaryPart::Neumann);
     let mesh = Mesh::<f64, 2>::kuhn_box(&square, [1, 1]).unwrap();
     let problem = Problem::new().coefficient(|_| 4.0).neumann(|x, _| x[0] - 0.5);
-    let bound = bound_of_zero(&problem, &mesh);
     // one facet of length one, a cell of measure one half and of diameter the root of two
     let constant = (2.0 * (1.0 / (PI * PI) + 1.0 / PI) * 2.0).sqrt();
     let expected = constant * (1.0_f64 / 12.0).sqrt() / 2.0;
-    for found in [bound.total, bound.discrete] {
-        assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+    // with a reaction too, by which a load would count
+    for problem in [problem.clone(), problem.reaction(1e4)] {
+        let bound = bound_of_zero(&problem, &mesh);
+        for found in [bound.total, bound.discrete] {
+            assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        }
     }
 }
 
@@ -279,4 +390,52 @@ fn values_count_with_the_reaction() {
     for found in [bound.total, bound.distance, bound.discrete] {
         assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
     }
+}
+
+/// Between points a reaction of degree two may be smaller than at all vertices and midpoints: its least Bernstein
+/// coefficient counts, here 100, while the values at these points are 500 and more, and the least value is 400.
+#[test]
+fn a_reaction_of_degree_two_counts_by_its_least_bernstein_coefficient() {
+    use std::f64::consts::PI;
+    let free = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+        .side(0, 0, BoundaryPart::Neumann)
+        .side(0, 1, BoundaryPart::Neumann);
+    let mesh = Mesh::<f64, 1>::kuhn_box(&free, [1]).unwrap();
+    let problem = |least: f64| {
+        let reaction = move |x: &Point<f64, 1>| 1600.0 * (x[0] - 0.25).powi(2) + 300.0 + least;
+        Problem::new().reaction(Datum::polynomial(2, reaction))
+    };
+    // a load without a mean, and a constant one: the reaction alone holds the interval
+    let wave = problem(100.0).source(|x: &Point<f64, 1>| (PI * x[0]).cos());
+    let constant = problem(100.0).constant_source(6.0);
+    for (problem, norm) in [(&wave, 0.5_f64.sqrt()), (&constant, 6.0)] {
+        let total = bound_of_zero(problem, &mesh).total;
+        assert!((total / (norm / 10.0) - 1.0).abs() < 1e-9, "{total} {}", norm / 10.0);
+    }
+    assert_eq!(bound_of_zero(&constant, &mesh).unproven, []);
+    // a coefficient below zero says nothing, although the reaction is positive everywhere
+    let unproven = bound_of_zero(&problem(-1.0).constant_source(6.0), &mesh).unproven;
+    assert_eq!(unproven, [Unproven::Quadrature, Unproven::Algebra]);
+}
+
+/// The admissible function by hand: at an interface the mean of both values with the coefficients as weights, and at a
+/// midpoint the least value whose Bernstein coefficient is that of the obstacle.
+#[test]
+fn the_admissible_function_follows_by_hand() {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let function =
+        |problem: &Problem<1>, n: usize, scheme: &dyn AnyScheme<f64, 1>, values: &[f64]| {
+            let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [n]).unwrap();
+            let of = scheme.discretise(problem, &mesh, DataQuadrature::default()).unwrap();
+            let contact = vec![Contact::Inactive; values.len()];
+            let solution = Solution::new(values.to_vec(), contact, Outcome::Converged);
+            of.primal_dual_pair(&of.inequality().unwrap(), &solution).unwrap().function
+        };
+    let materials = Problem::new().coefficient(|x| if x[0] < 0.5 { 1.0 } else { 3.0 });
+    let values = [0.0, 1.0, 2.0, 0.0];
+    assert_eq!(function(&materials, 2, &Sipg::default(), &values), [0.0, 1.75, 0.0]);
+    let parabola = Problem::new().obstacle_below(|x| -0.1 - x[0] * x[0]);
+    let found = function(&parabola, 1, &ConformingP2, &[0.0, 0.0, -1.0]);
+    // the coefficients 2 v_m - (v_a + v_b) / 2 are -1/10
+    assert!((found[2] + 0.05).abs() < 1e-15 && found[..2] == [0.0, 0.0], "{found:?}");
 }

@@ -168,3 +168,129 @@ fn rules_follow_the_degrees_of_data() {
         assert!(by_rules.unproven.contains(&Unproven::Quadrature), "{name}");
     }
 }
+
+/// A reaction alone decides which rule the terms of cells need.
+#[test]
+fn rules_follow_the_degree_of_the_reaction() {
+    let mesh = Mesh::<f64, 1>::kuhn_box(&free_interval(), [2]).unwrap();
+    let reaction = |x: &Point<f64, 1>| 1.0 + 3.0 * x[0] * x[0];
+    let problem = |datum: Datum<1>| Problem::new().constant_source(-4.0).reaction(datum);
+    for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 1>, &ConformingP2] {
+        let [by_degree, by_rules] =
+            [Datum::polynomial(2, reaction), reaction.into()].map(|datum| {
+                let (problem, quadrature) = (problem(datum), DataQuadrature::default().cell(26));
+                let mut nested = NestedIteration::new(&problem, &mesh).quadrature(quadrature);
+                nested.solve(scheme).unwrap().bound().unwrap().discrete
+            });
+        let far = (by_degree / by_rules - 1.0).abs();
+        assert!(far < 1e-10, "{}: {by_degree} {by_rules}", scheme.name());
+    }
+}
+
+/// In space an edge of a contact facet may lie on a Dirichlet facet, whose datum its midpoint takes: a gap of degree two
+/// that touches zero between the ends exceeds zero by its Bernstein coefficient there.
+#[test]
+fn a_gap_of_degree_two_is_held_against_the_quadratic_on_facets() {
+    let cube =
+        BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(2, 0, BoundaryPart::Contact);
+    let mesh = Mesh::<f64, 3>::kuhn_box(&cube, [1; 3]).unwrap();
+    for (depth, expected) in [(0.0, vec![Unproven::Obstacle]), (0.3, vec![])] {
+        let problem = Problem::new()
+            .constant_source(1.0)
+            .signorini(move |x| -(x[0] - 0.5).powi(2) - depth)
+            .polynomial_data(2);
+        let bound = solve(&problem, &mesh, &ConformingP2).unwrap().bound().unwrap();
+        assert_eq!(bound.unproven, expected, "{depth}");
+    }
+}
+
+/// Each datum by itself: what is not proven for linears and for quadratics where it is stated as a polynomial in cells.
+#[test]
+fn every_datum_is_held_against_what_a_bound_needs() {
+    use Unproven::{Boundary, Obstacle, Quadrature};
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+        .side(1, 0, BoundaryPart::Contact)
+        .side(0, 1, BoundaryPart::Neumann);
+    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+    let x = |x: &Point<f64, 2>| x[0];
+    let constant =
+        || Problem::new().constant_source(-1.0).signorini(|_| -0.3).obstacles_of_degree(0);
+    let unproven = |problem: &Problem<2>| -> [Vec<Unproven>; 2] {
+        [&ConformingP1 as &dyn AnyScheme<f64, 2>, &ConformingP2]
+            .map(|scheme| solve(problem, &mesh, scheme).unwrap().bound().unwrap().unproven)
+    };
+    let square = |x: &Point<f64, 2>| x[0] * x[0];
+    for (label, problem, of_linears, of_quadratics) in [
+        ("none", constant().polynomial_data(0), vec![], vec![]),
+        (
+            "source with a level",
+            constant().piecewise_source(|_| -1.0, move |p| x(p) - 0.3).polynomial_data(0),
+            vec![Quadrature],
+            vec![Quadrature],
+        ),
+        (
+            "coefficient",
+            constant().coefficient(move |p| 1.0 + x(p)).polynomial_data(1),
+            vec![Quadrature],
+            vec![Quadrature],
+        ),
+        ("reaction of degree two", constant().reaction(square).polynomial_data(2), vec![], vec![]),
+        (
+            "reaction of degree three",
+            constant().reaction(move |p: &Point<f64, 2>| x(p).powi(3)).polynomial_data(3),
+            vec![Quadrature],
+            vec![Quadrature],
+        ),
+        ("flux", constant().neumann(|x, _| x[1].powi(3)).polynomial_data(3), vec![], vec![]),
+        (
+            "flux of unknown degree",
+            constant().neumann(|x, _| x[1].powi(3)),
+            vec![Quadrature],
+            vec![Quadrature],
+        ),
+        (
+            "linear gap",
+            constant().signorini(move |p| x(p) - 0.5).polynomial_data(1),
+            vec![],
+            vec![],
+        ),
+        (
+            "gap",
+            constant().signorini(move |p| -0.3 - square(p)).polynomial_data(2),
+            vec![Obstacle],
+            vec![],
+        ),
+        (
+            "lower obstacle",
+            constant().obstacle_below(move |p| -0.3 - square(p)).polynomial_data(2),
+            vec![Obstacle],
+            vec![],
+        ),
+        (
+            "upper obstacle",
+            constant().obstacle_above(move |p| 0.3 + square(p)).polynomial_data(2),
+            vec![Obstacle],
+            vec![],
+        ),
+        (
+            "upper obstacle of degree three",
+            constant().obstacle_above(move |p| 0.3 + x(p).powi(3)).polynomial_data(3),
+            vec![Obstacle],
+            vec![Obstacle],
+        ),
+        (
+            "Dirichlet datum",
+            constant().dirichlet(move |p| 0.1 * square(p)).polynomial_data(2),
+            vec![Boundary],
+            vec![],
+        ),
+        (
+            "Dirichlet datum of degree three",
+            constant().dirichlet(move |p| 0.1 * x(p).powi(3)).polynomial_data(3),
+            vec![Boundary],
+            vec![Boundary],
+        ),
+    ] {
+        assert_eq!(unproven(&problem), [of_linears, of_quadratics], "{label}");
+    }
+}

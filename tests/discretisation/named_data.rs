@@ -2,7 +2,7 @@
 
 use unilateral::algebra::Bound;
 use unilateral::error::Error;
-use unilateral::mesh::{BoundaryGroup, MeshError};
+use unilateral::mesh::{BoundaryGroup, GroupedFacet, MeshError};
 use unilateral::prelude::*;
 
 fn boxed<const D: usize>(names: &[&str]) -> Vec<Box<dyn AnyScheme<f64, D>>> {
@@ -217,5 +217,112 @@ fn a_problem_gives_the_boundary_its_parts() {
         let b = solve(&plain, &same, &*scheme).unwrap();
         assert!(a.converged() && a.active() > Some(0));
         assert_eq!(a.values(), b.values(), "{}", scheme.name());
+    }
+}
+
+/// A datum that may be given by name: its name, by which it is given on a group and everywhere, and the value that is in
+/// force.
+type NamedDatum = (
+    &'static str,
+    fn(Problem<2>, &str, f64) -> Problem<2>,
+    fn(Problem<2>, f64) -> Problem<2>,
+    fn(&Discretisation<'_, f64, 2>) -> f64,
+);
+
+/// The unit square, whose cells are all in the regions `one` and `two` and whose boundary facets are all in the groups
+/// `one` and `two`.
+fn named_twice() -> Mesh<f64, 2> {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [2, 2]).unwrap();
+    let mut facets = Vec::new();
+    for f in mesh.boundary() {
+        let vertices: Vec<u32> =
+            mesh.facet_vertices(f.cell as usize, usize::from(f.local)).collect();
+        let vertices = [vertices[0], vertices[1]];
+        facets.extend([0, 1].map(|group| GroupedFacet { vertices, group }));
+    }
+    let names = ["one", "two"].map(str::to_owned);
+    let (vertices, cells) = (mesh.vertices().to_vec(), mesh.cells().to_vec());
+    let mesh = Mesh::with_groups(vertices, cells, &facets, &names).unwrap();
+    let n_cells = mesh.n_cells();
+    mesh.with_regions(vec![names.to_vec()], vec![0; n_cells]).unwrap()
+}
+
+/// Of data with names that a cell or facet has, the one given first is in force, and any of them before the one without a
+/// name.
+#[test]
+fn every_datum_by_name_has_the_documented_precedence() {
+    fn energy(of: &Discretisation<'_, f64, 2>, u: fn(&Point<f64, 2>) -> f64) -> f64 {
+        let values: Vec<f64> = of.mesh().vertices().iter().map(u).collect();
+        of.energy(&values).unwrap()
+    }
+    fn bound(of: &Discretisation<'_, f64, 2>, x: [f64; 2]) -> Bound<f64> {
+        let vertex = of.mesh().vertices().iter().position(|y| *y == Point::from(x)).unwrap();
+        of.bounds().unwrap()[vertex]
+    }
+    let data: [NamedDatum; 8] = [
+        (
+            "coefficient",
+            |p, name, value| p.coefficient_in(name, value).neumann_on("one", |_, _| 0.0),
+            |p, value| p.coefficient(move |_| value),
+            |of| 2.0 * energy(of, |x| x[0]),
+        ),
+        (
+            "source",
+            |p, name, value| p.source_in(name, value).neumann_on("one", |_, _| 0.0),
+            Problem::constant_source,
+            |of| -energy(of, |_| 1.0),
+        ),
+        (
+            "reaction",
+            |p, name, value| p.reaction_in(name, value).neumann_on("one", |_, _| 0.0),
+            |p, value| p.reaction(value),
+            |of| 2.0 * energy(of, |_| 1.0),
+        ),
+        (
+            "lower obstacle",
+            |p, name, value| p.obstacle_below_in(name, value).neumann_on("one", |_, _| 0.0),
+            |p, value| p.obstacle_below(move |_| value),
+            |of| bound(of, [0.5; 2]).lower().unwrap(),
+        ),
+        (
+            "upper obstacle",
+            |p, name, value| p.obstacle_above_in(name, value).neumann_on("one", |_, _| 0.0),
+            |p, value| p.obstacle_above(move |_| value),
+            |of| bound(of, [0.5; 2]).upper().unwrap(),
+        ),
+        (
+            "Dirichlet datum",
+            |p, name, value| p.dirichlet_on(name, value),
+            |p, value| p.dirichlet(move |_| value),
+            |of| bound(of, [0.5, 0.0]).fixed_value().unwrap(),
+        ),
+        (
+            "Neumann datum",
+            |p, name, value| p.neumann_on(name, move |_, _| value),
+            |p, value| p.neumann(move |_, _| value),
+            // the boundary has the length four
+            |of| -energy(of, |_| 1.0) / 4.0,
+        ),
+        (
+            "gap",
+            |p, name, value| p.signorini_on(name, value),
+            |p, value| p.signorini(move |_| value),
+            |of| bound(of, [0.5, 0.0]).lower().unwrap(),
+        ),
+    ];
+    for (name, on_group, everywhere, in_force) in data {
+        let value = |problem: Problem<2>| {
+            let mesh = problem.bind_boundary(named_twice()).unwrap();
+            let of = Discretisation::new(&ConformingP1, &problem, &mesh, Default::default());
+            in_force(&of.unwrap())
+        };
+        for [first, second] in [["one", "two"], ["two", "one"]] {
+            let problem = on_group(on_group(Problem::new(), first, 2.0), second, 5.0);
+            let found = value(problem);
+            assert!((found - 2.0).abs() < 1e-14, "{name}, {first} first: {found}");
+            let found = value(everywhere(on_group(Problem::new(), first, 2.0), 7.0));
+            assert!((found - 2.0).abs() < 1e-14, "{name}, {first} and everywhere: {found}");
+        }
     }
 }

@@ -6,6 +6,7 @@ use crate::support::scheme_lists::all_schemes;
 use crate::support::schemes::Entry;
 use std::f64::consts::PI;
 use unilateral::prelude::*;
+use unilateral::problem::Exact;
 use unilateral::scenes::Scene;
 use unilateral::study::Row;
 
@@ -132,5 +133,33 @@ fn nothing_without_an_exact_solution() {
     for row in rows(scene, schemes(&[P1, SIPG]), [8, 16]) {
         assert_eq!(row.contact, Default::default());
         assert_eq!(row.order.multiplier_l1, None);
+    }
+}
+
+/// A string under the load `-c` that rests on the obstacle `-1` between `a` and `1 - a`, with `c = 2 / a^2`: nodes of a
+/// uniform mesh have the exact values but for the cells of the free boundary. Each stated point of it that is far from
+/// the discrete one counts, and each discrete one that is far from the stated ones.
+#[test]
+fn the_distance_of_free_boundaries_is_that_of_hausdorff() {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [8]).unwrap();
+    // between 1/8 and 1/4: the first node in contact is the second one
+    let load = 2.0 / 0.2_f64.powi(2);
+    for (stated, expected) in [
+        (vec![0.25, 0.75], 0.0),
+        (vec![0.25, 0.75, 0.35], 0.1),
+        (vec![0.25, 0.3], 0.45),
+        (vec![0.2, 0.82], 0.07),
+    ] {
+        let points = stated.iter().map(|&x| Point::from([x])).collect();
+        let exact = Exact::new(|_| 0.0, |_| Point::zeros());
+        let problem = Problem::new()
+            .constant_source(-load)
+            .dirichlet(|_| 0.0)
+            .obstacle_below(|_| -1.0)
+            .solved_by(exact.with_contact(|x| 0.05 - (x[0] - 0.5).powi(2), points));
+        let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
+        let found = solved.contact_errors().unwrap().free_boundary_distance.unwrap();
+        assert!((found - expected).abs() < 1e-12, "{stated:?}: {found} {expected}");
     }
 }

@@ -199,3 +199,29 @@ fn an_added_load_counts() {
     assert_eq!(outcome_with(-1e-3), Outcome::Converged);
     assert_eq!(outcome_with(2e-3), Outcome::NoSolution);
 }
+
+/// Where room is left between the bounds the values are moved as little as possible from those with one value zero: by
+/// nothing where these are within the bounds, else until one touches.
+#[test]
+fn one_of_many_solutions_is_moved_as_little_as_possible() {
+    let free = BoxDomain::new(Point::zeros(), Point::repeat(1.0), [[BoundaryPart::Neumann; 2]; 2]);
+    let mesh = Mesh::<f64, 2>::kuhn_box(&free, [4, 4]).unwrap();
+    let range = |below: f64, above: f64| {
+        let problem = Problem::new().source(|x| x[0] - 0.5);
+        let problem = problem.obstacle_below(move |_| below).obstacle_above(move |_| above);
+        let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
+        assert_eq!(solved.outcome(), Outcome::NotUnique, "{below} {above}");
+        let fold = |f: fn(f64, f64) -> f64| solved.values().iter().copied().reduce(f).unwrap();
+        [fold(f64::min), fold(f64::max)]
+    };
+    let [least, most] = range(-5.0, 5.0);
+    assert!(least <= 0.0 && most >= 0.0 && most - least < 0.2, "{least} {most}");
+    let height = most - least;
+    for (below, above, expected) in
+        [(1.0, 9.0, [1.0, 1.0 + height]), (-9.0, -1.0, [-1.0 - height, -1.0])]
+    {
+        for (found, expected) in range(below, above).into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12, "{below} {above}: {found} {expected}");
+        }
+    }
+}

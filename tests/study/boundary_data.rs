@@ -124,6 +124,24 @@ fn gaps_may_use_the_normals_of_a_curved_boundary() {
             assert!((distance - expected).abs() < 1e-9, "level {level}: {x} {distance} {expected}");
             normals.push(n);
         }
+        // at a vertex where two facets meet the larger one of their gaps holds
+        let mut largest = vec![f64::NEG_INFINITY; mesh.vertices().len()];
+        for &(cell, local) in &fields.contact_boundary {
+            let n = mesh.geometry(cell).normal(local);
+            for v in mesh.facet_vertices(cell, local) {
+                let x = mesh.vertices()[v as usize];
+                let gap = -1.0 + x[0] - 0.1 * n[0] + 0.3 * x[1] * n[1];
+                largest[v as usize] = largest[v as usize].max(gap);
+            }
+        }
+        for (bound, gap) in solved.inequality().bounds.iter().zip(largest) {
+            let found = bound.lower().filter(|_| bound.is_inequality());
+            assert!(
+                (found.unwrap_or(f64::NEG_INFINITY) - gap).abs() < 1e-9
+                    || found.is_none() && gap.is_infinite(),
+                "{found:?} {gap}"
+            );
+        }
         mesh = mesh.refine().unwrap().0;
     }
     assert!(normals.iter().any(|n| (n - normals[0]).norm() > 1.0));

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::scratch::Scratch;
 use unilateral::algebra::Start;
 use unilateral::facet::InteriorPenalty;
-use unilateral::inequality::{ActiveSet, InequalitySolver, MonotoneMultigrid, SOLVERS};
+use unilateral::inequality::{ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SOLVERS};
 use unilateral::inequality::{SolverOptions, solver_by_name};
 use unilateral::mesh::gmsh;
 use unilateral::prelude::*;
@@ -217,5 +217,20 @@ fn two_series_of_one_name_are_refused_before_anything_runs() {
         assert_eq!(rows[0].order.l2, None);
         assert_eq!(rows[1].order, alone.rows[1].order);
         assert!(rows[1].order.h1 > Some(0.7), "{factor}: {:?}", rows[1].order);
+    }
+}
+
+/// Values are judged in the scalar of the mesh: what that cannot hold is refused.
+#[test]
+fn values_beyond_single_precision_are_refused() {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f32, 2>::kuhn_box(&domain, [2, 2]).unwrap();
+    let problem = Problem::new().constant_source(1.0);
+    let nested = NestedIteration::new(&problem, &mesh);
+    let judged = |value: f64| nested.judge_on(0, &ConformingP1, &[value; 9]).map(|s| s.outcome());
+    assert_eq!(judged(0.0).unwrap(), Outcome::NotASolution);
+    for value in [1e39, -1e39, f64::NAN] {
+        let error = judged(value).unwrap_err();
+        assert!(matches!(error, Error::Parameter { parameter: "values", .. }), "{value}: {error}");
     }
 }

@@ -117,6 +117,31 @@ fn multiplier_and_contact_set_are_measured_too() {
     assert_eq!(none.multiplier_l1, Some(0.0));
 }
 
+/// A body that rests on a flat obstacle has the density of its load as multiplier on every mesh: tested with the hat
+/// functions of a coarse mesh, that of a fine one is the coarse one. A difference is that from a finer solution.
+#[test]
+fn a_constant_multiplier_is_the_same_on_a_finer_mesh() {
+    let free = [(0, 0), (0, 1), (1, 0), (1, 1)]
+        .into_iter()
+        .fold(BoxDomain::<2>::centred(1.0), |domain, (axis, end)| {
+            domain.side(axis, end, BoundaryPart::Neumann)
+        });
+    let mesh = Mesh::<f64, 2>::kuhn_box(&free, [2, 3]).unwrap();
+    let meshes = Hierarchy::refine(&mesh, 2).unwrap();
+    let problem = Problem::new().constant_source(-3.0).obstacle_below(|_| 0.5);
+    let mut nested = NestedIteration::new(&problem, &meshes);
+    for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 2>, &NonconformingP1, &Sipg::default()] {
+        let [coarse, _, fine] = [0, 1, 2].map(|k| nested.solve_on(k, scheme).unwrap());
+        let found = coarse.contact_difference(&fine).unwrap();
+        let name = scheme.name();
+        assert_eq!(found.contact_area_error, Some(0.0), "{name}");
+        let errors = [found.multiplier_l1, found.multiplier_l2].map(Option::unwrap);
+        assert!(errors.iter().all(|error| *error < 1e-10), "{name}: {errors:?}");
+        let refused = fine.contact_difference(&coarse);
+        assert!(matches!(refused, Err(Error::NotNested)), "{name}: {refused:?}");
+    }
+}
+
 #[test]
 fn a_reference_that_is_too_coarse_or_not_nested_is_refused() {
     let study = |levels: &[usize], reference: usize| {

@@ -2,6 +2,7 @@
 
 use unilateral::assemble::DataQuadrature;
 use unilateral::element::P2;
+use unilateral::mesh::TaggedFacet;
 use unilateral::prelude::*;
 use unilateral::scenes::{Scene, torsion_2d};
 use unilateral::study::Row;
@@ -106,6 +107,41 @@ fn one_function_has_one_energy() {
     check::<3>(3);
 }
 
+/// Zero beside the solution `1 + x`, with the coefficient four and the reaction three: the squares of the errors are the
+/// integrals of `(1 + x)^2` and of one, and `4 + 3 7/3` in the broken energy norm.
+#[test]
+fn errors_in_the_energy_norm_contain_coefficient_and_reaction() {
+    fn check<const D: usize>() {
+        let slope = |_: &Point<f64, D>| Point::from_fn(|k, _| f64::from(u8::from(k == 0)));
+        let problem = Problem::new()
+            .coefficient(|_| 4.0)
+            .reaction(3.0)
+            .exact(|x: &Point<f64, D>| 1.0 + x[0], slope);
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let mesh = Mesh::<f64, D>::kuhn_box(&domain, [2; D]).unwrap();
+        for scheme in schemes() {
+            let solved = solve(&problem, &mesh, &*scheme).unwrap();
+            let errors = solved.discretisation().errors(&vec![0.0; solved.values().len()]).unwrap();
+            let mut pair = solved.primal_dual_pair().unwrap();
+            pair.function.fill(0.0);
+            let of_pair = solved.discretisation().error_of_pair(&pair);
+            for (found, square) in [
+                (errors.l2, 7.0 / 3.0),
+                (errors.h1, 1.0),
+                (errors.broken_energy, 11.0),
+                (of_pair, 11.0),
+            ] {
+                let found = found.unwrap();
+                let label = scheme.name();
+                assert!((found * found / square - 1.0).abs() < 1e-12, "{D}, {label}: {found}");
+            }
+        }
+    }
+    check::<1>();
+    check::<2>();
+    check::<3>();
+}
+
 /// A body that contact alone holds, pressed down and to one side: the contact force is the load.
 #[test]
 fn the_resultant_of_a_body_on_its_foot_is_the_load() {
@@ -159,6 +195,74 @@ fn a_flat_obstacle_carries_everything() {
                 "{} {totals:?}",
                 scheme.name()
             );
+        }
+    }
+}
+
+/// Bodies that rest on flat obstacles and gaps with a constant density: it is that of every cell and facet, on meshes of
+/// cells of different sizes and where two regions or groups meet too.
+#[test]
+fn a_constant_density_is_the_same_everywhere() {
+    let near = |found: &[f64], density: f64, label: &str| {
+        assert!(!found.is_empty(), "{label}");
+        for found in found {
+            assert!((found / density - 1.0).abs() < 1e-9, "{label}: {found} for {density}");
+        }
+    };
+    // an interval of cells that grow, in two regions
+    let vertices = [0.0, 0.1, 0.3, 0.6, 1.0].map(|x| Point::from([x])).to_vec();
+    let end = |vertex| TaggedFacet { vertices: [vertex], part: BoundaryPart::Neumann };
+    let line = Mesh::<f64, 1>::new(vertices, vec![0, 1, 1, 2, 2, 3, 3, 4], &[end(0), end(4)]);
+    let names = ["left", "right"].map(|name| vec![name.to_owned()]).to_vec();
+    let line = line.unwrap().with_regions(names, vec![0, 0, 1, 1]).unwrap();
+    for (load, problem) in [
+        (-3.0, Problem::new().obstacle_below_in("left", 0.5).obstacle_below_in("right", 0.5)),
+        (3.0, Problem::new().obstacle_above_in("left", 0.5).obstacle_above_in("right", 0.5)),
+    ] {
+        let problem = problem.constant_source(load);
+        for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 1>, &Sipg::default()] {
+            let solved = solve(&problem, &line, scheme).unwrap();
+            near(&solved.fields().unwrap().multiplier, -load, scheme.name());
+        }
+    }
+    // a column on its foot, pressed from above: the solution is linear
+    fn column<const D: usize>(near: &dyn Fn(&[f64], f64, &str)) {
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let sides = (0..D).flat_map(|axis| [(axis, 0), (axis, 1)]);
+        let free = sides.fold(domain, |d, (axis, end)| d.side(axis, end, BoundaryPart::Neumann));
+        let foot = free.side(D - 1, 0, BoundaryPart::Contact);
+        let pressed = |_: &Point<f64, D>, n: &Point<f64, D>| -3.0 * n[D - 1].max(0.0);
+        let problem = Problem::new().neumann(pressed).signorini(|_| 0.5);
+        let mesh = Mesh::<f64, D>::kuhn_box(&foot, [2; D]).unwrap();
+        for scheme in [&ConformingP1 as &dyn AnyScheme<f64, D>, &Sipg::default()] {
+            let fields = solve(&problem, &mesh, scheme).unwrap().fields().unwrap();
+            near(&fields.pressure, 3.0, scheme.name());
+            assert!(fields.gap.iter().all(|gap| gap.abs() < 1e-9), "{:?}", fields.gap);
+        }
+    }
+    column::<1>(&near);
+    column::<2>(&near);
+    column::<3>(&near);
+}
+
+/// A membrane that lies on the obstacle as its Dirichlet data do, far below another one, is in contact up to its boundary.
+#[test]
+fn contact_reaches_dirichlet_data_on_one_of_two_obstacles() {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [4, 4]).unwrap();
+    for sign in [1.0, -1.0] {
+        let problem = Problem::new()
+            .constant_source(-sign)
+            .obstacle_below(move |_| if sign > 0.0 { 0.0 } else { -5.0 })
+            .obstacle_above(move |_| if sign > 0.0 { 5.0 } else { 0.0 });
+        for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 2>, &NonconformingP1] {
+            let found = solve(&problem, &mesh, scheme).unwrap();
+            let measure = found.contact_measure().unwrap();
+            assert!((measure - 1.0).abs() < 1e-12, "{}: {measure}", scheme.name());
+            let forces = found.resultants().unwrap();
+            let (pressing, other) =
+                if sign > 0.0 { ("lower", "upper") } else { ("upper", "lower") };
+            assert!(forces[pressing] * sign > 0.5 && forces[other] == 0.0, "{forces:?}");
         }
     }
 }
@@ -262,4 +366,19 @@ fn bounds_far_from_the_error_say_why() {
     let row = study.run().unwrap().rows.remove(0);
     assert!((row.bound.effectivity.unwrap() - 1.0).abs() < 1e-12, "{:?}", row.bound);
     assert!(!says(&row, "times the error"), "{:?}", row.warnings);
+}
+
+/// The bound on the discrete solution is divided by its error, that on the admissible function by the error of that.
+#[test]
+fn each_effectivity_is_of_its_own_error() {
+    use unilateral::error_bound::{BoundFigures, TrueErrors};
+    let scene = scenes::contrast::<2>(1e6);
+    let mesh = scene.domain.mesh::<f64>(4).unwrap();
+    let bound = solve(&scene.problem, &mesh, &Sipg::default()).unwrap().bound().unwrap();
+    assert!(bound.total != bound.discrete, "{bound:?}");
+    let errors = TrueErrors { of_solution: Some(2.0), of_v: Some(4.0) };
+    let figures = BoundFigures::new(Ok::<_, String>(&bound), errors);
+    assert_eq!(figures.effectivity, Some(bound.discrete / 2.0));
+    assert_eq!(figures.effectivity_of_v, Some(bound.total / 4.0));
+    assert_eq!([figures.total, figures.distance], [Some(bound.total), Some(bound.distance)]);
 }

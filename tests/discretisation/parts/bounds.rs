@@ -3,6 +3,7 @@
 use super::gathered::process;
 use std::collections::HashMap;
 use unilateral::distributed::{DistributedIteration, PartHierarchy, in_process};
+use unilateral::error_bound::Unproven;
 use unilateral::mesh::{Layers, Neighbour, Neighbours};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
@@ -102,4 +103,27 @@ fn fluxes_and_functions_of_pairs_fit_between_parts() {
     };
     holds(&signorini, 4, 3);
     holds(&scenes::radial::<3>(1.0), 1, 2);
+}
+
+/// Dirichlet data that disagree at one corner are in one part: no part has a guaranteed bound.
+#[test]
+fn what_one_part_cannot_prove_is_proven_nowhere() {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let problem = Problem::new()
+        .constant_source(1.0)
+        .dirichlet_on("bottom", |x: &Point<f64, 2>| 1.0 - x[0])
+        .dirichlet_on("left", 0.0)
+        .dirichlet_on("right", 0.0)
+        .dirichlet_on("top", 0.0)
+        .polynomial_data(1);
+    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+    let mesh = problem.bind_boundary(mesh).unwrap();
+    let unproven = in_process(3, |number, exchange| {
+        let process = process(number, exchange);
+        let by = (REFINEMENTS, Layers::across_vertices(2));
+        let meshes = PartHierarchy::new(&mesh, None, by, &process).unwrap();
+        let mut nested = DistributedIteration::new(&problem, &meshes, process.clone());
+        nested.solve_on(REFINEMENTS, &ConformingP1).unwrap().bound().unwrap().unproven
+    });
+    assert_eq!(unproven, vec![[Unproven::Boundary]; 3]);
 }

@@ -2,8 +2,13 @@
 
 use super::cold;
 use crate::problems::*;
-use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix};
-use unilateral::inequality::{Violations, certify, contact_of};
+use unilateral::algebra::{
+    Bound, Contact, DirichletEnergy, DirichletTerm, Inequality, SparseMatrix,
+};
+use unilateral::inequality::{
+    Certificate, InequalitySolver, Outcome, Solution, Violations, certify, contact_of,
+};
+use unilateral::prelude::*;
 
 #[test]
 fn values_at_a_bound_but_for_rounding_are_in_contact() {
@@ -104,4 +109,101 @@ fn parts_without_energy_have_the_scale_of_the_whole() {
     let [one, other] = [0, 1].map(|own| Violations::of(&problem, &[1.0; 2], &[], &|i| i == own));
     assert_eq!(certify(&problem, &[1.0; 2]).residual, 1.0);
     assert_eq!(one.merge(other).certificate().residual, 1.0);
+}
+
+/// Each of the four violations alone, and the bound on the algebraic error, where there is one, decide on the limits.
+#[test]
+fn each_violation_counts_in_the_largest_one() {
+    let exact = Certificate::new([0.0; 4]);
+    for which in 0..4 {
+        let mut violations = [0.0; 4];
+        violations[which] = 0.5;
+        let certificate = Certificate::new(violations);
+        assert_eq!(certificate.largest(), 0.5, "{which}");
+        assert!(!certificate.is_within_limits::<f64>(), "{which}");
+    }
+    let limit = f64::ALGEBRAIC_BOUND_LIMIT;
+    let is_within =
+        |bound: Option<f64>| exact.with_algebraic_bound(bound).is_within_limits::<f64>();
+    assert_eq!([None, Some(limit), Some(2.0 * limit)].map(is_within), [true, true, false]);
+}
+
+/// One unknown with the matrix four.
+fn single(load: f64, bound: Bound<f64>) -> Inequality<f64> {
+    let matrix = SparseMatrix { row_starts: vec![0, 1], columns: vec![0], values: vec![4.0] };
+    Inequality::new(matrix, true, vec![load], vec![bound])
+}
+
+/// The violations of one unknown by their formulas: relative to the largest of values and admissible values, and to the
+/// energy norm, without Dirichlet data.
+#[test]
+fn the_certificate_of_one_unknown_follows_by_hand() {
+    // the value 1/2 is 3/2 below the bound two
+    assert_eq!(certify(&single(-2.0, Bound::Lower(2.0)), &[0.5]).feasibility, 0.75);
+    // the residual 6 - 4 x at zero, whose energy vanishes, beside the load 6, of which 2 is of Dirichlet data
+    let mut problem = single(6.0, Bound::Free);
+    assert_eq!(certify(&problem, &[0.0]).residual, 1.0);
+    let term = DirichletTerm { unknown: 0, load: 2.0, linear: 4.0, constant: 0.0 };
+    problem.dirichlet_energy = Some(DirichletEnergy { terms: vec![term] });
+    assert_eq!(certify(&problem, &[0.0]).residual, 1.5);
+    // a step of one half towards the bound 1/10 away, with the energy norm 2 * 0.1
+    let found = certify(&single(-1.6, Bound::Lower(0.0)), &[0.1]);
+    assert_eq!([found.residual, found.multiplier, found.feasibility], [0.0; 3]);
+    assert!((found.complementarity - 1.0).abs() < 1e-14, "{found:?}");
+}
+
+/// A value beside a bound touches it if its force pushes it there, not if the force pulls it away.
+#[test]
+fn a_force_away_from_a_bound_is_no_contact() {
+    let of = |load: f64, bound, value: f64| contact_of(&single(load, bound), &[value])[0];
+    for (load, state) in [(-8.0, Contact::Lower), (8.0, Contact::Inactive)] {
+        assert_eq!(of(load, Bound::Lower(0.0), 0.01), state, "{load}");
+        assert_eq!(of(load, Bound::Both(0.0, 9.0), 0.01), state, "{load}, both");
+    }
+    for (load, state) in [(8.0, Contact::Upper), (-8.0, Contact::Inactive)] {
+        assert_eq!(of(load, Bound::Upper(0.0), -0.01), state, "{load}");
+        assert_eq!(of(load, Bound::Both(-9.0, 0.0), -0.01), state, "{load}, both");
+    }
+}
+
+/// Values moved by a constant in one cell have the same balances as before, with the same jump multipliers: their jumps
+/// alone tell.
+#[test]
+fn jumps_that_their_multipliers_do_not_have_are_seen() {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [2, 2]).unwrap();
+    let problem = Problem::new().constant_source(1.0);
+    let solved = solve(&problem, &mesh, &Wopsip::default()).unwrap();
+    let inequality = solved.inequality();
+    let penalised = inequality.penalised.as_ref().unwrap();
+    let mut values = solved.values().to_vec();
+    let multipliers = penalised.jump_multipliers(|i| values[i]);
+    let of = |u: &[f64]| Violations::of(inequality, u, &multipliers, &|_| true).certificate();
+    assert!(of(&values).largest() < 1e-9);
+    values[..3].iter_mut().for_each(|u| *u += 1e-3);
+    let largest = values.iter().fold(0.0, |largest: f64, u| largest.max(u.abs()));
+    let found = of(&values).residual * largest;
+    assert!((found / 1e-3 - 1.0).abs() < 1e-6, "{found}");
+}
+
+/// What a solver says of itself counts only if its values do.
+#[test]
+fn a_solver_is_not_believed() {
+    struct Confident;
+    impl InequalitySolver<f64> for Confident {
+        fn name(&self) -> &'static str {
+            "confident"
+        }
+        fn solve(&self, inequality: &Inequality<f64>) -> Solution<f64> {
+            let n = inequality.size();
+            Solution::new(vec![0.0; n], vec![Contact::Inactive; n], Outcome::Converged)
+        }
+    }
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [2, 2]).unwrap();
+    for (load, outcome) in [(1.0, Outcome::Stalled), (0.0, Outcome::Converged)] {
+        let problem = Problem::new().constant_source(load);
+        let solved = NestedIteration::new(&problem, &mesh).solver(Confident).solve(&ConformingP1);
+        assert_eq!(solved.unwrap().outcome(), outcome, "{load}");
+    }
 }
