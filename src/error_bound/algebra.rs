@@ -80,18 +80,24 @@ mod tests {
 
     /// An interval of eight cells with its three coarser meshes.
     fn norm_on_interval(density: [f64; 8]) -> f64 {
+        norm(density, [1.0; 8], 1.0 / PI)
+    }
+
+    /// The same with these coefficients, and with a constant of Friedrichs' inequality.
+    fn norm(density: [f64; 8], coefficients: [f64; 8], constant: f64) -> f64 {
         let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         let meshes = [4, 2, 1].map(|n| Mesh::<f64, 1>::kuhn_box(&interval, [n]).unwrap());
         let parents = [4, 2, 1].map(|n: u32| (0..2 * n).map(|cell| cell / 2).collect::<Vec<_>>());
         let coarser: Vec<_> = (meshes.iter().zip(&parents))
             .map(|(mesh, parents)| CoarserCells { mesh, parents })
             .collect();
-        let cell = |density: &f64| Unbalanced {
+        let cell = |(density, &least_coefficient): (f64, &f64)| Unbalanced {
             integral: density / 8.0,
             volume: 0.125,
-            least_coefficient: 1.0,
+            least_coefficient,
         };
-        dual_norm(density.iter().map(cell).collect(), &coarser, 1.0 / PI)
+        let cells = density.into_iter().zip(&coefficients).map(cell).collect();
+        dual_norm(cells, &coarser, constant)
     }
 
     #[test]
@@ -100,6 +106,14 @@ mod tests {
         assert_eq!(of([1.0; 8]), 1.0);
         assert_eq!(of([1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0]), 0.25);
         assert_eq!(of([1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0]), 0.5);
+        // with the least coefficient of the cells that a coarser one contains
+        for weak in 0..8 {
+            let coefficients: [f64; 8] =
+                std::array::from_fn(|k| if k == weak { 0.25 } else { 4.0 });
+            let found = norm([1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0], coefficients, 10.0);
+            let expected = 0.25 * (1.0_f64 + 0.75 / 4.0).sqrt() / PI;
+            assert!((found / expected - 1.0).abs() < 1e-14, "{weak}: {found} {expected}");
+        }
         // no level is better than the norm in L2 itself
         let mixed = of([9.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         assert!(mixed <= 9.0 / 8.0_f64.sqrt(), "{mixed}");
