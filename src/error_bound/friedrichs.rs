@@ -93,5 +93,30 @@ mod tests {
             axes.iter().fold(square(), |d, &(axis, end)| d.side(axis, end, part))
         };
         assert_eq!(constant(&all(BoundaryPart::Neumann)), None);
+        // over parts too, where one end alone is held
+        for end in [0, 1] {
+            let held = all(BoundaryPart::Neumann).side(0, end, BoundaryPart::Dirichlet);
+            let mesh = Mesh::<f64, 2>::kuhn_box(&held, [3, 3]).expect("a mesh");
+            let data = FriedrichsData::of(&mesh);
+            for data in [data, data.over_parts(&OnePart)] {
+                assert!(near(data.constant().map(|c| c * std::f64::consts::PI), 2.0), "{data:?}");
+            }
+        }
+    }
+
+    /// A distribution with one part.
+    #[derive(Debug)]
+    struct OnePart;
+
+    impl Distribution for OnePart {
+        fn owns(&self, _: usize) -> bool {
+            true
+        }
+        fn number(&self, unknown: usize) -> u64 {
+            unknown as u64
+        }
+        fn exchange(&self, _: &dyn Fn(usize) -> f64, _: &mut dyn FnMut(usize, f64)) {}
+        fn sum(&self, _: &mut [f64]) {}
+        fn largest(&self, _: &mut [f64]) {}
     }
 }

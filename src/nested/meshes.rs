@@ -115,3 +115,30 @@ pub(super) fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layou
     };
     layout.vertex * vertices + layout.edge * edges + layout.facet * facets + layout.cell * cells
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assemble::Discretisation;
+    use crate::mesh::BoxDomain;
+    use crate::problem::Problem;
+    use crate::real::Point;
+    use crate::scheme::NamedScheme;
+
+    fn check<const D: usize>() {
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let (mesh, problem) = (Mesh::kuhn_box(&domain, [2; D]).unwrap(), Problem::new());
+        for name in ["p1", "p2", "cr", "sipg", "wopsip-p2"] {
+            let scheme = name.parse::<NamedScheme>().unwrap().make::<f64, D>();
+            let of = Discretisation::new(&*scheme, &problem, &mesh, Default::default()).unwrap();
+            assert_eq!(unknowns(&mesh, scheme.layout()), of.unknowns(), "{name}, {D}");
+        }
+    }
+
+    #[test]
+    fn the_number_of_unknowns_is_known_before_the_assembly() {
+        check::<1>();
+        check::<2>();
+        check::<3>();
+    }
+}

@@ -369,6 +369,29 @@ fn a_default_is_not_asked_in_named_regions() {
     assert!((2.0 * of.energy(&slope).unwrap() / expected - 1.0).abs() < 1e-12);
 }
 
+/// Groups whose names fix a kind take no default of another kind: they are missing.
+#[test]
+fn a_default_is_not_given_to_groups_of_another_kind() {
+    let folder = Scratch::new("problem-default-kind");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/square.msh");
+    let path = folder.0.join("default.toml");
+    let problem = |more: &str| {
+        let mesh = mesh.display().to_string();
+        let text = format!("mesh = {mesh:?}\n[boundary.default]\nkind = \"neumann\"\n{more}");
+        std::fs::write(&path, text).unwrap();
+        read(&path).map(|_| ()).map_err(|error| error.to_string())
+    };
+    let dirichlet = "[boundary.dirichlet]\nkind = \"dirichlet\"\n";
+    let contact = "[boundary.contact]\nkind = \"contact\"\n";
+    for (tables, missing) in [(dirichlet, "contact"), (contact, "dirichlet")] {
+        let error = problem(tables).unwrap_err();
+        let expected = format!("the boundary group `{missing}` of the mesh is missing");
+        assert!(error.contains(&expected), "{error}");
+    }
+    assert_eq!(problem(&format!("{dirichlet}{contact}")), Ok(()));
+}
+
 /// Every kind of datum by region or by side is that of its table.
 #[test]
 fn tables_of_a_file_become_the_data_of_their_name() {
