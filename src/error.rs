@@ -288,7 +288,7 @@ mod tests {
         assert_eq!(format!("{error:?}"), "cannot write out.csv: permission denied");
         let source = error.source().and_then(|why| why.downcast_ref::<io::Error>());
         assert_eq!(source.map(io::Error::kind), Some(io::ErrorKind::PermissionDenied));
-        let error = write_error(Path::new("out.png"), "no such colour".to_owned());
-        assert_eq!(error.to_string(), "cannot write out.png: no such colour");
+        let error = write_error(Path::new("out.svg"), "no such colour".to_owned());
+        assert_eq!(error.to_string(), "cannot write out.svg: no such colour");
     }
 }

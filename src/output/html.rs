@@ -90,9 +90,8 @@ impl HtmlPage {
 
     /// Adds a figure.
     #[cfg(feature = "plot")]
-    pub fn draw(&mut self, title: &str, figure: &crate::plot::Figure) -> Result<(), String> {
-        self.drawings.push((title.to_owned(), figure.to_svg_in_groups(&self.series)?));
-        Ok(())
+    pub fn draw(&mut self, title: &str, figure: &crate::plot::Figure) {
+        self.drawings.push((title.to_owned(), figure.to_svg_in_groups(&self.series)));
     }
 
     /// The text of the page.

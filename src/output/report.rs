@@ -5,10 +5,6 @@ use std::path::{Path, PathBuf};
 use super::csv;
 use super::latex::latex_files;
 use crate::error::Error;
-#[cfg(feature = "plot")]
-use crate::error::write_error;
-#[cfg(feature = "plot")]
-use crate::files::replace;
 use crate::files::replace_text;
 #[cfg(feature = "plot")]
 use crate::plot::{convergence, work_precision};
@@ -34,7 +30,7 @@ impl Report {
         let tables = latex_files("report", &[], &self.latex_tables(), &[]);
         names.extend(tables.into_iter().map(|(name, _)| name));
         for plot in ["convergence", "work_precision"] {
-            names.extend(["svg", "png"].map(|end| format!("{plot}.{end}")));
+            names.push(format!("{plot}.svg"));
         }
         for Row { scene, label, solver, level, .. } in &self.rows {
             for stem in [format!("{scene}-{label}"), format!("{scene}-{label}-{solver}")] {
@@ -50,7 +46,7 @@ impl Report {
     }
 
     /// Writes `report.json`, `report.csv`, `report.md`, `report.tex`, every table of that as
-    /// `table-TITLE.tex`, the plots `convergence` and `work_precision`, each as `.svg` and `.png`, and
+    /// `table-TITLE.tex`, the plots `convergence.svg` and `work_precision.svg`, and
     /// `report.html` into a directory, which is made if need be. Returns the files in order. The page has
     /// the pictures `SCENE-LABEL.svg` that are in the directory. Without the feature `plot` there are no
     /// plots. Each file is replaced as a whole: a
@@ -74,14 +70,11 @@ impl Report {
         let mut page = self.page(directory);
         #[cfg(feature = "plot")]
         for (name, title, figure) in [
-            ("convergence", "Error against mesh size", convergence(&self.rows)),
-            ("work_precision", "Error against time", work_precision(&self.rows)),
+            ("convergence.svg", "Error against mesh size", convergence(&self.rows)),
+            ("work_precision.svg", "Error against time", work_precision(&self.rows)),
         ] {
-            let path = directory.join(name);
-            let svg = figure.to_svg().map_err(|why| write_error(&path, why));
-            results.push(svg.and_then(|svg| replace_text(&path.with_extension("svg"), &svg)));
-            results.push(replace(&path.with_extension("png"), |path| figure.write_png(path)));
-            page.draw(title, &figure).map_err(|why| write_error(&path, why))?;
+            results.push(replace_text(&directory.join(name), &figure.to_svg()));
+            page.draw(title, &figure);
         }
         results.push(replace_text(&directory.join("report.html"), &page.to_html()));
         results.into_iter().collect()

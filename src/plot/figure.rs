@@ -1,10 +1,12 @@
 //! Figures of a report: error against mesh size, and error against time.
 
-use super::layout::{FigureLayout, Sign};
+use super::layout::{FigureLayout, Layer, Sign};
+use super::panel::draw_panel;
+use super::pen::Pen;
 use super::series::{Key, Panel, Quantity, keys, scenes, with_curves};
 use crate::study::Row;
 
-/// A drawing that can be written as SVG or PNG.
+/// A drawing that can be written as SVG.
 #[derive(Clone, Debug)]
 pub struct Figure {
     /// The panels, row by row.
@@ -111,5 +113,38 @@ impl Figure {
         signs.extend(self.has_limits().then_some(Sign::Limit));
         signs.extend(self.has_bands().then_some(Sign::Band));
         FigureLayout::new(self.panels.len(), self.columns, &self.keys, &signs)
+    }
+
+    /// The figure as the text of an SVG file.
+    pub fn to_svg(&self) -> String {
+        let mut pen = Pen::new(self.layout().size, false);
+        self.draw(&mut pen, Layer::All);
+        pen.finish()
+    }
+
+    /// The entries of the legend.
+    pub(crate) fn labels(&self) -> impl Iterator<Item = &String> {
+        self.keys.iter().map(|key| &key.label)
+    }
+
+    /// The figure as the text of an SVG file in which the curve of an entry of the legend is a group of the
+    /// class `s` and the place of the entry in a list, so that a page can hide it.
+    pub(crate) fn to_svg_in_groups(&self, series: &[String]) -> String {
+        let mut pen = Pen::new(self.layout().size, false);
+        self.draw(&mut pen, Layer::Frame);
+        for (key, label) in self.labels().enumerate() {
+            let class = series.iter().position(|name| name == label).unwrap_or(series.len());
+            pen.group(&format!("s{class}"), |pen| self.draw(pen, Layer::Curve(key)));
+        }
+        pen.finish()
+    }
+
+    /// Draws a layer of all panels and of the legend.
+    fn draw(&self, pen: &mut Pen, layer: Layer) {
+        let layout = self.layout();
+        for (panel, &at) in self.panels.iter().zip(&layout.panels) {
+            draw_panel(pen, panel, at, layer);
+        }
+        layout.draw_legend(pen, layer);
     }
 }

@@ -1,9 +1,8 @@
 //! Positions of panels and legend.
 
-use super::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
+use super::pen::{Align, Pen, ScreenPoint, text_width};
 use super::series::Key;
 use super::style::{GREY, INK, draw_failed, draw_limit, draw_mark, draw_slope, segment};
-use plotters::prelude::DrawingBackend;
 
 /// Width and height of a panel with its labels.
 pub(crate) const PANEL: (f64, f64) = (380.0, 300.0);
@@ -122,7 +121,7 @@ impl FigureLayout {
     }
 
     /// Draws the legend of a layer.
-    pub fn draw_legend<DB: DrawingBackend>(&self, pen: &Pen<DB>, layer: Layer) -> Drawn {
+    pub fn draw_legend(&self, pen: &mut Pen, layer: Layer) {
         for ((x, y), entry) in &self.legend {
             let is_shown = match entry {
                 Entry::Curve(key, _) => layer.has_curve(*key),
@@ -134,15 +133,15 @@ impl FigureLayout {
             let middle = (x + SYMBOL / 2.0, *y);
             match entry {
                 Entry::Curve(key, _) => {
-                    segment(pen, *key, (*x, *y), (x + SYMBOL, *y))?;
-                    draw_mark(pen, *key, middle, 1.0)?;
+                    segment(pen, *key, (*x, *y), (x + SYMBOL, *y));
+                    draw_mark(pen, *key, middle, 1.0);
                 }
-                Entry::Sign(Sign::Failed) => draw_failed(pen, middle)?,
+                Entry::Sign(Sign::Failed) => draw_failed(pen, middle),
                 Entry::Sign(sign @ (Sign::Promised | Sign::Compared)) => {
                     let (tip, right) = ((x + 4.0, y + 6.0), x + SYMBOL - 4.0);
-                    pen.line(tip, (right, y + 6.0), 0.8, GREY)?;
-                    pen.line((right, y + 6.0), (right, y - 6.0), 0.8, GREY)?;
-                    draw_slope(pen, tip, (right, y - 6.0), *sign == Sign::Promised)?;
+                    pen.line(tip, (right, y + 6.0), 0.8, GREY);
+                    pen.line((right, y + 6.0), (right, y - 6.0), 0.8, GREY);
+                    draw_slope(pen, tip, (right, y - 6.0), *sign == Sign::Promised);
                 }
                 Entry::Sign(Sign::Band) => {
                     let corners = [
@@ -151,12 +150,11 @@ impl FigureLayout {
                         (x + SYMBOL, y - 6.0),
                         (*x, y - 6.0),
                     ];
-                    pen.fill_faintly(&corners, INK)?;
+                    pen.fill_faintly(&corners, INK);
                 }
-                Entry::Sign(Sign::Limit) => draw_limit(pen, (*x, *y), (x + SYMBOL, *y))?,
+                Entry::Sign(Sign::Limit) => draw_limit(pen, (*x, *y), (x + SYMBOL, *y)),
             }
-            pen.text(entry.label(), (x + SYMBOL + 6.0, *y), TEXT, INK, Align::Left)?;
+            pen.text(entry.label(), (x + SYMBOL + 6.0, *y), TEXT, INK, Align::Left);
         }
-        Ok(())
     }
 }

@@ -1,8 +1,7 @@
 //! Plots of a report: error against mesh size, and error against time; pictures of a solution.
 //!
-//! Data (`series`), positions (`axis`, `layout`) and appearance (`panel`, `pen`,
-//! `style`) are separate from the file formats (`render`), so that SVG and PNG files show one
-//! drawing.
+//! Data (`series`), positions (`axis`, `layout`) and appearance (`panel`, `style`) are separate from the format of
+//! the file (`pen`).
 
 mod axis;
 mod cost;
@@ -11,11 +10,9 @@ mod layout;
 mod panel;
 mod pen;
 mod picture;
-mod render;
 mod series;
 mod slopes;
 mod style;
-mod svg;
 mod sweep;
 
 pub(crate) use cost::{Cost, NamedCurve, cost_figure};

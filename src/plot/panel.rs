@@ -2,11 +2,10 @@
 
 use super::axis::{LogAxis, Tick};
 use super::layout::{Layer, PANEL};
-use super::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
+use super::pen::{Align, Pen, ScreenPoint};
 use super::series::{Panel, Point};
 use super::slopes::Slopes;
 use super::style::{GRID, INK, draw_band, draw_failed, draw_limit, draw_mark, segment};
-use plotters::prelude::DrawingBackend;
 
 /// Room around the data for title, labels and ticks.
 const LEFT: f64 = 70.0;
@@ -112,107 +111,76 @@ impl<'a> Frame<'a> {
 }
 
 /// Draws a panel with its upper left corner at a position.
-pub(crate) fn draw_panel<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    panel: &Panel,
-    at: ScreenPoint,
-    layer: Layer,
-) -> Drawn {
+pub(crate) fn draw_panel(pen: &mut Pen, panel: &Panel, at: ScreenPoint, layer: Layer) {
     let frame = Frame::new(panel);
     let origin = (at.0 + LEFT, at.1 + TOP);
     if layer.has_frame() {
-        draw_frame(pen, &frame, at, origin)?;
+        draw_frame(pen, &frame, at, origin);
     }
-    if panel.has_curves() { draw_curves(pen, &frame, origin, layer) } else { Ok(()) }
+    if panel.has_curves() {
+        draw_curves(pen, &frame, origin, layer);
+    }
 }
 
 /// Title, labels, ticks, slopes and limits; or why there are no curves.
-fn draw_frame<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    frame: &Frame,
-    at: ScreenPoint,
-    origin: ScreenPoint,
-) -> Drawn {
+fn draw_frame(pen: &mut Pen, frame: &Frame, at: ScreenPoint, origin: ScreenPoint) {
     let panel = frame.panel;
     let middle = (origin.0 + SIZE.0 / 2.0, origin.1 + SIZE.1 / 2.0);
-    pen.text(&panel.title, (middle.0, at.1 + TOP / 2.0 + 1.0), TITLE, INK, Align::Centre)?;
-    pen.text(&panel.x, (middle.0, at.1 + PANEL.1 - 14.0), LABEL, INK, Align::Centre)?;
-    pen.text(&panel.y, (at.0 + 12.0, middle.1), LABEL, INK, Align::Upwards)?;
+    pen.text(&panel.title, (middle.0, at.1 + TOP / 2.0 + 1.0), TITLE, INK, Align::Centre);
+    pen.text(&panel.x, (middle.0, at.1 + PANEL.1 - 14.0), LABEL, INK, Align::Centre);
+    pen.text(&panel.y, (at.0 + 12.0, middle.1), LABEL, INK, Align::Upwards);
     let why = match panel.has_errors() {
         _ if panel.has_curves() => None,
         true => Some("one level: no curve"),
         false => Some("no exact solution: no errors"),
     };
     if let Some(why) = why {
-        pen.text(why, middle, LABEL, INK, Align::Centre)?;
+        pen.text(why, middle, LABEL, INK, Align::Centre);
     } else {
-        draw_ticks(pen, frame, origin)?;
+        draw_ticks(pen, frame, origin);
         for limit in &panel.limits {
             let y = origin.1 + frame.depth(*limit);
-            draw_limit(pen, (origin.0, y), (origin.0 + SIZE.0, y))?;
+            draw_limit(pen, (origin.0, y), (origin.0 + SIZE.0, y));
         }
     }
     if let Some(slopes) = &frame.slopes {
-        slopes.draw(pen, origin)?;
+        slopes.draw(pen, origin);
     }
     let (right, bottom) = (origin.0 + SIZE.0, origin.1 + SIZE.1);
-    pen.outline(&[origin, (right, origin.1), (right, bottom), (origin.0, bottom)], 1.0, INK)
+    pen.outline(&[origin, (right, origin.1), (right, bottom), (origin.0, bottom)], 1.0, INK);
 }
 
 /// Lines behind the data, ticks and their labels.
-fn draw_ticks<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, (left, top): ScreenPoint) -> Drawn {
+fn draw_ticks(pen: &mut Pen, frame: &Frame, (left, top): ScreenPoint) {
     let (right, bottom) = (left + SIZE.0, top + SIZE.1);
     let length = |tick: Tick| if tick.digit == 1 { 5.0 } else { 2.5 };
     for tick in frame.x.ticks(6) {
         let x = left + SIZE.0 * frame.x.position(tick.log());
         if tick.digit == 1 {
-            pen.line((x, top), (x, bottom), 0.8, GRID)?;
+            pen.line((x, top), (x, bottom), 0.8, GRID);
         }
-        pen.line((x, bottom), (x, bottom - length(tick)), 0.8, INK)?;
+        pen.line((x, bottom), (x, bottom - length(tick)), 0.8, INK);
         if tick.labelled {
             let (base, exponent) = tick.label(frame.x.is_plain());
-            let half = (text_width(&base, TICK) + text_width(&exponent, 0.75 * TICK)) / 2.0;
-            let at = (x - half + text_width(&base, TICK), bottom + 12.0);
-            draw_label(pen, &base, &exponent, at)?;
+            pen.power(&base, &exponent, (x, bottom + 12.0), TICK, INK, Align::Centre);
         }
     }
     for tick in frame.y.ticks(8) {
         let y = bottom - SIZE.1 * frame.y.position(tick.log());
         if tick.digit == 1 {
-            pen.line((left, y), (right, y), 0.8, GRID)?;
+            pen.line((left, y), (right, y), 0.8, GRID);
         }
-        pen.line((left, y), (left + length(tick), y), 0.8, INK)?;
+        pen.line((left, y), (left + length(tick), y), 0.8, INK);
         if tick.labelled {
             let (base, exponent) = tick.label(frame.y.is_plain());
-            let at = (left - 6.0 - text_width(&exponent, 0.75 * TICK), y);
-            draw_label(pen, &base, &exponent, at)?;
+            pen.power(&base, &exponent, (left - 6.0, y), TICK, INK, Align::Right);
         }
     }
-    Ok(())
-}
-
-/// Draws a power: the base ends and the exponent begins at a position.
-fn draw_label<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    base: &str,
-    exponent: &str,
-    (x, y): ScreenPoint,
-) -> Drawn {
-    pen.text(base, (x, y), TICK, INK, Align::Right)?;
-    if exponent.is_empty() {
-        return Ok(());
-    }
-    pen.text(exponent, (x + 0.5, y - 5.0), 0.75 * TICK, INK, Align::Left)
 }
 
 /// Bands first, then lines, then marks, then failures: what matters most is on top. A line ends where a run
 /// did not converge.
-fn draw_curves<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    frame: &Frame,
-    origin: ScreenPoint,
-    layer: Layer,
-) -> Drawn {
+fn draw_curves(pen: &mut Pen, frame: &Frame, origin: ScreenPoint, layer: Layer) {
     let places: Vec<Vec<ScreenPoint>> = frame
         .places()
         .into_iter()
@@ -226,14 +194,14 @@ fn draw_curves<DB: DrawingBackend>(
                 Some((ends[k].0, origin.1 + frame.depth(y).clamp(0.0, SIZE.1)))
             };
             if let (Some(left), Some(right)) = (bound(0), bound(1)) {
-                draw_band(pen, curve.key, [ends[0], ends[1]], [left, right])?;
+                draw_band(pen, curve.key, [ends[0], ends[1]], [left, right]);
             }
         }
     }
     for (curve, places) in curves() {
         for (points, ends) in curve.points.windows(2).zip(places.windows(2)) {
             if points[0].converged && points[1].converged {
-                segment(pen, curve.key, ends[0], ends[1])?;
+                segment(pen, curve.key, ends[0], ends[1]);
             }
         }
     }
@@ -244,14 +212,13 @@ fn draw_curves<DB: DrawingBackend>(
                     continue;
                 }
                 if converged {
-                    draw_mark(pen, curve.key, at, 1.0)?;
+                    draw_mark(pen, curve.key, at, 1.0);
                 } else {
                     // the cross marks the failure, the small mark on it the scheme
-                    draw_failed(pen, at)?;
-                    draw_mark(pen, curve.key, at, 0.7)?;
+                    draw_failed(pen, at);
+                    draw_mark(pen, curve.key, at, 0.7);
                 }
             }
         }
     }
-    Ok(())
 }

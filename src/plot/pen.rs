@@ -1,27 +1,37 @@
-//! Lines, areas and text on any backend, in units that do not depend on its resolution.
-
-use plotters::coord::Shift;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-
-/// Why a drawing failed, as text: backends differ in their errors.
-pub(crate) type Drawn = Result<(), String>;
+//! Lines, areas and text as the text of an SVG file.
 
 /// A position on the drawing: distances from its upper left corner to the right and down.
 pub(crate) type ScreenPoint = (f64, f64);
 
-/// The typeface. PNG files are drawn with the one of this name that [`crate::plot::render`] embeds;
-/// an SVG file names it, and viewers that lack it take the next.
-pub(crate) const FAMILY: &str = "Ubuntu, DejaVu Sans, Arial, sans-serif";
+/// Red, green and blue, each up to 255.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Colour(pub u8, pub u8, pub u8);
+
+/// Paper.
+pub(crate) const PAPER: Colour = Colour(255, 255, 255);
+
+/// The typefaces, of which a viewer takes the first that it has.
+const FAMILY: &str = "Arial, Liberation Sans, Helvetica, DejaVu Sans, sans-serif";
 
 /// The opacity of faint areas.
 const FAINT: f64 = 0.12;
 
-/// A typeface's width of a text.
+/// Coordinates in the file are whole numbers of this part of a unit.
+const PARTS: f64 = 8.0;
+
+/// The size of an exponent over that of its base.
+const RAISED: f64 = 0.75;
+
+/// About the width of a text: typefaces differ by a tenth.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
-    // Measured large, since the answer is in whole pixels.
-    let measured = (FAMILY, 10.0 * size).into_font().box_size(text);
-    measured.map_or(0.6 * size * text.len() as f64, |(w, _)| f64::from(w) / 10.0)
+    let width = |c: char| match c {
+        'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 0.28,
+        'f' | 't' | 'r' | ' ' | '(' | ')' | '[' | ']' | '-' | '/' => 0.36,
+        'm' | 'w' | 'M' | 'W' | '@' | '%' => 0.92,
+        'A'..='Z' => 0.72,
+        _ => 0.58,
+    };
+    size * text.chars().map(width).sum::<f64>()
 }
 
 /// How a text is aligned at its position.
@@ -37,111 +47,264 @@ pub(crate) enum Align {
     Upwards,
 }
 
-/// Draws on a backend with `scale` pixels to the unit.
-pub(crate) struct Pen<'a, DB: DrawingBackend> {
-    pub area: &'a DrawingArea<DB, Shift>,
-    pub scale: f64,
-    /// Upward error of the backend in centred text, in parts of the size of the text.
-    pub lift: f64,
+/// A path to which shapes of the same style are added.
+struct OpenPath {
+    style: String,
+    /// Where the last shape ends.
+    end: Option<(i64, i64)>,
 }
 
-impl<DB: DrawingBackend> Pen<'_, DB> {
-    fn pixel(&self, (x, y): ScreenPoint) -> (i32, i32) {
-        ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
+/// Writes the shapes of a drawing, in their order. Shapes of one style that follow each other become one path.
+pub(crate) struct Pen {
+    text: String,
+    /// Whether filled areas of a colour become one path too, as the parts of a map do: viewers leave hair lines between
+    /// neighbours that they smooth one by one. Marks stay apart, since they may overlap.
+    areas_meet: bool,
+    open: Option<OpenPath>,
+}
+
+impl Pen {
+    /// Empty paper of this width and height.
+    pub fn new((width, height): (f64, f64), areas_meet: bool) -> Self {
+        let (width, height) = (width.ceil(), height.ceil());
+        let colour = colour_text(PAPER);
+        let text = format!(
+            "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {} {}\" \
+             xmlns=\"http://www.w3.org/2000/svg\" font-family=\"{FAMILY}\">\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"{colour}\"/>\n",
+            PARTS * width,
+            PARTS * height
+        );
+        Self { text, areas_meet, open: None }
     }
 
-    /// One straight line. Lines of several parts are drawn part by part: backends disagree on the
-    /// corners of wide ones.
-    pub fn line(&self, from: ScreenPoint, to: ScreenPoint, width: f64, colour: RGBColor) -> Drawn {
-        let (from, to) = (self.pixel(from), self.pixel(to));
-        if from == to {
-            return Ok(());
-        }
-        let width = (width * self.scale).round().max(1.0) as u32;
-        let line = PathElement::new(vec![from, to], colour.stroke_width(width));
-        self.area.draw(&line).map_err(|e| e.to_string())
+    /// The file.
+    pub fn finish(mut self) -> String {
+        self.close_path();
+        self.text + "</svg>\n"
     }
 
-    /// A line of dashes and gaps of these lengths in turn; a full one without any.
+    /// Draws a group of a class, by which a page can hide it.
+    pub fn group(&mut self, class: &str, draw: impl FnOnce(&mut Self)) {
+        self.close_path();
+        self.push(&format!("<g class=\"{class}\">\n"));
+        draw(self);
+        self.close_path();
+        self.push("</g>\n");
+    }
+
+    /// A straight line.
+    pub fn line(&mut self, from: ScreenPoint, to: ScreenPoint, width: f64, colour: Colour) {
+        self.dashes(from, to, width, colour, &[]);
+    }
+
+    /// A straight line of dashes and gaps of these lengths in turn; a full one without any.
     pub fn dashes(
-        &self,
+        &mut self,
         from: ScreenPoint,
         to: ScreenPoint,
         width: f64,
-        colour: RGBColor,
+        colour: Colour,
         lengths: &[f64],
-    ) -> Drawn {
-        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let length = dx.hypot(dy);
-        let at = |s: f64| (from.0 + dx * s / length, from.1 + dy * s / length);
-        let mut start = 0.0;
-        for (k, &step) in lengths.iter().cycle().enumerate() {
-            if start >= length || length.is_nan() {
-                return Ok(());
-            }
-            if k % 2 == 0 {
-                self.line(at(start), at((start + step).min(length)), width, colour)?;
-            }
-            start += step;
+    ) {
+        if pixel(from) != pixel(to) {
+            self.shape(stroke(width, colour, lengths), &[from, to], false);
         }
-        self.line(from, to, width, colour)
     }
 
     /// A closed outline.
-    pub fn outline(&self, corners: &[ScreenPoint], width: f64, colour: RGBColor) -> Drawn {
-        for (i, &from) in corners.iter().enumerate() {
-            let to = corners[(i + 1) % corners.len()];
-            // Longer by half a width at both ends, so that corners close.
-            let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-            let s = 0.4 * width / dx.hypot(dy).max(1e-9);
-            self.line(
-                (from.0 - s * dx, from.1 - s * dy),
-                (to.0 + s * dx, to.1 + s * dy),
-                width,
-                colour,
-            )?;
-        }
-        Ok(())
+    pub fn outline(&mut self, corners: &[ScreenPoint], width: f64, colour: Colour) {
+        self.shape(stroke(width, colour, &[]), corners, true);
     }
 
     /// A filled area.
-    pub fn fill(&self, corners: &[ScreenPoint], colour: RGBColor) -> Drawn {
-        self.polygon(corners, colour)
+    pub fn fill(&mut self, corners: &[ScreenPoint], colour: Colour) {
+        let colour = colour_text(colour);
+        if self.areas_meet {
+            let style = format!("shape-rendering=\"crispEdges\" fill=\"{colour}\"");
+            return self.shape(style, corners, true);
+        }
+        self.close_path();
+        self.shape(format!("fill=\"{colour}\""), corners, true);
+        self.close_path();
     }
 
     /// A filled area through which the drawing below is seen.
-    pub fn fill_faintly(&self, corners: &[ScreenPoint], colour: RGBColor) -> Drawn {
-        self.polygon(corners, colour.mix(FAINT))
-    }
-
-    fn polygon(&self, corners: &[ScreenPoint], style: impl Into<ShapeStyle>) -> Drawn {
-        let corners: Vec<_> = corners.iter().map(|&c| self.pixel(c)).collect();
-        self.area.draw(&Polygon::new(corners, style)).map_err(|e| e.to_string())
+    pub fn fill_faintly(&mut self, corners: &[ScreenPoint], colour: Colour) {
+        self.close_path();
+        let style = format!("fill=\"{}\" opacity=\"{FAINT}\"", colour_text(colour));
+        self.shape(style, corners, true);
+        self.close_path();
     }
 
     /// Text, its middle at the height of its position.
-    pub fn text(
-        &self,
-        text: &str,
+    pub fn text(&mut self, text: &str, at: ScreenPoint, size: f64, colour: Colour, align: Align) {
+        self.power(text, "", at, size, colour, align);
+    }
+
+    /// Text with a raised exponent, if that is not empty.
+    pub fn power(
+        &mut self,
+        base: &str,
+        exponent: &str,
         at: ScreenPoint,
         size: f64,
-        colour: RGBColor,
+        colour: Colour,
         align: Align,
-    ) -> Drawn {
-        let horizontal = match align {
-            Align::Left => HPos::Left,
-            Align::Centre | Align::Upwards => HPos::Center,
-            Align::Right => HPos::Right,
+    ) {
+        self.close_path();
+        let (x, y) = pixel(at);
+        let anchor = match align {
+            Align::Left => "start",
+            Align::Centre | Align::Upwards => "middle",
+            Align::Right => "end",
         };
-        let mut font = (FAMILY, size * self.scale).into_font();
-        let mut at = at;
-        if align == Align::Upwards {
-            font = font.transform(FontTransform::Rotate270);
-            at.0 += self.lift * size;
-        } else {
-            at.1 += self.lift * size;
+        let turn = match align {
+            Align::Upwards => format!(" transform=\"rotate(-90 {x} {y})\""),
+            _ => String::new(),
+        };
+        let (size, colour) = (PARTS * size, colour_text(colour));
+        let raised = match exponent {
+            "" => String::new(),
+            _ => format!(
+                "<tspan dy=\"{:.0}\" font-size=\"{:.0}\">{}</tspan>",
+                -0.36 * size,
+                RAISED * size,
+                escaped(exponent)
+            ),
+        };
+        self.push(&format!(
+            "<text x=\"{x}\" y=\"{y}\" dy=\"{:.0}\" font-size=\"{size:.0}\" text-anchor=\"{anchor}\" \
+             fill=\"{colour}\"{turn}>{}{raised}</text>\n",
+            0.35 * size,
+            escaped(base)
+        ));
+    }
+
+    /// Adds a shape to the open path if that has its style, else to a new one. Steps are relative, the first one to
+    /// where the path ends.
+    fn shape(&mut self, style: String, corners: &[ScreenPoint], is_closed: bool) {
+        if self.open.as_ref().is_none_or(|path| path.style != style) {
+            self.close_path();
+            self.push(&format!("<path {style} d=\""));
+            self.open = Some(OpenPath { style, end: None });
         }
-        let style = font.color(&colour).pos(Pos::new(horizontal, VPos::Center));
-        self.area.draw_text(text, &style, self.pixel(at)).map_err(|e| e.to_string())
+        let Some(path) = &mut self.open else { return };
+        let mut first = None;
+        for (x, y) in corners.iter().map(|&corner| pixel(corner)) {
+            let step = path.end.map(|(a, b)| (x - a, y - b));
+            match (first, step) {
+                (None, Some((0, 0))) => {}
+                (None, Some((dx, dy))) => push_pair('m', dx, dy, &mut self.text),
+                (_, None) => push_pair('M', x, y, &mut self.text),
+                (Some(_), Some((dx, 0))) => self.text += &format!("h{dx}"),
+                (Some(_), Some((0, dy))) => self.text += &format!("v{dy}"),
+                (Some(_), Some((dx, dy))) => push_pair('l', dx, dy, &mut self.text),
+            }
+            first = first.or(Some((x, y)));
+            path.end = Some((x, y));
+        }
+        if is_closed {
+            self.text.push('z');
+            path.end = first;
+        }
+    }
+
+    fn close_path(&mut self) {
+        if self.open.take().is_some() {
+            self.text += "\"/>\n";
+        }
+    }
+
+    fn push(&mut self, text: &str) {
+        self.text += text;
+    }
+}
+
+/// A position in whole parts of a unit.
+fn pixel((x, y): ScreenPoint) -> (i64, i64) {
+    ((x * PARTS).round() as i64, (y * PARTS).round() as i64)
+}
+
+fn colour_text(Colour(red, green, blue): Colour) -> String {
+    format!("#{red:02X}{green:02X}{blue:02X}")
+}
+
+/// The style of a line.
+fn stroke(width: f64, colour: Colour, dashes: &[f64]) -> String {
+    let width = (width * PARTS).round().max(1.0);
+    let mut style =
+        format!("fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"", colour_text(colour));
+    if !dashes.is_empty() {
+        let lengths: Vec<String> = dashes.iter().map(|s| format!("{:.0}", s * PARTS)).collect();
+        style += &format!(" stroke-dasharray=\"{}\"", lengths.join(" "));
+    }
+    style
+}
+
+/// A command of a path; a sign separates numbers as well as a space does.
+fn push_pair(command: char, x: i64, y: i64, text: &mut String) {
+    let space = if y < 0 { "" } else { " " };
+    *text += &format!("{command}{x}{space}{y}");
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Align, Colour, Pen};
+
+    const BLUE: Colour = Colour(0, 114, 178);
+
+    /// The lines of a drawing behind its paper.
+    fn drawn(areas_meet: bool, draw: impl FnOnce(&mut Pen)) -> Vec<String> {
+        let mut pen = Pen::new((2.0, 2.0), areas_meet);
+        draw(&mut pen);
+        pen.finish().lines().skip(2).map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn neighbours_of_one_style_become_one_path() {
+        let draw = |pen: &mut Pen| {
+            pen.fill(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)], BLUE);
+            pen.fill(&[(1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], BLUE);
+            pen.line((0.0, 0.125), (0.25, 0.375), 0.75, BLUE);
+            pen.line((0.625, 0.625), (0.25, 0.375), 0.75, BLUE);
+            pen.line((0.25, 0.375), (0.25, 0.375), 0.75, BLUE);
+            pen.line((0.0, 0.125), (0.25, 0.375), 0.5, BLUE);
+        };
+        let lines = [
+            "<path fill=\"none\" stroke=\"#0072B2\" stroke-width=\"6\" d=\"M0 1l2 2m3 2l-3-2\"/>",
+            "<path fill=\"none\" stroke=\"#0072B2\" stroke-width=\"4\" d=\"M0 1l2 2\"/>",
+            "</svg>",
+        ];
+        let meeting = drawn(true, draw);
+        let area =
+            "<path shape-rendering=\"crispEdges\" fill=\"#0072B2\" d=\"M0 0h8l-8 8zm8 0v8h-8z\"/>";
+        assert_eq!((&meeting[0][..], &meeting[1..]), (area, &lines.map(str::to_owned)[..]));
+        let apart = drawn(false, draw);
+        assert_eq!(apart[0], "<path fill=\"#0072B2\" d=\"M0 0h8l-8 8z\"/>");
+        assert_eq!(apart[1], "<path fill=\"#0072B2\" d=\"M8 0v8h-8z\"/>");
+        assert_eq!(apart[2..], lines);
+    }
+
+    #[test]
+    fn text_is_escaped_and_groups_are_closed() {
+        let lines = drawn(false, |pen| {
+            pen.line((0.0, 0.0), (1.0, 0.0), 1.0, BLUE);
+            pen.group("s0", |pen| {
+                pen.dashes((0.0, 0.0), (0.0, 1.0), 1.0, BLUE, &[1.0, 2.0]);
+                pen.power("a & b", "<2", (1.0, 1.0), 10.0, BLUE, Align::Right);
+            });
+        });
+        let text = "<text x=\"8\" y=\"8\" dy=\"28\" font-size=\"80\" text-anchor=\"end\" fill=\"#0072B2\">\
+                    a &amp; b<tspan dy=\"-29\" font-size=\"60\">&lt;2</tspan></text>";
+        let line = "<path fill=\"none\" stroke=\"#0072B2\" stroke-width=\"8\"";
+        let found: Vec<&str> = lines.iter().map(String::as_str).collect();
+        let whole = format!("{line} d=\"M0 0h8\"/>");
+        let dashed = format!("{line} stroke-dasharray=\"8 16\" d=\"M0 0v8\"/>");
+        assert_eq!(found, [&whole, "<g class=\"s0\">", &dashed, text, "</g>", "</svg>"]);
     }
 }

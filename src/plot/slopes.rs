@@ -1,10 +1,9 @@
 //! Reference slopes: a small triangle where no data are.
 
 use super::axis::LogAxis;
-use super::pen::{Align, Drawn, Pen, ScreenPoint};
+use super::pen::{Align, Pen, ScreenPoint};
 use super::series::Orders;
 use super::style::{GREY, draw_slope};
-use plotters::prelude::DrawingBackend;
 
 /// Room to keep from data and frame.
 const CLEAR: f64 = 8.0;
@@ -77,24 +76,23 @@ impl Slopes {
     }
 
     /// Draws the slopes, with the upper left corner of the area at `origin`.
-    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, origin: ScreenPoint) -> Drawn {
+    pub fn draw(&self, pen: &mut Pen, origin: ScreenPoint) {
         let (left, bottom) = (origin.0 + self.corner.0, origin.1 + self.corner.1);
         let right = left + self.width;
         let top = self.rises.iter().map(|r| r.1).fold(0.0, f64::max);
-        pen.line((left, bottom), (right, bottom), 0.8, GREY)?;
+        pen.line((left, bottom), (right, bottom), 0.8, GREY);
         let (steep, tip) = if self.falls { (left, right) } else { (right, left) };
         let (beside, align) =
             if self.falls { (steep - 4.0, Align::Right) } else { (steep + 4.0, Align::Left) };
-        pen.line((steep, bottom), (steep, bottom - top), 0.8, GREY)?;
+        pen.line((steep, bottom), (steep, bottom - top), 0.8, GREY);
         let step = top / self.rises.len() as f64;
         for (label, rise) in &self.rises {
             let end = (steep, bottom - rise);
-            draw_slope(pen, (tip, bottom), end, self.are_promised)?;
+            draw_slope(pen, (tip, bottom), end, self.are_promised);
             // labels on flat triangles would overlap: only the steepest slope has one
             if step >= 10.0 || *rise == top {
-                pen.text(label, (beside, end.1), 13.0, GREY, align)?;
+                pen.text(label, (beside, end.1), 13.0, GREY, align);
             }
         }
-        Ok(())
     }
 }

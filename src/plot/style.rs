@@ -1,30 +1,27 @@
 //! Colours, dashes and marks of curves. Curves differ in all of them, so that they remain distinct in
 //! grey; some marks are open, so that curves on top of each other are both visible.
 
-use super::pen::{Drawn, Pen, ScreenPoint};
-use plotters::prelude::{DrawingBackend, RGBColor};
+use super::pen::{Colour, PAPER, Pen, ScreenPoint};
 
 /// Text and frames.
-pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
+pub(crate) const INK: Colour = Colour(30, 30, 30);
 /// Reference slopes.
-pub(crate) const GREY: RGBColor = RGBColor(120, 120, 120);
+pub(crate) const GREY: Colour = Colour(120, 120, 120);
 /// Lines behind the data.
-pub(crate) const GRID: RGBColor = RGBColor(226, 226, 226);
+pub(crate) const GRID: Colour = Colour(226, 226, 226);
 /// Runs that did not converge.
-pub(crate) const FAILED: RGBColor = RGBColor(214, 0, 0);
-/// Paper.
-pub(crate) const PAPER: RGBColor = RGBColor(255, 255, 255);
+pub(crate) const FAILED: Colour = Colour(214, 0, 0);
 
 /// Colours that remain distinct to colour-blind readers (Okabe and Ito), without yellow, which is
 /// faint on white.
-const COLOURS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(0, 0, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(230, 159, 0),
+const COLOURS: [Colour; 7] = [
+    Colour(0, 114, 178),
+    Colour(213, 94, 0),
+    Colour(0, 158, 115),
+    Colour(204, 121, 167),
+    Colour(0, 0, 0),
+    Colour(86, 180, 233),
+    Colour(230, 159, 0),
 ];
 
 /// A mark: corners on a circle around its centre.
@@ -55,7 +52,7 @@ const MARKS: [Mark; 10] = [
 ];
 
 /// The colour of a curve.
-pub(crate) fn colour(key: usize) -> RGBColor {
+pub(crate) fn colour(key: usize) -> Colour {
     COLOURS[key % COLOURS.len()]
 }
 
@@ -64,32 +61,22 @@ pub(crate) fn colour(key: usize) -> RGBColor {
 const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[1.8, 2.4], &[9.0, 2.6, 1.8, 2.6]];
 
 /// The part of a curve between two marks.
-pub(crate) fn segment<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    key: usize,
-    from: ScreenPoint,
-    to: ScreenPoint,
-) -> Drawn {
-    pen.dashes(from, to, 1.4, colour(key), DASHES[key % DASHES.len()])
+pub(crate) fn segment(pen: &mut Pen, key: usize, from: ScreenPoint, to: ScreenPoint) {
+    pen.dashes(from, to, 1.4, colour(key), DASHES[key % DASHES.len()]);
 }
 
 /// The part of a band between two runs: from two errors, in their order, to the bounds on them.
-pub(crate) fn draw_band<DB: DrawingBackend>(
-    pen: &Pen<DB>,
+pub(crate) fn draw_band(
+    pen: &mut Pen,
     key: usize,
     errors: [ScreenPoint; 2],
     bounds: [ScreenPoint; 2],
-) -> Drawn {
-    pen.fill_faintly(&[errors[0], errors[1], bounds[1], bounds[0]], colour(key))
+) {
+    pen.fill_faintly(&[errors[0], errors[1], bounds[1], bounds[0]], colour(key));
 }
 
 /// The mark of a curve, `size` times its usual size.
-pub(crate) fn draw_mark<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    key: usize,
-    at: ScreenPoint,
-    size: f64,
-) -> Drawn {
+pub(crate) fn draw_mark(pen: &mut Pen, key: usize, at: ScreenPoint, size: f64) {
     let mark = &MARKS[key % MARKS.len()];
     let radius = size * mark.radius;
     let corners: Vec<ScreenPoint> = (0..mark.corners)
@@ -106,26 +93,17 @@ pub(crate) fn draw_mark<DB: DrawingBackend>(
 }
 
 /// The slope of an order: a full line if theory promises it.
-pub(crate) fn draw_slope<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    from: ScreenPoint,
-    to: ScreenPoint,
-    is_promised: bool,
-) -> Drawn {
+pub(crate) fn draw_slope(pen: &mut Pen, from: ScreenPoint, to: ScreenPoint, is_promised: bool) {
     pen.dashes(from, to, 0.8, GREY, if is_promised { &[] } else { &[1.5, 2.5] })
 }
 
 /// The line of a limit.
-pub(crate) fn draw_limit<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    from: ScreenPoint,
-    to: ScreenPoint,
-) -> Drawn {
-    pen.dashes(from, to, 1.0, GREY, &[2.0, 2.0])
+pub(crate) fn draw_limit(pen: &mut Pen, from: ScreenPoint, to: ScreenPoint) {
+    pen.dashes(from, to, 1.0, GREY, &[2.0, 2.0]);
 }
 
 /// The mark of a run that did not converge: a hollow cross.
-pub(crate) fn draw_failed<DB: DrawingBackend>(pen: &Pen<DB>, at: ScreenPoint) -> Drawn {
+pub(crate) fn draw_failed(pen: &mut Pen, at: ScreenPoint) {
     // length and half width of the arms
     const R: f64 = 9.0;
     const W: f64 = 2.2;
@@ -137,6 +115,6 @@ pub(crate) fn draw_failed<DB: DrawingBackend>(pen: &Pen<DB>, at: ScreenPoint) ->
             arm.map(|(x, y)| (at.0 + x * cos - y * sin, at.1 + x * sin + y * cos))
         })
         .collect();
-    pen.fill(&corners, PAPER)?;
-    pen.outline(&corners, 1.2, FAILED)
+    pen.fill(&corners, PAPER);
+    pen.outline(&corners, 1.2, FAILED);
 }

@@ -9,10 +9,6 @@ use super::plan::Effort;
 use super::row::{StabilityRow, Verdict, short};
 use super::summary::{by_criterion, by_scheme, criteria, missed, robust, safe_ranges};
 use crate::error::Error;
-#[cfg(feature = "plot")]
-use crate::error::write_error;
-#[cfg(feature = "plot")]
-use crate::files::replace;
 use crate::files::replace_text;
 #[cfg(feature = "plot")]
 use crate::output::html::HtmlPage;
@@ -215,7 +211,7 @@ impl StabilityReport {
         super::figures::figures(&self.rows)
     }
 
-    /// Writes the figures, each as `.svg` and `.png`, and `stability.html`, one page with them and all
+    /// Writes the figures as SVG, and `stability.html`, one page with them and all
     /// tables, into a directory.
     ///
     /// # Errors
@@ -227,13 +223,9 @@ impl StabilityReport {
         let mut page = HtmlPage::of_tables("Stability", self.paragraphs(), &series, &self.tables());
         let mut written = Vec::new();
         for (name, figure) in &figures {
-            let path = directory.join(name);
-            let wrong = |why| write_error(&path, why);
-            let svg = figure.to_svg().map_err(wrong)?;
-            written.push(replace_text(&path.with_extension("svg"), &svg)?);
-            let png = path.with_extension("png");
-            written.push(replace(&png, |path| figure.write_png(path))?);
-            page.draw(name, figure).map_err(wrong)?;
+            let path = directory.join(format!("{name}.svg"));
+            written.push(replace_text(&path, &figure.to_svg())?);
+            page.draw(name, figure);
         }
         written.push(replace_text(&directory.join("stability.html"), &page.to_html())?);
         Ok(written)

@@ -10,7 +10,7 @@ use super::measured::{Failure, Measured, Variant, scenes, variants};
 use super::tables::{details, summary};
 use super::verdict::verdict;
 use super::work_at_error::{WorkAtError, work_at_errors};
-use crate::error::{Error, write_error};
+use crate::error::Error;
 use crate::files::replace_text;
 use crate::output::html::HtmlPage;
 use crate::output::latex::latex_files;
@@ -147,7 +147,7 @@ impl WorkReport {
     }
 
     /// The report as one page, with its figures.
-    fn page(&self) -> Result<String, String> {
+    fn page(&self) -> String {
         let variants = self.variants();
         let series: Vec<String> = variants.iter().map(|v| v.name_among(&variants)).collect();
         let tables = [self.summary_tables(), self.detail_tables()].concat();
@@ -158,10 +158,10 @@ impl WorkReport {
         #[cfg(feature = "plot")]
         for scene in self.scenes() {
             for (name, figure) in figures(&self.rows, scene, self.empty_memory_bytes) {
-                page.draw(&name, &figure)?;
+                page.draw(&name, &figure);
             }
         }
-        Ok(page.to_html())
+        page.to_html()
     }
 
     fn document(&self, table: fn(&Table) -> String, line: impl Fn(&str) -> String) -> String {
@@ -217,29 +217,24 @@ impl WorkReport {
         let is_kept = |name: &str| self.provenance.complete || name == "report.tex";
         files.extend(self.to_latex().into_iter().filter(|(name, _)| is_kept(name)));
         if self.provenance.complete {
-            let path = directory.join("report.html");
-            let page = self.page().map_err(|why| write_error(&path, why))?;
-            files.push(("report.html".to_owned(), page));
+            files.push(("report.html".to_owned(), self.page()));
         }
         files.iter().map(|(name, text)| replace_text(&directory.join(name), text)).collect()
     }
 
-    /// Writes the errors of a scene against time, unknowns and memory as `SCENE-time`,
-    /// `SCENE-unknowns` and `SCENE-memory`, each as `.svg` and `.png`.
+    /// Writes the errors of a scene against time, unknowns and memory as `SCENE-time.svg`,
+    /// `SCENE-unknowns.svg` and `SCENE-memory.svg`.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     #[cfg(feature = "plot")]
     pub fn write_figures(&self, directory: &Path, scene: &str) -> Result<Vec<PathBuf>, Error> {
-        let mut written = Vec::new();
-        for (name, figure) in figures(&self.rows, scene, self.empty_memory_bytes) {
-            let svg = directory.join(format!("{name}.svg"));
-            let text = figure.to_svg().map_err(|why| write_error(&svg, why))?;
-            written.push(replace_text(&svg, &text)?);
-            let png = directory.join(format!("{name}.png"));
-            written.push(crate::files::replace(&png, |path| figure.write_png(path))?);
-        }
-        Ok(written)
+        let figures = figures(&self.rows, scene, self.empty_memory_bytes).into_iter();
+        figures
+            .map(|(name, figure)| {
+                replace_text(&directory.join(format!("{name}.svg")), &figure.to_svg())
+            })
+            .collect()
     }
 
     /// Without the feature `plot` there are no figures.

@@ -128,19 +128,6 @@ fn labels_of_chapters_are_items_of_the_crate() {
     }
 }
 
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::new();
-    for group in bytes.chunks(3) {
-        let number = (0..3).fold(0, |n, k| n << 8 | u32::from(*group.get(k).unwrap_or(&0)));
-        for k in 0..4 {
-            let digit = DIGITS[(number >> (18 - 6 * k) & 63) as usize];
-            text.push(if k <= group.len() { char::from(digit) } else { '=' });
-        }
-    }
-    text
-}
-
 /// A drawing as the target of a link in angle brackets, in text that compresses as well as the file.
 fn inline(svg: &str) -> String {
     let mut text = String::from("<data:image/svg+xml,");
@@ -154,20 +141,16 @@ fn inline(svg: &str) -> String {
     text + ">"
 }
 
-/// The definitions of all pictures of the pages, each with its bytes.
+/// The definitions of all pictures of the pages, each with its text.
 fn embedded_pictures() -> String {
     let mut lines = BTreeSet::new();
     for page in PAGES {
         let path = root().join(page);
         for (label, target) in definitions(&read(&path)) {
             let file = path.parent().unwrap().join(&target);
-            let bytes = || fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
-            let data = match target.rsplit_once('.') {
-                Some((_, "png")) => format!("data:image/png;base64,{}", base64(&bytes())),
-                Some((_, "svg")) => inline(&read(&file)),
-                _ => continue,
-            };
-            lines.insert(format!("[{label}]: {data}\n"));
+            if target.ends_with(".svg") {
+                lines.insert(format!("[{label}]: {}\n", inline(&read(&file))));
+            }
         }
     }
     lines.into_iter().collect::<String>() + "\n"

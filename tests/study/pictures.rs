@@ -240,15 +240,12 @@ fn pictures_are_the_same_bytes_for_any_number_of_threads() {
         pool.install(|| {
             let (picture, ..) = picture(&scene, &Wopsip::default(), 8);
             let directory = scratch(&format!("threads-{threads}"));
-            let files = picture.write(&directory, "same").unwrap();
-            let bytes = files.map(|file| std::fs::read(file).unwrap());
+            let bytes = std::fs::read(picture.write(&directory, "same").unwrap()).unwrap();
             std::fs::remove_dir_all(directory).unwrap();
             bytes
         })
     };
-    let one = bytes(1);
-    assert_eq!(one[0][1..4], *b"PNG");
-    assert!(one == bytes(3));
+    assert!(bytes(1) == bytes(3));
 }
 
 #[test]
@@ -276,7 +273,7 @@ fn what_cannot_be_drawn_is_refused() {
     let (problem, mesh) = (Problem::<2>::new(), cube::<2>(100));
     let steep = function(&mesh, |k| (k % 3) as f64);
     let large = Picture::of("", &problem, &mesh, &steep, None).unwrap().to_svg();
-    assert!(large.unwrap_err().to_string().contains("choose a coarser level, or PNG"));
+    assert!(large.unwrap_err().to_string().contains("choose a coarser level"));
 }
 
 /// A directory of its own for a test.

@@ -145,15 +145,6 @@ fn csv_reads_back_to_the_same_numbers_as_json() {
     assert_eq!(csv[3].last().unwrap(), "one; two, or more");
 }
 
-/// Width and height that a PNG file states.
-fn png_size(path: &Path) -> (u32, u32) {
-    let bytes = std::fs::read(path).unwrap();
-    assert_eq!(bytes[..8], *b"\x89PNG\r\n\x1a\n");
-    assert!(bytes.len() > 5_000, "{} bytes are a blank picture", bytes.len());
-    let number = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap());
-    (number(16), number(20))
-}
-
 #[test]
 fn all_files_are_written_and_plots_show_what_they_should() {
     let scratch = Scratch::new("files");
@@ -173,32 +164,30 @@ fn all_files_are_written_and_plots_show_what_they_should() {
         "table-radial-2d.tex",
         "table-signorini-2d.tex",
         "convergence.svg",
-        "convergence.png",
         "work_precision.svg",
-        "work_precision.png",
         "report.html",
     ];
     assert_eq!(names, expected);
-    for (svg, x) in [(&written[6], "mesh size h"), (&written[8], "time in s")] {
+    for (svg, x) in [(&written[6], "mesh size h"), (&written[7], "time in s")] {
         let text = std::fs::read_to_string(svg).unwrap();
         let labels = ["L2 error", "radial-2d", "signorini-2d", "p1", "sipg", "wopsip"];
         let notes = ["did not converge", "no exact solution: no errors"];
         for label in [x].into_iter().chain(labels).chain(notes) {
-            assert!(text.lines().any(|l| l.trim() == label), "{label} is not in {}", svg.display());
+            assert!(
+                text.contains(&format!(">{label}</text>")),
+                "{label} is not in {}",
+                svg.display()
+            );
         }
-        // Shown at a fraction of the size at which it is drawn.
         assert!(text.starts_with("<svg width=\"780\""), "{}", &text[..80]);
     }
-    let (width, height) = png_size(&written[7]);
-    assert!(width == 1560 && height > 1200, "{width} x {height}");
-    png_size(&written[9]);
 }
 
 #[test]
 fn plots_show_promised_orders_and_no_single_points() {
     let lines = |rows: Vec<Row>| -> Vec<String> {
-        let svg = convergence(&rows).to_svg().unwrap();
-        svg.lines().map(|line| line.trim().to_owned()).collect()
+        let svg = convergence(&rows).to_svg();
+        svg.split("</text>").map(|text| text.rsplit('>').next().unwrap().to_owned()).collect()
     };
     let has = |lines: &[String], text: &str| lines.iter().any(|line| line == text);
     let mut all = rows();
@@ -213,8 +202,7 @@ fn plots_show_promised_orders_and_no_single_points() {
     // labels of an axis are of one kind: numbers for mesh sizes from 1/32 to 1/8
     assert!(has(&drawn, "0.1") && has(&drawn, "0.05"), "{drawn:?}");
     // a band from each error in the H1 seminorm, which is the energy norm here, to the bound on it
-    let bands =
-        |rows: &[Row]| convergence(rows).to_svg().unwrap().matches("opacity=\"0.12\"").count();
+    let bands = |rows: &[Row]| convergence(rows).to_svg().matches("opacity=\"0.12\"").count();
     assert_eq!(bands(&all), 0);
     let text = "band: up to the bound on the error";
     assert!(!has(&drawn, text));
@@ -242,7 +230,7 @@ fn a_report_of_one_row_or_none_is_written_too() {
     for rows in [vec![row("radial-1d", "p1", 4)], Vec::new()] {
         let scratch = Scratch::new(&format!("few-{}", rows.len()));
         let tables = rows.len();
-        assert_eq!(report(rows).write(&scratch.0).unwrap().len(), 9 + tables);
+        assert_eq!(report(rows).write(&scratch.0).unwrap().len(), 7 + tables);
     }
 }
 
@@ -299,6 +287,14 @@ fn the_page_has_every_number_and_needs_no_network() {
                 && html.contains(&format!("<g class=\"s{k}\">"))
         );
     }
+}
+
+/// Width and height that a PNG file states.
+fn png_size(path: &Path) -> (u32, u32) {
+    let bytes = std::fs::read(path).unwrap();
+    assert_eq!(bytes[..8], *b"\x89PNG\r\n\x1a\n");
+    let number = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap());
+    (number(16), number(20))
 }
 
 /// A browser shows the page, with a series and without it. `UNILATERAL_CHROMIUM` names the browser,

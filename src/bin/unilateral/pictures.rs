@@ -1,5 +1,5 @@
 //! A solution as a picture: the function, the contact set found against the exact free boundary, the
-//! jumps across facets, the multiplier and the share of each cell in the error bound, as PNG and SVG.
+//! jumps across facets, the multiplier and the share of each cell in the error bound, as SVG.
 //!
 //! `cargo run --release -- pictures --help` lists the options. Exit codes: 0 if every solve converged,
 //! 1 if one did not (its last iterate is drawn, and said to be one), 2 if the request was wrong.
@@ -150,5 +150,5 @@ fn draw_one<const D: usize>(
     }
     let problem = solved.discretisation().problem();
     let picture = Picture::of(&title, problem, solved.mesh(), &fields, slice)?;
-    Ok(picture.write(&options.out, stem)?.into())
+    Ok(vec![picture.write(&options.out, stem)?])
 }

@@ -1,11 +1,9 @@
 //! Frame, ticks and labels of linear axes, and the lines of a legend.
 
-use plotters::prelude::{DrawingBackend, RGBColor};
-
 use super::colour::labels;
 use super::section::PlanePoint;
-use crate::plot::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
-use crate::plot::style::{INK, PAPER, colour};
+use crate::plot::pen::{Align, Colour, PAPER, Pen, ScreenPoint};
+use crate::plot::style::{INK, colour};
 
 /// Sizes of text.
 pub(crate) const TITLE: f64 = 17.0;
@@ -21,11 +19,11 @@ pub(crate) const BOTTOM: f64 = 44.0;
 pub(crate) const LINE: f64 = 21.0;
 
 /// The contact set found.
-pub(crate) const CONTACT: RGBColor = RGBColor(150, 190, 222);
+pub(crate) const CONTACT: Colour = Colour(150, 190, 222);
 /// Exact free boundary and multiplier.
-pub(crate) const EXACT: RGBColor = RGBColor(213, 94, 0);
+pub(crate) const EXACT: Colour = Colour(213, 94, 0);
 /// Parts without a value.
-pub(crate) const FAINT: RGBColor = RGBColor(205, 205, 205);
+pub(crate) const FAINT: Colour = Colour(205, 205, 205);
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +31,7 @@ pub(crate) enum Stroke {
     /// An edge of the mesh.
     Mesh,
     /// In a colour and width.
-    Coloured(RGBColor, f64),
+    Coloured(Colour, f64),
     /// Of the discrete contact set.
     Discrete,
     /// A part of the boundary in contact.
@@ -48,12 +46,7 @@ pub(crate) enum Stroke {
 
 impl Stroke {
     /// Draws a segment.
-    pub fn draw<DB: DrawingBackend>(
-        self,
-        pen: &Pen<DB>,
-        from: ScreenPoint,
-        to: ScreenPoint,
-    ) -> Drawn {
+    pub fn draw(self, pen: &mut Pen, from: ScreenPoint, to: ScreenPoint) {
         match self {
             Stroke::Mesh => pen.line(from, to, 0.5, FAINT),
             Stroke::Coloured(colour, width) => pen.line(from, to, width, colour),
@@ -66,15 +59,10 @@ impl Stroke {
     }
 
     /// Draws the casing that separates the line from lines below.
-    pub fn draw_casing<DB: DrawingBackend>(
-        self,
-        pen: &Pen<DB>,
-        from: ScreenPoint,
-        to: ScreenPoint,
-    ) -> Drawn {
+    pub fn draw_casing(self, pen: &mut Pen, from: ScreenPoint, to: ScreenPoint) {
         match self {
             Stroke::Exact => pen.line(from, to, 4.0, PAPER),
-            _ => Ok(()),
+            _ => {}
         }
     }
 }
@@ -82,24 +70,20 @@ impl Stroke {
 /// The symbol of an entry of the legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Symbol {
-    Area(RGBColor),
+    Area(Colour),
     Line(Stroke),
     Mark,
 }
 
 /// The mark of a point of the exact free boundary: a diamond.
-pub(crate) fn draw_mark<DB: DrawingBackend>(pen: &Pen<DB>, (x, y): ScreenPoint) -> Drawn {
+pub(crate) fn draw_mark(pen: &mut Pen, (x, y): ScreenPoint) {
     let diamond = |r: f64| [(x + r, y), (x, y + r), (x - r, y), (x, y - r)];
-    pen.fill(&diamond(7.0), PAPER)?;
+    pen.fill(&diamond(7.0), PAPER);
     pen.fill(&diamond(5.0), EXACT)
 }
 
 /// Draws the lines of a legend below a position of the upper left corner.
-pub(crate) fn draw_legend<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    entries: &[(Symbol, String)],
-    (x, y): ScreenPoint,
-) -> Drawn {
+pub(crate) fn draw_legend(pen: &mut Pen, entries: &[(Symbol, String)], (x, y): ScreenPoint) {
     const WIDTH: f64 = 26.0;
     for (k, (symbol, label)) in entries.iter().enumerate() {
         let middle = y + (k as f64 + 0.5) * LINE;
@@ -107,32 +91,24 @@ pub(crate) fn draw_legend<DB: DrawingBackend>(
             Symbol::Area(colour) => {
                 let (top, bottom) = (middle - 6.0, middle + 6.0);
                 let corners = [(x, top), (x + WIDTH, top), (x + WIDTH, bottom), (x, bottom)];
-                pen.fill(&corners, colour)?;
+                pen.fill(&corners, colour);
             }
-            Symbol::Line(stroke) => stroke.draw(pen, (x, middle), (x + WIDTH, middle))?,
-            Symbol::Mark => draw_mark(pen, (x + WIDTH / 2.0, middle))?,
+            Symbol::Line(stroke) => stroke.draw(pen, (x, middle), (x + WIDTH, middle)),
+            Symbol::Mark => draw_mark(pen, (x + WIDTH / 2.0, middle)),
         }
-        pen.text(label, (x + WIDTH + 7.0, middle), LABEL, INK, Align::Left)?;
+        pen.text(label, (x + WIDTH + 7.0, middle), LABEL, INK, Align::Left);
     }
-    Ok(())
 }
 
 /// Draws the name of a quantity, divided by a power of ten other than one, centred at a position.
-pub(crate) fn draw_quantity<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    name: &str,
-    power: i32,
-    (x, y): ScreenPoint,
-) -> Drawn {
-    if power == 0 {
-        return pen.text(name, (x, y), LABEL, INK, Align::Centre);
+pub(crate) fn draw_quantity(pen: &mut Pen, name: &str, power: i32, (x, y): ScreenPoint) {
+    match power {
+        0 => pen.text(name, (x, y), LABEL, INK, Align::Centre),
+        _ => {
+            let exponent = power.to_string().replace('-', "\u{2212}");
+            pen.power(&format!("{name} / 10"), &exponent, (x, y), LABEL, INK, Align::Centre);
+        }
     }
-    let base = format!("{name} / 10");
-    let exponent = power.to_string().replace('-', "\u{2212}");
-    let half = 0.5 * (text_width(&base, LABEL) + text_width(&exponent, 0.75 * LABEL));
-    let end = x - half + text_width(&base, LABEL);
-    pen.text(&base, (end, y), LABEL, INK, Align::Right)?;
-    pen.text(&exponent, (end + 0.5, y - 5.0), 0.75 * LABEL, INK, Align::Left)
 }
 
 /// The area of the data: position, size, and range of the data.
@@ -154,29 +130,29 @@ impl Frame {
     }
 
     /// Draws outline, ticks, their labels and the names of the axes.
-    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, names: [&str; 2]) -> Drawn {
+    pub fn draw(&self, pen: &mut Pen, names: [&str; 2]) {
         let (left, top) = self.origin;
         let (right, bottom) = (left + self.size.0, top + self.size.1);
         let (ticks, power) = labels(self.low[0], self.high[0], 5);
         for (value, text) in ticks {
             let (x, _) = self.place([value, self.low[1]]);
-            pen.line((x, bottom), (x, bottom - 4.0), 0.8, INK)?;
-            pen.text(&text, (x, bottom + 11.0), TICK, INK, Align::Centre)?;
+            pen.line((x, bottom), (x, bottom - 4.0), 0.8, INK);
+            pen.text(&text, (x, bottom + 11.0), TICK, INK, Align::Centre);
         }
         let middle = 0.5 * (left + right);
-        draw_quantity(pen, names[0], power, (middle, bottom + 30.0))?;
+        draw_quantity(pen, names[0], power, (middle, bottom + 30.0));
         let most = if self.size.1 < 120.0 { 3 } else { 5 };
         let (ticks, power) = labels(self.low[1], self.high[1], most);
         for (value, text) in ticks {
             let (_, y) = self.place([self.low[0], value]);
-            pen.line((left, y), (left + 4.0, y), 0.8, INK)?;
-            pen.text(&text, (left - 5.0, y), TICK, INK, Align::Right)?;
+            pen.line((left, y), (left + 4.0, y), 0.8, INK);
+            pen.text(&text, (left - 5.0, y), TICK, INK, Align::Right);
         }
         let name = match power {
             0 => names[1].to_owned(),
             p => format!("{} / 1e{}", names[1], p.to_string().replace('-', "\u{2212}")),
         };
-        pen.text(&name, (left - LEFT + 10.0, 0.5 * (top + bottom)), LABEL, INK, Align::Upwards)?;
+        pen.text(&name, (left - LEFT + 10.0, 0.5 * (top + bottom)), LABEL, INK, Align::Upwards);
         pen.outline(&[(left, top), (right, top), (right, bottom), (left, bottom)], 0.8, INK)
     }
 }

@@ -1,13 +1,13 @@
 //! Colours of numbers, and the numbers that are written beside them.
 
-use plotters::prelude::RGBColor;
+use crate::plot::pen::Colour;
 
 /// A colour for a number from 0 to 1: from dark blue over green to pale rose, its lightness growing
 /// evenly, so that the picture reads the same in grey.
 ///
 /// This is the scheme of D. A. Green, Bull. Astr. Soc. India 39 (2011), 289-295: a helix around the
 /// diagonal of the cube of colours, here of one turn, without the darkest and the lightest part.
-pub(crate) fn colour(share: f64) -> RGBColor {
+pub(crate) fn colour(share: f64) -> Colour {
     const START: f64 = 0.4;
     const TURNS: f64 = -0.9;
     const HUE: f64 = 1.1;
@@ -19,7 +19,7 @@ pub(crate) fn colour(share: f64) -> RGBColor {
         let part = lightness + amplitude * (a * cos + b * sin);
         (255.0 * part.clamp(0.0, 1.0)).round() as u8
     };
-    RGBColor(channel(-0.14861, 1.78277), channel(-0.29227, -0.90649), channel(1.97294, 0.0))
+    Colour(channel(-0.14861, 1.78277), channel(-0.29227, -0.90649), channel(1.97294, 0.0))
 }
 
 /// A scale of colours: bands between levels.
@@ -77,7 +77,7 @@ impl Scale {
     }
 
     /// The colour of a band.
-    pub fn colour(&self, band: usize) -> RGBColor {
+    pub fn colour(&self, band: usize) -> Colour {
         colour((band as f64 + 0.5) / self.bands() as f64)
     }
 

@@ -1,12 +1,10 @@
 //! A panel that shows functions of one coordinate.
 
-use plotters::prelude::DrawingBackend;
-
 use super::axes::{
     BOTTOM, CONTACT, Frame, LEFT, LINE, RIGHT, Stroke, Symbol, TITLE, TOP, draw_legend, draw_mark,
 };
 use super::section::PlanePoint;
-use crate::plot::pen::{Align, Drawn, Pen, ScreenPoint};
+use crate::plot::pen::{Align, Pen, ScreenPoint};
 use crate::plot::style::INK;
 
 /// Height of the data on paper over their width.
@@ -57,13 +55,13 @@ impl Graph {
         ([low[0], low[1] - 1.5 * room], [high[0], high[1] + room])
     }
 
-    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, at: ScreenPoint, width: f64) -> Drawn {
+    pub fn draw(&self, pen: &mut Pen, at: ScreenPoint, width: f64) {
         let room = width - LEFT - RIGHT;
         let size = (room, RATIO * room);
         let (low, high) = self.ends();
         let frame = Frame { origin: (at.0 + LEFT, at.1 + TOP), size, low, high };
         let middle = at.0 + LEFT + 0.5 * room;
-        pen.text(&self.title, (middle, at.1 + TOP / 2.0), TITLE, INK, Align::Centre)?;
+        pen.text(&self.title, (middle, at.1 + TOP / 2.0), TITLE, INK, Align::Centre);
         let bottom = frame.origin.1 + size.1;
         let across = |x: f64| frame.place([x, low[1]]).0;
         for &[from, to] in &self.contact {
@@ -71,15 +69,15 @@ impl Graph {
             if b - a < POINT {
                 (a, b) = (a - 0.5 * (POINT - (b - a)), b + 0.5 * (POINT - (b - a)));
             }
-            pen.fill(&[(a, bottom), (b, bottom), (b, bottom - BAR), (a, bottom - BAR)], CONTACT)?;
+            pen.fill(&[(a, bottom), (b, bottom), (b, bottom - BAR), (a, bottom - BAR)], CONTACT);
         }
         for (stroke, ends) in self.lines.iter().filter(|l| l.1.iter().all(|p| p[1].is_finite())) {
-            stroke.draw(pen, frame.place(ends[0]), frame.place(ends[1]))?;
+            stroke.draw(pen, frame.place(ends[0]), frame.place(ends[1]));
         }
         for &x in &self.marks {
-            draw_mark(pen, (across(x), bottom))?;
+            draw_mark(pen, (across(x), bottom));
         }
-        frame.draw(pen, [&self.axes[0], &self.axes[1]])?;
+        frame.draw(pen, [&self.axes[0], &self.axes[1]]);
         draw_legend(pen, &self.legend, (at.0 + LEFT, at.1 + TOP + size.1 + BOTTOM + 4.0))
     }
 }

@@ -1,7 +1,5 @@
 //! A panel that shows the domain, or a section of it, with equal axes.
 
-use plotters::prelude::{DrawingBackend, RGBColor};
-
 use super::axes::{
     BOTTOM, Frame, LEFT, LINE, RIGHT, Stroke, Symbol, TICK, TITLE, TOP, draw_legend, draw_mark,
     draw_quantity,
@@ -9,7 +7,7 @@ use super::axes::{
 use super::colour::{Scale, labels};
 use super::section::PlanePoint;
 use crate::arrays::map_entries;
-use crate::plot::pen::{Align, Drawn, Pen, ScreenPoint};
+use crate::plot::pen::{Align, Colour, Pen, ScreenPoint};
 use crate::plot::style::INK;
 
 /// Largest height of the data over their width on paper.
@@ -26,7 +24,7 @@ pub(crate) struct Map {
     pub high: PlanePoint,
     pub axes: [&'static str; 2],
     /// Areas of one colour each, those of the same colour together.
-    pub fills: Vec<(RGBColor, Vec<PlanePoint>)>,
+    pub fills: Vec<(Colour, Vec<PlanePoint>)>,
     /// Lines, drawn in this order.
     pub lines: Vec<(Stroke, [PlanePoint; 2])>,
     /// Points of the exact free boundary.
@@ -55,58 +53,53 @@ impl Map {
         TOP + self.data_size(width - LEFT - RIGHT).1 + BOTTOM + below
     }
 
-    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, at: ScreenPoint, width: f64) -> Drawn {
+    pub fn draw(&self, pen: &mut Pen, at: ScreenPoint, width: f64) {
         let room = width - LEFT - RIGHT;
         let size = self.data_size(room);
         let left = at.0 + LEFT + 0.5 * (room - size.0);
         let frame = Frame { origin: (left, at.1 + TOP), size, low: self.low, high: self.high };
         let middle = left + 0.5 * size.0;
-        pen.text(&self.title, (middle, at.1 + TOP / 2.0), TITLE, INK, Align::Centre)?;
+        pen.text(&self.title, (middle, at.1 + TOP / 2.0), TITLE, INK, Align::Centre);
         for (colour, corners) in &self.fills {
             let corners: Vec<ScreenPoint> = corners.iter().map(|&c| frame.place(c)).collect();
-            pen.fill(&corners, *colour)?;
+            pen.fill(&corners, *colour);
         }
         // below the lines, some of which run along it
-        frame.draw(pen, self.axes)?;
+        frame.draw(pen, self.axes);
         let ends = |ends: &[PlanePoint; 2]| (frame.place(ends[0]), frame.place(ends[1]));
         for (stroke, segment) in &self.lines {
             let (from, to) = ends(segment);
-            stroke.draw_casing(pen, from, to)?;
+            stroke.draw_casing(pen, from, to);
         }
         for (stroke, segment) in &self.lines {
             let (from, to) = ends(segment);
-            stroke.draw(pen, from, to)?;
+            stroke.draw(pen, from, to);
         }
         for &mark in &self.marks {
-            draw_mark(pen, frame.place(mark))?;
+            draw_mark(pen, frame.place(mark));
         }
         let below = at.1 + TOP + size.1 + BOTTOM;
         if let Some(scale) = &self.scale {
-            draw_bar(pen, scale, (at.0 + LEFT, below + 6.0), room)?;
+            draw_bar(pen, scale, (at.0 + LEFT, below + 6.0), room);
         }
         if let Some(note) = self.note {
-            pen.text(note, (at.0 + LEFT + 0.5 * room, below + 16.0), TICK, INK, Align::Centre)?;
+            pen.text(note, (at.0 + LEFT + 0.5 * room, below + 16.0), TICK, INK, Align::Centre);
         }
         draw_legend(pen, &self.legend, (at.0 + LEFT, below + 4.0))
     }
 }
 
 /// Draws the bar of colours with numbers and the name of the quantity.
-fn draw_bar<DB: DrawingBackend>(
-    pen: &Pen<DB>,
-    scale: &Scale,
-    (left, top): ScreenPoint,
-    width: f64,
-) -> Drawn {
+fn draw_bar(pen: &mut Pen, scale: &Scale, (left, top): ScreenPoint, width: f64) {
     let bottom = top + BAR;
     let at = |share: f64| left + share * width;
     for band in 0..scale.bands() {
         let ends = map_entries([band, band + 1], |k| at(scale.position(scale.levels[k])));
         let [a, b] = ends;
-        pen.fill(&[(a, top), (b, top), (b, bottom), (a, bottom)], scale.colour(band))?;
+        pen.fill(&[(a, top), (b, top), (b, bottom), (a, bottom)], scale.colour(band));
     }
     let right = at(1.0);
-    pen.outline(&[(left, top), (right, top), (right, bottom), (left, bottom)], 0.8, INK)?;
+    pen.outline(&[(left, top), (right, top), (right, bottom), (left, bottom)], 0.8, INK);
     let (low, high) = (scale.levels[0], scale.levels[scale.bands()]);
     let most = if width < 300.0 { 4 } else { 8 };
     let mut power = 0;
@@ -115,18 +108,17 @@ fn draw_bar<DB: DrawingBackend>(
         let step = ((last - first + 1).max(1) as usize).div_ceil(most).max(1);
         for exponent in (first..=last).step_by(step) {
             let x = at(scale.position(f64::from(exponent)));
-            pen.line((x, bottom), (x, bottom + 3.0), 0.8, INK)?;
+            pen.line((x, bottom), (x, bottom + 3.0), 0.8, INK);
             let text = exponent.to_string().replace('-', "\u{2212}");
-            pen.text("10", (x + 3.0, bottom + 13.0), TICK, INK, Align::Right)?;
-            pen.text(&text, (x + 3.5, bottom + 8.0), 0.75 * TICK, INK, Align::Left)?;
+            pen.power("10", &text, (x, bottom + 13.0), TICK, INK, Align::Centre);
         }
     } else {
         let (ticks, common) = labels(low, high, most);
         power = common;
         for (value, text) in ticks {
             let x = at(scale.position(value));
-            pen.line((x, bottom), (x, bottom + 3.0), 0.8, INK)?;
-            pen.text(&text, (x, bottom + 12.0), TICK, INK, Align::Centre)?;
+            pen.line((x, bottom), (x, bottom + 3.0), 0.8, INK);
+            pen.text(&text, (x, bottom + 12.0), TICK, INK, Align::Centre);
         }
     }
     draw_quantity(pen, &scale.name, power, (left + 0.5 * width, bottom + 33.0))

@@ -22,10 +22,7 @@ mod trace;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use plotters::prelude::DrawingBackend;
-
-use super::pen::{Align, Drawn, Pen, ScreenPoint};
-use super::render::{Drawing, draw_png, draw_svg};
+use super::pen::{Align, Pen, ScreenPoint};
 use super::style::INK;
 use crate::error::Error;
 use crate::error::write_error;
@@ -160,8 +157,7 @@ impl Picture {
     /// The picture as the text of an SVG file.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if it has more shapes than such a file should, [`Error::Write`] with
-    /// the reason of the backend.
+    /// [`Error::Parameter`] if it has more shapes than such a file should.
     pub fn to_svg(&self) -> Result<String, Error> {
         let shapes: usize = self.panels.iter().map(Panel::shapes).sum();
         if shapes > MOST_SHAPES {
@@ -169,19 +165,21 @@ impl Picture {
                 parameter: "shapes",
                 value: shapes.to_string(),
                 allowed: format!(
-                    "an SVG file of more than {MOST_SHAPES} would be large and slow to show; choose a coarser level, or PNG"
+                    "an SVG file of more than {MOST_SHAPES} would be large and slow to show; choose a coarser level"
                 ),
             });
         }
-        draw_svg(self).map_err(|why| write_error(Path::new("SVG"), why))
-    }
-
-    /// Writes the picture as a PNG file.
-    ///
-    /// # Errors
-    /// [`Error::Write`].
-    pub fn write_png(&self, path: &Path) -> Result<(), Error> {
-        draw_png(self, path).map_err(|why| write_error(path, why))
+        let PictureLayout { panels, width, size } = self.layout();
+        let mut pen = Pen::new(size, true);
+        let heading = (0.5 * size.0, MARGIN + 0.4 * HEADING);
+        pen.text(&self.title, heading, axes::TITLE + 1.0, INK, Align::Centre);
+        for (panel, at) in panels {
+            match panel {
+                Panel::Map(map) => map.draw(&mut pen, at, width),
+                Panel::Graph(graph) => graph.draw(&mut pen, at, width),
+            }
+        }
+        Ok(pen.finish())
     }
 
     /// Writes the picture as an SVG file.
@@ -193,16 +191,15 @@ impl Picture {
         replace_text(path, &svg).map(|_| ())
     }
 
-    /// Writes `NAME.png` and `NAME.svg` to a directory, which is made if need be.
+    /// Writes `NAME.svg` to a directory, which is made if need be.
     ///
     /// # Errors
-    /// [`Error::Write`], and those of [`Self::to_svg`] after the PNG file is written.
-    pub fn write(&self, directory: &Path, name: &str) -> Result<[PathBuf; 2], Error> {
+    /// [`Error::Write`], and those of [`Self::to_svg`].
+    pub fn write(&self, directory: &Path, name: &str) -> Result<PathBuf, Error> {
         fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
-        let [png, svg] = ["png", "svg"].map(|end| directory.join(format!("{name}.{end}")));
-        self.write_png(&png)?;
-        self.write_svg(&svg)?;
-        Ok([png, svg])
+        let path = directory.join(format!("{name}.svg"));
+        self.write_svg(&path)?;
+        Ok(path)
     }
 
     /// Panels row by row.
@@ -222,29 +219,6 @@ impl Picture {
         }
         let size = (2.0 * MARGIN + columns as f64 * width, y);
         PictureLayout { panels: placed, width, size }
-    }
-}
-
-impl Drawing for Picture {
-    fn areas_meet(&self) -> bool {
-        true
-    }
-
-    fn size(&self) -> (f64, f64) {
-        self.layout().size
-    }
-
-    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
-        let PictureLayout { panels, width, size } = self.layout();
-        let heading = (0.5 * size.0, MARGIN + 0.4 * HEADING);
-        pen.text(&self.title, heading, axes::TITLE + 1.0, INK, Align::Centre)?;
-        for (panel, at) in panels {
-            match panel {
-                Panel::Map(map) => map.draw(pen, at, width)?,
-                Panel::Graph(graph) => graph.draw(pen, at, width)?,
-            }
-        }
-        Ok(())
     }
 }
 

@@ -11,7 +11,8 @@ use super::section::{PlanePoint, Section, Slice, View};
 use super::trace;
 use crate::measure::Fields;
 use crate::mesh::{BoundaryPart, Mesh};
-use crate::plot::style::{INK, PAPER};
+use crate::plot::pen::PAPER;
+use crate::plot::style::INK;
 use crate::problem::{ContactSet, Problem};
 
 /// Most cells whose edges are drawn.

@@ -192,12 +192,10 @@ fn failures_are_listed_and_drawn() {
     assert!(report.to_text().contains("failed: p1, level 32: cycling"));
     let scratch = Scratch::new("drawn");
     let written = report.write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 6 + 2 * 3);
+    assert_eq!(written.len(), 6 + 3);
     for plot in ["time", "unknowns", "memory"] {
         let text = scratch.read(&format!("radial-2d-{plot}.svg"));
         assert!(text.contains("did not converge"), "{plot}");
-        let png = std::fs::read(scratch.0.join(format!("radial-2d-{plot}.png"))).unwrap();
-        assert_eq!(png[1..4], *b"PNG");
     }
     let memory = scratch.read("radial-2d-memory.svg");
     assert!(memory.contains("peak memory above that of an empty run in MB"));
@@ -205,7 +203,7 @@ fn failures_are_listed_and_drawn() {
     assert!(!scratch.0.join("report.html").exists());
     report.provenance.complete = true;
     let written = report.write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 7 + report.tables().len() + 2 * 3);
+    assert_eq!(written.len(), 7 + report.tables().len() + 3);
     let page = scratch.read("report.html");
     assert!(page.contains("<g class=\"s2\">") && page.contains("<tr class=\"s2\">"));
     // nothing is left of what was on its way
@@ -224,7 +222,7 @@ fn figures_are_as_wide_as_their_longest_label() {
         report.write_figures(&scratch.0, "radial-2d").unwrap();
         let text = scratch.read("radial-2d-time.svg");
         for scheme in ["p1", "sipg", "wopsip"] {
-            assert!(text.contains(&format!("{scheme}{label}\n")), "{scheme}{label}");
+            assert!(text.contains(&format!(">{scheme}{label}</text>")), "{scheme}{label}");
         }
         let start = text.split("width=\"").nth(1).unwrap();
         start.split('"').next().unwrap().parse::<f64>().unwrap()
