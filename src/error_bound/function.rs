@@ -1,6 +1,7 @@
 //! The admissible function of a discrete solution.
 
 use super::PrimalDualPair;
+use super::flux::Flux;
 use crate::algebra::{Bound, Contact};
 use crate::arrays::map_entries;
 use crate::assemble::space::tables::BasisAt;
@@ -40,7 +41,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The nodes of the function of a pair in a cell.
     pub(super) fn pair_nodes(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         cell: usize,
     ) -> impl Iterator<Item = PairNode> {
         let n_vertices = self.mesh.vertices().len();
@@ -53,7 +54,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The nodes of the function of a pair on a facet.
     pub(super) fn pair_nodes_on(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         (cell, local): Place,
     ) -> impl Iterator<Item = PairNode> {
         self.pair_nodes(pair, cell).filter(move |(ends, _)| !ends.contains(&local))
@@ -66,7 +67,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         u: &[T],
         states: (&[Bound<T>], &[Contact]),
-    ) -> PrimalDualPair {
+    ) -> PrimalDualPair<D> {
         let degree = self.degree;
         let (n_edges, edges) = match degree {
             1 => (0, Vec::new()),
@@ -92,7 +93,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if n_edges > 0 {
             self.clip_at_midpoints(&nodes, &mut function);
         }
-        PrimalDualPair { degree, function, edges, flux: Vec::new() }
+        PrimalDualPair { degree, function, edges, flux: Flux::zero(degree - 1, 0) }
     }
 
     /// For each node the obstacle that all unknowns of all cells around touch, where these are no values at the nodes.

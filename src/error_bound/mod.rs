@@ -16,13 +16,13 @@ mod contact;
 mod estimate;
 mod exchange;
 mod figures;
+mod flux;
 mod friedrichs;
 mod function;
 mod guarantee;
 mod marking;
 mod pair;
 mod patches;
-mod quadratic_patches;
 mod quadratics;
 mod shared_multipliers;
 mod smooth_forces;
@@ -30,6 +30,7 @@ mod terms;
 
 pub use estimate::{BoundParts, ErrorBound, Unproven};
 pub use figures::{BoundFigures, TrueErrors};
+pub use flux::Flux;
 pub use pair::PrimalDualPair;
 
 use crate::error::Error;

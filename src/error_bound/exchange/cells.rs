@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
+use crate::error_bound::flux::Flux;
 use crate::quadrature::Rule;
 use crate::real::{Point, Real};
 
@@ -56,7 +57,7 @@ pub(super) struct Cells<'f, const D: usize> {
     pub cells: Vec<CellInContact>,
     /// By cell the products of its fluxes with each other.
     products: Vec<f64>,
-    pub flux: &'f mut [f64],
+    pub flux: &'f mut Flux<D>,
 }
 
 impl<const D: usize> Cells<'_, D> {
@@ -66,13 +67,13 @@ impl<const D: usize> Cells<'_, D> {
     /// Half of the derivative of the square of the mismatch of a cell by one of its numbers.
     fn slope(&self, k: usize, number: usize) -> f64 {
         let row = &self.products[(k * Self::N + number) * Self::N..][..Self::N];
-        let flux = &self.flux[self.cells[k].number * Self::N..][..Self::N];
+        let flux = self.flux.of_cell(self.cells[k].number);
         let products = row.iter().zip(flux).map(|(p, c)| p * c);
         products.sum::<f64>() - self.cells[k].gradient[number]
     }
     /// The square of the mismatch of a cell.
     pub fn mismatch(&self, k: usize) -> f64 {
-        let flux = &self.flux[self.cells[k].number * Self::N..][..Self::N];
+        let flux = self.flux.of_cell(self.cells[k].number);
         let of_cell = &self.cells[k];
         let term =
             |(number, c): (usize, &f64)| c * (self.slope(k, number) - of_cell.gradient[number]);
@@ -107,7 +108,7 @@ impl<const D: usize> Cells<'_, D> {
     /// Adds to a number of a cell that changes the divergence at one vertex.
     pub fn add(&mut self, k: usize, number: usize, vertex: usize, exchange: f64) {
         let cell = &mut self.cells[k];
-        self.flux[cell.number * Self::N + number] += exchange;
+        self.flux.of_cell_mut(cell.number)[number] += exchange;
         cell.multiplier[vertex] -= cell.divergence * exchange;
     }
 }
@@ -118,8 +119,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         numbers: &[usize],
         multiplier: impl Fn(usize) -> [f64; 4],
-        function: &PrimalDualPair,
-        flux: &'f mut [f64],
+        function: &PrimalDualPair<D>,
+        flux: &'f mut Flux<D>,
     ) -> Cells<'f, D> {
         let rule = Rule::new(D, DEGREE);
         let square = Cells::<D>::N * Cells::<D>::N;
@@ -135,7 +136,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn quadratic_in_contact(
         &self,
         number: usize,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         multiplier: [f64; 4],
         (rule, products): (&Rule, &mut [f64]),
     ) -> CellInContact {
@@ -159,7 +160,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let mut fluxes = [Point::<f64, D>::zeros(); 16];
             for (facet, corner) in corners.iter().enumerate().take(D + 1) {
                 let along = (x - corner) * per_volume;
-                (0..D + 1).for_each(|j| fluxes[facet * (D + 1) + j] = along * point[j]);
+                (0..D + 1).for_each(|j| fluxes[Flux::<D>::place(facet, j)] = along * point[j]);
             }
             for a in 0..n {
                 of_gradient[a] += weight * gradient.dot(&fluxes[a]);

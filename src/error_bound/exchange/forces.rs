@@ -11,6 +11,7 @@ use super::cells::Cells;
 use crate::arrays::map_entries;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
+use crate::error_bound::flux::Flux;
 use crate::error_bound::quadratics::vertices_of;
 use crate::error_bound::terms::limit;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
@@ -56,14 +57,14 @@ struct Around<'f> {
 impl<const D: usize> Cells<'_, D> {
     /// Adds to the density of a facet at a vertex, and keeps the divergence.
     fn add_to_force(&mut self, (k, local): Place, vertex: usize, change: f64) {
-        let start = self.cells[k].number * Self::N;
-        self.flux[start + local * (D + 1) + vertex] += change;
-        self.flux[start + vertex * (D + 2)] -= change;
+        let cell = self.cells[k].number;
+        self.flux.add_density(cell, local, vertex, change);
+        self.flux.add_inner(cell, vertex, -change);
     }
 
     /// The density of a facet at a vertex.
     fn force(&self, (k, local): Place, vertex: usize) -> f64 {
-        self.flux[self.cells[k].number * Self::N + local * (D + 1) + vertex]
+        self.flux.density(self.cells[k].number, local, vertex)
     }
 
     /// Moves a contact force towards its mean until the force is nowhere negative. The force stays as it is if the
@@ -110,14 +111,15 @@ impl<const D: usize> Cells<'_, D> {
     /// Exchanges the contact forces of two facets at a vertex, along a chain of cells: numbers with alternating signs,
     /// two for each cell.
     fn exchange_along(&mut self, chain: &[(usize, usize, f64)], [gap, gap_of_last]: [f64; 2]) {
-        let number = |(k, number, _): (usize, usize, f64)| self.cells[k].number * Self::N + number;
+        let of =
+            |(k, number, _): (usize, usize, f64)| self.flux.of_cell(self.cells[k].number)[number];
         let Some((first, last)) = chain.first().zip(chain.last()) else { return };
-        let [first, last] = map_entries([*first, *last], |end| self.flux[number(end)].max(0.0));
+        let [first, last] = map_entries([*first, *last], |end| of(end).max(0.0));
         let [slope, curvature] = self.slopes(chain, gap_of_last - gap);
         let change = (-slope / curvature).min(first).max(-last);
         if change.is_finite() {
             for &(k, number, sign) in chain {
-                self.flux[self.cells[k].number * Self::N + number] += sign * change;
+                self.flux.of_cell_mut(self.cells[k].number)[number] += sign * change;
             }
         }
     }
@@ -127,9 +129,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Changes the contact forces of quadratics along facets, as far as that makes the bound smaller.
     pub(in crate::error_bound) fn exchange_forces(
         &self,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         neighbours: &Neighbours,
-        flux: &mut [f64],
+        flux: &mut Flux<D>,
     ) {
         let facets: Vec<(Place, usize)> = self.grouped_facets_of(BoundaryPart::Contact).collect();
         let mut touches = vec![false; self.mesh.vertices().len()];

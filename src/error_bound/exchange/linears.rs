@@ -7,6 +7,7 @@ use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact::NodeForce;
+use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbours};
@@ -64,8 +65,8 @@ impl<const D: usize> CellInContact<D> {
     }
 
     /// Adds to the flux through a facet what the multiplier gives.
-    fn add(&mut self, facet: usize, exchange: f64, flux: &mut [f64]) {
-        flux[self.number * (D + 1) + facet] += exchange;
+    fn add(&mut self, facet: usize, exchange: f64, flux: &mut Flux<D>) {
+        flux.add_through(self.number, facet, exchange);
         self.difference += self.at_centre[facet] * exchange;
         self.sum += exchange;
         self.multiplier -= exchange;
@@ -119,10 +120,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Exchanges multipliers for flux of linears, in and between the cells that count.
     pub(in crate::error_bound) fn exchange_linears(
         &self,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         multipliers: &[f64],
         (neighbours, counts): (&Neighbours, Counts<'_>),
-        flux: &mut [f64],
+        flux: &mut Flux<D>,
     ) {
         let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
         let presses = |cell: usize| counts(cell) && multipliers[cell].abs() > ROUNDING * largest;
@@ -135,8 +136,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut cells = in_large_pages(Vec::<CellInContact<D>>::with_capacity(numbers.len()));
         cells.extend(numbers.iter().map(in_contact));
         for cell in &mut cells {
-            let fluxes = &flux[cell.number * (D + 1)..][..D + 1];
-            for (flux, at_centre) in fluxes.iter().zip(&cell.at_centre) {
+            for (flux, at_centre) in flux.of_cell(cell.number).iter().zip(&cell.at_centre) {
                 cell.difference += at_centre * *flux;
                 cell.sum += flux;
             }
@@ -155,7 +155,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn linear_in_contact(
         &self,
         number: usize,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         multiplier: f64,
         rule: &Rule,
     ) -> CellInContact<D> {
@@ -200,7 +200,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 fn exchange_between<const D: usize>(
     cells: &mut [CellInContact<D>],
     [(here, local), (there, across)]: [Place; 2],
-    flux: &mut [f64],
+    flux: &mut Flux<D>,
 ) -> f64 {
     let [of_here, of_there] = [&cells[here], &cells[there]];
     let sign = (of_here.multiplier + of_there.multiplier).signum();
@@ -226,7 +226,7 @@ fn exchange_between<const D: usize>(
 fn exchange_with_dirichlet<const D: usize>(
     cell: &mut CellInContact<D>,
     local: usize,
-    flux: &mut [f64],
+    flux: &mut Flux<D>,
 ) -> f64 {
     let sign = cell.multiplier.signum();
     let Some(gap) = cell.gap(sign) else { return 0.0 };

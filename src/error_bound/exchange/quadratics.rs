@@ -10,6 +10,7 @@ use super::{FacetOfCell, ROUNDING, Step, decrease, visit_steps};
 use crate::arrays::{map_entries, tabulate};
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
+use crate::error_bound::flux::Flux;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
 use crate::error_bound::terms::limit;
 use crate::mesh::Neighbours;
@@ -34,9 +35,9 @@ impl<const D: usize> Cells<'_, D> {
         let of_variation = (1.0 - share) * cell.variation * squares.sqrt();
         let limit = (self.mismatch(k).sqrt() + of_variation).powi(2);
         let changes = cell.multiplier.map(|m| (1.0 - share) * (m - mean) / cell.divergence);
-        (0..D + 1).for_each(|j| self.add(k, j * (D + 2), j, changes[j]));
+        (0..D + 1).for_each(|j| self.add(k, Flux::<D>::place(j, j), j, changes[j]));
         if self.mismatch(k) > limit {
-            (0..D + 1).for_each(|j| self.add(k, j * (D + 2), j, -changes[j]));
+            (0..D + 1).for_each(|j| self.add(k, Flux::<D>::place(j, j), j, -changes[j]));
         } else {
             self.cells[k].has_one_sign = true;
         }
@@ -52,7 +53,7 @@ impl<const D: usize> Cells<'_, D> {
         if here.sum() * there.sum() < 0.0 || !takes_part(here) || !takes_part(there) {
             return 0.0;
         }
-        let number = map_entries([0, 1], |s| at[s].1 * (D + 1) + vertex[s]);
+        let number = map_entries([0, 1], |s| Flux::<D>::place(at[s].1, vertex[s]));
         let terms = [(at[0].0, number[0], 1.0), (at[1].0, number[1], -1.0)];
         let of_gaps = sign * (there.gap(sign, vertex[1]) - here.gap(sign, vertex[0]));
         let [slope, curvature] = self.slopes(&terms, of_gaps);
@@ -74,7 +75,7 @@ impl<const D: usize> Cells<'_, D> {
         if !(cell.has_one_sign && cell.is_given[usize::from(sign < 0.0)]) {
             return 0.0;
         }
-        let number = local * (D + 1) + vertex;
+        let number = Flux::<D>::place(local, vertex);
         let of_gap = -sign * cell.gap(sign, vertex);
         let [slope, curvature] = self.slopes(&[(k, number, 1.0)], of_gap);
         let exchange = sign * (-sign * slope / curvature).min(cell.room(sign, vertex));
@@ -92,7 +93,7 @@ impl<const D: usize> Cells<'_, D> {
             return 0.0;
         }
         let sign = cell.sum().signum();
-        let number = map_entries([a, b], |v| v * (D + 2));
+        let number = map_entries([a, b], |v| Flux::<D>::place(v, v));
         let terms = [(k, number[0], 1.0), (k, number[1], -1.0)];
         let of_gaps = sign * (cell.gap(sign, b) - cell.gap(sign, a));
         let [slope, curvature] = self.slopes(&terms, of_gaps);
@@ -111,10 +112,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Exchanges multipliers for flux of quadratics.
     pub(in crate::error_bound) fn exchange_quadratics(
         &self,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         loads: &CellLoads,
         neighbours: &Neighbours,
-        flux: &mut [f64],
+        flux: &mut Flux<D>,
     ) {
         let multipliers = self.linear_multipliers(loads);
         let strength = |cell: usize| {

@@ -93,19 +93,24 @@ pub(in crate::error_bound) fn limit(mean: f64, values: &[f64]) -> f64 {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The flux of a pair in a cell.
-    pub(super) fn flux_in(&self, pair: &PrimalDualPair, cell: usize, volume: f64) -> CellFlux<D> {
-        let n = if pair.degree > 1 { D + 1 } else { 1 };
-        let flux = &pair.flux[cell * (D + 1) * n..(cell + 1) * (D + 1) * n];
+    pub(super) fn flux_in(
+        &self,
+        pair: &PrimalDualPair<D>,
+        cell: usize,
+        volume: f64,
+    ) -> CellFlux<D> {
+        let numbers = pair.flux.of_cell(cell);
+        let n = if pair.flux.degree() > 0 { D + 1 } else { 1 };
         let per_volume = 1.0 / (D as f64 * volume);
         let (mut sums, mut origins) = ([0.0; 4], [Point::<f64, D>::zeros(); 4]);
-        for (&v, flux) in self.mesh.cell(cell).iter().zip(flux.chunks_exact(n)) {
+        for (&v, numbers) in self.mesh.cell(cell).iter().zip(numbers.chunks_exact(n)) {
             let opposite = point_f64(&self.mesh.vertices()[v as usize]);
-            for (k, flux) in flux.iter().enumerate() {
-                sums[k] += flux;
-                origins[k] += opposite * *flux;
+            for (k, number) in numbers.iter().enumerate() {
+                sums[k] += number;
+                origins[k] += opposite * *number;
             }
         }
-        let inner: f64 = (0..D + 1).map(|k| flux[k * (D + 2) % flux.len()]).sum();
+        let inner: f64 = (0..D + 1).map(|j| pair.flux.inner(cell, j)).sum();
         let divergence = match n {
             1 => [D as f64 * sums[0]; 4],
             _ => sums.map(|sum| (D + 1) as f64 * sum - inner),

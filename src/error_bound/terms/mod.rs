@@ -123,7 +123,7 @@ fn with_share(squares: [f64; 2], share: f64, others: [f64; 2]) -> f64 {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The admissible function in a cell.
-    pub(super) fn admissible_in(&self, pair: &PrimalDualPair, cell: usize) -> Admissible<'_, D> {
+    pub(super) fn admissible_in(&self, pair: &PrimalDualPair<D>, cell: usize) -> Admissible<'_, D> {
         let (geometry, region) = (self.mesh.geometry(cell), self.mesh.region(cell));
         let (mut values, mut gradients) = ([0.0; 4], [Point::zeros(); 4]);
         let mut gradient = Point::zeros();
@@ -280,7 +280,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The terms of a cell.
     pub(super) fn cell_terms(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         u: &[T],
         cell: usize,
         (table, cut): (&CellTable<f64>, Option<&CutRule>),
@@ -353,7 +353,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// What the integrals of a cell read.
     fn cell_data(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         u: &[T],
         cell: usize,
         table: &CellTable<f64>,
