@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::friedrichs::FriedrichsData;
-use super::terms::{CellTerms, Totals};
+use super::integrals::{CellTerms, Totals};
 use super::{NoBound, PrimalDualPair};
 use crate::algebra::Distribution;
 use crate::assemble::Discretisation;

@@ -1,8 +1,8 @@
 //! What of a bound is proven.
 
 use super::PrimalDualPair;
+use super::admissible_function::PairNode;
 use super::estimate::Unproven;
-use super::function::PairNode;
 use crate::arrays::map_entries;
 use crate::assemble::space::{Place, Space};
 use crate::measure::Counts;

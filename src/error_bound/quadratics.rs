@@ -16,7 +16,7 @@ use std::convert::Infallible;
 use std::ops::Range;
 
 use super::NoBound;
-use super::contact::NodeForce;
+use super::contact_forces::NodeForce;
 use super::flux::Flux;
 use super::shared_multipliers::SharedNodes;
 use crate::algebra::{Bound, Contact};

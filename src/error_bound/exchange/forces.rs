@@ -6,14 +6,17 @@
 //! of a contact facet at a vertex may also leave through another facet at that vertex, and through those of further
 //! cells around the vertex, until it comes to another contact facet there: divergences at a vertex depend on the
 //! sum of its densities. What changes is the mismatch, and the complementarity of the contact force.
+//!
+//! Without it the effectivity of `sipg-p2` on signorini-harmonic-2d at 32 is 2.28 in place of 1.52, that of `p2` on
+//! signorini-line-3d at 8 is 1.75 in place of 1.45.
 
-use super::cells::Cells;
+use super::cells_of_quadratics::CellsOfQuadratics;
 use crate::arrays::map_entries;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
+use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::vertices_of;
-use crate::error_bound::terms::limit;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::facet_to_cell;
 use crate::real::Real;
@@ -54,7 +57,7 @@ struct Around<'f> {
     vertex: u32,
 }
 
-impl<const D: usize> Cells<'_, D> {
+impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Adds to the density of a facet at a vertex, and keeps the divergence.
     fn add_to_force(&mut self, (k, local): Place, vertex: usize, change: f64) {
         let cell = self.cells[k].number;
@@ -74,7 +77,7 @@ impl<const D: usize> Cells<'_, D> {
         let mean = vertices_of::<D>(at.1).map(|j| self.force(at, j)).sum::<f64>() / D as f64;
         let mut values = [mean; 4];
         vertices_of::<D>(at.1).for_each(|j| values[j] = self.force(at, j));
-        let share = limit(mean, &values[..=D]);
+        let share = share_of_one_sign(mean, &values[..=D]);
         facet.has_one_sign = mean >= 0.0;
         if share == 1.0 || mean < 0.0 {
             return;
@@ -188,7 +191,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// cells, and exchanges the contact force at its end with that at its beginning.
     fn follow(
         &self,
-        cells: &mut Cells<'_, D>,
+        cells: &mut CellsOfQuadratics<'_, D>,
         around: &Around<'_>,
         chain: &mut [(usize, usize, f64); 2 * LONGEST],
         ((k, entered), length): (Place, usize),

@@ -1,12 +1,12 @@
 //! Exchange for linears: one flux of each facet, one multiplier of each cell.
 
-use super::{FacetOfCell, ROUNDING, Step, decrease, visit_steps};
+use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, visit_steps};
 use crate::algebra::Contact;
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
-use crate::error_bound::contact::NodeForce;
+use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::memory::in_large_pages;
@@ -22,7 +22,7 @@ const SWEEPS: usize = 4;
 const DEGREE: usize = 2;
 
 /// What the exchange needs of a cell.
-struct CellInContact<const D: usize> {
+struct CellOfLinears<const D: usize> {
     /// The number of the cell.
     number: usize,
     /// The values at the centre of the fluxes that leave through one facet each.
@@ -41,7 +41,7 @@ struct CellInContact<const D: usize> {
     multiplier: f64,
 }
 
-impl<const D: usize> CellInContact<D> {
+impl<const D: usize> CellOfLinears<D> {
     /// Half of the derivative of the square of the mismatch by the flux through a facet, and half of the second
     /// derivative.
     fn slopes(&self, facet: usize) -> [f64; 2] {
@@ -131,9 +131,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let rule = Rule::new(D, DEGREE);
         let in_contact = |&cell: &usize| {
             let multiplier = if presses(cell) { multipliers[cell] } else { 0.0 };
-            self.linear_in_contact(cell, function, multiplier, &rule)
+            self.cell_of_linears(cell, function, multiplier, &rule)
         };
-        let mut cells = in_large_pages(Vec::<CellInContact<D>>::with_capacity(numbers.len()));
+        let mut cells = in_large_pages(Vec::<CellOfLinears<D>>::with_capacity(numbers.len()));
         cells.extend(numbers.iter().map(in_contact));
         for cell in &mut cells {
             for (flux, at_centre) in flux.of_cell(cell.number).iter().zip(&cell.at_centre) {
@@ -141,24 +141,26 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 cell.sum += flux;
             }
         }
-        let square: f64 = cells.iter().map(CellInContact::square).sum();
+        let square: f64 = cells.iter().map(CellOfLinears::square).sum();
         visit_steps(&steps, (cells.len(), square), SWEEPS, |step| match step {
-            Step::Between(at) => exchange_between(&mut cells, at.map(FacetOfCell::place), flux),
-            Step::WithDirichlet(facet) => {
+            ExchangeStep::Between(at) => {
+                exchange_between(&mut cells, at.map(FacetOfCell::place), flux)
+            }
+            ExchangeStep::WithDirichlet(facet) => {
                 let (k, local) = facet.place();
                 exchange_with_dirichlet(&mut cells[k], local, flux)
             }
-            Step::Inside(_) => 0.0,
+            ExchangeStep::Inside(_) => 0.0,
         });
     }
 
-    fn linear_in_contact(
+    fn cell_of_linears(
         &self,
         number: usize,
         function: &PrimalDualPair<D>,
         multiplier: f64,
         rule: &Rule,
-    ) -> CellInContact<D> {
+    ) -> CellOfLinears<D> {
         let volume = self.mesh.geometry(number).volume.to_f64();
         let alpha = self.alpha(number).to_f64();
         let admissible = self.admissible_in(function, number);
@@ -182,7 +184,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             };
             Some(rule.iter().map(|(point, weight)| weight * at_point(point)).sum())
         };
-        CellInContact {
+        CellOfLinears {
             number,
             at_centre,
             variance: squares * per_volume * per_volume / ((D + 1) * (D + 2)) as f64,
@@ -198,7 +200,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 /// Exchanges the multipliers of two cells for the flux through their facet. The result is by how much the square of the
 /// bound falls.
 fn exchange_between<const D: usize>(
-    cells: &mut [CellInContact<D>],
+    cells: &mut [CellOfLinears<D>],
     [(here, local), (there, across)]: [Place; 2],
     flux: &mut Flux<D>,
 ) -> f64 {
@@ -224,7 +226,7 @@ fn exchange_between<const D: usize>(
 /// Exchanges the multiplier of a cell for the flux through a Dirichlet facet. The result is by how much the square of
 /// the bound falls.
 fn exchange_with_dirichlet<const D: usize>(
-    cell: &mut CellInContact<D>,
+    cell: &mut CellOfLinears<D>,
     local: usize,
     flux: &mut Flux<D>,
 ) -> f64 {

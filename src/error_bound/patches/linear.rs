@@ -9,7 +9,7 @@ use super::patch::CellProblem;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::error_bound::NoBound;
-use crate::error_bound::contact::NodeForce;
+use crate::error_bound::contact_forces::NodeForce;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbours};
 use crate::parallel::cells;

@@ -1,22 +1,22 @@
 //! The flux of a conforming function: `alpha grad u` in each cell and a part around each vertex, the smallest that makes
 //! normal components single-valued and balances load and multiplier.
 //!
-//! Let `phi` be the hat function of a vertex, and its patch the cells around it. Its part `p` of the flux has for all `w`
-//! that are constant, for quadratics linear,
+//! Let `phi` be the hat function of a vertex, its patch the cells around it, and `g = alpha grad u . n`. Its part `p` of
+//! the flux has for all `w` that are constant, for quadratics linear,
 //!
 //! ```text
-//! (div p, w)_K = a_K(u, phi w) - l_K(phi w) - int_dK alpha grad u . n phi w    in each cell K of the patch
-//! sum over both sides of int_F p.n w = - sum over both sides of int_F phi alpha grad u . n w    on each facet F at the vertex
-//! p.n = 0                                                                      on the facets opposite the vertex
+//! (div p, w)_K = a_K(u, phi w) - l_K(phi w) - int_dK g phi w     in each cell K of the patch
+//! int_F p.n w = - int_F g phi w, both summed over the two sides  on each facet F at the vertex
+//! p.n = 0                                                        on the facets opposite the vertex
 //! ```
 //!
 //! `l_K` load and multiplier of the cell. Among these `|alpha^-1/2 (p - phi alpha grad (v - u))|` is least, `v` the
 //! admissible function; of linears `v` is `u` but for few values, and counts as `u`. The equation of the vertex is the
 //! condition of solvability.
 //!
-//! `p` has in each cell numbers on the facets at the vertex ([`Flux`]): one for each of linears, one for each vertex of a
-//! facet of quadratics, whose numbers inside the cell follow from the first line. What is left of that line is one condition,
-//! with `w = 1`.
+//! `p` has in each cell numbers on the facets at the vertex ([`Flux`]): one on each for linears, one for each vertex of
+//! a facet for quadratics, whose numbers inside the cell follow from the first line. What is left of that line is one
+//! condition, with `w = 1`.
 //!
 //! Sources: P. Destuynder, B. Métivet, Math. Comp. 68 (1999), 1379-1396; D. Braess, J. Schöberl, Math. Comp. 77 (2008),
 //! 651-672; D. Braess, V. Pillwein, J. Schöberl, Comput. Methods Appl. Mech. Engrg. 198 (2009), 1189-1197.
@@ -46,7 +46,7 @@ use linear::LinearCells;
 use parts::Parts;
 use patch::{CellProblem, Patch};
 
-use super::contact::NodeForce;
+use super::contact_forces::NodeForce;
 use super::flux::Flux;
 use super::quadratics::CellLoads;
 use super::{NoBound, PrimalDualPair};

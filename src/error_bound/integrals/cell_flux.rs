@@ -51,11 +51,17 @@ impl<const D: usize> CellFlux<D> {
     }
     /// What the flux leaves of a load, by the means of the load less a constant times each factor of a
     /// term, and the square of its norm.
-    pub fn balance(&self, volume: f64, means: &[f64; 4], square: f64, constant: f64) -> Balance {
+    pub fn left_of_load(
+        &self,
+        volume: f64,
+        means: &[f64; 4],
+        square: f64,
+        constant: f64,
+    ) -> LeftOfLoad {
         if self.n == 1 {
             let mean = -self.sums[0] / volume - means[0] - constant;
             let rest = (square - volume * means[0] * means[0]).max(0.0);
-            return Balance { mean, values: [mean; 4], variation: 0.0, rest };
+            return LeftOfLoad { mean, values: [mean; 4], variation: 0.0, rest };
         }
         let d = D as f64;
         let sum: f64 = means.iter().sum();
@@ -68,12 +74,12 @@ impl<const D: usize> CellFlux<D> {
         let mean = values.iter().sum::<f64>() / (d + 1.0);
         let squares: f64 = values[..self.n].iter().map(|v| (v - mean).powi(2)).sum();
         let variation = volume * squares / ((d + 1.0) * (d + 2.0));
-        Balance { mean, values, variation, rest: (square - volume * products).max(0.0) }
+        LeftOfLoad { mean, values, variation, rest: (square - volume * products).max(0.0) }
     }
 }
 
 /// What the flux of a cell leaves of the load.
-pub(super) struct Balance {
+pub(super) struct LeftOfLoad {
     /// Its mean.
     pub mean: f64,
     /// Its projection on the linear functions, at the vertices; the mean where the flux has one term.
@@ -86,7 +92,7 @@ pub(super) struct Balance {
 
 /// How far a linear function with these values at vertices can be taken from its mean, at most all the way,
 /// with the sign of the mean everywhere.
-pub(in crate::error_bound) fn limit(mean: f64, values: &[f64]) -> f64 {
+pub(in crate::error_bound) fn share_of_one_sign(mean: f64, values: &[f64]) -> f64 {
     let deepest = values.iter().map(|v| mean.signum() * (mean - v)).fold(0.0, f64::max);
     if deepest > mean.abs() { mean.abs() / deepest } else { 1.0 }
 }

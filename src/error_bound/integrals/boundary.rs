@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
-use super::cell_flux::limit;
+use super::cell_flux::share_of_one_sign;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::quadratics::vertices_of;
 use crate::error_bound::{NoBound, PrimalDualPair};
@@ -47,7 +47,7 @@ impl FacetFlux {
         let vertices = || (0..dimension + 1).filter(|&k| k != self.local);
         // the value at the vertex opposite the facet does not count
         values[self.local] = mean;
-        let share = limit(mean, &values[..=dimension]);
+        let share = share_of_one_sign(mean, &values[..=dimension]);
         let squares: f64 = values[..=dimension].iter().map(|v| (v - mean).powi(2)).sum();
         vertices().for_each(|k| values[k] = mean + share * (values[k] - mean));
         values[self.local] = 0.0;

@@ -13,7 +13,7 @@ use crate::real::{Point, Real};
 const DEGREE: usize = 4;
 
 /// A cell of the exchange, but for the products of its fluxes.
-pub(super) struct CellInContact {
+pub(super) struct CellOfQuadratics {
     /// The number of the cell.
     pub number: usize,
     /// The multiplier at the vertices.
@@ -37,7 +37,7 @@ pub(super) struct CellInContact {
     pub has_one_sign: bool,
 }
 
-impl CellInContact {
+impl CellOfQuadratics {
     /// The multiplier in the mean, times the number of vertices.
     pub fn sum(&self) -> f64 {
         self.multiplier.iter().sum()
@@ -53,14 +53,14 @@ impl CellInContact {
 }
 
 /// The cells of the exchange.
-pub(super) struct Cells<'f, const D: usize> {
-    pub cells: Vec<CellInContact>,
+pub(super) struct CellsOfQuadratics<'f, const D: usize> {
+    pub cells: Vec<CellOfQuadratics>,
     /// By cell the products of its fluxes with each other.
     products: Vec<f64>,
     pub flux: &'f mut Flux<D>,
 }
 
-impl<const D: usize> Cells<'_, D> {
+impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// The number of fluxes of a cell.
     pub const N: usize = (D + 1) * (D + 1);
 
@@ -121,25 +121,25 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         multiplier: impl Fn(usize) -> [f64; 4],
         function: &PrimalDualPair<D>,
         flux: &'f mut Flux<D>,
-    ) -> Cells<'f, D> {
+    ) -> CellsOfQuadratics<'f, D> {
         let rule = Rule::new(D, DEGREE);
-        let square = Cells::<D>::N * Cells::<D>::N;
+        let square = CellsOfQuadratics::<D>::N * CellsOfQuadratics::<D>::N;
         let mut products = vec![0.0; numbers.len() * square];
         let cells = numbers.iter().zip(products.chunks_exact_mut(square)).map(
             |(&number, products): (&usize, &mut [f64])| {
-                self.quadratic_in_contact(number, function, multiplier(number), (&rule, products))
+                self.cell_of_quadratics(number, function, multiplier(number), (&rule, products))
             },
         );
-        Cells { cells: cells.collect(), products, flux }
+        CellsOfQuadratics { cells: cells.collect(), products, flux }
     }
 
-    fn quadratic_in_contact(
+    fn cell_of_quadratics(
         &self,
         number: usize,
         function: &PrimalDualPair<D>,
         multiplier: [f64; 4],
         (rule, products): (&Rule, &mut [f64]),
-    ) -> CellInContact {
+    ) -> CellOfQuadratics {
         let n = (D + 1) * (D + 1);
         let volume = self.mesh.geometry(number).volume.to_f64();
         let per_volume = 1.0 / (D as f64 * volume);
@@ -169,7 +169,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 }
             }
         }
-        CellInContact {
+        CellOfQuadratics {
             number,
             multiplier,
             gaps,

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use super::NoBound;
-use super::contact::NodeForce;
+use super::contact_forces::NodeForce;
 use super::flux::Flux;
 use crate::algebra::Inequality;
 use crate::arrays::map_entries;
