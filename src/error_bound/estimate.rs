@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::friedrichs::FriedrichsData;
-use super::terms::{CellTerms, Totals};
+use super::integrals::{CellTerms, Totals};
 use super::{NoBound, PrimalDualPair};
 use crate::algebra::Distribution;
 use crate::assemble::Discretisation;
@@ -94,11 +94,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Panics
     /// If the pair is not one of this mesh, or `u` is shorter than the number of unknowns.
-    pub fn error_bound(&self, pair: &PrimalDualPair, u: &[T]) -> Result<ErrorBound, NoBound> {
+    pub fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[T]) -> Result<ErrorBound, NoBound> {
         compiled!(
             T, D: fn(
                 &Discretisation<'_, T, D>,
-                &PrimalDualPair,
+                &PrimalDualPair<D>,
                 &[T],
             ) -> Result<ErrorBound, NoBound>
                 = |of, pair, u| of.space.error_bound(pair, u)
@@ -110,7 +110,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Panics
     /// If the pair is not one of this mesh.
-    pub fn error_of_pair(&self, pair: &PrimalDualPair) -> Option<f64> {
+    pub fn error_of_pair(&self, pair: &PrimalDualPair<D>) -> Option<f64> {
         self.errors_and_error_of_pair(None, Some(pair)).ok()?.1
     }
 
@@ -121,14 +121,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// [`NoBound`].
     pub(crate) fn part_of_bound(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         u: &[T],
         counts: Counts<'_>,
     ) -> Result<PartOfBound<D>, NoBound> {
         compiled!(
             T, D: fn(
                 &Discretisation<'_, T, D>,
-                &PrimalDualPair,
+                &PrimalDualPair<D>,
                 &[T],
                 Counts<'_>,
             ) -> Result<PartOfBound<D>, NoBound>
@@ -144,7 +144,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     pub(crate) fn errors_and_error_of_pair(
         &self,
         u: Option<&[T]>,
-        pair: Option<&PrimalDualPair>,
+        pair: Option<&PrimalDualPair<D>>,
     ) -> Result<(Errors, Option<f64>), Error> {
         if self.problem().exact.is_none() {
             return Ok(Default::default());
@@ -162,14 +162,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     pub(crate) fn squared_errors_beside(
         &self,
         u: Option<&[T]>,
-        pair: Option<&PrimalDualPair>,
+        pair: Option<&PrimalDualPair<D>>,
         counts: Counts<'_>,
     ) -> Result<SquaredErrors, Error> {
         compiled!(
             T, D: fn(
                 &Discretisation<'_, T, D>,
                 Option<&[T]>,
-                Option<&PrimalDualPair>,
+                Option<&PrimalDualPair<D>>,
                 Counts<'_>,
             ) -> Result<SquaredErrors, Error>
                 = |of, u, pair, counts| {
@@ -256,7 +256,7 @@ impl<const D: usize> PartOfBound<D> {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    fn error_bound(&self, pair: &PrimalDualPair, u: &[T]) -> Result<ErrorBound, NoBound> {
+    fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[T]) -> Result<ErrorBound, NoBound> {
         let terms = self.terms_of_bound((pair, u), &|_| true)?;
         let totals = Totals::of(&terms);
         let of_solver = totals.of_solver(FriedrichsData::of(self.mesh).constant())?;
@@ -269,7 +269,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// What the cells that count add to a bound.
     fn part_of_bound(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         u: &[T],
         counts: Counts<'_>,
     ) -> Result<PartOfBound<D>, NoBound> {
@@ -310,7 +310,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The terms of the cells that count, by chunk, as they come: copies of them would cost more than their sums.
     fn terms_of_bound(
         &self,
-        (pair, u): (&PrimalDualPair, &[T]),
+        (pair, u): (&PrimalDualPair<D>, &[T]),
         counts: Counts<'_>,
     ) -> Result<Vec<Vec<CellTerms>>, NoBound> {
         let table = self.cell_table(Rule::new(D, self.degree_of_terms(pair.degree)));

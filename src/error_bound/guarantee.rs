@@ -1,8 +1,8 @@
 //! What of a bound is proven.
 
 use super::PrimalDualPair;
+use super::admissible_function::PairNode;
 use super::estimate::Unproven;
-use super::function::PairNode;
 use crate::arrays::map_entries;
 use crate::assemble::space::{Place, Space};
 use crate::measure::Counts;
@@ -21,7 +21,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// below for the reaction is positive or zero. Facets count with their cells.
     pub(super) fn unproven_terms(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         [is_algebra_proven, has_reaction_bound]: [bool; 2],
         counts: Counts<'_>,
     ) -> Vec<Unproven> {
@@ -95,7 +95,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// Whether the Bernstein coefficients of a quadratic on all edges exceed those of obstacles and gaps, but for
     /// rounding: data may leave an obstacle between nodes, and two obstacles may ask more than one value can do.
-    fn exceeds_obstacles(&self, pair: &PrimalDualPair) -> bool {
+    fn exceeds_obstacles(&self, pair: &PrimalDualPair<D>) -> bool {
         let exceeds = |bound: Option<DatumRef<'_, D>>, sign, cell, (ends, node): PairNode| {
             let Some(bound) = bound else { return true };
             let ends = map_entries(ends, |k| self.mesh.cell(cell)[k] as usize);
@@ -125,7 +125,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// Whether the function of a pair has the data of all Dirichlet facets at its nodes on them: where data of
     /// two facets differ at a common node no function with a square-integrable gradient takes both.
-    fn takes_dirichlet_data(&self, pair: &PrimalDualPair, counts: Counts<'_>) -> bool {
+    fn takes_dirichlet_data(&self, pair: &PrimalDualPair<D>, counts: Counts<'_>) -> bool {
         let mut facets = self.grouped_facets_of(BoundaryPart::Dirichlet);
         facets.all(|(place, group)| {
             let mut nodes = self.pair_nodes_on(pair, place);

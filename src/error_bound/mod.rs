@@ -10,27 +10,43 @@
 //!
 //! The theorem with all terms, its proof, its sources and what is guaranteed stand in the guide: [`bound`].
 //!
+//! | file or folder | content |
+//! |---|---|
+//! | `primal_dual_pair` | function and flux of a discrete solution: where the parts below meet |
+//! | `admissible_function` | `v`: means of the values at nodes, moved into the constraints |
+//! | `flux` | `q` by its numbers in cells |
+//! | `patches` | the flux of conforming functions, around each vertex |
+//! | `quadratics`, `shared_multipliers` | loads and multipliers of quadratics by cell, and the flux inside cells |
+//! | `contact_forces`, `smooth_forces` | the forces on contact facets |
+//! | `exchange` | multipliers exchanged for flux where obstacles bind |
+//! | `integrals` | what each cell and the boundary add to the bound, and the sums |
+//! | `friedrichs` | the constant with which counts what the solver left |
+//! | `guarantee` | which terms are proven |
+//! | `estimate` | the bound from the sums |
+//! | `marking`, `figures` | cells to refine; the figures of a report |
+//!
 //! [`bound`]: crate::guide::bound
 
-mod contact;
+mod admissible_function;
+mod contact_forces;
 mod estimate;
 mod exchange;
 mod figures;
+mod flux;
 mod friedrichs;
-mod function;
 mod guarantee;
+mod integrals;
 mod marking;
-mod pair;
 mod patches;
-mod quadratic_patches;
+mod primal_dual_pair;
 mod quadratics;
 mod shared_multipliers;
 mod smooth_forces;
-mod terms;
 
 pub use estimate::{BoundParts, ErrorBound, Unproven};
 pub use figures::{BoundFigures, TrueErrors};
-pub use pair::PrimalDualPair;
+pub use flux::Flux;
+pub use primal_dual_pair::PrimalDualPair;
 
 use crate::error::Error;
 use crate::readable_debug::debug_by_display;

@@ -16,7 +16,8 @@ use std::convert::Infallible;
 use std::ops::Range;
 
 use super::NoBound;
-use super::contact::NodeForce;
+use super::contact_forces::NodeForce;
+use super::flux::Flux;
 use super::shared_multipliers::SharedNodes;
 use crate::algebra::{Bound, Contact};
 use crate::arrays::{map_entries, tabulate};
@@ -168,29 +169,27 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(neumann)
     }
 
-    /// The densities `c_Fj` of fluxes with these moments, `D` of each facet of each cell.
-    pub(super) fn densities_of_moments(&self, moments: &[f64]) -> Vec<f64> {
+    /// The flux with these moments, `D` of each facet of each cell, without its numbers inside cells.
+    pub(super) fn flux_of_moments(&self, moments: &[f64]) -> Flux<D> {
         let polynomials = OrthonormalPolynomials::new(D - 1, 1);
-        let n = D + 1;
-        let mut densities = vec![0.0; self.mesh.n_cells() * n * n];
-        for (k, (out, moments)) in
-            densities.chunks_exact_mut(n).zip(moments.chunks_exact(D)).enumerate()
-        {
-            for (j, out) in out.iter_mut().enumerate().filter(|(j, _)| *j != k % n) {
+        let mut flux = Flux::zero(1, self.mesh.n_cells());
+        for (k, moments) in moments.chunks_exact(D).enumerate() {
+            let (cell, facet) = (k / (D + 1), k % (D + 1));
+            for (p, j) in vertices_of::<D>(facet).enumerate() {
                 let mut vertex = [0.0; 4];
-                vertex[j - usize::from(j > k % n)] = 1.0;
+                vertex[p] = 1.0;
                 let term = |(k, m): (usize, &f64)| m * polynomials.value(k, &vertex);
-                *out = moments.iter().enumerate().map(term).sum();
+                flux.add_density(cell, facet, j, moments.iter().enumerate().map(term).sum());
             }
         }
-        densities
+        flux
     }
 
     /// Adds the fluxes of Neumann data and contact, and sets `c_FF` such that the divergence balances loads
     /// and multipliers tested with linear functions. What rounding leaves of the balance of a cell is
     /// divided among these.
-    pub(super) fn balance(&self, loads: &CellLoads, flux: &mut [f64]) {
-        let (n, n_cells, square) = (self.per_cell(), self.mesh.n_cells(), (D + 1) * (D + 1));
+    pub(super) fn balance(&self, loads: &CellLoads, flux: &mut Flux<D>) {
+        let (n, n_cells, square) = (self.per_cell(), self.mesh.n_cells(), flux.per_cell());
         let d = D as f64;
         let mut given = vec![[0.0; 4]; if loads.neumann.is_empty() { 0 } else { n_cells }];
         for ((cell, _), products) in &loads.neumann {
@@ -199,8 +198,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         for ((cell, local), products) in loads.neumann.iter().chain(&loads.contact) {
             let of_facet = densities::<D>(&map_entries(*products, |row| row.iter().sum()), *local);
-            let start = cell * square + local * (D + 1);
-            flux[start..start + D + 1].iter_mut().zip(of_facet).for_each(|(to, c)| *to += c);
+            vertices_of::<D>(*local).for_each(|j| flux.add_density(*cell, *local, j, of_facet[j]));
         }
         let linear: Vec<[f64; 4]> =
             loads.functionals.iter().map(|f| map_entries(*f, |row| row.iter().sum())).collect();
@@ -218,14 +216,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 tested[..=D].iter_mut().for_each(|t| *t -= left);
                 let sum: f64 = tested[..=D].iter().sum();
                 for j in 0..=D {
-                    let others: f64 = (0..D + 1).map(|facet| flux[facet * (D + 1) + j]).sum();
+                    let of_vertex = (0..D + 1).map(|facet| flux[Flux::<D>::place(facet, j)]);
+                    let others: f64 = of_vertex.sum();
                     tested[j] = d * (sum - (d + 2.0) * tested[j]) - others;
                 }
-                (0..D + 1).for_each(|j| flux[j * (D + 2)] = tested[j]);
+                (0..D + 1).for_each(|j| flux[Flux::<D>::place(j, j)] = tested[j]);
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = cells::for_each(n_cells, &|c| c * square, flux, &fill);
+        let numbers = flux.of_cells_mut(0..n_cells);
+        let Ok(()) = cells::for_each(n_cells, &|c| c * square, numbers, &fill);
     }
 }
 

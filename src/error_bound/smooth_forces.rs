@@ -1,6 +1,6 @@
 //! Contact forces of broken quadratics, made smooth: those at single nodes alternate, and jumps hardly see it.
 
-use super::contact::NodeForce;
+use super::contact_forces::NodeForce;
 use super::quadratics::{Products, densities, products_on_facet, vertices_of};
 use crate::arrays::map_entries;
 use crate::assemble::space::{Place, Space};

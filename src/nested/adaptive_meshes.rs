@@ -36,7 +36,7 @@ const HALF: f64 = 0.375;
 /// ```
 #[derive(Debug)]
 pub struct AdaptiveMeshes<T, const D: usize> {
-    coarsest: Step<T, D>,
+    coarsest: MeshOfSequence<T, D>,
 }
 
 /// A mesh of the sequence.
@@ -44,7 +44,7 @@ pub struct AdaptiveMeshes<T, const D: usize> {
 /// Bisection appends vertices, so that neighbours are far apart in its list. The mesh that is solved on has
 /// its vertices in the order of cells: smoothers work on neighbours of near numbers.
 #[derive(Debug)]
-pub(super) struct Step<T, const D: usize> {
+pub(super) struct MeshOfSequence<T, const D: usize> {
     /// The mesh with its vertices in the order in which they came to be.
     bisected: BisectedMesh<T, D>,
     mesh: Mesh<T, D>,
@@ -59,7 +59,7 @@ pub(super) struct Step<T, const D: usize> {
     finer: OnceLock<Box<Self>>,
 }
 
-impl<T: Real, const D: usize> Step<T, D> {
+impl<T: Real, const D: usize> MeshOfSequence<T, D> {
     pub fn mesh(&self) -> &Mesh<T, D> {
         &self.mesh
     }
@@ -72,7 +72,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
     /// A sequence of one mesh.
     pub fn new(mesh: Mesh<T, D>) -> Self {
         let clock = Instant::now();
-        let coarsest = Step {
+        let coarsest = MeshOfSequence {
             bisected: BisectedMesh::new(mesh.clone()),
             numbers: (0..mesh.vertices().len() as u32).collect(),
             mesh,
@@ -84,10 +84,10 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         Self { coarsest }
     }
 
-    fn steps(&self) -> impl Iterator<Item = &Step<T, D>> {
+    fn steps(&self) -> impl Iterator<Item = &MeshOfSequence<T, D>> {
         successors(Some(&self.coarsest), |step| step.finer.get().map(|finer| &**finer))
     }
-    fn step(&self, position: usize) -> &Step<T, D> {
+    fn step(&self, position: usize) -> &MeshOfSequence<T, D> {
         match self.steps().nth(position) {
             Some(step) => step,
             None => panic!("there are {} meshes, none at position {position}", self.n_meshes()),
@@ -133,7 +133,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         self.add(self.bisected(marked)?)
     }
     /// The mesh that [`Self::bisect`] adds.
-    pub(super) fn bisected(&self, marked: &[usize]) -> Result<Step<T, D>, Error> {
+    pub(super) fn bisected(&self, marked: &[usize]) -> Result<MeshOfSequence<T, D>, Error> {
         let clock = Instant::now();
         let finest = self.step(self.n_meshes() - 1);
         let (mut bisected, bisection) = finest.bisected.bisect(marked)?;
@@ -147,7 +147,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         }
         parents.drain(..finest.n_vertices());
         let (mesh, numbers) = bisected.mesh().in_order_of_cells();
-        Ok(Step {
+        Ok(MeshOfSequence {
             bisected,
             mesh,
             numbers,
@@ -158,7 +158,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         })
     }
     /// Adds a bisection of the finest mesh.
-    pub(super) fn add(&self, step: Step<T, D>) -> Result<(), Error> {
+    pub(super) fn add(&self, step: MeshOfSequence<T, D>) -> Result<(), Error> {
         let finest = self.step(self.n_meshes() - 1);
         finest.finer.set(Box::new(step)).map_err(|_| Error::Parameter {
             parameter: "marked cells",
@@ -192,7 +192,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
     pub(super) fn coarser_level(&self, position: usize) -> Option<(usize, &Arc<Prolongation<T>>)> {
         let step = self.step(position);
         let few = step.n_vertices() as f64 / GROWTH;
-        let is_coarser = |step: &Step<T, D>| step.n_vertices() as f64 <= few;
+        let is_coarser = |step: &MeshOfSequence<T, D>| step.n_vertices() as f64 <= few;
         let coarser = self.steps().take(position).take_while(|step| is_coarser(step)).count();
         let coarser = coarser.checked_sub(1)?;
         let prolongation = once(&step.prolongation, || {

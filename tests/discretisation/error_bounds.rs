@@ -4,7 +4,7 @@ use crate::elements::ConformingP3;
 use crate::runs::small_mesh;
 use crate::support::checks::Checks;
 use crate::support::meshes::{Random, Raw};
-use unilateral::error_bound::{ErrorBound, NoBound, PrimalDualPair, Unproven};
+use unilateral::error_bound::{ErrorBound, Flux, NoBound, PrimalDualPair, Unproven};
 use unilateral::mesh::{Neighbour, Neighbours, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
@@ -19,7 +19,7 @@ const SCHEMES: &str = "p1 cr sipg nipg iipg ldg br2 bmmpr wopsip wopsip:facet-me
 fn right_side<const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<f64, D>,
-    pair: &PrimalDualPair,
+    pair: &PrimalDualPair<D>,
 ) -> f64 {
     let exact = problem.exact.as_ref().unwrap();
     let density = exact.multiplier.as_ref().unwrap();
@@ -30,7 +30,7 @@ fn right_side<const D: usize>(
     for cell in 0..mesh.n_cells() {
         let geometry = mesh.geometry(cell);
         let corners: Vec<_> = mesh.cell(cell).iter().map(|&v| v as usize).collect();
-        let flux = &pair.flux[cell * (D + 1)..(cell + 1) * (D + 1)];
+        let flux: Vec<f64> = (0..=D).map(|facet| pair.flux.through(cell, facet)).collect();
         let mut points = Vec::new();
         for (point, weight) in rule.iter() {
             let x: Point<f64, D> =
@@ -77,7 +77,7 @@ fn right_side<const D: usize>(
         let (cell, local) = (f.cell as usize, f.local as usize);
         let gap = problem.gap.as_ref().unwrap();
         let measure = mesh.geometry(cell).facet_measure(local);
-        let force = pair.flux[cell * (D + 1) + local] / measure;
+        let force = pair.flux.through(cell, local) / measure;
         let corners: Vec<usize> = mesh.facet_vertices(cell, local).map(|v| v as usize).collect();
         for (point, weight) in rule.iter() {
             let at = |k: usize| mesh.vertices()[corners[k]] * point[k];
@@ -108,7 +108,7 @@ pub fn bounded<const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<f64, D>,
     scheme: &dyn AnyScheme<f64, D>,
-) -> (PrimalDualPair, ErrorBound, f64) {
+) -> (PrimalDualPair<D>, ErrorBound, f64) {
     let solved = solve(&scene.problem, mesh, scheme).unwrap();
     assert!(solved.converged(), "{} {}", scene.name, scheme.name());
     let pair = solved.primal_dual_pair().unwrap();
@@ -116,17 +116,23 @@ pub fn bounded<const D: usize>(
     (pair, solved.bound().unwrap(), error)
 }
 
-/// The largest difference of the fluxes from the two sides of a facet, over the largest flux.
-fn mismatch_of_sides<const D: usize>(mesh: &Mesh<f64, D>, flux: &[f64]) -> f64 {
+/// The largest difference of the normal fluxes from the two sides of a facet at a vertex, over the largest.
+pub fn mismatch_of_sides<const D: usize>(mesh: &Mesh<f64, D>, flux: &Flux<D>) -> f64 {
     let neighbours = Neighbours::new(mesh);
-    let largest = flux.iter().fold(0.0, |largest: f64, f| largest.max(f.abs()));
-    let of = |(k, f): (usize, &f64)| match neighbours.across(k / (D + 1), k % (D + 1)) {
-        Neighbour::Cell { cell, local } => {
-            (f + flux[cell as usize * (D + 1) + usize::from(local)]).abs()
+    let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
+    for (cell, facet) in (0..mesh.n_cells()).flat_map(|c| (0..=D).map(move |facet| (c, facet))) {
+        let vertices = |facet: usize| (0..=D).filter(move |&j| j != facet);
+        for (p, j) in vertices(facet).enumerate() {
+            let here = flux.density(cell, facet, j);
+            largest = largest.max(here.abs());
+            if let Neighbour::Cell { cell: other, local } = neighbours.across(cell, facet) {
+                let (other, local) = (other as usize, usize::from(local));
+                let across = vertices(local).nth(p).unwrap();
+                difference = difference.max((here + flux.density(other, local, across)).abs());
+            }
         }
-        Neighbour::Boundary(_) | Neighbour::Cut => 0.0,
-    };
-    flux.iter().enumerate().map(of).fold(0.0, f64::max) / largest
+    }
+    difference / largest
 }
 
 /// On a mesh of a scene, every scheme: fluxes are single-valued and balance the load, the identity holds to a
@@ -279,26 +285,26 @@ pub fn on_boundary<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<bool> {
 }
 
 /// Adds a change to the flux of a pair through a facet, with opposite signs on both sides; on the boundary where
-/// data are Dirichlet's alone. The last argument is the place of the facet of a cell in the list of fluxes.
-pub fn change_flux(
-    flux: &mut [f64],
+/// data are Dirichlet's alone. The last argument adds a change to the flux of a cell through a facet.
+pub fn change_flux<const D: usize>(
+    flux: &mut Flux<D>,
     neighbours: &Neighbours,
     (cell, local): (usize, usize),
     change: f64,
-    place: impl Fn(usize, usize) -> usize,
+    add: impl Fn(&mut Flux<D>, (usize, usize), f64),
 ) {
     match neighbours.across(cell, local) {
         Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
-            flux[place(cell, local)] += change;
-            flux[place(other as usize, usize::from(there))] -= change;
+            add(flux, (cell, local), change);
+            add(flux, (other as usize, usize::from(there)), -change);
         }
-        Neighbour::Boundary(BoundaryPart::Dirichlet) => flux[place(cell, local)] += change,
+        Neighbour::Boundary(BoundaryPart::Dirichlet) => add(flux, (cell, local), change),
         _ => {}
     }
 }
 
 /// The bound that a pair gives, over the error of the function of the pair.
-pub fn ratio<const D: usize>(solved: &Solved<'_, f64, D>, pair: &PrimalDualPair) -> f64 {
+pub fn ratio<const D: usize>(solved: &Solved<'_, f64, D>, pair: &PrimalDualPair<D>) -> f64 {
     let bound = solved.discretisation().error_bound(pair, solved.values()).unwrap();
     bound.total / solved.discretisation().error_of_pair(pair).unwrap()
 }
@@ -329,8 +335,10 @@ fn random_pairs<const D: usize>(scene: &Scene<D>, n: usize, cases: usize, interf
             for cell in 0..mesh.n_cells() {
                 for local in 0..=D {
                     let change = size * (random.unit() - 0.5);
-                    let place = |cell, local| cell * (D + 1) + local;
-                    change_flux(&mut pair.flux, &neighbours, (cell, local), change, place);
+                    let add = |flux: &mut Flux<D>, (cell, facet), change| {
+                        flux.add_through(cell, facet, change);
+                    };
+                    change_flux(&mut pair.flux, &neighbours, (cell, local), change, add);
                 }
             }
             least = least.min(ratio(&solved, &pair));

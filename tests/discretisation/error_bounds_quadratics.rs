@@ -1,11 +1,11 @@
 //! Guaranteed bounds on the error of quadratics: fluxes, effectivity, orders, perturbed pairs.
 
-use crate::error_bounds::{bounded, change_flux, on_boundary, placed, ratio};
+use crate::error_bounds::{bounded, change_flux, mismatch_of_sides, on_boundary, placed, ratio};
 use crate::runs::{own_scene, small_mesh};
 use crate::support::checks::Checks;
 use crate::support::meshes::Random;
-use unilateral::error_bound::{PrimalDualPair, Unproven};
-use unilateral::mesh::{Neighbour, Neighbours};
+use unilateral::error_bound::{Flux, Unproven};
+use unilateral::mesh::Neighbours;
 use unilateral::prelude::*;
 use unilateral::problem::Exact;
 use unilateral::scenes::Scene;
@@ -13,27 +13,6 @@ use unilateral::scenes::Scene;
 /// Every scheme on quadratics, placements and variants of forms with lifts among them.
 const SCHEMES: &str = "p2 p2:midpoints sipg-p2 nipg-p2 iipg-p2 ldg-p2 br2-p2 bmmpr-p2 wopsip-p2 \
     wopsip-p2:cell-means wopsip-p2:midpoints sipg-p2:cell-means";
-
-/// The largest difference of the normal fluxes from the two sides of a facet at a vertex, over the largest.
-fn mismatch_of_sides<const D: usize>(mesh: &Mesh<f64, D>, pair: &PrimalDualPair) -> f64 {
-    let neighbours = Neighbours::new(mesh);
-    let at = |cell: usize, local: usize, p: usize| {
-        pair.flux[(cell * (D + 1) + local) * (D + 1) + p + usize::from(p >= local)]
-    };
-    let largest = pair.flux.iter().fold(0.0, |largest: f64, f| largest.max(f.abs()));
-    let mut difference: f64 = 0.0;
-    for cell in 0..mesh.n_cells() {
-        for local in 0..=D {
-            if let Neighbour::Cell { cell: other, local: there } = neighbours.across(cell, local) {
-                for p in 0..D {
-                    let there = at(other as usize, usize::from(there), p);
-                    difference = difference.max((at(cell, local, p) + there).abs());
-                }
-            }
-        }
-    }
-    difference / largest
-}
 
 /// On a mesh of a scene, every scheme: fluxes are single-valued and balance the load, and the bound is one to
 /// three times the error.
@@ -43,7 +22,7 @@ fn check<const D: usize>(scene: Scene<D>, mesh: &Mesh<f64, D>, schemes: &str) {
         let (scene, scheme) = placed(&scene, name);
         let label = format!("{}, {name}", scene.name);
         let (pair, bound, error) = bounded(&scene, mesh, &*scheme);
-        let sides = mismatch_of_sides(mesh, &pair);
+        let sides = mismatch_of_sides(mesh, &pair.flux);
         checks.that(sides < 1e-12, || format!("{label}: sides differ by {sides:.1e}"));
         let parts = bound.parts;
         checks.that(parts.algebra.abs() < 1e-5, || format!("{label}: {:.1e}", parts.algebra));
@@ -167,13 +146,13 @@ fn random_pairs<const D: usize>(scene: &Scene<D>, level: usize, schemes: &str) {
             }
             for cell in 0..mesh.n_cells() {
                 for local in 0..n {
-                    pair.flux[(cell * n + local) * n + local] += size * (random.unit() - 0.5);
+                    pair.flux.add_inner(cell, local, size * (random.unit() - 0.5));
                     for p in 0..D {
-                        let place = |cell: usize, local: usize| {
-                            (cell * n + local) * n + p + usize::from(p >= local)
+                        let add = |flux: &mut Flux<D>, (cell, facet), change| {
+                            flux.add_density(cell, facet, p + usize::from(p >= facet), change);
                         };
                         let change = size * (random.unit() - 0.5);
-                        change_flux(&mut pair.flux, &neighbours, (cell, local), change, place);
+                        change_flux(&mut pair.flux, &neighbours, (cell, local), change, add);
                     }
                 }
             }

@@ -240,13 +240,13 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     ///
     /// # Errors
     /// [`ExchangeError::Failed`] in all parts where there is no pair.
-    pub fn primal_dual_pair(&self) -> Result<PrimalDualPair, ExchangeError> {
+    pub fn primal_dual_pair(&self) -> Result<PrimalDualPair<D>, ExchangeError> {
         let System { discretisation, inequality, .. } = &self.system;
         let counts = |cell| self.part.owns(cell);
         let pair = discretisation.pair_on_part(inequality, &self.solution, &counts);
         agree(pair, self.exchange())
     }
-    fn pair_and_bound(&self) -> Result<(PrimalDualPair, ErrorBound), ExchangeError> {
+    fn pair_and_bound(&self) -> Result<(PrimalDualPair<D>, ErrorBound), ExchangeError> {
         let System { discretisation, over_parts, .. } = &self.system;
         let (part, exchange) = (self.part, self.exchange());
         let counts = |cell| part.owns(cell);
@@ -301,7 +301,7 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     /// The squared errors of the solution and of the function of a pair over all parts; zero without an exact solution.
     fn squared_errors(
         &self,
-        pair: Option<&PrimalDualPair>,
+        pair: Option<&PrimalDualPair<D>>,
     ) -> Result<SquaredErrors, ExchangeError> {
         let (part, u) = (self.part, &self.solution.values);
         let discretisation = &self.system.discretisation;

@@ -6,13 +6,17 @@
 //! of a contact facet at a vertex may also leave through another facet at that vertex, and through those of further
 //! cells around the vertex, until it comes to another contact facet there: divergences at a vertex depend on the
 //! sum of its densities. What changes is the mismatch, and the complementarity of the contact force.
+//!
+//! Without it the effectivity of `sipg-p2` on signorini-harmonic-2d at 32 is 2.28 in place of 1.52, that of `p2` on
+//! signorini-line-3d at 8 is 1.75 in place of 1.45.
 
-use super::cells::Cells;
+use super::cells_of_quadratics::CellsOfQuadratics;
 use crate::arrays::map_entries;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
+use crate::error_bound::flux::Flux;
+use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::vertices_of;
-use crate::error_bound::terms::limit;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::facet_to_cell;
 use crate::real::Real;
@@ -53,17 +57,17 @@ struct Around<'f> {
     vertex: u32,
 }
 
-impl<const D: usize> Cells<'_, D> {
+impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Adds to the density of a facet at a vertex, and keeps the divergence.
     fn add_to_force(&mut self, (k, local): Place, vertex: usize, change: f64) {
-        let start = self.cells[k].number * Self::N;
-        self.flux[start + local * (D + 1) + vertex] += change;
-        self.flux[start + vertex * (D + 2)] -= change;
+        let cell = self.cells[k].number;
+        self.flux.add_density(cell, local, vertex, change);
+        self.flux.add_inner(cell, vertex, -change);
     }
 
     /// The density of a facet at a vertex.
     fn force(&self, (k, local): Place, vertex: usize) -> f64 {
-        self.flux[self.cells[k].number * Self::N + local * (D + 1) + vertex]
+        self.flux.density(self.cells[k].number, local, vertex)
     }
 
     /// Moves a contact force towards its mean until the force is nowhere negative. The force stays as it is if the
@@ -73,7 +77,7 @@ impl<const D: usize> Cells<'_, D> {
         let mean = vertices_of::<D>(at.1).map(|j| self.force(at, j)).sum::<f64>() / D as f64;
         let mut values = [mean; 4];
         vertices_of::<D>(at.1).for_each(|j| values[j] = self.force(at, j));
-        let share = limit(mean, &values[..=D]);
+        let share = share_of_one_sign(mean, &values[..=D]);
         facet.has_one_sign = mean >= 0.0;
         if share == 1.0 || mean < 0.0 {
             return;
@@ -110,14 +114,15 @@ impl<const D: usize> Cells<'_, D> {
     /// Exchanges the contact forces of two facets at a vertex, along a chain of cells: numbers with alternating signs,
     /// two for each cell.
     fn exchange_along(&mut self, chain: &[(usize, usize, f64)], [gap, gap_of_last]: [f64; 2]) {
-        let number = |(k, number, _): (usize, usize, f64)| self.cells[k].number * Self::N + number;
+        let of =
+            |(k, number, _): (usize, usize, f64)| self.flux.of_cell(self.cells[k].number)[number];
         let Some((first, last)) = chain.first().zip(chain.last()) else { return };
-        let [first, last] = map_entries([*first, *last], |end| self.flux[number(end)].max(0.0));
+        let [first, last] = map_entries([*first, *last], |end| of(end).max(0.0));
         let [slope, curvature] = self.slopes(chain, gap_of_last - gap);
         let change = (-slope / curvature).min(first).max(-last);
         if change.is_finite() {
             for &(k, number, sign) in chain {
-                self.flux[self.cells[k].number * Self::N + number] += sign * change;
+                self.flux.of_cell_mut(self.cells[k].number)[number] += sign * change;
             }
         }
     }
@@ -127,9 +132,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Changes the contact forces of quadratics along facets, as far as that makes the bound smaller.
     pub(in crate::error_bound) fn exchange_forces(
         &self,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         neighbours: &Neighbours,
-        flux: &mut [f64],
+        flux: &mut Flux<D>,
     ) {
         let facets: Vec<(Place, usize)> = self.grouped_facets_of(BoundaryPart::Contact).collect();
         let mut touches = vec![false; self.mesh.vertices().len()];
@@ -186,7 +191,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// cells, and exchanges the contact force at its end with that at its beginning.
     fn follow(
         &self,
-        cells: &mut Cells<'_, D>,
+        cells: &mut CellsOfQuadratics<'_, D>,
         around: &Around<'_>,
         chain: &mut [(usize, usize, f64); 2 * LONGEST],
         ((k, entered), length): (Place, usize),

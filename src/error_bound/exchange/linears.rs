@@ -1,12 +1,13 @@
 //! Exchange for linears: one flux of each facet, one multiplier of each cell.
 
-use super::{FacetOfCell, ROUNDING, Step, decrease, visit_steps};
+use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, visit_steps};
 use crate::algebra::Contact;
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
-use crate::error_bound::contact::NodeForce;
+use crate::error_bound::contact_forces::NodeForce;
+use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbours};
@@ -21,7 +22,7 @@ const SWEEPS: usize = 4;
 const DEGREE: usize = 2;
 
 /// What the exchange needs of a cell.
-struct CellInContact<const D: usize> {
+struct CellOfLinears<const D: usize> {
     /// The number of the cell.
     number: usize,
     /// The values at the centre of the fluxes that leave through one facet each.
@@ -40,7 +41,7 @@ struct CellInContact<const D: usize> {
     multiplier: f64,
 }
 
-impl<const D: usize> CellInContact<D> {
+impl<const D: usize> CellOfLinears<D> {
     /// Half of the derivative of the square of the mismatch by the flux through a facet, and half of the second
     /// derivative.
     fn slopes(&self, facet: usize) -> [f64; 2] {
@@ -64,8 +65,8 @@ impl<const D: usize> CellInContact<D> {
     }
 
     /// Adds to the flux through a facet what the multiplier gives.
-    fn add(&mut self, facet: usize, exchange: f64, flux: &mut [f64]) {
-        flux[self.number * (D + 1) + facet] += exchange;
+    fn add(&mut self, facet: usize, exchange: f64, flux: &mut Flux<D>) {
+        flux.add_through(self.number, facet, exchange);
         self.difference += self.at_centre[facet] * exchange;
         self.sum += exchange;
         self.multiplier -= exchange;
@@ -119,10 +120,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Exchanges multipliers for flux of linears, in and between the cells that count.
     pub(in crate::error_bound) fn exchange_linears(
         &self,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         multipliers: &[f64],
         (neighbours, counts): (&Neighbours, Counts<'_>),
-        flux: &mut [f64],
+        flux: &mut Flux<D>,
     ) {
         let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
         let presses = |cell: usize| counts(cell) && multipliers[cell].abs() > ROUNDING * largest;
@@ -130,35 +131,36 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let rule = Rule::new(D, DEGREE);
         let in_contact = |&cell: &usize| {
             let multiplier = if presses(cell) { multipliers[cell] } else { 0.0 };
-            self.linear_in_contact(cell, function, multiplier, &rule)
+            self.cell_of_linears(cell, function, multiplier, &rule)
         };
-        let mut cells = in_large_pages(Vec::<CellInContact<D>>::with_capacity(numbers.len()));
+        let mut cells = in_large_pages(Vec::<CellOfLinears<D>>::with_capacity(numbers.len()));
         cells.extend(numbers.iter().map(in_contact));
         for cell in &mut cells {
-            let fluxes = &flux[cell.number * (D + 1)..][..D + 1];
-            for (flux, at_centre) in fluxes.iter().zip(&cell.at_centre) {
+            for (flux, at_centre) in flux.of_cell(cell.number).iter().zip(&cell.at_centre) {
                 cell.difference += at_centre * *flux;
                 cell.sum += flux;
             }
         }
-        let square: f64 = cells.iter().map(CellInContact::square).sum();
+        let square: f64 = cells.iter().map(CellOfLinears::square).sum();
         visit_steps(&steps, (cells.len(), square), SWEEPS, |step| match step {
-            Step::Between(at) => exchange_between(&mut cells, at.map(FacetOfCell::place), flux),
-            Step::WithDirichlet(facet) => {
+            ExchangeStep::Between(at) => {
+                exchange_between(&mut cells, at.map(FacetOfCell::place), flux)
+            }
+            ExchangeStep::WithDirichlet(facet) => {
                 let (k, local) = facet.place();
                 exchange_with_dirichlet(&mut cells[k], local, flux)
             }
-            Step::Inside(_) => 0.0,
+            ExchangeStep::Inside(_) => 0.0,
         });
     }
 
-    fn linear_in_contact(
+    fn cell_of_linears(
         &self,
         number: usize,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         multiplier: f64,
         rule: &Rule,
-    ) -> CellInContact<D> {
+    ) -> CellOfLinears<D> {
         let volume = self.mesh.geometry(number).volume.to_f64();
         let alpha = self.alpha(number).to_f64();
         let admissible = self.admissible_in(function, number);
@@ -182,7 +184,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             };
             Some(rule.iter().map(|(point, weight)| weight * at_point(point)).sum())
         };
-        CellInContact {
+        CellOfLinears {
             number,
             at_centre,
             variance: squares * per_volume * per_volume / ((D + 1) * (D + 2)) as f64,
@@ -198,9 +200,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 /// Exchanges the multipliers of two cells for the flux through their facet. The result is by how much the square of the
 /// bound falls.
 fn exchange_between<const D: usize>(
-    cells: &mut [CellInContact<D>],
+    cells: &mut [CellOfLinears<D>],
     [(here, local), (there, across)]: [Place; 2],
-    flux: &mut [f64],
+    flux: &mut Flux<D>,
 ) -> f64 {
     let [of_here, of_there] = [&cells[here], &cells[there]];
     let sign = (of_here.multiplier + of_there.multiplier).signum();
@@ -224,9 +226,9 @@ fn exchange_between<const D: usize>(
 /// Exchanges the multiplier of a cell for the flux through a Dirichlet facet. The result is by how much the square of
 /// the bound falls.
 fn exchange_with_dirichlet<const D: usize>(
-    cell: &mut CellInContact<D>,
+    cell: &mut CellOfLinears<D>,
     local: usize,
-    flux: &mut [f64],
+    flux: &mut Flux<D>,
 ) -> f64 {
     let sign = cell.multiplier.signum();
     let Some(gap) = cell.gap(sign) else { return 0.0 };

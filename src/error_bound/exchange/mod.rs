@@ -15,7 +15,7 @@
 //! may grow, if the distance costs less than the mismatch. A facet is visited again as long as visits of its cells make
 //! the square smaller by more than a negligible number.
 
-mod cells;
+mod cells_of_quadratics;
 mod forces;
 mod linears;
 mod quadratics;
@@ -48,7 +48,7 @@ impl FacetOfCell {
 
 /// A step of an exchange. Steps are as many as facets: they are small.
 #[derive(Clone, Copy)]
-enum Step {
+enum ExchangeStep {
     /// Between two cells, through their facet.
     Between([FacetOfCell; 2]),
     /// Through a Dirichlet facet of a cell.
@@ -57,7 +57,7 @@ enum Step {
     Inside(u32),
 }
 
-impl Step {
+impl ExchangeStep {
     /// The cells of the step, twice the same one where it has one.
     fn cells(self) -> [usize; 2] {
         match self {
@@ -73,10 +73,10 @@ impl Step {
 /// sweep before began. A visit returns by how much the square of the bound falls. The square of the bound is that of all
 /// cells of the exchange at the beginning.
 fn visit_steps(
-    steps: &[Step],
+    steps: &[ExchangeStep],
     (n_cells, square): (usize, f64),
     n_sweeps: usize,
-    mut visit: impl FnMut(Step) -> f64,
+    mut visit: impl FnMut(ExchangeStep) -> f64,
 ) {
     let negligible = NEGLIGIBLE * square / n_cells as f64;
     // sweeps count from one
@@ -106,7 +106,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         presses: &dyn Fn(usize) -> bool,
         (neighbours, counts): (&Neighbours, Counts<'_>),
         has_inner_steps: bool,
-    ) -> (Vec<usize>, Vec<Step>) {
+    ) -> (Vec<usize>, Vec<ExchangeStep>) {
         let n_cells = self.mesh.n_cells();
         let mut places = vec![u32::MAX; n_cells];
         for cell in (0..n_cells).filter(|&cell| presses(cell)) {
@@ -135,17 +135,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     Neighbour::Cell { cell: other, local } => {
                         let there = places[other as usize];
                         if other as usize > cell && there != u32::MAX {
-                            steps.push(Step::Between([facet, FacetOfCell { cell: there, local }]));
+                            steps.push(ExchangeStep::Between([
+                                facet,
+                                FacetOfCell { cell: there, local },
+                            ]));
                         }
                     }
                     Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                        steps.push(Step::WithDirichlet(facet));
+                        steps.push(ExchangeStep::WithDirichlet(facet));
                     }
                     Neighbour::Boundary(_) | Neighbour::Cut => {}
                 }
             }
             if has_inner_steps {
-                steps.push(Step::Inside(here));
+                steps.push(ExchangeStep::Inside(here));
             }
         }
         (numbers, steps)

@@ -5,27 +5,28 @@
 //! from its counterpart on the other side changes the multipliers of the two cells at vertex `j` alone; a number
 //! added to `c_AA` and taken from `c_BB` changes the multiplier of the cell at the vertices `A` and `B` alone.
 
-use super::cells::{CellInContact, Cells};
-use super::{FacetOfCell, ROUNDING, Step, decrease, visit_steps};
+use super::cells_of_quadratics::{CellOfQuadratics, CellsOfQuadratics};
+use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, visit_steps};
 use crate::arrays::{map_entries, tabulate};
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
+use crate::error_bound::flux::Flux;
+use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
-use crate::error_bound::terms::limit;
 use crate::mesh::Neighbours;
 use crate::real::Real;
 
 /// Most visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
 const SWEEPS: usize = 8;
 
-impl<const D: usize> Cells<'_, D> {
+impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Moves the multiplier of a cell towards its mean until the multiplier has one sign. Numbers inside the cell keep
     /// the balance. The multiplier stays as it is if the mismatch would grow by more than the part of the other sign
     /// counts for.
     fn make_sign_definite(&mut self, k: usize) {
         let cell = &self.cells[k];
         let mean = cell.sum() / (D + 1) as f64;
-        let share = limit(mean, &cell.multiplier[..=D]);
+        let share = share_of_one_sign(mean, &cell.multiplier[..=D]);
         if share == 1.0 {
             self.cells[k].has_one_sign = true;
             return;
@@ -34,9 +35,9 @@ impl<const D: usize> Cells<'_, D> {
         let of_variation = (1.0 - share) * cell.variation * squares.sqrt();
         let limit = (self.mismatch(k).sqrt() + of_variation).powi(2);
         let changes = cell.multiplier.map(|m| (1.0 - share) * (m - mean) / cell.divergence);
-        (0..D + 1).for_each(|j| self.add(k, j * (D + 2), j, changes[j]));
+        (0..D + 1).for_each(|j| self.add(k, Flux::<D>::place(j, j), j, changes[j]));
         if self.mismatch(k) > limit {
-            (0..D + 1).for_each(|j| self.add(k, j * (D + 2), j, -changes[j]));
+            (0..D + 1).for_each(|j| self.add(k, Flux::<D>::place(j, j), j, -changes[j]));
         } else {
             self.cells[k].has_one_sign = true;
         }
@@ -48,11 +49,11 @@ impl<const D: usize> Cells<'_, D> {
         let [here, there] = at.map(|(k, _)| &self.cells[k]);
         let sign = (here.sum() + there.sum()).signum();
         let obstacle = usize::from(sign < 0.0);
-        let takes_part = |cell: &CellInContact| cell.has_one_sign && cell.is_given[obstacle];
+        let takes_part = |cell: &CellOfQuadratics| cell.has_one_sign && cell.is_given[obstacle];
         if here.sum() * there.sum() < 0.0 || !takes_part(here) || !takes_part(there) {
             return 0.0;
         }
-        let number = map_entries([0, 1], |s| at[s].1 * (D + 1) + vertex[s]);
+        let number = map_entries([0, 1], |s| Flux::<D>::place(at[s].1, vertex[s]));
         let terms = [(at[0].0, number[0], 1.0), (at[1].0, number[1], -1.0)];
         let of_gaps = sign * (there.gap(sign, vertex[1]) - here.gap(sign, vertex[0]));
         let [slope, curvature] = self.slopes(&terms, of_gaps);
@@ -74,7 +75,7 @@ impl<const D: usize> Cells<'_, D> {
         if !(cell.has_one_sign && cell.is_given[usize::from(sign < 0.0)]) {
             return 0.0;
         }
-        let number = local * (D + 1) + vertex;
+        let number = Flux::<D>::place(local, vertex);
         let of_gap = -sign * cell.gap(sign, vertex);
         let [slope, curvature] = self.slopes(&[(k, number, 1.0)], of_gap);
         let exchange = sign * (-sign * slope / curvature).min(cell.room(sign, vertex));
@@ -92,7 +93,7 @@ impl<const D: usize> Cells<'_, D> {
             return 0.0;
         }
         let sign = cell.sum().signum();
-        let number = map_entries([a, b], |v| v * (D + 2));
+        let number = map_entries([a, b], |v| Flux::<D>::place(v, v));
         let terms = [(k, number[0], 1.0), (k, number[1], -1.0)];
         let of_gaps = sign * (cell.gap(sign, b) - cell.gap(sign, a));
         let [slope, curvature] = self.slopes(&terms, of_gaps);
@@ -111,10 +112,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Exchanges multipliers for flux of quadratics.
     pub(in crate::error_bound) fn exchange_quadratics(
         &self,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         loads: &CellLoads,
         neighbours: &Neighbours,
-        flux: &mut [f64],
+        flux: &mut Flux<D>,
     ) {
         let multipliers = self.linear_multipliers(loads);
         let strength = |cell: usize| {
@@ -128,18 +129,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         (0..numbers.len()).for_each(|k| cells.make_sign_definite(k));
         let square: f64 = (0..numbers.len()).map(|k| cells.square(k)).sum();
         visit_steps(&steps, (numbers.len(), square), SWEEPS, |step| match step {
-            Step::Between(facets) => {
+            ExchangeStep::Between(facets) => {
                 let at = facets.map(FacetOfCell::place);
                 let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
                 let across = |v: u32| other.iter().position(|&w| w == v);
                 let common = vertices_of::<D>(at[0].1).filter_map(|j| Some([j, across(cell[j])?]));
                 common.map(|vertex| cells.exchange_between(at, vertex)).sum()
             }
-            Step::WithDirichlet(facet) => {
+            ExchangeStep::WithDirichlet(facet) => {
                 let at = facet.place();
                 vertices_of::<D>(at.1).map(|j| cells.exchange_with_dirichlet(at, j)).sum()
             }
-            Step::Inside(k) => {
+            ExchangeStep::Inside(k) => {
                 let pairs = (0..D + 1).flat_map(|a| (a + 1..=D).map(move |b| [a, b]));
                 pairs.map(|pair| cells.exchange_inside(k as usize, pair)).sum()
             }

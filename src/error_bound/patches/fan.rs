@@ -1,21 +1,35 @@
 //! Patches of the plane whose cells lie side by side around the vertex: all fluxes follow from one.
 
-use super::data::Patches;
+use std::ops::Range;
+
+use super::corners::Corner;
+use super::linear::LinearCells;
+use super::parts::Parts;
 use crate::mesh::{BoundaryPart, Neighbour};
+use crate::parallel::cells;
 use crate::real::{Real, point_f64};
 
 /// A cell of a fan, between two facets at its vertex.
 #[derive(Clone, Copy)]
 pub(super) struct CellOfFan {
-    cell: usize,
-    /// The number of the vertex in the cell.
-    own: u8,
+    corner: Corner,
     /// The numbers of the facets on both sides.
     sides: [u8; 2],
 }
 
-impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
-    /// Sets the part of a vertex of the plane if its cells form one fan, else false.
+impl<T: Real, const D: usize> LinearCells<'_, '_, T, D> {
+    /// Sets the parts of those of these vertices whose cells form one fan, and returns the others.
+    pub(super) fn set_fans(&self, vertices: &[u32], parts: &Parts) -> Vec<u32> {
+        let others = cells::map(vertices.len(), &|range: Range<usize>| {
+            let mut fan = Vec::new();
+            let set = |corner: Corner, k: usize, number: f64| parts.set(corner, k, number);
+            let is_other = |v: &u32| !self.set_fan(*v as usize, &mut fan, set);
+            vertices[range].iter().copied().filter(is_other).collect::<Vec<_>>()
+        });
+        others.concat()
+    }
+
+    /// Calls `set` with the numbers of a vertex of the plane if its cells form one fan, else false.
     ///
     /// With the flux `x` out of the first cell through its first facet all others are `p + x` through first and
     /// `q - x` through second facets: the two fluxes of a cell have its load as their sum, those of a facet
@@ -23,35 +37,38 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     /// the norm is least. Let `a` and `b` be the vertices of a cell opposite its two facets, `m` its barycentre and
     /// `V` its volume. The flux with the integrals `1, -1` is the constant `(b - a) / (2 V)`; hence the derivative of
     /// the squared norm in the cell by `x` is that of `|(p + x) (m - a) + (q - x) (m - b)|^2 / (4 alpha V)`.
-    pub(super) fn add_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
+    pub(super) fn set_fan(
+        &self,
+        vertex: usize,
+        fan: &mut Vec<CellOfFan>,
+        set: impl Fn(Corner, usize, f64),
+    ) -> bool {
         if !self.find_fan(vertex, fan) {
             return false;
         }
         let mesh = self.space.mesh;
-        let total: f64 = fan.iter().map(|of| self.carried(of.cell, of.own)).sum();
-        let mut pressure = self.multipliers[vertex] / total;
-        let normal = |(cell, local): (usize, u8)| self.normals(cell)[usize::from(local)];
+        let mut pressure = self.pressures[vertex];
+        let normal =
+            |(corner, local): (Corner, u8)| self.integrals(corner.cell())[usize::from(local)];
         // what the fluxes of a cell through a facet and of the next one through it sum to
         let sum = |of: &CellOfFan, next: &CellOfFan| {
-            -0.5 * (normal((of.cell, of.sides[1])) + normal((next.cell, next.sides[0])))
+            -0.5 * (normal((of.corner, of.sides[1])) + normal((next.corner, next.sides[0])))
         };
         let given = |of: &CellOfFan, side: usize| {
             let local = of.sides[side];
-            match self.neighbours.across(of.cell, usize::from(local)) {
+            match self.neighbours.across(of.corner.cell(), usize::from(local)) {
                 Neighbour::Boundary(BoundaryPart::Dirichlet) | Neighbour::Cell { .. } => None,
-                Neighbour::Boundary(_) | Neighbour::Cut => Some(-0.5 * normal((of.cell, local))),
+                Neighbour::Boundary(_) | Neighbour::Cut => Some(-0.5 * normal((of.corner, local))),
             }
         };
         let (mut first, mut force, mut stiffness) = (0.0, 0.0, 0.0);
         for (k, of) in fan.iter().enumerate() {
-            let second = self.load(of.cell, of.own, pressure) - first;
-            let point = |local: u8| {
-                point_f64(&mesh.vertices()[mesh.cell(of.cell)[usize::from(local)] as usize])
-            };
-            let (own, a, b) = (point(of.own), point(of.sides[0]), point(of.sides[1]));
-            let (along, middle) = (b - a, (own + a + b) / 3.0);
-            let alpha = self.space.alpha(of.cell).to_f64();
-            let weight = 1.0 / (alpha * self.volume(of.cell));
+            let second = self.load(of.corner, pressure) - first;
+            let cell = of.corner.cell();
+            let point = |local: usize| point_f64(&mesh.vertices()[mesh.cell(cell)[local] as usize]);
+            let [a, b] = of.sides.map(|side| point(usize::from(side)));
+            let (along, middle) = (b - a, (point(of.corner.own()) + a + b) / 3.0);
+            let weight = 1.0 / (self.space.alpha(cell).to_f64() * self.volume(cell));
             stiffness += weight * along.norm_squared();
             force -= weight * along.dot(&((middle - a) * first + (middle - b) * second));
             if let Some(next) = fan.get(k + 1) {
@@ -59,9 +76,9 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             }
         }
         let Some((begin, end)) = fan.first().zip(fan.last()) else { return true };
-        let second = self.load(end.cell, end.own, pressure) - first;
+        let second = self.load(end.corner, pressure) - first;
         let is_closed = matches!(
-            self.neighbours.across(begin.cell, usize::from(begin.sides[0])),
+            self.neighbours.across(begin.corner.cell(), usize::from(begin.sides[0])),
             Neighbour::Cell { .. }
         );
         // what the equation of the vertex leaves, rounding, is divided like the multiplier
@@ -72,13 +89,13 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             (None, None) if is_closed => (force / stiffness, second - sum(end, begin)),
             (None, None) => (force / stiffness, 0.0),
         };
-        pressure += left / total;
+        let carried: f64 = fan.iter().map(|of| self.carried(of.corner)).sum();
+        pressure += left / carried;
         for (k, of) in fan.iter().enumerate() {
-            let second = self.load(of.cell, of.own, pressure) - first;
+            let second = self.load(of.corner, pressure) - first;
             let is_ascending = of.sides[0] < of.sides[1];
-            let corner = (of.cell, of.own);
-            self.set(corner, usize::from(!is_ascending), first);
-            self.set(corner, usize::from(is_ascending), second);
+            set(of.corner, usize::from(!is_ascending), first);
+            set(of.corner, usize::from(is_ascending), second);
             if let Some(next) = fan.get(k + 1) {
                 first = sum(of, next) - second;
             }
@@ -95,21 +112,24 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         };
         let (cell, count) = self.one_cell[vertex];
         let own = number_in(cell as usize);
-        let sides = [(own + 1) % 3, (own + 2) % 3];
-        let mut begin = CellOfFan { cell: cell as usize, own, sides };
+        let of_cell = |cell: usize, own: u8, sides| CellOfFan {
+            corner: Corner::new(cell, own.into()),
+            sides,
+        };
+        let mut begin = of_cell(cell as usize, own, [(own + 1) % 3, (own + 2) % 3]);
         for _ in 0..2 {
             let mut last = begin;
             fan.clear();
             fan.push(last);
             while let Neighbour::Cell { cell, local } =
-                self.neighbours.across(last.cell, usize::from(last.sides[1]))
+                self.neighbours.across(last.corner.cell(), usize::from(last.sides[1]))
                 && fan.len() < count as usize
-                && cell as usize != begin.cell
+                && cell as usize != begin.corner.cell()
             {
                 let cell = cell as usize;
                 let own = number_in(cell);
                 // the numbers of the vertex and of both facets sum to three
-                last = CellOfFan { cell, own, sides: [local, 3 - own - local] };
+                last = of_cell(cell, own, [local, 3 - own - local]);
                 fan.push(last);
             }
             if fan.len() == count as usize {

@@ -1,372 +1,164 @@
-//! The flux of a conforming linear function: on the cells around each vertex, the smallest that makes
+//! The flux of a conforming function: `alpha grad u` in each cell and a part around each vertex, the smallest that makes
 //! normal components single-valued and balances load and multiplier.
 //!
-//! With `phi` the hat function of the vertex, the part of the flux on its patch has in each cell the
-//! integral `int c u phi - int f phi - lambda |K| / |patch|` over the boundary of the cell, on each facet at
-//! the vertex jumps that cancel `1/D` of those of `alpha grad u . n`, and no flux through the facets
-//! opposite the vertex. The equation of the vertex is the condition of solvability. In the plane the cells
-//! around the vertex form a fan, along which balance and jumps determine all fluxes by the first one: see `fan`.
+//! Let `phi` be the hat function of a vertex, its patch the cells around it, and `g = alpha grad u . n`. Its part `p` of
+//! the flux has for all `w` that are constant, for quadratics linear,
 //!
-//! Source: P. Destuynder, B. Métivet, Math. Comp. 68 (1999), 1379-1396; D. Braess, J. Schöberl, Math.
-//! Comp. 77 (2008), 651-672.
+//! ```text
+//! (div p, w)_K = a_K(u, phi w) - l_K(phi w) - int_dK g phi w     in each cell K of the patch
+//! int_F p.n w = - int_F g phi w, both summed over the two sides  on each facet F at the vertex
+//! p.n = 0                                                        on the facets opposite the vertex
+//! ```
+//!
+//! `l_K` load and multiplier of the cell. Among these `|alpha^-1/2 (p - phi alpha grad (v - u))|` is least, `v` the
+//! admissible function; of linears `v` is `u` but for few values, and counts as `u`. The equation of the vertex is the
+//! condition of solvability.
+//!
+//! `p` has in each cell numbers on the facets at the vertex ([`Flux`]): one on each for linears, one for each vertex of
+//! a facet for quadratics, whose numbers inside the cell follow from the first line. What is left of that line is one
+//! condition, with `w = 1`.
+//!
+//! Sources: P. Destuynder, B. Métivet, Math. Comp. 68 (1999), 1379-1396; D. Braess, J. Schöberl, Math. Comp. 77 (2008),
+//! 651-672; D. Braess, V. Pillwein, J. Schöberl, Comput. Methods Appl. Mech. Engrg. 198 (2009), 1189-1197.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod` | the flux: the parts of all vertices added up |
+//! | `patch` | the part of a vertex, by least squares |
+//! | `fan` | the part of a vertex of linears in the plane, where all numbers follow from one |
+//! | `linear`, `quadratic` | what the patches read of the cells of linears and quadratics |
+//! | `corners`, `parts` | the cells around each vertex, and the numbers there |
 
-mod data;
+mod corners;
 mod fan;
+mod linear;
+mod parts;
+mod patch;
+mod quadratic;
 #[cfg(test)]
 mod tests;
 
 use std::convert::Infallible;
 use std::ops::Range;
 
-use data::{CELLS_AT_A_TIME, Corners, Patches};
-pub(super) use data::{Corner, around};
-use nalgebra::{SMatrix, SVector};
+use corners::Corner;
+use linear::LinearCells;
+use parts::Parts;
+use patch::{CellProblem, Patch};
 
-use super::NoBound;
-use super::contact::NodeForce;
-use crate::arrays::tabulate;
+use super::contact_forces::NodeForce;
+use super::flux::Flux;
+use super::quadratics::CellLoads;
+use super::{NoBound, PrimalDualPair};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::{BoundaryPart, Neighbours};
 use crate::parallel::cells;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Real;
 
-/// Pivots up to this share of the diagonal are zero: in a patch without Dirichlet facets multipliers are
-/// determined up to a constant.
-const ZERO_PIVOT: f64 = 1e-11;
+/// Number of cells whose parts are kept at a time. The parts of a tetrahedron are twelve numbers, the flux is four.
+const CELLS_AT_A_TIME: usize = 1 << 17;
+
+/// The cells of a conforming function, as patches read them: a flux has `N` numbers at most on the facets of a cell at a
+/// vertex.
+trait PatchCells<const D: usize, const N: usize>: Sync {
+    /// The degree of the flux, zero or one.
+    const DEGREE: usize;
+    /// How many numbers a facet has.
+    const PER_FACET: usize = if Self::DEGREE == 0 { 1 } else { D };
+
+    /// Where number `p` of a facet stands among those of a cell.
+    fn place(facet: usize, p: usize) -> usize {
+        // the vertices of a facet are those of the cell without the opposite one
+        if Self::DEGREE == 0 { facet } else { Flux::<D>::place(facet, p + usize::from(p >= facet)) }
+    }
+
+    /// Sets the numbers that the flux of a cell, in the order of [`Flux`], has by `alpha grad u . n`.
+    fn normals(&self, cell: usize, numbers: &mut [f64]);
+    /// The numbers of `phi alpha grad u . n` on a facet, `phi` the hat function of a vertex of it.
+    fn normal(&self, corner: Corner, facet: usize) -> [f64; 3];
+    /// The numbers that the flux of a vertex, with that of `phi alpha grad u . n`, has on a Neumann or contact facet.
+    fn given(&self, corner: Corner, facet: usize) -> [f64; 3];
+    /// The least squares problem of a cell in the patch of a vertex.
+    fn problem(&self, corner: Corner) -> CellProblem<N>;
+}
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The fluxes of a conforming linear function, without those of Neumann data and contact, which are
-    /// balanced all the same.
-    pub(in crate::error_bound) fn patch_fluxes(
+    /// The flux of a conforming linear function, without that of Neumann data and contact, which are balanced all the
+    /// same.
+    pub(super) fn flux_of_linears(
         &self,
         u: &[T],
         of_solver: (&[f64], &ActiveObstacles),
         forces: &[NodeForce],
         neighbours: &Neighbours,
-    ) -> Result<Vec<f64>, NoBound> {
-        self.fluxes_by_ranges(CELLS_AT_A_TIME, self.patches(u, of_solver, forces, neighbours)?)
+    ) -> Result<Flux<D>, NoBound> {
+        let cells = self.linear_cells(u, of_solver, forces, neighbours)?;
+        let fans = (D == 2).then_some(&cells);
+        Ok(self.flux_of_patches(&cells, fans, neighbours, CELLS_AT_A_TIME))
     }
 
-    /// The fluxes, with the parts of `length` cells at a time.
-    fn fluxes_by_ranges(
+    /// The flux of a conforming quadratic function, without that of Neumann data and contact, and without its numbers
+    /// inside cells. Divides the multipliers of shared unknowns among their cells in `loads`.
+    pub(super) fn flux_of_quadratics(
         &self,
+        (u, function): (&[T], &PrimalDualPair<D>),
+        neighbours: &Neighbours,
+        loads: &mut CellLoads,
+    ) -> Flux<D> {
+        let cells = self.quadratic_cells((u, function), neighbours, loads);
+        self.flux_of_patches(&cells, None, neighbours, CELLS_AT_A_TIME)
+    }
+
+    /// The flux, with the parts of `length` cells at a time; in the plane the cells of linears know the fans.
+    fn flux_of_patches<C: PatchCells<D, N>, const N: usize>(
+        &self,
+        of: &C,
+        fans: Option<&LinearCells<'_, '_, T, D>>,
+        neighbours: &Neighbours,
         length: usize,
-        mut patches: Patches<'_, '_, T, D>,
-    ) -> Result<Vec<f64>, NoBound> {
-        let mut flux = in_large_pages(Vec::with_capacity(self.mesh.n_cells() * (D + 1)));
+    ) -> Flux<D> {
+        let mut parts = Parts::new(D * C::PER_FACET, D + 1);
         let mut corners = None;
+        let mut flux = Flux::zero(C::DEGREE, self.mesh.n_cells());
         for (cells, mut vertices) in self.ranges_with_vertices(length) {
-            patches.keep(cells.clone());
-            if D == 2 {
-                vertices = patches.add_fans(&vertices);
+            parts.keep(cells.clone());
+            if let Some(of) = fans {
+                vertices = of.set_fans(&vertices, &parts);
             }
             if !vertices.is_empty() {
-                patches.add_vertices(&vertices, corners.get_or_insert_with(|| self.corners()));
+                let corners = corners.get_or_insert_with(|| self.corners());
+                cells::map(vertices.len(), &|range: Range<usize>| {
+                    let mut patch = Patch::default();
+                    for &v in &vertices[range] {
+                        patch.solve(of, neighbours, corners.at(v as usize), |corner, k, number| {
+                            parts.set(corner, k, number);
+                        });
+                    }
+                });
             }
-            let start = flux.len();
-            flux.resize(cells.end * (D + 1), 0.0);
-            let fill = |range: Range<usize>, flux: &mut [f64]| {
-                for (k, flux) in range.zip(flux.chunks_exact_mut(D + 1)) {
+            let (n_cells, per_cell) = (cells.len(), flux.per_cell());
+            let fill = |range: Range<usize>, out: &mut [f64]| {
+                for (k, out) in range.zip(out.chunks_exact_mut(per_cell)) {
                     let cell = cells.start + k;
-                    flux.copy_from_slice(patches.normals(cell));
-                    for own in 0..=D as u8 {
-                        for (k, local) in around::<D>(own).enumerate() {
-                            flux[local] += patches.get((cell, own), k);
+                    of.normals(cell, out);
+                    for corner in (0..=D).map(|own| Corner::new(cell, own)) {
+                        for (f, facet) in corner.facets::<D>().enumerate() {
+                            for p in 0..C::PER_FACET {
+                                let number = parts.get(corner, f * C::PER_FACET + p);
+                                out[C::place(facet, p)] += number;
+                            }
                         }
                     }
                 }
                 Ok::<(), Infallible>(())
             };
-            let Ok(()) = cells::for_each(cells.len(), &|c| c * (D + 1), &mut flux[start..], &fill);
+            let numbers = flux.of_cells_mut(cells.clone());
+            let Ok(()) = cells::for_each(n_cells, &|c| c * per_cell, numbers, &fill);
         }
-        Ok(flux)
-    }
-}
-
-/// What is known of the flux through a facet of a cell at the vertex of a patch.
-#[derive(Clone, Copy)]
-enum FacetOfPatch {
-    /// The sum of the fluxes out of both cells; its Lagrange multiplier has this number.
-    Interior(usize),
-    /// Nothing.
-    Free,
-    /// The flux.
-    Fixed(f64),
-}
-
-/// A cell of a patch: the fluxes of smallest norm through its facets at the vertex, as an affine function of
-/// their Lagrange multipliers.
-struct CellOfPatch {
-    facets: [FacetOfPatch; 3],
-    /// Minus the derivative of the fluxes with respect to the multipliers.
-    slopes: SMatrix<f64, 3, 3>,
-    /// The fluxes for multipliers that vanish.
-    fluxes: SVector<f64, 3>,
-}
-
-/// The arrays of one patch.
-#[derive(Default)]
-struct Patch {
-    cells: Vec<CellOfPatch>,
-    /// The upper triangle of the matrix of the multipliers by rows.
-    matrix: Vec<f64>,
-    /// What the fluxes of two cells have too much, then the multipliers.
-    multipliers: Vec<f64>,
-    /// The sums of the two fluxes; less the first of them once it is known.
-    sums: Vec<f64>,
-}
-
-impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
-    /// Sets the parts of those of these vertices of the plane whose cells form one fan, and returns the others.
-    fn add_fans(&self, vertices: &[u32]) -> Vec<u32> {
-        let others = cells::map(vertices.len(), &|range: Range<usize>| {
-            let mut fan = Vec::new();
-            let is_other = |&&v: &&u32| !self.add_fan(v as usize, &mut fan);
-            vertices[range].iter().filter(is_other).copied().collect::<Vec<_>>()
-        });
-        others.concat()
-    }
-
-    /// Sets the parts of these vertices, given the cells around every vertex.
-    fn add_vertices(&self, vertices: &[u32], (corners, starts): &Corners) {
-        cells::map(vertices.len(), &|range: Range<usize>| {
-            let mut patch = Patch::default();
-            for vertex in vertices[range].iter().map(|&v| v as usize) {
-                let around = starts[vertex] as usize..starts[vertex + 1] as usize;
-                self.add_vertex(vertex, &corners[around], &mut patch);
-            }
-        });
-    }
-
-    /// Sets the part of a vertex: for each cell around it the fluxes through the facets there.
-    ///
-    /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
-    fn add_vertex(&self, vertex: usize, corners: &[Corner], patch: &mut Patch) {
-        let carried = |corner: &Corner| self.carried(corner.cell() as usize, corner.own());
-        let total: f64 = corners.iter().map(carried).sum();
-        let pressure = self.multipliers[vertex] / total;
-        let Patch { cells, matrix, multipliers, sums } = patch;
-        cells.clear();
-        multipliers.clear();
-        for (k, (cell, own)) in corners.iter().map(|corner| corner.pair()).enumerate() {
-            let mut facets = [FacetOfPatch::Fixed(0.0); 3];
-            for (slot, local) in facets.iter_mut().zip(around::<D>(own)) {
-                *slot = self.facet_of_patch((cell, local), k, corners, (cells, multipliers));
-            }
-            let load = self.load(cell as usize, own, pressure);
-            cells.push(self.cell_of_patch((cell, own), facets, load));
+        for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
+            flux.set_zero_on(f.cell as usize, f.local.into());
         }
-        let n = multipliers.len();
-        sums.clear();
-        sums.extend(multipliers.iter().map(|excess| -excess));
-        matrix.clear();
-        matrix.resize(n * n, 0.0);
-        for CellOfPatch { facets, slopes, fluxes } in &*cells {
-            for (a, facet) in facets.iter().enumerate() {
-                let &FacetOfPatch::Interior(i) = facet else { continue };
-                multipliers[i] += fluxes[a];
-                for (b, other) in facets.iter().enumerate() {
-                    if let &FacetOfPatch::Interior(j) = other
-                        && i <= j
-                    {
-                        matrix[i * n + j] += slopes[(a, b)];
-                    }
-                }
-            }
-        }
-        solve(matrix, multipliers, n);
-        // the second cell of a facet takes the rest of the sum: sides agree to rounding
-        let mut n_known = 0;
-        for (corner, of) in corners.iter().zip(&*cells) {
-            let multiplier = |a: usize| match of.facets[a] {
-                FacetOfPatch::Interior(i) => multipliers[i],
-                _ => 0.0,
-            };
-            let fluxes = of.fluxes - of.slopes * SVector::from_fn(|a, _| multiplier(a));
-            for (k, (facet, &flux)) in of.facets[..D].iter().zip(fluxes.iter()).enumerate() {
-                let flux = match *facet {
-                    FacetOfPatch::Interior(i) if i < n_known => sums[i],
-                    FacetOfPatch::Interior(i) => {
-                        n_known += 1;
-                        sums[i] -= flux;
-                        flux
-                    }
-                    _ => flux,
-                };
-                self.set((corner.cell() as usize, corner.own()), k, flux);
-            }
-        }
-    }
-
-    /// What is known of the flux through a facet of cell `k` of a patch. The first cell of an interior facet
-    /// adds its multiplier, with minus the sum of the two fluxes.
-    fn facet_of_patch(
-        &self,
-        (cell, local): (u32, usize),
-        k: usize,
-        corners: &[Corner],
-        (cells, multipliers): (&[CellOfPatch], &mut Vec<f64>),
-    ) -> FacetOfPatch {
-        let normal = self.normals(cell as usize)[local];
-        match self.neighbours.across(cell as usize, local) {
-            Neighbour::Cell { cell: other, local: there } => {
-                let there = usize::from(there);
-                let position = corners.binary_search_by_key(&other, |corner| corner.cell());
-                match position.ok().filter(|&l| l < k) {
-                    Some(l) => {
-                        let slot = around::<D>(corners[l].own()).position(|local| local == there);
-                        slot.map_or(FacetOfPatch::Free, |slot| cells[l].facets[slot])
-                    }
-                    None => {
-                        let jump = normal + self.normals(other as usize)[there];
-                        multipliers.push(jump / D as f64);
-                        FacetOfPatch::Interior(multipliers.len() - 1)
-                    }
-                }
-            }
-            Neighbour::Boundary(BoundaryPart::Dirichlet) => FacetOfPatch::Free,
-            Neighbour::Boundary(_) | Neighbour::Cut => FacetOfPatch::Fixed(-normal / D as f64),
-        }
-    }
-
-    /// Minimises the norm of the fluxes of a cell whose sum is `load`.
-    fn cell_of_patch(
-        &self,
-        (cell, own): (u32, u8),
-        facets: [FacetOfPatch; 3],
-        load: f64,
-    ) -> CellOfPatch {
-        let is_free = |facet: &FacetOfPatch| !matches!(facet, FacetOfPatch::Fixed(_));
-        match D == 3 && facets.iter().all(is_free) {
-            true => self.free_cell_of_patch((cell, own), facets, load),
-            false => self.any_cell_of_patch((cell, own), facets, load),
-        }
-    }
-
-    /// A cell in which fluxes may be fixed.
-    fn any_cell_of_patch(
-        &self,
-        (cell, own): (u32, u8),
-        facets: [FacetOfPatch; 3],
-        load: f64,
-    ) -> CellOfPatch {
-        let mesh = self.space.mesh;
-        let products = facet_products::<D>(
-            mesh.cell(cell as usize).iter().map(|&v| point_f64(&mesh.vertices()[v as usize])),
-            self.volume(cell as usize) * self.space.alpha(cell as usize).to_f64(),
-        );
-        let mut locals = [0; 3];
-        locals.iter_mut().zip(around::<D>(own)).for_each(|(to, local)| *to = local);
-        let fixed = facets.map(|facet| match facet {
-            FacetOfPatch::Fixed(flux) => Some(flux),
-            _ => None,
-        });
-        // fixed facets, and those that a dimension does not have, leave the identity
-        let mut norm = SMatrix::<f64, 3, 3>::identity();
-        let mut force = SVector::<f64, 3>::zeros();
-        let mut rest = load;
-        for a in 0..3 {
-            rest -= fixed[a].unwrap_or(0.0);
-            for b in 0..3 {
-                let product = products[locals[a]][locals[b]];
-                match (fixed[a], fixed[b]) {
-                    (None, None) => norm[(a, b)] = product,
-                    (None, Some(flux)) => force[a] -= product * flux,
-                    _ => {}
-                }
-            }
-        }
-        let is_free = SVector::<f64, 3>::from_fn(|a, _| f64::from(u8::from(fixed[a].is_none())));
-        let free = SMatrix::from_diagonal(&is_free);
-        let inverse = free * norm.try_inverse().unwrap_or_default() * free;
-        // the flux that a unit of the balance adds
-        let unit = inverse * is_free;
-        let sum = unit.sum();
-        let (slopes, unit) = match sum > 0.0 {
-            true => (inverse - unit * unit.transpose() / sum, unit / sum),
-            false => (inverse, unit),
-        };
-        let known = SVector::from_fn(|a, _| fixed[a].unwrap_or(0.0));
-        CellOfPatch { facets, slopes, fluxes: slopes * force + unit * rest + known }
-    }
-
-    /// A cell in space whose three facets at the vertex have fluxes that are not fixed, in closed form.
-    ///
-    /// With `a_F` opposite the facet `F` and `V` the volume, fluxes `f_F` have in the cell the vector field
-    /// `(x sum f_F - sum f_F a_F) / (3 V)`. A sum of zero leaves the constant field with `v = sum f_F a_F` along the
-    /// facet of the three points `a_F`, and `f_F = grad lambda_F . v` with barycentric coordinates of this facet:
-    /// the slopes are `9 alpha V` times the products of these gradients. With a sum of one the norm is least where
-    /// `sum f_F a_F` is the point of the plane of the facet that is nearest to the barycentre of the cell.
-    fn free_cell_of_patch(
-        &self,
-        (cell, own): (u32, u8),
-        facets: [FacetOfPatch; 3],
-        load: f64,
-    ) -> CellOfPatch {
-        let corners = self.space.mesh.corners(cell as usize);
-        let mut others = [Point::<f64, D>::zeros(); 3];
-        others.iter_mut().zip(around::<D>(own)).for_each(|(to, k)| *to = corners[k]);
-        let [a, b, c] = others;
-        let (one, two, from) = (a - c, b - c, corners[usize::from(own)] - c);
-        let (g11, g12, g22) = (one.norm_squared(), one.dot(&two), two.norm_squared());
-        let scale = 1.0 / (g11 * g22 - g12 * g12);
-        let (aa, ab, bb) = (g22 * scale, -g12 * scale, g11 * scale);
-        let (ac, bc) = (-aa - ab, -ab - bb);
-        let factor = 9.0 * self.volume(cell as usize) * self.space.alpha(cell as usize).to_f64();
-        let slopes = SMatrix::<f64, 3, 3>::new(aa, ab, ac, ab, bb, bc, ac, bc, -ac - bc) * factor;
-        // two barycentric coordinates of the point of the plane nearest to the vertex
-        let (along_one, along_two) = (one.dot(&from), two.dot(&from));
-        let (of_a, of_b) = (aa * along_one + ab * along_two, ab * along_one + bb * along_two);
-        let unit = SVector::<f64, 3>::new(1.0 + of_a, 1.0 + of_b, 2.0 - of_a - of_b) * 0.25;
-        CellOfPatch { facets, slopes, fluxes: unit * load }
-    }
-}
-
-/// The products in L2, over a coefficient, of the functions of Raviart and Thomas in a cell that have the
-/// flux one through a facet each: `(x - a_F) / (D |K|)`.
-fn facet_products<const D: usize>(
-    corners: impl Iterator<Item = Point<f64, D>>,
-    volume_by_coefficient: f64,
-) -> [[f64; 4]; 4] {
-    let mut points = [Point::<f64, D>::zeros(); 4];
-    points.iter_mut().zip(corners).for_each(|(to, from)| *to = from);
-    let middle = points.iter().sum::<Point<f64, D>>() / (D + 1) as f64;
-    let from_middle = points.map(|p| p - middle);
-    let squares: f64 = from_middle.iter().take(D + 1).map(|p| p.norm_squared()).sum();
-    let variance = squares / ((D + 1) * (D + 2)) as f64;
-    let scale = 1.0 / ((D * D) as f64 * volume_by_coefficient);
-    tabulate(|a| tabulate(|b| scale * (from_middle[a].dot(&from_middle[b]) + variance)))
-}
-
-/// Solves with a symmetric matrix, given by the upper triangle of its rows, by elimination in place. It is
-/// positive semidefinite in the first `n_positive` unknowns; what remains for the others once these are
-/// eliminated is negative semidefinite. Where a pivot is zero but for rounding, the unknown is zero.
-pub(in crate::error_bound) fn solve(a: &mut [f64], x: &mut [f64], n_positive: usize) {
-    let n = x.len();
-    for k in 0..n {
-        if k == 0 || k == n_positive {
-            // the lower triangle is free: its first column keeps the diagonal
-            (k.max(1)..n).for_each(|i| a[i * n] = a[i * n + i].abs());
-        }
-        let (above, below) = a.split_at_mut((k + 1) * n);
-        let row = &mut above[k * n..];
-        if row[k].abs() <= ZERO_PIVOT * row[0].abs() {
-            row[k] = 0.0;
-            continue;
-        }
-        for (i, lower) in (k + 1..).zip(below.chunks_exact_mut(n)) {
-            let factor = row[i] / row[k];
-            // patches are sparse
-            if factor != 0.0 {
-                x[i] -= factor * x[k];
-                lower[i..].iter_mut().zip(&row[i..]).for_each(|(to, from)| *to -= factor * from);
-            }
-        }
-    }
-    for (k, row) in a.chunks_exact(n.max(1)).enumerate().rev() {
-        let sum: f64 = row[k + 1..].iter().zip(&x[k + 1..]).map(|(a, x)| a * x).sum();
-        x[k] = if row[k] != 0.0 { (x[k] - sum) / row[k] } else { 0.0 };
+        flux
     }
 }

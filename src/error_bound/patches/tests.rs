@@ -1,13 +1,17 @@
+use std::cell::RefCell;
+
 use super::*;
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::mesh::{BoxDomain, Mesh};
 use crate::problem::Problem;
-use crate::scheme::ConformingP1;
+use crate::real::Point;
+use crate::scheme::{ConformingP1, ConformingP2};
 
-/// Boxes with sides of different lengths.
+/// Boxes with sides of different lengths, one of them not of the Dirichlet part.
 fn mesh<const D: usize>(n: usize) -> Mesh<f64, D> {
     let far = Point::from_fn(|k, _| [1.0, 0.7, 1.9][k]);
-    Mesh::kuhn_box(&BoxDomain::dirichlet(Point::zeros(), far), [n; D]).unwrap()
+    let domain = BoxDomain::dirichlet(Point::zeros(), far).side(1, 0, BoundaryPart::Neumann);
+    Mesh::kuhn_box(&domain, [n; D]).unwrap()
 }
 
 /// Some number for each of `n` indices.
@@ -15,48 +19,88 @@ fn numbers(n: usize) -> Vec<f64> {
     (0..n).map(|i| ((7 * i * i + 3 * i) % 23) as f64 - 11.0).collect()
 }
 
-/// The closed form for a tetrahedron without fixed fluxes, against the inverse of the matrix of products.
+/// In the plane the numbers along a fan are those of least squares where the equation of the vertex holds: inside
+/// the domain and on the Dirichlet part, here of a linear function with a load.
 #[test]
-fn the_closed_form_of_a_cell_in_space_is_the_general_one() {
-    let (mesh, problem) = (mesh::<3>(1), Problem::new().coefficient(|x| 2.0 + x[0] - 0.5 * x[2]));
+fn numbers_along_a_fan_are_those_of_least_squares() {
+    let (mesh, problem) = (mesh::<2>(3), Problem::new().coefficient(|x| 2.0 + x[0] - 0.5 * x[1]));
     let of =
         Discretisation::new(&ConformingP1, &problem, &mesh, DataQuadrature::default()).unwrap();
-    let n = mesh.vertices().len();
-    let neighbours = Neighbours::new(&mesh);
-    let (zero, obstacles) = (vec![0.0; n], of.space.active_obstacles(&[], &[]));
-    let of_solver = (&zero[..], &obstacles);
-    let patches = of.space.patches(&numbers(n), of_solver, &[], &neighbours).ok().unwrap();
-    for corner in (0..mesh.n_cells() as u32).flat_map(|cell| (0..4).map(move |own| (cell, own))) {
-        let facets = [FacetOfPatch::Free; 3];
-        let one = patches.free_cell_of_patch(corner, facets, 0.7);
-        let other = patches.any_cell_of_patch(corner, facets, 0.7);
-        assert!((one.slopes - other.slopes).norm() < 1e-12 * other.slopes.norm(), "{corner:?}");
-        assert!((one.fluxes - other.fluxes).norm() < 1e-12 * other.fluxes.norm(), "{corner:?}");
-        assert!((one.fluxes.sum() - 0.7).abs() < 1e-14);
+    let (u, neighbours) = (numbers(mesh.vertices().len()), Neighbours::new(&mesh));
+    let inequality = of.inequality().unwrap();
+    let mut residual = vec![0.0; u.len()];
+    inequality.residual_f64(&u, &mut residual);
+    let obstacles = of.space.active_obstacles(&[], &[]);
+    let cells = of.space.linear_cells(&u, (&residual, &obstacles), &[], &neighbours).ok().unwrap();
+    let corners = of.space.corners();
+    let mut fan = Vec::new();
+    for vertex in 0..u.len() {
+        let find = |found: &mut dyn FnMut(&dyn Fn(Corner, usize, f64)) -> bool| {
+            let parts = RefCell::new(Vec::new());
+            let is_found = found(&|corner, k, number| {
+                parts.borrow_mut().push((corner.cell(), k, number));
+            });
+            let mut parts = parts.into_inner();
+            parts.sort_by_key(|&(cell, k, _)| (cell, k));
+            (is_found, parts)
+        };
+        let (is_fan, by_fan) = find(&mut |set| cells.set_fan(vertex, &mut fan, set));
+        let (_, by_patch) = find(&mut |set| {
+            Patch::default().solve(&cells, &neighbours, corners.at(vertex), set);
+            true
+        });
+        assert!(is_fan && by_fan.len() == by_patch.len());
+        let largest = by_fan.iter().fold(0.0, |most: f64, (_, _, number)| most.max(number.abs()));
+        for ((cell, k, one), (of_cell, of_k, other)) in by_fan.iter().zip(&by_patch) {
+            assert_eq!((cell, k), (of_cell, of_k));
+            assert!((one - other).abs() < 1e-11 * largest, "{vertex}: {one} {other}");
+        }
     }
 }
 
 /// The parts of a few cells at a time, and of all cells, have the same bits; so do cells whose neighbours have
 /// numbers far apart, which are one range.
-fn ranges<const D: usize>() {
-    let (mesh, problem) = (mesh::<D>(5), Problem::new().constant_source(1.5));
-    let of =
-        Discretisation::new(&ConformingP1, &problem, &mesh, DataQuadrature::default()).unwrap();
-    let n = mesh.vertices().len();
-    let neighbours = Neighbours::new(&mesh);
-    let (zero, obstacles) = (vec![0.0; n], of.space.active_obstacles(&[], &[]));
-    let of_solver = (&zero[..], &obstacles);
-    let fluxes = |length: usize| {
-        let patches = of.space.patches(&numbers(n), of_solver, &[], &neighbours).ok().unwrap();
-        of.space.fluxes_by_ranges(length, patches).ok().unwrap()
-    };
+fn check_ranges<const D: usize>(flux_of: impl Fn(&Mesh<f64, D>, usize) -> (Flux<D>, [usize; 3])) {
+    let mesh = mesh::<D>(5);
     let n_cells = mesh.n_cells();
-    let whole = fluxes(n_cells);
-    assert!(whole.iter().any(|flux| *flux != 0.0));
-    let n_ranges = |length: usize| of.space.ranges_with_vertices(length).len();
-    assert_eq!([n_cells, n_cells / 2 + 1, 1].map(n_ranges), [1, 2, 1]);
-    assert_eq!(fluxes(n_cells / 2 + 1), whole);
-    assert_eq!(fluxes(1), whole);
+    let (whole, n_ranges) = flux_of(&mesh, n_cells);
+    assert!((0..n_cells).any(|cell| whole.through(cell, 0) != 0.0));
+    assert_eq!(n_ranges, [1, 2, 1]);
+    assert_eq!(flux_of(&mesh, n_cells / 2 + 1).0, whole);
+    assert_eq!(flux_of(&mesh, 1).0, whole);
+}
+
+fn ranges<const D: usize>() {
+    let problem = Problem::new().constant_source(1.5);
+    let n_ranges = |space: &Space<'_, f64, D>| {
+        let n_cells = space.mesh.n_cells();
+        [n_cells, n_cells / 2 + 1, 1].map(|length| space.ranges_with_vertices(length).len())
+    };
+    check_ranges::<D>(|mesh, length| {
+        let of =
+            Discretisation::new(&ConformingP1, &problem, mesh, DataQuadrature::default()).unwrap();
+        let (n, neighbours) = (of.space.dofs.size(), Neighbours::new(mesh));
+        let (zero, obstacles) = (vec![0.0; n], of.space.active_obstacles(&[], &[]));
+        let of_solver = (&zero[..], &obstacles);
+        let cells = of.space.linear_cells(&numbers(n), of_solver, &[], &neighbours).ok().unwrap();
+        (
+            of.space.flux_of_patches(&cells, (D == 2).then_some(&cells), &neighbours, length),
+            n_ranges(&of.space),
+        )
+    });
+    check_ranges::<D>(|mesh, length| {
+        let of =
+            Discretisation::new(&ConformingP2, &problem, mesh, DataQuadrature::default()).unwrap();
+        let (n, neighbours) = (of.space.dofs.size(), Neighbours::new(mesh));
+        let (zero, obstacles) = (vec![0.0; n], of.space.active_obstacles(&[], &[]));
+        let (u, of_solver) = (numbers(n), (&zero[..], &obstacles));
+        let bounds = of.inequality().unwrap().bounds;
+        let loads = of.space.cell_loads(&u, of_solver, (&bounds, &[]), &[], None);
+        let (mut loads, function) =
+            (loads.ok().unwrap(), of.space.admissible_function(&u, (&bounds, &[])));
+        let cells = of.space.quadratic_cells((&u, &function), &neighbours, &mut loads);
+        (of.space.flux_of_patches(&cells, None, &neighbours, length), n_ranges(&of.space))
+    });
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::mesh::Refinement;
 use crate::real::{Real, point_f64};
 
 /// A solution with its space and inequality.
-type Solved<'s, 'a, T, const D: usize> =
+type DiscreteSolution<'s, 'a, T, const D: usize> =
     (&'s Discretisation<'a, T, D>, &'s Inequality<T>, &'s Solution<T>);
 
 /// Distances of multiplier and contact set of a solution from those of another one, on the mesh that
@@ -20,12 +20,12 @@ type Solved<'s, 'a, T, const D: usize> =
 /// facets) of the finer mesh. The multiplier of the finer solution is tested with the hat functions of the coarser
 /// mesh, exactly.
 pub(crate) fn contact_difference<T: Real, const D: usize>(
-    solved: Solved<'_, '_, T, D>,
-    reference: Solved<'_, '_, T, D>,
+    solved: DiscreteSolution<'_, '_, T, D>,
+    reference: DiscreteSolution<'_, '_, T, D>,
     refinements: &[&Refinement],
 ) -> ContactErrors {
     compiled!(
-        T, D: fn(Solved<'_, '_, T, D>, Solved<'_, '_, T, D>, &[&Refinement]) -> ContactErrors
+        T, D: fn(DiscreteSolution<'_, '_, T, D>, DiscreteSolution<'_, '_, T, D>, &[&Refinement]) -> ContactErrors
             = |solved, reference, refinements| {
                 let own = (&solved.0.space, solved.1, solved.2);
                 difference(own, (&reference.0.space, reference.1, reference.2), refinements)

@@ -106,7 +106,7 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     ///
     /// # Errors
     /// [`NoBound`].
-    pub fn primal_dual_pair(&self) -> Result<PrimalDualPair, NoBound> {
+    pub fn primal_dual_pair(&self) -> Result<PrimalDualPair<D>, NoBound> {
         match self.has_iterate {
             true => self.discretisation.primal_dual_pair(&self.inequality, &self.solution),
             false => Err(NoBound::NoIterate),
@@ -119,7 +119,7 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     pub fn bound(&self) -> Result<ErrorBound, NoBound> {
         self.pair_and_bound().map(|(_, bound, _)| bound.clone())
     }
-    pub(super) fn pair_and_bound(&self) -> Result<&(PrimalDualPair, ErrorBound, f64), NoBound> {
+    pub(super) fn pair_and_bound(&self) -> Result<&(PrimalDualPair<D>, ErrorBound, f64), NoBound> {
         if let Some(known) = self.bound.get() {
             return Ok(known);
         }

@@ -33,7 +33,7 @@ pub struct Solved<'a, T: Real, const D: usize> {
     /// The hierarchy that has the mesh, and its position there.
     hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
     /// The bound with the pair that gives it and the seconds of both, once computed.
-    bound: OnceLock<(PrimalDualPair, ErrorBound, f64)>,
+    bound: OnceLock<(PrimalDualPair<D>, ErrorBound, f64)>,
     /// Seconds for the mesh and all coarser ones, if it is one of several.
     pub(crate) mesh_seconds: f64,
     /// Seconds of assembly.

@@ -42,8 +42,8 @@ fn holds<const D: usize>(scene: &Scene<D>, coarsest: usize, parts: usize) {
                 let own = (0..part.mesh.n_cells()).filter(|&cell| part.owns(cell));
                 let (mut fluxes, mut values) = (Vec::new(), Vec::new());
                 for cell in own {
-                    let flux = &pair.flux[cell * (D + 1)..][..D + 1];
-                    fluxes.push((part.cells[cell], flux.to_vec()));
+                    let flux = (0..=D).map(|facet| pair.flux.through(cell, facet));
+                    fluxes.push((part.cells[cell], flux.collect::<Vec<_>>()));
                     for &v in part.mesh.cell(cell) {
                         let x = part.mesh.vertices()[v as usize];
                         let bits = std::array::from_fn(|k| x[k].to_bits());

@@ -51,11 +51,17 @@ impl<const D: usize> CellFlux<D> {
     }
     /// What the flux leaves of a load, by the means of the load less a constant times each factor of a
     /// term, and the square of its norm.
-    pub fn balance(&self, volume: f64, means: &[f64; 4], square: f64, constant: f64) -> Balance {
+    pub fn left_of_load(
+        &self,
+        volume: f64,
+        means: &[f64; 4],
+        square: f64,
+        constant: f64,
+    ) -> LeftOfLoad {
         if self.n == 1 {
             let mean = -self.sums[0] / volume - means[0] - constant;
             let rest = (square - volume * means[0] * means[0]).max(0.0);
-            return Balance { mean, values: [mean; 4], variation: 0.0, rest };
+            return LeftOfLoad { mean, values: [mean; 4], variation: 0.0, rest };
         }
         let d = D as f64;
         let sum: f64 = means.iter().sum();
@@ -68,12 +74,12 @@ impl<const D: usize> CellFlux<D> {
         let mean = values.iter().sum::<f64>() / (d + 1.0);
         let squares: f64 = values[..self.n].iter().map(|v| (v - mean).powi(2)).sum();
         let variation = volume * squares / ((d + 1.0) * (d + 2.0));
-        Balance { mean, values, variation, rest: (square - volume * products).max(0.0) }
+        LeftOfLoad { mean, values, variation, rest: (square - volume * products).max(0.0) }
     }
 }
 
 /// What the flux of a cell leaves of the load.
-pub(super) struct Balance {
+pub(super) struct LeftOfLoad {
     /// Its mean.
     pub mean: f64,
     /// Its projection on the linear functions, at the vertices; the mean where the flux has one term.
@@ -86,26 +92,31 @@ pub(super) struct Balance {
 
 /// How far a linear function with these values at vertices can be taken from its mean, at most all the way,
 /// with the sign of the mean everywhere.
-pub(in crate::error_bound) fn limit(mean: f64, values: &[f64]) -> f64 {
+pub(in crate::error_bound) fn share_of_one_sign(mean: f64, values: &[f64]) -> f64 {
     let deepest = values.iter().map(|v| mean.signum() * (mean - v)).fold(0.0, f64::max);
     if deepest > mean.abs() { mean.abs() / deepest } else { 1.0 }
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The flux of a pair in a cell.
-    pub(super) fn flux_in(&self, pair: &PrimalDualPair, cell: usize, volume: f64) -> CellFlux<D> {
-        let n = if pair.degree > 1 { D + 1 } else { 1 };
-        let flux = &pair.flux[cell * (D + 1) * n..(cell + 1) * (D + 1) * n];
+    pub(super) fn flux_in(
+        &self,
+        pair: &PrimalDualPair<D>,
+        cell: usize,
+        volume: f64,
+    ) -> CellFlux<D> {
+        let numbers = pair.flux.of_cell(cell);
+        let n = if pair.flux.degree() > 0 { D + 1 } else { 1 };
         let per_volume = 1.0 / (D as f64 * volume);
         let (mut sums, mut origins) = ([0.0; 4], [Point::<f64, D>::zeros(); 4]);
-        for (&v, flux) in self.mesh.cell(cell).iter().zip(flux.chunks_exact(n)) {
+        for (&v, numbers) in self.mesh.cell(cell).iter().zip(numbers.chunks_exact(n)) {
             let opposite = point_f64(&self.mesh.vertices()[v as usize]);
-            for (k, flux) in flux.iter().enumerate() {
-                sums[k] += flux;
-                origins[k] += opposite * *flux;
+            for (k, number) in numbers.iter().enumerate() {
+                sums[k] += number;
+                origins[k] += opposite * *number;
             }
         }
-        let inner: f64 = (0..D + 1).map(|k| flux[k * (D + 2) % flux.len()]).sum();
+        let inner: f64 = (0..D + 1).map(|j| pair.flux.inner(cell, j)).sum();
         let divergence = match n {
             1 => [D as f64 * sums[0]; 4],
             _ => sums.map(|sum| (D + 1) as f64 * sum - inner),

@@ -1,16 +1,27 @@
-//! What the patches read of each cell: normal fluxes, the aim of the flux, and the divergence to be balanced.
+//! What the patches of quadratics read of the cells: a flux has one number for each vertex of a facet.
+//!
+//! In the notation of [`quadratics`](crate::error_bound::quadratics) the part of a vertex is in a cell
+//!
+//! ```text
+//! p = sum c_Fj lambda_j (a_j - a_F) / (D |K|) + sum_j r_j lambda_j phi_j
+//! ```
+//!
+//! over the facets `F` at the vertex, with numbers `r_j` that the divergence, tested with linear functions, tells.
 
 use std::convert::Infallible;
 use std::ops::Range;
 
+use super::PatchCells;
+use super::corners::Corner;
+use super::patch::CellProblem;
 use crate::arrays::tabulate;
 use crate::assemble::local::StiffnessTable;
 use crate::assemble::space::tables::BasisAt;
-use crate::assemble::space::{INWARD, Space};
+use crate::assemble::space::{INWARD, Place, Space};
 use crate::element::Node;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{
-    CellLoads, Products, add, densities, products_on_facet, vertices_of,
+    CellLoads, Products, add, densities, products_on_facet, triple, vertices_of,
 };
 use crate::error_bound::shared_multipliers::SharedNodes;
 use crate::measure::Admissible;
@@ -20,46 +31,60 @@ use crate::real::{Point, Real};
 
 /// What is known of a cell before its patches are.
 #[derive(Clone, Default)]
-pub(super) struct CellData {
+struct KnownOfCell {
     /// By facet the densities of `alpha grad u . n`.
-    pub normal: Products,
+    normal: Products,
     /// The gradient of the admissible function less that of the discrete function, at the vertices.
-    pub difference: [[f64; 3]; 4],
+    difference: [[f64; 3]; 4],
     /// The stiffness term of each unknown.
-    pub stiffness: [f64; 10],
+    stiffness: [f64; 10],
     /// By vertex of the patch the divergence tested with the barycentric coordinates.
-    pub divergence: Products,
+    divergence: Products,
 }
 
-impl CellData {
-    /// The densities of the part of a vertex of a facet, `phi alpha grad u . n`.
-    pub fn part<const D: usize>(&self, facet: usize, vertex: usize) -> [f64; 4] {
-        densities::<D>(&products_on_facet::<D>(&self.normal[facet], facet)[vertex], facet)
-    }
+/// The cells of a conforming quadratic function.
+pub(super) struct QuadraticCells<'s, 'a, T: Real, const D: usize> {
+    space: &'s Space<'a, T, D>,
+    cells: Vec<KnownOfCell>,
+    /// The products of Neumann data and contact forces, by facet; sorted.
+    given: Vec<&'s (Place, Products)>,
+}
+
+/// Sorts products by the places of their facets. Not in the function that calls it, so that this is compiled once.
+fn sort(given: &mut [&(Place, Products)]) {
+    given.sort_unstable_by_key(|(place, _)| *place);
+}
+
+/// The numbers of a facet, of numbers for all vertices of the cell.
+fn on_facet<const D: usize>(densities: &[f64; 4], facet: usize) -> [f64; 3] {
+    let mut numbers = [0.0; 3];
+    numbers.iter_mut().zip(vertices_of::<D>(facet)).for_each(|(to, j)| *to = densities[j]);
+    numbers
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The data of all cells. Divides the multipliers of shared unknowns among their cells in `loads`.
-    pub(super) fn patch_data(
-        &self,
-        (u, function): (&[T], &PrimalDualPair),
+    /// The cells of a conforming quadratic function. Divides the multipliers of shared unknowns among their cells in
+    /// `loads`.
+    pub(super) fn quadratic_cells<'s>(
+        &'s self,
+        (u, function): (&[T], &PrimalDualPair<D>),
         neighbours: &Neighbours,
-        loads: &mut CellLoads,
-    ) -> Vec<CellData> {
+        loads: &'s mut CellLoads,
+    ) -> QuadraticCells<'s, 's, T, D> {
         let corners: Vec<BasisAt<f64>> =
             (0..D + 1).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
         let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
         let data = cells::map(n_cells, &|cells: Range<usize>| {
-            let in_cell = |cell| self.patch_data_in(cell, (u, function), (&corners, &table));
+            let in_cell = |cell| self.known_of_cell(cell, (u, function), (&corners, &table));
             cells.map(in_cell).collect::<Vec<_>>()
         });
-        let mut data: Vec<CellData> = data.into_iter().flatten().collect();
+        let mut data: Vec<KnownOfCell> = data.into_iter().flatten().collect();
         if let Some(shared) = loads.shared.as_ref().filter(|s| s.surrounded.contains(&true)) {
             self.divide_multipliers(&data, neighbours, shared, &mut loads.values);
         }
         let loads = &*loads;
         let n = self.per_cell();
-        let fill = |cells: Range<usize>, out: &mut [CellData]| {
+        let fill = |cells: Range<usize>, out: &mut [KnownOfCell]| {
             for (cell, data) in cells.zip(out) {
                 for (i, of_linear) in loads.functionals.iter().enumerate() {
                     let left = data.stiffness[i] - loads.values[cell * n + i];
@@ -76,14 +101,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for ((cell, _), products) in &loads.neumann {
             add(&mut data[*cell].divergence, |a, j| products[a][j]);
         }
-        data
+        let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
+        sort(&mut given);
+        QuadraticCells { space: self, cells: data, given }
     }
 
     /// Divides the multipliers of unknowns amid contact among their cells as the mean of the two fluxes
     /// through each facet balances them, since the function is there as smooth as the obstacle.
     fn divide_multipliers(
         &self,
-        data: &[CellData],
+        data: &[KnownOfCell],
         neighbours: &Neighbours,
         shared: &SharedNodes,
         values: &mut [f64],
@@ -125,18 +152,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// The data of a cell, without divergence.
-    fn patch_data_in(
+    fn known_of_cell(
         &self,
         cell: usize,
-        (u, function): (&[T], &PrimalDualPair),
+        (u, function): (&[T], &PrimalDualPair<D>),
         (corners, table): (&[BasisAt<f64>], &StiffnessTable<T>),
-    ) -> CellData {
+    ) -> KnownOfCell {
         let n = self.per_cell();
         let metric = self.metric(cell);
         let local = self.local_values(cell, u);
         let alpha = self.alpha(cell);
         let varying = self.varying_in(cell);
-        let mut data = CellData::default();
+        let mut data = KnownOfCell::default();
         let admissible = Admissible { bounds: [None, None], ..self.admissible_in(function, cell) };
         for (k, basis) in corners.iter().enumerate() {
             let slope = |m: usize| -> f64 {
@@ -175,4 +202,89 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         data
     }
+}
+
+impl<T: Real, const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, T, D> {
+    const DEGREE: usize = 1;
+
+    fn normals(&self, cell: usize, numbers: &mut [f64]) {
+        for (numbers, normal) in numbers.chunks_exact_mut(D + 1).zip(&self.cells[cell].normal) {
+            numbers.copy_from_slice(&normal[..=D]);
+        }
+    }
+
+    fn normal(&self, corner: Corner, facet: usize) -> [f64; 3] {
+        let normal = &self.cells[corner.cell()].normal[facet];
+        let products = &products_on_facet::<D>(normal, facet)[corner.own()];
+        on_facet::<D>(&densities::<D>(products, facet), facet)
+    }
+
+    fn given(&self, corner: Corner, facet: usize) -> [f64; 3] {
+        let place = (corner.cell(), facet);
+        let given = self.given.binary_search_by_key(&place, |(place, _)| *place);
+        given.map_or([0.0; 3], |k| {
+            let products = &self.given[k].1[corner.own()];
+            on_facet::<D>(&densities::<D>(products, facet), facet)
+        })
+    }
+
+    fn problem(&self, corner: Corner) -> CellProblem<9> {
+        let (mesh, cell, d) = (self.space.mesh, corner.cell(), D as f64);
+        let points = mesh.corners(cell);
+        let volume = mesh.geometry(cell).volume.to_f64();
+        let alpha = self.space.alpha(cell).to_f64();
+        let scale = 1.0 / (alpha * volume * d * d * (d + 1.0) * (d + 2.0));
+        let known = &self.cells[cell];
+        let tested = &known.divergence[corner.own()];
+        let of_divergence = divergence_products(&points, tested);
+        let targets = target_products::<D>(corner.own(), &known.difference);
+        // of each number its vertex, and the vector from the vertex opposite its facet to it
+        let mut numbers = [(0, Point::<f64, D>::zeros()); 9];
+        let all = corner.facets::<D>().flat_map(|f| vertices_of::<D>(f).map(move |j| (f, j)));
+        for (number, (facet, j)) in numbers.iter_mut().zip(all) {
+            *number = (j, points[j] - points[facet]);
+        }
+        let (mut products, mut aims) = ([[0.0; 9]; 9], [0.0; 9]);
+        for (a, (j, along)) in numbers.iter().enumerate().take(D * D) {
+            aims[a] = targets[*j].dot(along) - scale * of_divergence[*j].dot(along);
+            for (b, (k, other)) in numbers.iter().enumerate().take(D * D) {
+                products[a][b] = if j == k { 2.0 } else { 1.0 } * scale * along.dot(other);
+            }
+        }
+        CellProblem { products, aims, sum: d * tested[..=D].iter().sum::<f64>() }
+    }
+}
+
+/// The products of `sum_j r_j lambda_j phi_j` in a cell with `lambda_k` times a vector, for each vertex `k`; `tested`
+/// is the divergence tested with the barycentric coordinates.
+fn divergence_products<const D: usize>(
+    points: &[Point<f64, D>; 4],
+    tested: &[f64; 4],
+) -> [Point<f64, D>; 4] {
+    let d = D as f64;
+    let sum: Point<f64, D> = points[..=D].iter().sum();
+    let total: f64 = tested[..=D].iter().sum();
+    tabulate(|k| {
+        let mut product = Point::zeros();
+        for j in 0..=D {
+            let inner = d * ((d + 2.0) * tested[j] - total);
+            let weight = if j == k { 2.0 } else { 1.0 } * inner / (d + 3.0);
+            product += (sum - points[j] * (d + 2.0) + points[k]) * weight;
+        }
+        product
+    })
+}
+
+/// The products of what the part of vertex `own` aims at, its hat function times the difference of gradients, with
+/// `lambda_j` times a vector, for each vertex `j` of a cell.
+fn target_products<const D: usize>(own: usize, differences: &[[f64; 3]; 4]) -> [Point<f64, D>; 4] {
+    let d = D as f64;
+    tabulate(|j| {
+        let mut target = Point::zeros();
+        for (k, difference) in differences.iter().enumerate().take(D + 1) {
+            let product = triple(D, [j, own, k]) / d;
+            target += Point::from_fn(|axis, _| product * difference[axis]);
+        }
+        target
+    })
 }

@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
-use super::cell_flux::limit;
+use super::cell_flux::share_of_one_sign;
 use crate::assemble::space::{Place, Space};
+use crate::error_bound::quadratics::vertices_of;
 use crate::error_bound::{NoBound, PrimalDualPair};
 use crate::mesh::BoundaryPart;
 use crate::quadrature::{Rule, facet_to_cell};
@@ -46,7 +47,7 @@ impl FacetFlux {
         let vertices = || (0..dimension + 1).filter(|&k| k != self.local);
         // the value at the vertex opposite the facet does not count
         values[self.local] = mean;
-        let share = limit(mean, &values[..=dimension]);
+        let share = share_of_one_sign(mean, &values[..=dimension]);
         let squares: f64 = values[..=dimension].iter().map(|v| (v - mean).powi(2)).sum();
         vertices().for_each(|k| values[k] = mean + share * (values[k] - mean));
         values[self.local] = 0.0;
@@ -89,7 +90,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The terms of the boundary.
     pub(in crate::error_bound) fn boundary_terms(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
     ) -> Result<BoundaryTerms, NoBound> {
         let n_cells = self.mesh.n_cells();
         let zeros = |is_needed: bool| vec![0.0; if is_needed { n_cells } else { 0 }];
@@ -142,14 +143,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// The flux of a pair through a facet.
-    fn flux_on(&self, pair: &PrimalDualPair, (cell, local): Place) -> FacetFlux {
-        let place = cell * (D + 1) + local;
-        if pair.degree == 1 {
-            return FacetFlux { scale: pair.flux[place], values: None, local };
+    fn flux_on(&self, pair: &PrimalDualPair<D>, (cell, local): Place) -> FacetFlux {
+        if pair.flux.degree() == 0 {
+            return FacetFlux { scale: pair.flux.through(cell, local), values: None, local };
         }
         let mut values = [0.0; 4];
-        values[..=D].copy_from_slice(&pair.flux[place * (D + 1)..][..D + 1]);
-        values[local] = 0.0;
+        vertices_of::<D>(local).for_each(|j| values[j] = pair.flux.density(cell, local, j));
         FacetFlux { scale: 1.0, values: Some(values), local }
     }
 }

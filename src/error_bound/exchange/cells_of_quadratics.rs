@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
+use crate::error_bound::flux::Flux;
 use crate::quadrature::Rule;
 use crate::real::{Point, Real};
 
@@ -12,7 +13,7 @@ use crate::real::{Point, Real};
 const DEGREE: usize = 4;
 
 /// A cell of the exchange, but for the products of its fluxes.
-pub(super) struct CellInContact {
+pub(super) struct CellOfQuadratics {
     /// The number of the cell.
     pub number: usize,
     /// The multiplier at the vertices.
@@ -36,7 +37,7 @@ pub(super) struct CellInContact {
     pub has_one_sign: bool,
 }
 
-impl CellInContact {
+impl CellOfQuadratics {
     /// The multiplier in the mean, times the number of vertices.
     pub fn sum(&self) -> f64 {
         self.multiplier.iter().sum()
@@ -52,27 +53,27 @@ impl CellInContact {
 }
 
 /// The cells of the exchange.
-pub(super) struct Cells<'f, const D: usize> {
-    pub cells: Vec<CellInContact>,
+pub(super) struct CellsOfQuadratics<'f, const D: usize> {
+    pub cells: Vec<CellOfQuadratics>,
     /// By cell the products of its fluxes with each other.
     products: Vec<f64>,
-    pub flux: &'f mut [f64],
+    pub flux: &'f mut Flux<D>,
 }
 
-impl<const D: usize> Cells<'_, D> {
+impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// The number of fluxes of a cell.
     pub const N: usize = (D + 1) * (D + 1);
 
     /// Half of the derivative of the square of the mismatch of a cell by one of its numbers.
     fn slope(&self, k: usize, number: usize) -> f64 {
         let row = &self.products[(k * Self::N + number) * Self::N..][..Self::N];
-        let flux = &self.flux[self.cells[k].number * Self::N..][..Self::N];
+        let flux = self.flux.of_cell(self.cells[k].number);
         let products = row.iter().zip(flux).map(|(p, c)| p * c);
         products.sum::<f64>() - self.cells[k].gradient[number]
     }
     /// The square of the mismatch of a cell.
     pub fn mismatch(&self, k: usize) -> f64 {
-        let flux = &self.flux[self.cells[k].number * Self::N..][..Self::N];
+        let flux = self.flux.of_cell(self.cells[k].number);
         let of_cell = &self.cells[k];
         let term =
             |(number, c): (usize, &f64)| c * (self.slope(k, number) - of_cell.gradient[number]);
@@ -107,7 +108,7 @@ impl<const D: usize> Cells<'_, D> {
     /// Adds to a number of a cell that changes the divergence at one vertex.
     pub fn add(&mut self, k: usize, number: usize, vertex: usize, exchange: f64) {
         let cell = &mut self.cells[k];
-        self.flux[cell.number * Self::N + number] += exchange;
+        self.flux.of_cell_mut(cell.number)[number] += exchange;
         cell.multiplier[vertex] -= cell.divergence * exchange;
     }
 }
@@ -118,27 +119,27 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         numbers: &[usize],
         multiplier: impl Fn(usize) -> [f64; 4],
-        function: &PrimalDualPair,
-        flux: &'f mut [f64],
-    ) -> Cells<'f, D> {
+        function: &PrimalDualPair<D>,
+        flux: &'f mut Flux<D>,
+    ) -> CellsOfQuadratics<'f, D> {
         let rule = Rule::new(D, DEGREE);
-        let square = Cells::<D>::N * Cells::<D>::N;
+        let square = CellsOfQuadratics::<D>::N * CellsOfQuadratics::<D>::N;
         let mut products = vec![0.0; numbers.len() * square];
         let cells = numbers.iter().zip(products.chunks_exact_mut(square)).map(
             |(&number, products): (&usize, &mut [f64])| {
-                self.quadratic_in_contact(number, function, multiplier(number), (&rule, products))
+                self.cell_of_quadratics(number, function, multiplier(number), (&rule, products))
             },
         );
-        Cells { cells: cells.collect(), products, flux }
+        CellsOfQuadratics { cells: cells.collect(), products, flux }
     }
 
-    fn quadratic_in_contact(
+    fn cell_of_quadratics(
         &self,
         number: usize,
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         multiplier: [f64; 4],
         (rule, products): (&Rule, &mut [f64]),
-    ) -> CellInContact {
+    ) -> CellOfQuadratics {
         let n = (D + 1) * (D + 1);
         let volume = self.mesh.geometry(number).volume.to_f64();
         let per_volume = 1.0 / (D as f64 * volume);
@@ -159,7 +160,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let mut fluxes = [Point::<f64, D>::zeros(); 16];
             for (facet, corner) in corners.iter().enumerate().take(D + 1) {
                 let along = (x - corner) * per_volume;
-                (0..D + 1).for_each(|j| fluxes[facet * (D + 1) + j] = along * point[j]);
+                (0..D + 1).for_each(|j| fluxes[Flux::<D>::place(facet, j)] = along * point[j]);
             }
             for a in 0..n {
                 of_gradient[a] += weight * gradient.dot(&fluxes[a]);
@@ -168,7 +169,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 }
             }
         }
-        CellInContact {
+        CellOfQuadratics {
             number,
             multiplier,
             gaps,

@@ -1,6 +1,7 @@
 //! The admissible function of a discrete solution.
 
 use super::PrimalDualPair;
+use super::flux::Flux;
 use crate::algebra::{Bound, Contact};
 use crate::arrays::map_entries;
 use crate::assemble::space::tables::BasisAt;
@@ -12,7 +13,7 @@ use crate::real::{Point, Real, point_f64};
 
 /// The nodes of the admissible function: the vertices of the mesh and, for quadratics, after them the
 /// midpoints of its edges.
-struct Nodes<'m> {
+struct FunctionNodes<'m> {
     n_vertices: usize,
     n_edges: usize,
     /// By cell the numbers of its edges; empty for linears.
@@ -23,7 +24,7 @@ struct Nodes<'m> {
 /// node at a vertex the two are equal.
 pub(super) type PairNode = ([usize; 2], usize);
 
-impl Nodes<'_> {
+impl FunctionNodes<'_> {
     /// The edges of a cell that have a node: their two vertices in the cell and the number of the node.
     fn of_edges(
         &self,
@@ -40,11 +41,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The nodes of the function of a pair in a cell.
     pub(super) fn pair_nodes(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         cell: usize,
     ) -> impl Iterator<Item = PairNode> {
         let n_vertices = self.mesh.vertices().len();
-        let nodes = Nodes { n_vertices, n_edges: 0, edges: &pair.edges };
+        let nodes = FunctionNodes { n_vertices, n_edges: 0, edges: &pair.edges };
         let vertices = self.mesh.cell(cell).iter().enumerate();
         let of_edges: Vec<_> = nodes.of_edges(D, cell).map(|(ends, node)| (*ends, node)).collect();
         vertices.map(|(k, &v)| ([k; 2], v as usize)).chain(of_edges)
@@ -53,7 +54,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The nodes of the function of a pair on a facet.
     pub(super) fn pair_nodes_on(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         (cell, local): Place,
     ) -> impl Iterator<Item = PairNode> {
         self.pair_nodes(pair, cell).filter(move |(ends, _)| !ends.contains(&local))
@@ -66,7 +67,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         u: &[T],
         states: (&[Bound<T>], &[Contact]),
-    ) -> PrimalDualPair {
+    ) -> PrimalDualPair<D> {
         let degree = self.degree;
         let (n_edges, edges) = match degree {
             1 => (0, Vec::new()),
@@ -76,7 +77,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         };
         let n_vertices = self.mesh.vertices().len();
-        let nodes = Nodes { n_vertices, n_edges, edges: &edges };
+        let nodes = FunctionNodes { n_vertices, n_edges, edges: &edges };
         let mut function = self.means(u, &nodes);
         if let Some(states) = self.states_of_nodes(states, &nodes) {
             for (value, state) in function.iter_mut().zip(states) {
@@ -92,7 +93,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if n_edges > 0 {
             self.clip_at_midpoints(&nodes, &mut function);
         }
-        PrimalDualPair { degree, function, edges, flux: Vec::new() }
+        PrimalDualPair { degree, function, edges, flux: Flux::zero(degree - 1, 0) }
     }
 
     /// For each node the obstacle that all unknowns of all cells around touch, where these are no values at the nodes.
@@ -100,7 +101,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn states_of_nodes(
         &self,
         (bounds, contact): (&[Bound<T>], &[Contact]),
-        nodes: &Nodes<'_>,
+        nodes: &FunctionNodes<'_>,
     ) -> Option<Vec<Contact>> {
         let has_means = self.nodes.iter().any(|node| node.point().is_none());
         if !has_means || !self.problem.has_obstacle() || contact.len() != bounds.len() {
@@ -132,7 +133,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// At each node the mean of the values in the cells around, with the coefficient as weights.
-    fn means(&self, u: &[T], nodes: &Nodes<'_>) -> Vec<f64> {
+    fn means(&self, u: &[T], nodes: &FunctionNodes<'_>) -> Vec<f64> {
         if self.is_conforming_linear() && nodes.n_edges == 0 {
             return u.iter().map(|u| u.to_f64()).collect();
         }
@@ -197,7 +198,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Moves values at midpoints of edges into the constraints, and sets those on the Dirichlet part: a quadratic that exceeds an obstacle at the vertices exceeds it
     /// everywhere if its Bernstein coefficients on the edges, `2 v_m - (v_a + v_b) / 2`, do not lie below
     /// those of the obstacle.
-    fn clip_at_midpoints(&self, nodes: &Nodes<'_>, values: &mut [f64]) {
+    fn clip_at_midpoints(&self, nodes: &FunctionNodes<'_>, values: &mut [f64]) {
         let (at_vertices, at_midpoints) = values.split_at_mut(nodes.n_vertices);
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); at_midpoints.len()];
         // what a datum asks of the value at the midpoint of an edge

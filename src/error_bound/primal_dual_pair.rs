@@ -3,7 +3,8 @@
 use std::cell::OnceCell;
 
 use super::NoBound;
-use super::contact::NodeForce;
+use super::contact_forces::NodeForce;
+use super::flux::Flux;
 use crate::algebra::Inequality;
 use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
@@ -23,7 +24,7 @@ use crate::real::Real;
 /// is computed from.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct PrimalDualPair {
+pub struct PrimalDualPair<const D: usize> {
     /// The degree of the function, one or two.
     pub degree: usize,
     /// The values of the function `v` at the vertices of the mesh and, for degree two, after them at the
@@ -33,12 +34,8 @@ pub struct PrimalDualPair {
     pub function: Vec<f64>,
     /// For degree two, by cell the numbers of its edges.
     pub edges: Vec<u32>,
-    /// Of degree one the integrals of `q.n` over the facets of each cell, `n` outward: `D + 1` for each cell,
-    /// in the order of the opposite vertices. Of degree two for each facet `F` of each cell `D + 1`
-    /// numbers `c_Fj`, the measure of the facet times `q.n` at its vertex `j`; at the opposite vertex the
-    /// factor of a flux inside the cell: `q` is the sum of `c_Fj lambda_j (x - a_F) / (D |K|)` over all `F` and
-    /// `j`, with `a_F` the opposite vertex.
-    pub flux: Vec<f64>,
+    /// The flux `q`, of degree one less.
+    pub flux: Flux<D>,
 }
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
@@ -66,7 +63,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
-    ) -> Result<PrimalDualPair, NoBound> {
+    ) -> Result<PrimalDualPair<D>, NoBound> {
         self.check_flux()?;
         self.compiled_pair(inequality, solution, &|_| true)
     }
@@ -80,7 +77,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
         counts: Counts<'_>,
-    ) -> Result<PrimalDualPair, NoBound> {
+    ) -> Result<PrimalDualPair<D>, NoBound> {
         self.check_element()?;
         match self.space.degree == 1 {
             true => self.compiled_pair(inequality, solution, counts),
@@ -92,14 +89,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
         counts: Counts<'_>,
-    ) -> Result<PrimalDualPair, NoBound> {
+    ) -> Result<PrimalDualPair<D>, NoBound> {
         compiled!(
             T, D: fn(
                 &Discretisation<'_, T, D>,
                 &Inequality<T>,
                 &Solution<T>,
                 Counts<'_>,
-            ) -> Result<PrimalDualPair, NoBound>
+            ) -> Result<PrimalDualPair<D>, NoBound>
                 = |of, inequality, solution, counts| of.pair(inequality, solution, counts)
         )(self, inequality, solution, counts)
     }
@@ -128,7 +125,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
         counts: Counts<'_>,
-    ) -> Result<PrimalDualPair, NoBound> {
+    ) -> Result<PrimalDualPair<D>, NoBound> {
         let (space, u) = (&self.space, &solution.values[..]);
         let penalised = inequality.penalised.as_ref();
         let multipliers = penalised.map(|p| match solution.jump_multipliers.len() == p.n_jumps() {
@@ -167,9 +164,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             )?
         } else {
             let mut flux = if self.owns_rows() {
-                self.facet_fluxes(u, multipliers, 1)?
+                Flux::of_integrals(self.facet_fluxes(u, multipliers, 1)?)
             } else if space.is_conforming_linear() {
-                space.patch_fluxes(u, of_solver, &forces, neighbours())?
+                space.flux_of_linears(u, of_solver, &forces, neighbours())?
             } else {
                 space.crouzeix_raviart_fluxes(u, obstacles)?
             };
@@ -190,9 +187,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         (inequality, solution): (&Inequality<T>, &Solution<T>),
         (of_solver, multipliers): ((&[f64], &ActiveObstacles), Option<&[f64]>),
         forces: &[NodeForce],
-        function: &PrimalDualPair,
+        function: &PrimalDualPair<D>,
         neighbours: &Neighbours,
-    ) -> Result<Vec<f64>, NoBound> {
+    ) -> Result<Flux<D>, NoBound> {
         let (space, u) = (&self.space, &solution.values[..]);
         // multipliers of jumps alone may contain a flux without divergence that alternates between facets
         // and that jumps hardly see: that of WOPSIP has an error of first order in the plane. Its
@@ -205,12 +202,12 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let states = (&inequality.bounds[..], &solution.contact[..]);
         let mut loads = space.cell_loads(u, of_solver, states, forces, numbers)?;
         let mut flux = if has_facet_fluxes {
-            space.densities_of_moments(&self.facet_fluxes(u, multipliers, D)?)
+            space.flux_of_moments(&self.facet_fluxes(u, multipliers, D)?)
         } else {
             if self.owns_rows() {
                 space.smooth_forces(forces, &mut loads.contact);
             }
-            space.quadratic_patch_fluxes((u, function), neighbours, &mut loads)
+            space.flux_of_quadratics((u, function), neighbours, &mut loads)
         };
         space.balance(&loads, &mut flux);
         if space.problem.has_obstacle() {
@@ -236,17 +233,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// Sets the fluxes through the boundary but for its Dirichlet part: Neumann data and contact forces. Residuals there
     /// are multipliers, and sums of patches are rounding, which may have the wrong sign for a contact force.
-    fn set_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut [f64]) -> Result<(), NoBound> {
+    fn set_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut Flux<D>) -> Result<(), NoBound> {
         for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
-            flux[f.cell as usize * (D + 1) + usize::from(f.local)] = 0.0;
+            flux.set_zero_on(f.cell as usize, f.local.into());
         }
         if self.problem.has_neumann_data() {
             for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-                flux[cell * (D + 1) + local] += self.neumann_flux((cell, local), group)?;
+                flux.add_through(cell, local, self.neumann_flux((cell, local), group)?);
             }
         }
         for force in forces {
-            flux[force.cell * (D + 1) + force.local] += force.value;
+            flux.add_through(force.cell, force.local, force.value);
         }
         Ok(())
     }
@@ -285,7 +282,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         u: &[T],
         obstacles: &ActiveObstacles,
-    ) -> Result<Vec<f64>, NoBound> {
+    ) -> Result<Flux<D>, NoBound> {
         let load = self.load_by_cell()?;
         let n_cells = self.mesh.n_cells();
         let mut own = vec![0.0; n_cells * (D + 1)];
@@ -320,6 +317,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 }
             }
         }
-        Ok(flux)
+        Ok(Flux::of_integrals(flux))
     }
 }

@@ -1,4 +1,23 @@
-//! Integrals of a pair over cells and the boundary.
+//! Integrals of a pair over cells and the boundary: what each cell adds to the bound.
+//!
+//! With `w` the discrete function, `m = alpha^-1/2 (alpha grad v - q)`, `z = c^1/2 (w - v)`,
+//! `r = f - c w + div q` less what a multiplier takes, `t` what `q.n` lacks on Neumann and contact facets, and least
+//! values `alpha_K`, `c_K` in the cell,
+//!
+//! ```text
+//! mismatch           |m|_K^2 + |z|_K^2
+//! with oscillation   (|m|_K + R_K + T_K)^2 + |z|_K^2
+//! from midpoint      (|alpha^-1/2 ((alpha grad v + q) / 2 - alpha grad w)|_K + (R_K + T_K) / 2)^2 + |z|_K^2 / 4
+//! obstacle           2 (|mu|, distance of v from the obstacle)_K
+//! contact            2 int s (v - g) over the contact facets of the cell
+//!
+//! R_K = h_K / pi alpha_K^-1/2 |r|_K
+//! T_K = sum_F (|F| / |K| (1/pi^2 + 2/(pi D)))^1/2 h_K alpha_K^-1/2 |t|_F
+//! ```
+//!
+//! and `c_K^-1/2 |r|_K` beside `|z|_K` in place of `R_K` where that is smaller. The multiplier `mu` is the mean of what
+//! the flux leaves, where an obstacle presses in its direction, with the share of the linear rest that keeps its sign
+//! ([`share_of_one_sign`]); elsewhere the mean is what the solver left ([`Totals::of_solver`]).
 
 mod boundary;
 mod cell_flux;
@@ -8,7 +27,7 @@ use std::f64::consts::PI;
 
 use boundary::BoundaryTerms;
 use cell_flux::CellFlux;
-pub(super) use cell_flux::limit;
+pub(super) use cell_flux::share_of_one_sign;
 pub(super) use totals::Totals;
 
 use super::PrimalDualPair;
@@ -57,7 +76,7 @@ impl CellTerms {
 }
 
 /// What the integrals of a cell read.
-struct CellData<'a, const D: usize> {
+struct CellInputs<'a, const D: usize> {
     flux: CellFlux<D>,
     admissible: Admissible<'a, D>,
     /// The values of the discrete function at the unknowns of the cell.
@@ -70,7 +89,7 @@ struct CellData<'a, const D: usize> {
     volume: f64,
 }
 
-impl<const D: usize> CellData<'_, D> {
+impl<const D: usize> CellInputs<'_, D> {
     /// The gradient of the discrete function at a point.
     fn gradient_of(&self, basis: &BasisAt<f64>) -> Point<f64, D> {
         let mut gradient = Point::zeros();
@@ -123,7 +142,7 @@ fn with_share(squares: [f64; 2], share: f64, others: [f64; 2]) -> f64 {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The admissible function in a cell.
-    pub(super) fn admissible_in(&self, pair: &PrimalDualPair, cell: usize) -> Admissible<'_, D> {
+    pub(super) fn admissible_in(&self, pair: &PrimalDualPair<D>, cell: usize) -> Admissible<'_, D> {
         let (geometry, region) = (self.mesh.geometry(cell), self.mesh.region(cell));
         let (mut values, mut gradients) = ([0.0; 4], [Point::zeros(); 4]);
         let mut gradient = Point::zeros();
@@ -202,7 +221,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn integrals_of_constants(
         &self,
         cell: usize,
-        data: &CellData<'_, D>,
+        data: &CellInputs<'_, D>,
         table: &CellTable<f64>,
     ) -> Option<CellIntegrals> {
         let constant_of =
@@ -232,7 +251,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn integrals_at_points(
         &self,
         cell: usize,
-        data: &CellData<'_, D>,
+        data: &CellInputs<'_, D>,
         table: &CellTable<f64>,
         cut: Option<&CutRule>,
     ) -> CellIntegrals {
@@ -280,13 +299,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The terms of a cell.
     pub(super) fn cell_terms(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         u: &[T],
         cell: usize,
         (table, cut): (&CellTable<f64>, Option<&CutRule>),
         boundary: &BoundaryTerms,
     ) -> CellTerms {
-        let data = self.cell_data(pair, u, cell, table);
+        let data = self.cell_inputs(pair, u, cell, table);
         let sums = self
             .integrals_of_constants(cell, &data, table)
             .unwrap_or_else(|| self.integrals_at_points(cell, &data, table, cut));
@@ -295,24 +314,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let by_gradient = data.admissible.diameter / (PI * sums.least_coefficient.sqrt());
         let by_value = sums.reaction_from_below.max(0.0).sqrt().recip();
         let load = sums.first_load.unwrap_or(0.0);
-        let balance = data.flux.balance(data.volume, &sums.means, sums.square, load);
-        let presses = usize::from(balance.mean < 0.0);
+        let left = data.flux.left_of_load(data.volume, &sums.means, sums.square, load);
+        let side = usize::from(left.mean < 0.0);
         // without an obstacle in its direction the mean is what the solver left
-        let has_obstacle = data.admissible.bounds[presses].is_some();
+        let has_obstacle = data.admissible.bounds[side].is_some();
         let share = match has_obstacle {
-            true => limit(balance.mean, &balance.values[..data.flux.n]),
+            true => share_of_one_sign(left.mean, &left.values[..data.flux.n]),
             false => 0.0,
         };
         let mut obstacle = 0.0;
         if has_obstacle {
-            for (value, gap) in balance.values.iter().zip(sums.gaps[presses]).take(data.flux.n) {
-                let multiplier = balance.mean + share * (value - balance.mean);
+            for (value, gap) in left.values.iter().zip(sums.gaps[side]).take(data.flux.n) {
+                let multiplier = left.mean + share * (value - left.mean);
                 obstacle += 2.0 * multiplier.abs() * gap;
             }
         }
-        let integral = if has_obstacle { 0.0 } else { balance.mean * data.volume };
+        let integral = if has_obstacle { 0.0 } else { left.mean * data.volume };
         let of_trace = boundary.traces.get(cell).map_or(0.0, |n| n / sums.least_coefficient.sqrt());
-        let of_load = (balance.rest + (1.0 - share).powi(2) * balance.variation).sqrt();
+        let of_load = (left.rest + (1.0 - share).powi(2) * left.variation).sqrt();
         let oscillation = match by_value < by_gradient {
             true => [of_trace, by_value * of_load],
             false => [by_gradient * of_load + of_trace, 0.0],
@@ -351,20 +370,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// What the integrals of a cell read.
-    fn cell_data(
+    fn cell_inputs(
         &self,
-        pair: &PrimalDualPair,
+        pair: &PrimalDualPair<D>,
         u: &[T],
         cell: usize,
         table: &CellTable<f64>,
-    ) -> CellData<'_, D> {
+    ) -> CellInputs<'_, D> {
         let volume = self.mesh.geometry(cell).volume.to_f64();
         let region = self.mesh.region(cell);
         let [coefficient, reaction, source] =
             map_entries([&self.data.coefficient, &self.data.reaction, &self.data.source], |data| {
                 data.of(region)
             });
-        let mut data = CellData {
+        let mut data = CellInputs {
             flux: self.flux_in(pair, cell, volume),
             admissible: self.admissible_in(pair, cell),
             values: self.local_values(cell, u),

@@ -1,0 +1,122 @@
+//! Fluxes of the spaces of Raviart and Thomas of degree zero and one, by their numbers in cells.
+
+use std::ops::Range;
+
+use crate::memory::in_large_pages;
+
+/// A flux `q`, in each cell `K` of the space of Raviart and Thomas of degree zero or one, by numbers `c`. With
+/// `phi_F = (x - a_F) / (D |K|)`, `a_F` the vertex opposite the facet `F`,
+///
+/// ```text
+/// degree zero   q = sum_F c_F phi_F                     c_F    the integral of q.n over F, n outward
+/// degree one    q = sum_F sum_j c_Fj lambda_j phi_F     c_Fj   the measure of F times q.n at vertex j of F
+///                                                       c_FF   the factor of a flux inside the cell
+/// ```
+///
+/// A facet has in a cell the number of the opposite vertex. A facet between two cells has numbers in both: these are
+/// opposite where `q.n` is single-valued.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flux<const D: usize> {
+    degree: usize,
+    /// By cell and facet the number, or one for each vertex of the cell.
+    numbers: Vec<f64>,
+}
+
+impl<const D: usize> Flux<D> {
+    /// The flux zero on so many cells.
+    ///
+    /// # Panics
+    /// For other degrees than zero and one.
+    #[must_use]
+    pub fn zero(degree: usize, n_cells: usize) -> Self {
+        assert!(degree < 2, "fluxes have degree zero or one, not {degree}");
+        let per_cell = (D + 1) * if degree == 0 { 1 } else { D + 1 };
+        Self { degree, numbers: in_large_pages(vec![0.0; n_cells * per_cell]) }
+    }
+    /// The flux of degree zero with these integrals, by cell and facet.
+    pub(super) fn of_integrals(integrals: Vec<f64>) -> Self {
+        Self { degree: 0, numbers: integrals }
+    }
+
+    /// The degree, zero or one.
+    #[must_use]
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+    /// The integral of `q.n` over a facet of a cell.
+    #[must_use]
+    pub fn through(&self, cell: usize, facet: usize) -> f64 {
+        if self.degree == 0 {
+            return self.density(cell, facet, facet);
+        }
+        let of_vertices = (0..D + 1).filter(|&j| j != facet).map(|j| self.density(cell, facet, j));
+        of_vertices.sum::<f64>() / D as f64
+    }
+    /// The measure of a facet times `q.n` at one of its vertices, both by their numbers in the cell.
+    #[must_use]
+    pub fn density(&self, cell: usize, facet: usize, vertex: usize) -> f64 {
+        match self.degree {
+            0 => self.numbers[cell * (D + 1) + facet],
+            _ => self.of_cell(cell)[Self::place(facet, vertex)],
+        }
+    }
+    /// The factor of the flux inside a cell at a vertex; zero for degree zero.
+    #[must_use]
+    pub fn inner(&self, cell: usize, vertex: usize) -> f64 {
+        if self.degree == 0 { 0.0 } else { self.of_cell(cell)[Self::place(vertex, vertex)] }
+    }
+
+    /// Adds to the integral of `q.n` over a facet of one cell, the same density everywhere on the facet.
+    pub fn add_through(&mut self, cell: usize, facet: usize, change: f64) {
+        match self.degree {
+            0 => self.numbers[cell * (D + 1) + facet] += change,
+            _ => (0..D + 1)
+                .filter(|&j| j != facet)
+                .for_each(|j| self.add_density(cell, facet, j, change)),
+        }
+    }
+    /// Adds to the density of a facet of one cell at a vertex.
+    ///
+    /// # Panics
+    /// For degree zero.
+    pub fn add_density(&mut self, cell: usize, facet: usize, vertex: usize, change: f64) {
+        assert_eq!(self.degree, 1, "a flux of degree zero has one density on a facet");
+        self.of_cell_mut(cell)[Self::place(facet, vertex)] += change;
+    }
+    /// Adds to the factor of the flux inside a cell at a vertex.
+    ///
+    /// # Panics
+    /// For degree zero.
+    pub fn add_inner(&mut self, cell: usize, vertex: usize, change: f64) {
+        self.add_density(cell, vertex, vertex, change);
+    }
+    /// Sets the normal component on a facet of one cell to zero.
+    pub(super) fn set_zero_on(&mut self, cell: usize, facet: usize) {
+        let per_facet = self.per_cell() / (D + 1);
+        for vertex in (0..per_facet).filter(|&j| per_facet == 1 || j != facet) {
+            self.numbers[(cell * (D + 1) + facet) * per_facet + vertex] = 0.0;
+        }
+    }
+
+    /// Where `c_Fj` of degree one stands among the numbers of a cell; `c_jj` inside the cell.
+    pub(super) const fn place(facet: usize, vertex: usize) -> usize {
+        facet * (D + 1) + vertex
+    }
+    /// How many numbers a cell has.
+    pub(super) fn per_cell(&self) -> usize {
+        (D + 1) * if self.degree == 0 { 1 } else { D + 1 }
+    }
+    /// The numbers of a cell.
+    pub(super) fn of_cell(&self, cell: usize) -> &[f64] {
+        let n = self.per_cell();
+        &self.numbers[cell * n..][..n]
+    }
+    pub(super) fn of_cell_mut(&mut self, cell: usize) -> &mut [f64] {
+        self.of_cells_mut(cell..cell + 1)
+    }
+    /// The numbers of these cells.
+    pub(super) fn of_cells_mut(&mut self, cells: Range<usize>) -> &mut [f64] {
+        let n = self.per_cell();
+        &mut self.numbers[cells.start * n..cells.end * n]
+    }
+}

@@ -1,0 +1,164 @@
+//! What the patches of linears read of the cells: a flux has one number on each facet, its integral there.
+
+use std::convert::Infallible;
+use std::ops::Range;
+
+use super::PatchCells;
+use super::corners::Corner;
+use super::patch::CellProblem;
+use crate::assemble::space::Space;
+use crate::assemble::space::active_obstacles::ActiveObstacles;
+use crate::error_bound::NoBound;
+use crate::error_bound::contact_forces::NodeForce;
+use crate::memory::in_large_pages;
+use crate::mesh::{BoundaryPart, Neighbours};
+use crate::parallel::cells;
+use crate::real::{Point, Real};
+
+/// The cells of a conforming linear function.
+pub(super) struct LinearCells<'s, 'a, T: Real, const D: usize> {
+    pub space: &'s Space<'a, T, D>,
+    pub neighbours: &'s Neighbours,
+    /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and for each of its vertices the load
+    /// that the flux of the vertex balances, without multipliers of obstacles.
+    cells: Vec<f64>,
+    /// By vertex the multiplier of obstacles over the volume of the cells that carry it.
+    pub pressures: Vec<f64>,
+    /// In which cells multipliers act.
+    obstacles: &'s ActiveObstacles,
+    /// Of each vertex of the plane one of its cells, and how many there are.
+    pub one_cell: Vec<(u32, u32)>,
+}
+
+/// How many numbers are known of a cell before its patches are.
+const fn known_of_cell(dimension: usize) -> usize {
+    2 * dimension + 3
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The cells of a conforming linear function.
+    pub(super) fn linear_cells<'s>(
+        &'s self,
+        u: &[T],
+        (residual, obstacles): (&[f64], &'s ActiveObstacles),
+        forces: &[NodeForce],
+        neighbours: &'s Neighbours,
+    ) -> Result<LinearCells<'s, 's, T, D>, NoBound> {
+        let load = self.load_by_cell()?;
+        let n_cells = self.mesh.n_cells();
+        let stride = known_of_cell(D);
+        let mut data = in_large_pages(vec![0.0; n_cells * stride]);
+        let fill = |cells: Range<usize>, out: &mut [f64]| {
+            for (cell, data) in cells.zip(out.chunks_exact_mut(stride)) {
+                let metric = self.metric(cell);
+                let values = self.local_values(cell, u);
+                let alpha = self.alpha(cell).to_f64();
+                let residual = self.cell_residual(cell, &metric, u, &load);
+                data[0] = metric.volume.to_f64();
+                for i in 0..=D {
+                    let product =
+                        |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
+                    let stiffness = alpha * (1..=D).map(product).sum::<f64>();
+                    // |F| n = -D |K| grad lambda
+                    data[1 + i] = -(D as f64) * stiffness;
+                    data[D + 2 + i] = residual[i] - stiffness;
+                }
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(n_cells, &|c| c * stride, &mut data, &fill);
+        for force in forces {
+            data[force.cell * stride + D + 2 + force.node] -= force.value;
+        }
+        let mut pressures = self.multipliers_of_obstacles(residual, forces);
+        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+            self.mesh.facet_vertices(cell, local).for_each(|v| pressures[v as usize] = 0.0);
+        }
+        let mut cells = LinearCells {
+            space: self,
+            neighbours,
+            cells: data,
+            pressures,
+            obstacles,
+            one_cell: vec![(0, 0); if D == 2 { self.mesh.vertices().len() } else { 0 }],
+        };
+        cells.divide_multipliers();
+        Ok(cells)
+    }
+}
+
+impl<T: Real, const D: usize> LinearCells<'_, '_, T, D> {
+    /// Divides multipliers by the volumes of the cells that carry them, and finds a cell of each vertex of the plane.
+    fn divide_multipliers(&mut self) {
+        let mut carried = vec![0.0; self.pressures.len()];
+        for (k, &v) in self.space.mesh.cells().iter().enumerate() {
+            carried[v as usize] += self.carried(Corner::new(k / (D + 1), k % (D + 1)));
+            if D == 2 {
+                let (cell, count) = &mut self.one_cell[v as usize];
+                *cell = (k / (D + 1)) as u32;
+                *count += 1;
+            }
+        }
+        self.pressures.iter_mut().zip(carried).for_each(|(m, volume)| *m /= volume);
+    }
+
+    pub fn volume(&self, cell: usize) -> f64 {
+        self.cells[cell * known_of_cell(D)]
+    }
+
+    /// The integrals of `alpha grad u . n` over the facets of a cell.
+    pub fn integrals(&self, cell: usize) -> &[f64] {
+        &self.cells[cell * known_of_cell(D) + 1..][..D + 1]
+    }
+
+    /// What the flux of a vertex balances in a cell, with a multiplier per volume.
+    pub fn load(&self, corner: Corner, pressure: f64) -> f64 {
+        let load = self.cells[corner.cell() * known_of_cell(D) + D + 2 + corner.own()];
+        load - pressure * self.carried(corner)
+    }
+
+    /// The volume over which a cell carries a part of the multiplier of one of its vertices: its own, or none where
+    /// another obstacle than that of the cell gives the active bound.
+    pub fn carried(&self, corner: Corner) -> f64 {
+        match self.obstacles.act_in(corner.cell(), corner.own()) {
+            true => self.volume(corner.cell()),
+            false => 0.0,
+        }
+    }
+}
+
+impl<T: Real, const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, T, D> {
+    const DEGREE: usize = 0;
+
+    fn normals(&self, cell: usize, numbers: &mut [f64]) {
+        numbers.copy_from_slice(self.integrals(cell));
+    }
+
+    fn normal(&self, corner: Corner, facet: usize) -> [f64; 3] {
+        [self.integrals(corner.cell())[facet] / D as f64, 0.0, 0.0]
+    }
+
+    fn given(&self, _: Corner, _: usize) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    fn problem(&self, corner: Corner) -> CellProblem<3> {
+        let (cell, d) = (corner.cell(), D as f64);
+        let points = self.space.mesh.corners(cell);
+        let middle = points[..=D].iter().sum::<Point<f64, D>>() / (d + 1.0);
+        let from_middle = points.map(|p| p - middle);
+        let squares: f64 = from_middle[..=D].iter().map(|p| p.norm_squared()).sum();
+        let variance = squares / ((d + 1.0) * (d + 2.0));
+        let alpha = self.space.alpha(cell).to_f64();
+        let scale = 1.0 / (d * d * self.volume(cell) * alpha);
+        let mut products = [[0.0; 3]; 3];
+        for (row, a) in products.iter_mut().zip(corner.facets::<D>()) {
+            for (product, b) in row.iter_mut().zip(corner.facets::<D>()) {
+                *product = scale * (from_middle[a].dot(&from_middle[b]) + variance);
+            }
+        }
+        let vertex = self.space.mesh.cell(cell)[corner.own()] as usize;
+        let sum = self.load(corner, self.pressures[vertex]);
+        CellProblem { products, aims: [0.0; 3], sum }
+    }
+}
