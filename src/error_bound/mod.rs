@@ -27,7 +27,6 @@ mod patches;
 mod quadratic_patches;
 mod quadratics;
 mod shared_multipliers;
-mod smooth_forces;
 mod terms;
 
 pub(crate) use algebra::CoarserCells;
