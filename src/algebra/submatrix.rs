@@ -55,15 +55,6 @@ impl<T: Real> Submatrix<T> {
         }
         submatrix
     }
-
-    /// The diagonal, zero where no entry is stored.
-    pub fn diagonal(&self) -> Vec<T> {
-        let entry = |i: usize| {
-            let (columns, values) = self.row(i);
-            columns.binary_search(&(i as u32)).map_or(T::lit(0.0), |k| values[k])
-        };
-        (0..self.size()).map(entry).collect()
-    }
 }
 
 /// The submatrix of all rows and columns.

@@ -41,7 +41,6 @@ mod patches;
 mod primal_dual_pair;
 mod quadratics;
 mod shared_multipliers;
-mod smooth_forces;
 
 pub use estimate::{BoundParts, ErrorBound, Unproven};
 pub use figures::{BoundFigures, TrueErrors};

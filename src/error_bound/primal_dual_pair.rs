@@ -204,9 +204,6 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let mut flux = if has_facet_fluxes {
             space.flux_of_moments(&self.facet_fluxes(u, multipliers, D)?)
         } else {
-            if self.owns_rows() {
-                space.smooth_forces(forces, &mut loads.contact);
-            }
             space.flux_of_quadratics((u, function), neighbours, &mut loads)
         };
         space.balance(&loads, &mut flux);

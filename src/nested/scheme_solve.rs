@@ -8,7 +8,7 @@ use super::meshes::{Meshes, unknowns};
 use super::p1::P1Solution;
 use super::phase::Phase;
 use super::solved::Solved;
-use super::warnings::{active_sets, dirichlet_jumps, short_edges};
+use super::warnings::{active_sets, dirichlet_jumps, no_digits_of_quadratics, short_edges};
 use crate::algebra::{Contact, Inequality, Start};
 use crate::assemble::Discretisation;
 use crate::error::Error;
@@ -79,8 +79,13 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             warnings.extend(short_edges(mesh, limit));
         }
         inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
+        let refusal = no_digits_of_quadratics(&inequality, (scheme.degree(), D));
         self.enter(Phase::Solve);
-        let (solution, solve_seconds) = self.run(&mut inequality, &guess);
+        let (solution, solve_seconds) = match &refusal {
+            Some(_) => (Solution::without_iterate(&inequality, Outcome::Singular), 0.0),
+            None => self.run(&mut inequality, &guess),
+        };
+        warnings.extend(refusal);
         warnings.extend(active_sets(&solution, self.p1.problem, scheme));
         let hierarchy = self.hierarchy(position);
         let mut solved = Solved::new(discretisation, inequality, solution, hierarchy);

@@ -1,6 +1,7 @@
 //! What a solve warns of.
 
 use super::solved::Solved;
+use crate::algebra::Inequality;
 use crate::constraint::CellMeans;
 use crate::inequality::{Outcome, Solution};
 use crate::input::excerpt;
@@ -23,6 +24,33 @@ pub(super) fn short_edges<T: Real, const D: usize>(
     (shortest < limit).then(|| {
         format!(
             "edges of length {shortest:.1e} are below {limit:.1e}, where rounding in {} may outweigh the discretisation error",
+            T::NAME
+        )
+    })
+}
+
+/// Rounding in the assembled matrix of over-penalised quadratics, relative to a solution, from which corrections by its
+/// factors do not converge. They do at 0.2 to 0.6 (`wopsip-p2` on signorini-2d and lshape-2d at 8, with `eta` 1e9 and
+/// 1e10), and the matrix is singular to working precision at 2.4 (signorini-2d at 8, 1e10).
+const NO_DIGITS: f64 = 1.0;
+
+/// Why over-penalised quadratics in the plane and in space are not solved, if rounding in the assembled matrix, which is
+/// factored for them, leaves no digit. It is machine epsilon times an upper estimate of the condition number: the largest
+/// ratio of a penalty to the stiffness, `η h^-4`, times that of the stiffness, `n^(2/D)` on `n` cells of about equal
+/// size.
+pub(super) fn no_digits_of_quadratics<T: Real>(
+    inequality: &Inequality<T>,
+    (degree, dimension): (usize, usize),
+) -> Option<String> {
+    let penalised = inequality.penalised.as_ref().filter(|_| degree > 1 && dimension > 1)?;
+    let n_cells = (inequality.size() / penalised.block_size) as f64;
+    let ratio = penalised.largest_ratio();
+    let rounding = T::EPSILON * ratio * n_cells.powf(2.0 / dimension as f64);
+    // false for numbers that are not finite
+    let has_digits = rounding < NO_DIGITS;
+    (!has_digits).then(|| {
+        format!(
+            "over-penalised quadratics are not solved: a penalty of {ratio:.0e} times the stiffness on {n_cells} cells leaves no digit in {}; choose a smaller `factor` or `eta`, or a coarser mesh",
             T::NAME
         )
     })

@@ -120,7 +120,7 @@ schemes_by_name! { options:
         => Br2::with_options(options, D).on(P2);
     "bmmpr-p2" ["factor", "lifts"], "bmmpr on broken quadratics"
         => Bmmpr::with_options(options).on(P2);
-    "wopsip-p2" ["factor", "eta", "weight"], "wopsip on broken quadratics, moments of degree one"
+    "wopsip-p2" ["factor", "eta", "weight"], "wopsip on broken quadratics, moments of degree one: has digits in f64 to level 64 by default, to 8 with eta=1e8"
         => Wopsip::with_options(options).on(P2);
 }
 

@@ -232,16 +232,6 @@ fn quadratics_have_the_digits_of_an_exact_reference_for_every_penalty() {
     assert!(distance < 1e-10, "contrast-2d: {distance:e}");
 }
 
-/// Beside such a penalty the pivots of multipliers that do no work are rounding: without reduced weights the solve ends
-/// as `singular`.
-#[test]
-fn multipliers_without_work_do_not_make_systems_singular() {
-    let AnyScene::Two(scene) = made("torsion-2d") else { unreachable!() };
-    let solution = ActiveSet::default().solve(&of(&scene, "1e14", 8));
-    assert_eq!(solution.outcome, Outcome::Converged);
-    assert!(solution.outer <= 60, "{} systems", solution.outer);
-}
-
 /// Twice the digits hold: the pivots of this matrix of Hilbert are lost in `f64`.
 #[test]
 fn systems_in_twice_the_digits_are_exact() {

@@ -58,7 +58,8 @@ struct CorrectionSize {
 impl<'a, T: Real> DirectSolver<'a, T> {
     /// The solver of an inequality, which must be well formed.
     pub fn new(inequality: &'a Inequality<T>, refinements: usize) -> Self {
-        let condensation = inequality.penalised.as_ref().map(StaticCondensation::new);
+        let penalised = inequality.penalised.as_ref();
+        let condensation = penalised.map(|p| StaticCondensation::new(p, &inequality.matrix));
         Self {
             inequality,
             refinements,

@@ -1,8 +1,7 @@
 //! The inverse of one block of a [`StaticCondensation`] with its jump multipliers.
 
 use super::error::FactorError;
-use super::null_directions::NullDirections;
-use super::static_condensation::{BlockInverse, StaticCondensation};
+use super::static_condensation::StaticCondensation;
 use crate::algebra::dense::{extend_basis, invert_in_place};
 use crate::real::Real;
 
@@ -43,8 +42,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         block: usize,
         is_free: &[bool],
         shift: &[f64],
-        inverse: &mut BlockInverse,
-        null_directions: &mut NullDirections,
+        inverse: &mut Vec<f64>,
     ) -> Result<usize, FactorError> {
         let (size, sides) = (self.penalised.block_size, self.sides(block));
         let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
@@ -58,13 +56,10 @@ impl<T: Real> StaticCondensation<'_, T> {
         let max_shift = least * MAX_SHIFT_BY_ROOT / T::EPSILON.sqrt();
         let is_variable =
             |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= max_shift);
-        let has_null_directions = self.has_null_directions && n_free > 0;
         self.fill_block((block, n_free), is_free, shift, unit, inverse);
-        let BlockInverse { entries: matrix, scales, weight_divisor } = inverse;
         // The rank of the means is computed only if a weight exceeds the limit.
         let limit = least * MAX_WEIGHT / T::EPSILON;
-        let may_need_limit = !has_null_directions
-            && n_free > 0
+        let may_need_limit = n_free > 0
             && (block * size..(block + 1) * size).any(|i| !is_variable(i))
             && sides.iter().any(|side| self.side_weight(side) > limit);
         let mut basis = Vec::new();
@@ -72,68 +67,50 @@ impl<T: Real> StaticCondensation<'_, T> {
             may_need_limit && self.rank_of_means(block, is_variable, &mut basis) < sides.len();
         let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
-            matrix[l * n + l] = -unit / (self.side_weight(side) / *weight_divisor).min(max_weight);
+            inverse[l * n + l] = -unit / self.side_weight(side).min(max_weight);
         }
-        if has_null_directions {
-            let tolerance = T::EPSILON.sqrt();
-            null_directions.append(block as u32, matrix, (n_free, n), unit, tolerance);
-        }
-        let is_positive = invert_in_place(matrix, n).ok_or(FactorError::Singular)?;
+        let is_positive = invert_in_place(inverse, n).ok_or(FactorError::Singular)?;
         // With a positive definite stiffness there are as many negative eigenvalues as sides.
         if is_positive != (sides.len() % 2 == 0) {
             return Err(FactorError::NotPositive);
         }
-        if has_null_directions {
-            null_directions.couple(matrix, (n_free, n), unit, scales);
-        }
         for k in 0..n {
             for l in 0..n {
-                let entry = &mut matrix[k * n + l];
+                let entry = &mut inverse[k * n + l];
                 match (k < n_free, l < n_free) {
-                    (true, true) => *entry = *entry * scales[k] * scales[l] / unit,
+                    (true, true) => *entry /= unit,
                     (false, false) => *entry *= unit,
-                    (true, false) => *entry *= scales[k],
-                    (false, true) => *entry *= scales[l],
+                    _ => {}
                 }
             }
         }
         Ok(n_free)
     }
 
-    /// Sets the entries of `inverse` to the matrix `[[R (K + D) R / unit, R B^T], [B R, 0]]` of a block with `n_free`
-    /// free unknowns: `D` is the shift, `B` contains the means over sides, and the diagonal `R` the `scales`. If the
-    /// matrix has null directions, `R` reduces diagonal entries of `K + D` above `unit` to `unit`; else `R` is the
-    /// identity.
+    /// Sets `matrix` to `[[(K + D) / unit, B^T], [B, 0]]` of a block with `n_free` free unknowns: `D` is the shift, and
+    /// `B` contains the means over sides.
     fn fill_block(
         &self,
         (block, n_free): (usize, usize),
         is_free: &[bool],
         shift: &[f64],
         unit: f64,
-        inverse: &mut BlockInverse,
+        matrix: &mut Vec<f64>,
     ) {
         let (size, sides) = (self.penalised.block_size, self.sides(block));
         let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
-        let BlockInverse { entries: matrix, scales, .. } = inverse;
-        scales.clear();
-        scales.extend(self.free(block, is_free).map(|i| match shift.get(i) {
-            Some(&shift) if self.has_null_directions => {
-                (unit / (stiffness(i, i) + shift)).min(1.0).sqrt()
-            }
-            _ => 1.0,
-        }));
         let n = n_free + sides.len();
         matrix.clear();
         matrix.resize(n * n, 0.0);
         for (k, i) in self.free(block, is_free).enumerate() {
             for (l, j) in self.free(block, is_free).enumerate() {
-                matrix[k * n + l] = scales[k] * scales[l] * stiffness(i, j) / unit;
+                matrix[k * n + l] = stiffness(i, j) / unit;
             }
             if let Some(&shift) = shift.get(i) {
-                matrix[k * n + k] += scales[k] * scales[k] * shift / unit;
+                matrix[k * n + k] += shift / unit;
             }
             for (l, side) in (n_free..).zip(sides) {
-                let coefficient = scales[k] * self.mean_coefficient(side, i);
+                let coefficient = self.mean_coefficient(side, i);
                 matrix[k * n + l] = coefficient;
                 matrix[l * n + k] = coefficient;
             }

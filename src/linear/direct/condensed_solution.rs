@@ -1,59 +1,62 @@
 //! Solutions by the factors of a [`StaticCondensation`].
 
-use super::null_directions::NullDirections;
-use super::static_condensation::{CondensedFactors, StaticCondensation};
+use super::assembled_sum::solve_assembled;
+use super::factors::Factors;
+use super::static_condensation::{BlockInverses, CondensedFactors, StaticCondensation};
 use crate::algebra::NO_INDEX;
 use crate::real::Real;
 
 impl<T: Real> StaticCondensation<'_, T> {
-    /// Solves `K u + M^T p = r` on the free unknowns and `M u - c S^-1 p = t`, where `c` is the divisor of the weights
-    /// in `factors`. Replaces `r` by `u`, which is zero on fixed unknowns, and `t` by the jump multipliers `p`. Returns
-    /// the energy `u.r - p.t`.
-    pub(super) fn solve_reduced(
+    /// Solves `K u + M^T p = r` on the free unknowns and `M u - S^-1 p = t`. Replaces `r` by `u`, which
+    /// is zero on fixed unknowns, and `t` by the jump multipliers `p`. Returns the energy
+    /// `u.K u + p.(S^-1 p) = u.r - p.t`.
+    pub fn solve(
         &self,
         factors: &CondensedFactors<T>,
         is_free: &[bool],
         r: &mut [f64],
         t: &mut [f64],
     ) -> f64 {
-        let n_means = self.pattern.size();
-        let CondensedFactors { null_directions, .. } = factors;
-        let mut load = vec![0.0; n_means];
+        match factors {
+            CondensedFactors::FacetMeans { inverses, schur_complement } => {
+                self.solve_condensed((inverses, schur_complement), is_free, r, t)
+            }
+            CondensedFactors::Assembled(factors) => {
+                solve_assembled(self.penalised, factors, is_free, r, t)
+            }
+        }
+    }
+
+    /// [`StaticCondensation::solve`] by the inverses of blocks and the factors of the Schur complement.
+    fn solve_condensed(
+        &self,
+        (inverses, schur_complement): (&BlockInverses, &Factors<T>),
+        is_free: &[bool],
+        r: &mut [f64],
+        t: &mut [f64],
+    ) -> f64 {
+        let mut load = vec![0.0; schur_complement.size()];
         let mut local = Vec::new();
         for block in 0..self.starts.len() - 1 {
             self.block_right_side(block, is_free, r, t, &|_| 0.0, &mut local);
             let n_free = local.len() - self.sides(block).len();
             for (k, side) in (n_free..).zip(self.sides(block)) {
                 if side.mean != NO_INDEX {
-                    load[side.mean as usize] += factors.row_dot(block, k, &local);
+                    load[side.mean as usize] += inverses.row_dot(block, k, &local);
                 }
             }
         }
-        self.append_null_loads(null_directions, is_free, r, t, &mut load);
-        // the facet means, then the multipliers of null directions
-        let mut condensed: Vec<T> = load.into_iter().map(T::lit).collect();
-        factors.schur_complement.solve_in_place(&mut condensed, 1);
-        let mean = |k: u32| if k == NO_INDEX { 0.0 } else { condensed[k as usize].to_f64() };
+        let mut means: Vec<T> = load.into_iter().map(T::lit).collect();
+        schur_complement.solve_in_place(&mut means, 1);
+        let mean = |k: u32| if k == NO_INDEX { 0.0 } else { means[k as usize].to_f64() };
         let jump_right_side = t.to_vec();
         let mut energy = 0.0;
-        let mut directions = 0..0;
         for block in 0..self.starts.len() - 1 {
-            directions = null_directions.of_block(block, directions.end);
             self.block_right_side(block, is_free, r, &jump_right_side, &mean, &mut local);
             let n = self.penalised.block_size;
             let mut k = 0;
             for i in block * n..(block + 1) * n {
-                let response = |direction: usize| {
-                    null_directions.responses(direction)[k]
-                        * condensed[n_means + direction].to_f64()
-                };
-                let value = match is_free[i] {
-                    true => directions
-                        .clone()
-                        .map(response)
-                        .fold(factors.row_dot(block, k, &local), |s, x| s + x),
-                    false => 0.0,
-                };
+                let value = if is_free[i] { inverses.row_dot(block, k, &local) } else { 0.0 };
                 energy += value * r[i];
                 r[i] = value;
                 k += usize::from(is_free[i]);
@@ -61,40 +64,13 @@ impl<T: Real> StaticCondensation<'_, T> {
             for (k, side) in (k..).zip(self.sides(block)) {
                 // The multipliers of the two sides of a facet are equal up to the signs of the sides: one is used.
                 if side.sign > 0.0 || side.mean == NO_INDEX {
-                    let multiplier = side.sign * factors.row_dot(block, k, &local);
+                    let multiplier = side.sign * inverses.row_dot(block, k, &local);
                     energy -= multiplier * jump_right_side[side.jump as usize];
                     t[side.jump as usize] = multiplier;
                 }
             }
         }
-        for (k, (&block, q)) in
-            null_directions.blocks().iter().zip(&condensed[n_means..]).enumerate()
-        {
-            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
-            for (side, y) in sides.filter(|(s, _)| s.sign > 0.0 || s.mean == NO_INDEX) {
-                let multiplier = -side.sign * y * q.to_f64();
-                energy -= multiplier * jump_right_side[side.jump as usize];
-                t[side.jump as usize] += multiplier;
-            }
-        }
         energy
-    }
-
-    /// Appends to `load` the right-hand sides of the equations of the multipliers of null directions.
-    fn append_null_loads(
-        &self,
-        null_directions: &NullDirections,
-        is_free: &[bool],
-        r: &[f64],
-        t: &[f64],
-        load: &mut Vec<f64>,
-    ) {
-        load.extend(null_directions.blocks().iter().enumerate().map(|(k, &block)| {
-            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
-            let unknowns = self.free(block as usize, is_free).zip(null_directions.responses(k));
-            let of_unknowns = unknowns.fold(0.0, |s, (i, g)| s + g * r[i]);
-            sides.fold(of_unknowns, |s, (side, y)| s - y * side.share() * t[side.jump as usize])
-        }));
     }
 
     /// Sets `out` to the right-hand side of the equations of a block: `r` on its free unknowns, then for each side
@@ -115,10 +91,10 @@ impl<T: Real> StaticCondensation<'_, T> {
     }
 }
 
-impl<T> CondensedFactors<T> {
+impl BlockInverses {
     /// Row `k` of a block's inverse times a vector.
     fn row_dot(&self, block: usize, k: usize, x: &[f64]) -> f64 {
-        let row = &self.inverses[self.starts[block] + k * x.len()..][..x.len()];
+        let row = &self.entries[self.starts[block] + k * x.len()..][..x.len()];
         row.iter().zip(x).fold(0.0, |s, (a, x)| s + a * x)
     }
 }

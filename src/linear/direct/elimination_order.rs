@@ -37,24 +37,6 @@ impl EliminationOrder {
         Ok(Self { unknowns: order.into_iter().map(|k| free[k as usize]).collect() })
     }
 
-    /// An order of all rows of a matrix, given by its lower triangle. The unknowns of this order are the first rows of
-    /// the matrix; each further row follows the last one, in this order, of the unknowns with which it is coupled.
-    pub fn with_rows_after_their_columns<T: Real>(&self, lower: &SparseMatrix<T>) -> Vec<u32> {
-        let n = self.unknowns.len();
-        let mut positions = vec![0; n];
-        self.unknowns.iter().enumerate().for_each(|(k, &i)| positions[i as usize] = k);
-        let mut rows: Vec<(usize, u32)> = (n..lower.size())
-            .map(|i| {
-                let columns = lower.row(i).0.iter().filter_map(|&j| positions.get(j as usize));
-                (columns.max().copied().unwrap_or(0), i as u32)
-            })
-            .collect();
-        rows.extend(self.unknowns.iter().enumerate().map(|(k, &i)| (k, i)));
-        // at equal positions the unknown comes first, because further rows have larger numbers
-        rows.sort_unstable();
-        rows.into_iter().map(|(_, i)| i).collect()
-    }
-
     /// The restriction of the order to the unknowns `free` of a matrix with `size` rows: positions in
     /// `free` in the order of elimination. Unknowns of `free` that are not in the order come last.
     ///

@@ -3,12 +3,9 @@
 use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::sparse::linalg::LuError;
-use faer::sparse::linalg::cholesky::{
-    LdltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, supernodal::SupernodalLltRef,
-};
+use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky};
 use faer::sparse::linalg::lu::{
     LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu,
 };
@@ -45,7 +42,6 @@ pub struct Factors<T> {
 enum Factorisation<T> {
     Empty,
     Cholesky { symbolic: Arc<SymbolicCholesky<u32>>, values: Vec<T> },
-    Quasidefinite { symbolic: Arc<SymbolicCholesky<u32>>, values: Vec<T> },
     Lu { symbolic: Box<SymbolicLu<u32>>, numeric: Box<NumericLu<u32, T>> },
 }
 
@@ -153,12 +149,6 @@ impl<T: Real> Factors<T> {
                 let stack = MemStack::new(&mut memory);
                 LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, x, PAR, stack);
             }
-            Factorisation::Quasidefinite { symbolic, values } => {
-                let scratch = symbolic.solve_in_place_scratch::<T>(right_sides, PAR);
-                let mut memory = MemBuffer::new(scratch);
-                let stack = MemStack::new(&mut memory);
-                LdltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, x, PAR, stack);
-            }
             Factorisation::Lu { symbolic, numeric } => {
                 let scratch = symbolic.solve_transpose_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
@@ -193,50 +183,6 @@ impl<T: Real> Factors<T> {
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
         let factorisation = Factorisation::Cholesky { symbolic, values };
         Self { size: lower.size(), factorisation }.if_regular(&row_norms(lower, true))
-    }
-
-    /// The factors `L D L^T` of a quasidefinite matrix, given by its lower triangle and the symbolic
-    /// factor of its pattern, without pivoting: the pivots of the first `n_positive` rows are positive, those of the
-    /// others negative (R. J. Vanderbei, SIAM J. Optim. 5 (1995), 100-113).
-    ///
-    /// # Errors
-    /// [`FactorError::Singular`] if a pivot has the wrong sign or is not finite, or if a positive pivot has no
-    /// significant digit; [`FactorError::OutOfMemory`].
-    pub(crate) fn quasidefinite(
-        lower: &Submatrix<T>,
-        n_positive: usize,
-        symbolic: &SymbolicFactor,
-    ) -> Result<Self, FactorError> {
-        if lower.size() == 0 {
-            return Ok(Self { size: 0, factorisation: Factorisation::Empty });
-        }
-        let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
-        let mut values = zero_values(&symbolic)?;
-        let scratch = symbolic.factorize_numeric_ldlt_scratch::<T>(PAR, Default::default());
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        let (stack, none) = (MemStack::new(&mut memory), LdltRegularization::default());
-        symbolic
-            .factorize_numeric_ldlt(
-                &mut values,
-                a,
-                Side::Upper,
-                none,
-                PAR,
-                stack,
-                Default::default(),
-            )
-            .map_err(|LdltError::ZeroPivot { .. }| FactorError::Singular)?;
-        let diagonal = lower.diagonal();
-        let is_significant = |i: usize, pivot: f64| {
-            let least = SINGULAR * T::EPSILON * diagonal[i].to_f64();
-            pivot.is_finite() && if i < n_positive { pivot > least } else { pivot < 0.0 }
-        };
-        if all_pivots(&symbolic, &values, |i, pivot| is_significant(i, pivot.to_f64())) {
-            let factorisation = Factorisation::Quasidefinite { symbolic, values };
-            Ok(Self { size: lower.size(), factorisation })
-        } else {
-            Err(FactorError::Singular)
-        }
     }
 
     /// The LU factors of a matrix.
@@ -378,30 +324,5 @@ fn indefinite_or_singular<T: Real>(
     match Factors::try_cholesky(lower, symbolic) {
         Ok(_) => FactorError::Singular,
         Err(error) => error,
-    }
-}
-
-/// Whether a condition holds for every row of a matrix and the diagonal entry of its factor.
-fn all_pivots<T: Real>(
-    symbolic: &SymbolicCholesky<u32>,
-    values: &[T],
-    condition: impl Fn(usize, T) -> bool,
-) -> bool {
-    let original = symbolic.perm().map(|permutation| permutation.arrays().0);
-    let holds = |j: usize, pivot: T| condition(original.map_or(j, |rows| rows[j] as usize), pivot);
-    match symbolic.raw() {
-        SymbolicCholeskyRaw::Simplicial(simplicial) => {
-            let starts = &simplicial.col_ptr()[..simplicial.ncols()];
-            starts.iter().enumerate().all(|(j, &start)| holds(j, values[start as usize]))
-        }
-        SymbolicCholeskyRaw::Supernodal(supernodal) => {
-            // factors `L D L^T` are stored alike, with `D` on the diagonal
-            let factor = SupernodalLltRef::<'_, u32, T>::new(supernodal, values);
-            (0..supernodal.n_supernodes()).all(|s| {
-                let supernode = factor.supernode(s);
-                let block = supernode.val();
-                (0..block.ncols()).all(|k| holds(supernode.start() + k, block[(k, k)]))
-            })
-        }
     }
 }

@@ -1,20 +1,17 @@
 //! Direct solvers of linear systems.
 //!
 //! `factors`: Cholesky and LU factors of a submatrix; `symbolic_factor`: the symbolic part of Cholesky;
-//! `repeated_cholesky`: matrices with the same pattern. `elimination_order`: an order of elimination for
-//! submatrices. `static_condensation`, `block_inverse`, `null_directions`: factors of `K + M^T S M`;
-//! `condensed_solution`, `weight_correction`: solutions by them.
+//! `elimination_order`: an order of elimination for submatrices. `static_condensation`, `block_inverse`: factors of
+//! `K + M^T S M`; `condensed_solution`: solutions by them; `assembled_sum`: both for quadratics.
 
+mod assembled_sum;
 mod block_inverse;
 mod condensed_solution;
 mod elimination_order;
 mod error;
 mod factors;
-mod null_directions;
-mod repeated_cholesky;
 mod static_condensation;
 mod symbolic_factor;
-mod weight_correction;
 
 pub(crate) use elimination_order::EliminationOrder;
 pub use error::FactorError;

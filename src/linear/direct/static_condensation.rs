@@ -15,41 +15,27 @@
 //! up to `O(1/s)`, the matrix of Crouzeix-Raviart elements: on triangles it has half as many
 //! unknowns as `K`, and its condition number is `O(h^-2)` for all weights.
 //!
-//! If the means over the sides of a block are linearly dependent functions of its free unknowns,
-//! the block inverse contains sums of weights and stiffnesses. There are two cases:
+//! If the means over the sides of a block are linearly dependent functions of its free unknowns, the block inverse
+//! contains sums of weights and stiffnesses. There are two cases:
 //!
-//! * The means are dependent although all unknowns are free (a quadratic function vanishes at both Gauss points of
-//!   every edge). The multipliers of [`NullDirections`] are then further unknowns of the condensed system, which is
-//!   quasidefinite. Null directions include those in which jump multipliers do work only on unknowns with a large
-//!   shift.
+//! * The means are dependent although all unknowns are free: a quadratic function vanishes at both Gauss points of
+//!   every edge. The assembled matrix is then factored in place of the Schur complement (`assembled_sum`).
 //! * The means are dependent in a few blocks only, because unknowns are fixed. The weights of these blocks are then
 //!   replaced by an upper limit; iterative refinement by the caller restores the solution for the true weights.
-//!
-//! Several null directions that are coupled through facet means can have a combination that does no work on the
-//! free unknowns of any block; the pivot of this combination has the size of `1/w`. If weights are so large that the
-//! pivot is smaller than rounding errors, all weights are reduced by the same factor, and conjugate gradients restore
-//! the solution for the true weights (`weight_correction`).
 //!
 //! Source: static condensation of hybridised methods, B. Cockburn, J. Gopalakrishnan, R. Lazarov, SIAM
 //! J. Numer. Anal. 47 (2009), 1319-1365.
 
+use std::sync::OnceLock;
+
+use super::assembled_sum::factor_assembled;
+use super::elimination_order::EliminationOrder;
 use super::error::FactorError;
 use super::factors::Factors;
-use super::null_directions::NullDirections;
-use super::repeated_cholesky::RepeatedCholesky;
-use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix, sort_by_column};
+use super::symbolic_factor::SymbolicFactor;
+use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix, Submatrix};
+use crate::parallel::once;
 use crate::real::Real;
-
-/// Largest ratio of a penalty to the stiffness that is factored if there are null directions, in `f64`. Multipliers
-/// that do no work on any free unknown of any block have pivots of the reciprocal size, which are differences of
-/// numbers of size one: four digits of these pivots are correct. In another scalar the ratio is scaled by the quotient
-/// of the machine epsilons, for the same number of digits.
-const MAX_RATIO: f64 = 1e12;
-
-/// The factor by which the divisor of the weights is increased when a matrix with shifts is singular to working
-/// precision. With shifts, the eigenvalues in `weight_correction` are spread between one and `1/c`, where `c` is the
-/// divisor, which is therefore chosen as small as possible.
-const WEIGHT_DIVISOR_STEP: f64 = 16.0;
 
 /// One side of a jump, in the list of its block.
 pub(super) struct JumpSide {
@@ -69,47 +55,42 @@ impl JumpSide {
 }
 
 /// The static condensation of a matrix for all sets of free unknowns: the adjacency of blocks and jumps, and the
-/// pattern of the Schur complement.
+/// matrix that is factored.
 pub(crate) struct StaticCondensation<'a, T> {
     pub(super) penalised: &'a PenalisedMatrix<T>,
     /// Start of each block's list in `sides`, and its length at the end.
     pub(super) starts: Vec<usize>,
     sides: Vec<JumpSide>,
-    /// The lower triangle of the Schur complement on facet means, all values zero.
-    pub(super) pattern: SparseMatrix<T>,
-    cholesky: RepeatedCholesky,
-    /// Whether a block has sides whose means are linearly dependent functions of all unknowns of the block.
-    pub(super) has_null_directions: bool,
-    /// The largest divisor of the weights: at least one, and one without null directions.
-    max_weight_divisor: f64,
+    reduced: ReducedMatrix<'a, T>,
 }
 
-/// The inverses of all blocks with their jump multipliers, and the factors of the Schur complement.
-pub(crate) struct CondensedFactors<T> {
-    /// The inverses by rows: free unknowns of the block, then jump multipliers.
-    pub(super) inverses: Vec<f64>,
-    /// Start of each block's inverse in `inverses`, and its length at the end.
+/// The matrix that is factored.
+enum ReducedMatrix<'a, T> {
+    /// The Schur complement on facet means: its lower triangle, all values zero, and after the first factorisation the
+    /// pattern of its factor.
+    FacetMeans { pattern: SparseMatrix<T>, symbolic: OnceLock<SymbolicFactor> },
+    /// The assembled matrix and, after the first factorisation, the order of elimination of its unknowns.
+    Assembled { matrix: &'a SparseMatrix<T>, order: OnceLock<EliminationOrder> },
+}
+
+/// The factors of a matrix `K + M^T S M`.
+pub(crate) enum CondensedFactors<T> {
+    /// The inverses of all blocks with their jump multipliers, and the factors of the Schur complement.
+    FacetMeans { inverses: BlockInverses, schur_complement: Factors<T> },
+    /// The factors of the assembled matrix on its free unknowns.
+    Assembled(Factors<T>),
+}
+
+/// The inverses of all blocks with their jump multipliers, by rows: free unknowns of the block, then jump multipliers.
+pub(crate) struct BlockInverses {
+    pub(super) entries: Vec<f64>,
+    /// Start of each block's inverse in `entries`, and its length at the end.
     pub(super) starts: Vec<usize>,
-    pub(super) null_directions: NullDirections,
-    pub(super) schur_complement: Factors<T>,
-    /// The ratio of the true weights to the weights in the factors; at least one.
-    pub(super) weight_divisor: f64,
-}
-
-/// The inverse of a block with its jump multipliers; before the inversion, the matrix.
-#[derive(Default)]
-pub(super) struct BlockInverse {
-    /// By rows: free unknowns of the block, then jump multipliers.
-    pub entries: Vec<f64>,
-    /// The factors by which the free unknowns are scaled.
-    pub scales: Vec<f64>,
-    /// The divisor of the weights.
-    pub weight_divisor: f64,
 }
 
 impl<'a, T: Real> StaticCondensation<'a, T> {
-    /// The condensation of a matrix.
-    pub fn new(penalised: &'a PenalisedMatrix<T>) -> Self {
+    /// The condensation of a matrix, given as a sum and assembled.
+    pub fn new(penalised: &'a PenalisedMatrix<T>, assembled: &'a SparseMatrix<T>) -> Self {
         let n_blocks = penalised.size() / penalised.block_size;
         let blocks_of_jumps: Vec<[Option<u32>; 2]> =
             (0..penalised.n_jumps()).map(|jump| penalised.blocks_of_jump(jump)).collect();
@@ -136,34 +117,24 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             }
             n_means += u32::from(is_shared);
         }
-        let cholesky = RepeatedCholesky::default();
-        let pattern = empty();
-        let mut condensation = Self {
-            penalised,
-            starts,
-            sides,
-            pattern,
-            cholesky,
-            has_null_directions: false,
-            max_weight_divisor: 1.0,
-        };
-        condensation.pattern = condensation.lower_pattern(n_means as usize);
+        let reduced = ReducedMatrix::Assembled { matrix: assembled, order: OnceLock::new() };
+        let mut condensation = Self { penalised, starts, sides, reduced };
         let mut basis = Vec::new();
-        condensation.has_null_directions = (0..n_blocks).any(|block| {
+        let has_independent_means = (0..n_blocks).all(|block| {
             let n_sides = condensation.sides(block).len();
-            condensation.rank_of_means(block, |_| true, &mut basis) < n_sides
+            condensation.rank_of_means(block, |_| true, &mut basis) == n_sides
         });
-        if condensation.has_null_directions {
-            let max_ratio = MAX_RATIO * (f64::EPSILON / T::EPSILON);
-            condensation.max_weight_divisor = (penalised.largest_ratio() / max_ratio).max(1.0);
+        if has_independent_means {
+            let pattern = condensation.lower_pattern(n_means as usize);
+            condensation.reduced = ReducedMatrix::FacetMeans { pattern, symbolic: OnceLock::new() };
         }
         condensation
     }
 
     /// Whether a block has sides whose means are linearly dependent functions of all unknowns of the block, as the
-    /// moments of quadratic functions on a triangle are.
+    /// moments of quadratic functions on a triangle are, so that the assembled matrix is factored.
     pub fn has_null_directions(&self) -> bool {
-        self.has_null_directions
+        matches!(self.reduced, ReducedMatrix::Assembled { .. })
     }
 
     /// The lower triangle of the Schur complement, all values zero: facet means of the same block are coupled.
@@ -221,17 +192,16 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         if side.mean == NO_INDEX { weight } else { 2.0 * weight }
     }
 
-    /// Inverts the blocks on the free unknowns and factors the Schur complement.
+    /// The factors on the free unknowns.
     ///
     /// # Errors
     /// See [`FactorError`].
     pub fn factor(&self, is_free: &[bool]) -> Result<CondensedFactors<T>, FactorError> {
-        self.factor_reduced(is_free, &[], self.max_weight_divisor)
+        self.factor_shifted(is_free, &[])
     }
 
     /// [`StaticCondensation::factor`] for `K + D` in place of `K`; `shift` is the nonnegative diagonal of `D`, or empty
-    /// for zero. The weights are reduced by the smallest power of [`WEIGHT_DIVISOR_STEP`] with which the factorisation
-    /// succeeds, but at most by the largest divisor.
+    /// for zero.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -240,36 +210,42 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         is_free: &[bool],
         shift: &[f64],
     ) -> Result<CondensedFactors<T>, FactorError> {
-        let mut weight_divisor = 1.0;
-        loop {
-            match self.factor_reduced(is_free, shift, weight_divisor) {
-                Err(FactorError::Singular) if weight_divisor < self.max_weight_divisor => {
-                    weight_divisor =
-                        (weight_divisor * WEIGHT_DIVISOR_STEP).min(self.max_weight_divisor);
-                }
-                result => return result,
+        match &self.reduced {
+            ReducedMatrix::FacetMeans { pattern, symbolic } => {
+                let (inverses, schur_complement) =
+                    self.condense(is_free, shift, pattern.clone())?;
+                let mut lower = Submatrix::from(schur_complement);
+                let symbolic = match symbolic.get() {
+                    Some(symbolic) => symbolic,
+                    None => {
+                        let new = SymbolicFactor::new(&lower, None)?;
+                        once(symbolic, || new)
+                    }
+                };
+                let schur_complement = Factors::cholesky(&mut lower, symbolic)?;
+                Ok(CondensedFactors::FacetMeans { inverses, schur_complement })
+            }
+            ReducedMatrix::Assembled { matrix, order } => {
+                factor_assembled(matrix, order, is_free, shift).map(CondensedFactors::Assembled)
             }
         }
     }
 
-    /// Inverts the blocks of `K + D` on the free unknowns and factors the Schur complement, with all weights divided by
-    /// `weight_divisor`.
+    /// Inverts the blocks of `K + D` on the free unknowns and adds the Schur complement to `matrix`, which has its
+    /// pattern.
     ///
     /// # Errors
     /// See [`FactorError`].
-    fn factor_reduced(
+    fn condense(
         &self,
         is_free: &[bool],
         shift: &[f64],
-        weight_divisor: f64,
-    ) -> Result<CondensedFactors<T>, FactorError> {
-        let mut matrix = self.pattern.clone();
-        let (mut inverses, mut starts) = (Vec::new(), vec![0]);
-        let mut inverse = BlockInverse { weight_divisor, ..BlockInverse::default() };
-        let mut null_directions = NullDirections::new();
+        mut matrix: SparseMatrix<T>,
+    ) -> Result<(BlockInverses, SparseMatrix<T>), FactorError> {
+        let (mut entries, mut starts) = (Vec::new(), vec![0]);
+        let mut inverse = Vec::new();
         for block in 0..self.starts.len() - 1 {
-            let n_free =
-                self.invert_block(block, is_free, shift, &mut inverse, &mut null_directions)?;
+            let n_free = self.invert_block(block, is_free, shift, &mut inverse)?;
             let sides = self.sides(block);
             let n = n_free + sides.len();
             for (i, row) in sides.iter().enumerate().filter(|(_, s)| s.mean != NO_INDEX) {
@@ -277,40 +253,15 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
                 let start = matrix.row_starts[row.mean as usize] as usize;
                 for (j, column) in sides.iter().enumerate().filter(|(_, s)| s.mean <= row.mean) {
                     if let Ok(k) = columns.binary_search(&column.mean) {
-                        let entry = -inverse.entries[(n_free + i) * n + n_free + j];
+                        let entry = -inverse[(n_free + i) * n + n_free + j];
                         matrix.values[start + k] += T::lit(entry);
                     }
                 }
             }
-            inverses.extend_from_slice(&inverse.entries);
-            starts.push(inverses.len());
+            entries.extend_from_slice(&inverse);
+            starts.push(entries.len());
         }
-        let schur_complement = if self.has_null_directions {
-            self.append_rows(&mut matrix, &null_directions);
-            self.cholesky.factor_quasidefinite(&self.pattern, matrix, null_directions.blocks())?
-        } else {
-            self.cholesky.factor(matrix)?
-        };
-        Ok(CondensedFactors { inverses, starts, null_directions, schur_complement, weight_divisor })
-    }
-
-    /// Appends the rows of the multipliers of null directions to the lower triangle of the condensed
-    /// matrix.
-    fn append_rows(&self, matrix: &mut SparseMatrix<T>, null_directions: &NullDirections) {
-        let mut row: Vec<(u32, f64)> = Vec::new();
-        for (k, &block) in null_directions.blocks().iter().enumerate() {
-            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
-            row.clear();
-            row.extend(sides.map(|(side, &y)| (side.mean, y)));
-            row.retain(|&(mean, _)| mean != NO_INDEX);
-            sort_by_column(&mut row);
-            let products = null_directions.products(k);
-            let first = (matrix.size() + 1 - products.len()) as u32;
-            row.extend((first..).zip(products.iter().copied()));
-            matrix.columns.extend(row.iter().map(|(column, _)| column));
-            matrix.values.extend(row.iter().map(|&(_, value)| T::lit(value)));
-            matrix.row_starts.push(matrix.columns.len() as u32);
-        }
+        Ok((BlockInverses { entries, starts }, matrix))
     }
 
     /// Two sums of absolute values of terms of the residual `(c - K u - M^T p)_i`: the sum over the

@@ -11,6 +11,7 @@ use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::study::Row;
 
 /// Every solver there is for symmetric matrices, by what forces it.
 fn agree(what: &str, problem: &Inequality<f64>) {
@@ -195,8 +196,11 @@ fn the_interior_point_method_comes_first_within_any_limit() {
 #[test]
 fn no_penalty_is_too_large() {
     let solver = ActiveSet::default().globalisation(Globalisation::InteriorPointFirst);
-    for name in ["wopsip", "wopsip-p2"] {
+    for (name, largest) in [("wopsip", 1e10), ("wopsip-p2", 1e8)] {
         for eta in [1e-2, 1.0, 1e2, 1e4, 1e6, 1e8, 1e10] {
+            if eta > largest {
+                continue;
+            }
             let options = SchemeOptions { eta: Some(eta), ..SchemeOptions::default() };
             let scheme = scheme_by_name::<f64, 2>(name, &options).unwrap();
             let study = Study::<f64, 2>::new(scenes::ball_2d()).boxed_scheme(scheme);
@@ -212,7 +216,7 @@ fn no_penalty_is_too_large() {
 /// Copies of one node are tied by the penalty and leave the bound within the contact set by as little as it
 /// admits: torsion and the L-shape have a contact set that the penalty decides cell by cell.
 #[test]
-fn bounds_at_nodes_of_quadratics_are_solved_for_every_penalty() {
+fn bounds_at_nodes_of_quadratics_are_solved_where_rounding_leaves_digits() {
     let of = |scene: &Scene<2>, eta: f64, level: usize| {
         let scheme: NamedScheme = format!("wopsip-p2@eta={eta:e}").parse().unwrap();
         let study = Study::<f64, 2>::new(scene.clone()).named_scheme(&scheme).levels([level]);
@@ -222,7 +226,7 @@ fn bounds_at_nodes_of_quadratics_are_solved_for_every_penalty() {
         let made = scenes::by_name(name).unwrap().make(&scenes::Parameters::default()).unwrap();
         let scenes::AnyScene::Two(scene) = made else { panic!("{name}") };
         let level = if name == "lshape-2d" { 8 } else { 16 };
-        for eta in [1e-2, 1e4, 1e7, 1e10] {
+        for eta in [1e-2, 1e4, 1e7] {
             let row = of(&scene, eta, level);
             assert!(row.converged(), "{name} {eta:e}: {}", row.status);
             // the limit of the certificate is 1e-9, which bounds little beside large penalties
@@ -241,11 +245,33 @@ fn bounds_at_nodes_of_quadratics_are_solved_for_every_penalty() {
     }
 }
 
+/// Quadratics of whose assembled matrix a penalty leaves no digit are refused before the solve, and the row says why.
+#[test]
+fn quadratics_without_digits_are_refused() {
+    let row = |name: &str, level: usize| {
+        let scheme: NamedScheme = name.parse().unwrap();
+        let study = Study::<f64, 2>::new(scenes::signorini_2d()).named_scheme(&scheme);
+        study.levels([level]).run().unwrap().rows.remove(0)
+    };
+    let says = |row: &Row, text: &str| row.warnings.iter().any(|w| w.contains(text));
+    let refused = row("wopsip-p2@eta=1e10", 16);
+    assert_eq!(refused.status, Outcome::Singular);
+    assert!(refused.iterations.stages.is_empty(), "{:?}", refused.iterations);
+    assert!(
+        says(&refused, "times the stiffness on 1024 cells leaves no digit in f64"),
+        "{refused:?}"
+    );
+    for name in ["wopsip-p2", "wopsip-p2@eta=1e7", "wopsip@eta=1e10"] {
+        let solved = row(name, 16);
+        assert!(solved.converged() && !says(&solved, "digit"), "{name}: {solved:?}");
+    }
+}
+
 /// Krylov methods with the assembled matrix of a huge penalty leave an active set whose jump multipliers exceed all loads
 /// by it; the interior point method does not start from them.
 #[test]
 fn jump_multipliers_of_an_arbitrary_active_set_are_no_start() {
-    let scheme: NamedScheme = "wopsip-p2@eta=1e10".parse().unwrap();
+    let scheme: NamedScheme = "wopsip-p2@eta=1e4".parse().unwrap();
     let made = scenes::by_name("contrast-2d").unwrap().make(&scenes::Parameters::default());
     let scenes::AnyScene::Two(scene) = made.unwrap() else { panic!() };
     let study = Study::<f64, 2>::new(scene).named_scheme(&scheme).levels([32]);
@@ -259,7 +285,7 @@ fn jump_multipliers_of_an_arbitrary_active_set_are_no_start() {
 /// definite, so that factors with jump multipliers go on.
 #[test]
 fn rounding_in_a_krylov_method_is_not_an_indefinite_matrix() {
-    let scheme: NamedScheme = "wopsip-p2@eta=1e12".parse().unwrap();
+    let scheme: NamedScheme = "wopsip-p2@eta=1e6".parse().unwrap();
     let study = Study::<f64, 2>::new(scenes::radial(1.0)).named_scheme(&scheme).levels([32]);
     let row = study.run().unwrap().rows.remove(0);
     let stages: Vec<Stage> = row.iterations.stages.iter().map(|run| run.stage).collect();
@@ -276,7 +302,7 @@ fn bounds_on_cell_means_are_recommended_where_they_help() {
         let study = Study::<f64, 2>::new(scenes::radial(1.0)).levels([32]);
         study.named_scheme(&scheme.parse().unwrap()).run().unwrap().rows.remove(0)
     };
-    let (nodes, means) = (row("wopsip-p2@eta=1e10"), row("wopsip-p2:cell-means@eta=1e10"));
+    let (nodes, means) = (row("wopsip-p2@eta=1e4"), row("wopsip-p2:cell-means@eta=1e4"));
     assert!(nodes.converged() && means.converged());
     assert!(nodes.iterations.outer > Some(28) && means.iterations.outer < Some(28));
     assert!(nodes.warnings.iter().any(|w| w.contains("bounds on cell-means")), "{nodes:?}");
