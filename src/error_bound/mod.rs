@@ -17,7 +17,7 @@
 //! | `flux` | `q` by its numbers in cells |
 //! | `patches` | the flux of conforming functions, around each vertex |
 //! | `quadratics`, `shared_multipliers` | loads and multipliers of quadratics by cell, and the flux inside cells |
-//! | `contact_forces`, `smooth_forces` | the forces on contact facets |
+//! | `contact_forces` | the forces on contact facets |
 //! | `exchange` | multipliers exchanged for flux where obstacles bind |
 //! | `integrals` | what each cell and the boundary add to the bound, and the sums |
 //! | `friedrichs` | the constant with which counts what the solver left |

@@ -1,6 +1,6 @@
 //! Solvers by name.
 
-use super::{ActiveSet, InequalitySolver, MonotoneMultigrid};
+use super::{ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid};
 use crate::instances::compiled;
 use crate::linear::LinearMethod;
 use crate::real::Real;
@@ -46,6 +46,8 @@ solvers_by_name! { options:
         => ActiveSet::default().linear(options.linear);
     "monotone-multigrid", "truncated nonsmooth Newton multigrid, not for over-penalty with bounds at vertices"
         => MonotoneMultigrid::default();
+    "interior-point", "predictor-corrector interior point method, with factors"
+        => InteriorPoint;
 }
 
 /// The solver of this name; `None` if there is none.

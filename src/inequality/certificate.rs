@@ -26,9 +26,8 @@ use crate::real::{Real, maximum};
 /// together may change the solution by as much as the solution itself.
 ///
 /// If the energy vanishes up to rounding (the solution is a constant), the norm `(sum c_i^2 / d_i)^(1/2)` of the load
-/// `c` without Dirichlet data replaces `E`, then `(sum d_i u_i^2)^(1/2)`, then one. All sums are in `f64`, of numbers
-/// divided by a power of two near the largest, so that the certificate does not change if the data and the values are
-/// multiplied by a power of two. If a number is not finite or sizes do not match, all four violations are infinite.
+/// `c` without Dirichlet data replaces `E`, then `(sum d_i u_i^2)^(1/2)`, then one. All sums are in `f64`: data whose
+/// squares underflow or overflow, which solvers refuse, have no certificate. If a number is not finite, or sizes do not match, all four violations are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -100,7 +99,7 @@ pub(crate) fn energy_norm<T: Real>(
     let mut r = vec![0.0; inequality.size()];
     residual(inequality, u, jump_multipliers, &mut r);
     let diagonal = |i: usize| positive_diagonal(inequality, i);
-    Scales::of(inequality, u, &r, jump_multipliers, &diagonal, 1.0).energy_norm
+    Scales::of(inequality, u, &r, jump_multipliers, &diagonal).energy_norm
 }
 
 /// Sets `residual` to `b - A u`, or to `c - K u - M^T p` if the jump multipliers `p` are given.

@@ -12,15 +12,14 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `validation` | checks of the input, and of definiteness where a setting requires it |
-//! | `active_set/` | [`ActiveSet`]: the primal-dual active set method, with its stages in `active_set/strategy` |
-//! | `interior_point/` | the interior point method, which provides a start where the active set stagnates |
+//! | `validation` | checks of the input and of definiteness |
+//! | `active_set/` | [`ActiveSet`]: the primal-dual active set method, with the order of all methods in `active_set/ladder` |
+//! | `interior_point/` | [`InteriorPoint`]: Mehrotra's method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid/` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`] |
 //! | `contact_forces` | the forces of active bounds, from which everything that shows a force takes them |
 //! | `violations/` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh; the violations at one unknown |
-//! | `energy_error_bound` | [`energy_error_bound`]: a proven bound on the error of any values, by factors |
-//! | `preconditioned_error_bound` | a bound on the error of admissible values, by a preconditioner |
+//! | `algebraic_bound` | a bound on the algebraic error of admissible values |
 //! | `scales` | the energy norm and the largest value to which violations are relative |
 //! | `recession` | whether a solution exists and is unique where only bounds hold a body |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
@@ -28,20 +27,19 @@
 //! | `by_name` | [`solver_by_name`] |
 //! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`Stage`], [`StageRun`]: the result of a solver |
 //!
-//! [`ActiveSet`] runs in stages, each only if no stage before it has converged. `active_set/strategy` lists the stages
-//! with all thresholds; [`Solution::stages`] contains those that ran. If the active set no longer changes, the outcome
-//! is [`Outcome::Converged`] or [`Outcome::Stalled`], depending on the certificate.
+//! [`ActiveSet`] runs other methods where its active set stagnates: `active_set/ladder` is that order;
+//! [`Solution::stages`] contains the methods that ran. If the active set no longer changes, the outcome is
+//! [`Outcome::Converged`] or [`Outcome::Stalled`], depending on the certificate.
 
 mod active_set;
+mod algebraic_bound;
 mod by_name;
 mod certificate;
 mod contact_forces;
-mod energy_error_bound;
 pub(crate) mod initial_guess;
 mod interior_point;
 mod monotone_multigrid;
 mod outcome;
-mod preconditioned_error_bound;
 mod recession;
 mod scales;
 mod solution;
@@ -50,21 +48,20 @@ mod step_counter;
 mod validation;
 mod violations;
 
-pub use active_set::{ActiveSet, Globalisation, Preconditioned};
+pub use active_set::{ActiveSet, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
 pub(crate) use certificate::count_active;
 pub use certificate::{Certificate, contact_of};
 pub(crate) use certificate::{energy_norm, positive_diagonal, stiffness_diagonal};
 pub(crate) use contact_forces::ContactForces;
-pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
+pub use interior_point::InteriorPoint;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
 pub(crate) use recession::explanation;
 pub use solution::Solution;
 pub use stage::{Stage, StageRun};
 pub use step_counter::StepCounter;
-pub(crate) use validation::check_definite;
 pub(crate) use violations::certify_with_jump_multipliers;
 pub use violations::{Violations, certify};
 

@@ -29,11 +29,10 @@ pub(crate) struct Scales {
     pub energy_norm: f64,
 }
 
-/// The maximum and the sums over unknowns from which [`Scales`] are computed; the sums are divided by the square of a
-/// unit.
+/// The maximum and the sums over unknowns from which [`Scales`] are computed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
-    /// The largest `|u_i|` or `|v_i|`, not divided by the unit.
+    /// The largest `|u_i|` or `|v_i|`.
     max_norm: f64,
     /// The energy with data; see [`Scales::energy_norm`].
     energy: f64,
@@ -47,22 +46,20 @@ pub(super) struct Sums {
 
 impl Scales {
     /// The scales of `u`. `residual` is `b - A u`, or `c - K u - M^T p` with jump multipliers `p` if they are not
-    /// empty; `diagonal` is the positive diagonal; `unit` is a power of two by which values, loads and residuals are
-    /// divided before they are squared. Numbers that are not finite give norms that are not finite.
+    /// empty; `diagonal` is the positive diagonal. Numbers that are not finite give norms that are not finite.
     pub fn of<T: Real>(
         inequality: &Inequality<T>,
         u: &[T],
         residual: &[f64],
         jump_multipliers: &[T],
         diagonal: &(dyn Fn(usize) -> f64 + Sync),
-        unit: f64,
     ) -> Self {
         let values = (u, residual, jump_multipliers);
-        let mut sums = Sums::of(inequality, values, diagonal, unit, &|i| inequality.owns(i));
+        let mut sums = Sums::of(inequality, values, diagonal, &|i| inequality.owns(i));
         if let Some(distribution) = inequality.distribution() {
             sums = sums.over_parts(distribution);
         }
-        sums.scales(T::EPSILON, unit)
+        sums.scales(T::EPSILON)
     }
 }
 
@@ -73,20 +70,17 @@ impl Sums {
         inequality: &Inequality<T>,
         (u, residual, jump_multipliers): (&[T], &[f64], &[T]),
         diagonal: &(dyn Fn(usize) -> f64 + Sync),
-        unit: f64,
         owns: &(impl Fn(usize) -> bool + Sync),
     ) -> Self {
-        let scale = unit.recip();
         let Inequality { load, bounds, penalised, dirichlet_energy, .. } = inequality;
         let mut sums = Sums::default();
         for part in map_chunks(u.len(), |range| {
             let mut part = Sums::default();
             for i in range.filter(|&i| owns(i)) {
-                let (x, c, d) = (u[i].to_f64(), load[i].to_f64() * scale, diagonal(i));
+                let (x, c, d) = (u[i].to_f64(), load[i].to_f64(), diagonal(i));
                 let nearest = bounds[i].nearest(u[i]).to_f64();
                 part.max_norm = maximum(part.max_norm, maximum(x.abs(), nearest.abs()));
-                let x = x * scale;
-                let energy = x * (c - residual[i] * scale);
+                let energy = x * (c - residual[i]);
                 part.energy += energy;
                 part.terms += energy.abs();
                 part.load_energy += c * c / d;
@@ -103,20 +97,20 @@ impl Sums {
         if let Some(penalised) = penalised {
             // u.K u + p.(S^-1 p) = u.(c - r) - p.g, without the cancellation of penalties
             let work = penalised.work_on_data(|i| u[i].to_f64(), jump_multipliers, owns);
-            sums.add_energy(-work * scale * scale);
+            sums.add_energy(-work);
         } else if let Some(data) = dirichlet_energy {
             for term in data.terms.iter().filter(|term| owns(term.unknown as usize)) {
                 let i = term.unknown as usize;
-                let (x, c, d) = (u[i].to_f64() * scale, load[i].to_f64() * scale, diagonal(i));
-                sums.add_energy(-term.linear * scale * x);
-                sums.load_energy += ((c - term.load * scale).powi(2) - c * c) / d;
-                sums.add_energy(term.constant * scale * scale);
+                let (x, c, d) = (u[i].to_f64(), load[i].to_f64(), diagonal(i));
+                sums.add_energy(-term.linear * x);
+                sums.load_energy += ((c - term.load).powi(2) - c * c) / d;
+                sums.add_energy(term.constant);
             }
         }
         sums
     }
-    /// The scales; `epsilon` is machine epsilon of the scalar, `unit` that of the sums.
-    pub fn scales(&self, epsilon: f64, unit: f64) -> Scales {
+    /// The scales; `epsilon` is machine epsilon of the scalar.
+    pub fn scales(&self, epsilon: f64) -> Scales {
         let least = VANISHING * epsilon * self.terms;
         let energy = [(self.energy, least), (self.load_energy, 0.0), (self.diagonal_energy, 0.0)]
             .into_iter()
@@ -125,10 +119,10 @@ impl Sums {
             .map_or(1.0, |(energy, _)| energy);
         Scales {
             max_norm: if self.max_norm == 0.0 { 1.0 } else { self.max_norm },
-            energy_norm: energy.sqrt() * unit,
+            energy_norm: energy.sqrt(),
         }
     }
-    /// The maximum and the sums over all parts, which must have the same unit.
+    /// The maximum and the sums over all parts.
     pub fn over_parts(self, distribution: &dyn Distribution) -> Self {
         let mut max_norm = [self.max_norm];
         distribution.largest(&mut max_norm);
@@ -136,17 +130,6 @@ impl Sums {
         distribution.sum(&mut sums);
         let [energy, terms, load_energy, diagonal_energy] = sums;
         Self { max_norm: max_norm[0], energy, terms, load_energy, diagonal_energy }
-    }
-    /// The sums in the unit that is `ratio` times the present one.
-    pub fn in_units_of(self, ratio: f64) -> Self {
-        let factor = ratio.recip().powi(2);
-        Self {
-            max_norm: self.max_norm,
-            energy: self.energy * factor,
-            terms: self.terms * factor,
-            load_energy: self.load_energy * factor,
-            diagonal_energy: self.diagonal_energy * factor,
-        }
     }
     /// The maximum and the sums as numbers.
     pub fn to_numbers(self) -> [f64; 5] {
@@ -158,11 +141,7 @@ impl Sums {
         let [max_norm, energy, terms, load_energy, diagonal_energy] = numbers;
         Self { max_norm, energy, terms, load_energy, diagonal_energy }
     }
-    /// Whether all values and loads are zero.
-    pub fn is_zero(&self) -> bool {
-        [self.max_norm, self.terms, self.load_energy, self.diagonal_energy] == [0.0; 4]
-    }
-    /// The sums over the unknowns of `self` and `other`, which must have the same unit.
+    /// The sums over the unknowns of `self` and `other`.
     pub fn merge(self, other: Self) -> Self {
         Self {
             max_norm: maximum(self.max_norm, other.max_norm),

@@ -40,7 +40,7 @@ pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
 /// Whether the largest datum over all parts of a mesh is zero or within [`DATA_RANGE`]. The data of unknown `i` are its
 /// admissible value nearest to zero and `|b_i| / a_ii`, both as values, and their products with the square root of
 /// `a_ii`, as square roots of energies.
-fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_formed: bool) -> bool {
+pub(super) fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_formed: bool) -> bool {
     let n = if is_well_formed { inequality.size() } else { 0 };
     let load = if is_well_formed { inequality.assembled_load() } else { Cow::Borrowed(&[][..]) };
     let parts = map_chunks(n, |range| {
@@ -64,30 +64,52 @@ fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_formed: bool) 
     largest.iter().all(|&magnitude| magnitude == 0.0 || (magnitude >= least && magnitude <= most))
 }
 
-/// Checks by a Cholesky factorisation that the matrix, or its symmetric part if it is not symmetric, is
-/// positive definite on all unknowns that are not fixed. A penalised matrix, which is symmetric, is factored by
-/// static condensation. On the kernel, where it is known, the matrix need not be positive.
+/// The check before every solve: the input ([`check_input`]) and, by one Cholesky factorisation, that the matrix, or its
+/// symmetric part if it is not symmetric, has no negative direction on the unknowns that are not fixed. A matrix that is
+/// known to be definite is not factored, nor is that of one part of a mesh; one whose factors do not fit into memory
+/// counts as definite. A singular matrix passes: bounds may hold what it does not.
 ///
 /// # Errors
-/// The outcome that a solver returns: [`Outcome::NotCoercive`], or the reason why there are no factors.
-pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
-    factor_free_unknowns(inequality).map_err(|error| match error {
-        FactorError::Singular if inequality.penalised.is_none() => Outcome::NotCoercive,
-        _ => error.into(),
-    })
+/// The outcome that a solver returns: those of [`check_input`], [`Outcome::NotCoercive`], or [`Outcome::Malformed`] if
+/// the matrix is declared symmetric and is not.
+pub(crate) fn check<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+    over_all_parts(inequality, check_input(inequality))?;
+    if inequality.is_definite || inequality.distribution.is_some() {
+        return Ok(());
+    }
+    match factor_free_unknowns(inequality) {
+        Err(FactorError::NotPositive)
+            if inequality.symmetric && !inequality.matrix.is_symmetric() =>
+        {
+            Err(Outcome::Malformed)
+        }
+        Err(FactorError::NotPositive) => Err(Outcome::NotCoercive),
+        _ => Ok(()),
+    }
 }
 
-/// Whether the factorisation of the matrix, or of its symmetric part, on the unknowns that are not fixed finds a
-/// negative pivot, so that the energy is not convex. Unlike in [`check_definite`] the answer is false for a singular
-/// matrix, which may have a solution all the same, for a matrix that is known to be definite, and for one that
-/// cannot be factored.
-pub(super) fn has_negative_direction<T: Real>(inequality: &Inequality<T>) -> bool {
-    !inequality.is_definite
-        && inequality.distribution.is_none()
-        && factor_free_unknowns(inequality) == Err(FactorError::NotPositive)
+/// The result of a check in all parts: of the outcomes of the parts the one that comes last in `OUTCOMES`, or
+/// [`Outcome::NotFinite`] if messages between the parts fail.
+fn over_all_parts<T: Real>(
+    inequality: &Inequality<T>,
+    checked: Result<(), Outcome>,
+) -> Result<(), Outcome> {
+    const OUTCOMES: [Outcome; 4] =
+        [Outcome::OutOfRange, Outcome::Infeasible, Outcome::NotFinite, Outcome::Malformed];
+    let Some(distribution) = inequality.distribution() else { return checked };
+    let code = |outcome: Outcome| OUTCOMES.iter().position(|&other| other == outcome);
+    let mut largest = [checked.err().map_or(0, |outcome| code(outcome).unwrap_or(0) + 1) as f64];
+    distribution.largest(&mut largest);
+    match largest[0] as usize {
+        0 if largest[0] == 0.0 => Ok(()),
+        // not a number
+        0 => Err(Outcome::NotFinite),
+        code => Err(OUTCOMES[code - 1]),
+    }
 }
 
-/// Factors the matrix, or its symmetric part, on all unknowns that are not fixed; see [`check_definite`].
+/// Factors the matrix, or its symmetric part, on all unknowns that are not fixed; a penalised matrix, which is
+/// symmetric, by static condensation. On the kernel, where it is known, the matrix need not be positive.
 fn factor_free_unknowns<T: Real>(inequality: &Inequality<T>) -> Result<(), FactorError> {
     let mut free = inequality.free_unknowns();
     // kernel vectors have no common unknowns: with one unknown of each fixed the matrix is definite on the others
@@ -99,17 +121,4 @@ fn factor_free_unknowns<T: Real>(inequality: &Inequality<T>) -> Result<(), Facto
         return StaticCondensation::new(penalised, &inequality.matrix).factor(&is_free).map(|_| ());
     }
     Factors::new(&symmetric_part(inequality), true, &free).map(|_| ())
-}
-
-/// The outcome where a Krylov method or a preconditioner found the symmetric part of the matrix not to be positive
-/// definite. `None` if rounding of large penalties is the reason: the matrix is known to be definite, or has Cholesky
-/// factors. A distributed matrix has no factors.
-pub(crate) fn diagnose_loss_of_positivity<T: Real>(inequality: &Inequality<T>) -> Option<Outcome> {
-    if inequality.is_definite {
-        None
-    } else if inequality.distribution.is_some() {
-        Some(Outcome::NotCoercive)
-    } else {
-        check_definite(inequality).err()
-    }
 }

@@ -12,7 +12,7 @@ use super::warnings::{active_sets, dirichlet_jumps, no_digits_of_quadratics, sho
 use crate::algebra::{Contact, Inequality, Start};
 use crate::assemble::Discretisation;
 use crate::error::Error;
-use crate::inequality::{InitialGuess, Outcome, Solution, check_definite};
+use crate::inequality::{InitialGuess, Outcome, Solution};
 use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
@@ -126,23 +126,8 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         }
     }
 
-    /// Solves [`NestedIteration::repeat`] times and returns the last solution with the smallest time. A
-    /// matrix that is not known to be definite, for instance with a penalty below its proven bound, is
-    /// first tested: a solution does not show whether it is. The time includes this test.
+    /// Solves [`NestedIteration::repeat`] times and returns the last solution with the smallest time.
     fn run(&self, inequality: &mut Inequality<T>, guess: &InitialGuess<T>) -> (Solution<T>, f64) {
-        let clock = Instant::now();
-        if !inequality.is_definite {
-            match check_definite(inequality) {
-                Ok(()) => inequality.is_definite = true,
-                // the solver says so itself, where it gets that far
-                Err(Outcome::OutOfMemory) => {}
-                Err(outcome) => {
-                    let solution = Solution::without_iterate(inequality, outcome);
-                    return (solution, clock.elapsed().as_secs_f64());
-                }
-            }
-        }
-        let in_test = clock.elapsed().as_secs_f64();
         let mut seconds = f64::INFINITY;
         let mut last = None;
         for _ in 0..self.p1.repeat {
@@ -151,7 +136,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             seconds = seconds.min(clock.elapsed().as_secs_f64());
         }
         match last {
-            Some(solution) => (solution, in_test + seconds),
+            Some(solution) => (solution, seconds),
             None => unreachable!("at least one run"),
         }
     }

@@ -3,7 +3,7 @@
 use super::choice::{Choice, Penalty};
 use super::plan::{Plan, Sink};
 use super::row_builder::RowBuilder;
-use super::runs::{sines, solved, solver};
+use super::runs::{sines, solved};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::nested::Hierarchy;
@@ -37,9 +37,9 @@ fn compare(scene: &Scene<2>, choice: &Choice, level: usize, sink: Sink<'_>) -> R
     let means = Choice::default("cr");
     let meshes = Hierarchy::of_domain(&scene.domain, level)?;
     let problem = choice.constrain(scene.problem.clone());
-    let ours = solved(&problem, &meshes, choice, solver(), true)?;
+    let ours = solved(&problem, &meshes, choice, true)?;
     let problem_of_means = means.constrain(scene.problem.clone());
-    let limit = solved(&problem_of_means, &meshes, &means, solver(), true)?;
+    let limit = solved(&problem_of_means, &meshes, &means, true)?;
     let distance = match (ours.fields(), limit.fields()) {
         (Some(a), Some(b)) => Some(relative_distance(ours.mesh(), &a.u, &b.u)),
         _ => None,

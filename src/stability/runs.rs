@@ -1,9 +1,11 @@
 //! Runs of a scheme on a scene or a mesh, and properties of its matrix.
 
+use std::sync::Arc;
+
 use super::choice::Choice;
 use crate::algebra::{Bound, SparseMatrix};
 use crate::error::Error;
-use crate::inequality::{ActiveSet, Globalisation};
+use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::linear::{LinearMethod, is_positive_definite};
 use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::{Hierarchy, NestedIteration, Solved};
@@ -17,11 +19,6 @@ use crate::study::{Row, Study};
 /// an iterative solver enters.
 pub(crate) fn solver() -> ActiveSet {
     ActiveSet::default().linear(LinearMethod::Direct)
-}
-
-/// The solver of the study with another globalisation and another limit on active sets.
-pub(crate) fn solver_with(globalisation: Globalisation, max_outer: usize) -> ActiveSet {
-    solver().globalisation(globalisation).max_outer(max_outer)
 }
 
 /// The rows of a scheme on levels of a scene.
@@ -61,10 +58,20 @@ pub(crate) fn solved<'a, const D: usize>(
     problem: &'a Problem<D>,
     meshes: &'a Hierarchy<f64, D>,
     choice: &Choice,
-    solver: ActiveSet,
     is_warm: bool,
 ) -> Result<Solved<'a, f64, D>, Error> {
-    let nested = NestedIteration::new(problem, meshes).solver(solver);
+    solved_by(Arc::new(solver()), problem, meshes, choice, is_warm)
+}
+
+/// [`solved`] with another solver.
+pub(crate) fn solved_by<'a, const D: usize>(
+    solver: Arc<dyn InequalitySolver<f64>>,
+    problem: &'a Problem<D>,
+    meshes: &'a Hierarchy<f64, D>,
+    choice: &Choice,
+    is_warm: bool,
+) -> Result<Solved<'a, f64, D>, Error> {
+    let nested = NestedIteration::new(problem, meshes).shared_solver(solver);
     nested.cold_start(!is_warm).solve(&*choice.make())
 }
 

@@ -288,9 +288,11 @@ fn a_contact_force_counts_with_the_distance_from_the_gap() {
     pair.function.fill(0.0);
     for force in [0.5, 3.0] {
         // through the facets opposite the two vertices
-        pair.flux.copy_from_slice(&[force, -force]);
+        pair.flux = Flux::zero(0, 1);
+        pair.flux.add_through(0, 0, force);
+        pair.flux.add_through(0, 1, -force);
         let bound = solved.discretisation().error_bound(&pair, &[0.0; 2]).unwrap();
-        let mismatch = force * force / 4.0;
+        let mismatch: f64 = force * force / 4.0;
         let total = (mismatch + 2.0 * force).sqrt();
         let discrete = 0.5 * (mismatch + 4.0 * force).sqrt() + 0.5 * mismatch.sqrt();
         for (found, expected) in [(bound.total, total), (bound.discrete, discrete)] {
@@ -311,11 +313,11 @@ fn contact_forces_of_quadratics_have_one_sign() {
     let solved = solve(&problem, &mesh, &ConformingP2).unwrap();
     let mut pair = solved.primal_dual_pair().unwrap();
     pair.function.fill(0.0);
-    pair.flux.fill(0.0);
+    pair.flux = Flux::zero(1, mesh.n_cells());
     let f = mesh.boundary().iter().find(|f| f.part == BoundaryPart::Contact).unwrap();
     let (cell, local) = (f.cell as usize, usize::from(f.local));
     for (k, &v) in mesh.cell(cell).iter().enumerate().filter(|(k, _)| *k != local) {
-        pair.flux[(cell * 3 + local) * 3 + k] = 4.0 * mesh.vertices()[v as usize][0] - 1.0;
+        pair.flux.add_density(cell, local, k, 4.0 * mesh.vertices()[v as usize][0] - 1.0);
     }
     let bound = solved.discretisation().error_bound(&pair, &vec![0.0; solved.values().len()]);
     let bound = bound.unwrap();

@@ -1,6 +1,6 @@
 //! The contact states that a bound allows, and the values that contact states prescribe.
 
-use crate::algebra::{Bound, Contact, Start};
+use crate::algebra::{Bound, Contact, Inequality, Start};
 use crate::real::Real;
 
 /// The given contact state if the bound has the side that the state names, else inactive. Always lower if lower and
@@ -23,15 +23,27 @@ pub(crate) fn prescribed_value<T: Real>(bound: &Bound<T>, state: Contact) -> Opt
     })
 }
 
-/// The contact states of a start, made admissible by [`admissible_state`]. An unknown that the start does not name,
-/// because its list is shorter, starts as inactive.
-pub(crate) fn starting_states<T: Real>(bounds: &[Bound<T>], start: &Start) -> Vec<Contact> {
+/// The contact states of the start of an inequality, made admissible by [`admissible_state`]. An unknown that the start
+/// does not name, because its list is shorter, starts as inactive. Where no unknown of a body that bounds alone hold is
+/// active, all of them are, at their lower bounds if they have two: else the matrix is singular.
+pub(crate) fn starting_states<T: Real>(inequality: &Inequality<T>) -> Vec<Contact> {
+    let Inequality { bounds, start, kernel, .. } = inequality;
     let guess = match start {
         Start::Cold => &[],
         Start::Contact(guess) => guess.as_slice(),
     };
-    let states = bounds.iter().enumerate();
+    let admissible =
+        |(i, bound)| admissible_state(bound, guess.get(i).copied().unwrap_or_default());
+    let mut states: Vec<Contact> = bounds.iter().enumerate().map(admissible).collect();
+    for body in kernel {
+        let unknowns = || body.iter().map(|&(i, _)| i as usize);
+        if unknowns().all(|i| states[i] == Contact::Inactive) {
+            for i in unknowns() {
+                let lower = admissible_state(&bounds[i], Contact::Lower);
+                let upper = admissible_state(&bounds[i], Contact::Upper);
+                states[i] = if lower == Contact::Inactive { upper } else { lower };
+            }
+        }
+    }
     states
-        .map(|(i, bound)| admissible_state(bound, guess.get(i).copied().unwrap_or_default()))
-        .collect()
 }

@@ -4,9 +4,15 @@
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use crate::algebra::{Inequality, PenalisedMatrix};
+use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
 use crate::linear::direct::{CondensedFactors, StaticCondensation};
 use crate::linear::direct::{EliminationOrder, FactorError, Factors};
 use crate::real::Real;
+
+/// Number of solutions for one active set, each with the residual in `f64` of the one before. Every step of the active
+/// set method is itself a correction of the preceding iterate; the second solution gains two digits and more in `f32` if a
+/// single step suffices (a warm start).
+const SOLUTIONS: usize = 2;
 
 /// Largest number of corrections of values and jump multipliers for one active set.
 const MAX_CORRECTIONS: usize = 12;
@@ -22,8 +28,6 @@ const MAX_CORRECTION_SHARE: f64 = 0.01;
 /// A solver with factors for the linear systems of all active sets of an inequality.
 pub(crate) struct DirectSolver<'a, T> {
     inequality: &'a Inequality<T>,
-    /// Number of corrections after the first solution.
-    refinements: usize,
     /// The inactive unknowns, ascending.
     inactive: Vec<u32>,
     /// The factors for the inactive unknowns; `None` before the first factorisation and after one that failed.
@@ -57,12 +61,11 @@ struct CorrectionSize {
 
 impl<'a, T: Real> DirectSolver<'a, T> {
     /// The solver of an inequality, which must be well formed.
-    pub fn new(inequality: &'a Inequality<T>, refinements: usize) -> Self {
+    pub fn new(inequality: &'a Inequality<T>) -> Self {
         let penalised = inequality.penalised.as_ref();
         let condensation = penalised.map(|p| StaticCondensation::new(p, &inequality.matrix));
         Self {
             inequality,
-            refinements,
             inactive: Vec::new(),
             factors: None,
             condensation,
@@ -89,7 +92,7 @@ impl<'a, T: Real> DirectSolver<'a, T> {
         Factors::in_order(matrix, &self.inactive, order)
     }
 
-    /// Corrects the values `1 + refinements` times; then computes the residual.
+    /// Corrects the values [`SOLUTIONS`] times; then computes the residual.
     ///
     /// # Errors
     /// [`FactorError::Singular`] if there are several corrections and the energy of the last one exceeds
@@ -103,7 +106,7 @@ impl<'a, T: Real> DirectSolver<'a, T> {
         let Iterate { values, residual, .. } = iterate;
         let mut correction = Vec::with_capacity(self.inactive.len());
         let mut correction_energy = 0.0;
-        for step in 0..=self.refinements {
+        for step in 0..SOLUTIONS {
             matrix.residual_f64(load, values, residual);
             correction.clear();
             correction.extend(self.inactive.iter().map(|&i| T::lit(residual[i as usize])));
@@ -127,30 +130,28 @@ impl<'a, T: Real> DirectSolver<'a, T> {
 }
 
 impl<T: Real> DirectSolver<'_, T> {
-    /// Projects the values onto their bounds and returns a bound on the energy norm of their error
-    /// divided by the energy norm of the iterate; `None` for a matrix that is not symmetric, if an
-    /// active unknown is not strongly active, or if rounding makes the square negative.
+    /// Projects the values onto their bounds and returns the bound on their error ([`algebraic_bound`]); `None` for a
+    /// matrix that is not symmetric, if an active unknown is not strongly active, or if rounding makes the square
+    /// negative.
     ///
-    /// Let `e` be the difference between the projected values and the solution of the problem in which all active
-    /// unknowns keep their values. It satisfies `||e||_A^2 <= r . inv(A_II) r`, with the residual `r` on the inactive
-    /// unknowns `I`; the right-hand side is the energy of one more correction. An active unknown is strongly active if
-    /// its multiplier exceeds `sqrt(d_i) ||e||_A`: the multiplier then has the right sign in the solution of that
-    /// problem too. If all active unknowns are strongly active, that solution is the solution of the inequality. For an
-    /// assembled matrix the bound is proven but for rounding in the factors. For a penalised matrix the energy is that
-    /// of a correction of values and jump multipliers together, in which the rounding of single values has no weight.
+    /// The norm is the root of the energy of one more correction. For an assembled matrix the bound is proven but for
+    /// rounding in the factors. For a penalised matrix the energy is that of a correction of values and jump multipliers
+    /// together, in which the rounding of single values has no weight.
     pub fn error_bound(&self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
         if !self.inequality.symmetric {
             return None;
         }
         iterate.project_onto_bounds();
-        let error = self.correction_energy(iterate).filter(|&squared| squared >= 0.0)?.sqrt();
-        let is_strongly_active = |i: usize| {
-            let threshold = iterate.diagonal[i].sqrt() * error;
-            self.inequality.bounds[i].fixed_value().is_some()
-                || iterate.multiplier(i).is_none_or(|multiplier| multiplier > threshold)
-        };
-        let all_are_strongly_active = (0..iterate.states.len()).all(is_strongly_active);
-        all_are_strongly_active.then(|| error / iterate.energy_norm)
+        let squared = self.correction_energy(iterate)?;
+        let norm = (squared >= 0.0).then(|| squared.sqrt());
+        let Iterate { values, residual, diagonal, energy_norm, eliminated: present, .. } =
+            &*iterate;
+        let (inequality, energy_norm) = (self.inequality, *energy_norm);
+        let values = AdmissibleValues { inequality, values, residual, diagonal, energy_norm };
+        // the factors are those of the inactive unknowns
+        let has_factors = |eliminated: &[bool]| eliminated == present;
+        algebraic_bound(&values, 0.0, |eliminated, _| Ok(norm.filter(|_| has_factors(eliminated))))
+            .unwrap_or(None)
     }
 
     /// The energy of one more correction, which is not applied; `None` without factors. Computes the residual of the
@@ -214,7 +215,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
                 let is_inactive = iterate.eliminated.iter().map(|&e| !e).collect();
                 iterate.jump_multipliers.resize(penalised.n_jumps(), T::lit(0.0));
                 let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
-                system.solve(iterate, self.refinements)?;
+                system.solve(iterate)?;
             }
             _ => return Err(LinearFailure::Unsuitable),
         }
@@ -236,11 +237,6 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
             None => iterate.residual_term_magnitudes(i),
         }
     }
-
-    fn largest_value_near(&self, i: usize, iterate: &Iterate<'_, T>) -> f64 {
-        let value = |j: usize| iterate.values[j].to_f64();
-        self.condensation.as_ref().map_or(f64::INFINITY, |c| c.largest_value_near(i, value))
-    }
 }
 
 /// The system `K u + M^T p = c`, `M u - S^-1 p = g` of a [`PenalisedMatrix`], for values `u` of the
@@ -253,13 +249,12 @@ struct PenalisedSystem<'s, 'a, T> {
 }
 
 impl<T: Real> PenalisedSystem<'_, '_, T> {
-    /// Corrects values and jump multipliers together, at least `1 + refinements` times (but at most [`MAX_CORRECTIONS`]
-    /// times), until a correction is rounding or its largest change is more than half of the preceding one.
+    /// Corrects values and jump multipliers together, [`SOLUTIONS`] to [`MAX_CORRECTIONS`] times, until a correction is rounding or its largest change is more than half of the preceding one.
     ///
     /// # Errors
     /// [`FactorError::Singular`] if the energy of the last correction is not small: the matrix is then singular in the
     /// precision of the scalar.
-    fn solve(&self, iterate: &mut Iterate<'_, T>, refinements: usize) -> Result<(), FactorError> {
+    fn solve(&self, iterate: &mut Iterate<'_, T>) -> Result<(), FactorError> {
         let mut jump_residuals = vec![0.0; iterate.jump_multipliers.len()];
         let mut previous_change = f64::INFINITY;
         let mut is_singular = false;
@@ -274,7 +269,7 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
             is_singular = size.correction_energy.abs() > tolerance;
             // false for numbers that are not finite
             let halves = size.max_change <= 0.5 * previous_change && !is_small;
-            if correction >= refinements && !halves {
+            if correction + 1 >= SOLUTIONS && !halves {
                 break;
             }
             previous_change = size.max_change;

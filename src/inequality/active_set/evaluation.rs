@@ -8,6 +8,9 @@ use crate::inequality::scales::Scales;
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
 
+/// The multiple of machine epsilon within which no unknown changes its state.
+const ROUNDING_BAND: f64 = 16.0;
+
 /// The violations of the KKT conditions, their scales, and the active set that they predict.
 #[derive(Default)]
 pub(crate) struct Evaluation {
@@ -59,9 +62,9 @@ impl<T: Real> Iterate<'_, T> {
     /// current.
     ///
     /// An inactive unknown that violates a bound becomes active, an active unknown whose multiplier has the wrong sign
-    /// becomes inactive, each only if the violation exceeds a tolerance proportional to `rounding_band`: see
+    /// becomes inactive, each only if the violation exceeds a tolerance proportional to [`ROUNDING_BAND`]: see
     /// [`ActiveSet`](super::ActiveSet).
-    pub fn evaluate(&mut self, rounding_band: f64, solver: &dyn LinearSolver<T>) -> Evaluation {
+    pub fn evaluate(&mut self, solver: &dyn LinearSolver<T>) -> Evaluation {
         let diagonal = |i: usize| self.diagonal[i];
         let Scales { max_norm, energy_norm } = Scales::of(
             self.inequality,
@@ -69,15 +72,14 @@ impl<T: Real> Iterate<'_, T> {
             &self.residual,
             &self.jump_multipliers,
             &diagonal,
-            1.0,
         );
         let mut evaluation = Evaluation { max_norm, energy_norm, ..Evaluation::default() };
-        let bound_tolerance = rounding_band * T::EPSILON * max_norm;
+        let bound_tolerance = ROUNDING_BAND * T::EPSILON * max_norm;
         let parts = map_chunks(self.values.len(), |range| {
             let mut part = Evaluation::default();
-            range.filter(|&i| self.inequality.owns(i)).for_each(|i| {
-                self.evaluate_at(i, bound_tolerance, rounding_band, solver, &mut part)
-            });
+            range
+                .filter(|&i| self.inequality.owns(i))
+                .for_each(|i| self.evaluate_at(i, bound_tolerance, solver, &mut part));
             part
         });
         for part in parts {
@@ -102,7 +104,6 @@ impl<T: Real> Iterate<'_, T> {
         &self,
         i: usize,
         bound_tolerance: f64,
-        rounding_band: f64,
         solver: &dyn LinearSolver<T>,
         evaluation: &mut Evaluation,
     ) {
@@ -134,7 +135,7 @@ impl<T: Real> Iterate<'_, T> {
             // the values of eliminated unknowns have no error, so that their terms are rounded in `f64` only
             let [inactive, eliminated] = solver.residual_term_magnitudes(i, self);
             let terms = T::EPSILON * inactive + f64::EPSILON * eliminated;
-            if wrong_multiplier > rounding_band * terms {
+            if wrong_multiplier > ROUNDING_BAND * terms {
                 evaluation.state_changes.push((i as u32, Contact::Inactive));
             }
         }
@@ -160,7 +161,7 @@ mod tests {
         let merit = |values: [f64; 3]| {
             let mut iterate = Iterate::new(&string, &values);
             iterate.compute_residual();
-            iterate.evaluate(16.0, &DirectSolver::new(&string, 1)).merit
+            iterate.evaluate(&DirectSolver::new(&string)).merit
         };
         assert_eq!(merit([-1.125, -1.25, -1.125]), 0.0);
         // the step of each point is -1/2, and its square has the weight 2

@@ -3,12 +3,16 @@
 use std::borrow::Cow;
 
 use super::contact_state::{prescribed_value, starting_states};
-use crate::algebra::{Bound, Contact, Inequality, any_part};
-use crate::inequality::certificate::positive_diagonal;
+use super::linear_solver::LinearSolver;
+use crate::algebra::{Contact, Inequality, any_part};
+use crate::inequality::certificate::{self, positive_diagonal};
 use crate::inequality::violations::certify_with_rounding;
-use crate::inequality::{Certificate, Outcome, Solution};
+use crate::inequality::{Outcome, Solution};
 use crate::parallel::vectors::{collect, sum_chunks};
 use crate::real::Real;
+
+/// The largest certificate that is attributed to rounding, divided by machine epsilon.
+const ROUNDING: f64 = 128.0;
 
 /// The values and contact states of a step, and the best values of all steps.
 pub(crate) struct Iterate<'a, T: Real> {
@@ -56,7 +60,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         let n = bounds.len();
         let value = |i: usize| if guess.len() == n { guess[i] } else { T::lit(0.0) };
         let values: Vec<T> = (0..n).map(|i| bounds[i].nearest(value(i))).collect();
-        let mut states = starting_states(bounds, &inequality.start);
+        let mut states = starting_states(inequality);
         let is_ghost = |&(i, _): &(usize, _)| !inequality.owns(i);
         let ghosts = states.iter_mut().enumerate().filter(is_ghost);
         ghosts.for_each(|(_, state)| *state = Contact::Inactive);
@@ -90,30 +94,6 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// Replaces values, jump multipliers and contact states.
     pub fn replace(&mut self, values: Vec<T>, jump_multipliers: Vec<T>, states: Vec<Contact>) {
         (self.values, self.jump_multipliers, self.states) = (values, jump_multipliers, states);
-        self.set_prescribed_values();
-    }
-
-    /// Makes every unknown with a bound active, at its lower bound if it has two; false if nothing
-    /// changed.
-    pub fn activate_all(&mut self) -> bool {
-        let active = |(i, bound): (usize, &Bound<T>)| match (bound.lower(), bound.upper()) {
-            _ if !self.inequality.owns(i) => Contact::Inactive,
-            (Some(_), _) => Contact::Lower,
-            (None, Some(_)) => Contact::Upper,
-            (None, None) => Contact::Inactive,
-        };
-        let states: Vec<Contact> = self.inequality.bounds.iter().enumerate().map(active).collect();
-        let is_changed = any_part(self.inequality.distribution(), states != self.states);
-        self.states = states;
-        self.set_prescribed_values();
-        is_changed
-    }
-
-    /// Sets all values that are not prescribed to zero, whether or not their bounds admit zero, and removes the jump
-    /// multipliers.
-    pub fn reset_values(&mut self) {
-        self.values.fill(T::lit(0.0));
-        self.jump_multipliers.clear();
         self.set_prescribed_values();
     }
 
@@ -188,26 +168,14 @@ impl<'a, T: Real> Iterate<'a, T> {
         is_changed
     }
 
-    /// The multiplier of an active unknown, not negative if its sign is right; `None` if the unknown is
-    /// inactive.
-    pub fn multiplier(&self, i: usize) -> Option<f64> {
-        match self.states[i] {
-            Contact::Inactive => None,
-            Contact::Lower => Some(-self.residual[i]),
-            Contact::Upper => Some(self.residual[i]),
-        }
-    }
-
-    /// Keeps the iterate as the best one if its merit is the smallest so far; returns whether it is.
-    pub fn keep_if_best(&mut self, merit: f64) -> bool {
-        let is_best = merit < self.best.merit;
-        if is_best {
+    /// Keeps the iterate as the best one if its merit is the smallest so far.
+    pub fn keep_if_best(&mut self, merit: f64) {
+        if merit < self.best.merit {
             self.best.merit = merit;
             self.best.values.copy_from_slice(&self.values);
             self.best.states.copy_from_slice(&self.states);
             self.best.jump_multipliers.clone_from(&self.jump_multipliers);
         }
-        is_best
     }
 
     /// Forgets the merit of the best iterate: the next one is the best.
@@ -215,9 +183,13 @@ impl<'a, T: Real> Iterate<'a, T> {
         self.best.merit = f64::INFINITY;
     }
 
-    /// Whether an iterate with a finite merit was kept since the start, or since the best one was forgotten.
-    pub fn has_best(&self) -> bool {
-        self.best.merit < f64::INFINITY
+    /// Makes the present iterate, which another method found, the best one, whatever the merit of those before.
+    pub fn set_best(&mut self, solver: &dyn LinearSolver<T>) {
+        let Self { inequality, values, jump_multipliers, residual, .. } = self;
+        certificate::residual(inequality, values, jump_multipliers, residual);
+        self.forget_best();
+        let merit = self.evaluate(solver).merit;
+        self.keep_if_best(merit);
     }
 
     /// The values and jump multipliers of the best iterate.
@@ -255,15 +227,34 @@ impl<'a, T: Real> Iterate<'a, T> {
         certify_with_rounding(self.inequality, &self.values, &self.jump_multipliers).0.largest()
     }
 
-    /// The certificate of the best iterate, and the factor by which large penalties amplify rounding in its residual:
-    /// no iterate has a certificate that is reliably below rounding times this factor.
-    pub fn best_certificate(&self) -> (Certificate, f64) {
+    /// The outcome of a solve that ended with `outcome`. After an iteration limit, a cycle, a stall or a singular
+    /// matrix it follows from the certificate of the best iterate: [`Outcome::Converged`] within its limit, and the best iterate then replaces
+    /// the present one; [`Outcome::Stalled`] within the rounding that large penalties amplify; else `outcome`, also if
+    /// there is no best iterate.
+    pub fn outcome_of_best(&mut self, outcome: Outcome) -> Outcome {
+        let is_without_solution = matches!(
+            outcome,
+            Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled | Outcome::Singular
+        );
+        if !is_without_solution || self.best.merit.is_infinite() {
+            return outcome;
+        }
         let (best, jump_multipliers) = self.best_values();
-        certify_with_rounding(self.inequality, best, jump_multipliers)
+        let (certificate, amplification) =
+            certify_with_rounding(self.inequality, best, jump_multipliers);
+        let rounding = ROUNDING * T::EPSILON * amplification.max(1.0);
+        match certificate.largest() {
+            largest if largest <= T::CERTIFICATE_LIMIT => {
+                self.restore_best();
+                Outcome::Converged
+            }
+            largest if largest <= rounding => Outcome::Stalled,
+            _ => outcome,
+        }
     }
 
     /// Replaces the iterate by the best one. The residual is then not current.
-    pub fn restore_best(&mut self) {
+    fn restore_best(&mut self) {
         let BestIterate { values, states, jump_multipliers, .. } = &self.best;
         let (values, jumps) = (values.clone(), jump_multipliers.clone());
         self.replace(values, jumps, states.clone());
@@ -273,7 +264,7 @@ impl<'a, T: Real> Iterate<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::{SparseMatrix, Start};
+    use crate::algebra::{Bound, SparseMatrix, Start};
 
     /// A solve that ends before its first evaluation returns values that fit its contact states.
     #[test]

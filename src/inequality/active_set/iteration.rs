@@ -3,17 +3,12 @@
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use super::local_inequality::solve_locally;
-use super::progress::{Obstruction, ProgressLimits, ProgressMonitor};
+use super::progress::ProgressMonitor;
 use super::settings::ActiveSet;
-use crate::algebra::{Bound, Inequality, any_part};
-use crate::inequality::violations::certify_with_rounding;
+use crate::algebra::{Bound, any_part};
 use crate::inequality::{Outcome, StepCounter};
 use crate::linear::direct::FactorError;
 use crate::real::Real;
-
-/// The largest certificate that is attributed to rounding, divided by `rounding_band` times machine
-/// epsilon.
-const CERTIFICATE_FACTOR: f64 = 8.0;
 
 /// Number of steps after which an iteration with few state changes calls [`solve_locally`]. WOPSIP with bounds at
 /// vertices on radial-3d at 32, whose last state changes move along the free boundary from cell to cell, then takes
@@ -23,16 +18,15 @@ const MANY_STEPS: usize = 8;
 /// Largest number of state changes, divided by the number of unknowns, that counts as few.
 const FEW_CHANGES_SHARE: f64 = 1.0 / 4000.0;
 
-/// Largest number of times that an iteration continues with the violations of [`Iterate::small_violations`].
-const MAX_CONTINUATIONS: usize = 8;
-
 /// How an iteration ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
     /// With this outcome.
     Outcome(Outcome),
     /// The iteration does not progress.
-    Obstruction(Obstruction),
+    Stagnation,
+    /// The matrix of the active set is singular, where that of another one need not be.
+    Singular,
     /// The linear solver does not fit the matrix.
     Unsuitable,
 }
@@ -62,7 +56,8 @@ pub(crate) struct Iteration<'s, 'i, 'a, T: Real> {
     pub settings: &'s ActiveSet,
     pub iterate: &'i mut Iterate<'a, T>,
     pub solver: &'i mut dyn LinearSolver<T>,
-    pub progress_limits: ProgressLimits,
+    /// Number of systems within which the number of state changes must halve; `None` for no limit.
+    pub limit: Option<usize>,
     /// Number of inequalities near unknowns whose states change that may still be solved; see [`solve_locally`].
     pub local_solves: usize,
     /// Whether the certificate must be small. The residual of a solution that is only the initial guess of another
@@ -75,69 +70,38 @@ pub(crate) struct Iteration<'s, 'i, 'a, T: Real> {
 impl<T: Real> Iteration<'_, '_, '_, T> {
     /// Iterates until the solution is found or the iteration does not progress.
     pub fn run(&mut self) -> End {
-        match self.iterate_to_end() {
+        match self.iterate_to_tolerance() {
             Ok(()) => End::Outcome(Outcome::Converged),
             Err(end) => end,
         }
-    }
-
-    /// Iterates to the tolerance, then continues with the unknowns of [`Iterate::small_violations`] active: they
-    /// violate a bound by less than the tolerance, but large penalties give such violations a large energy. The
-    /// solution before a continuation that does not converge is restored. `Ok` if the iteration converged.
-    fn iterate_to_end(&mut self) -> Result<(), End> {
-        self.iterate_to_tolerance()?;
-        let band = self.settings.rounding_band;
-        for _ in 0..MAX_CONTINUATIONS {
-            let violations = self.iterate.small_violations(band, &*self.solver);
-            if violations.is_empty() {
-                break;
-            }
-            let Iterate { values, jump_multipliers, states, .. } = &*self.iterate;
-            let (values, jumps, states) =
-                (values.clone(), jump_multipliers.clone(), states.clone());
-            self.iterate.change_states(&violations);
-            let halving = &mut self.progress_limits.halving;
-            *halving = halving.or(Some(self.settings.stagnation_steps));
-            if self.iterate_to_tolerance().is_err() {
-                self.iterate.replace(values, jumps, states);
-                self.solver.set_eliminated(&self.iterate.eliminated)?;
-                break;
-            }
-        }
-        Ok(())
     }
 
     /// Iterates from the present states until the active set predicts itself or all violations are within the tolerance
     /// of the linear solver, and the certificate is small.
     fn iterate_to_tolerance(&mut self) -> Result<(), End> {
         let tolerance = self.solver.tolerance();
-        let band = self.settings.rounding_band;
         if tolerance > 0.0 {
             // the tolerance is relative to the energy norm
             self.iterate.compute_residual();
-            self.iterate.evaluate(band, &*self.solver);
+            self.iterate.evaluate(&*self.solver);
         }
         let inequality = self.iterate.inequality;
         let distribution = inequality.distribution();
         let has_bounds = inequality.bounds.iter().any(Bound::is_inequality);
         let is_linear = !any_part(distribution, has_bounds);
-        let progress_limits = self.progress_limits;
-        let new_progress = || ProgressMonitor::new(progress_limits, is_linear, distribution);
+        let limit = self.limit;
+        let new_progress = || ProgressMonitor::new(limit, is_linear, distribution);
         let mut progress = new_progress();
         let mut has_new_states = true;
         // the unknowns whose states have changed since the number of changes last halved
         let mut recently_changed: Vec<u32> = Vec::new();
         loop {
-            if !self.solve_system(has_new_states, progress.accuracy())? {
-                progress = new_progress();
-                has_new_states = true;
-                continue;
-            }
-            let evaluation = self.iterate.evaluate(band, &*self.solver);
+            self.solve_system(has_new_states, progress.accuracy())?;
+            let evaluation = self.iterate.evaluate(&*self.solver);
             if !evaluation.is_finite() {
                 return Err(Outcome::NotFinite.into());
             }
-            let is_best = self.iterate.keep_if_best(evaluation.merit);
+            self.iterate.keep_if_best(evaluation.merit);
             let is_accurate = self.solver.is_accurate(evaluation.energy_norm);
             let changes = &evaluation.state_changes;
             has_new_states = evaluation.n_changes > 0;
@@ -157,27 +121,21 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                     return Err(self.end_by_rounding());
                 }
             }
-            let recorded =
-                progress.record_solution(changes, &self.iterate.states, is_best, is_accurate);
+            let progresses = progress.record_solution(changes, &self.iterate.states, is_accurate);
             if progress.has_halved() {
                 recently_changed.clear();
             }
             recently_changed.extend(changes.iter().map(|change| change.0));
             let is_slow = progress.steps() > MANY_STEPS
                 && changes.len() as f64 <= FEW_CHANGES_SHARE * self.iterate.values.len() as f64;
-            if (recorded.is_err() || is_slow) && self.try_local_solve(&recently_changed) {
+            if (!progresses || is_slow) && self.try_local_solve(&recently_changed) {
                 progress = new_progress();
                 recently_changed.clear();
                 has_new_states = true;
                 continue;
             }
-            recorded.map_err(End::Obstruction)?;
-            // in the last stage, states may change without end at the limit of rounding
-            if !progress_limits.limits_improvement()
-                && progress.steps_without_improvement() > self.settings.improvement_steps
-                && QualityOfBest::of(self.iterate, band).is_admissible_solution()
-            {
-                return Err(Outcome::Stalled.into());
+            if !progresses {
+                return Err(End::Stagnation);
             }
             self.iterate.change_states(changes);
         }
@@ -193,9 +151,8 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
     }
 
     /// Solves the linear system of the present active set; `has_new_states` if the linear solver is not yet prepared
-    /// for this active set. `Ok(false)` if the first matrix of a solve is singular and every bound has been made active
-    /// instead.
-    fn solve_system(&mut self, has_new_states: bool, accuracy: Accuracy) -> Result<bool, End> {
+    /// for this active set.
+    fn solve_system(&mut self, has_new_states: bool, accuracy: Accuracy) -> Result<(), End> {
         if has_new_states {
             if self.iterate.outer >= self.settings.max_outer {
                 return Err(Outcome::IterationLimit.into());
@@ -207,46 +164,15 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             true => self.solver.set_eliminated(&self.iterate.eliminated),
             false => Ok(()),
         };
-        let mut corrected = is_prepared.and_then(|()| self.solver.correct(self.iterate, accuracy));
-        if let Err(LinearFailure::Factors(FactorError::Singular)) = corrected
-            && is_prepared.is_ok()
-        {
-            // an earlier matrix, singular but for rounding, may have left values so large that
-            // corrections by this one have no correct digit
-            self.iterate.reset_values();
-            corrected = self.solver.correct(self.iterate, accuracy);
-        }
-        let is_definite = self.iterate.inequality.is_definite;
-        if is_definite && corrected == Err(LinearFailure::Factors(FactorError::NotPositive)) {
-            // a definite matrix has a negative pivot by rounding only
-            corrected = Err(LinearFailure::Factors(FactorError::Singular));
-        }
-        match corrected {
-            Ok(()) => Ok(true),
-            Err(LinearFailure::Factors(FactorError::Singular)) if self.iterate.outer == 1 => {
-                if self.settings.check_definite && !is_definite {
-                    Err(Outcome::NotCoercive.into())
-                } else if self.iterate.activate_all() {
-                    Ok(false)
-                } else {
-                    Err(Outcome::Singular.into())
-                }
+        let corrected = is_prepared.and_then(|()| self.solver.correct(self.iterate, accuracy));
+        corrected.map_err(|failure| match failure {
+            // the whole matrix has been checked: a negative pivot is one of rounding; bounds alone hold a part of the domain, and no unknown is active there, or large penalties make the matrix
+            // of an arbitrary active set singular but for rounding
+            LinearFailure::Factors(FactorError::Singular | FactorError::NotPositive) => {
+                End::Singular
             }
-            // bounds alone hold a part of the domain, and no unknown is active there; or large penalties make the
-            // matrix of an arbitrary active set singular but for rounding
-            Err(LinearFailure::Factors(FactorError::Singular))
-                if self.progress_limits.halving.is_some() && self.may_have_regular_successor() =>
-            {
-                Err(End::Obstruction(Obstruction::Stagnation))
-            }
-            Err(failure) => Err(failure.into()),
-        }
-    }
-
-    /// Whether the matrix of another active set may be regular although that of the present one is singular.
-    fn may_have_regular_successor(&self) -> bool {
-        let Inequality { kernel, penalised, is_definite, .. } = self.iterate.inequality;
-        !kernel.is_empty() || (*is_definite && penalised.is_some())
+            failure => failure.into(),
+        })
     }
 
     /// The end of an iteration whose certificate remains too large because of rounding. [`End::Unsuitable`] after a
@@ -260,75 +186,8 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         }
     }
 
-    /// Whether the certificate of the iterate is as small as rounding and the tolerance of the linear
-    /// solver allow.
+    /// Whether the certificate of the iterate is within its limit.
     fn has_small_certificate(&self) -> bool {
-        let Iterate { inequality, values, jump_multipliers, .. } = &*self.iterate;
-        let (certificate, amplification) =
-            certify_with_rounding(inequality, values, jump_multipliers);
-        if self.solver.tolerance() > 0.0 {
-            return certificate.largest() <= T::CERTIFICATE_LIMIT;
-        }
-        let rounding = CERTIFICATE_FACTOR * self.settings.rounding_band * T::EPSILON;
-        // large penalties amplify rounding; the limit of the certificate is respected nevertheless
-        let largest = (rounding * amplification.max(1.0)).min(T::CERTIFICATE_LIMIT);
-        certificate.feasibility <= rounding && certificate.largest() <= largest
-    }
-}
-
-/// The outcome of a solve that ended with `outcome`. After an iteration limit, a cycle or a stall it follows from the
-/// certificate of the best iterate:
-///
-/// * [`Outcome::Converged`], and the best iterate replaces the present one, if the certificate is within its limit and,
-///   unless `outcome` is [`Outcome::Stalled`], within rounding;
-/// * [`Outcome::Stalled`] if the certificate is within rounding, but above its limit;
-/// * else `outcome`, also if there is no best iterate.
-pub(crate) fn outcome_of_best<T: Real>(
-    iterate: &mut Iterate<'_, T>,
-    rounding_band: f64,
-    outcome: Outcome,
-) -> Outcome {
-    let is_without_solution =
-        matches!(outcome, Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled);
-    if !is_without_solution || !iterate.has_best() {
-        return outcome;
-    }
-    let quality = QualityOfBest::of(iterate, rounding_band);
-    // factors stall if the certificate is above rounding; within its limit it is that of a solution nevertheless
-    if quality.is_solution() || (quality.is_within_limit && outcome == Outcome::Stalled) {
-        iterate.restore_best();
-        Outcome::Converged
-    } else if quality.is_within_rounding {
-        Outcome::Stalled
-    } else {
-        outcome
-    }
-}
-
-/// How well the best iterate satisfies the complementarity conditions.
-struct QualityOfBest {
-    /// Whether violations of bounds are within the rounding of values.
-    is_admissible: bool,
-    /// Whether the certificate is within rounding, amplified by large penalties.
-    is_within_rounding: bool,
-    /// Whether the certificate is within its limit.
-    is_within_limit: bool,
-}
-
-impl QualityOfBest {
-    fn of<T: Real>(iterate: &Iterate<'_, T>, rounding_band: f64) -> Self {
-        let (certificate, amplification) = iterate.best_certificate();
-        let rounding = CERTIFICATE_FACTOR * rounding_band * T::EPSILON;
-        Self {
-            is_admissible: certificate.feasibility <= rounding,
-            is_within_rounding: certificate.largest() <= rounding * amplification.max(1.0),
-            is_within_limit: certificate.largest() <= T::CERTIFICATE_LIMIT,
-        }
-    }
-    fn is_solution(&self) -> bool {
-        self.is_within_rounding && self.is_within_limit
-    }
-    fn is_admissible_solution(&self) -> bool {
-        self.is_admissible && self.is_solution()
+        self.iterate.certificate() <= T::CERTIFICATE_LIMIT
     }
 }

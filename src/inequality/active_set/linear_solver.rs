@@ -72,10 +72,4 @@ pub(crate) trait LinearSolver<T: Real>: Sync {
     /// Sums of the absolute values of the terms of the residual of unknown `i`: terms of inactive unknowns and jump
     /// multipliers, then terms of eliminated unknowns and of the load.
     fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2];
-    /// The largest absolute value of the unknowns coupled with the inactive unknown `i`, if the rounding error of its
-    /// value is of the size of the rounding of these values; infinite if the solver does not solve that accurately.
-    fn largest_value_near(&self, i: usize, iterate: &Iterate<'_, T>) -> f64 {
-        let _ = (i, iterate);
-        f64::INFINITY
-    }
 }

@@ -2,15 +2,16 @@
 
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
-use crate::algebra::{Inequality, SparseMatrix};
+use crate::algebra::{Inequality, SparseMatrix, any_part, sum_over_parts};
 use crate::inequality::Outcome;
-use crate::inequality::validation::diagnose_loss_of_positivity;
+use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
 use crate::linear::krylov::{
-    KrylovMethod, KrylovRun, Product, StopReason, StoppingRule, eigenvalue_run,
+    EIGENVALUE_TO_RITZ_VALUE, KrylovMethod, KrylovRun, Product, StopReason, StoppingRule,
+    eigenvalue_run,
 };
-use crate::parallel::vectors::{for_each_chunk, zeros};
+use crate::parallel::vectors::{dot, for_each_chunk, zeros};
 use crate::real::Real;
 
 /// Estimated condition number of the preconditioned matrix (largest Ritz value divided by the smallest) above which the
@@ -32,19 +33,18 @@ pub(crate) struct PreconditionedSolver<'a, T: Real> {
     inequality: &'a Inequality<T>,
     /// The symmetric part of the matrix.
     symmetric_part: &'a SparseMatrix<T>,
-    pub(super) preconditioner: Box<dyn Preconditioner<T> + 'a>,
+    preconditioner: Box<dyn Preconditioner<T> + 'a>,
     krylov: KrylovMethod<'a, T>,
     /// The fixed unknowns for which the preconditioner is set up.
-    pub(super) eliminated: Vec<bool>,
+    eliminated: Vec<bool>,
     /// See [`LinearSolver::tolerance`].
     tolerance: f64,
-    /// Workspace: the residual that the Krylov method updates, zero on eliminated unknowns, or the unbalanced residual
-    /// of the bound on the algebraic error.
-    pub(super) residual: Vec<T>,
+    /// Workspace: the residual that the Krylov method updates, zero on eliminated unknowns.
+    residual: Vec<T>,
     /// Smallest Ritz value of all systems so far, at most one.
-    pub(super) smallest_ritz_value: f64,
+    smallest_ritz_value: f64,
     /// Preconditioned norm of the residual at the end of the last system.
-    pub(super) residual_norm: f64,
+    residual_norm: f64,
     /// Preconditioned norm of the residual at which the last system would have been solved with [`Accuracy::Full`].
     full_accuracy_norm: f64,
 }
@@ -99,11 +99,53 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
     }
 
     /// The failure after a run or the preconditioner found the symmetric part of the matrix not to be positive
-    /// definite. For a matrix that is not symmetric the stage with factors would not find the reason: LU factors do not
-    /// detect an indefinite symmetric part.
+    /// definite. The check before the solve has factored a matrix that is not distributed: rounding is the reason.
     fn loss_of_positivity(&self) -> LinearFailure {
-        diagnose_loss_of_positivity(self.inequality)
-            .map_or(LinearFailure::Unsuitable, LinearFailure::Outcome)
+        match self.inequality.distribution {
+            Some(_) => LinearFailure::Outcome(Outcome::NotCoercive),
+            None => LinearFailure::Unsuitable,
+        }
+    }
+
+    /// Projects the values onto their bounds and returns the bound on their error ([`algebraic_bound`]). `None` if the
+    /// preconditioner cannot be set up for the unknowns on which the error may be nonzero, or rounding makes the square
+    /// of the bound negative.
+    ///
+    /// *Proven:* `inv(S) <= B / lambda_min(B S)` for the preconditioner `B` on the same unknowns. *Estimated:*
+    /// `lambda_min(B S)` by [`EIGENVALUE_TO_RITZ_VALUE`] times the smallest Ritz value. The Ritz values come from
+    /// systems on the inactive unknowns, while the bound uses all unknowns that are neither fixed nor strongly active,
+    /// a larger set with a smaller eigenvalue at most: that the factor covers this difference too is assumed.
+    ///
+    /// Changes the fixed unknowns of the preconditioner, which must be set again before the next linear system.
+    ///
+    /// # Errors
+    /// [`Outcome::NotCoercive`] if the preconditioner finds a distributed matrix not to be positive definite.
+    pub fn error_bound(&mut self, iterate: &mut Iterate<'_, T>) -> Result<Option<f64>, Outcome> {
+        if iterate.project_onto_bounds() {
+            iterate.compute_residual();
+        }
+        let Self { inequality, preconditioner, eliminated: present, .. } = self;
+        let Iterate { values, residual, diagonal, energy_norm, .. } = &*iterate;
+        let (inequality, energy_norm) = (*inequality, *energy_norm);
+        let values = AdmissibleValues { inequality, values, residual, diagonal, energy_norm };
+        let distribution = inequality.distribution();
+        let sqrt_eigenvalue = (EIGENVALUE_TO_RITZ_VALUE * self.smallest_ritz_value).sqrt();
+        let threshold = 4.0 * self.residual_norm / sqrt_eigenvalue;
+        algebraic_bound(&values, threshold, |eliminated, unbalanced| {
+            if any_part(distribution, eliminated != *present) {
+                match preconditioner.set_fixed(eliminated) {
+                    Ok(()) => present.copy_from_slice(eliminated),
+                    Err(FactorError::NotPositive) if distribution.is_some() => {
+                        return Err(Outcome::NotCoercive);
+                    }
+                    Err(_) => return Ok(None),
+                }
+            }
+            let mut preconditioned = zeros(unbalanced.len());
+            preconditioner.apply(unbalanced, &mut preconditioned);
+            let squared = sum_over_parts(distribution, dot(unbalanced, &mut preconditioned));
+            Ok((squared >= 0.0).then(|| squared.sqrt() / sqrt_eigenvalue))
+        })
     }
 
     /// Estimates the smallest eigenvalue of the preconditioned symmetric part of a matrix that is not

@@ -11,37 +11,15 @@ const MIN_CHANGES_FOR_REDUCED_ACCURACY: usize = 16;
 /// large.
 const MAX_REPEATS: usize = 3;
 
-/// Why an active set iteration does not continue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Obstruction {
-    /// The active set has occurred before, and its system was solved accurately.
-    Cycle,
-    /// The number of state changes has not halved, or the merit has not decreased, for too long.
-    Stagnation,
-}
-
-/// The numbers of steps within which an iteration must progress.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ProgressLimits {
-    /// Number of systems within which the number of state changes must halve; `None` for no limit.
-    pub halving: Option<usize>,
-    /// Number of systems within which the merit must decrease.
-    pub improvement: usize,
-}
-
-impl ProgressLimits {
-    /// No limits: for a stage that no other one follows.
-    pub const UNLIMITED: Self = Self { halving: None, improvement: usize::MAX };
-
-    /// Whether the number of systems within which the merit must decrease is limited.
-    pub fn limits_improvement(self) -> bool {
-        self.improvement < usize::MAX
-    }
-}
+/// Number of systems with state changes within which their number must halve. Active sets that settle halve it with
+/// every system or two; where it does not halve within four, the changes wander among unknowns whose gap and multiplier
+/// both vanish, or return in turn, and the methods that follow cost less than more systems.
+pub(crate) const SYSTEMS_WITHOUT_HALVING: usize = 4;
 
 /// The progress of an iteration.
 pub(crate) struct ProgressMonitor<'d> {
-    limits: ProgressLimits,
+    /// Number of systems within which the number of state changes must halve; `None` for no limit.
+    limit: Option<usize>,
     /// The other parts of the mesh, if the states are those of one part.
     distribution: Option<&'d dyn Distribution>,
     /// The fingerprint of the present active set, less that of the first; see [`FingerprintChange`].
@@ -50,10 +28,6 @@ pub(crate) struct ProgressMonitor<'d> {
     seen: Vec<(u128, bool)>,
     /// Whether the next system is solved accurately.
     next_is_accurate: bool,
-    /// Whether all following systems are solved accurately.
-    all_are_accurate: bool,
-    /// The number of systems since the smallest merit, or since all are solved accurately.
-    steps_without_improvement: usize,
     /// The number of accurate solutions whose certificate was too large.
     repeats: usize,
     /// The number of state changes when it last halved.
@@ -66,18 +40,16 @@ impl<'d> ProgressMonitor<'d> {
     /// The progress before the first system, which is solved accurately if the problem is linear: no unknown has an
     /// inequality as bound.
     pub fn new(
-        limits: ProgressLimits,
+        limit: Option<usize>,
         is_linear: bool,
         distribution: Option<&'d dyn Distribution>,
     ) -> Self {
         Self {
-            limits,
+            limit,
             distribution,
             fingerprint: 0,
             seen: Vec::new(),
             next_is_accurate: is_linear,
-            all_are_accurate: false,
-            steps_without_improvement: 0,
             repeats: 0,
             fewest_changes: usize::MAX,
             steps_without_halving: 0,
@@ -86,7 +58,7 @@ impl<'d> ProgressMonitor<'d> {
 
     /// How accurately the next system is solved.
     pub fn accuracy(&self) -> Accuracy {
-        match self.next_is_accurate || self.all_are_accurate {
+        match self.next_is_accurate {
             true => Accuracy::Full,
             false => Accuracy::Reduced,
         }
@@ -100,51 +72,31 @@ impl<'d> ProgressMonitor<'d> {
     }
 
     /// Records a solution of a linear system: the state changes that follow from it, the states `before` these changes,
-    /// whether its merit is the smallest so far, and whether it is accurate to the tolerance of the linear solver.
-    ///
-    /// # Errors
-    /// [`Obstruction`] if the iteration does not progress.
+    /// and whether it is accurate to the tolerance of the linear solver. Returns whether the iteration progresses: the
+    /// next active set is none of an accurate solution before, and the number of changes has halved within the limit.
     pub fn record_solution(
         &mut self,
         changes: &[(u32, Contact)],
         before: &[Contact],
-        is_best: bool,
         is_accurate: bool,
-    ) -> Result<(), Obstruction> {
+    ) -> bool {
         let own = FingerprintChange::of_changes(changes, before, self.distribution);
         let FingerprintChange { fingerprint, count } = own.over_parts(self.distribution);
         self.next_is_accurate = count < MIN_CHANGES_FOR_REDUCED_ACCURACY;
         if count == 0 {
-            return Ok(());
+            return true;
         }
         match self.record_active_set(fingerprint, is_accurate) {
-            Some(true) => return Err(Obstruction::Cycle),
+            Some(true) => return false,
             Some(false) => self.next_is_accurate = true,
             None => {}
         }
-        if self.has_stagnated(count) {
-            return Err(Obstruction::Stagnation);
-        }
-        self.steps_without_improvement =
-            if is_best { 0 } else { self.steps_without_improvement + 1 };
-        if self.steps_without_improvement > self.limits.improvement {
-            if self.all_are_accurate || is_accurate {
-                return Err(Obstruction::Stagnation);
-            }
-            // the reduced accuracy of the solutions may be the cause
-            (self.all_are_accurate, self.steps_without_improvement) = (true, 0);
-        }
-        Ok(())
+        !self.has_stagnated(count)
     }
 
     /// The number of active sets so far.
     pub fn steps(&self) -> usize {
         self.seen.len()
-    }
-
-    /// The number of systems since the smallest merit of this iteration, or since all are solved accurately.
-    pub fn steps_without_improvement(&self) -> usize {
-        self.steps_without_improvement
     }
 
     /// Whether the number of state changes has halved with the last solution.
@@ -159,7 +111,7 @@ impl<'d> ProgressMonitor<'d> {
         } else {
             self.steps_without_halving += 1;
         }
-        self.limits.halving.is_some_and(|steps| self.steps_without_halving >= steps)
+        self.limit.is_some_and(|limit| self.steps_without_halving >= limit)
     }
 
     /// Records the present active set and adds `change` to the fingerprint, which gives the next active set. `None` if
@@ -240,16 +192,15 @@ fn scramble(key: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// The number of accurate solutions, each with another unknown in contact, before stagnation.
-    fn steps(improvement: usize, is_best: bool) -> usize {
+    /// The number of accurate solutions, each with another unknown in contact, before the iteration does not progress.
+    fn steps(limit: Option<usize>) -> usize {
         let mut states = vec![Contact::Inactive; 20];
-        let mut progress =
-            ProgressMonitor::new(ProgressLimits { halving: None, improvement }, false, None);
+        let mut progress = ProgressMonitor::new(limit, false, None);
         let mut continues = |i: &usize| {
             let change = [(*i as u32, Contact::Lower)];
-            let recorded = progress.record_solution(&change, &states, is_best, true);
+            let progresses = progress.record_solution(&change, &states, true);
             states[*i] = Contact::Lower;
-            recorded != Err(Obstruction::Stagnation)
+            progresses
         };
         (0..20).take_while(|i| continues(i)).count()
     }
@@ -264,9 +215,8 @@ mod tests {
     }
 
     #[test]
-    fn an_iteration_without_better_iterates_stagnates() {
-        assert_eq!(steps(3, false), 3);
-        assert_eq!(steps(7, false), 7);
-        assert_eq!(steps(3, true), 20);
+    fn changes_that_do_not_halve_stagnate() {
+        assert_eq!(steps(Some(4)), 4);
+        assert_eq!(steps(None), 20);
     }
 }

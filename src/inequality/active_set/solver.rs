@@ -1,9 +1,8 @@
 //! The active set method as a solver of inequalities, with the preconditioners of this library or with
 //! others.
 
+use super::ladder::{CROSSOVER, solve};
 use super::settings::ActiveSet;
-use super::solve::solve;
-use super::strategy::CROSSOVER;
 use crate::algebra::Inequality;
 use crate::inequality::recession::solve_with_kernel;
 use crate::inequality::{InequalitySolver, InitialGuess, Solution};
@@ -29,7 +28,7 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-        solve_by_stages(self, inequality, guess, &BuiltInPreconditioners)
+        solve_with(self, inequality, guess, &BuiltInPreconditioners)
     }
 
     fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
@@ -58,7 +57,7 @@ impl<T: Real, P: PreconditionerFamily<T>> InequalitySolver<T> for Preconditioned
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-        solve_by_stages(&self.settings, inequality, guess, &self.family)
+        solve_with(&self.settings, inequality, guess, &self.family)
     }
 
     fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
@@ -66,7 +65,7 @@ impl<T: Real, P: PreconditionerFamily<T>> InequalitySolver<T> for Preconditioned
     }
 }
 
-fn solve_by_stages<T: Real>(
+fn solve_with<T: Real>(
     settings: &ActiveSet,
     inequality: &Inequality<T>,
     guess: &InitialGuess<T>,

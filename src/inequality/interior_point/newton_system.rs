@@ -7,7 +7,7 @@ use crate::linear::direct::{FactorError, Factors, SymbolicFactor};
 use crate::real::Real;
 
 /// A vector of the mixed system: entries for the unknowns, and for the jump multipliers if these are unknowns of the
-/// system (else empty). The values of a point are differences from the reference of the [`NewtonSystem`].
+/// system (else empty).
 #[derive(Clone, Debug)]
 pub(crate) struct MixedVector {
     pub values: Vec<f64>,
@@ -20,12 +20,6 @@ pub(crate) struct MixedVector {
 pub(crate) struct NewtonSystem<'h, 'a, T> {
     inequality: &'a Inequality<T>,
     condensation: Option<&'h StaticCondensation<'a, T>>,
-    /// The values that are subtracted from those of a point; zeros before [`NewtonSystem::with_reference`].
-    reference: Vec<f64>,
-    /// `K` times the reference; empty before [`NewtonSystem::with_reference`].
-    reference_stiffness: Vec<f64>,
-    /// `g - M u` for the reference `u`; empty if jump multipliers are no unknowns.
-    reference_data: Vec<f64>,
     /// The unknowns that are not fixed, ascending.
     free: Vec<u32>,
     /// Whether an unknown is not fixed.
@@ -67,40 +61,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         let free = inequality.free_unknowns();
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
-        let penalised = inequality.penalised.as_ref().filter(|_| condensation.is_some());
-        let data = penalised.map(|p| p.jump_data.iter().map(|g| g.to_f64()).collect());
-        Self {
-            inequality,
-            condensation,
-            reference: vec![0.0; inequality.size()],
-            reference_stiffness: Vec::new(),
-            reference_data: data.unwrap_or_default(),
-            free,
-            is_free,
-            lower_triangle: None,
-        }
-    }
-
-    /// Sets the reference; no change if jump multipliers are no unknowns.
-    ///
-    /// A slack that is inversely proportional to a large penalty is far below the rounding of the value. If the
-    /// reference consists of bounds, the values of a point are slacks, and jumps of slacks are as accurate as the
-    /// slacks.
-    #[must_use]
-    pub fn with_reference(mut self, reference: Vec<f64>) -> Self {
-        let Some(penalised) = self.penalised() else { return self };
-        let value = |i: usize| reference[i];
-        let stiffness = (0..reference.len()).map(|i| penalised.stiffness(i, value)).collect();
-        let data = |jump| penalised.jump_residual(jump, value, 0.0);
-        let data = (0..penalised.n_jumps()).map(data).collect();
-        (self.reference_stiffness, self.reference_data) = (stiffness, data);
-        self.reference = reference;
-        self
-    }
-
-    /// The reference value of unknown `i`.
-    pub fn reference(&self, i: usize) -> f64 {
-        self.reference[i]
+        Self { inequality, condensation, free, is_free, lower_triangle: None }
     }
 
     /// The penalised matrix, if jump multipliers are unknowns.
@@ -108,14 +69,13 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         self.inequality.penalised.as_ref().filter(|_| self.condensation.is_some())
     }
 
-    /// See [`StaticCondensation::has_null_directions`]; false without a condensation.
-    pub fn has_null_directions(&self) -> bool {
-        self.condensation.is_some_and(|c| c.has_null_directions())
-    }
-
-    /// The unknowns that are not fixed.
-    pub fn free(&self) -> &[u32] {
-        &self.free
+    /// Zeros for all unknowns, and for the jump multipliers if these are unknowns.
+    pub fn zeros(&self) -> MixedVector {
+        let n_jumps = self.penalised().map_or(0, |penalised| penalised.n_jumps());
+        MixedVector {
+            values: vec![0.0; self.inequality.size()],
+            jump_multipliers: vec![0.0; n_jumps],
+        }
     }
 
     /// A positive scale for unknown `i`: the diagonal entry of the stiffness `K` without penalties
@@ -173,41 +133,36 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         }
     }
 
-    /// Computes the residual `b - A u`; if jump multipliers `p` are unknowns, `c - K u - M^T p` and `g - M u + p / s`
-    /// in the notation of [`PenalisedMatrix`], `s` the weight of a jump.
-    ///
-    /// Returns a positive energy scale for the sum of all complementarity products: `sum |u_i b_i| + sum b_i^2 / d_i`
-    /// with the diagonal scales `d`; if jump multipliers are unknowns, `sum c_i^2 / d_i` plus
-    /// [`PenalisedMatrix::energy`]; one if all terms are zero.
-    pub fn residual(&self, point: &MixedVector, residual: &mut MixedVector) -> f64 {
-        let load = &self.inequality.load;
+    /// The residual `b - A u`; if jump multipliers `p` are unknowns, `c - K u - M^T p` and `g - M u + p / s` in the
+    /// notation of [`PenalisedMatrix`], `s` the weight of a jump.
+    pub fn residual(&self, point: &MixedVector) -> MixedVector {
+        let mut residual = self.zeros();
         let value = |i: usize| point.values[i];
-        let energy = match self.penalised() {
-            Some(penalised) => {
-                let multiplier = |jump: usize| point.jump_multipliers[jump];
-                let out = &mut residual.values;
-                penalised.residual_with_jump_multipliers(load, value, multiplier, out);
-                for (r, stiffness) in residual.values.iter_mut().zip(&self.reference_stiffness) {
-                    *r -= stiffness;
-                }
-                for (jump, out) in residual.jump_multipliers.iter_mut().enumerate() {
-                    let weight = penalised.weights[jump].to_f64();
-                    let data = self.reference_data[jump] - penalised.jump(jump, value);
-                    *out = data + multiplier(jump) / weight;
-                }
-                let value = |i: usize| self.reference[i] + point.values[i];
-                penalised.energy(load, value, multiplier)
-            }
+        let Some(penalised) = self.penalised() else {
+            self.inequality.residual_of(&value, &mut residual.values);
+            return residual;
+        };
+        let multiplier = |jump: usize| point.jump_multipliers[jump];
+        let out = &mut residual.values;
+        penalised.residual_with_jump_multipliers(&self.inequality.load, value, multiplier, out);
+        for (jump, out) in residual.jump_multipliers.iter_mut().enumerate() {
+            *out = penalised.jump_residual(jump, value, multiplier(jump));
+        }
+        residual
+    }
+
+    /// The energy `w . K w` of a change of the values by `w`, without penalties where jump multipliers are unknowns.
+    pub fn stiffness_energy(&self, w: &[f64]) -> f64 {
+        let value = |i: usize| w[i];
+        let image = |i: usize| match self.penalised() {
+            Some(penalised) => penalised.stiffness(i, value),
             None => {
-                self.inequality.residual_of(&value, &mut residual.values);
-                let terms = point.values.iter().zip(load);
-                terms.map(|(x, b)| (x * b.to_f64()).abs()).sum()
+                let (columns, entries) = self.inequality.matrix.row(i);
+                let terms = columns.iter().zip(entries);
+                terms.map(|(&j, a)| a.to_f64() * value(j as usize)).sum()
             }
         };
-        let loads = load.iter().enumerate();
-        let of_load: f64 = loads.map(|(i, b)| b.to_f64().powi(2) / self.diagonal_scale(i)).sum();
-        // a scale that is not a number is returned as such
-        if energy + of_load <= 0.0 { 1.0 } else { energy + of_load }
+        (0..w.len()).filter(|&i| w[i] != 0.0).map(|i| w[i] * image(i)).sum()
     }
 }
 

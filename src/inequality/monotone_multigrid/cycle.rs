@@ -7,11 +7,13 @@ use crate::inequality::Outcome;
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::scales::Scales;
-use crate::inequality::validation::diagnose_loss_of_positivity;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
 use crate::parallel::vectors::{for_each_chunk, map_chunks};
 use crate::real::Real;
+
+/// Sweeps of projected Gauss-Seidel before each linear correction.
+const SWEEPS: usize = 2;
 
 /// The iterate of monotone multigrid, whose values are admissible, with the vectors of a cycle.
 pub(super) struct MultigridIterate<'a, T: Real> {
@@ -36,9 +38,6 @@ pub(super) struct MultigridIterate<'a, T: Real> {
     /// The energy norm of the values before the last correction; see [`Scales::energy_norm`].
     pub energy_norm: f64,
     pub cycles: usize,
-    /// Whether the matrix is known to be positive definite: as stated by the inequality, or shown by factors after a
-    /// direction that was not positive.
-    is_definite: bool,
     /// See [`Solution::algebraic_bound`](crate::inequality::Solution::algebraic_bound).
     pub algebraic_bound: Option<f64>,
 }
@@ -65,7 +64,6 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             full_residual: vec![0.0; n],
             energy_norm: 0.0,
             cycles: 0,
-            is_definite: inequality.is_definite,
             algebraic_bound: None,
         }
     }
@@ -74,16 +72,12 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     ///
     /// # Errors
     /// [`Outcome::NotFinite`], and the outcomes of a sweep and of the correction that cannot be computed.
-    pub fn cycle(
-        &mut self,
-        sweeps: usize,
-        preconditioner: &mut dyn Preconditioner<T>,
-    ) -> Result<f64, Outcome> {
+    pub fn cycle(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Result<f64, Outcome> {
         self.cycles += 1;
         // the bound is that of the values before this cycle
         self.algebraic_bound = None;
         let mut squared_change = 0.0;
-        for _ in 0..sweeps {
+        for _ in 0..SWEEPS {
             squared_change += self.gauss_seidel_sweep()?;
         }
         let squared_correction = self.correct(preconditioner)?;
@@ -122,7 +116,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     /// correction is no direction of descent or has no positive curvature.
     ///
     /// # Errors
-    /// The outcome if the matrix is not positive definite or has no factors for another reason.
+    /// The outcome if the coarsest matrix has no factors.
     fn correct(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Result<f64, Outcome> {
         let Inequality { matrix, bounds, .. } = self.inequality;
         self.eliminate_active();
@@ -136,10 +130,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                 Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
                     return Ok(0.0);
                 }
-                // a definite matrix has a negative pivot by rounding only
-                Err(FactorError::NotPositive) => {
-                    return self.check_definite().and(Err(Outcome::Stalled));
-                }
+                // the whole matrix has been checked: a negative pivot is one of rounding
+                Err(FactorError::NotPositive) => return Err(Outcome::Stalled),
                 Err(error) => return Err(error.into()),
             }
         }
@@ -163,11 +155,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         });
         let (slope, curvature) =
             parts.iter().fold((0.0, 0.0), |(a, b), [slope, curvature]| (a + slope, b + curvature));
-        if slope <= 0.0 {
+        if slope <= 0.0 || curvature <= 0.0 {
             return Ok(0.0);
-        }
-        if curvature <= 0.0 {
-            return self.check_definite().and(Ok(0.0));
         }
         let length = T::lit((slope / curvature).min(self.ratio_test()));
         let correction = &self.correction;
@@ -177,19 +166,6 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             }
         });
         Ok(curvature * length.to_f64().powi(2))
-    }
-
-    /// Checks after a direction without positive curvature by factors that the matrix is positive definite, so that
-    /// rounding is the reason.
-    ///
-    /// # Errors
-    /// The outcome if the matrix is not positive definite, or if there are no factors.
-    fn check_definite(&mut self) -> Result<(), Outcome> {
-        if !self.is_definite {
-            diagnose_loss_of_positivity(self.inequality).map_or(Ok(()), Err)?;
-            self.is_definite = true;
-        }
-        Ok(())
     }
 
     /// Marks all unknowns that are fixed or at a bound as eliminated. Computes the energy norm of the values and the
@@ -203,7 +179,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         };
         let residual = &self.full_residual;
         self.energy_norm =
-            Scales::of(inequality, &self.values, residual, &[], &diagonal, 1.0).energy_norm;
+            Scales::of(inequality, &self.values, residual, &[], &diagonal).energy_norm;
         let (bounds, values) = (&inequality.bounds, &self.values);
         for_each_chunk(&mut self.eliminated, |range, eliminated| {
             for (i, eliminated) in range.zip(eliminated) {

@@ -3,16 +3,20 @@
 use super::cycle::MultigridIterate;
 use super::settings::MonotoneMultigrid;
 use crate::algebra::Inequality;
+use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
 use crate::inequality::certificate::contact_of;
+use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::initial_guess::InitialGuess;
-use crate::inequality::preconditioned_error_bound::preconditioned_error_bound;
+use crate::inequality::scales::Scales;
 use crate::inequality::violations::certify;
 use crate::inequality::{Outcome, Solution};
+use crate::linear::krylov::{EIGENVALUE_TO_RITZ_VALUE, Product, StopReason, eigenvalue_run};
 use crate::linear::precondition::CoarseLevel;
 use crate::linear::{
     BuiltInPreconditioners, CoarseSpaces, PreconditionedSystem, Preconditioner,
     PreconditionerFamily,
 };
+use crate::parallel::vectors::{collect, dot, zeros};
 use crate::real::Real;
 
 /// The factor by which the tolerance is reduced if the bound on the algebraic error is too large.
@@ -21,6 +25,9 @@ const REDUCTION: f64 = 0.1;
 /// Number of cycles without halving the change of a cycle after which the certificate and the bound on the error are
 /// examined although the change exceeds the tolerance: changes of the size of rounding do not decrease.
 const STAGNATION_CYCLES: usize = 10;
+
+/// Largest number of iterations of conjugate gradients for the smallest eigenvalue.
+const MAX_ITERATIONS: usize = 500;
 
 impl<T: Real> MultigridIterate<'_, T> {
     /// Iterates until the change of a cycle is within the tolerance, and the certificate and the bound on the algebraic
@@ -48,7 +55,7 @@ impl<T: Real> MultigridIterate<'_, T> {
         let (mut least_change, mut stagnant_cycles) = (f64::INFINITY, 0);
         while self.cycles < settings.max_cycles {
             guess.steps.advance(1);
-            let change = self.cycle(settings.sweeps, &mut *preconditioner)?;
+            let change = self.cycle(&mut *preconditioner)?;
             let has_halved = change > 0.0 && change <= 0.5 * least_change;
             stagnant_cycles = if has_halved { 0 } else { stagnant_cycles + 1 };
             least_change = if stagnant_cycles == 0 { change } else { least_change };
@@ -61,7 +68,7 @@ impl<T: Real> MultigridIterate<'_, T> {
             if (is_small || stagnates) && certify(self.inequality, &self.values).largest() <= limit
             {
                 if guess.energy_tolerance.is_some()
-                    || self.has_small_bound(&mut *preconditioner)?.unwrap_or(is_small)
+                    || self.has_small_bound(&mut *preconditioner).unwrap_or(is_small)
                 {
                     return Ok(Outcome::Converged);
                 }
@@ -78,20 +85,45 @@ impl<T: Real> MultigridIterate<'_, T> {
         Err(Outcome::IterationLimit)
     }
 
-    /// Computes the bound on the algebraic error, with the preconditioner set up for all unknowns that are not fixed.
-    /// Returns whether the bound is within its limit; `None` if there is no bound.
-    ///
-    /// # Errors
-    /// [`Outcome::NotCoercive`] for an indefinite matrix, which the cycles do not detect if unknowns are in contact, or
-    /// the reason why there are no factors.
-    fn has_small_bound(
-        &mut self,
-        preconditioner: &mut dyn Preconditioner<T>,
-    ) -> Result<Option<bool>, Outcome> {
+    /// Computes the bound on the algebraic error. Returns whether it is within its limit; `None` if there is no bound.
+    fn has_small_bound(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Option<bool> {
         self.eliminated_in_preconditioner.clear();
-        self.algebraic_bound =
-            preconditioned_error_bound(self.inequality, &self.values, preconditioner)?;
-        Ok(self.algebraic_bound.map(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT))
+        self.algebraic_bound = self.error_bound(preconditioner);
+        self.algebraic_bound.map(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT)
+    }
+
+    /// The bound on the error of the values ([`algebraic_bound`]), without any assumption on active unknowns: with the
+    /// preconditioner `B` on the unknowns that are not fixed `inv(A) <= B / lambda_min(B A)`, and the eigenvalue is
+    /// estimated on the same unknowns, by [`EIGENVALUE_TO_RITZ_VALUE`] times the smallest Ritz value.
+    ///
+    /// `None` if the matrix is singular on these unknowns (bounds alone may hold the domain), if conjugate gradients do
+    /// not converge, or if rounding makes `r . B r` negative.
+    fn error_bound(&self, preconditioner: &mut dyn Preconditioner<T>) -> Option<f64> {
+        let (inequality, values) = (self.inequality, &self.values[..]);
+        let bounds = &inequality.bounds;
+        let fixed: Vec<bool> = bounds.iter().map(|bound| bound.fixed_value().is_some()).collect();
+        preconditioner.set_fixed(&fixed).ok()?;
+        let diagonal = collect(values.len(), |i| positive_diagonal(inequality, i));
+        let of = |i: usize| diagonal[i];
+        let matrix = Product::of(inequality);
+        let run = eigenvalue_run(matrix, None, preconditioner, &fixed, of, MAX_ITERATIONS);
+        let (smallest, _) = run.ritz.filter(|ritz| ritz.0 > 0.0)?;
+        if run.reason != StopReason::Converged {
+            return None;
+        }
+        let mut residual = vec![0.0; values.len()];
+        inequality.residual_f64(values, &mut residual);
+        let energy_norm = Scales::of(inequality, values, &residual, &[], &of).energy_norm;
+        let (residual, diagonal) = (&residual[..], &diagonal[..]);
+        let values = AdmissibleValues { inequality, values, residual, diagonal, energy_norm };
+        algebraic_bound(&values, f64::INFINITY, |_, unbalanced| {
+            let mut preconditioned = zeros(unbalanced.len());
+            preconditioner.apply(unbalanced, &mut preconditioned);
+            let squared = dot(unbalanced, &mut preconditioned);
+            let eigenvalue = EIGENVALUE_TO_RITZ_VALUE * smallest;
+            Ok((squared >= 0.0).then(|| (squared / eigenvalue).sqrt()))
+        })
+        .unwrap_or(None)
     }
 
     /// The solution, with the contact states of its values.

@@ -14,7 +14,7 @@ mod settings;
 
 use super::initial_guess::InitialGuess;
 use super::recession::solve_with_kernel;
-use super::validation::check_input;
+use super::validation::check;
 use super::{ActiveSet, InequalitySolver, Solution};
 use crate::algebra::Inequality;
 use crate::instances::compiled;
@@ -58,7 +58,7 @@ impl MonotoneMultigrid {
         if !inequality.symmetric || inequality.distribution.is_some() {
             return ActiveSet::default().solve_from(inequality, guess);
         }
-        if let Err(outcome) = check_input(inequality) {
+        if let Err(outcome) = check(inequality) {
             return Solution::without_iterate(inequality, outcome);
         }
         let mut iterate = MultigridIterate::new(inequality, guess);
@@ -69,12 +69,20 @@ impl MonotoneMultigrid {
 
 #[cfg(test)]
 mod tests {
-    use super::super::preconditioned_error_bound::tests::string;
     use super::*;
     use crate::algebra::{Bound, SparseMatrix};
     use crate::inequality::Outcome;
     use crate::linear::CoarseSpaces;
     use crate::linear::precondition::CoarseLevel;
+
+    /// Second differences on `n` points, fixed at both ends, under the load -1/n^2 above -1/30: the contact set is in
+    /// the middle.
+    fn string(n: usize) -> Inequality<f64> {
+        let mut bounds = vec![Bound::Lower(-1.0 / 30.0); n];
+        (bounds[0], bounds[n - 1]) = (Bound::Fixed(0.0), Bound::Fixed(0.0));
+        let matrix = SparseMatrix::second_differences(n);
+        Inequality::new(matrix, true, vec![-1.0 / (n * n) as f64; n], bounds)
+    }
 
     #[test]
     fn a_coarser_level_of_another_size_is_not_used() {

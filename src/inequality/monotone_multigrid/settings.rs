@@ -25,8 +25,6 @@ pub struct MonotoneMultigrid {
     /// at the next such cycle. Changes that ten cycles do not halve need more than three hundred cycles to the default
     /// tolerance.
     pub stagnation_cycles: usize,
-    /// Sweeps of projected Gauss-Seidel before each linear correction.
-    pub sweeps: usize,
     /// Tolerance on the energy norm of the change of a cycle divided by the energy norm of the iterate; four times
     /// machine epsilon if that is larger.
     pub tolerance: f64,
@@ -34,7 +32,7 @@ pub struct MonotoneMultigrid {
 
 impl Default for MonotoneMultigrid {
     fn default() -> Self {
-        Self { max_cycles: 200, stagnation_cycles: 200, sweeps: 2, tolerance: 1e-10 }
+        Self { max_cycles: 200, stagnation_cycles: 200, tolerance: 1e-10 }
     }
 }
 
@@ -50,12 +48,6 @@ impl MonotoneMultigrid {
     #[must_use]
     pub fn stagnation_cycles(mut self, stagnation_cycles: usize) -> Self {
         self.stagnation_cycles = stagnation_cycles;
-        self
-    }
-    /// Sets the number of sweeps before each linear correction.
-    #[must_use]
-    pub fn sweeps(mut self, sweeps: usize) -> Self {
-        self.sweeps = sweeps;
         self
     }
     /// Sets the tolerance on the relative energy norm of the change of a cycle.

@@ -131,12 +131,6 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         condensation
     }
 
-    /// Whether a block has sides whose means are linearly dependent functions of all unknowns of the block, as the
-    /// moments of quadratic functions on a triangle are, so that the assembled matrix is factored.
-    pub fn has_null_directions(&self) -> bool {
-        matches!(self.reduced, ReducedMatrix::Assembled { .. })
-    }
-
     /// The lower triangle of the Schur complement, all values zero: facet means of the same block are coupled.
     fn lower_pattern(&self, n_means: usize) -> SparseMatrix<T> {
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); n_means];
@@ -285,17 +279,6 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             free += (self.mean_coefficient(side, i) * p[side.jump as usize].to_f64()).abs();
         }
         [free, fixed]
-    }
-
-    /// The largest absolute value of the unknowns in the block of unknown `i` and in the jumps over its sides.
-    pub fn largest_value_near(&self, i: usize, u: impl Fn(usize) -> f64) -> f64 {
-        let n = self.penalised.block_size;
-        let block = i / n;
-        let of_block = (block * n..(block + 1) * n).map(&u).fold(0.0, |m: f64, x| m.max(x.abs()));
-        let sides = self.sides(block).iter();
-        let terms = sides.flat_map(|side| self.penalised.terms_of(side.jump as usize));
-        let unknowns = terms.flat_map(|term| [term.here, term.there]).filter(|&j| j != NO_INDEX);
-        unknowns.map(|j| u(j as usize)).fold(of_block, |m, x| m.max(x.abs()))
     }
 }
 

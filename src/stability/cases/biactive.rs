@@ -1,14 +1,16 @@
 //! No strict complementarity: gap and multiplier vanish together.
 
+use std::sync::Arc;
+
 use crate::error::Error;
-use crate::inequality::Globalisation;
+use crate::inequality::{InequalitySolver, InteriorPoint};
 use crate::nested::Hierarchy;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::Choice;
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, fitted_order, listed, of};
-use crate::stability::runs::{row, rows, solved, solver_with};
+use crate::stability::runs::{row, rows, solved_by, solver};
 use crate::study::Row;
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
@@ -66,7 +68,7 @@ fn orders<const D: usize>(
     Ok(())
 }
 
-/// Active sets and steps of the interior point method from a cold start.
+/// Linear systems of the library's own solver and of the interior point method from a cold start.
 fn steps<const D: usize>(
     make: &fn() -> Scene<D>,
     choice: &Choice,
@@ -74,21 +76,22 @@ fn steps<const D: usize>(
     sink: Sink<'_>,
 ) -> Result<(), Error> {
     let scene = make();
-    let kinds = [
-        ("active-sets-tried", "active sets tried, cold", Globalisation::Never, 2.0 * level as f64),
-        ("interior-point-steps", "linear systems, cold", Globalisation::InteriorPointFirst, 40.0),
+    type Solver = Arc<dyn InequalitySolver<f64>>;
+    let kinds: [(&str, Solver); 2] = [
+        ("active-sets-tried", Arc::new(solver())),
+        ("interior-point-steps", Arc::new(InteriorPoint)),
     ];
     let meshes = Hierarchy::of_domain(&scene.domain, level)?;
-    for (criterion, quantity, resort, most) in kinds {
+    for (criterion, solver) in kinds {
         let problem = choice.constrain(scene.problem.clone());
-        let found = solved(&problem, &meshes, choice, solver_with(resort, 4 * level), false)?;
+        let found = solved_by(solver, &problem, &meshes, choice, false)?;
         let steps = found.outer().filter(|_| found.converged());
         sink(
             RowBuilder::new(criterion, choice)
                 .on(&scene.name)
                 .level(level)
-                .quantity(quantity)
-                .at_most(most)
+                .quantity("linear systems, cold")
+                .at_most(40.0)
                 .detail(format!("{} after {}", found.outcome(), found.outer().unwrap_or(0)))
                 .measured(steps.map(|n| n as f64)),
         );

@@ -85,7 +85,7 @@ fn largest_on_contact(
     let meshes = Hierarchy::of_domain(&scene.domain, level)?;
     let mesh = meshes.finest();
     let problem = choice.constrain(scene.problem.clone());
-    let found = solved(&problem, &meshes, choice, solver(), true)?;
+    let found = solved(&problem, &meshes, choice, true)?;
     let Some(fields) = found.fields() else { return Ok(None) };
     let mut largest = 0.0_f64;
     for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {

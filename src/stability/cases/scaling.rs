@@ -8,7 +8,7 @@ use crate::scenes::Scene;
 use crate::stability::choice::{Choice, Penalty};
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, quotient};
-use crate::stability::runs::{solved, solver};
+use crate::stability::runs::solved;
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
     let level = plan.pick(8, 32);
@@ -40,7 +40,7 @@ fn values(
 ) -> Result<(Option<Vec<f64>>, String), Error> {
     let meshes = Hierarchy::of_domain(&scene.domain, level)?;
     let problem = choice.constrain(scene.problem.clone());
-    let found = solved(&problem, &meshes, choice, solver(), true)?;
+    let found = solved(&problem, &meshes, choice, true)?;
     let values = found.fields().filter(|_| found.converged()).map(|f| f.u);
     let error = found.errors()?;
     let error = error.h1.zip(error.l2);

@@ -3,7 +3,9 @@
 use super::cold;
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Start};
-use unilateral::inequality::{ActiveSet, Globalisation, InequalitySolver, Outcome, certify};
+use unilateral::inequality::{
+    ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, Outcome, certify,
+};
 use unilateral::linear::is_positive_definite;
 use unilateral::prelude::*;
 
@@ -25,14 +27,13 @@ fn indefinite_matrix_is_not_coercive() {
         assert_eq!(trusted.outcome, Outcome::Converged);
         let mut unsymmetric = problem.clone();
         unsymmetric.symmetric = false;
-        let careful = ActiveSet::default().check_definite(true);
-        assert_eq!(careful.solve(&unsymmetric).outcome, Outcome::NotCoercive);
+        assert_eq!(cold(&unsymmetric).outcome, Outcome::NotCoercive);
     }
 }
 
-/// The interior point method factors no matrix of free unknowns: contact hides two of them.
+/// Contact hides two unknowns.
 #[test]
-fn definiteness_is_checked_before_the_interior_point_method_too() {
+fn every_solver_checks_definiteness_first() {
     let dense = vec![
         vec![1.0, -2.0, 0.0, 0.0],
         vec![-2.0, 1.0, 0.0, 0.0],
@@ -41,8 +42,12 @@ fn definiteness_is_checked_before_the_interior_point_method_too() {
     ];
     let bounds = vec![Bound::Lower(0.0), Bound::Lower(0.0), Bound::Free, Bound::Free];
     let problem = inequality::<f64>(sparse(&dense), &[-1e3, -1e3, 1.0, 1.0], bounds);
-    let interior = ActiveSet::default().globalisation(Globalisation::InteriorPointFirst);
-    assert_eq!(interior.check_definite(true).solve(&problem).outcome, Outcome::NotCoercive);
+    let outcomes = [
+        cold(&problem).outcome,
+        InteriorPoint.solve(&problem).outcome,
+        MonotoneMultigrid::default().solve(&problem).outcome,
+    ];
+    assert_eq!(outcomes, [Outcome::NotCoercive; 3]);
 }
 
 #[test]
@@ -182,13 +187,11 @@ fn data_whose_squares_underflow_are_refused_and_not_certified() {
         problem
     };
     let zero = vec![0.0; 400];
-    let of_zero = certify(&good, &zero).largest();
-    assert!(of_zero > 0.1);
+    assert!(certify(&good, &zero).largest() > 0.1);
     for factor in [1e-300, 1e-170, 1e-130] {
         let tiny = scaled(factor);
         assert_eq!(cold(&tiny).outcome, Outcome::OutOfRange);
-        let certificate = certify(&tiny, &zero).largest();
-        assert!((certificate / of_zero - 1.0).abs() < 1e-12, "{factor}: {certificate}");
+        assert_eq!(certify(&tiny, &zero).largest(), f64::INFINITY);
     }
     for factor in [1e-100, 1e100] {
         assert_eq!(cold(&scaled(factor)).outcome, Outcome::Converged);

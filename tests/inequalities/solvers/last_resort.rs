@@ -5,7 +5,7 @@ use unilateral::algebra::{Bound, Inequality};
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::constraint::constraint_set_by_name;
 use unilateral::inequality::{
-    ActiveSet, Globalisation, InequalitySolver, MonotoneMultigrid, Outcome, Stage, certify,
+    ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, Outcome, Stage, certify,
 };
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
@@ -17,12 +17,11 @@ use unilateral::study::Row;
 fn agree(what: &str, problem: &Inequality<f64>) {
     let direct = ActiveSet::default().linear(LinearMethod::Direct).solve(problem);
     let iterative = ActiveSet::default().linear(LinearMethod::Iterative).solve(problem);
-    let interior = ActiveSet::default().globalisation(Globalisation::InteriorPointFirst);
     let scale = 1.0 + distance(&direct.values, &vec![0.0; problem.size()]);
     let others = [
         ("direct", direct.clone()),
         ("iterative", iterative),
-        ("interior", interior.solve(problem)),
+        ("interior", InteriorPoint.solve(problem)),
         ("multigrid", MonotoneMultigrid::default().solve(problem)),
     ];
     for (name, solution) in others {
@@ -92,9 +91,7 @@ fn the_oracle_agrees() {
     for scene in scenes_of_all_kinds() {
         for problem in [of(&scene, &wopsip(1.0), 3), of(&scene, &Sipg::default(), 3)] {
             let expected = projected_gauss_seidel(&problem);
-            let found = ActiveSet::default()
-                .globalisation(Globalisation::InteriorPointFirst)
-                .solve(&problem);
+            let found = InteriorPoint.solve(&problem);
             let off = distance(&found.values, &expected);
             assert!(off < 1e-8, "{}: {off}", scene.name);
         }
@@ -180,36 +177,16 @@ fn curved_obstacles_converge_on_fine_meshes() {
     }
 }
 
-/// A limit of systems below the largest number of its steps does not keep the interior point method from
-/// being the first stage.
-#[test]
-fn the_interior_point_method_comes_first_within_any_limit() {
-    let problem = of(&scenes::biactive_half_2d(), &Sipg::default(), 8);
-    let solver = ActiveSet::default().globalisation(Globalisation::InteriorPointFirst);
-    let found = solver.max_outer(30).solve(&problem);
-    assert_eq!(found.outcome, Outcome::Converged);
-    assert_eq!(found.stages[0].stage, Stage::InteriorPoint);
-    assert!((1..=30).contains(&found.outer), "{}", found.outer);
-}
-
-/// The interior point method, and what starts from it, do not mind large penalties.
+/// The interior point method does not mind large penalties.
 #[test]
 fn no_penalty_is_too_large() {
-    let solver = ActiveSet::default().globalisation(Globalisation::InteriorPointFirst);
-    for (name, largest) in [("wopsip", 1e10), ("wopsip-p2", 1e8)] {
-        for eta in [1e-2, 1.0, 1e2, 1e4, 1e6, 1e8, 1e10] {
-            if eta > largest {
-                continue;
-            }
-            let options = SchemeOptions { eta: Some(eta), ..SchemeOptions::default() };
-            let scheme = scheme_by_name::<f64, 2>(name, &options).unwrap();
-            let study = Study::<f64, 2>::new(scenes::ball_2d()).boxed_scheme(scheme);
-            let row = study.solver(solver.clone()).levels([8]).run().unwrap().rows.remove(0);
-            assert!(row.converged(), "{name} {eta:e}");
-            assert!(row.certificate.largest() < 1e-9, "{name} {eta:e}: {:?}", row.certificate);
-            let outer = row.iterations.outer.unwrap();
-            assert!(outer <= 40, "{name} {eta:e}: {outer} steps");
-        }
+    for eta in [1e-2, 1.0, 1e2, 1e4, 1e6, 1e8, 1e10] {
+        let study = Study::<f64, 2>::new(scenes::ball_2d()).scheme(wopsip(eta));
+        let row = study.solver(InteriorPoint).levels([8]).run().unwrap().rows.remove(0);
+        assert!(row.converged(), "{eta:e}");
+        assert!(row.certificate.largest() < 1e-9, "{eta:e}: {:?}", row.certificate);
+        let outer = row.iterations.outer.unwrap();
+        assert!(outer <= 40, "{eta:e}: {outer} steps");
     }
 }
 
@@ -346,14 +323,10 @@ fn what_has_no_solution_is_named() {
         inequality(sparse(&[vec![1.0, -1.0], vec![-1.0, 1.0]]), &[1.0, 1.0], vec![Bound::Free; 2]);
     let mut malformed = good.clone();
     malformed.bounds.pop();
-    let resorts = [Globalisation::OnStagnation, Globalisation::InteriorPointFirst];
     let mut solvers: Vec<Box<dyn InequalitySolver<f64>>> =
-        vec![Box::new(MonotoneMultigrid::default())];
+        vec![Box::new(MonotoneMultigrid::default()), Box::new(InteriorPoint)];
     for linear in [LinearMethod::Direct, LinearMethod::Iterative] {
-        for globalisation in resorts {
-            solvers
-                .push(Box::new(ActiveSet::default().linear(linear).globalisation(globalisation)));
-        }
+        solvers.push(Box::new(ActiveSet::default().linear(linear)));
     }
     for (k, solver) in solvers.iter().enumerate() {
         let what = format!("{} {k}", solver.name());
@@ -370,23 +343,4 @@ fn what_has_no_solution_is_named() {
         let fails = [Outcome::Singular, Outcome::NotCoercive, Outcome::IterationLimit];
         assert!(fails.contains(&found), "{what}: {found}");
     }
-}
-
-/// With 60 systems there is no room for the interior point method: an active set that stagnates goes
-/// on to the limit of systems, unless it returns to an earlier one.
-#[test]
-fn an_active_set_ends_where_it_cycles_or_at_its_limit() {
-    let mut n_stagnating = 0;
-    for scene in scenes_of_all_kinds() {
-        for eta in [1.0, 10.0, 100.0] {
-            let problem = of(&scene, &wopsip(eta), 8);
-            let direct = ActiveSet::default().linear(LinearMethod::Direct);
-            let whole = direct.solve(&problem);
-            n_stagnating += usize::from(whole.stages.len() > 1);
-            let limited = direct.clone().max_outer(60).solve(&problem);
-            let alone = direct.max_outer(60).globalisation(Globalisation::Never).solve(&problem);
-            assert_eq!(limited.outcome, alone.outcome, "{} {eta}", scene.name);
-        }
-    }
-    assert!(n_stagnating > 0);
 }

@@ -10,15 +10,9 @@ mod wrong_promises;
 
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix, Start};
-use unilateral::assemble::Discretisation;
-use unilateral::inequality::{
-    ActiveSet, Globalisation, InequalitySolver, Outcome, Solution, certify,
-};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution, certify};
 use unilateral::linear::{FactorError, Factors};
-use unilateral::mesh::{BoxDomain, Mesh};
-use unilateral::problem::Problem;
-use unilateral::real::{Point, Real};
-use unilateral::scheme::Wopsip;
+use unilateral::real::Real;
 
 /// The number of active unknowns; fixed ones do not count.
 fn count_active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usize {
@@ -28,11 +22,6 @@ fn count_active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usi
 
 fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
     ActiveSet::default().solve(inequality)
-}
-
-/// The textbook method, which only notices that it runs in circles.
-fn without_resort() -> ActiveSet {
-    ActiveSet::default().globalisation(Globalisation::Never)
 }
 
 /// Solves from everywhere, asserts convergence and certificate, and the same solution each time.
@@ -124,15 +113,12 @@ fn cycles_of_the_textbook_method_are_resolved() {
         let matrix = random_definite(n, n / 2, 0.003, &mut random);
         let load: Vec<f64> = (0..n).map(|_| random.signed()).collect();
         let problem = inequality(sparse(&matrix), &load, vec![Bound::Lower(0.0); n]);
-        let plain = without_resort();
-        let plain = plain.solve(&problem);
+        let solution = cold(&problem);
         if textbook_cycles(&matrix, &load) {
             cycles += 1;
-            assert_eq!(plain.outcome, Outcome::Cycling, "seed {seed}");
-        } else {
-            assert_eq!(plain.outcome, Outcome::Converged, "seed {seed}");
+            assert!(solution.stages.len() > 1, "seed {seed}");
         }
-        assert_solved(&problem, &cold(&problem));
+        assert_solved(&problem, &solution);
     }
     assert!(cycles > 30, "only {cycles} cycles");
 }
@@ -147,12 +133,8 @@ fn cycle_of_a_matrix_without_symmetry_is_resolved() {
     for first in [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0]] {
         let start = first.map(|c| if c == 1 { Contact::Lower } else { Contact::Inactive });
         let start = Start::Contact(start.to_vec());
-        let plain = without_resort();
-        assert_eq!(
-            plain.solve(&problem.clone().with_start(start.clone())).outcome,
-            Outcome::Cycling
-        );
-        let solution = ActiveSet::default().solve(&problem.clone().with_start(start.clone()));
+        let solution = ActiveSet::default().solve(&problem.clone().with_start(start));
+        assert!(solution.stages.len() > 1);
         assert_solved(&problem, &solution);
         assert!(distance(&solution.values, &[1.0 / 3.0; 3]) < 1e-15);
     }
@@ -168,10 +150,9 @@ fn cycles_between_two_bounds_are_resolved() {
         let matrix = random_definite(n, n / 2, 0.003, &mut random);
         let load: Vec<f64> = (0..n).map(|_| random.signed()).collect();
         let problem = inequality(sparse(&matrix), &load, vec![Bound::Both(-0.5, 0.7); n]);
-        let plain = without_resort();
-        // Some wander for longer than the limit.
-        cycles += usize::from(plain.solve(&problem).outcome != Outcome::Converged);
-        assert_solved(&problem, &cold(&problem));
+        let solution = cold(&problem);
+        cycles += usize::from(solution.stages.len() > 1);
+        assert_solved(&problem, &solution);
     }
     assert!(cycles > 10, "only {cycles} cycles");
 }
@@ -271,8 +252,6 @@ fn body_held_by_the_obstacle_alone() {
     problem.load = vec![1.0; n];
     let outcome = cold(&problem).outcome;
     assert!(matches!(outcome, Outcome::Singular | Outcome::NotCoercive), "{outcome}");
-    let careful = ActiveSet::default().check_definite(true);
-    assert_eq!(careful.solve(&problem).outcome, Outcome::NotCoercive);
 }
 
 #[test]
@@ -299,52 +278,20 @@ fn single_precision() {
     }
 }
 
-#[test]
-fn refinement_gives_single_precision_its_digits() {
-    let problem = membrane::<f32>(100, 5.0, |_, _| -0.1);
-    let exact = cold(&membrane::<f64>(100, 5.0, |_, _| -0.1));
-    let start = Start::Contact(exact.contact);
-    let error = |refinements: usize| {
-        let solver = ActiveSet::default().refinements(refinements);
-        let solution = solver.solve(&problem.clone().with_start(start.clone()));
-        assert_eq!(solution.outcome, Outcome::Converged);
-        distance(&solution.values, &exact.values)
-    };
-    assert!(error(1) < 1e-8 && error(1) < 0.1 * error(0));
-}
-
-/// Values and forces of jumps are corrected until corrections no longer shrink, whatever the setting.
-#[test]
-fn jumps_have_their_digits_without_refinements() {
-    let mesh = Mesh::<f32, 2>::kuhn_box(&BoxDomain::centred(1.0), [24; 2]).unwrap();
-    let problem = Problem::new().source(|x: &Point<f64, 2>| 1.0 + x[0]);
-    let space =
-        Discretisation::new(&Wopsip::default(), &problem, &mesh, Default::default()).unwrap();
-    let inequality = space.inequality().unwrap();
-    let [none, many] = [0, 8].map(|refinements| {
-        let solution = ActiveSet::default().refinements(refinements).solve(&inequality);
-        assert_eq!(solution.outcome, Outcome::Converged);
-        solution.values.iter().map(|x| f64::from(*x)).collect::<Vec<f64>>()
-    });
-    let largest = many.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let error = distance(&none, &many);
-    assert!(error <= 8.0 * f64::from(f32::EPSILON) * largest, "{error:e} of {largest:e}");
-}
-
 /// An obstacle above the free solution by less than the rounding band is not touched.
 #[test]
 fn no_difference_within_the_rounding_band_changes_a_state() {
     let free = inequality(laplacian::<f64>(3, 1, 2.0), &[-1.0; 3], vec![Bound::Free; 3]);
     let middle = cold(&free).values[1];
-    let mut obstacle = free;
-    obstacle.bounds[1] = Bound::Lower(middle + 1e-12);
-    let contact = |solver: ActiveSet| {
-        let solution = solver.solve(&obstacle);
+    let contact = |above: f64| {
+        let mut obstacle = free.clone();
+        obstacle.bounds[1] = Bound::Lower(middle + above);
+        let solution = cold(&obstacle);
         assert_eq!(solution.outcome, Outcome::Converged);
         count_active(&obstacle, &solution.contact)
     };
-    assert_eq!(contact(ActiveSet::default()), 1);
-    assert_eq!(contact(ActiveSet::default().rounding_band(1e5)), 0);
+    assert_eq!(contact(1e-12), 1);
+    assert_eq!(contact(1e-16), 0);
 }
 
 /// A zero diagonal entry makes a matrix singular if the other entries of its row and column are zero, else indefinite.

@@ -1,0 +1,98 @@
+//! The solve of an inequality: the methods in their order.
+
+mod stages;
+
+use super::iteration::End;
+use super::settings::ActiveSet;
+use crate::algebra::{Inequality, PenalisedMatrix};
+use crate::inequality::Solution;
+use crate::inequality::initial_guess::InitialGuess;
+use crate::inequality::validation::check;
+use crate::linear::{CoarseSpaces, LinearMethod, PreconditionerFamily};
+use crate::real::Real;
+use stages::Ladder;
+
+/// Number of unknowns from which a Krylov method solves the linear systems by default if coarse spaces are known.
+///
+/// Solves of radial-2d with factors take 1.2 to 2.6 times as long as with Krylov methods at 300 to 6 000
+/// unknowns of P1, Crouzeix-Raviart, SIPG and WOPSIP, and 1.8 to 4.4 times at 12 000 to 98 000
+/// (`compare --scene radial-2d --scheme p1,cr,sipg,wopsip --levels 16,32,64,128 --threads 1 --repeat 3`,
+/// with `--linear direct` and `iterative`). Below the threshold both take less than 0.03 s, and factors
+/// are accurate to rounding.
+pub(super) const CROSSOVER: usize = 10_000;
+
+/// Solves an inequality.
+///
+/// The first active set iteration solves its linear systems by a Krylov method or with factors. Where it stagnates,
+/// monotone multigrid follows if it suits the inequality, and else one run of the interior point method. The contact
+/// states at the end of that run are the start of a last active set iteration with factors, whose outcome is that of the
+/// solve.
+///
+/// What else turns the method, each with a row of `tests/program/hard_rows.rs` that needs it:
+///
+/// | turn | place | row |
+/// |---|---|---|
+/// | a Krylov method from [`CROSSOVER`] unknowns on, factors where it does not fit the matrix | `uses_krylov`, [`End::Unsuitable`] | degenerate2-2d, `cr`, 128 |
+/// | the inequality near a few unknowns whose states change in turn | `local_inequality` | radial-3d, `wopsip`, 16 |
+/// | values of the best iterate, if the last one is no solution | `Iterate::keep_if_best` | lshape-2d, `sipg-p2`, 16 |
+/// | another right-hand side for jump multipliers, after a Krylov method | `determine_jump_multipliers` | spiral-2d, `wopsip:facet-means`, 64 |
+/// | a body that bounds alone hold starts with all its bounds active | `starting_states` | `neu3.toml`, `p1`, 8 |
+///
+/// One part of a mesh has no factors: the first iteration is all.
+pub(super) fn solve<T: Real>(
+    settings: &ActiveSet,
+    inequality: &Inequality<T>,
+    guess: &InitialGuess<T>,
+    family: &dyn PreconditionerFamily<T>,
+) -> Solution<T> {
+    guess.steps.set(0);
+    if let Err(outcome) = check(inequality) {
+        return Solution::without_iterate(inequality, outcome);
+    }
+    let uses_krylov = uses_krylov(settings, inequality, guess);
+    let mut ladder = Ladder::new(settings, inequality, guess, uses_krylov);
+    let mut end = End::Unsuitable;
+    if uses_krylov {
+        end = ladder.active_set_by_krylov(family);
+        if end == End::Stagnation && suits_monotone_multigrid(inequality, guess) {
+            end = ladder.monotone_multigrid();
+        }
+    }
+    if inequality.distribution.is_none() {
+        if end == End::Unsuitable {
+            end = ladder.active_set_by_factors();
+        }
+        if matches!(end, End::Stagnation | End::Singular) {
+            ladder.interior_point();
+            end = ladder.active_set_by_factors();
+        }
+    }
+    ladder.into_solution(end)
+}
+
+/// Whether the first active set iteration solves its linear systems by a preconditioned Krylov method.
+fn uses_krylov<T: Real>(
+    settings: &ActiveSet,
+    inequality: &Inequality<T>,
+    guess: &InitialGuess<T>,
+) -> bool {
+    match settings.linear {
+        _ if inequality.distribution.is_some() => true,
+        LinearMethod::Direct => false,
+        LinearMethod::Iterative => true,
+        LinearMethod::BySize => {
+            inequality.size() >= CROSSOVER && !matches!(guess.coarse_spaces, CoarseSpaces::Unknown)
+        }
+    }
+}
+
+/// Whether monotone multigrid suits the inequality: the matrix is symmetric, coarse spaces are known, and each jump
+/// of the penalty is that of a single unknown. If a large penalty acts on jumps of means of several vertex values,
+/// Gauss-Seidel sweeps hardly change any single vertex value.
+fn suits_monotone_multigrid<T: Real>(inequality: &Inequality<T>, guess: &InitialGuess<T>) -> bool {
+    let Inequality { distribution, symmetric, penalised, .. } = inequality;
+    distribution.is_none()
+        && *symmetric
+        && !matches!(guess.coarse_spaces, CoarseSpaces::Unknown)
+        && penalised.as_ref().is_none_or(PenalisedMatrix::has_jumps_of_single_unknowns)
+}
