@@ -3,9 +3,8 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
-use super::PatchCells;
 use super::corners::Corner;
-use super::patch::CellProblem;
+use super::patch_cells::{CellProblem, PatchCells};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::error_bound::NoBound;

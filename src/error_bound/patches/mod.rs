@@ -26,7 +26,8 @@
 //! | `mod` | the flux: the parts of all vertices added up |
 //! | `patch` | the part of a vertex, by least squares |
 //! | `fan` | the part of a vertex of linears in the plane, where all numbers follow from one |
-//! | `linear`, `quadratic` | what the patches read of the cells of linears and quadratics |
+//! | `patch_cells` | what patches ask of cells |
+//! | `linear`, `quadratic` | the cells of linears and quadratics |
 //! | `corners`, `parts` | the cells around each vertex, and the numbers there |
 
 mod corners;
@@ -34,6 +35,7 @@ mod fan;
 mod linear;
 mod parts;
 mod patch;
+mod patch_cells;
 mod quadratic;
 #[cfg(test)]
 mod tests;
@@ -44,7 +46,8 @@ use std::ops::Range;
 use corners::Corner;
 use linear::LinearCells;
 use parts::Parts;
-use patch::{CellProblem, Patch};
+use patch::Patch;
+use patch_cells::PatchCells;
 
 use super::contact_forces::NodeForce;
 use super::flux::Flux;
@@ -58,30 +61,6 @@ use crate::real::Real;
 
 /// Number of cells whose parts are kept at a time. The parts of a tetrahedron are twelve numbers, the flux is four.
 const CELLS_AT_A_TIME: usize = 1 << 17;
-
-/// The cells of a conforming function, as patches read them: a flux has `N` numbers at most on the facets of a cell at a
-/// vertex.
-trait PatchCells<const D: usize, const N: usize>: Sync {
-    /// The degree of the flux, zero or one.
-    const DEGREE: usize;
-    /// How many numbers a facet has.
-    const PER_FACET: usize = if Self::DEGREE == 0 { 1 } else { D };
-
-    /// Where number `p` of a facet stands among those of a cell.
-    fn place(facet: usize, p: usize) -> usize {
-        // the vertices of a facet are those of the cell without the opposite one
-        if Self::DEGREE == 0 { facet } else { Flux::<D>::place(facet, p + usize::from(p >= facet)) }
-    }
-
-    /// Sets the numbers that the flux of a cell, in the order of [`Flux`], has by `alpha grad u . n`.
-    fn normals(&self, cell: usize, numbers: &mut [f64]);
-    /// The numbers of `phi alpha grad u . n` on a facet, `phi` the hat function of a vertex of it.
-    fn normal(&self, corner: Corner, facet: usize) -> [f64; 3];
-    /// The numbers that the flux of a vertex, with that of `phi alpha grad u . n`, has on a Neumann or contact facet.
-    fn given(&self, corner: Corner, facet: usize) -> [f64; 3];
-    /// The least squares problem of a cell in the patch of a vertex.
-    fn problem(&self, corner: Corner) -> CellProblem<N>;
-}
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The flux of a conforming linear function, without that of Neumann data and contact, which are balanced all the

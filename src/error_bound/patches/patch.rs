@@ -12,23 +12,13 @@
 //! positive semidefinite system for the multipliers. Those of facets on the Dirichlet part are zero; without such
 //! facets a constant is free.
 
-use super::PatchCells;
 use super::corners::Corner;
+use super::patch_cells::{CellProblem, PatchCells};
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 
 /// Pivots up to this share of the diagonal are zero: in a patch without Dirichlet facets multipliers are
 /// determined up to a constant.
 const ZERO_PIVOT: f64 = 1e-11;
-
-/// The numbers of the flux of a cell, on its facets at the vertex.
-pub(super) struct CellProblem<const N: usize> {
-    /// `G`: the products of the fluxes with each other.
-    pub products: [[f64; N]; N],
-    /// `b`: their products with what the flux aims at.
-    pub aims: [f64; N],
-    /// `s`: the sum that the balance of the cell asks for.
-    pub sum: f64,
-}
 
 /// What is known of a number of the flux of a cell.
 #[derive(Clone, Copy)]

@@ -11,9 +11,8 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
-use super::PatchCells;
 use super::corners::Corner;
-use super::patch::CellProblem;
+use super::patch_cells::{CellProblem, PatchCells};
 use crate::arrays::tabulate;
 use crate::assemble::local::StiffnessTable;
 use crate::assemble::space::tables::BasisAt;

@@ -19,6 +19,15 @@ fn numbers(n: usize) -> Vec<f64> {
     (0..n).map(|i| ((7 * i * i + 3 * i) % 23) as f64 - 11.0).collect()
 }
 
+/// The numbers that a function sets, sorted by cell and place in it.
+fn collected(find: impl FnOnce(&dyn Fn(Corner, usize, f64))) -> Vec<(usize, usize, f64)> {
+    let numbers = RefCell::new(Vec::new());
+    find(&|corner, k, number| numbers.borrow_mut().push((corner.cell(), k, number)));
+    let mut numbers = numbers.into_inner();
+    numbers.sort_by_key(|&(cell, k, _)| (cell, k));
+    numbers
+}
+
 /// In the plane the numbers along a fan are those of least squares where the equation of the vertex holds: inside
 /// the domain and on the Dirichlet part, here of a linear function with a load.
 #[test]
@@ -35,21 +44,10 @@ fn numbers_along_a_fan_are_those_of_least_squares() {
     let corners = of.space.corners();
     let mut fan = Vec::new();
     for vertex in 0..u.len() {
-        let find = |found: &mut dyn FnMut(&dyn Fn(Corner, usize, f64)) -> bool| {
-            let parts = RefCell::new(Vec::new());
-            let is_found = found(&|corner, k, number| {
-                parts.borrow_mut().push((corner.cell(), k, number));
-            });
-            let mut parts = parts.into_inner();
-            parts.sort_by_key(|&(cell, k, _)| (cell, k));
-            (is_found, parts)
-        };
-        let (is_fan, by_fan) = find(&mut |set| cells.set_fan(vertex, &mut fan, set));
-        let (_, by_patch) = find(&mut |set| {
-            Patch::default().solve(&cells, &neighbours, corners.at(vertex), set);
-            true
-        });
-        assert!(is_fan && by_fan.len() == by_patch.len());
+        let by_fan = collected(|set| assert!(cells.set_fan(vertex, &mut fan, set)));
+        let around = corners.at(vertex);
+        let by_patch = collected(|set| Patch::default().solve(&cells, &neighbours, around, set));
+        assert_eq!(by_fan.len(), by_patch.len());
         let largest = by_fan.iter().fold(0.0, |most: f64, (_, _, number)| most.max(number.abs()));
         for ((cell, k, one), (of_cell, of_k, other)) in by_fan.iter().zip(&by_patch) {
             assert_eq!((cell, k), (of_cell, of_k));

@@ -1,0 +1,38 @@
+//! What patches ask of the cells of a conforming function.
+
+use super::corners::Corner;
+use crate::error_bound::flux::Flux;
+
+/// The numbers of the flux of a cell, on its facets at the vertex.
+pub(super) struct CellProblem<const N: usize> {
+    /// `G`: the products of the fluxes with each other.
+    pub products: [[f64; N]; N],
+    /// `b`: their products with what the flux aims at.
+    pub aims: [f64; N],
+    /// `s`: the sum that the balance of the cell asks for.
+    pub sum: f64,
+}
+
+/// The cells of a conforming function, as patches read them: a flux has `N` numbers at most on the facets of a cell at a
+/// vertex.
+pub(super) trait PatchCells<const D: usize, const N: usize>: Sync {
+    /// The degree of the flux, zero or one.
+    const DEGREE: usize;
+    /// How many numbers a facet has.
+    const PER_FACET: usize = if Self::DEGREE == 0 { 1 } else { D };
+
+    /// Where number `p` of a facet stands among those of a cell.
+    fn place(facet: usize, p: usize) -> usize {
+        // the vertices of a facet are those of the cell without the opposite one
+        if Self::DEGREE == 0 { facet } else { Flux::<D>::place(facet, p + usize::from(p >= facet)) }
+    }
+
+    /// Sets the numbers that the flux of a cell, in the order of [`Flux`], has by `alpha grad u . n`.
+    fn normals(&self, cell: usize, numbers: &mut [f64]);
+    /// The numbers of `phi alpha grad u . n` on a facet, `phi` the hat function of a vertex of it.
+    fn normal(&self, corner: Corner, facet: usize) -> [f64; 3];
+    /// The numbers that the flux of a vertex, with that of `phi alpha grad u . n`, has on a Neumann or contact facet.
+    fn given(&self, corner: Corner, facet: usize) -> [f64; 3];
+    /// The least squares problem of a cell in the patch of a vertex.
+    fn problem(&self, corner: Corner) -> CellProblem<N>;
+}
