@@ -2,8 +2,10 @@
 //!
 //! `hierarchy`: the part of nested meshes. `system`: a scheme on a part. `iteration`: the solve, nested. `solved`:
 //! its result, with `files` and `verify`. `over_parts`: what solvers ask of other parts. `preconditioner`,
-//! `own_unknowns`: preconditioners of one process with an engine inside.
+//! `own_unknowns`: preconditioners of one process with an engine inside; `auxiliary_space`: blocks of cells and
+//! conforming linear functions.
 
+mod auxiliary_space;
 #[cfg(feature = "report")]
 mod files;
 mod hierarchy;

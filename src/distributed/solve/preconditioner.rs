@@ -1,6 +1,6 @@
 //! Preconditioners of the schemes on the parts of a mesh.
 //!
-//! They are those of one mesh ([`AuxiliarySpace`], [`MeanJumpSplitting`]), with an engine in place of multigrid
+//! They are [`AuxiliarySpace`] and that of one mesh, [`MeanJumpSplitting`], with an engine in place of multigrid
 //! for conforming linear and Crouzeix-Raviart functions, and of factors. What is local they compute at all
 //! unknowns of a part, ghosts included, of residuals that are those of the owners at ghosts: an own unknown
 //! then has what it has on the whole mesh.
@@ -8,13 +8,12 @@
 use std::borrow::Cow;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::auxiliary_space::{AuxiliarySpace, VertexCorrection};
 use super::over_parts::OverParts;
 use super::own_unknowns::OnOwnUnknowns;
 use crate::algebra::{Distribution, SparseMatrix, any_part};
 use crate::distributed::engine::{Engine, EngineMethod, EngineSolver, OwnRows};
-use crate::linear::precondition::{
-    AuxiliarySpace, BlockSolver, FacetMeansSolver, MeanJumpSplitting, VertexCorrection,
-};
+use crate::linear::precondition::{BlockSolver, FacetMeansSolver, MeanJumpSplitting};
 use crate::linear::{FactorError, PreconditionedSystem, Preconditioner, PreconditionerFamily};
 
 /// What corrects where. The preconditioners of engines are made before, so that their matrices are gone while
@@ -65,7 +64,7 @@ impl PreconditionerFamily<f64> for EnginePreconditioners {
                 let correction = VertexCorrection::new(coarse, dirichlet, supports)?;
                 let is_own = |i: usize| self.over_parts.owns(i);
                 let own = (0..matrix.size()).map(is_own).collect();
-                Box::new(AuxiliarySpace::new(matrix, supports, correction)?.with_own_blocks(own))
+                Box::new(AuxiliarySpace::new(matrix, supports, own, correction)?)
             }
             Auxiliary::FacetMeans(of, unknowns) => {
                 let penalised = inequality.penalised.as_ref()?;

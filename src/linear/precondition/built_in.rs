@@ -2,12 +2,12 @@
 
 use std::borrow::Cow;
 
-use super::auxiliary_space::{AuxiliarySpace, VertexCorrection, unknowns_per_cell};
 use super::coarse_spaces::CoarseSpaces;
 use super::mean_jump_splitting::MeanJumpSplitting;
 use super::multigrid::Multigrid;
 use super::preconditioner::{PreconditionedSystem, Preconditioner, PreconditionerFamily};
 use super::prolongation::Prolongation;
+use super::smoother::unknowns_per_cell;
 use crate::real::Real;
 
 /// The preconditioner that fits the coarse spaces and the element. The first case that applies counts:
@@ -16,10 +16,9 @@ use crate::real::Real;
 ///    contain conforming linear functions on the mesh of the inequality.
 /// 2. The splitting into facet means and jumps, for discontinuous linear functions coupled by a penalty on jumps of
 ///    facet means alone.
-/// 3. Multigrid with conforming linear functions as its second level, for elements whose cells share unknowns
-///    (conforming quadratics, Crouzeix-Raviart) and for discontinuous linear functions on triangles and tetrahedra.
-/// 4. The sum of the inverses of cell blocks (additive Schwarz) and of the auxiliary space of conforming linear
-///    functions, for other discontinuous elements.
+/// 3. Multigrid with conforming linear functions as its second level. It smooths by unknowns where cells share unknowns
+///    (conforming quadratics, Crouzeix-Raviart), and by cells for discontinuous linear and quadratic functions. There is
+///    none for discontinuous elements with another number of unknowns in a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BuiltInPreconditioners;
 
@@ -46,17 +45,12 @@ impl<T: Real> PreconditionerFamily<T> for BuiltInPreconditioners {
         {
             return Some(Box::new(splitting));
         }
-        // 1: cells share unknowns; 3, 4: linear functions on a triangle, a tetrahedron
-        if let Some(block_size @ (1 | 3 | 4)) = unknowns_per_cell(supports)
-            && matrix.size().is_multiple_of(block_size)
-        {
-            let prolongation = Prolongation::to_element(supports, level.size())?;
-            let matrix = Cow::Borrowed(matrix);
-            return Some(Box::new(Multigrid::of_element(matrix, prolongation, level, block_size)));
-        }
-        let multigrid = Multigrid::new(&level.matrix, level.coarser.as_ref());
-        let correction =
-            VertexCorrection::new(Box::new(multigrid), Cow::Borrowed(&level.fixed), supports)?;
-        Some(Box::new(AuxiliarySpace::new(matrix, supports, correction)?))
+        // 1: cells share unknowns
+        let cell_size = unknowns_per_cell(supports).filter(|size| {
+            [1, 2, 3, 4, 6, 10].contains(size) && matrix.size().is_multiple_of(*size)
+        })?;
+        let prolongation = Prolongation::to_element(supports, level.size())?;
+        let matrix = Cow::Borrowed(matrix);
+        Some(Box::new(Multigrid::of_element(matrix, prolongation, level, cell_size)))
     }
 }

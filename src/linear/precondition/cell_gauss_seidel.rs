@@ -22,6 +22,21 @@ use crate::parallel::vectors::{
 };
 use crate::real::Real;
 
+/// A smoother by cells, whatever the number of their unknowns.
+pub(crate) trait CellSmoother: Send + Sync {
+    /// Sets the fixed unknowns.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositive`] if a block is not positive definite on its free unknowns.
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError>;
+    /// One for free unknowns, zero for fixed ones.
+    fn mask(&self) -> &[f32];
+    /// A forward iteration from zero: sets `x`, and `r = b - A x` on free unknowns, zero on fixed ones.
+    fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]);
+    /// A backward iteration from `x`. `r` is workspace.
+    fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]);
+}
+
 /// The block Gauss-Seidel smoother of a symmetric matrix, divided by a scale, with `N` unknowns in each cell.
 pub(crate) struct CellGaussSeidel<const N: usize> {
     chunks: Vec<CellRows<N>>,
@@ -174,12 +189,10 @@ impl<const N: usize> CellGaussSeidel<N> {
         let inverses = vec![[[0.0; N]; N]; n / N];
         Self { chunks, diagonal, inverses, mask: Vec::new() }
     }
+}
 
-    /// Sets the fixed unknowns.
-    ///
-    /// # Errors
-    /// [`FactorError::NotPositive`] if a block is not positive definite on its free unknowns.
-    pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+impl<const N: usize> CellSmoother for CellGaussSeidel<N> {
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         let is_first = self.mask.is_empty();
         if is_first {
             self.mask = zeros(fixed.len());
@@ -207,13 +220,11 @@ impl<const N: usize> CellGaussSeidel<N> {
         if is_positive.into_inner() { Ok(()) } else { Err(FactorError::NotPositive) }
     }
 
-    /// One for free unknowns, zero for fixed ones.
-    pub fn mask(&self) -> &[f32] {
+    fn mask(&self) -> &[f32] {
         &self.mask
     }
 
-    /// A forward iteration from zero: sets `x`, and `r = b - A x` on free unknowns, zero on fixed ones.
-    pub fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+    fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         sum_chunks_of_groups_of_two(x, r, N, |range, x, r| {
             let chunk = &self.chunks[range.start / chunk_of_groups(N)];
             let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
@@ -243,8 +254,7 @@ impl<const N: usize> CellGaussSeidel<N> {
         });
     }
 
-    /// A backward iteration from `x`. `r` is workspace.
-    pub fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+    fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         let old = x.as_chunks::<N>().0;
         for_each_chunk_of_groups(r, N, |range, r| {
             r.copy_from_slice(&b[range.clone()]);

@@ -3,12 +3,10 @@
 //! `preconditioner`: the traits. `multigrid`: conforming linear functions, and other elements with conforming linear
 //! functions as auxiliary space; its parts are `smoother`, `gauss_seidel`, `cell_gauss_seidel`, `prolongation`,
 //! `aggregation` and `coarse_level`. `mean_jump_splitting`, `mixed_block`, `facet_mean_form` and
-//! `crouzeix_raviart_space`: over-penalised discontinuous elements. `auxiliary_space`: all other discontinuous
-//! elements. `coarse_spaces`: the spaces that are known for an inequality. `built_in`: the preconditioner that fits an
+//! `crouzeix_raviart_space`: over-penalised discontinuous linear elements. `coarse_spaces`: the spaces that are known for an inequality. `built_in`: the preconditioner that fits an
 //! inequality.
 
 mod aggregation;
-mod auxiliary_space;
 mod built_in;
 mod cell_gauss_seidel;
 mod coarse_level;
@@ -23,7 +21,6 @@ mod preconditioner;
 mod prolongation;
 mod smoother;
 
-pub(crate) use auxiliary_space::{AuxiliarySpace, VertexCorrection, unknowns_per_cell};
 pub use built_in::BuiltInPreconditioners;
 pub use coarse_level::{CoarseLevel, P1Level};
 pub use coarse_spaces::CoarseSpaces;
@@ -31,3 +28,5 @@ pub(crate) use mean_jump_splitting::{FacetMeansSolver, MeanJumpSplitting};
 pub(crate) use mixed_block::BlockSolver;
 pub use preconditioner::{PreconditionedSystem, Preconditioner, PreconditionerFamily};
 pub use prolongation::Prolongation;
+pub(crate) use prolongation::rows_of_means;
+pub(crate) use smoother::unknowns_per_cell;

@@ -1,8 +1,9 @@
 //! The smoother of a level of multigrid, by unknowns or by cells.
 
-use super::cell_gauss_seidel::CellGaussSeidel;
+use super::cell_gauss_seidel::{CellGaussSeidel, CellSmoother};
 use super::gauss_seidel::GaussSeidel;
-use crate::algebra::SparseMatrix;
+use crate::algebra::{SparseMatrix, Support};
+use crate::element::MAX_BASIS;
 use crate::linear::direct::FactorError;
 use crate::real::Real;
 
@@ -10,10 +11,8 @@ use crate::real::Real;
 pub(crate) enum Smoother {
     /// One unknown after the other.
     Unknowns(GaussSeidel),
-    /// All unknowns of a triangle at a time, three of them.
-    Triangles(CellGaussSeidel<3>),
-    /// All unknowns of a tetrahedron at a time, four of them.
-    Tetrahedra(CellGaussSeidel<4>),
+    /// All unknowns of a cell at a time.
+    Cells(Box<dyn CellSmoother>),
 }
 
 impl Smoother {
@@ -23,11 +22,19 @@ impl Smoother {
         cell_size: usize,
         scale: f64,
     ) -> Option<Self> {
-        match cell_size {
-            3 => Some(Self::Triangles(CellGaussSeidel::new(matrix, scale))),
-            4 => Some(Self::Tetrahedra(CellGaussSeidel::new(matrix, scale))),
-            _ => None,
-        }
+        Some(Self::Cells(match cell_size {
+            // linear functions on an interval
+            2 => Box::new(CellGaussSeidel::<2>::new(matrix, scale)),
+            // linear functions on a triangle, quadratic ones on an interval
+            3 => Box::new(CellGaussSeidel::<3>::new(matrix, scale)),
+            // linear functions on a tetrahedron
+            4 => Box::new(CellGaussSeidel::<4>::new(matrix, scale)),
+            // quadratic functions on a triangle
+            6 => Box::new(CellGaussSeidel::<6>::new(matrix, scale)),
+            // quadratic functions on a tetrahedron
+            10 => Box::new(CellGaussSeidel::<10>::new(matrix, scale)),
+            _ => return None,
+        }))
     }
 
     /// Sets the fixed unknowns, and the unknowns `kept`, which are neither fixed nor smoothed; smoothers by cells do
@@ -41,8 +48,7 @@ impl Smoother {
                 smoother.set_fixed(fixed, kept);
                 Ok(())
             }
-            Self::Triangles(smoother) => smoother.set_fixed(fixed),
-            Self::Tetrahedra(smoother) => smoother.set_fixed(fixed),
+            Self::Cells(smoother) => smoother.set_fixed(fixed),
         }
     }
 
@@ -50,8 +56,7 @@ impl Smoother {
     pub fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         match self {
             Self::Unknowns(smoother) => smoother.forward(b, x, r),
-            Self::Triangles(smoother) => smoother.forward(b, x, r),
-            Self::Tetrahedra(smoother) => smoother.forward(b, x, r),
+            Self::Cells(smoother) => smoother.forward(b, x, r),
         }
     }
 
@@ -59,8 +64,7 @@ impl Smoother {
     pub fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         match self {
             Self::Unknowns(smoother) => smoother.backward(b, x, r),
-            Self::Triangles(smoother) => smoother.backward(b, x, r),
-            Self::Tetrahedra(smoother) => smoother.backward(b, x, r),
+            Self::Cells(smoother) => smoother.backward(b, x, r),
         }
     }
 
@@ -68,8 +72,27 @@ impl Smoother {
     pub fn mask(&self) -> &[f32] {
         match self {
             Self::Unknowns(smoother) => smoother.inverse_diagonal(),
-            Self::Triangles(smoother) => smoother.mask(),
-            Self::Tetrahedra(smoother) => smoother.mask(),
+            Self::Cells(smoother) => smoother.mask(),
         }
     }
+}
+
+/// The number of unknowns of a cell, from the supports of all unknowns: one if no unknown belongs to a single cell.
+/// If every unknown belongs to a cell: the number `n` of unknowns at the beginning of the list that belong to the cell
+/// of the first unknown, provided that `n` is at most [`MAX_BASIS`] and the list consists of groups of `n` consecutive
+/// unknowns, each group with one cell. `None` for every other list, and for the empty list.
+///
+/// The function does not check that two groups belong to different cells.
+pub(crate) fn unknowns_per_cell(supports: &[Support]) -> Option<usize> {
+    let first = supports.first()?.cell();
+    if first.is_none() {
+        return supports.iter().all(|p| p.cell().is_none()).then_some(1);
+    }
+    let size = supports.iter().take_while(|p| p.cell() == first).count();
+    let is_one_cell = |chunk: &[Support]| {
+        chunk.len() == size
+            && chunk[0].cell().is_some()
+            && chunk.iter().all(|p| p.cell() == chunk[0].cell())
+    };
+    (size <= MAX_BASIS && supports.chunks(size).all(is_one_cell)).then_some(size)
 }

@@ -275,8 +275,10 @@ fn rounding_in_a_krylov_method_is_not_an_indefinite_matrix() {
 /// Where bounds at nodes of quadratics take many active sets, the row says which bounds take few.
 #[test]
 fn bounds_on_cell_means_are_recommended_where_they_help() {
+    let made = scenes::by_name("lshape-2d").unwrap().make(&scenes::Parameters::default());
+    let scenes::AnyScene::Two(scene) = made.unwrap() else { panic!() };
     let row = |scheme: &str| {
-        let study = Study::<f64, 2>::new(scenes::radial(1.0)).levels([32]);
+        let study = Study::<f64, 2>::new(scene.clone()).levels([16]);
         study.named_scheme(&scheme.parse().unwrap()).run().unwrap().rows.remove(0)
     };
     let (nodes, means) = (row("wopsip-p2@eta=1e4"), row("wopsip-p2:cell-means@eta=1e4"));

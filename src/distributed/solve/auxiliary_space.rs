@@ -6,114 +6,81 @@
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::preconditioner::Preconditioner;
-use super::prolongation::rows_of_means;
 use crate::algebra::dense::invert_positive_definite;
 use crate::algebra::{RectangularMatrix, SparseMatrix, Support};
-use crate::element::MAX_BASIS;
-use crate::linear::direct::FactorError;
+use crate::linear::precondition::{rows_of_means, unknowns_per_cell};
+use crate::linear::{FactorError, Preconditioner};
 use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups, zeros};
-use crate::real::Real;
 
-/// The preconditioner `D^-1 + P C P^T` of a symmetric matrix `A`.
+/// The preconditioner `D^-1 + P C P^T` of a symmetric matrix `A` on a part of a mesh.
 ///
 /// `D` is the block diagonal part of `A` with one block for the unknowns of each cell. `P` maps the
 /// vertex values of a conforming linear function to unknowns: an unknown is the mean of the values
-/// at the vertices of its support. `C` is a preconditioner, a multigrid cycle for example, of the matrix of
-/// the form on conforming linear functions ([`P1Level`](super::coarse_level::P1Level)), not of `A`.
-pub(crate) struct AuxiliarySpace<'a, T: Real> {
-    blocks: BlockJacobi<'a, T>,
-    /// On a part of a mesh, the unknowns that the part owns; only the blocks of these are complete. `None` on a whole
-    /// mesh.
-    own: Option<Vec<bool>>,
-    correction: VertexCorrection<'a, T>,
+/// at the vertices of its support. `C` is a preconditioner of the matrix of the form on conforming linear functions, not
+/// of `A`.
+pub(super) struct AuxiliarySpace<'a> {
+    blocks: BlockJacobi<'a>,
+    /// The unknowns that the part owns; only the blocks of these are complete.
+    own: Vec<bool>,
+    correction: VertexCorrection<'a>,
 }
 
-impl<'a, T: Real> AuxiliarySpace<'a, T> {
-    /// The preconditioner of a symmetric matrix; `None` if [`unknowns_per_cell`] returns `None`, or the size of the
-    /// matrix is not a multiple of the number of unknowns of a cell.
+impl<'a> AuxiliarySpace<'a> {
+    /// The preconditioner of a symmetric matrix; `D^-1` corrects the unknowns for which `own` is true. `None` if
+    /// [`unknowns_per_cell`] returns `None`, or the size of the matrix is not a multiple of the number of unknowns of a
+    /// cell.
     pub fn new(
-        matrix: &'a SparseMatrix<T>,
+        matrix: &'a SparseMatrix<f64>,
         supports: &[Support],
-        correction: VertexCorrection<'a, T>,
+        own: Vec<bool>,
+        correction: VertexCorrection<'a>,
     ) -> Option<Self> {
         let blocks = BlockJacobi::new(matrix, unknowns_per_cell(supports)?)?;
-        Some(Self { blocks, own: None, correction })
-    }
-
-    /// The preconditioner on a part of a mesh: `D^-1` corrects only the unknowns for which `own` is true.
-    #[must_use]
-    pub fn with_own_blocks(self, own: Vec<bool>) -> Self {
-        Self { own: Some(own), ..self }
+        Some(Self { blocks, own, correction })
     }
 }
 
-impl<T: Real> Preconditioner<T> for AuxiliarySpace<'_, T> {
+impl Preconditioner<f64> for AuxiliarySpace<'_> {
     fn name(&self) -> &'static str {
         "auxiliary-space"
     }
 
     fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        match &self.own {
-            None => self.blocks.set_fixed(fixed),
-            Some(own) => {
-                let is_fixed = |(&fixed, &own): (&bool, &bool)| fixed || !own;
-                self.blocks.set_fixed(&fixed.iter().zip(own).map(is_fixed).collect::<Vec<_>>())
-            }
-        }
+        let is_fixed = |(&fixed, &own): (&bool, &bool)| fixed || !own;
+        let of_blocks: Vec<bool> = fixed.iter().zip(&self.own).map(is_fixed).collect();
         // also after an error: the second call is collective over the parts of a mesh
-        .and(self.correction.set_fixed(fixed))
+        self.blocks.set_fixed(&of_blocks).and(self.correction.set_fixed(fixed))
     }
 
-    fn apply(&mut self, r: &[T], z: &mut [T]) {
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
         self.blocks.apply(r, z);
         self.correction.add(r, z);
     }
 }
 
-/// The number of unknowns of a cell, from the supports of all unknowns: one if no unknown belongs to a single cell.
-/// If every unknown belongs to a cell: the number `n` of unknowns at the beginning of the list that belong to the cell
-/// of the first unknown, provided that `n` is at most [`MAX_BASIS`] and the list consists of groups of `n` consecutive
-/// unknowns, each group with one cell. `None` for every other list, and for the empty list.
-///
-/// The function does not check that two groups belong to different cells.
-pub(crate) fn unknowns_per_cell(supports: &[Support]) -> Option<usize> {
-    let first = supports.first()?.cell();
-    if first.is_none() {
-        return supports.iter().all(|p| p.cell().is_none()).then_some(1);
-    }
-    let size = supports.iter().take_while(|p| p.cell() == first).count();
-    let is_one_cell = |chunk: &[Support]| {
-        chunk.len() == size
-            && chunk[0].cell().is_some()
-            && chunk.iter().all(|p| p.cell() == chunk[0].cell())
-    };
-    (size <= MAX_BASIS && supports.chunks(size).all(is_one_cell)).then_some(size)
-}
-
 /// The correction `P C P^T r` by conforming linear functions that vanish at the vertices in the
 /// supports of fixed unknowns; for `P` and `C` see [`AuxiliarySpace`].
-pub(crate) struct VertexCorrection<'a, T: Real> {
+pub(super) struct VertexCorrection<'a> {
     /// `C`.
-    coarse: Box<dyn Preconditioner<T> + 'a>,
+    coarse: Box<dyn Preconditioner<f64> + 'a>,
     /// The vertices with Dirichlet data.
     dirichlet: Cow<'a, [bool]>,
     /// `P`: an unknown is the mean of the values at the vertices of its support.
-    interpolation: RectangularMatrix<T>,
+    interpolation: RectangularMatrix<f64>,
     /// `P^T`.
-    transpose: RectangularMatrix<T>,
+    transpose: RectangularMatrix<f64>,
     /// Whether a vertex is fixed; see [`VertexCorrection::set_fixed`].
     fixed_vertices: Vec<bool>,
     /// Workspace: `P^T r` and `C P^T r`, zero at fixed vertices.
-    residual: Vec<T>,
-    values: Vec<T>,
+    residual: Vec<f64>,
+    values: Vec<f64>,
 }
 
-impl<'a, T: Real> VertexCorrection<'a, T> {
+impl<'a> VertexCorrection<'a> {
     /// The correction with functions that vanish at the vertices for which `dirichlet` is true; `None` if a support is
     /// empty or contains a vertex that is not less than the length of `dirichlet`.
     pub fn new(
-        coarse: Box<dyn Preconditioner<T> + 'a>,
+        coarse: Box<dyn Preconditioner<f64> + 'a>,
         dirichlet: Cow<'a, [bool]>,
         supports: &[Support],
     ) -> Option<Self> {
@@ -142,12 +109,12 @@ impl<'a, T: Real> VertexCorrection<'a, T> {
     }
 
     /// `z = z + P C P^T r`.
-    pub fn add(&mut self, r: &[T], z: &mut [T]) {
+    pub fn add(&mut self, r: &[f64], z: &mut [f64]) {
         let (transpose, interpolation) = (&self.transpose, &self.interpolation);
         let fixed_vertices = &self.fixed_vertices;
         for_each_chunk(&mut self.residual, |range, out| {
             for (v, out) in range.zip(out) {
-                *out = if fixed_vertices[v] { T::lit(0.0) } else { row_dot(transpose.row(v), r) };
+                *out = if fixed_vertices[v] { 0.0 } else { row_dot(transpose.row(v), r) };
             }
         });
         self.coarse.apply(&self.residual, &mut self.values);
@@ -162,21 +129,21 @@ impl<'a, T: Real> VertexCorrection<'a, T> {
 
 /// A row times a vector.
 #[inline(always)]
-fn row_dot<T: Real>((columns, weights): (&[u32], &[T]), x: &[T]) -> T {
-    columns.iter().zip(weights).fold(T::lit(0.0), |s, (&j, &w)| s + w * x[j as usize])
+fn row_dot((columns, weights): (&[u32], &[f64]), x: &[f64]) -> f64 {
+    columns.iter().zip(weights).fold(0.0, |s, (&j, &w)| s + w * x[j as usize])
 }
 
 /// The inverses of the diagonal blocks of cells on their free unknowns.
-struct BlockJacobi<'a, T> {
-    matrix: &'a SparseMatrix<T>,
+struct BlockJacobi<'a> {
+    matrix: &'a SparseMatrix<f64>,
     /// Number of unknowns of a cell.
     size: usize,
     /// The inverses by rows, one inverse after the other; zero in rows and columns of fixed unknowns.
-    inverses: Vec<T>,
+    inverses: Vec<f64>,
 }
 
-impl<'a, T: Real> BlockJacobi<'a, T> {
-    fn new(matrix: &'a SparseMatrix<T>, size: usize) -> Option<Self> {
+impl<'a> BlockJacobi<'a> {
+    fn new(matrix: &'a SparseMatrix<f64>, size: usize) -> Option<Self> {
         let n = matrix.size();
         n.is_multiple_of(size).then(|| Self { matrix, size, inverses: zeros(n * size) })
     }
@@ -203,14 +170,14 @@ impl<'a, T: Real> BlockJacobi<'a, T> {
     }
 
     /// `z = D^-1 r`.
-    fn apply(&self, r: &[T], z: &mut [T]) {
+    fn apply(&self, r: &[f64], z: &mut [f64]) {
         let (size, inverses) = (self.size, &self.inverses);
         for_each_chunk_of_groups(z, size, |range, chunk| {
             for (k, z) in (range.start / size..).zip(chunk.chunks_exact_mut(size)) {
                 let r = &r[k * size..(k + 1) * size];
                 let block = &inverses[k * size * size..(k + 1) * size * size];
                 for (z, row) in z.iter_mut().zip(block.chunks_exact(size)) {
-                    *z = row.iter().zip(r).fold(T::lit(0.0), |s, (&a, &r)| s + a * r);
+                    *z = row.iter().zip(r).fold(0.0, |s, (&a, &r)| s + a * r);
                 }
             }
         });
@@ -220,9 +187,9 @@ impl<'a, T: Real> BlockJacobi<'a, T> {
 /// Sets `block` to the diagonal block that begins with the unknown `first`, with zeros in rows and columns of fixed
 /// unknowns. `fixed` has one entry for each unknown of the block. The columns of a row
 /// of the matrix must be ascending.
-fn read_block<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], block: &mut [T]) {
+fn read_block(matrix: &SparseMatrix<f64>, first: usize, fixed: &[bool], block: &mut [f64]) {
     let size = fixed.len();
-    block.fill(T::lit(0.0));
+    block.fill(0.0);
     for (k, row) in block.chunks_exact_mut(size).enumerate().filter(|&(k, _)| !fixed[k]) {
         let (columns, values) = matrix.row(first + k);
         let from = columns.partition_point(|&j| (j as usize) < first);
