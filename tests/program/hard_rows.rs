@@ -12,14 +12,16 @@ const PRECONDITIONED: &str = "preconditioned-active-set";
 const MULTIGRID: &str = "monotone-multigrid";
 
 /// The counts are 1.2 times those that were measured, rounded up.
-const HARD_ROWS: [HardRow; 22] = [
+const HARD_ROWS: [HardRow; 23] = [
     // the active set changes in cycles that do not become smaller: patience saves factors of a large matrix
     HardRow("--scene lshape-2d --scheme wopsip:facet-means --levels 128", [39, 48, 0], MULTIGRID),
-    HardRow("--scene torsion-2d --scheme wopsip --levels 64", [23, 14, 15], DIRECT),
-    HardRow("--scene ball-2d --scheme wopsip --levels 64", [20, 12, 12], DIRECT),
-    HardRow("--scene cone-2d --scheme wopsip --levels 64", [21, 10, 14], DIRECT),
-    HardRow("--scene pyramid-full-2d --scheme wopsip --levels 64", [26, 10, 17], DIRECT),
-    HardRow("--scene contrast-disc-2d --scheme wopsip --levels 64", [29, 39, 28], DIRECT),
+    HardRow("--scene torsion-2d --scheme wopsip --levels 64", [30, 14, 22], DIRECT),
+    HardRow("--scene ball-2d --scheme wopsip --levels 64", [27, 12, 20], DIRECT),
+    HardRow("--scene cone-2d --scheme wopsip --levels 64", [29, 10, 22], DIRECT),
+    HardRow("--scene pyramid-full-2d --scheme wopsip --levels 64", [33, 10, 24], DIRECT),
+    HardRow("--scene contrast-disc-2d --scheme wopsip --levels 64", [30, 39, 29], DIRECT),
+    // factors of a matrix that is not symmetric are dear
+    HardRow("--scene contrast-disc-2d --scheme nipg --levels 64", [26, 202, 0], PRECONDITIONED),
     HardRow("--scene radial-3d --scheme wopsip --levels 16", [11, 38, 0], PRECONDITIONED),
     HardRow("--scene degenerate2-2d --scheme p1 --levels 128", [20, 20, 0], MULTIGRID),
     HardRow("--scene degenerate2-2d --scheme cr --levels 128", [2, 12, 0], PRECONDITIONED),
@@ -36,9 +38,9 @@ const HARD_ROWS: [HardRow; 22] = [
         [41, 113, 0],
         PRECONDITIONED,
     ),
-    HardRow("--scene biactive-half-2d --scheme wopsip-p2 --levels 16", [21, 0, 21], DIRECT),
-    HardRow("--scene lshape-2d --scheme sipg-p2 --levels 16", [33, 0, 33], DIRECT),
-    HardRow("--scene lshape-2d --scheme wopsip-p2 --levels 16", [35, 0, 35], DIRECT),
+    HardRow("--scene biactive-half-2d --scheme wopsip-p2 --levels 16", [30, 0, 30], DIRECT),
+    HardRow("--scene lshape-2d --scheme sipg-p2 --levels 16", [47, 0, 47], DIRECT),
+    HardRow("--scene lshape-2d --scheme wopsip-p2 --levels 16", [48, 0, 48], DIRECT),
     HardRow(
         "--scene radial-2d --scheme sipg --levels 4 --mesh DATA/unstructured_square.msh",
         [6, 14, 0],

@@ -32,11 +32,12 @@ pub(super) const CROSSOVER: usize = 10_000;
 ///
 /// | turn | place | row |
 /// |---|---|---|
-/// | a Krylov method from [`CROSSOVER`] unknowns on, factors where it does not fit the matrix | `uses_krylov`, [`End::Unsuitable`] | degenerate2-2d, `cr`, 128 |
+/// | a Krylov method from [`CROSSOVER`] unknowns on | `uses_krylov` | spiral-2d, `wopsip:facet-means`, 64 |
+/// | factors where a Krylov method does not fit the matrix | [`End::Unsuitable`] | contrast-disc-2d, `wopsip`, 64 |
+/// | three times the patience where what follows is dear | `krylov_limit` | contrast-disc-2d, `nipg`, 64 |
 /// | the inequality near a few unknowns whose states change in turn | `local_inequality` | radial-3d, `wopsip`, 16 |
-/// | values of the best iterate, if the last one is no solution | `Iterate::keep_if_best` | lshape-2d, `sipg-p2`, 16 |
-/// | another right-hand side for jump multipliers, after a Krylov method | `determine_jump_multipliers` | spiral-2d, `wopsip:facet-means`, 64 |
 /// | a body that bounds alone hold starts with all its bounds active | `starting_states` | `neu3.toml`, `p1`, 8 |
+/// | the best iterate, where the last one is no solution | `outcome_of_best` | none: an iteration limit |
 ///
 /// One part of a mesh has no factors: the first iteration is all.
 pub(super) fn solve<T: Real>(

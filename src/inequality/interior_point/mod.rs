@@ -23,7 +23,8 @@ use crate::real::Real;
 use bound_pairs::{BoundPair, mean_product, ratio_test};
 use newton_system::{MixedVector, NewtonFactors, NewtonSystem};
 
-/// Largest number of linear systems of a run. Runs of the catalogue take 10 to 20 in the mean and 35 at most.
+/// Largest number of linear systems of a run. Runs of the file of figures take 11 in the mean and 24 at
+/// most.
 pub(crate) const MAX_SYSTEMS: usize = 60;
 
 /// Fraction of the distance to the first zero of a slack or dual variable that a step takes.

@@ -151,7 +151,7 @@ fn curved_and_kinked_obstacles_converge() {
     converges(scenes::ball_2d(), wopsip(10.0), 64, 25);
     converges(scenes::cone::<2>(), wopsip(1.0), 32, 25);
     converges(scenes::cone::<2>(), wopsip(10.0), 32, 25);
-    converges(scenes::pyramid_full_2d(), Wopsip::default(), 16, 25);
+    converges(scenes::pyramid_full_2d(), Wopsip::default(), 16, 30);
     for eta in [1.0, 10.0] {
         converges(scenes::oscillating_1d(), wopsip(eta), 128, 25);
     }
@@ -162,9 +162,9 @@ fn curved_and_kinked_obstacles_converge() {
 #[test]
 fn ragged_contact_is_found_under_every_penalty() {
     for eta in [1e4, 1e8] {
-        converges(scenes::cone::<2>(), wopsip(eta), 16, 25);
-        converges(scenes::torsion_2d(10.0), wopsip(eta), 16, 25);
-        converges(scenes::disc_2d(), wopsip(eta), 16, 25);
+        converges(scenes::cone::<2>(), wopsip(eta), 16, 30);
+        converges(scenes::torsion_2d(10.0), wopsip(eta), 16, 30);
+        converges(scenes::disc_2d(), wopsip(eta), 16, 30);
     }
 }
 
