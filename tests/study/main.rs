@@ -11,6 +11,8 @@ mod named_schemes;
 mod noise;
 mod one_problem;
 mod pictures;
+mod problem_file_data;
+mod problem_file_mistakes;
 mod problem_files;
 mod references;
 mod report;

@@ -1,0 +1,171 @@
+//! The data of problems from TOML files: which table gives which datum, and where data need values.
+
+use std::path::Path;
+
+use super::problem_files::{BOX, SIDES};
+use super::scratch::Scratch;
+use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::prelude::*;
+use unilateral::problem_file::{AnyOwnProblem, read};
+
+/// Which data must have values at vertices: those that nodes or gradients read there, and no others.
+#[test]
+fn data_are_held_against_vertices_where_nodes_read_them() {
+    let folder = Scratch::new("problem-vertices");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let path = folder.0.join("vertices.toml");
+    let fault = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        read(&path).err().map(|error| error.to_string())
+    };
+    // not a number on the line x = 0 alone, which has vertices and no point of a rule
+    let hole = "\"if(x == 0, 0/0, -1)\"";
+    let in_domain = |table: &str| format!("{BOX}{table}\n{SIDES}");
+    let on_side = |kind: &str, name: &str| {
+        let sides = SIDES.split("[boundary.bottom]").next().unwrap();
+        format!("{BOX}{sides}[boundary.bottom]\nkind = \"{kind}\"\n{name} = {hole}\n")
+    };
+    let exact = |value: &str, slope: &str| {
+        format!("{BOX}{SIDES}[exact]\nvalue = {value}\ngradient = [{slope}, 0]\n")
+    };
+    for (datum, text) in [
+        ("obstacle.lower.default", in_domain(&format!("[obstacle]\nlower.default = {hole}"))),
+        ("obstacle.upper.default", in_domain(&format!("[obstacle]\nupper.default = {hole}"))),
+        (
+            "source.default.level",
+            in_domain(&format!("[source]\ndefault = {{ value = 1, level = {hole} }}")),
+        ),
+        ("boundary.bottom.value", on_side("dirichlet", "value")),
+        ("boundary.bottom.gap", on_side("contact", "gap")),
+        ("exact.value", exact(hole, "0")),
+    ] {
+        let message = fault(&text).unwrap_or_else(|| panic!("{datum} has no fault"));
+        assert!(message.contains(&format!("{datum} is NaN at (0.000000, ")), "{message}");
+    }
+    for text in [
+        in_domain(&format!("[source]\ndefault = {hole}")),
+        in_domain(&format!("[reaction]\ndefault = {}", hole.replace("-1", "1"))),
+        in_domain(&format!("[coefficient]\ndefault = {}", hole.replace("-1", "1"))),
+        on_side("neumann", "flux"),
+        exact("1", &hole.replace("-1", "0")),
+    ] {
+        assert_eq!(fault(&text), None, "{text}");
+    }
+}
+
+/// A datum for the rest holds where no region is named, and is not asked elsewhere.
+#[test]
+fn a_default_is_not_asked_in_named_regions() {
+    let folder = Scratch::new("problem-default");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let plate = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.msh");
+    std::fs::copy(plate, folder.0.join("plate.msh")).unwrap();
+    let path = folder.0.join("default.toml");
+    let rest = "[boundary.default]\nkind = \"neumann\"\n";
+    let hole = "if((x - 0.8)^2 < 0.01 && y^2 < 0.01, 0, 2)";
+    let problem = |regions: &str| {
+        let text = format!("mesh = \"plate.msh\"\n{rest}[coefficient]\n{regions}");
+        std::fs::write(&path, text).unwrap();
+        read(&path).map_err(|error| error.to_string())
+    };
+    let error = problem(&format!("default = \"{hole}\"\n")).unwrap_err();
+    assert!(error.contains("coefficient.default is 0 at (0."), "{error}");
+    let AnyOwnProblem::Two(own) =
+        problem(&format!("default = \"{hole}\"\ninclusion = 7\n")).unwrap()
+    else {
+        panic!("in the plane")
+    };
+    // twice the energy of the first coordinate is the integral of the coefficient
+    let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default()).unwrap();
+    let slope: Vec<f64> = mesh.vertices().iter().map(|x| x[0]).collect();
+    let stiff = |c: &usize| mesh.regions()[mesh.region(*c)].contains(&"inclusion".to_owned());
+    let volume =
+        |cells: Vec<usize>| -> f64 { cells.into_iter().map(|c| mesh.geometry(c).volume).sum() };
+    let (inside, outside) = (0..mesh.n_cells()).partition(stiff);
+    let expected = 7.0 * volume(inside) + 2.0 * volume(outside);
+    assert!((2.0 * of.energy(&slope).unwrap() / expected - 1.0).abs() < 1e-12);
+}
+
+/// Groups whose names fix a kind take no default of another kind: they are missing.
+#[test]
+fn a_default_is_not_given_to_groups_of_another_kind() {
+    let folder = Scratch::new("problem-default-kind");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/square.msh");
+    let path = folder.0.join("default.toml");
+    let problem = |more: &str| {
+        let mesh = mesh.display().to_string();
+        let text = format!("mesh = {mesh:?}\n[boundary.default]\nkind = \"neumann\"\n{more}");
+        std::fs::write(&path, text).unwrap();
+        read(&path).map(|_| ()).map_err(|error| error.to_string())
+    };
+    let dirichlet = "[boundary.dirichlet]\nkind = \"dirichlet\"\n";
+    let contact = "[boundary.contact]\nkind = \"contact\"\n";
+    for (tables, missing) in [(dirichlet, "contact"), (contact, "dirichlet")] {
+        let error = problem(tables).unwrap_err();
+        let expected = format!("the boundary group `{missing}` of the mesh is missing");
+        assert!(error.contains(&expected), "{error}");
+    }
+    assert_eq!(problem(&format!("{dirichlet}{contact}")), Ok(()));
+}
+
+/// Every kind of datum by region or by side is that of its table.
+#[test]
+fn tables_of_a_file_become_the_data_of_their_name() {
+    let folder = Scratch::new("problem-tables");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let plate = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.msh");
+    std::fs::copy(plate, folder.0.join("plate.msh")).unwrap();
+    let path = folder.0.join("tables.toml");
+    let problem = |more: &str| {
+        let text = format!(
+            "mesh = \"plate.msh\"\n[source]\ninclusion = 4\nmatrix = 5\n\
+            [obstacle]\nlower.inclusion = -8\nlower.matrix = -9\n\
+            upper.inclusion = 10\nupper.matrix = 11\n\
+            [boundary.bore]\nkind = \"dirichlet\"\nvalue = 0.5\n\
+            [boundary.edges]\nkind = \"neumann\"\nflux = 12\n\
+            [boundary.ends]\nkind = \"contact\"\ngap = -1\n{more}"
+        );
+        std::fs::write(&path, text).unwrap();
+        let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
+        let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+        (own.problem, mesh)
+    };
+    let (with_coefficient, mesh) = problem("[coefficient]\ninclusion = 2\nmatrix = 3\n");
+    let (with_reaction, _) = problem("[reaction]\ninclusion = 6\nmatrix = 7\n");
+    let mut volumes = [0.0; 2];
+    for cell in 0..mesh.n_cells() {
+        let is_matrix = mesh.regions()[mesh.region(cell)].contains(&"matrix".to_owned());
+        volumes[usize::from(is_matrix)] += mesh.geometry(cell).volume;
+    }
+    let neumann = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Neumann);
+    let measure = |cell: u32, local: u8| mesh.geometry(cell as usize).facet_measure(local.into());
+    let length: f64 = neumann.map(|f| measure(f.cell, f.local)).sum();
+    fn of<'a>(problem: &'a Problem<2>, mesh: &'a Mesh<f64, 2>) -> Discretisation<'a, f64, 2> {
+        Discretisation::new(&ConformingP1, problem, mesh, Default::default()).unwrap()
+    }
+    // the quadratic and the linear part of the energy of a function, both twice
+    let parts = |problem: &Problem<2>, u: fn(&Point<f64, 2>) -> f64| {
+        let values: Vec<f64> = mesh.vertices().iter().map(u).collect();
+        let opposite: Vec<f64> = values.iter().map(|u| -u).collect();
+        let [one, other] = [values, opposite].map(|u| of(problem, &mesh).energy(&u).unwrap());
+        [one + other, other - one]
+    };
+    let [coefficient, _] = parts(&with_coefficient, |x| x[0]);
+    let [reaction, load] = parts(&with_reaction, |_| 1.0);
+    for (found, expected) in [
+        (coefficient, 2.0 * volumes[0] + 3.0 * volumes[1]),
+        (reaction, 6.0 * volumes[0] + 7.0 * volumes[1]),
+        (load, 2.0 * (4.0 * volumes[0] + 5.0 * volumes[1] + 12.0 * length)),
+    ] {
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+    }
+    let bounds = of(&with_reaction, &mesh).bounds().unwrap();
+    let mut bounds: Vec<String> = bounds.iter().map(|bound| format!("{bound:?}")).collect();
+    bounds.sort();
+    bounds.dedup();
+    // where the regions meet the inner ones, on the ends above the gap
+    let expected = ["Both(-1.0, 11.0)", "Both(-8.0, 10.0)", "Both(-9.0, 11.0)", "Fixed(0.5)"];
+    assert_eq!(bounds, expected);
+}

@@ -1,0 +1,179 @@
+//! Mistakes in TOML files of problems are found where they are.
+
+use std::path::Path;
+
+use super::problem_files::{BOX, SIDES};
+use super::scratch::Scratch;
+use unilateral::problem_file::{ProblemFileError, ProblemFileFault, read};
+
+#[test]
+fn mistakes_are_found_where_they_are() {
+    let folder = Scratch::new("problem-mistakes");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let plate = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.msh");
+    std::fs::copy(plate, folder.0.join("plate.msh")).unwrap();
+    let on_plate = |rest: &str| format!("mesh = \"plate.msh\"\n{rest}");
+    let ends = "[boundary.ends]\nkind = \"dirichlet\"\n[boundary.bore]\nkind = \"dirichlet\"\n";
+    let all = format!("{ends}[boundary.edges]\nkind = \"neumann\"\n");
+    let cases = [
+        ("name = ".to_owned(), (1, 8), "value"),
+        ("name = 3\nbox = [[0], [1]]".to_owned(), (1, 8), "`name` must be a string, not 3"),
+        ("name = \"a\"\n".to_owned(), (1, 1), "`mesh` is missing"),
+        (format!("{BOX}mesh = \"a.msh\""), (1, 7), "not both"),
+        ("box = [[0, 1], [1]]".to_owned(), (1, 7), "two corners"),
+        ("box = [[0], [\"1\"]]".to_owned(), (1, 7), "two corners"),
+        (format!("{BOX}sources = 1\n"), (2, 1), "unknown key `sources`; allowed are name, mesh"),
+        (format!("{BOX}source = 1\n"), (2, 10), "`source` must be a table"),
+        (
+            format!("{BOX}[source]\ndefault = \"2 * w\"\n"),
+            (3, 16),
+            "there is no `w`; there are x, y, e, pi",
+        ),
+        (format!("{BOX}[source]\ndefault = \"2 * (x\"\n"), (3, 18), "ends where"),
+        (
+            format!("{BOX}[source]\ndefault = {{ value = 1, jump = \"x\" }}\n"),
+            (3, 24),
+            "unknown key `jump`; allowed are value, level",
+        ),
+        (format!("{BOX}[source]\ndefault = {{ value = 1 }}\n"), (3, 11), "`level` is missing"),
+        (format!("{BOX}[source]\ndefault = [1]\n"), (3, 11), "a number, or an expression"),
+        (
+            format!("{BOX}[source]\ndefault = \"ln(x)\"\n{SIDES}"),
+            (3, 11),
+            "source.default is NaN at (-0.",
+        ),
+        (
+            format!("{BOX}[obstacle]\nlower.default = \"max(log(x - 2), 1)\"\n{SIDES}"),
+            (3, 17),
+            "obstacle.lower.default is NaN at (-0.",
+        ),
+        (
+            format!("{BOX}[source]\ndefault = \"min(0/0, 1)\"\n{SIDES}"),
+            (3, 11),
+            "source.default is NaN",
+        ),
+        (
+            format!("{BOX}{}", SIDES.replacen("x * y", "(0/0)^0", 1)),
+            (2, 11),
+            "boundary.left.value is NaN",
+        ),
+        (
+            format!("{BOX}[source]\ndefault = {{ value = 1, level = \"log(x)\" }}\n{SIDES}"),
+            (3, 32),
+            "source.default.level is NaN at (-0.",
+        ),
+        (format!("{BOX}[coefficient]\ndefault = 0\n{SIDES}"), (3, 11), "finite and positive"),
+        (format!("{BOX}[reaction]\ndefault = \"-1\"\n{SIDES}"), (3, 11), "not negative"),
+        (format!("{BOX}[obstacle]\ndefault = 1\n"), (3, 1), "allowed are lower, upper"),
+        (format!("{BOX}[obstacle]\nlower.default = inf\n{SIDES}"), (3, 17), "must be finite"),
+        (format!("{BOX}[boundary.left]\nvalue = 1\n"), (2, 11), "`kind` is missing"),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"robin\"\n"),
+            (3, 8),
+            "\"dirichlet\", \"neumann\" or",
+        ),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"neumann\"\nvalue = 1\n"),
+            (4, 1),
+            "allowed are kind, flux",
+        ),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"dirichlet\"\nvalue = \"nx\"\n"),
+            (4, 10),
+            "no `nx`",
+        ),
+        (
+            format!("{BOX}{SIDES}[boundary.front]\nkind = \"neumann\"\n"),
+            (14, 11),
+            "no boundary group `front`; it has bottom, left, right, top",
+        ),
+        (format!("{BOX}[source]\nsteel = 1\n{SIDES}"), (3, 1), "no region `steel`; it has none"),
+        (on_plate(ends), (1, 1), "boundary group `edges` of the mesh is missing"),
+        (
+            on_plate(&format!("{all}[source]\nsteel = 1\n")),
+            (9, 1),
+            "no region `steel`; it has inclusion, matrix",
+        ),
+        (format!("{BOX}{SIDES}[exact]\nvalue = 0\n"), (14, 1), "`gradient` is missing"),
+        (
+            format!("{BOX}{SIDES}[exact]\nvalue = 0\ngradient = [0]\n"),
+            (16, 12),
+            "for each coordinate",
+        ),
+        ("box = [[0, 1], [1, 1]]".to_owned(), (1, 7), "the first below the second"),
+        ("box = [[0], [inf]]".to_owned(), (1, 7), "the first below the second"),
+        (
+            // finite at every vertex and barycentre
+            format!("{BOX}[coefficient]\ndefault = \"if(abs(x - 0.21) < 0.02, 0, 1)\"\n{SIDES}"),
+            (3, 11),
+            "coefficient.default is 0 at (0.2",
+        ),
+        (
+            format!("{BOX}{SIDES}[exact]\nvalue = \"ln(x)\"\ngradient = [\"1/x\", 0]\n"),
+            (15, 9),
+            "exact.value is",
+        ),
+        (
+            format!("{BOX}{SIDES}[exact]\nvalue = \"x*y\"\ngradient = [\"y\", \"-x\"]\n"),
+            (16, 12),
+            "component 2 of exact.gradient is",
+        ),
+        (
+            format!("{BOX}{SIDES}[exact]\nvalue = \"x\"\ngradient = [\"1.1\", 0]\n"),
+            (16, 12),
+            "component 1 of exact.gradient is 1.1",
+        ),
+        (
+            format!("{BOX}{SIDES}[exact]\nvalue = \"x\"\ngradient = [\"0.9\", 0]\n"),
+            (16, 12),
+            "component 1 of exact.gradient is 0.9",
+        ),
+        (
+            // an exact solution does not stand for a value or a flux, but no solution gives a gap
+            format!(
+                "{BOX}{}[exact]\nvalue = 0\ngradient = [0, 0]\n",
+                SIDES.replacen("value = \"x * y\"\n", "", 1)
+            ),
+            (2, 11),
+            "`value` is missing: the exact solution does not stand for data that are left out",
+        ),
+        (
+            format!(
+                "{BOX}{}[exact]\nvalue = 0\ngradient = [0, 0]\n",
+                SIDES.replace("flux = \"x * ny\"\n", "")
+            ),
+            (8, 11),
+            "`flux` is missing: the exact solution does not stand for data that are left out",
+        ),
+        (
+            // columns are those of characters
+            format!("{BOX}[source]\n\"\u{e4}\" = \"2 * w\"\n"),
+            (3, 12),
+            "there is no `w`",
+        ),
+    ];
+    for (text, place, words) in cases {
+        let path = folder.0.join("wrong.toml");
+        std::fs::write(&path, &text).unwrap();
+        let error = read(&path).unwrap_err();
+        let message = error.to_string();
+        let ProblemFileError::At { line, column, .. } = error else { panic!("{text}\n{message}") };
+        assert_eq!((line, column), place, "{text}\n{message}");
+        assert!(
+            message.contains(words) && message.starts_with(&path.display().to_string()),
+            "{message}"
+        );
+    }
+    std::fs::write(folder.0.join("lost.toml"), "mesh = \"lost.msh\"").unwrap();
+    let error = read(&folder.0.join("lost.toml")).unwrap_err();
+    let message = error.to_string();
+    assert!(matches!(error, ProblemFileError::Mesh { line: 1, column: 8, .. }), "{message}");
+    assert!(message.contains("lost.toml:1:8: cannot read"), "{message}");
+    assert_eq!(message.matches("lost.msh").count(), 1, "{message}");
+    let error = read(&folder.0.join("nothing.toml")).unwrap_err();
+    assert!(matches!(error, ProblemFileError::Unreadable { .. }));
+    std::fs::write(folder.0.join("two.toml"), format!("{BOX}{SIDES}[boundary.dirichlet]\n"))
+        .unwrap();
+    let error = read(&folder.0.join("two.toml")).unwrap_err();
+    assert!(matches!(error, ProblemFileError::At { fault: ProblemFileFault::Missing { .. }, .. }));
+}
