@@ -30,8 +30,8 @@ pub(super) fn short_edges<T: Real, const D: usize>(
 }
 
 /// Rounding in the assembled matrix of over-penalised quadratics, relative to a solution, from which corrections by its
-/// factors do not converge. They do at 0.2 to 0.6 (`wopsip-p2` on signorini-2d and lshape-2d at 8, with `eta` 1e9 and
-/// 1e10), and the matrix is singular to working precision at 2.4 (signorini-2d at 8, 1e10).
+/// factors do not converge. They do at 0.2 and 0.6 (`wopsip-p2` on signorini-2d at 8 with `eta` 1e9, at 64 with 1e4),
+/// and the matrix is singular to working precision at 2.3 (at 8 with 1e10).
 const NO_DIGITS: f64 = 1.0;
 
 /// Why over-penalised quadratics in the plane and in space are not solved, if rounding in the assembled matrix, which is
