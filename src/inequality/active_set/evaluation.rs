@@ -4,6 +4,7 @@
 use super::iterate::Iterate;
 use super::linear_solver::LinearSolver;
 use crate::algebra::{Contact, Distribution};
+use crate::inequality::certificate;
 use crate::inequality::scales::Scales;
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
@@ -95,6 +96,15 @@ impl<T: Real> Iterate<'_, T> {
         evaluation.multiplier_violation = evaluation.multiplier_violation.sqrt();
         self.energy_norm = energy_norm;
         evaluation
+    }
+
+    /// Makes the present iterate, which another method found, the best one, whatever the merit of those before.
+    pub fn set_best(&mut self, solver: &dyn LinearSolver<T>) {
+        let Self { inequality, values, jump_multipliers, residual, .. } = self;
+        certificate::residual(inequality, values, jump_multipliers, residual);
+        self.forget_best();
+        let merit = self.evaluate(solver).merit;
+        self.keep_if_best(merit);
     }
 
     /// Adds unknown `i` to an evaluation. `multiplier_violation` is here the sum of the squares `r_i^2 / d_i`, without

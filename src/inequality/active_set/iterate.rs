@@ -3,9 +3,8 @@
 use std::borrow::Cow;
 
 use super::contact_state::{prescribed_value, starting_states};
-use super::linear_solver::LinearSolver;
 use crate::algebra::{Contact, Inequality, any_part};
-use crate::inequality::certificate::{self, positive_diagonal};
+use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Outcome, Solution};
 use crate::parallel::vectors::{collect, sum_chunks};
@@ -183,15 +182,6 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// Forgets the merit of the best iterate: the next one is the best.
     pub fn forget_best(&mut self) {
         self.best.merit = f64::INFINITY;
-    }
-
-    /// Makes the present iterate, which another method found, the best one, whatever the merit of those before.
-    pub fn set_best(&mut self, solver: &dyn LinearSolver<T>) {
-        let Self { inequality, values, jump_multipliers, residual, .. } = self;
-        certificate::residual(inequality, values, jump_multipliers, residual);
-        self.forget_best();
-        let merit = self.evaluate(solver).merit;
-        self.keep_if_best(merit);
     }
 
     /// The values and jump multipliers of the best iterate.

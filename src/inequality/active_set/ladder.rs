@@ -4,13 +4,13 @@ mod stages;
 
 use super::iteration::End;
 use super::settings::ActiveSet;
-use crate::algebra::{Inequality, PenalisedMatrix};
+use crate::algebra::Inequality;
 use crate::inequality::Solution;
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::validation::check;
 use crate::linear::{CoarseSpaces, LinearMethod, PreconditionerFamily};
 use crate::real::Real;
-use stages::Ladder;
+use stages::{Ladder, suits_monotone_multigrid};
 
 /// Number of unknowns from which a Krylov method solves the linear systems by default if coarse spaces are known.
 ///
@@ -85,15 +85,4 @@ fn uses_krylov<T: Real>(
             inequality.size() >= CROSSOVER && !matches!(guess.coarse_spaces, CoarseSpaces::Unknown)
         }
     }
-}
-
-/// Whether monotone multigrid suits the inequality: the matrix is symmetric, coarse spaces are known, and each jump
-/// of the penalty is that of a single unknown. If a large penalty acts on jumps of means of several vertex values,
-/// Gauss-Seidel sweeps hardly change any single vertex value.
-fn suits_monotone_multigrid<T: Real>(inequality: &Inequality<T>, guess: &InitialGuess<T>) -> bool {
-    let Inequality { distribution, symmetric, penalised, .. } = inequality;
-    distribution.is_none()
-        && *symmetric
-        && !matches!(guess.coarse_spaces, CoarseSpaces::Unknown)
-        && penalised.as_ref().is_none_or(PenalisedMatrix::has_jumps_of_single_unknowns)
 }

@@ -23,7 +23,7 @@ use crate::real::Real;
 use bound_pairs::{BoundPair, mean_product, ratio_test};
 use newton_system::{MixedVector, NewtonFactors, NewtonSystem};
 
-/// Largest number of linear systems of a run. Runs of the file of figures take 11 in the mean and 24 at
+/// Largest number of linear systems of a run. Runs of the file of figures take 13 in the mean and 24 at
 /// most.
 pub(crate) const MAX_SYSTEMS: usize = 60;
 

@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::suits_monotone_multigrid;
-use crate::algebra::{Contact, Inequality, Start, any_part};
+use crate::algebra::{Contact, Inequality, PenalisedMatrix, Start, any_part};
 use crate::inequality::active_set::contact_state::prescribed_value;
 use crate::inequality::active_set::direct_solver::DirectSolver;
 use crate::inequality::active_set::iterate::Iterate;
@@ -17,7 +16,7 @@ use crate::inequality::monotone_multigrid::MonotoneMultigrid;
 use crate::inequality::{Outcome, Solution, Stage, StageRun};
 use crate::linear::krylov::symmetric_part;
 use crate::linear::precondition::unknowns_per_cell;
-use crate::linear::{PreconditionedSystem, PreconditionerFamily};
+use crate::linear::{CoarseSpaces, PreconditionedSystem, PreconditionerFamily};
 use crate::real::Real;
 
 /// Relative tolerance of accurate solutions by Krylov methods, divided by the limit of the certificate.
@@ -44,6 +43,20 @@ const MAX_LINEAR_BASIS: usize = 4;
 /// While the active set changes, cycles make little progress: lshape-2d with `wopsip:facet-means` at 128 needs 26
 /// cycles, of which 12 in a row do not halve the change; factors take ten times as long there.
 const CYCLES_WITHOUT_HALVING: usize = 60;
+
+/// Whether monotone multigrid suits the inequality: the matrix is symmetric, coarse spaces are known, and each jump
+/// of the penalty is that of a single unknown. If a large penalty acts on jumps of means of several vertex values,
+/// Gauss-Seidel sweeps hardly change any single vertex value.
+pub(super) fn suits_monotone_multigrid<T: Real>(
+    inequality: &Inequality<T>,
+    guess: &InitialGuess<T>,
+) -> bool {
+    let Inequality { distribution, symmetric, penalised, .. } = inequality;
+    distribution.is_none()
+        && *symmetric
+        && !matches!(guess.coarse_spaces, CoarseSpaces::Unknown)
+        && penalised.as_ref().is_none_or(PenalisedMatrix::has_jumps_of_single_unknowns)
+}
 
 /// What the methods of a solve hand on.
 pub(super) struct Ladder<'s, 'a, T: Real> {
