@@ -195,7 +195,7 @@ fn bound_of_zero_by<const D: usize>(
     let solved = NestedIteration::new(problem, mesh).quadrature(quadrature).solve(scheme).unwrap();
     let mut pair = solved.primal_dual_pair().unwrap();
     pair.function.fill(0.0);
-    pair.flux = Flux::zero(0, mesh.n_cells());
+    pair.flux = Flux::zero(pair.flux.degree(), mesh.n_cells());
     solved.discretisation().error_bound(&pair, &vec![0.0; solved.values().len()]).unwrap()
 }
 

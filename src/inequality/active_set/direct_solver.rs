@@ -21,8 +21,8 @@ const MAX_CORRECTIONS: usize = 12;
 /// absolute value.
 const CORRECTION_MULTIPLE: f64 = 16.0;
 
-/// Largest energy of the last of several corrections, divided by the energy of the values, with which the factors count
-/// as accurate to one digit or more.
+/// Largest energy of the last correction, divided by the energy of the values or of the first one, with which the factors
+/// count as accurate to one digit or more.
 const MAX_CORRECTION_SHARE: f64 = 0.01;
 
 /// A solver with factors for the linear systems of all active sets of an inequality.
@@ -95,8 +95,9 @@ impl<'a, T: Real> DirectSolver<'a, T> {
     /// Corrects the values [`SOLUTIONS`] times; then computes the residual.
     ///
     /// # Errors
-    /// [`FactorError::Singular`] if there are several corrections and the energy of the last one exceeds
-    /// [`MAX_CORRECTION_SHARE`] times the energy of the values: the factors then have no correct digit.
+    /// [`FactorError::Singular`] if the energy of the last correction exceeds [`MAX_CORRECTION_SHARE`] times the larger
+    /// one of the energies of the values and of the first correction: the factors then have no correct digit. A solution
+    /// may have no energy.
     fn correct_assembled(
         &self,
         factors: &Factors<T>,
@@ -105,24 +106,22 @@ impl<'a, T: Real> DirectSolver<'a, T> {
         let Inequality { matrix, load, .. } = self.inequality;
         let Iterate { values, residual, .. } = iterate;
         let mut correction = Vec::with_capacity(self.inactive.len());
-        let mut correction_energy = 0.0;
-        for step in 0..SOLUTIONS {
+        let mut correction_energies = [0.0_f64; SOLUTIONS];
+        for correction_energy in &mut correction_energies {
             matrix.residual_f64(load, values, residual);
             correction.clear();
             correction.extend(self.inactive.iter().map(|&i| T::lit(residual[i as usize])));
             factors.solve_in_place(&mut correction, 1);
-            correction_energy = 0.0;
             for (&i, &correction) in self.inactive.iter().zip(&correction) {
                 values[i as usize] += correction;
-                if step > 0 {
-                    correction_energy += correction.to_f64() * residual[i as usize];
-                }
+                *correction_energy += correction.to_f64() * residual[i as usize];
             }
         }
         matrix.residual_f64(load, values, residual);
         let terms = values.iter().zip(load).zip(residual.iter());
         let energy: f64 = terms.map(|((x, b), r)| x.to_f64() * (b.to_f64() - r)).sum();
-        match correction_energy.abs() > MAX_CORRECTION_SHARE * energy.abs() {
+        let largest = energy.abs().max(correction_energies[0].abs());
+        match correction_energies[SOLUTIONS - 1].abs() > MAX_CORRECTION_SHARE * largest {
             true => Err(FactorError::Singular),
             false => Ok(()),
         }
@@ -249,7 +248,8 @@ struct PenalisedSystem<'s, 'a, T> {
 }
 
 impl<T: Real> PenalisedSystem<'_, '_, T> {
-    /// Corrects values and jump multipliers together, [`SOLUTIONS`] to [`MAX_CORRECTIONS`] times, until a correction is rounding or its largest change is more than half of the preceding one.
+    /// Corrects values and jump multipliers together, [`SOLUTIONS`] to [`MAX_CORRECTIONS`] times, until a correction is
+    /// rounding or its largest change is more than half of the preceding one.
     ///
     /// # Errors
     /// [`FactorError::Singular`] if the energy of the last correction is not small: the matrix is then singular in the

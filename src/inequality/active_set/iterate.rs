@@ -52,15 +52,13 @@ struct BestIterate<T> {
 }
 
 impl<'a, T: Real> Iterate<'a, T> {
-    /// The admissible values nearest to `guess`, or zeros if `guess` has another length, with the contact states of the
+    /// The admissible values nearest to `guess`, or to zero if `guess` has another length, with the contact states of the
     /// inequality's start and the values that these prescribe. Unknowns that another part of the mesh owns are inactive.
     pub fn new(inequality: &'a Inequality<T>, guess: &[T]) -> Self {
         let bounds = &inequality.bounds;
         let n = bounds.len();
-        let values: Vec<T> = match guess.len() == n {
-            true => bounds.iter().zip(guess).map(|(bound, &x)| bound.nearest(x)).collect(),
-            false => vec![T::lit(0.0); n],
-        };
+        let value = |i: usize| if guess.len() == n { guess[i] } else { T::lit(0.0) };
+        let values: Vec<T> = (0..n).map(|i| bounds[i].nearest(value(i))).collect();
         let mut states = starting_states(inequality);
         let is_ghost = |&(i, _): &(usize, _)| !inequality.owns(i);
         let ghosts = states.iter_mut().enumerate().filter(is_ghost);

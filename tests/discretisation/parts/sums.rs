@@ -120,10 +120,10 @@ fn parts_merge_certificates_and_errors_in_space() {
     every_scheme(&box_mesh::<3>(2), 2);
 }
 
-/// A part without values and data leaves the unit of the others, and one that is not finite, or has another
-/// number of values, makes the certificate of all infinite.
+/// A part without values and data changes nothing, and one that is not finite, or has another number of values, makes the
+/// certificate of all infinite.
 #[test]
-fn units_and_numbers_that_are_not_finite_merge() {
+fn numbers_that_are_not_finite_merge() {
     let mesh = box_mesh::<1>(8);
     let problem = Problem::new();
     let Assembled { inequality, .. } = Assembled::new(&ConformingP1, &problem, &mesh);
@@ -131,7 +131,7 @@ fn units_and_numbers_that_are_not_finite_merge() {
     let of = |u: &[f64], own: std::ops::Range<usize>| {
         Violations::of(&inequality, u, &[], &|i| own.contains(&i))
     };
-    u[1] = 1e-250;
+    u[1] = 1e-100;
     let certificate = of(&u, 0..3).merge(of(&u, 3..9)).certificate();
     assert_eq!(certificate, certify(&inequality, &u));
     assert!(certificate.residual > 0.1 && certificate.residual.is_finite());

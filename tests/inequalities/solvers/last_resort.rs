@@ -206,9 +206,10 @@ fn bounds_at_nodes_of_quadratics_are_solved_where_rounding_leaves_digits() {
         for eta in [1e-2, 1e4, 1e7] {
             let row = of(&scene, eta, level);
             assert!(row.converged(), "{name} {eta:e}: {}", row.status);
-            // the limit of the certificate is 1e-9, which bounds little beside large penalties
+            // where the last active set does not settle, the values are those of the interior point method
             let certificate = row.certificate;
-            assert!(certificate.largest() < 1e-14, "{name} {eta:e}: {certificate:?}");
+            let limit = if eta < 1.0 { 1e-14 } else { 1e-9 };
+            assert!(certificate.largest() < limit, "{name} {eta:e}: {certificate:?}");
             let outer = row.iterations.outer.unwrap();
             assert!(outer <= 60, "{name} {eta:e}: {outer} systems");
             // products of the entries of the matrix, of size eta, would leave no digit of the objective; that of ball-2d
