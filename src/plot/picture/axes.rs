@@ -60,9 +60,8 @@ impl Stroke {
 
     /// Draws the casing that separates the line from lines below.
     pub fn draw_casing(self, pen: &mut Pen, from: ScreenPoint, to: ScreenPoint) {
-        match self {
-            Stroke::Exact => pen.line(from, to, 4.0, PAPER),
-            _ => {}
+        if self == Stroke::Exact {
+            pen.line(from, to, 4.0, PAPER);
         }
     }
 }
