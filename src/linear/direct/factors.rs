@@ -28,8 +28,8 @@ const SINGULAR: f64 = 16.0;
 
 /// The factors of a submatrix `A_II`, `I` the set of free unknowns.
 ///
-/// For a symmetric matrix these are the sparse Cholesky factors for an `EliminationOrder` or for
-/// approximate minimum degree, supernodal where that is faster. For other matrices they are the sparse
+/// For a symmetric matrix these are the sparse Cholesky factors in the order of approximate minimum
+/// degree, supernodal where that is faster. For other matrices they are the sparse
 /// LU factors of the transpose with partial pivoting; the rows of a matrix are the columns of its
 /// transpose, so that a row-dominant matrix needs no exchanges.
 #[derive(Debug)]
