@@ -105,7 +105,7 @@ def main():
     width = max(map(len, first))
     print(f"{'least of ' + str(arguments.rounds):{width}}  {'old s':>9}  {'new s':>9}  new/old  itself")
     is_worse = False
-    for name in first.keys() & new.keys() if first.keys() != new.keys() else first:
+    for name in [name for name in first if name in new]:
         ratio, itself = new[name] / first[name], again[name] / first[name]
         old_counts, new_counts = (counts(rows[name]) if name in rows else None for rows in (last[0], last[2]))
         said = verdict(ratio, itself, arguments.bar, old_counts, new_counts)

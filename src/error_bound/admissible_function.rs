@@ -195,9 +195,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
     }
 
-    /// Moves values at midpoints of edges into the constraints, and sets those on the Dirichlet part: a quadratic that exceeds an obstacle at the vertices exceeds it
-    /// everywhere if its Bernstein coefficients on the edges, `2 v_m - (v_a + v_b) / 2`, do not lie below
-    /// those of the obstacle.
+    /// Moves values at midpoints of edges into the constraints, and sets those on the Dirichlet part: a quadratic that
+    /// exceeds an obstacle at the vertices exceeds it everywhere if its Bernstein coefficients on the edges,
+    /// `2 v_m - (v_a + v_b) / 2`, do not lie below those of the obstacle.
     fn clip_at_midpoints(&self, nodes: &FunctionNodes<'_>, values: &mut [f64]) {
         let (at_vertices, at_midpoints) = values.split_at_mut(nodes.n_vertices);
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); at_midpoints.len()];

@@ -27,7 +27,8 @@ use crate::real::{Real, maximum};
 ///
 /// If the energy vanishes up to rounding (the solution is a constant), the norm `(sum c_i^2 / d_i)^(1/2)` of the load
 /// `c` without Dirichlet data replaces `E`, then `(sum d_i u_i^2)^(1/2)`, then one. All sums are in `f64`: data whose
-/// squares underflow or overflow, which solvers refuse, have no certificate. If a number is not finite, or sizes do not match, all four violations are infinite.
+/// squares underflow or overflow, which solvers refuse, have no certificate. If a number is not finite, or sizes do not
+/// match, all four violations are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

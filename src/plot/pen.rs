@@ -57,8 +57,8 @@ struct OpenPath {
 /// Writes the shapes of a drawing, in their order. Shapes of one style that follow each other become one path.
 pub(crate) struct Pen {
     text: String,
-    /// Whether filled areas of a colour become one path too, as the parts of a map do: viewers leave hair lines between
-    /// neighbours that they smooth one by one. Marks stay apart, since they may overlap.
+    /// Whether filled areas of a colour become one path too, as the parts of a map do: a viewer that smooths the edges of
+    /// each area alone leaves hair lines between neighbouring areas. Marks stay separate paths, since marks may overlap.
     areas_meet: bool,
     open: Option<OpenPath>,
 }

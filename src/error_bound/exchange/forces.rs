@@ -2,10 +2,10 @@
 //!
 //! On a contact facet `F` the normal flux is the contact force, which must not be negative. A number that is added to
 //! the density `c_Fj` at one vertex and taken from the density at another keeps the force of the facet; taken from
-//! `c_jj` and added to its counterpart at the other vertex the number keeps the divergence in the cell. A number taken from the density
-//! of a contact facet at a vertex may also leave through another facet at that vertex, and through those of further
-//! cells around the vertex, until it comes to another contact facet there: divergences at a vertex depend on the
-//! sum of its densities. What changes is the mismatch, and the complementarity of the contact force.
+//! `c_jj` and added to its counterpart at the other vertex the number keeps the divergence in the cell. A number taken
+//! from the density of a contact facet at a vertex may also leave through another facet at that vertex, and through
+//! those of further cells around the vertex, until it comes to another contact facet there: divergences at a vertex
+//! depend on the sum of its densities. What changes is the mismatch, and the complementarity of the contact force.
 //!
 //! Without it the effectivity of `sipg-p2` on signorini-harmonic-2d at 32 is 2.28 in place of 1.52, that of `p2` on
 //! signorini-line-3d at 8 is 1.75 in place of 1.45.

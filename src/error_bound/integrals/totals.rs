@@ -61,30 +61,27 @@ impl Totals {
 
     /// Those of all parts of a mesh; all parts call it.
     pub fn add_over_parts(&mut self, distribution: &dyn Distribution) {
-        let mut sums = [
-            self.mismatch,
-            self.with_oscillation,
-            self.from_midpoint,
-            self.distance,
-            self.obstacle,
-            self.contact,
-            self.unbalanced,
-        ];
+        let mut sums = self.sums().map(|sum| *sum);
         distribution.sum(&mut sums);
+        self.sums().into_iter().zip(sums).for_each(|(own, sum)| *own = sum);
         let mut largest =
             [-self.least_coefficient, -self.least_reaction, -self.reaction_from_below];
         distribution.largest(&mut largest);
-        [
-            self.mismatch,
-            self.with_oscillation,
-            self.from_midpoint,
-            self.distance,
-            self.obstacle,
-            self.contact,
-            self.unbalanced,
-        ] = sums;
         [self.least_coefficient, self.least_reaction, self.reaction_from_below] =
             largest.map(|x| -x);
+    }
+
+    /// What is summed over cells.
+    fn sums(&mut self) -> [&mut f64; 7] {
+        [
+            &mut self.mismatch,
+            &mut self.with_oscillation,
+            &mut self.from_midpoint,
+            &mut self.distance,
+            &mut self.obstacle,
+            &mut self.contact,
+            &mut self.unbalanced,
+        ]
     }
 
     /// The part of the solver, a number `A` with `(rho, e) <= A |||e|||` for what the solver left, `rho`, and all `e`

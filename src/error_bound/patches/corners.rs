@@ -27,7 +27,7 @@ impl Corner {
     }
 }
 
-/// The corners of all vertices, those of a vertex in the order of cells.
+/// The corners of cells at each vertex, in the order of cells.
 pub(super) struct Corners {
     corners: Vec<Corner>,
     /// Where those of each vertex start.

@@ -89,7 +89,7 @@ impl<'a, T: Real> DirectSolver<'a, T> {
             None => EliminationOrder::new(matrix, &self.inequality.free_unknowns())?,
         };
         let order = self.elimination_order.insert(order);
-        Factors::in_order(matrix, &self.inactive, order)
+        Factors::in_order(matrix, &self.inactive, order, &[])
     }
 
     /// Corrects the values [`SOLUTIONS`] times; then computes the residual.

@@ -217,10 +217,10 @@ impl<'a, T: Real> Iterate<'a, T> {
         certify_with_rounding(self.inequality, &self.values, &self.jump_multipliers).0.largest()
     }
 
-    /// The outcome of a solve that ended with `outcome`. After an iteration limit, a cycle, a stall or a singular
-    /// matrix it follows from the certificate of the best iterate: [`Outcome::Converged`] within its limit, and the best iterate then replaces
-    /// the present one; [`Outcome::Stalled`] within the rounding that large penalties amplify; else `outcome`, also if
-    /// there is no best iterate.
+    /// The outcome of a solve that ended with `outcome`. After an iteration limit, a cycle, a stall or a singular matrix
+    /// it follows from the certificate of the best iterate: [`Outcome::Converged`] within its limit, and the best iterate
+    /// then replaces the present one; [`Outcome::Stalled`] within the rounding that large penalties amplify; else
+    /// `outcome`, also if there is no best iterate.
     pub fn outcome_of_best(&mut self, outcome: Outcome) -> Outcome {
         let is_without_solution = matches!(
             outcome,

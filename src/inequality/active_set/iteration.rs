@@ -166,8 +166,8 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         };
         let corrected = is_prepared.and_then(|()| self.solver.correct(self.iterate, accuracy));
         corrected.map_err(|failure| match failure {
-            // the whole matrix has been checked: a negative pivot is one of rounding; bounds alone hold a part of the domain, and no unknown is active there, or large penalties make the matrix
-            // of an arbitrary active set singular but for rounding
+            // the whole matrix has been checked: a negative pivot is one of rounding. Either bounds alone hold a part of
+            // the domain, and no unknown is active there, or large penalties leave the matrix of this active set no digit
             LinearFailure::Factors(FactorError::Singular | FactorError::NotPositive) => {
                 End::Singular
             }

@@ -32,12 +32,12 @@ use crate::linear::LinearMethod;
 /// A cold start begins with the solution without inequalities, or, if the matrix is singular on the free unknowns
 /// because only the bounds prevent a rigid motion (the kernel of the inequality is known), with every bound active.
 ///
-/// Factors check first that the matrix, or its symmetric part, has no negative direction on the unknowns that are not
-/// fixed, unless this is known ([`Inequality::is_definite`](crate::algebra::Inequality::is_definite)).
+/// The solve begins with the check that the matrix, or its symmetric part, has no negative direction on the unknowns that
+/// are not fixed, unless this is known ([`Inequality::is_definite`](crate::algebra::Inequality::is_definite)).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ActiveSet {
-    /// Largest number of linear systems with a new active set, and of the interior point method.
+    /// Largest number of linear systems with a new active set, those of the interior point method included.
     pub max_outer: usize,
     /// The method for the linear systems.
     pub linear: LinearMethod,

@@ -79,7 +79,7 @@ mod tests {
         BoundPair { unknown: 0, side: 1.0, bound: 0.0, slack: 2.0, dual: 3.0, change }
     }
 
-    /// After the length that the ratio test admits the first variable is zero, and no other is negative.
+    /// A step of the length that the ratio test admits makes one variable zero and none negative.
     #[test]
     fn a_step_ends_at_the_first_zero() {
         let pairs = [pair([-4.0, 1.0]), pair([1.0, -9.0]), pair([-0.5, -0.5])];

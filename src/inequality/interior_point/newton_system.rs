@@ -2,8 +2,9 @@
 
 use crate::algebra::{Inequality, PenalisedMatrix, Submatrix};
 use crate::inequality::certificate::positive_diagonal;
-use crate::linear::direct::{CondensedFactors, StaticCondensation};
-use crate::linear::direct::{FactorError, Factors, SymbolicFactor};
+use crate::linear::direct::{
+    CondensedFactors, FactorError, Factors, StaticCondensation, SymbolicFactor, add_to_diagonal,
+};
 use crate::real::Real;
 
 /// A vector of the mixed system: entries for the unknowns, and for the jump multipliers if these are unknowns of the
@@ -102,11 +103,11 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
                 none => none.insert(LowerTriangle::new(self.inequality, &self.free)?),
             };
             let mut matrix = triangle.matrix.clone();
-            add_diagonal(&mut matrix, &self.free, diagonal)?;
+            add_to_diagonal(&mut matrix, &self.free, diagonal)?;
             Factors::cholesky(&mut matrix, &triangle.analysis)?
         } else {
             let mut matrix = Submatrix::new(&self.inequality.matrix, &self.free);
-            add_diagonal(&mut matrix, &self.free, diagonal)?;
+            add_to_diagonal(&mut matrix, &self.free, diagonal)?;
             Factors::lu(&matrix)?
         };
         Ok(NewtonFactors::Assembled(factors))
@@ -164,21 +165,4 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         };
         (0..w.len()).filter(|&i| w[i] != 0.0).map(|i| w[i] * image(i)).sum()
     }
-}
-
-/// Adds `D` to the diagonal of the submatrix on the unknowns `free`.
-///
-/// # Errors
-/// [`FactorError::NotPositive`] if a row with a positive `D_ii` stores no diagonal entry.
-fn add_diagonal<T: Real>(
-    matrix: &mut Submatrix<T>,
-    free: &[u32],
-    diagonal: &[f64],
-) -> Result<(), FactorError> {
-    for (k, &i) in free.iter().enumerate().filter(|(_, i)| diagonal[**i as usize] > 0.0) {
-        let (columns, values) = matrix.row_mut(k);
-        let position = columns.binary_search(&(k as u32)).map_err(|_| FactorError::NotPositive)?;
-        values[position] += T::lit(diagonal[i as usize]);
-    }
-    Ok(())
 }

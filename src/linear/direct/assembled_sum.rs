@@ -9,8 +9,7 @@ use std::sync::OnceLock;
 use super::elimination_order::EliminationOrder;
 use super::error::FactorError;
 use super::factors::Factors;
-use super::symbolic_factor::SymbolicFactor;
-use crate::algebra::{JumpTerm, PenalisedMatrix, SparseMatrix, Submatrix};
+use crate::algebra::{JumpTerm, PenalisedMatrix, SparseMatrix};
 use crate::parallel::once;
 use crate::real::Real;
 
@@ -34,19 +33,7 @@ pub(super) fn factor_assembled<T: Real>(
             once(order, || new)
         }
     };
-    let mut lower = Submatrix::lower_triangle(matrix, &free);
-    for (k, &i) in free.iter().enumerate() {
-        if let Some(&shift) = shift.get(i as usize).filter(|&&shift| shift > 0.0) {
-            // the diagonal entry is the last one of a row of the lower triangle
-            let (columns, values) = lower.row_mut(k);
-            let is_stored = columns.last() == Some(&(k as u32));
-            let entry = values.last_mut().filter(|_| is_stored).ok_or(FactorError::NotPositive)?;
-            *entry += T::lit(shift);
-        }
-    }
-    let positions = order.restricted_to(&free, matrix.size());
-    let symbolic = SymbolicFactor::new(&lower, Some(positions))?;
-    Factors::cholesky(&mut lower, &symbolic)
+    Factors::in_order(matrix, &free, order, shift)
 }
 
 /// Solves `K u + M^T p = r` on the free unknowns and `M u - S^-1 p = t` by the factors of `A`:

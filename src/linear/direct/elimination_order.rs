@@ -70,7 +70,7 @@ mod tests {
         assert_eq!(positions[3..], [0, 4]);
         let right = [1.0, -2.0, 3.0, 5.0, 0.5];
         let (mut x, mut y) = (right, right);
-        Factors::in_order(&matrix, &free, &order).unwrap().solve_in_place(&mut x, 1);
+        Factors::in_order(&matrix, &free, &order, &[]).unwrap().solve_in_place(&mut x, 1);
         Factors::new(&matrix, true, &free).unwrap().solve_in_place(&mut y, 1);
         for (x, y) in x.iter().zip(&y) {
             assert!((x - y).abs() <= 1e-14, "{x} {y}");

@@ -76,9 +76,9 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    /// The Cholesky factor of the rows and columns `free` (ascending) of a symmetric matrix, in the
+    /// The Cholesky factor of the rows and columns `free` (ascending) of `A + D`, `A` a symmetric matrix, in the
     /// restriction of an order of elimination to `free`. Unknowns of `free` that are not in the order come
-    /// last.
+    /// last. `shift` is the nonnegative diagonal of `D`, or empty for zero.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -86,19 +86,22 @@ impl<T: Real> Factors<T> {
         matrix: &SparseMatrix<T>,
         free: &[u32],
         order: &EliminationOrder,
+        shift: &[f64],
     ) -> Result<Self, FactorError> {
         compiled!(
-            T: fn(&SparseMatrix<T>, &[u32], &EliminationOrder) -> Result<Factors<T>, FactorError>
+            T: fn(&SparseMatrix<T>, &[u32], &EliminationOrder, &[f64]) -> Result<Factors<T>, FactorError>
                 = Factors::factor_in_order
-        )(matrix, free, order)
+        )(matrix, free, order, shift)
     }
 
     fn factor_in_order(
         matrix: &SparseMatrix<T>,
         free: &[u32],
         order: &EliminationOrder,
+        shift: &[f64],
     ) -> Result<Self, FactorError> {
         let mut lower = Submatrix::lower_triangle(matrix, free);
+        add_to_diagonal(&mut lower, free, shift)?;
         let order = order.restricted_to(free, matrix.size());
         let symbolic = SymbolicFactor::new(&lower, Some(order))?;
         Self::cholesky(&mut lower, &symbolic)
@@ -231,6 +234,25 @@ impl<T: Real> Factors<T> {
         let is_regular = x.iter().all(|x| x.to_f64().abs() * SINGULAR * T::EPSILON < 1.0);
         if is_regular { Ok(self) } else { Err(FactorError::Singular) }
     }
+}
+
+/// Adds a nonnegative diagonal, given by its entries for all unknowns or empty for zero, to the submatrix of the unknowns
+/// `free` or to the lower triangle of that submatrix.
+///
+/// # Errors
+/// [`FactorError::NotPositive`] if a row to which a positive number is added stores no diagonal entry.
+pub(crate) fn add_to_diagonal<T: Real>(
+    submatrix: &mut Submatrix<T>,
+    free: &[u32],
+    diagonal: &[f64],
+) -> Result<(), FactorError> {
+    for (k, &i) in free.iter().enumerate() {
+        let Some(&entry) = diagonal.get(i as usize).filter(|&&entry| entry > 0.0) else { continue };
+        let (columns, values) = submatrix.row_mut(k);
+        let position = columns.binary_search(&(k as u32)).map_err(|_| FactorError::NotPositive)?;
+        values[position] += T::lit(entry);
+    }
+    Ok(())
 }
 
 /// The sum of the absolute values of each row of a matrix, of which only the lower triangle is given if it is symmetric.

@@ -15,6 +15,7 @@ mod symbolic_factor;
 
 pub(crate) use elimination_order::EliminationOrder;
 pub use error::FactorError;
+pub(crate) use factors::add_to_diagonal;
 pub use factors::{Factors, is_positive_definite};
 pub(crate) use static_condensation::{CondensedFactors, StaticCondensation};
 pub(crate) use symbolic_factor::SymbolicFactor;

@@ -186,7 +186,7 @@ fn compare(requests: &[&Request]) {
     );
 }
 
-/// The requests have every scene of the catalogue, and every scheme in both placements.
+/// The requests have every scene of the catalogue and every scheme.
 #[test]
 fn no_scene_and_no_scheme_is_left_out() {
     let scenes: Vec<&str> = REQUESTS.iter().flat_map(|request| request.scenes.split(',')).collect();

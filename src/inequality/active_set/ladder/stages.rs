@@ -152,7 +152,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
         self.bound_error(&mut solver)
     }
 
-    /// The number of systems within which the number of state changes must halve, solved by a Krylov method. None for
+    /// The number of systems, each solved by a Krylov method, within which the number of state changes must halve. None for
     /// one part of a mesh, which no other method follows, and from a cold start: the active set grows layer by layer, in
     /// many steps that are cheap. Three times as many where what follows is dear: factors of a matrix that is not
     /// symmetric, or the many cycles that broken quadratics take.
