@@ -7,7 +7,6 @@ use crate::error::Error;
 use crate::mesh::gmsh::{self, GmshMesh};
 use crate::mesh::{BoxDomain, Mesh};
 use crate::problem::Problem;
-use crate::real::Real;
 
 /// Where a problem is posed.
 #[derive(Clone, Debug)]
@@ -22,7 +21,7 @@ pub enum Geometry<const D: usize> {
         /// Its contents.
         bytes: Vec<u8>,
         /// The mesh, before the problem says what holds on its boundary.
-        read: Box<GmshMesh<f64, D>>,
+        read: Box<GmshMesh<D>>,
     },
 }
 
@@ -43,18 +42,18 @@ impl<const D: usize> OwnProblem<D> {
     ///
     /// # Errors
     /// [`Error::Gmsh`] and [`Error::Mesh`], in a scalar in which the mesh degenerates, say.
-    pub fn mesh<T: Real>(&self) -> Result<Option<GmshMesh<T, D>>, Error> {
+    pub fn mesh(&self) -> Result<Option<GmshMesh<D>>, Error> {
         let Geometry::File { bytes, read, .. } = &self.geometry else { return Ok(None) };
         let known: &dyn Any = &**read;
-        let mut read = match known.downcast_ref::<GmshMesh<T, D>>() {
+        let mut read = match known.downcast_ref::<GmshMesh<D>>() {
             Some(read) => read.clone(),
-            None => gmsh::parse::<T, D>(bytes)?,
+            None => gmsh::parse::<D>(bytes)?,
         };
         read.mesh = self.problem.bind_boundary(read.mesh)?;
         Ok(Some(read))
     }
     /// A mesh to hold the data against, of a box one with few cells, whatever its sides.
-    pub(super) fn sample_mesh(&self) -> Result<Mesh<f64, D>, Error> {
+    pub(super) fn sample_mesh(&self) -> Result<Mesh<D>, Error> {
         match &self.geometry {
             Geometry::Box(domain) => {
                 Ok(Mesh::kuhn_box(domain, domain.counts(4).map(|n| n.min(64)))?)

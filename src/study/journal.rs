@@ -27,7 +27,7 @@ const ROWS: &str = "report.jsonl";
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// # let directory = std::env::temp_dir().join(format!("unilateral-journal-{}", std::process::id()));
 /// let journal = Journal::create(&directory, Program::new("mine", "f64", 1, 1))?;
-/// let study = Study::<f64, 1>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([4, 8]);
+/// let study = Study::<1>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([4, 8]);
 /// study.journal(&journal).run()?;
 /// assert_eq!(Report::read(&directory)?.rows.len(), 2);
 /// # std::fs::remove_dir_all(&directory).unwrap();
