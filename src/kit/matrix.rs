@@ -2,7 +2,7 @@
 
 use crate::algebra::{Inequality, SparseMatrix, Support};
 
-/// Matrix, load and supports in `f64`: exactly those of the scalar they were assembled in.
+/// Matrix, load and supports.
 pub(super) struct Assembled {
     pub matrix: SparseMatrix<f64>,
     pub symmetric: bool,

@@ -12,8 +12,8 @@
 //!
 //! [`check_quadrature`] tests a family of quadrature rules.
 //!
-//! The meshes are small boxes, regular and with moved vertices, in the dimension and scalar of the
-//! call; tolerances are multiples of the scalar's rounding unit. An error names the law, the place
+//! The meshes are small boxes, regular and with moved vertices, in the dimension of the call;
+//! tolerances are multiples of machine epsilon. An error names the law, the place
 //! and the size of the violation.
 //!
 //! ```

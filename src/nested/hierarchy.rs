@@ -47,7 +47,7 @@ impl<const D: usize> Hierarchy<D> {
     ///
     /// # Errors
     /// [`Error::Parameter`] for level zero and for one with more cells than can be numbered or with
-    /// cells too small for the scalar, [`Error::Mesh`] if the domain has no mesh.
+    /// cells too small for floating-point numbers, [`Error::Mesh`] if the domain has no mesh.
     pub fn of_domain(domain: &Domain<D>, level: usize) -> Result<Self, Error> {
         Coarsest::Domain(domain).build(level)
     }

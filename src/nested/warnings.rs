@@ -77,10 +77,10 @@ pub(super) fn rounding_of_data(
     })
 }
 
-/// That contact forces are left out, in a scalar of this name.
-pub(crate) fn no_digits_of_forces(scalar: &str) -> String {
+/// That contact forces are left out, in a precision of this name.
+pub(crate) fn no_digits_of_forces(precision: &str) -> String {
     format!(
-        "rounding in {scalar} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out"
+        "rounding in {precision} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out"
     )
 }
 

@@ -1,4 +1,4 @@
-//! The data of a variational inequality, written once, independent of mesh, scheme and scalar.
+//! The data of a variational inequality, written once, independent of mesh and scheme.
 //!
 //! ```text
 //! -div(alpha grad u) + c u = f + lambda      in the domain

@@ -127,7 +127,7 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
         Self::of_groups(problem, mesh.regions(), mesh.boundary_groups(), mesh.groups_inside())
     }
 
-    /// The data of a problem in regions and boundary groups, whatever the scalar of the mesh.
+    /// The data of a problem in regions and boundary groups.
     fn of_groups(
         problem: &'a Problem<D>,
         regions: &[Vec<String>],

@@ -1,10 +1,9 @@
 //! A problem from a file.
 
-use std::any::Any;
 use std::path::PathBuf;
 
 use crate::error::Error;
-use crate::mesh::gmsh::{self, GmshMesh};
+use crate::mesh::gmsh::GmshMesh;
 use crate::mesh::{BoxDomain, Mesh};
 use crate::problem::Problem;
 
@@ -41,14 +40,10 @@ impl<const D: usize> OwnProblem<D> {
     /// The mesh of the file, with the parts of its boundary as the problem says; none for a box.
     ///
     /// # Errors
-    /// [`Error::Gmsh`] and [`Error::Mesh`], in a scalar in which the mesh degenerates, say.
+    /// [`Error::Mesh`].
     pub fn mesh(&self) -> Result<Option<GmshMesh<D>>, Error> {
-        let Geometry::File { bytes, read, .. } = &self.geometry else { return Ok(None) };
-        let known: &dyn Any = &**read;
-        let mut read = match known.downcast_ref::<GmshMesh<D>>() {
-            Some(read) => read.clone(),
-            None => gmsh::parse::<D>(bytes)?,
-        };
+        let Geometry::File { read, .. } = &self.geometry else { return Ok(None) };
+        let mut read = GmshMesh::clone(read);
         read.mesh = self.problem.bind_boundary(read.mesh)?;
         Ok(Some(read))
     }

@@ -11,7 +11,7 @@ use crate::mesh::{Layers, Mesh};
 use crate::problem::Problem;
 
 /// A scheme without its type: one list can hold schemes of different types, and functions that take
-/// schemes are compiled once for each scalar and dimension.
+/// schemes are compiled once for each dimension.
 ///
 /// A blanket implementation covers every [`Scheme`]; no other implementation is needed.
 pub trait AnyScheme<const D: usize>: Send + Sync {

@@ -58,7 +58,7 @@ impl fmt::Display for Changes {
 }
 
 /// Compares a report with an earlier one, given as the JSON it wrote. Errors differ if they do so
-/// by more than the square root of the scalar's rounding, relative to their size.
+/// by more than the square root of the rounding of their precision, relative to their size.
 ///
 /// # Errors
 /// [`Error::Parameter`] if the text is no report.

@@ -1,4 +1,4 @@
-//! Work against precision: schemes, linear solvers, scalars and levels under one clock.
+//! Work against precision: schemes, linear solvers, precisions and levels under one clock.
 
 mod baseline;
 mod case;
@@ -179,7 +179,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.linear = linear.into_iter().collect();
         self
     }
-    /// Sets the scalars; `f64` otherwise.
+    /// Sets the precisions of solves; `f64` otherwise.
     #[must_use]
     pub fn precisions(mut self, precisions: impl IntoIterator<Item = Precision>) -> Self {
         self.precisions = precisions.into_iter().collect();

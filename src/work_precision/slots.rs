@@ -46,7 +46,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             }
         }
         if slots.is_empty() {
-            let needs = "a study needs a scheme, a linear solver, a scalar and a level";
+            let needs = "a study needs a scheme, a linear solver, a precision and a level";
             return Err(wrong("cases", "none".to_owned(), needs));
         }
         Ok(slots)

@@ -28,7 +28,7 @@ use crate::problem::Problem;
 /// A scheme applied to a problem on a mesh.
 ///
 /// The type names no scheme: element and facet form are held without their types, so that what it
-/// does is compiled once for each scalar and dimension.
+/// does is compiled once for each dimension.
 pub struct Discretisation<'a, const D: usize> {
     pub(crate) space: Space<'a, D>,
     form: Box<dyn FacetForm<D>>,

@@ -65,7 +65,7 @@ impl VaryingCoefficient {
     /// barycentres.
     ///
     /// # Errors
-    /// [`Error::CoefficientNotPositive`], [`Error::Parameter`] for a value that the scalar cannot hold.
+    /// [`Error::CoefficientNotPositive`], [`Error::Parameter`] for a value whose square is no floating-point number.
     pub fn new<const D: usize>(
         alpha: &DataByGroup<'_, D>,
         mesh: &Mesh<D>,

@@ -1,7 +1,6 @@
 //! The discrete space on a mesh: all that does not depend on the facet form.
 //!
-//! Nothing here is generic in scheme or element, so that all is compiled once for each scalar and
-//! dimension: the element enters as an [`AnyElement`].
+//! Nothing here is generic in scheme or element, so that all is compiled once for each dimension: the element enters as an [`AnyElement`].
 //!
 //! | file | content |
 //! |---|---|

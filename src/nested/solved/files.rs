@@ -36,7 +36,7 @@ impl<const D: usize> Solved<'_, D> {
     pub fn write_vtu(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         self.write_vtu_with(path, |file| file)
     }
-    /// Writes a `.vtu` file to which `complete` adds fields or sets the scalar, and its folder if there is
+    /// Writes a `.vtu` file to which `complete` adds fields or sets their number of bits, and its folder if there is
     /// none.
     ///
     /// The solution `u` is written in its degree; above two it is interpolated in degree two. Point data:

@@ -1,4 +1,4 @@
-//! Work against precision: what schemes, linear solvers and scalars take to reach a given error.
+//! Work against precision: what schemes, linear solvers and precisions take to reach a given error.
 //!
 //! `cargo run --release -- work-precision --help` lists the options; `--quick` ends within a minute.
 //! Exit codes: 0 if every run converged and nothing changed against the baseline, 1 otherwise, 2 if
