@@ -132,7 +132,8 @@ impl<const D: usize> Discretisation<'_, D> {
         let datum = match across {
             Some(_) => Vec::new(),
             None => {
-                let group = space.mesh.boundary_group(cell, local).unwrap_or(0);
+                let group = space.mesh.boundary_group(cell, local);
+                let group = group.expect("a boundary facet has a group");
                 space.dirichlet_moments(data, (cell, local), group)?
             }
         };

@@ -148,7 +148,8 @@ impl<const D: usize> Space<'_, D> {
                         (Some((values, usize::from(local))), Vec::new())
                     }
                     Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
-                        let group = self.mesh.boundary_group(cell, local).unwrap_or(0);
+                        let group = self.mesh.boundary_group(cell, local);
+                        let group = group.expect("a boundary facet has a group");
                         (None, self.dirichlet_moments(&moments, (cell, local), group)?)
                     }
                     Neighbour::Boundary(_) | Neighbour::Cut => continue,

@@ -103,8 +103,7 @@ impl Edges {
     /// The second result of [`Edges::with_cell_edges`], by a search for every edge of every cell.
     pub fn cell_edges<const D: usize>(&self, mesh: &Mesh<D>) -> Vec<u32> {
         let of_cell = |cell: &[u32], [i, j]: [usize; 2]| {
-            // every pair of a cell's vertices is an edge
-            self.number(cell[i], cell[j]).unwrap_or_default()
+            self.number(cell[i], cell[j]).expect("every pair of a cell's vertices is an edge")
         };
         let mut numbers = Vec::with_capacity(mesh.n_cells() * edge_vertices(D).len());
         for cell in mesh.cells().chunks_exact(D + 1) {

@@ -28,7 +28,6 @@ pub(super) fn solve_cascade(
         inequality.residual_f64(&values, &mut residual);
         let mut load = vec![0.0; level.size()];
         prolongation.restrict(&residual, &mut load);
-        let load = load.into_iter().collect();
         let bounds = (0..level.size()).map(|j| mean_bound(&inequality.bounds, prolongation, j));
         let coarse = Inequality::new(level.matrix().clone(), true, load, bounds.collect());
         let solution = solve_cascade(&coarse, level.coarser());

@@ -135,7 +135,7 @@ impl<const D: usize> Lifting<'_, '_, D> {
         for test in facets_with_jumps.iter().flatten() {
             let (sign, local) = match shared {
                 None => (1.0, test.local),
-                Some((there, here)) if there == test.local => ((-1.0), here),
+                Some((there, here)) if there == test.local => (-1.0, here),
                 Some(_) => continue,
             };
             let tested = self.moments(local, test);

@@ -89,7 +89,8 @@ impl Coupled {
     /// The place of a coupled cell among them.
     #[inline(always)]
     pub fn position(&self, cell: usize) -> usize {
-        self.cells[..self.n].iter().position(|&c| c == cell as u32).unwrap_or(0)
+        let found = self.cells[..self.n].iter().position(|&c| c == cell as u32);
+        found.expect("the cell behind a facet is coupled")
     }
 }
 

@@ -161,9 +161,8 @@ pub(crate) fn fill<const D: usize>(
                 let start = patches.start(patch) + k as usize * n;
                 for (j, &entry) in locals[start..start + n].iter().enumerate() {
                     let column = patches.unknown(patch, j);
-                    if let Some(at) = row_columns.iter().position(|&c| c == column) {
-                        row[at] += entry;
-                    }
+                    let at = row_columns.iter().position(|&c| c == column);
+                    row[at.expect("the pattern has the entries of its patches")] += entry;
                 }
             }
         }

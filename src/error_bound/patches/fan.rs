@@ -107,7 +107,8 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
         let mesh = self.space.mesh;
         let number_in = |cell: usize| {
-            mesh.cell(cell).iter().position(|&v| v as usize == vertex).unwrap_or(0) as u8
+            let found = mesh.cell(cell).iter().position(|&v| v as usize == vertex);
+            found.expect("the cells of a fan have its vertex") as u8
         };
         let (cell, count) = self.one_cell[vertex];
         let own = number_in(cell as usize);

@@ -87,7 +87,7 @@ fn ancestor<const D: usize>(
     let geometry = space.mesh.geometry(cell);
     // the barycentric coordinate of a facet vanishes on it
     let coordinate = |k: &usize| {
-        let facet = entities[*k].facet.unwrap_or(0);
+        let facet = entities[*k].facet.expect("all entities are facets, or all are cells");
         let on_facet = space.mesh.facet_barycentre(cell, facet);
         geometry.gradient(facet).dot(&(x - on_facet)).abs()
     };

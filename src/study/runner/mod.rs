@@ -263,7 +263,7 @@ impl<'a, const D: usize> Study<'a, D> {
             for (nested, solver) in by_solver.iter_mut().zip(self.solvers()) {
                 let label = entry.label(problem);
                 for &level in &self.levels {
-                    let (kept, is_whole) = kept.next().unwrap_or_default();
+                    let (kept, is_whole) = kept.next().expect("one entry for each row");
                     if let Some(row) = kept.clone() {
                         (self.observer)(Progress::Kept(&row));
                         rows.push(row);
