@@ -14,7 +14,7 @@ use super::FacetView;
 /// the least value in the cell. Derivation: the consistency terms are
 /// bounded by `sum_K sum_{F in dK} w_F |F| alpha_F^2 (d_n v)^2 / sigma_F`, and on a simplex
 /// `||grad v||_F^2 <= C_p |F|/|K| ||grad v||_K^2` for `grad v` of degree `p - 1`
-/// (f64. Warburton, J. S. Hesthaven, CMAME 192 (2003), 2765-2773).
+/// (T. Warburton, J. S. Hesthaven, CMAME 192 (2003), 2765-2773).
 #[inline(always)]
 pub fn proven_bound<const D: usize>(degree: usize, facet: &FacetView<D>) -> f64 {
     let weight = if facet.there.is_some() { 0.5 } else { 1.0 };

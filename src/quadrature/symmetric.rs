@@ -10,7 +10,7 @@ use super::rule::Rule;
 /// 125. Other rules are those of [`Rule::new`].
 ///
 /// Sources: D. A. Dunavant, Internat. J. Numer. Methods Engrg. 21 (1985), 1129-1148; P. Keast, Comput.
-/// Methods Appl. Mech. Engrg. 55 (1986), 339-348; L. Zhang, f64. Cui, H. Liu, J. Comput. Math. 27 (2009),
+/// Methods Appl. Mech. Engrg. 55 (1986), 339-348; L. Zhang, T. Cui, H. Liu, J. Comput. Math. 27 (2009),
 /// 89-96; F. D. Witherden, P. E. Vincent, Comput. Math. Appl. 69 (2015), 1232-1241. The orbits are
 /// those of these papers; the numbers solve the equations of the moments to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

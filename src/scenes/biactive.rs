@@ -7,7 +7,7 @@ use crate::problem::{Exact, Problem};
 use crate::real::Point;
 use crate::scheme::Regularity;
 
-/// The first example of B. Keith, f64. M. Surowiec, *Found. Comput. Math.* (2024), "Proximal
+/// The first example of B. Keith, T. M. Surowiec, *Found. Comput. Math.* (2024), "Proximal
 /// Galerkin": on `(-1, 1)^2` with `psi = 0` the solution is `u = max(x, 0)^4`, the load
 /// `f = -12 max(x, 0)^2`.
 ///

@@ -38,7 +38,7 @@ impl<const D: usize> Scheme<D> for ConformingP1 {
 /// Numer. Math. 28 (1977), 431-443; L.-H. Wang, Numer. Math. 92 (2002), 771-778), for which a
 /// function that is not negative at the nodes must have no negative mean over a cell: true on
 /// segments and triangles, false on tetrahedra, where the weights of vertices are negative
-/// (S. Gaddam, f64. Gudi, Comput. Methods Appl. Math. 18 (2018), 223-236, add bubbles there); with a
+/// (S. Gaddam, T. Gudi, Comput. Methods Appl. Math. 18 (2018), 223-236, add bubbles there); with a
 /// Signorini condition `min(s - 1, 3/2)` (Z. Belhachmi, F. Ben Belgacem, Math. Comp. 72 (2003),
 /// 83-104; G. Drouet, P. Hild, SIAM J. Numer. Anal. 53 (2015), 1488-1507).
 #[derive(Clone, Copy, Debug, Default)]

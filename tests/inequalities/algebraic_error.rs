@@ -103,7 +103,7 @@ fn is_rounding(
 
 /// The inequality of the corrections of a solution.
 ///
-/// With the jump multipliers `p` of the solution the corrections satisfy `K e + M^f64 q = c - K u - M^f64 p` and
+/// With the jump multipliers `p` of the solution the corrections satisfy `K e + M^T q = c - K u - M^T p` and
 /// `M e - q / s = g - M u + p / s`.
 fn inequality_left(given: &Inequality<f64>, solution: &Solution<f64>) -> Inequality<f64> {
     let u = &solution.values;

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// The unevaluated sum of two numbers, the second below the rounding of the first (f64. J. Dekker, Numer. Math.
+/// The unevaluated sum of two numbers, the second below the rounding of the first (T. J. Dekker, Numer. Math.
 /// 18 (1971) 224-242).
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Double {

@@ -76,7 +76,7 @@ impl<'a> Reference<'a> {
         (0..self.penalised.n_jumps()).map(multiplier).collect()
     }
 
-    /// `c - K u - M^f64 p`.
+    /// `c - K u - M^T p`.
     fn residual(&self) -> Vec<Double> {
         let PenalisedMatrix { block_size: n, blocks, .. } = self.penalised;
         let load = &self.inequality.load;

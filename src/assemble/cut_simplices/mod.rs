@@ -312,7 +312,7 @@ fn rule(dimension: usize, degree: usize) -> Rule {
 
 /// A point of `(0, 1)` where a function changes its sign, to rounding, from whichever side; none if its sign is
 /// the same at both ends. By inverse quadratic interpolation where the last three points admit it, else by
-/// bisection, so that it ends at a jump too: f64. R. Chandrupatla, Adv. Eng. Softw. 28 (1997), 145-149.
+/// bisection, so that it ends at a jump too: T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997), 145-149.
 fn zero_between(function: impl Fn(f64) -> f64) -> Option<f64> {
     // `a` is the last point, `b` the last one on the other side of the zero
     let ([mut a, mut b], [mut at_a, mut at_b]) = ([1.0, 0.0], [function(1.0), function(0.0)]);

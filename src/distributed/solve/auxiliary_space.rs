@@ -58,7 +58,7 @@ impl Preconditioner<f64> for AuxiliarySpace<'_> {
     }
 }
 
-/// The correction `P C P^f64 r` by conforming linear functions that vanish at the vertices in the
+/// The correction `P C P^T r` by conforming linear functions that vanish at the vertices in the
 /// supports of fixed unknowns; for `P` and `C` see [`AuxiliarySpace`].
 pub(super) struct VertexCorrection<'a> {
     /// `C`.
@@ -71,7 +71,7 @@ pub(super) struct VertexCorrection<'a> {
     transpose: RectangularMatrix<f64>,
     /// Whether a vertex is fixed; see [`VertexCorrection::set_fixed`].
     fixed_vertices: Vec<bool>,
-    /// Workspace: `P^f64 r` and `C P^f64 r`, zero at fixed vertices.
+    /// Workspace: `P^T r` and `C P^T r`, zero at fixed vertices.
     residual: Vec<f64>,
     values: Vec<f64>,
 }
@@ -108,7 +108,7 @@ impl<'a> VertexCorrection<'a> {
         self.coarse.set_fixed(&self.fixed_vertices)
     }
 
-    /// `z = z + P C P^f64 r`.
+    /// `z = z + P C P^T r`.
     pub fn add(&mut self, r: &[f64], z: &mut [f64]) {
         let (transpose, interpolation) = (&self.transpose, &self.interpolation);
         let fixed_vertices = &self.fixed_vertices;

@@ -5,7 +5,7 @@
 //! a facet have a given sum. With `1` the vector of ones and `t = G^-1 1 / (1 . G^-1 1)`
 //!
 //! ```text
-//! c = S (b - m) + s t,   S = G^-1 - (G^-1 1) (G^-1 1)^f64 / (1 . G^-1 1)
+//! c = S (b - m) + s t,   S = G^-1 - (G^-1 1) (G^-1 1)^T / (1 . G^-1 1)
 //! ```
 //!
 //! Where numbers are known, `G` is that of the others. What the two sides of each facet have too much gives a symmetric

@@ -82,7 +82,7 @@ impl MeanJump {
             |row: &Row| row.entries().fold(0.0, |s, (j, weight)| s + weight * y[j as usize]);
         self.rows.iter().map(value).collect()
     }
-    /// `E^f64 r`: a load on facet means of each cell as one on means and jumps.
+    /// `E^T r`: a load on facet means of each cell as one on means and jumps.
     ///
     /// # Panics
     /// If `r` is shorter than [`MeanJump::size`].
@@ -95,7 +95,7 @@ impl MeanJump {
         }
         out
     }
-    /// `E^f64 A E`.
+    /// `E^T A E`.
     ///
     /// # Panics
     /// If the matrix has another size than [`MeanJump::size`].

@@ -130,7 +130,7 @@ fn means_and_jumps() {
         let dirichlet =
             dirichlet.filter(|f| f.part == unilateral::mesh::BoundaryPart::Dirichlet).count();
         assert_eq!(inner(&c), change.size() - dirichlet);
-        // E^f64 A E applied in one go and step by step
+        // E^T A E applied in one go and step by step
         let mut random = 1_u64;
         let x: Vec<f64> = (0..change.size())
             .map(|_| {
