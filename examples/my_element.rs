@@ -17,7 +17,7 @@ use unilateral::prelude::*;
 #[derive(Clone, Copy)]
 struct P1WithBubble;
 
-impl<T: Real, const D: usize> ReferenceElement<T, D> for P1WithBubble {
+impl<const D: usize> ReferenceElement<D> for P1WithBubble {
     const N: usize = D + 2;
     /// Not all quadratics are in the span: orders are those of linears.
     const DEGREE: usize = 1;
@@ -25,23 +25,23 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P1WithBubble {
     const BASIS_DEGREE: usize = D + 1;
     const LAYOUT: Layout = Layout { vertex: 1, edge: 0, facet: 0, cell: 1 };
 
-    fn values(lambda: &[T], out: &mut [T]) {
-        let n = T::lit((D + 1) as f64);
-        let bubble = lambda.iter().fold(T::lit(1.0), |product, &l| product * n * l);
+    fn values(lambda: &[f64], out: &mut [f64]) {
+        let n = (D + 1) as f64;
+        let bubble = lambda.iter().fold(1.0, |product, &l| product * n * l);
         for i in 0..=D {
             out[i] = lambda[i] - bubble / n;
         }
         out[D + 1] = bubble;
     }
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        let n = T::lit((D + 1) as f64);
-        let mut bubble = [T::lit(0.0); 4];
+    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
+        let n = (D + 1) as f64;
+        let mut bubble = [0.0; 4];
         for k in 0..=D {
             bubble[k] = (0..=D).filter(|&l| l != k).fold(n, |product, l| product * n * lambda[l]);
         }
         for i in 0..=D {
             out[i] = bubble.map(|slope| -slope / n);
-            out[i][i] += T::lit(1.0);
+            out[i][i] += 1.0;
         }
         out[D + 1] = bubble;
     }
@@ -58,14 +58,14 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P1WithBubble {
 /// The conforming scheme, without terms on facets and with bounds at all nodes.
 struct WithBubble;
 
-impl<T: Real, const D: usize> Scheme<T, D> for WithBubble {
+impl<const D: usize> Scheme<D> for WithBubble {
     type Element = P1WithBubble;
     type Facet = NoFacets;
     const DIRICHLET: DirichletBy = DirichletBy::Pinning;
     fn name(&self) -> &str {
         "p1-bubble"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
+    fn facet(&self, _: &Mesh<D>) -> NoFacets {
         NoFacets
     }
     /// Those of linears on an equation; under an inequality the values at nodes are a set for which
@@ -91,17 +91,17 @@ impl ConstraintSet for OnlyVertices {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    print!("{}", check_scheme::<f64, 2, _>(&WithBubble)?);
-    print!("{}", check_scheme::<f64, 3, _>(&WithBubble)?);
+    print!("{}", check_scheme::<2, _>(&WithBubble)?);
+    print!("{}", check_scheme::<3, _>(&WithBubble)?);
 
-    let value = |x: &Point<f64, 2>| (2.0 * x[0] - x[1]).sin();
+    let value = |x: &Point<2>| (2.0 * x[0] - x[1]).sin();
     let problem = Problem::new()
         .exact(value, |x| Point::from([2.0, -1.0]) * (2.0 * x[0] - x[1]).cos())
         .source(move |x| 5.0 * value(x));
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let equation = scenes::Scene::new("sine", square, problem).regularity(Regularity::smooth());
     let study = |scene| {
-        Study::<f64, 2>::new(scene).scheme(ConformingP1).scheme(WithBubble).levels([4, 8, 16, 32])
+        Study::<2>::new(scene).scheme(ConformingP1).scheme(WithBubble).levels([4, 8, 16, 32])
     };
     let report = study(equation).run()?;
     print!("{report}");

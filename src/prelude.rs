@@ -11,7 +11,7 @@ pub use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
 pub use crate::nested::{AdaptiveMeshes, Adaptivity, Stop, adapt};
 pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
 pub use crate::problem::Problem;
-pub use crate::real::{Point, Real};
+pub use crate::real::Point;
 pub use crate::scenes;
 pub use crate::scheme::*;
 #[cfg(feature = "report")]

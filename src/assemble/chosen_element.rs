@@ -4,28 +4,27 @@ use super::shared_rows::{CellLoops, loops_of};
 use super::space::AnyElement;
 use crate::constraint::{CONSTRAINT_SETS, ConstraintSet, constraint_set_by_name};
 use crate::element::{ElementVisitor, Node, ReferenceElement};
-use crate::real::Real;
 
 /// An element without its type, with the loops over its shared rows.
-pub(crate) struct ChosenElement<T: Real, const D: usize> {
+pub(crate) struct ChosenElement<const D: usize> {
     pub element: AnyElement,
-    pub loops: Option<CellLoops<T, D>>,
+    pub loops: Option<CellLoops<D>>,
     /// The names of the constraint sets that the element of the scheme offers an obstacle, or a
     /// Signorini condition.
     pub offered: fn(contact: bool) -> Vec<String>,
 }
 
-impl<T: Real, const D: usize> ChosenElement<T, D> {
+impl<const D: usize> ChosenElement<D> {
     /// The element `E`, or the one of the same broken polynomials in the basis of the set, if the set
     /// binds no node of `E`.
-    pub fn of<E: ReferenceElement<T, D>>(set: &dyn ConstraintSet) -> Self {
+    pub fn of<E: ReferenceElement<D>>(set: &dyn ConstraintSet) -> Self {
         let own = Erase.visit::<E>();
         let is_bound = binds_any(set, &own.element.nodes, D);
         let other = match set.basis() {
             Some(basis) if !is_bound && E::LAYOUT.is_broken() => E::broken_in_basis(basis, Erase),
             _ => None,
         };
-        Self { offered: offered::<T, E, D>, ..other.unwrap_or(own) }
+        Self { offered: offered::<E, D>, ..other.unwrap_or(own) }
     }
 }
 
@@ -37,20 +36,20 @@ fn binds_any(set: &dyn ConstraintSet, nodes: &[Node], dimension: usize) -> bool 
 /// The visitor that removes the type.
 struct Erase;
 
-impl<T: Real, const D: usize> ElementVisitor<T, D> for Erase {
-    type Output = ChosenElement<T, D>;
+impl<const D: usize> ElementVisitor<D> for Erase {
+    type Output = ChosenElement<D>;
 
-    fn visit<E: ReferenceElement<T, D>>(self) -> ChosenElement<T, D> {
+    fn visit<E: ReferenceElement<D>>(self) -> ChosenElement<D> {
         ChosenElement {
-            element: AnyElement::of::<T, E, D>(),
-            loops: loops_of::<T, D, E>(),
-            offered: offered::<T, E, D>,
+            element: AnyElement::of::<E, D>(),
+            loops: loops_of::<D, E>(),
+            offered: offered::<E, D>,
         }
     }
 }
 
-fn offered<T: Real, E: ReferenceElement<T, D>, const D: usize>(contact: bool) -> Vec<String> {
-    offered_in(D, contact, |set| ChosenElement::<T, D>::of::<E>(set).element)
+fn offered<E: ReferenceElement<D>, const D: usize>(contact: bool) -> Vec<String> {
+    offered_in(D, contact, |set| ChosenElement::<D>::of::<E>(set).element)
 }
 
 /// As [`offered`], compiled once for all elements.

@@ -4,14 +4,13 @@ use super::penalised;
 use super::space::Space;
 use crate::error::Error;
 use crate::facet::FacetForm;
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Refuses a factor that the form [states](crate::facet::FormTheory) and that is not positive and
     /// finite, or that makes a penalty too far from the stiffness beside it: beyond the reciprocal of
     /// the rounding unit a matrix holds no stiffness; the penalised form of a matrix keeps the two
     /// apart, so that the fourth power is the limit there, and below for every form.
-    pub fn check_penalty_factor(&self, form: &dyn FacetForm<T, D>) -> Result<(), Error> {
+    pub fn check_penalty_factor(&self, form: &dyn FacetForm<D>) -> Result<(), Error> {
         let Some((parameter, value, factor)) = form.theory().factor() else { return Ok(()) };
         let refuse =
             |allowed| Err(Error::Parameter { parameter, value: value.to_string(), allowed });
@@ -25,15 +24,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut views = (0..self.mesh.n_cells() * (D + 1)).filter_map(view);
         let Some(facet) = views.next() else { return Ok(()) };
         let stiffness = facet.largest(|side| side.coefficient * side.surface / side.volume);
-        let ratio = (form.penalty(&facet) / stiffness).to_f64();
-        let least = T::EPSILON.powi(4);
-        let most = if penalised::applies(form) { 1.0 / least } else { 1.0 / T::EPSILON };
+        let ratio = form.penalty(&facet) / stiffness;
+        let least = f64::EPSILON.powi(4);
+        let most = if penalised::applies(form) { 1.0 / least } else { 1.0 / f64::EPSILON };
         if ratio >= least && ratio <= most {
             return Ok(());
         }
         refuse(format!(
-            "makes a penalty of {ratio:.1e} times the stiffness beside it, {} holds {least:.1e} to {most:.1e}",
-            T::NAME
+            "makes a penalty of {ratio:.1e} times the stiffness beside it, {least:.1e} to {most:.1e} have digits",
         ))
     }
 }

@@ -5,7 +5,6 @@ use super::error::ExchangeError;
 use super::exchange::{Exchange, check_lengths};
 use crate::assemble::Discretisation;
 use crate::mesh::Part;
-use crate::real::Real;
 
 /// The number of an unknown whose owner has not answered yet, or does not know it either.
 const UNKNOWN: u64 = u64::MAX;
@@ -37,9 +36,9 @@ impl Numbering {
     /// [`ExchangeError::Failed`] in all parts if cells have other owners in one part than in another, or if a part
     /// has too few [layers](crate::scheme::AnyScheme#method.layers) to know who numbers an unknown; those of the
     /// exchange.
-    pub fn new<T: Real, const D: usize>(
-        part: &Part<T, D>,
-        discretisation: &Discretisation<'_, T, D>,
+    pub fn new<const D: usize>(
+        part: &Part<D>,
+        discretisation: &Discretisation<'_, D>,
         exchange: &dyn Exchange,
     ) -> Result<Self, ExchangeError> {
         let per_cell = discretisation.unknowns_of(0).count();

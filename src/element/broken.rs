@@ -3,7 +3,6 @@
 use super::basis::Basis;
 use super::node::Node;
 use super::reference_element::{ElementVisitor, Layout, ReferenceElement};
-use crate::real::Real;
 
 /// The basis of `E` with all unknowns inside the cells.
 ///
@@ -12,24 +11,24 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Broken<E>(pub E);
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D> for Broken<E> {
+impl<const D: usize, E: ReferenceElement<D>> ReferenceElement<D> for Broken<E> {
     const N: usize = E::N;
     const DEGREE: usize = E::DEGREE;
     const BASIS_DEGREE: usize = E::BASIS_DEGREE;
     const LAYOUT: Layout = Layout::in_cells(E::N);
 
     #[inline(always)]
-    fn values(lambda: &[T], out: &mut [T]) {
+    fn values(lambda: &[f64], out: &mut [f64]) {
         E::values(lambda, out);
     }
     #[inline(always)]
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
+    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
         E::derivatives(lambda, out);
     }
     fn node(i: usize) -> Node {
         E::node(i)
     }
-    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
+    fn broken_in_basis<V: ElementVisitor<D>>(basis: Basis, visitor: V) -> Option<V::Output> {
         E::broken_in_basis(basis, visitor)
     }
 }

@@ -2,7 +2,6 @@
 
 use super::node::Node;
 use super::reference_element::{Layout, ReferenceElement};
-use crate::real::Real;
 
 /// Discontinuous quadratics with the nodes of `E`, which is [`P2`](super::P2), except that the mean over the cell replaces the
 /// value at the midpoint of the last edge.
@@ -23,31 +22,29 @@ const fn mean(dimension: usize, i: usize) -> f64 {
     numerator / ((dimension + 1) * (dimension + 2)) as f64
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D>
-    for QuadraticCellMean<E>
-{
+impl<const D: usize, E: ReferenceElement<D>> ReferenceElement<D> for QuadraticCellMean<E> {
     const N: usize = E::N;
     const DEGREE: usize = 2;
     const LAYOUT: Layout = Layout::in_cells(E::N);
 
     #[inline(always)]
-    fn values(lambda: &[T], out: &mut [T]) {
+    fn values(lambda: &[f64], out: &mut [f64]) {
         E::values(lambda, out);
         let last = E::N - 1;
-        let of_mean = out[last] / T::lit(mean(D, last));
+        let of_mean = out[last] / mean(D, last);
         for (i, value) in out[..last].iter_mut().enumerate() {
-            *value -= T::lit(mean(D, i)) * of_mean;
+            *value -= mean(D, i) * of_mean;
         }
         out[last] = of_mean;
     }
     #[inline(always)]
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
+    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
         E::derivatives(lambda, out);
         let last = E::N - 1;
-        let of_mean = out[last].map(|slope| slope / T::lit(mean(D, last)));
+        let of_mean = out[last].map(|slope| slope / mean(D, last));
         for (i, row) in out[..last].iter_mut().enumerate() {
             for (slope, &of_mean) in row.iter_mut().zip(&of_mean) {
-                *slope -= T::lit(mean(D, i)) * of_mean;
+                *slope -= mean(D, i) * of_mean;
             }
         }
         out[last] = of_mean;

@@ -2,7 +2,6 @@
 
 use super::basis::Basis;
 use super::node::Node;
-use crate::real::Real;
 
 /// Largest number of basis functions of an element: cubics on a tetrahedron.
 pub const MAX_BASIS: usize = 20;
@@ -50,10 +49,10 @@ impl Layout {
 /// degree [`BASIS_DEGREE`](Self::BASIS_DEGREE) at most, derivatives equal to those of the values, as
 /// many functions as the layout has unknowns, nodes tied to the entities that own the unknowns.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is not a finite element on a {D}-simplex over `{T}`",
+    message = "`{Self}` is not a finite element on a {D}-simplex",
     note = "elements exist on simplices of dimension 1, 2 and 3"
 )]
-pub trait ReferenceElement<T: Real, const D: usize>: Copy + Send + Sync + 'static {
+pub trait ReferenceElement<const D: usize>: Copy + Send + Sync + 'static {
     /// Number of basis functions, at most 20: as many as cubics on a tetrahedron have.
     const N: usize;
     /// Largest degree of which the span of the basis contains all polynomials: what the element
@@ -70,25 +69,25 @@ pub trait ReferenceElement<T: Real, const D: usize>: Copy + Send + Sync + 'stati
     #[doc(hidden)]
     const COMPILED: bool = false;
     /// Writes the `N` basis functions at a point; `lambda` has `D + 1` entries.
-    fn values(lambda: &[T], out: &mut [T]);
+    fn values(lambda: &[f64], out: &mut [f64]);
     /// Writes the derivatives of the `N` basis functions with respect to the `D + 1` barycentric
     /// coordinates, taken as independent.
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]);
+    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]);
     /// The functional that unknown `i` is the value of.
     fn node(i: usize) -> Node;
     /// Calls the visitor with the broken element of the same polynomials that has this basis; none
     /// if the element knows no such basis. Only broken elements are asked, and
     /// [`Broken`](super::Broken) passes the question to the element inside.
-    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
+    fn broken_in_basis<V: ElementVisitor<D>>(basis: Basis, visitor: V) -> Option<V::Output> {
         let _ = (basis, visitor);
         None
     }
 }
 
 /// A function of an element's type, as [`ReferenceElement::broken_in_basis`] calls it.
-pub trait ElementVisitor<T: Real, const D: usize> {
+pub trait ElementVisitor<const D: usize> {
     /// What it returns.
     type Output;
     /// Called with the element.
-    fn visit<E: ReferenceElement<T, D>>(self) -> Self::Output;
+    fn visit<E: ReferenceElement<D>>(self) -> Self::Output;
 }

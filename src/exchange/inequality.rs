@@ -11,7 +11,7 @@ use crate::error::{Error, write_error};
 use crate::files::replace;
 use crate::instances::compiled;
 use crate::mesh::Mesh;
-use crate::real::{Real, point_f64};
+use crate::real::Real;
 
 /// Writes the inequality "find `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v` within the
 /// bounds" to a directory, which is made if need be:
@@ -34,10 +34,10 @@ use crate::real::{Real, point_f64};
 pub fn write_inequality<T: Real, const D: usize>(
     directory: impl AsRef<Path>,
     inequality: &Inequality<T>,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
 ) -> Result<(), Error> {
     compiled!(
-        T, D: fn(&Path, &Inequality<T>, &Mesh<T, D>) -> Result<(), Error>
+        T, D: fn(&Path, &Inequality<T>, &Mesh<D>) -> Result<(), Error>
             = write_files
     )(directory.as_ref(), inequality, mesh)
 }
@@ -45,7 +45,7 @@ pub fn write_inequality<T: Real, const D: usize>(
 fn write_files<T: Real, const D: usize>(
     directory: &Path,
     inequality: &Inequality<T>,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
 ) -> Result<(), Error> {
     write_files_with(directory, inequality, &|file| write_places(file, &inequality.supports, mesh))
 }
@@ -122,10 +122,10 @@ fn write_matrix<T: Real>(file: &mut dyn Write, matrix: &SparseMatrix<T>) -> std:
     Ok(())
 }
 
-fn write_places<T: Real, const D: usize>(
+fn write_places<const D: usize>(
     file: &mut dyn Write,
     supports: &[Support],
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
 ) -> std::io::Result<()> {
     let axes = &["x", "y", "z"][..D];
     writeln!(file, "unknown,cell,{},vertices", axes.join(","))?;
@@ -134,8 +134,7 @@ fn write_places<T: Real, const D: usize>(
         let cell = support.cell().map_or_else(String::new, |cell| cell.to_string());
         write!(file, "{unknown},{cell}")?;
         for k in 0..D {
-            let sum: f64 =
-                vertices.iter().map(|&v| point_f64(&mesh.vertices()[v as usize])[k]).sum();
+            let sum: f64 = vertices.iter().map(|&v| mesh.vertices()[v as usize][k]).sum();
             write!(file, ",{:?}", sum / vertices.len() as f64)?;
         }
         let names: Vec<String> = vertices.iter().map(u32::to_string).collect();

@@ -2,7 +2,6 @@
 
 use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace};
 use crate::arrays::map_entries;
-use crate::real::Real;
 
 /// The degree of the polynomials that jumps are lifted to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,16 +53,16 @@ pub struct FacetLifts {
 }
 
 impl FacetLifts {
-    fn weight<T: Real, const D: usize>(eta: f64, facet: &FacetView<T, D>) -> T {
-        let average = T::lit(if facet.there.is_some() { 0.5 } else { 1.0 });
+    fn weight<const D: usize>(eta: f64, facet: &FacetView<D>) -> f64 {
+        let average = if facet.there.is_some() { 0.5 } else { 1.0 };
         let w = facet.coefficient() * average;
         let energy =
             facet.sum(|side| w * w * facet.measure / (side.least_coefficient * side.volume));
-        T::lit(eta) * energy
+        eta * energy
     }
 }
 
-impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
+impl<const D: usize> FacetForm<D> for FacetLifts {
     fn uses_flux(&self) -> bool {
         true
     }
@@ -73,7 +72,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
     fn lift_degree(&self, _: usize) -> usize {
         self.lift_degree
     }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         Self::weight(self.eta, facet)
     }
     /// `|K| / |F|^2 int_K s^2` for the polynomial `s` of the lift's degree `p - 1` with
@@ -84,7 +83,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
         let [d, p, m] = map_entries([D, self.lift_degree + 1, moment], |k| k as f64);
         (p - m) * (p + m + d - 1.0) / d
     }
-    fn theory(&self) -> FormTheory<'_, T, D> {
+    fn theory(&self) -> FormTheory<'_, D> {
         let (eta, rule) = (Some(self.eta), Some("eta int r_F . r_F".to_owned()));
         let theory =
             FormTheory::new().with_parameters(PenaltyParameters { sigma: None, eta, rule });
@@ -97,7 +96,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
         true
     }
     #[inline(always)]
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
     }
 }
@@ -110,7 +109,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
 #[derive(Clone, Copy, Debug)]
 pub struct Lifted<F>(pub F);
 
-impl<T: Real, const D: usize, F: FacetForm<T, D>> FacetForm<T, D> for Lifted<F> {
+impl<const D: usize, F: FacetForm<D>> FacetForm<D> for Lifted<F> {
     fn uses_flux(&self) -> bool {
         self.0.uses_flux()
     }
@@ -126,24 +125,24 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> FacetForm<T, D> for Lifted<F> 
     fn moments(&self, degree: usize) -> usize {
         self.0.moments(degree)
     }
-    fn average_weight(&self, facet: &FacetView<T, D>) -> T {
+    fn average_weight(&self, facet: &FacetView<D>) -> f64 {
         self.0.average_weight(facet)
     }
     #[inline(always)]
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         self.0.penalty(facet)
     }
     fn moment_weight(&self, degree: usize) -> f64 {
         self.0.moment_weight(degree)
     }
-    fn theory(&self) -> FormTheory<'_, T, D> {
+    fn theory(&self) -> FormTheory<'_, D> {
         self.0.theory()
     }
     fn is_uniform(&self) -> bool {
         self.0.is_uniform()
     }
     #[inline(always)]
-    fn integrand(&self, facet: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, facet: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         self.0.integrand(facet, v, u, penalty)
     }
 }

@@ -1,9 +1,8 @@
 //! Solvers by name.
 
-use super::{ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid};
-use crate::instances::compiled;
+use super::{ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, in_precision};
 use crate::linear::LinearMethod;
-use crate::real::Real;
+use crate::real::Precision;
 
 /// The options of the solvers that [`solver_by_name`] returns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,6 +10,8 @@ use crate::real::Real;
 pub struct SolverOptions {
     /// The method for the linear systems, in solvers that have more than one.
     pub linear: LinearMethod,
+    /// The precision in which the solver computes.
+    pub precision: Precision,
 }
 
 impl SolverOptions {
@@ -20,20 +21,27 @@ impl SolverOptions {
         self.linear = linear;
         self
     }
+    /// Sets the precision in which the solver computes.
+    #[must_use]
+    pub fn precision(mut self, precision: Precision) -> Self {
+        self.precision = precision;
+        self
+    }
 }
 
-/// Defines [`SOLVERS`] and the function `new_solver` from one list of names, summaries and constructors.
+/// Defines [`SOLVERS`] and [`solver_by_name`] from one list of names, summaries and constructors.
 macro_rules! solvers_by_name {
     ($options:ident: $($name:literal, $summary:literal => $solver:expr;)*) => {
         /// Names of the solvers, with one line each.
         pub const SOLVERS: &[(&str, &str)] = &[$(($name, $summary)),*];
 
-        fn new_solver<T: Real>(
+        /// The solver of this name; `None` if there is none.
+        pub fn solver_by_name(
             name: &str,
             $options: &SolverOptions,
-        ) -> Option<Box<dyn InequalitySolver<T>>> {
+        ) -> Option<Box<dyn InequalitySolver<f64>>> {
             match name {
-                $($name => Some(Box::new($solver)),)*
+                $($name => Some(in_precision($options.precision, $solver)),)*
                 _ => None,
             }
         }
@@ -48,15 +56,4 @@ solvers_by_name! { options:
         => MonotoneMultigrid::default();
     "interior-point", "predictor-corrector interior point method, with factors"
         => InteriorPoint;
-}
-
-/// The solver of this name; `None` if there is none.
-pub fn solver_by_name<T: Real>(
-    name: &str,
-    options: &SolverOptions,
-) -> Option<Box<dyn InequalitySolver<T>>> {
-    compiled!(
-        T: fn(&str, &SolverOptions) -> Option<Box<dyn InequalitySolver<T>>>
-            = new_solver
-    )(name, options)
 }

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// use unilateral::prelude::*;
 /// # fn main() -> Result<(), Error> {
 /// let steps = StepCounter::default();
-/// let study = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(Sipg::default()).levels([8]);
+/// let study = Study::<2>::new(scenes::radial(1.0)).scheme(Sipg::default()).levels([8]);
 /// let report = study.steps(steps.clone()).run()?;
 /// assert_eq!(Some(steps.get()), report.rows[0].iterations.outer);
 /// # Ok(())

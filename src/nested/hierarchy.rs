@@ -8,18 +8,17 @@ use crate::instances::compiled;
 use crate::linear::Prolongation;
 use crate::mesh::{Domain, Mesh, Refinement};
 use crate::parallel::once;
-use crate::real::Real;
 
 /// A mesh of a hierarchy.
 #[derive(Debug)]
-struct NestedMesh<T, const D: usize> {
+struct NestedMesh<const D: usize> {
     /// Number of refinements of an input mesh, or subdivisions of the shortest side of a domain.
     level: usize,
-    mesh: Mesh<T, D>,
+    mesh: Mesh<D>,
     /// The refinement of the next coarser mesh that gives this one; `None` for the coarsest mesh.
     refinement: Option<Refinement>,
     /// The prolongation of P1 functions from the next coarser mesh, computed on demand.
-    prolongation: OnceLock<Arc<Prolongation<T>>>,
+    prolongation: OnceLock<Arc<Prolongation<f64>>>,
     /// Seconds for this mesh and all coarser ones.
     seconds: f64,
 }
@@ -29,16 +28,16 @@ struct NestedMesh<T, const D: usize> {
 /// The level of a mesh is its number of refinements if the coarsest mesh is an input mesh, and the
 /// number of subdivisions of the shortest side if it is a mesh of a built-in domain.
 #[derive(Debug)]
-pub struct Hierarchy<T, const D: usize> {
-    meshes: Vec<NestedMesh<T, D>>,
+pub struct Hierarchy<const D: usize> {
+    meshes: Vec<NestedMesh<D>>,
 }
 
-impl<T: Real, const D: usize> Hierarchy<T, D> {
+impl<const D: usize> Hierarchy<D> {
     /// A mesh and its uniform refinements: levels zero to `refinements`.
     ///
     /// # Errors
     /// [`Error::Parameter`] for more cells than can be numbered.
-    pub fn refine(mesh: &Mesh<T, D>, refinements: usize) -> Result<Self, Error> {
+    pub fn refine(mesh: &Mesh<D>, refinements: usize) -> Result<Self, Error> {
         Coarsest::Mesh(mesh).build(refinements)
     }
 
@@ -48,7 +47,7 @@ impl<T: Real, const D: usize> Hierarchy<T, D> {
     ///
     /// # Errors
     /// [`Error::Parameter`] for level zero and for one with more cells than can be numbered or with
-    /// cells too small for the scalar, [`Error::Mesh`] if the domain has no mesh.
+    /// cells too small for floating-point numbers, [`Error::Mesh`] if the domain has no mesh.
     pub fn of_domain(domain: &Domain<D>, level: usize) -> Result<Self, Error> {
         Coarsest::Domain(domain).build(level)
     }
@@ -63,12 +62,12 @@ impl<T: Real, const D: usize> Hierarchy<T, D> {
     /// # Panics
     /// If the hierarchy has no such mesh.
     #[must_use]
-    pub fn mesh(&self, position: usize) -> &Mesh<T, D> {
+    pub fn mesh(&self, position: usize) -> &Mesh<D> {
         &self.meshes[position].mesh
     }
     /// The finest mesh.
     #[must_use]
-    pub fn finest(&self) -> &Mesh<T, D> {
+    pub fn finest(&self) -> &Mesh<D> {
         self.mesh(self.meshes.len() - 1)
     }
     /// The position of the mesh of a level, if the hierarchy has it.
@@ -85,7 +84,7 @@ impl<T: Real, const D: usize> Hierarchy<T, D> {
     pub(super) fn refinement(
         &self,
         position: usize,
-    ) -> Option<(&Refinement, &Arc<Prolongation<T>>)> {
+    ) -> Option<(&Refinement, &Arc<Prolongation<f64>>)> {
         let entry = &self.meshes[position];
         let refinement = entry.refinement.as_ref()?;
         let n_coarse = self.mesh(position - 1).vertices().len();
@@ -98,14 +97,14 @@ impl<T: Real, const D: usize> Hierarchy<T, D> {
 const COARSEST: usize = 4;
 
 /// From which the meshes of a hierarchy are refined.
-pub(crate) enum Coarsest<'a, T, const D: usize> {
+pub(crate) enum Coarsest<'a, const D: usize> {
     /// A built-in domain.
     Domain(&'a Domain<D>),
     /// An input mesh.
-    Mesh(&'a Mesh<T, D>),
+    Mesh(&'a Mesh<D>),
 }
 
-impl<T: Real, const D: usize> Coarsest<'_, T, D> {
+impl<const D: usize> Coarsest<'_, D> {
     /// The levels of the hierarchy that ends with a level, coarsest first; no level of a domain but the last
     /// is less than `coarsest`.
     fn levels(&self, level: usize, coarsest: usize) -> Vec<usize> {
@@ -132,9 +131,9 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
     ///
     /// # Errors
     /// Those of [`Coarsest::build`].
-    pub fn build_all(&self, levels: &[usize]) -> Result<Vec<Hierarchy<T, D>>, Error> {
+    pub fn build_all(&self, levels: &[usize]) -> Result<Vec<Hierarchy<D>>, Error> {
         let finest = descending(levels);
-        let mut hierarchies: Vec<Hierarchy<T, D>> = Vec::new();
+        let mut hierarchies: Vec<Hierarchy<D>> = Vec::new();
         for level in finest {
             if !hierarchies.iter().any(|h| h.position(level).is_some()) {
                 hierarchies.push(self.build(level)?);
@@ -147,7 +146,7 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
     ///
     /// # Errors
     /// Those of [`Coarsest::check`] and of refinement.
-    pub fn build(&self, level: usize) -> Result<Hierarchy<T, D>, Error> {
+    pub fn build(&self, level: usize) -> Result<Hierarchy<D>, Error> {
         self.build_from(level, COARSEST)
     }
 
@@ -156,15 +155,14 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
     ///
     /// # Errors
     /// Those of [`Coarsest::check`] and of refinement.
-    pub fn build_from(&self, level: usize, coarsest: usize) -> Result<Hierarchy<T, D>, Error> {
-        compiled!(
-            T, D: fn(&Coarsest<'_, T, D>, usize, usize) -> Result<Hierarchy<T, D>, Error>
+    pub fn build_from(&self, level: usize, coarsest: usize) -> Result<Hierarchy<D>, Error> {
+        compiled!(const D: fn(&Coarsest<'_, D>, usize, usize) -> Result<Hierarchy<D>, Error>
                 = |of, level, coarsest| of.build_meshes(level, coarsest)
         )(self, level, coarsest)
     }
-    fn build_meshes(&self, level: usize, coarsest: usize) -> Result<Hierarchy<T, D>, Error> {
+    fn build_meshes(&self, level: usize, coarsest: usize) -> Result<Hierarchy<D>, Error> {
         self.check(level)?;
-        let mut meshes: Vec<NestedMesh<T, D>> = Vec::new();
+        let mut meshes: Vec<NestedMesh<D>> = Vec::new();
         for level in self.levels(level, coarsest) {
             let clock = Instant::now();
             let (mesh, refinement) = match (meshes.last(), self) {
@@ -224,21 +222,15 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
             let allowed = "a built-in mesh has at least one subdivision of its shortest side; refinements, from 0, are those of a mesh file".to_owned();
             return refuse("level", "0".to_owned(), allowed);
         }
-        // squares and volumes of cells, and their reciprocals, must be in the range of the scalar
-        let fits = |x: f64| {
-            let error = (T::lit(x).to_f64() / x - 1.0).abs();
-            x.is_normal() && error <= T::EPSILON
-        };
+        // squares and volumes of cells, and their reciprocals, must be in the range of floating-point numbers
         let power = D.max(2) as i32;
-        let outside = |&h: &f64| !(fits(h.powi(power)) && fits(h.powi(-power)));
+        let outside = |&h: &f64| !(h.powi(power).is_normal() && h.powi(-power).is_normal());
         match domain.spacings(level).into_iter().find(outside) {
             None => Ok(()),
             Some(h) => refuse(
-                "precision",
-                T::NAME.to_owned(),
-                format!(
-                    "cannot hold the volume of cells of size {h:.1e}; choose another precision, scale or level"
-                ),
+                "spacing",
+                format!("{h:.1e}"),
+                "one whose powers up to the dimension are floating-point numbers; choose another scale or level".to_owned(),
             ),
         }
     }
@@ -259,14 +251,14 @@ mod tests {
     #[test]
     fn level_zero_of_a_built_in_domain_is_refused_by_its_name() {
         let scene = scenes::radial::<2>(1.0);
-        let error = Hierarchy::<f64, 2>::of_domain(&scene.domain, 0).unwrap_err();
+        let error = Hierarchy::<2>::of_domain(&scene.domain, 0).unwrap_err();
         assert!(matches!(error, Error::Parameter { parameter: "level", .. }), "{error}");
     }
 
     #[test]
     fn levels_that_are_refinements_of_each_other_share_a_hierarchy() {
         let scene = scenes::radial::<2>(1.0);
-        let coarsest = Coarsest::<f64, 2>::Domain(&scene.domain);
+        let coarsest = Coarsest::<2>::Domain(&scene.domain);
         let hierarchies = coarsest.build_all(&[8, 12, 16, 6, 7]).unwrap();
         let levels: Vec<Vec<usize>> =
             hierarchies.iter().map(|h| h.meshes.iter().map(|m| m.level).collect()).collect();

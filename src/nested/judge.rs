@@ -6,10 +6,9 @@ use crate::assemble::Discretisation;
 use crate::error::Error;
 use crate::inequality::{Outcome, Solution, contact_of};
 use crate::instances::compiled;
-use crate::real::Real;
 use crate::scheme::AnyScheme;
 
-impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
+impl<'a, const D: usize> NestedIteration<'a, D> {
     /// The result on a mesh, by its position, for values that another program found: certificate, errors and
     /// totals. Its outcome is `converged` if the certificate is within its limits, else `not-a-solution`.
     ///
@@ -19,26 +18,25 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     pub fn judge_on(
         &self,
         position: usize,
-        scheme: &dyn AnyScheme<T, D>,
+        scheme: &dyn AnyScheme<D>,
         values: &[f64],
-    ) -> Result<Solved<'a, T, D>, Error> {
+    ) -> Result<Solved<'a, D>, Error> {
         self.check_position(position)?;
-        compiled!(
-            T, D: for<'n, 'p, 's, 'v> fn(
-                &'n NestedIteration<'p, T, D>,
+        compiled!(const D: for<'n, 'p, 's, 'v> fn(
+                &'n NestedIteration<'p, D>,
                 usize,
-                &'s dyn AnyScheme<T, D>,
+                &'s dyn AnyScheme<D>,
                 &'v [f64],
-            ) -> Result<Solved<'p, T, D>, Error>
+            ) -> Result<Solved<'p, D>, Error>
                 = |nested, position, scheme, values| nested.judge_values(position, scheme, values)
         )(self, position, scheme, values)
     }
     fn judge_values(
         &self,
         position: usize,
-        scheme: &dyn AnyScheme<T, D>,
+        scheme: &dyn AnyScheme<D>,
         values: &[f64],
-    ) -> Result<Solved<'a, T, D>, Error> {
+    ) -> Result<Solved<'a, D>, Error> {
         let mesh = self.p1.meshes.mesh(position);
         let discretisation =
             Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature)?;
@@ -49,14 +47,15 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             let value = values.len().to_string();
             return Err(Error::Parameter { parameter: "number of values", value, allowed });
         }
-        if let Some(k) = values.iter().position(|x| !T::lit(*x).to_f64().is_finite()) {
+        if let Some(k) = values.iter().position(|x| !(*x).is_finite()) {
             let value = format!("{} at position {k}, from zero", values[k]);
-            let allowed = format!("finite numbers in {}", T::NAME);
+            let allowed = "finite numbers".to_owned();
             return Err(Error::Parameter { parameter: "values", value, allowed });
         }
-        let values: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
-        let contact = contact_of(&inequality, &values);
-        let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
+        let contact = contact_of(&inequality, values);
+        let mut solution =
+            Solution::new(values.to_vec(), contact, Outcome::Converged).linear_solver("none");
+        solution.precision = self.p1.solver.precision();
         let hierarchy = self.hierarchy(position);
         let solved = Solved::new(discretisation, inequality, solution, hierarchy);
         Ok(solved.found_elsewhere())

@@ -16,20 +16,19 @@ use crate::inequality::initial_guess::{
 use crate::inequality::{InequalitySolver, InitialGuess, Outcome, StepCounter};
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level};
 use crate::problem::Problem;
-use crate::real::Real;
 use crate::scheme::ConformingP1;
 
 /// A conforming P1 function from which a solve starts: the solution on the same mesh, or the
 /// prolongation of the solution on the next coarser one.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct P1Solution<T> {
+pub struct P1Solution {
     /// The contact state of every vertex.
     pub contact: Vec<Contact>,
     /// The value at every vertex; empty if the solve did not converge.
-    pub values: Vec<T>,
+    pub values: Vec<f64>,
     /// The conforming P1 spaces of this and all coarser levels.
-    pub coarse_spaces: CoarseSpaces<T>,
+    pub coarse_spaces: CoarseSpaces<f64>,
     /// Seconds of assembly, solve and prolongation on this level and all coarser ones.
     pub seconds: f64,
     /// Number of levels on which conforming P1 was solved.
@@ -38,13 +37,13 @@ pub struct P1Solution<T> {
     pub start_cycles: usize,
 }
 
-impl<T: Real> P1Solution<T> {
+impl P1Solution {
     /// A solution from its start, with the matrix of all vertices and those with Dirichlet data. Its seconds
     /// are those of the start.
     fn new<const D: usize>(
         start: Option<&Self>,
-        (matrix, fixed): (SparseMatrix<T>, Vec<bool>),
-        (outcome, contact, values): (Outcome, Vec<Contact>, Vec<T>),
+        (matrix, fixed): (SparseMatrix<f64>, Vec<bool>),
+        (outcome, contact, values): (Outcome, Vec<Contact>, Vec<f64>),
     ) -> Self {
         // an initial guess need not be right: after a failure it is inactive everywhere
         let (contact, values) = match outcome {
@@ -76,31 +75,31 @@ impl<T: Real> P1Solution<T> {
 
     /// The starting values of unknowns: the means of values over the vertices of each support; none
     /// without values.
-    pub(super) fn values_of(&self, supports: &[Support]) -> Option<Vec<T>> {
+    pub(super) fn values_of(&self, supports: &[Support]) -> Option<Vec<f64>> {
         (!self.values.is_empty()).then(|| means_over_supports(supports, &self.values))
     }
 }
 
 /// Conforming P1 solved by nested iteration: its settings, and the solutions that are known.
-pub(super) struct P1Iteration<'a, T: Real, const D: usize> {
+pub(super) struct P1Iteration<'a, const D: usize> {
     pub problem: &'a Problem<D>,
-    pub meshes: Meshes<'a, T, D>,
-    pub solver: Arc<dyn InequalitySolver<T> + 'a>,
+    pub meshes: Meshes<'a, D>,
+    pub solver: Arc<dyn InequalitySolver<f64> + 'a>,
     pub quadrature: DataQuadrature,
     /// Times are the smallest of this many runs, at least one.
     pub repeat: usize,
     /// Receives the number of each outer step.
     pub steps: StepCounter,
     /// The solution on each mesh, once computed.
-    pub solutions: Vec<Option<Arc<P1Solution<T>>>>,
+    pub solutions: Vec<Option<Arc<P1Solution>>>,
 }
 
-impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
+impl<const D: usize> P1Iteration<'_, D> {
     /// The start of conforming P1 on a mesh: the solution on the mesh before, where a new vertex has the
     /// mean of the values at the ends of its edge and is active if both are. On the coarsest mesh, if the
     /// solver uses coarse spaces for so many unknowns: spaces by aggregation, and a solution on them from the
     /// coarsest one up, see [`solve_cascade`]; else `None`.
-    pub fn start(&mut self, position: usize) -> Result<Option<Arc<P1Solution<T>>>, Error> {
+    pub fn start(&mut self, position: usize) -> Result<Option<Arc<P1Solution>>, Error> {
         if position == 0 {
             let size = self.meshes.mesh(position).vertices().len();
             // in one dimension factors are as sparse as the matrix
@@ -120,7 +119,7 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
         });
         let values = match coarse.values.len() == coarse.contact.len() {
             true => {
-                let mean = |one, other| T::lit(0.5) * (one + other);
+                let mean = |one, other| 0.5 * (one + other);
                 self.meshes.continued(position, &coarse.values, mean)
             }
             false => Vec::new(),
@@ -135,7 +134,7 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
     }
 
     /// The start on a mesh without coarser ones.
-    fn flat_start(&self, position: usize) -> Result<Option<Arc<P1Solution<T>>>, Error> {
+    fn flat_start(&self, position: usize) -> Result<Option<Arc<P1Solution>>, Error> {
         let clock = Instant::now();
         let inequality = self.inequality(position)?;
         let Some(coarser) = CoarseLevel::aggregated(&inequality.matrix, &fixed(&inequality)) else {
@@ -163,7 +162,7 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
 
     /// The conforming P1 solution on a mesh, from its start; computed once. The seconds are the smallest
     /// of all runs.
-    pub fn solve(&mut self, position: usize) -> Result<Arc<P1Solution<T>>, Error> {
+    pub fn solve(&mut self, position: usize) -> Result<Arc<P1Solution>, Error> {
         if let Some(Some(known)) = self.solutions.get(position) {
             return Ok(known.clone());
         }
@@ -200,8 +199,8 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
     pub fn keep_solved(
         &mut self,
         position: usize,
-        start: Option<&P1Solution<T>>,
-        solved: &Solved<'_, T, D>,
+        start: Option<&P1Solution>,
+        solved: &Solved<'_, D>,
     ) {
         let (inequality, solution) = (solved.inequality(), solved.solution());
         let level = (inequality.matrix.clone(), fixed(inequality));
@@ -210,7 +209,7 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
     }
 
     /// Keeps a solution; adaptive meshes may have grown since the last one.
-    fn keep(&mut self, position: usize, solution: Arc<P1Solution<T>>) {
+    fn keep(&mut self, position: usize, solution: Arc<P1Solution>) {
         if self.solutions.len() <= position {
             self.solutions.resize(position + 1, None);
         }
@@ -218,7 +217,7 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
     }
 
     /// The inequality of conforming P1 on a mesh.
-    fn inequality(&self, position: usize) -> Result<Inequality<T>, Error> {
+    fn inequality(&self, position: usize) -> Result<Inequality<f64>, Error> {
         let mesh = self.meshes.mesh(position);
         // the constraint set of the problem is for the scheme that starts from here
         let problem = self.problem.clone().on(Nodes);
@@ -230,6 +229,6 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
 }
 
 /// The unknowns with Dirichlet data.
-fn fixed<T>(inequality: &Inequality<T>) -> Vec<bool> {
+fn fixed(inequality: &Inequality<f64>) -> Vec<bool> {
     inequality.bounds.iter().map(|b| matches!(b, Bound::Fixed(_))).collect()
 }

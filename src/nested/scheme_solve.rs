@@ -8,22 +8,23 @@ use super::meshes::{Meshes, unknowns};
 use super::p1::P1Solution;
 use super::phase::Phase;
 use super::solved::Solved;
-use super::warnings::{active_sets, dirichlet_jumps, no_digits_of_quadratics, short_edges};
+use super::warnings::{
+    active_sets, dirichlet_jumps, no_digits_of_quadratics, rounding_of_data, short_edges,
+};
 use crate::algebra::{Contact, Inequality, Start};
 use crate::assemble::Discretisation;
 use crate::error::Error;
 use crate::inequality::{InitialGuess, Outcome, Solution};
 use crate::mesh::Mesh;
-use crate::real::Real;
 use crate::scheme::AnyScheme;
 
-impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
+impl<'a, const D: usize> NestedIteration<'a, D> {
     /// A scheme on a mesh, and its inequality: [`NestedIteration::repeat`] times, with the smallest time.
     fn assembled(
         &self,
-        scheme: &dyn AnyScheme<T, D>,
-        mesh: &'a Mesh<T, D>,
-    ) -> Result<(Discretisation<'a, T, D>, Inequality<T>, f64), Error> {
+        scheme: &dyn AnyScheme<D>,
+        mesh: &'a Mesh<D>,
+    ) -> Result<(Discretisation<'a, D>, Inequality<f64>, f64), Error> {
         let discretise = || Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature);
         let clock = Instant::now();
         let discretisation = discretise()?;
@@ -40,9 +41,9 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     /// The initial guess from the start, whose contact the inequality takes.
     fn guess(
         &self,
-        start: Option<&P1Solution<T>>,
-        inequality: &mut Inequality<T>,
-    ) -> InitialGuess<T> {
+        start: Option<&P1Solution>,
+        inequality: &mut Inequality<f64>,
+    ) -> InitialGuess<f64> {
         let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
         if let Some(start) = start {
             // a start without contact stays cold: the solver must detect a body that only contact holds
@@ -59,8 +60,8 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     pub(super) fn solve_scheme(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-    ) -> Result<Solved<'a, T, D>, Error> {
+        scheme: &dyn AnyScheme<D>,
+    ) -> Result<Solved<'a, D>, Error> {
         self.enter(Phase::Start);
         let start = self.start(position, scheme)?;
         self.enter(Phase::Assembly);
@@ -72,14 +73,16 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let mut warnings = dirichlet_jumps(self.p1.problem, mesh);
         let penalty_below_bound = discretisation.penalty_below_bound();
         warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
+        let precision = self.p1.solver.precision();
+        warnings.extend(rounding_of_data(&inequality, precision));
         let is_adaptive = matches!(self.p1.meshes, Meshes::Adaptive(_));
         if !is_adaptive {
             let theory = discretisation.form().theory();
-            let limit = theory.rounding_limit(T::EPSILON, mesh.domain_diameter());
-            warnings.extend(short_edges(mesh, limit));
+            let limit = theory.rounding_limit(precision.epsilon(), mesh.domain_diameter());
+            warnings.extend(short_edges(mesh, (limit, precision)));
         }
         inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
-        let refusal = no_digits_of_quadratics(&inequality, (scheme.degree(), D));
+        let refusal = no_digits_of_quadratics(&inequality, (scheme.degree(), D), precision);
         self.enter(Phase::Solve);
         let (solution, solve_seconds) = match &refusal {
             Some(_) => (Solution::without_iterate(&inequality, Outcome::Singular), 0.0),
@@ -111,8 +114,8 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     fn start(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
+        scheme: &dyn AnyScheme<D>,
+    ) -> Result<Option<Arc<P1Solution>>, Error> {
         let mesh = self.p1.meshes.mesh(position);
         let unknowns = unknowns(mesh, scheme.layout());
         let needs_none =
@@ -127,7 +130,11 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     }
 
     /// Solves [`NestedIteration::repeat`] times and returns the last solution with the smallest time.
-    fn run(&self, inequality: &mut Inequality<T>, guess: &InitialGuess<T>) -> (Solution<T>, f64) {
+    fn run(
+        &self,
+        inequality: &mut Inequality<f64>,
+        guess: &InitialGuess<f64>,
+    ) -> (Solution<f64>, f64) {
         let mut seconds = f64::INFINITY;
         let mut last = None;
         for _ in 0..self.p1.repeat {

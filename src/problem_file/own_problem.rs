@@ -1,13 +1,11 @@
 //! A problem from a file.
 
-use std::any::Any;
 use std::path::PathBuf;
 
 use crate::error::Error;
-use crate::mesh::gmsh::{self, GmshMesh};
+use crate::mesh::gmsh::GmshMesh;
 use crate::mesh::{BoxDomain, Mesh};
 use crate::problem::Problem;
-use crate::real::Real;
 
 /// Where a problem is posed.
 #[derive(Clone, Debug)]
@@ -22,7 +20,7 @@ pub enum Geometry<const D: usize> {
         /// Its contents.
         bytes: Vec<u8>,
         /// The mesh, before the problem says what holds on its boundary.
-        read: Box<GmshMesh<f64, D>>,
+        read: Box<GmshMesh<D>>,
     },
 }
 
@@ -42,19 +40,15 @@ impl<const D: usize> OwnProblem<D> {
     /// The mesh of the file, with the parts of its boundary as the problem says; none for a box.
     ///
     /// # Errors
-    /// [`Error::Gmsh`] and [`Error::Mesh`], in a scalar in which the mesh degenerates, say.
-    pub fn mesh<T: Real>(&self) -> Result<Option<GmshMesh<T, D>>, Error> {
-        let Geometry::File { bytes, read, .. } = &self.geometry else { return Ok(None) };
-        let known: &dyn Any = &**read;
-        let mut read = match known.downcast_ref::<GmshMesh<T, D>>() {
-            Some(read) => read.clone(),
-            None => gmsh::parse::<T, D>(bytes)?,
-        };
+    /// [`Error::Mesh`].
+    pub fn mesh(&self) -> Result<Option<GmshMesh<D>>, Error> {
+        let Geometry::File { read, .. } = &self.geometry else { return Ok(None) };
+        let mut read = GmshMesh::clone(read);
         read.mesh = self.problem.bind_boundary(read.mesh)?;
         Ok(Some(read))
     }
     /// A mesh to hold the data against, of a box one with few cells, whatever its sides.
-    pub(super) fn sample_mesh(&self) -> Result<Mesh<f64, D>, Error> {
+    pub(super) fn sample_mesh(&self) -> Result<Mesh<D>, Error> {
         match &self.geometry {
             Geometry::Box(domain) => {
                 Ok(Mesh::kuhn_box(domain, domain.counts(4).map(|n| n.min(64)))?)

@@ -17,7 +17,7 @@ use crate::real::Point;
 pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The corners of a facet and its outward unit normal.
-pub(super) type FacetWithNormal<const D: usize> = ([Point<f64, D>; D], Point<f64, D>);
+pub(super) type FacetWithNormal<const D: usize> = ([Point<D>; D], Point<D>);
 
 /// Normals that differ by less are one.
 const SAME_NORMAL: f64 = 1e-12;
@@ -58,7 +58,7 @@ impl Formula {
         let normal = normals.first().copied().unwrap_or_else(Point::zeros);
         if normals.iter().any(|other| (other - normal).norm() > SAME_NORMAL) {
             let size = corners.iter().flatten().map(|x| x.amax()).fold(0.0, f64::max);
-            let from_first = |x: &Point<f64, D>| (x - corners[0][0]).amax();
+            let from_first = |x: &Point<D>| (x - corners[0][0]).amax();
             let extent = corners.iter().flatten().map(from_first).fold(f64::MIN_POSITIVE, f64::max);
             let rounding = 2.0 * f64::from(f32::EPSILON) * size / extent;
             let search = FacetSearch::new(corners, IN_FACET.max(rounding));

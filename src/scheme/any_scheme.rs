@@ -9,13 +9,12 @@ use crate::error::Error;
 use crate::facet::{FacetForm, PenaltyParameters};
 use crate::mesh::{Layers, Mesh};
 use crate::problem::Problem;
-use crate::real::Real;
 
 /// A scheme without its type: one list can hold schemes of different types, and functions that take
-/// schemes are compiled once for each scalar and dimension.
+/// schemes are compiled once for each dimension.
 ///
 /// A blanket implementation covers every [`Scheme`]; no other implementation is needed.
-pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
+pub trait AnyScheme<const D: usize>: Send + Sync {
     /// The scheme's name.
     fn name(&self) -> &str;
     /// What distinguishes the scheme from the default one of its name.
@@ -31,7 +30,7 @@ pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     /// The numbers of unknowns at each vertex, edge, facet and cell.
     fn layout(&self) -> Layout;
     /// The facet form on a mesh, its parameters resolved.
-    fn form(&self, mesh: &Mesh<T, D>) -> Box<dyn FacetForm<T, D>>;
+    fn form(&self, mesh: &Mesh<D>) -> Box<dyn FacetForm<D>>;
     /// The scheme applied to a problem on a mesh.
     ///
     /// # Errors
@@ -39,17 +38,17 @@ pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     fn discretise<'a>(
         &self,
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
-    ) -> Result<Discretisation<'a, T, D>, Error>;
+    ) -> Result<Discretisation<'a, D>, Error>;
 }
 
 // Not in the trait, whose table of each scheme would have its own copy. For a scheme with its type
-// they are to be had after a cast to `&dyn AnyScheme<T, D>`.
-impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
+// they are to be had after a cast to `&dyn AnyScheme<D>`.
+impl<const D: usize> dyn AnyScheme<D> + '_ {
     /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
     /// not from P1 on the same level.
-    pub fn is_conforming_linear(&self, mesh: &Mesh<T, D>) -> bool {
+    pub fn is_conforming_linear(&self, mesh: &Mesh<D>) -> bool {
         let layout = self.layout();
         layout.vertex == 1
             && layout.edge + layout.facet + layout.cell == 0
@@ -108,7 +107,7 @@ impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
     /// facet of a cell that a row sees may be cut. This takes a second layer for elements that have
     /// unknowns at vertices as well, and one more in one dimension, where the facets of a cell
     /// have no vertex in common.
-    pub fn layers(&self, mesh: &Mesh<T, D>) -> Layers {
+    pub fn layers(&self, mesh: &Mesh<D>) -> Layers {
         let (layout, form) = (self.layout(), self.form(mesh));
         let (couples, on_facets) = (form.couples(), layout.facet > 0);
         match layout.is_broken() {
@@ -122,7 +121,7 @@ impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
         }
     }
     /// Penalty factors in force on a mesh.
-    pub fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
+    pub fn parameters(&self, mesh: &Mesh<D>) -> PenaltyParameters {
         self.form(mesh).theory().parameters
     }
     /// The algebraic inequality alone, for other solvers and exporters.
@@ -132,15 +131,15 @@ impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
     pub fn inequality(
         &self,
         problem: &Problem<D>,
-        mesh: &Mesh<T, D>,
+        mesh: &Mesh<D>,
         quadrature: DataQuadrature,
-    ) -> Result<Inequality<T>, Error> {
+    ) -> Result<Inequality<f64>, Error> {
         self.discretise(problem, mesh, quadrature)?.inequality()
     }
 }
 
 #[diagnostic::do_not_recommend]
-impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
+impl<const D: usize, S: Scheme<D>> AnyScheme<D> for S {
     fn name(&self) -> &str {
         Scheme::name(self)
     }
@@ -148,7 +147,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
         Scheme::choices(self)
     }
     fn nodes_for(&self, set: &dyn ConstraintSet) -> Vec<Node> {
-        ChosenElement::<T, D>::of::<S::Element>(set).element.nodes
+        ChosenElement::<D>::of::<S::Element>(set).element.nodes
     }
     fn is_consistent(&self) -> bool {
         S::CONSISTENT
@@ -162,20 +161,20 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
     fn layout(&self) -> Layout {
         S::Element::LAYOUT
     }
-    fn form(&self, mesh: &Mesh<T, D>) -> Box<dyn FacetForm<T, D>> {
+    fn form(&self, mesh: &Mesh<D>) -> Box<dyn FacetForm<D>> {
         Box::new(self.facet(mesh))
     }
     fn discretise<'a>(
         &self,
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
-    ) -> Result<Discretisation<'a, T, D>, Error> {
+    ) -> Result<Discretisation<'a, D>, Error> {
         Discretisation::of::<S::Element>(self.form(mesh), S::DIRICHLET, problem, mesh, quadrature)
     }
 }
 
-impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
+impl<'a, const D: usize> Discretisation<'a, D> {
     /// Joins scheme, problem and mesh, in the basis that the problem's constraint set needs; builds
     /// facets only if the scheme needs them.
     ///
@@ -183,9 +182,9 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
     /// [`Error::Parameter`] for a penalty factor that makes no penalty.
     pub fn new(
-        scheme: &(impl AnyScheme<T, D> + ?Sized),
+        scheme: &(impl AnyScheme<D> + ?Sized),
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
         scheme.discretise(problem, mesh, quadrature)

@@ -4,7 +4,6 @@ use super::{DirichletBy, ExpectedOrders, Scheme, Setting, energy_order, with_dua
 use crate::element::{P1, P2};
 use crate::facet::NoFacets;
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// Continuous piecewise linears, bounds at vertices, Dirichlet values pinned.
 ///
@@ -14,7 +13,7 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConformingP1;
 
-impl<T: Real, const D: usize> Scheme<T, D> for ConformingP1 {
+impl<const D: usize> Scheme<D> for ConformingP1 {
     type Element = P1;
     type Facet = NoFacets;
     const DIRICHLET: DirichletBy = DirichletBy::Pinning;
@@ -22,7 +21,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for ConformingP1 {
     fn name(&self) -> &str {
         "p1"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
+    fn facet(&self, _: &Mesh<D>) -> NoFacets {
         NoFacets
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
@@ -45,7 +44,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for ConformingP1 {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConformingP2;
 
-impl<T: Real, const D: usize> Scheme<T, D> for ConformingP2 {
+impl<const D: usize> Scheme<D> for ConformingP2 {
     type Element = P2;
     type Facet = NoFacets;
     const DIRICHLET: DirichletBy = DirichletBy::Pinning;
@@ -53,7 +52,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for ConformingP2 {
     fn name(&self) -> &str {
         "p2"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
+    fn facet(&self, _: &Mesh<D>) -> NoFacets {
         NoFacets
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {

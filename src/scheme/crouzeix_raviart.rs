@@ -4,7 +4,6 @@ use super::{DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, w
 use crate::element::CrouzeixRaviart;
 use crate::facet::NoFacets;
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// Piecewise linears with continuous facet means, bounds on those means, Dirichlet means pinned.
 ///
@@ -13,7 +12,7 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NonconformingP1;
 
-impl<T: Real, const D: usize> Scheme<T, D> for NonconformingP1 {
+impl<const D: usize> Scheme<D> for NonconformingP1 {
     type Element = CrouzeixRaviart;
     type Facet = NoFacets;
     const DIRICHLET: DirichletBy = DirichletBy::Pinning;
@@ -21,7 +20,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for NonconformingP1 {
     fn name(&self) -> &str {
         "cr"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
+    fn facet(&self, _: &Mesh<D>) -> NoFacets {
         NoFacets
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {

@@ -3,21 +3,20 @@
 use crate::element::ReferenceElement;
 use crate::facet::{DirichletBy, FacetForm};
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 use super::SchemeOptions;
 use crate::theory::{ExpectedOrders, Setting};
 
 /// A discretisation of the bilinear form and of Dirichlet data.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is not a scheme on {D}-simplices over `{T}`",
-    note = "a scheme is an element, a facet form and a way to impose Dirichlet data: implement `Scheme<{T}, {D}>`, see examples/my_scheme.rs"
+    message = "`{Self}` is not a scheme on {D}-simplices",
+    note = "a scheme is an element, a facet form and a way to impose Dirichlet data: implement `Scheme<{D}>`, see examples/my_scheme.rs"
 )]
-pub trait Scheme<T: Real, const D: usize>: Send + Sync {
+pub trait Scheme<const D: usize>: Send + Sync {
     /// The finite element.
-    type Element: ReferenceElement<T, D>;
+    type Element: ReferenceElement<D>;
     /// The form on facets; [`NoFacets`](crate::facet::NoFacets) if there is none.
-    type Facet: FacetForm<T, D>;
+    type Facet: FacetForm<D>;
     /// How Dirichlet data are imposed.
     const DIRICHLET: DirichletBy;
     /// Whether the exact solution satisfies the discrete equations, so that polynomials of the
@@ -32,7 +31,7 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
         SchemeOptions::default()
     }
     /// The facet form on a mesh, its parameters resolved.
-    fn facet(&self, mesh: &Mesh<T, D>) -> Self::Facet;
+    fn facet(&self, mesh: &Mesh<D>) -> Self::Facet;
     /// Orders that theory proves in this setting, with bounds at all nodes; none by default.
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         let _ = setting;

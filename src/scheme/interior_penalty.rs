@@ -7,7 +7,6 @@ use super::{
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{InteriorPenalty, PenaltyRule, Symmetry};
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// Interior penalty on broken elements, with the symmetrising term `THETA {d_n v}[u]`: written once
 /// for [`Sipg`], [`Iipg`] and [`Nipg`], for which `THETA` is -1, 0 and 1.
@@ -75,7 +74,7 @@ impl<const THETA: i8, E> InteriorPenaltyMethod<THETA, E> {
     }
 }
 
-impl<T: Real, const D: usize, const THETA: i8, E: ReferenceElement<T, D>> Scheme<T, D>
+impl<const D: usize, const THETA: i8, E: ReferenceElement<D>> Scheme<D>
     for InteriorPenaltyMethod<THETA, E>
 {
     type Element = Broken<E>;
@@ -97,7 +96,7 @@ impl<T: Real, const D: usize, const THETA: i8, E: ReferenceElement<T, D>> Scheme
             PenaltyRule::Diameter(sigma) => SchemeOptions { sigma: Some(sigma), ..none },
         }
     }
-    fn facet(&self, _: &Mesh<T, D>) -> InteriorPenalty {
+    fn facet(&self, _: &Mesh<D>) -> InteriorPenalty {
         InteriorPenalty { symmetry: Self::SYMMETRY, rule: self.penalty, degree: E::BASIS_DEGREE }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {

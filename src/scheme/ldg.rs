@@ -7,7 +7,6 @@ use super::{
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{FacetForm, FacetView, FormTheory, Lifted, Lifts, PenaltyParameters, Trace};
 use crate::mesh::Mesh;
-use crate::real::{Real, point_f64};
 
 /// `int alpha (grad u + r(u)) . (grad v + r(v)) + eta alpha_F / h_F [u][v]` on broken elements:
 /// coercive for every positive factor. The lifts are by default of degree `k - 1` on elements of degree
@@ -54,7 +53,7 @@ impl<E> Ldg<E> {
     }
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Ldg<E> {
+impl<const D: usize, E: ReferenceElement<D>> Scheme<D> for Ldg<E> {
     type Element = Broken<E>;
     type Facet = Lifted<LocalFluxes>;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
@@ -69,7 +68,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Ldg<E>
         let sigma = Some(self.eta).filter(|&eta| eta != Ldg::default().eta);
         SchemeOptions { sigma, lifts: self.lifts.unless_default(), ..SchemeOptions::default() }
     }
-    fn facet(&self, _: &Mesh<T, D>) -> Lifted<LocalFluxes> {
+    fn facet(&self, _: &Mesh<D>) -> Lifted<LocalFluxes> {
         Lifted(LocalFluxes { eta: self.eta, switch: self.switch, lifts: self.lifts })
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
@@ -88,25 +87,25 @@ pub struct LocalFluxes {
 /// The direction of the switch: across no facet of a mesh along the axes or their diagonals.
 const DIRECTION: [f64; 3] = [1.0, 0.377, 0.142];
 
-impl<T: Real, const D: usize> FacetForm<T, D> for LocalFluxes {
+impl<const D: usize> FacetForm<D> for LocalFluxes {
     fn uses_flux(&self) -> bool {
         true
     }
     fn lift_degree(&self, degree: usize) -> usize {
         self.lifts.degree(degree)
     }
-    fn average_weight(&self, facet: &FacetView<T, D>) -> T {
+    fn average_weight(&self, facet: &FacetView<D>) -> f64 {
         if !self.switch {
-            return T::lit(0.5);
+            return 0.5;
         }
-        let normal = point_f64(&facet.normal());
+        let normal = facet.normal();
         let along: f64 = normal.iter().zip(DIRECTION).map(|(n, d)| n * d).sum();
-        T::lit(if along > 0.0 { 1.0 } else { 0.0 })
+        if along > 0.0 { 1.0 } else { 0.0 }
     }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
-        T::lit(self.eta) * facet.coefficient() / facet.diameter()
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
+        self.eta * facet.coefficient() / facet.diameter()
     }
-    fn theory(&self) -> FormTheory<'_, T, D> {
+    fn theory(&self) -> FormTheory<'_, D> {
         let beta = if self.switch { "one-sided flux" } else { "mean flux" };
         let rule = Some(format!("eta / h_F, {beta}"));
         let sigma = Some(self.eta);
@@ -118,7 +117,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for LocalFluxes {
         true
     }
     #[inline(always)]
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
     }
 }

@@ -7,7 +7,6 @@ use super::{
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{FacetLifts, Lifted, Lifts};
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// The second method of Bassi and Rebay: penalty by the lifts of single facets, on broken elements, by
 /// default of degree `k - 1` on elements of degree `k`.
@@ -52,7 +51,7 @@ impl<E> Br2<E> {
     }
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Br2<E> {
+impl<const D: usize, E: ReferenceElement<D>> Scheme<D> for Br2<E> {
     type Element = Broken<E>;
     type Facet = FacetLifts;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
@@ -64,7 +63,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Br2<E>
         let factor = self.eta.map(|eta| eta / (D + 1) as f64).filter(|&factor| factor != MARGIN);
         SchemeOptions { factor, lifts: self.lifts.unless_default(), ..SchemeOptions::default() }
     }
-    fn facet(&self, _: &Mesh<T, D>) -> FacetLifts {
+    fn facet(&self, _: &Mesh<D>) -> FacetLifts {
         let eta = self.eta.unwrap_or(MARGIN * (D + 1) as f64);
         FacetLifts { eta, lift_degree: self.lifts.degree(E::BASIS_DEGREE), bounded: true }
     }
@@ -113,7 +112,7 @@ impl<E> Bmmpr<E> {
     }
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Bmmpr<E> {
+impl<const D: usize, E: ReferenceElement<D>> Scheme<D> for Bmmpr<E> {
     type Element = Broken<E>;
     type Facet = Lifted<FacetLifts>;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
@@ -125,7 +124,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Bmmpr<
         let factor = Some(self.eta).filter(|&eta| eta != Bmmpr::default().eta);
         SchemeOptions { factor, lifts: self.lifts.unless_default(), ..SchemeOptions::default() }
     }
-    fn facet(&self, _: &Mesh<T, D>) -> Lifted<FacetLifts> {
+    fn facet(&self, _: &Mesh<D>) -> Lifted<FacetLifts> {
         let lift_degree = self.lifts.degree(E::BASIS_DEGREE);
         Lifted(FacetLifts { eta: self.eta, lift_degree, bounded: false })
     }

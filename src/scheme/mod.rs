@@ -30,7 +30,6 @@ pub use crate::theory::{ExpectedOrders, Regularity, Setting};
 
 use crate::element::P2;
 use crate::instances::compiled;
-use crate::real::Real;
 use energy_order::{broken_energy_order, energy_order, with_duality};
 
 /// The name of a scheme on an element of this degree: the name itself for linears, with `-p2` for
@@ -68,10 +67,10 @@ macro_rules! schemes_by_name {
             }
         }
 
-        fn made<T: Real, const D: usize>(
+        fn made<const D: usize>(
             name: &str,
             $options: &SchemeOptions,
-        ) -> Option<Box<dyn AnyScheme<T, D>>> {
+        ) -> Option<Box<dyn AnyScheme<D>>> {
             match name {
                 $($name => Some(Box::new($scheme)),)*
                 _ => None,
@@ -125,12 +124,11 @@ schemes_by_name! { options:
 }
 
 /// The scheme of this name.
-pub fn scheme_by_name<T: Real, const D: usize>(
+pub fn scheme_by_name<const D: usize>(
     name: &str,
     options: &SchemeOptions,
-) -> Option<Box<dyn AnyScheme<T, D>>> {
-    compiled!(
-        T, D: fn(&str, &SchemeOptions) -> Option<Box<dyn AnyScheme<T, D>>>
+) -> Option<Box<dyn AnyScheme<D>>> {
+    compiled!(const D: fn(&str, &SchemeOptions) -> Option<Box<dyn AnyScheme<D>>>
             = made
     )(name, options)
 }

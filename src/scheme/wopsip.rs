@@ -7,7 +7,6 @@ use super::{
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{OverPenalty, WeightRule};
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// How the factor of the over-penalty is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +61,7 @@ impl<E> Wopsip<E> {
     }
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Wopsip<E> {
+impl<const D: usize, E: ReferenceElement<D>> Scheme<D> for Wopsip<E> {
     type Element = Broken<E>;
     type Facet = OverPenalty;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
@@ -80,7 +79,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Wopsip
             Eta::Absolute(eta) => SchemeOptions { eta: Some(eta), ..none },
         }
     }
-    fn facet(&self, mesh: &Mesh<T, D>) -> OverPenalty {
+    fn facet(&self, mesh: &Mesh<D>) -> OverPenalty {
         let eta = match self.eta {
             Eta::Absolute(eta) => eta,
             Eta::Dimensionless(factor) => {

@@ -3,7 +3,6 @@
 use crate::element::{Broken, P1};
 use crate::facet::{FacetForm, FacetView, OverPenalty, Trace};
 use crate::mesh::Mesh;
-use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme, Wopsip};
 
 /// WOPSIP with the penalty `eta / h_F^3` for every coefficient, for comparison with the default:
@@ -15,27 +14,27 @@ pub(crate) struct UnweightedWopsip(pub Wopsip);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct UnweightedPenalty(OverPenalty);
 
-impl<T: Real, const D: usize> FacetForm<T, D> for UnweightedPenalty {
+impl<const D: usize> FacetForm<D> for UnweightedPenalty {
     fn uses_flux(&self) -> bool {
         false
     }
     fn moments(&self, degree: usize) -> usize {
-        FacetForm::<T, D>::moments(&self.0, degree)
+        FacetForm::<D>::moments(&self.0, degree)
     }
     #[inline(always)]
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         self.0.penalty(facet) / facet.coefficient()
     }
     fn is_uniform(&self) -> bool {
         true
     }
     #[inline(always)]
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump
     }
 }
 
-impl<T: Real, const D: usize> Scheme<T, D> for UnweightedWopsip {
+impl<const D: usize> Scheme<D> for UnweightedWopsip {
     type Element = Broken<P1>;
     type Facet = UnweightedPenalty;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
@@ -44,7 +43,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for UnweightedWopsip {
     fn name(&self) -> &str {
         "wopsip"
     }
-    fn facet(&self, mesh: &Mesh<T, D>) -> UnweightedPenalty {
-        UnweightedPenalty(Scheme::<T, D>::facet(&self.0, mesh))
+    fn facet(&self, mesh: &Mesh<D>) -> UnweightedPenalty {
+        UnweightedPenalty(Scheme::<D>::facet(&self.0, mesh))
     }
 }

@@ -9,7 +9,6 @@ use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome, StageRun, explanation};
 use crate::measure::{ContactErrors, Errors, Penetration, Rounding};
 use crate::nested::{Solved, warnings_of_forces};
-use crate::real::Real;
 use crate::scheme::ExpectedOrders;
 
 /// Observed orders.
@@ -236,11 +235,11 @@ impl Row {
     }
 
     /// The row of a solve without errors, energy, expected orders and the names of constraint set and solver.
-    pub(super) fn of<T: Real, const D: usize>(
+    pub(super) fn of<const D: usize>(
         scene: &str,
         scheme: &str,
         level: usize,
-        solved: &Solved<'_, T, D>,
+        solved: &Solved<'_, D>,
     ) -> Self {
         let (mesh, solution) = (solved.mesh(), solved.solution());
         let forces = solved.multiplier();

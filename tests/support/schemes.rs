@@ -5,22 +5,22 @@ use std::sync::Arc;
 use unilateral::prelude::*;
 
 /// A scheme chosen at run time.
-pub type Boxed<T, const D: usize> = Box<dyn AnyScheme<T, D>>;
+pub type Boxed<const D: usize> = Box<dyn AnyScheme<D>>;
 
 /// A scheme with its constraint set: an entry of a list.
-pub struct Entry<T, const D: usize> {
-    pub scheme: Boxed<T, D>,
+pub struct Entry<const D: usize> {
+    pub scheme: Boxed<D>,
     pub set: Arc<dyn ConstraintSet>,
 }
 
-impl<T, const D: usize> From<Boxed<T, D>> for Entry<T, D> {
-    fn from(scheme: Boxed<T, D>) -> Self {
+impl<const D: usize> From<Boxed<D>> for Entry<D> {
+    fn from(scheme: Boxed<D>) -> Self {
         Self { scheme, set: Arc::new(Nodes) }
     }
 }
 
-impl<T, const D: usize> Deref for Entry<T, D> {
-    type Target = dyn AnyScheme<T, D>;
+impl<const D: usize> Deref for Entry<D> {
+    type Target = dyn AnyScheme<D>;
 
     fn deref(&self) -> &Self::Target {
         &*self.scheme

@@ -14,54 +14,52 @@ use crate::facet::{DirichletBy, FacetForm};
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::real::Real;
 
-impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
+impl<'a, const D: usize> Discretisation<'a, D> {
     /// Joins an element and a facet form with a problem and a mesh; builds facets only if they are
     /// needed.
     ///
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
     /// [`Error::Parameter`] for a penalty factor that makes no penalty.
-    pub(crate) fn of<E: ReferenceElement<T, D>>(
-        form: Box<dyn FacetForm<T, D>>,
+    pub(crate) fn of<E: ReferenceElement<D>>(
+        form: Box<dyn FacetForm<D>>,
         dirichlet: DirichletBy,
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
         let pins = matches!(dirichlet, DirichletBy::Pinning);
         let element = ChosenElement::of::<E>(problem.constraint_set());
         let parts = Parts { element, form, pins };
-        compiled!(
-            T, D: for<'p> fn(
-                Parts<T, D>,
+        compiled!(const D: for<'p> fn(
+                Parts<D>,
                 &'p Problem<D>,
-                &'p Mesh<T, D>,
+                &'p Mesh<D>,
                 DataQuadrature,
-            ) -> Result<Discretisation<'p, T, D>, Error>
+            ) -> Result<Discretisation<'p, D>, Error>
                 = |parts, problem, mesh, quadrature| parts.join(problem, mesh, quadrature)
         )(parts, problem, mesh, quadrature)
     }
 }
 
 /// What a scheme brings to a discretisation.
-struct Parts<T: Real, const D: usize> {
-    element: ChosenElement<T, D>,
-    form: Box<dyn FacetForm<T, D>>,
+struct Parts<const D: usize> {
+    element: ChosenElement<D>,
+    form: Box<dyn FacetForm<D>>,
     /// Whether Dirichlet data are pinned.
     pins: bool,
 }
 
-impl<T: Real, const D: usize> Parts<T, D> {
+impl<const D: usize> Parts<D> {
     fn join<'a>(
         self,
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
-    ) -> Result<Discretisation<'a, T, D>, Error> {
+    ) -> Result<Discretisation<'a, D>, Error> {
         let Self { element: ChosenElement { element, loops, offered }, form, pins } = self;
-        check_form::<T, D>(&element, &*form)?;
+        check_form::<D>(&element, &*form)?;
         let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, offered)?;
         space.check_penalty_factor(&*form)?;
         let shared_rows = SharedRows::new(loops);
@@ -81,10 +79,7 @@ fn polynomials(variables: usize, degree: usize) -> usize {
 }
 
 /// Refuses forms that the loops over owned rows have no tables for.
-fn check_form<T: Real, const D: usize>(
-    element: &AnyElement,
-    form: &dyn FacetForm<T, D>,
-) -> Result<(), Error> {
+fn check_form<const D: usize>(element: &AnyElement, form: &dyn FacetForm<D>) -> Result<(), Error> {
     let refuse = |requested, allowed| Err(Error::UnsupportedForm { requested, allowed });
     let owns_rows = form.couples() && element.layout.is_broken();
     if form.is_lifted() && !(owns_rows && element.basis_degree <= 2) {

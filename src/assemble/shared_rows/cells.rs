@@ -6,10 +6,9 @@ use crate::assemble::local::{Local, zero_local};
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, shape};
 use crate::element::{MAX_BASIS, ReferenceElement};
-use crate::real::Real;
 
 /// The upper triangle of a cell's matrix, by rows; a power of two holds the largest.
-type Triangle<T> = [T; TRIANGLE];
+type Triangle = [f64; TRIANGLE];
 const TRIANGLE: usize = 256;
 const _: () = assert!(MAX_BASIS * (MAX_BASIS + 1) / 2 <= TRIANGLE);
 
@@ -17,35 +16,35 @@ const _: () = assert!(MAX_BASIS * (MAX_BASIS + 1) / 2 <= TRIANGLE);
 const PAIRS: usize = 6;
 
 /// Matrices of cells, one after the other.
-pub(crate) trait CellMatrix<T> {
+pub(crate) trait CellMatrix {
     /// Computes that of a cell.
     fn of_cell(&mut self, cell: usize);
     /// An entry of it.
-    fn entry(&self, i: usize, j: usize) -> T;
+    fn entry(&self, i: usize, j: usize) -> f64;
 }
 
 /// Whether basis functions are linear and as many as the vertices of a cell.
-pub(crate) const fn is_linear<T: Real, E: ReferenceElement<T, D>, const D: usize>() -> bool {
+pub(crate) const fn is_linear<E: ReferenceElement<D>, const D: usize>() -> bool {
     E::BASIS_DEGREE == 1 && E::N == D + 1
 }
 
 /// What cells contribute, tabulated.
-pub(crate) struct CellMatrices<'s, 'a, T: Real, const D: usize> {
-    space: &'s Space<'a, T, D>,
+pub(crate) struct CellMatrices<'s, 'a, const D: usize> {
+    space: &'s Space<'a, D>,
     /// For each pair `k < l` of barycentric coordinates what their product of gradients adds.
-    pairs: [Triangle<T>; PAIRS],
+    pairs: [Triangle; PAIRS],
     /// For entry `(i, j)`, at `N i + j`, where it is in the triangle.
     places: [u8; MAX_BASIS * MAX_BASIS],
     /// If basis function `i` is `c` times barycentric coordinate `i` but for a constant: `c^2`.
-    square: Option<T>,
+    square: Option<f64>,
 }
 
-impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
-    pub fn new<E: ReferenceElement<T, D>>(space: &'s Space<'a, T, D>) -> Self {
-        let zero = T::lit(0.0);
+impl<'s, 'a, const D: usize> CellMatrices<'s, 'a, D> {
+    pub fn new<E: ReferenceElement<D>>(space: &'s Space<'a, D>) -> Self {
+        let zero = 0.0;
         let table = space.stiffness_table();
         let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
-        let mut square = is_linear::<T, E, D>().then(|| table.entry::<D>(&unit(0, 1), 0, 1));
+        let mut square = is_linear::<E, D>().then(|| table.entry::<D>(&unit(0, 1), 0, 1));
         let mut pairs = [[zero; TRIANGLE]; PAIRS];
         let mut places = [0; MAX_BASIS * MAX_BASIS];
         for (pair, (k, l)) in pairs_of::<D>().enumerate() {
@@ -68,13 +67,13 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
     }
 
     /// The square by which products of gradients make the whole matrix, if they do.
-    pub fn only_gradients(&self) -> Option<T> {
+    pub fn only_gradients(&self) -> Option<f64> {
         self.square.filter(|_| self.space.reaction.is_none())
     }
 
     /// Writes the stiffness of a cell in which the coefficient varies.
     #[inline(never)]
-    fn write_varying(&self, cell: usize, out: &mut Triangle<T>) {
+    fn write_varying(&self, cell: usize, out: &mut Triangle) {
         let Some((varying, values)) = self.space.varying_in(cell) else { return };
         let metric = self.space.metric(cell);
         let n = self.space.per_cell();
@@ -86,14 +85,9 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
 
     /// Writes the matrix of a cell.
     #[inline(always)]
-    fn write<E: ReferenceElement<T, D>>(
-        &self,
-        cell: usize,
-        out: &mut Triangle<T>,
-        local: &mut Local<T>,
-    ) {
+    fn write<E: ReferenceElement<D>>(&self, cell: usize, out: &mut Triangle, local: &mut Local) {
         let (volume, shape) = shape(self.space.mesh, cell, self.space.alpha(cell));
-        let mut products = [T::lit(0.0); PAIRS];
+        let mut products = [0.0; PAIRS];
         for (product, (k, l)) in products.iter_mut().zip(pairs_of::<D>()) {
             *product = shape[k][l];
         }
@@ -109,7 +103,7 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
             }
         }
         if let Some(reaction) = &self.space.reaction {
-            local[..E::N].iter_mut().for_each(|row| row[..E::N].fill(T::lit(0.0)));
+            local[..E::N].iter_mut().for_each(|row| row[..E::N].fill(0.0));
             reaction.add(self.space.mesh, cell, volume, local);
             let mut place = 0;
             for i in 0..E::N {
@@ -129,63 +123,61 @@ fn pairs_of<const D: usize>() -> impl Iterator<Item = (usize, usize)> {
 }
 
 /// Matrices that are products of gradients times a square: they stay in registers.
-pub(crate) struct Gradients<'c, 's, 'a, T: Real, const D: usize> {
-    cells: &'c CellMatrices<'s, 'a, T, D>,
-    square: T,
-    products: [[T; 4]; 4],
+pub(crate) struct Gradients<'c, 's, 'a, const D: usize> {
+    cells: &'c CellMatrices<'s, 'a, D>,
+    square: f64,
+    products: [[f64; 4]; 4],
 }
 
-impl<'c, 's, 'a, T: Real, const D: usize> Gradients<'c, 's, 'a, T, D> {
-    pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>, square: T) -> Self {
-        Self { cells, square, products: [[T::lit(0.0); 4]; 4] }
+impl<'c, 's, 'a, const D: usize> Gradients<'c, 's, 'a, D> {
+    pub fn new(cells: &'c CellMatrices<'s, 'a, D>, square: f64) -> Self {
+        Self { cells, square, products: [[0.0; 4]; 4] }
     }
 }
 
-impl<T: Real, const D: usize> CellMatrix<T> for Gradients<'_, '_, '_, T, D> {
+impl<const D: usize> CellMatrix for Gradients<'_, '_, '_, D> {
     #[inline(always)]
     fn of_cell(&mut self, cell: usize) {
         let space = self.cells.space;
         self.products = shape(space.mesh, cell, self.square * space.alpha(cell)).1;
     }
     #[inline(always)]
-    fn entry(&self, i: usize, j: usize) -> T {
+    fn entry(&self, i: usize, j: usize) -> f64 {
         self.products[i][j]
     }
 }
 
 /// Matrices of any kind.
-pub(crate) struct General<'c, 's, 'a, E, T: Real, const D: usize> {
-    cells: &'c CellMatrices<'s, 'a, T, D>,
-    triangle: Triangle<T>,
+pub(crate) struct General<'c, 's, 'a, E, const D: usize> {
+    cells: &'c CellMatrices<'s, 'a, D>,
+    triangle: Triangle,
     /// Workspace: the reaction term of a cell.
-    local: Local<T>,
+    local: Local,
     element: PhantomData<E>,
 }
 
-impl<'c, 's, 'a, E, T: Real, const D: usize> General<'c, 's, 'a, E, T, D> {
-    pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>) -> Self {
-        let triangle = [T::lit(0.0); TRIANGLE];
+impl<'c, 's, 'a, E, const D: usize> General<'c, 's, 'a, E, D> {
+    pub fn new(cells: &'c CellMatrices<'s, 'a, D>) -> Self {
+        let triangle = [0.0; TRIANGLE];
         Self { cells, triangle, local: zero_local(), element: PhantomData }
     }
 }
 
-impl<E: ReferenceElement<T, D>, T: Real, const D: usize> CellMatrix<T>
-    for General<'_, '_, '_, E, T, D>
-{
+impl<E: ReferenceElement<D>, const D: usize> CellMatrix for General<'_, '_, '_, E, D> {
     #[inline(always)]
     fn of_cell(&mut self, cell: usize) {
         self.cells.write::<E>(cell, &mut self.triangle, &mut self.local);
     }
     #[inline(always)]
-    fn entry(&self, i: usize, j: usize) -> T {
+    fn entry(&self, i: usize, j: usize) -> f64 {
         self.triangle[self.cells.places[i * E::N + j] as usize % TRIANGLE]
     }
 }
 
 /// Products of gradients of which only those of one pair are not zero.
-fn unit<T: Real>(k: usize, l: usize) -> [[T; 4]; 4] {
-    let mut products = [[T::lit(0.0); 4]; 4];
-    products[k][l] = T::lit(1.0);
-    products[l][k] = T::lit(1.0);
+fn unit(k: usize, l: usize) -> [[f64; 4]; 4] {
+    let mut products = [[0.0; 4]; 4];
+    products[k][l] = 1.0;
+    products[l][k] = 1.0;
     products
 }

@@ -7,56 +7,45 @@ use std::marker::PhantomData;
 use super::cell_loops::CellLoops;
 use crate::element::{CrouzeixRaviart, P1, P2, ReferenceElement};
 use crate::instances::look_up;
-use crate::real::Real;
 
 /// The loops of the element `E`.
 #[derive(Clone, Copy)]
-struct Loops<T: Real, const D: usize, E> {
-    loops: CellLoops<T, D>,
+struct Loops<const D: usize, E> {
+    loops: CellLoops<D>,
     element: PhantomData<E>,
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Loops<T, D, E> {
+impl<const D: usize, E: ReferenceElement<D>> Loops<D, E> {
     const fn instance() -> Self {
         Self { loops: CellLoops::instance::<E>(), element: PhantomData }
     }
 }
 
-static LOOPS: [&(dyn Any + Sync); 18] = [
-    &Loops::<f64, 1, P1>::instance(),
-    &Loops::<f64, 2, P1>::instance(),
-    &Loops::<f64, 3, P1>::instance(),
-    &Loops::<f64, 1, P2>::instance(),
-    &Loops::<f64, 2, P2>::instance(),
-    &Loops::<f64, 3, P2>::instance(),
-    &Loops::<f64, 1, CrouzeixRaviart>::instance(),
-    &Loops::<f64, 2, CrouzeixRaviart>::instance(),
-    &Loops::<f64, 3, CrouzeixRaviart>::instance(),
-    &Loops::<f32, 1, P1>::instance(),
-    &Loops::<f32, 2, P1>::instance(),
-    &Loops::<f32, 3, P1>::instance(),
-    &Loops::<f32, 1, P2>::instance(),
-    &Loops::<f32, 2, P2>::instance(),
-    &Loops::<f32, 3, P2>::instance(),
-    &Loops::<f32, 1, CrouzeixRaviart>::instance(),
-    &Loops::<f32, 2, CrouzeixRaviart>::instance(),
-    &Loops::<f32, 3, CrouzeixRaviart>::instance(),
+static LOOPS: [&(dyn Any + Sync); 9] = [
+    &Loops::<1, P1>::instance(),
+    &Loops::<2, P1>::instance(),
+    &Loops::<3, P1>::instance(),
+    &Loops::<1, P2>::instance(),
+    &Loops::<2, P2>::instance(),
+    &Loops::<3, P2>::instance(),
+    &Loops::<1, CrouzeixRaviart>::instance(),
+    &Loops::<2, CrouzeixRaviart>::instance(),
+    &Loops::<3, CrouzeixRaviart>::instance(),
 ];
 
 /// The loops of an element of this library.
-pub(super) fn loops<T: Real, const D: usize, E: ReferenceElement<T, D>>() -> CellLoops<T, D> {
-    match look_up::<Loops<T, D, E>>(&LOOPS) {
+pub(super) fn loops<const D: usize, E: ReferenceElement<D>>() -> CellLoops<D> {
+    match look_up::<Loops<D, E>>(&LOOPS) {
         Some(found) => found.loops,
-        None => not_compiled::<T, D, E>(),
+        None => not_compiled::<D, E>(),
     }
 }
 
 /// Loops made here instead would be compiled in every crate, which the constant is there to prevent.
 #[cold]
-fn not_compiled<T: Real, const D: usize, E: ReferenceElement<T, D>>() -> ! {
+fn not_compiled<const D: usize, E: ReferenceElement<D>>() -> ! {
     panic!(
-        "no loops of {} over {} in dimension {D} are compiled: elements of other crates leave `ReferenceElement::COMPILED` false",
-        std::any::type_name::<E>(),
-        T::NAME
+        "no loops of {} in dimension {D} are compiled: elements of other crates leave `ReferenceElement::COMPILED` false",
+        std::any::type_name::<E>()
     )
 }

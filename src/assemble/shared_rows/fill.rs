@@ -12,23 +12,22 @@ use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
 use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
 use crate::element::ReferenceElement;
-use crate::real::Real;
 
 /// The rows of one kind in a subset, and their values.
-struct Target<'v, T> {
+struct Target<'v> {
     rows: Range<u32>,
     /// Where the first of them starts.
     base: usize,
-    values: &'v mut [T],
+    values: &'v mut [f64],
     /// How many of the values are no longer those from before.
     cleared: usize,
 }
 
 /// The values, on a known pattern.
-pub(crate) fn fill<T: Real, const D: usize, E: ReferenceElement<T, D>>(
-    space: &Space<'_, T, D>,
+pub(crate) fn fill<const D: usize, E: ReferenceElement<D>>(
+    space: &Space<'_, D>,
     positions: &EntryPositions,
-    matrix: &mut SparseMatrix<T>,
+    matrix: &mut SparseMatrix<f64>,
 ) {
     let dofs = &space.dofs;
     let SparseMatrix { row_starts, columns, values } = matrix;
@@ -42,11 +41,11 @@ pub(crate) fn fill<T: Real, const D: usize, E: ReferenceElement<T, D>>(
 }
 
 /// Divides the values among the subsets: each subset has the values of its rows.
-fn targets<'v, T>(
+fn targets<'v>(
     subsets: &[Rows],
     row_starts: &[u32],
-    values: &'v mut [T],
-) -> Vec<[Target<'v, T>; KINDS]> {
+    values: &'v mut [f64],
+) -> Vec<[Target<'v>; KINDS]> {
     let mut rest = values;
     let mut by_kind = [const { Vec::new() }; KINDS];
     for (kind, targets) in by_kind.iter_mut().enumerate() {
@@ -66,7 +65,7 @@ fn targets<'v, T>(
         .collect()
 }
 
-impl<T: Real> Target<'_, T> {
+impl Target<'_> {
     /// Sets the values before a row to zero just before entries are added to them: they are then in
     /// the cache.
     #[inline(always)]
@@ -75,7 +74,7 @@ impl<T: Real> Target<'_, T> {
         if row > self.rows.start {
             let end = row_starts[row as usize] as usize - self.base;
             if end > self.cleared {
-                self.values[self.cleared..end].fill(T::lit(0.0));
+                self.values[self.cleared..end].fill(0.0);
                 self.cleared = end;
             }
         }
@@ -83,34 +82,30 @@ impl<T: Real> Target<'_, T> {
 }
 
 /// All that the loop over cells reads.
-struct Filling<'f, 's, 'a, T: Real, const D: usize> {
+struct Filling<'f, 's, 'a, const D: usize> {
     dofs: &'f Dofs<'a>,
     row_starts: &'f [u32],
     columns: &'f [u32],
     positions: &'f EntryPositions,
-    cells: CellMatrices<'s, 'a, T, D>,
+    cells: CellMatrices<'s, 'a, D>,
 }
 
-impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
+impl<const D: usize> Filling<'_, '_, '_, D> {
     /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
     #[inline(never)]
-    fn fill_subset<E: ReferenceElement<T, D>>(
-        &self,
-        rows: &Rows,
-        mut targets: [Target<'_, T>; KINDS],
-    ) {
+    fn fill_subset<E: ReferenceElement<D>>(&self, rows: &Rows, mut targets: [Target<'_>; KINDS]) {
         for (cells, location, hull) in self.positions.blocks.of(rows) {
             for (target, hull) in targets.iter_mut().zip(hull) {
                 target.clear_before(hull.end, self.row_starts);
             }
             match self.cells.only_gradients() {
                 // for other elements the loop over products of gradients is not even instantiated
-                Some(square) if const { is_linear::<T, E, D>() } => {
+                Some(square) if const { is_linear::<E, D>() } => {
                     let matrices = Gradients::new(&self.cells, square);
                     self.block::<E, _>(cells, location, &mut targets, matrices);
                 }
                 _ => {
-                    let matrices = General::<E, T, D>::new(&self.cells);
+                    let matrices = General::<E, D>::new(&self.cells);
                     self.block::<E, _>(cells, location, &mut targets, matrices);
                 }
             }
@@ -121,11 +116,11 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
     }
 
     #[inline(always)]
-    fn block<E: ReferenceElement<T, D>, M: CellMatrix<T>>(
+    fn block<E: ReferenceElement<D>, M: CellMatrix>(
         &self,
         cells: Range<usize>,
         location: Location,
-        targets: &mut [Target<'_, T>; KINDS],
+        targets: &mut [Target<'_>; KINDS],
         matrices: M,
     ) {
         if location == Location::Inside {
@@ -137,10 +132,10 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
 
     /// Adds the matrices of the cells of a block to those of their rows that the targets have.
     #[inline(always)]
-    fn add<E: ReferenceElement<T, D>, M: CellMatrix<T>, const INSIDE: bool>(
+    fn add<E: ReferenceElement<D>, M: CellMatrix, const INSIDE: bool>(
         &self,
         cells: Range<usize>,
-        targets: &mut [Target<'_, T>; KINDS],
+        targets: &mut [Target<'_>; KINDS],
         mut matrix: M,
     ) {
         let mut numbers = Vec::new();
@@ -179,15 +174,9 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
 /// Adds to a row too long for the positions noted, by searching its columns.
 #[cold]
 #[inline(never)]
-fn add_by_search<T: Real>(
-    out: &mut [T],
-    columns: &[u32],
-    unknowns: &[u32],
-    entry: &dyn Fn(usize) -> T,
-) {
+fn add_by_search(out: &mut [f64], columns: &[u32], unknowns: &[u32], entry: &dyn Fn(usize) -> f64) {
     for (j, unknown) in unknowns.iter().enumerate() {
-        if let Ok(at) = columns.binary_search(unknown) {
-            out[at] += entry(j);
-        }
+        let at = columns.binary_search(unknown).expect("the pattern has the entries of its cells");
+        out[at] += entry(j);
     }
 }

@@ -21,37 +21,35 @@ use crate::algebra::SparseMatrix;
 use crate::element::ReferenceElement;
 use crate::facet::FacetForm;
 use crate::parallel::once;
-use crate::real::Real;
 pub(crate) use cell_loops::CellLoops;
 pub(crate) use pattern::EntryPositions;
 
 /// The loops of an element; none for elements that share no unknowns.
-pub(crate) fn loops_of<T: Real, const D: usize, E: ReferenceElement<T, D>>()
--> Option<CellLoops<T, D>> {
+pub(crate) fn loops_of<const D: usize, E: ReferenceElement<D>>() -> Option<CellLoops<D>> {
     if const { E::LAYOUT.is_broken() } {
         return None;
     }
     #[cfg(not(test))]
     if const { E::COMPILED } {
-        return Some(compiled::loops::<T, D, E>());
+        return Some(compiled::loops::<D, E>());
     }
     Some(CellLoops::instance::<E>())
 }
 
 /// Shared rows of a space, with the positions of their entries once the pattern is computed.
-pub(crate) struct SharedRows<T: Real, const D: usize> {
-    loops: Option<CellLoops<T, D>>,
+pub(crate) struct SharedRows<const D: usize> {
+    loops: Option<CellLoops<D>>,
     positions: OnceLock<EntryPositions>,
 }
 
-impl<T: Real, const D: usize> SharedRows<T, D> {
+impl<const D: usize> SharedRows<D> {
     /// Rows whose pattern is not known yet.
-    pub fn new(loops: Option<CellLoops<T, D>>) -> Self {
+    pub fn new(loops: Option<CellLoops<D>>) -> Self {
         Self { loops, positions: OnceLock::new() }
     }
 
     /// The pattern, with values zero.
-    pub fn pattern(&self, space: &Space<'_, T, D>, form: &dyn FacetForm<T, D>) -> SparseMatrix<T> {
+    pub fn pattern(&self, space: &Space<'_, D>, form: &dyn FacetForm<D>) -> SparseMatrix<f64> {
         match &self.loops {
             Some(loops) if !form.couples() => {
                 let (matrix, positions) = (loops.pattern)(&space.dofs);
@@ -66,9 +64,9 @@ impl<T: Real, const D: usize> SharedRows<T, D> {
     /// The values, on a known pattern.
     pub fn fill(
         &self,
-        space: &Space<'_, T, D>,
-        form: &dyn FacetForm<T, D>,
-        matrix: &mut SparseMatrix<T>,
+        space: &Space<'_, D>,
+        form: &dyn FacetForm<D>,
+        matrix: &mut SparseMatrix<f64>,
     ) {
         match &self.loops {
             Some(loops) if !form.couples() => {

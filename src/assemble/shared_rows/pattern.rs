@@ -11,7 +11,6 @@ use crate::arrays::map_entries;
 use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
 use crate::element::ReferenceElement;
 use crate::memory::in_large_pages;
-use crate::real::Real;
 
 /// Where each cell adds its matrix: made with the pattern, kept for every filling of it.
 pub(crate) struct EntryPositions {
@@ -41,19 +40,19 @@ struct PatternOfRows {
 }
 
 /// The pattern, with values zero, and the positions at which cells add to it.
-pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
+pub(crate) fn pattern<const D: usize, E: ReferenceElement<D>>(
     dofs: &Dofs<'_>,
-) -> (SparseMatrix<T>, EntryPositions) {
+) -> (SparseMatrix<f64>, EntryPositions) {
     let blocks = Blocks::new(dofs, |i| kind_of(E::LAYOUT, D, i));
     let in_rows = zeros(dofs.n_cells() * E::N * E::N);
     let builder = PatternBuilder { dofs, blocks: &blocks, in_rows: &in_rows };
     let subsets = partition(dofs);
-    let build = |k: usize| builder.rows::<T, E, D>(&subsets[k]);
+    let build = |k: usize| builder.rows::<E, D>(&subsets[k]);
     let mut made: Vec<PatternOfSubset> = map_indices(subsets.len(), &build);
     let row_starts = row_starts(dofs.size(), &made);
     let columns = columns_of(&row_starts, &mut made);
     let nonzeros = columns.len();
-    let values = in_large_pages(vec![T::lit(0.0); nonzeros]);
+    let values = in_large_pages(vec![0.0; nonzeros]);
     let matrix = SparseMatrix { row_starts, columns, values };
     (matrix, EntryPositions { in_rows, blocks, nonzeros })
 }
@@ -122,19 +121,16 @@ impl PatternBuilder<'_> {
     ///
     /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
     #[inline(never)]
-    fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(
-        &self,
-        subset: &Rows,
-    ) -> PatternOfSubset {
+    fn rows<E: ReferenceElement<D>, const D: usize>(&self, subset: &Rows) -> PatternOfSubset {
         let mut stars = Stars::default();
         let mut row = Row { seen: in_large_pages(vec![0; self.dofs.size()]), ..Row::default() };
         let mut made = self.room_for(subset);
         for part in self.blocks.parts_of(subset) {
-            self.find_stars::<T, E, D>(&part, &mut stars);
+            self.find_stars::<E, D>(&part, &mut stars);
             let mut k = 0;
             for (rows, made) in part.iter().zip(&mut made) {
                 for _ in rows.clone() {
-                    self.row::<T, E, D>(stars.of_row(k), &mut row, made);
+                    self.row::<E, D>(stars.of_row(k), &mut row, made);
                     k += 1;
                 }
             }
@@ -155,11 +151,7 @@ impl PatternBuilder<'_> {
 
     /// Finds the star of each row of a part: a counting sort.
     #[inline(always)]
-    fn find_stars<T: Real, E: ReferenceElement<T, D>, const D: usize>(
-        &self,
-        part: &Rows,
-        stars: &mut Stars,
-    ) {
+    fn find_stars<E: ReferenceElement<D>, const D: usize>(&self, part: &Rows, stars: &mut Stars) {
         let mut n_rows = 0;
         let offsets = map_entries(part.each_ref(), |rows| {
             n_rows += rows.len();
@@ -170,13 +162,13 @@ impl PatternBuilder<'_> {
         // their own entries
         starts.clear();
         starts.resize(n_rows + 2, 0);
-        self.visit::<T, E, D>(part, &offsets, |row, _| starts[row + 2] += 1);
+        self.visit::<E, D>(part, &offsets, |row, _| starts[row + 2] += 1);
         for row in 0..n_rows {
             starts[row + 2] += starts[row + 1];
         }
         slots.clear();
         slots.resize(starts[n_rows + 1] as usize, 0);
-        self.visit::<T, E, D>(part, &offsets, |row, slot| {
+        self.visit::<E, D>(part, &offsets, |row, slot| {
             let at = &mut starts[row + 1];
             slots[*at as usize] = slot as u32;
             *at += 1;
@@ -186,7 +178,7 @@ impl PatternBuilder<'_> {
     /// Calls a function with each row of a part and each cell that has it: the cell times `N` plus
     /// the number of the unknown in it.
     #[inline(always)]
-    fn visit<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+    fn visit<E: ReferenceElement<D>, const D: usize>(
         &self,
         part: &Rows,
         offsets: &[usize; KINDS],
@@ -210,7 +202,7 @@ impl PatternBuilder<'_> {
 
     /// Makes a row from its star, and the positions of the star's cells in it.
     #[inline(always)]
-    fn row<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+    fn row<E: ReferenceElement<D>, const D: usize>(
         &self,
         star: &[u32],
         row: &mut Row,

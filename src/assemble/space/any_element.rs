@@ -2,7 +2,6 @@
 
 use super::tables::BasisAt;
 use crate::element::{Layout, Node, ReferenceElement};
-use crate::real::Real;
 
 /// What the assembler reads of a reference element, except in the loops over shared rows.
 pub(crate) struct AnyElement {
@@ -15,18 +14,18 @@ pub(crate) struct AnyElement {
     /// What each unknown is the value of.
     pub nodes: Vec<Node>,
     /// The basis at a point of the cell.
-    pub basis: fn(&[f64; 4]) -> BasisAt<f64>,
+    pub basis: fn(&[f64; 4]) -> BasisAt,
 }
 
 impl AnyElement {
     /// The facts of an element over `T` on the `D`-simplex.
-    pub fn of<T: Real, E: ReferenceElement<T, D>, const D: usize>() -> Self {
+    pub fn of<E: ReferenceElement<D>, const D: usize>() -> Self {
         Self {
             degree: E::DEGREE,
             basis_degree: E::BASIS_DEGREE,
             layout: E::LAYOUT,
             nodes: (0..E::N).map(E::node).collect(),
-            basis: BasisAt::new_in_f64::<T, E, D>,
+            basis: BasisAt::new::<E, D>,
         }
     }
 }

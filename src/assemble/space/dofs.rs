@@ -8,7 +8,6 @@ use crate::parallel::vectors::for_each_chunk_of_groups;
 use crate::element::Layout;
 use crate::memory::in_large_pages;
 use crate::mesh::{Edges, Facets, Mesh, Neighbours};
-use crate::real::Real;
 
 /// Unknowns by cell: consecutive for broken spaces, a table for others.
 pub(crate) struct Dofs<'a> {
@@ -43,9 +42,9 @@ struct Owners<'a> {
 
 impl<'a> Dofs<'a> {
     /// The numbering of a layout; facets that own unknowns are told by `neighbours`.
-    pub fn new<T: Real, const D: usize>(
+    pub fn new<const D: usize>(
         layout: Layout,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         neighbours: Option<&Neighbours>,
     ) -> Self {
         let (per_cell, n_cells) = (layout.per_cell(D), mesh.n_cells());

@@ -1,7 +1,6 @@
 //! The discrete space on a mesh: all that does not depend on the facet form.
 //!
-//! Nothing here is generic in scheme or element, so that all is compiled once for each scalar and
-//! dimension: the element enters as an [`AnyElement`].
+//! Nothing here is generic in scheme or element, so that all is compiled once for each dimension: the element enters as an [`AnyElement`].
 //!
 //! | file | content |
 //! |---|---|
@@ -42,7 +41,7 @@ use crate::error::Error;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours};
 use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 pub(crate) use any_element::AnyElement;
 use coefficient::VaryingCoefficient;
 pub(crate) use coefficient::{INWARD, Place};
@@ -56,9 +55,9 @@ use tables::{BasisAt, CellTable, FacetTable};
 pub(crate) type Terms = Vec<([f64; 4], f64)>;
 
 /// A finite element space with the problem posed on it.
-pub(crate) struct Space<'a, T: Real, const D: usize> {
+pub(crate) struct Space<'a, const D: usize> {
     pub problem: &'a Problem<D>,
-    pub mesh: &'a Mesh<T, D>,
+    pub mesh: &'a Mesh<D>,
     /// The data of the problem, by region and boundary group.
     pub data: DataOnMesh<'a, D>,
     /// The rule for data on cells.
@@ -67,13 +66,13 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     pub cell_degree: usize,
     /// The rule for data on facets.
     pub facet_rule: Rule,
-    pub reaction: Option<ReactionTerm<'a, T, D>>,
+    pub reaction: Option<ReactionTerm<'a, D>>,
     pub neighbours: Option<Neighbours>,
     pub dofs: Dofs<'a>,
     /// The coefficient at the barycentre of each cell.
-    coefficients: Option<Vec<T>>,
+    coefficients: Option<Vec<f64>>,
     /// The coefficient in the cells in which it varies, for elements of degree two and more.
-    varying: Option<VaryingCoefficient<T>>,
+    varying: Option<VaryingCoefficient>,
     /// What each of a cell's unknowns is the value of.
     pub nodes: Vec<Node>,
     /// The vertices that stand for each of a cell's nodes.
@@ -91,17 +90,17 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     /// By what a Signorini condition binds each of a cell's unknowns, if it does and the node lies on
     /// a contact facet.
     on_contact: Vec<Option<BoundBy>>,
-    basis: fn(&[f64; 4]) -> BasisAt<f64>,
+    basis: fn(&[f64; 4]) -> BasisAt,
     /// Integrals of the load by cell, once computed.
-    pub load_by_cell: OnceLock<Vec<T>>,
+    pub load_by_cell: OnceLock<Vec<f64>>,
 }
 
-impl<'a, T: Real, const D: usize> Space<'a, T, D> {
+impl<'a, const D: usize> Space<'a, D> {
     /// The space of an element; facets are built only if asked for or numbered.
     pub fn new(
         element: AnyElement,
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
         with_facets: bool,
         pins: bool,
@@ -197,28 +196,28 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         &self,
         cell: usize,
         local: usize,
-        metric: &'g CellMetric<T, D>,
-    ) -> CellSide<'g, T, D> {
+        metric: &'g CellMetric<D>,
+    ) -> CellSide<'g, D> {
         let [coefficient, least_coefficient] = self.extreme_coefficients((cell, local));
         CellSide { cell, local, metric, coefficient, least_coefficient }
     }
     /// The basis at a point of the cell.
-    pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt<f64> {
+    pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt {
         (self.basis)(point)
     }
     /// The factor `c` if the gradient of each basis function `i` is `c` times that of barycentric
     /// coordinate `i`, so that products of gradients make the whole stiffness.
-    pub fn gradient_factor(&self) -> Option<T> {
+    pub fn gradient_factor(&self) -> Option<f64> {
         let derivatives = self.basis_at(&[1.0 / (D + 1) as f64; 4]).derivatives;
         let factor = derivatives[0][0];
         let is_one = |i: usize, k: usize| derivatives[i][k] == if i == k { factor } else { 0.0 };
         let all = self.basis_degree == 1
             && self.per_cell() == D + 1
             && (0..=D).all(|i| (0..=D).all(|k| is_one(i, k)));
-        all.then(|| T::lit(factor))
+        all.then_some(factor)
     }
     /// The stiffness of the reference element.
-    pub fn stiffness_table(&self) -> StiffnessTable<T> {
+    pub fn stiffness_table(&self) -> StiffnessTable {
         StiffnessTable::new(
             D,
             &self.cell_table(Rule::new(D, 2 * self.basis_degree.saturating_sub(1))),
@@ -229,18 +228,18 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         !self.broken && self.nodes.iter().cloned().eq((0..=D).map(Node::vertex))
     }
     /// Moments of the basis on facets, up to a degree.
-    pub fn facet_table(&self, degree: usize) -> FacetTable<T> {
+    pub fn facet_table(&self, degree: usize) -> FacetTable {
         FacetTable::new(D, self.basis_degree, self.basis, degree)
     }
     /// The basis at the points of a cell rule.
-    pub fn cell_table(&self, rule: Rule) -> CellTable<f64> {
+    pub fn cell_table(&self, rule: Rule) -> CellTable {
         CellTable::new(rule, self.basis)
     }
     /// The unknowns of a cell in `f64`.
-    pub fn local_values(&self, cell: usize, u: &[T]) -> [f64; MAX_BASIS] {
+    pub fn local_values(&self, cell: usize, u: &[f64]) -> [f64; MAX_BASIS] {
         let mut local = [0.0; MAX_BASIS];
         for (i, value) in local.iter_mut().enumerate().take(self.per_cell()) {
-            *value = u[self.dofs.of(cell, i)].to_f64();
+            *value = u[self.dofs.of(cell, i)];
         }
         local
     }
@@ -255,25 +254,25 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         self.mesh.boundary().iter().filter(of_part).map(facet)
     }
     /// The Dirichlet value at a point of a boundary group.
-    pub fn dirichlet_at(&self, group: usize, x: &Point<f64, D>) -> f64 {
+    pub fn dirichlet_at(&self, group: usize, x: &Point<D>) -> f64 {
         self.data.dirichlet.of(group).map_or(0.0, |u| u.at(x))
     }
     /// The metric of a cell, computed.
-    pub fn metric(&self, cell: usize) -> CellMetric<T, D> {
+    pub fn metric(&self, cell: usize) -> CellMetric<D> {
         CellMetric::of(self.mesh, cell)
     }
     /// The measure of a facet.
     pub fn facet_measure(&self, (cell, local): Place) -> f64 {
-        self.mesh.geometry(cell).facet_measure(local).to_f64()
+        self.mesh.geometry(cell).facet_measure(local)
     }
     /// A point of a facet in space.
-    pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<f64, D> {
-        let inserted = facet_to_cell(point, local).map(T::lit);
-        point_f64(&self.mesh.point(cell, &inserted[..=D]))
+    pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<D> {
+        let inserted = facet_to_cell(point, local);
+        self.mesh.point(cell, &inserted[..=D])
     }
     /// A point of a cell in space.
-    pub fn cell_point(&self, point: &[f64; 4], cell: usize) -> Point<f64, D> {
-        point_f64(&self.mesh.point(cell, &point.map(T::lit)[..=D]))
+    pub fn cell_point(&self, point: &[f64; 4], cell: usize) -> Point<D> {
+        self.mesh.point(cell, &point[..=D])
     }
     /// The basis functions whose nodes lie on facet `local`.
     pub fn nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
@@ -288,10 +287,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         self.nodes_on(local).filter_map(|i| Some((i, self.on_contact[i]?)))
     }
     /// The point that stands for a node.
-    pub fn node_point(&self, cell: usize, node: &Node) -> Point<f64, D> {
+    pub fn node_point(&self, cell: usize, node: &Node) -> Point<D> {
         match node.entity() {
-            Entity::Facet(k) if node.is_mean() => point_f64(&self.mesh.facet_barycentre(cell, k)),
-            Entity::Cell if node.is_mean() => point_f64(&self.mesh.barycentre(cell)),
+            Entity::Facet(k) if node.is_mean() => self.mesh.facet_barycentre(cell, k),
+            Entity::Cell if node.is_mean() => self.mesh.barycentre(cell),
             _ => self.cell_point(&node.centre(D), cell),
         }
     }
@@ -300,8 +299,8 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         self.nodes.iter().map(|node| node.terms(facet_rule, cell_rule)).collect()
     }
     /// A discrete function at the vertices of each cell, `D + 1` values for each.
-    pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
-        let corners: Vec<BasisAt<f64>> = (0..=D)
+    pub fn vertex_values(&self, u: &[f64]) -> Vec<f64> {
+        let corners: Vec<BasisAt> = (0..=D)
             .map(|k| {
                 let mut point = [0.0; 4];
                 point[k] = 1.0;

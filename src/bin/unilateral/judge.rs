@@ -9,9 +9,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 use unilateral::exchange::read_vector;
+use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::mesh::BoundaryPart;
 use unilateral::problem_file::{self, AnyOwnProblem};
-use unilateral::real::Real;
+use unilateral::real::Precision;
 use unilateral::scenes::{self, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Report, Row, RowKey, file_name};
@@ -75,13 +76,10 @@ pub fn run(options: &Options) -> Request<bool> {
     let path = options.directory.join(REQUEST);
     let request: Value = serde_json::from_slice(&read(&path)?)
         .map_err(|e| format!("cannot read {}: {e}", path.display()))?;
-    match request["precision"].as_str() {
-        Some("f32") => judge::<f32>(options, &path, &request),
-        _ => judge::<f64>(options, &path, &request),
-    }
+    judge(options, &path, &request)
 }
 
-fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bool> {
+fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
     let wrong = |key: &str| format!("{}: {key} is {}", path.display(), request[key]);
     let text = |key: &str| request[key].as_str().ok_or_else(|| wrong(key));
     let scheme = text("label")?.parse::<NamedScheme>();
@@ -122,7 +120,8 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
     };
     let coarsest = request["coarsest"].as_u64().map_or(level, |coarsest| coarsest as usize);
     let levels = [level, if reference.is_some() { coarsest } else { level }];
-    let of = (&scheme, levels, reference.as_ref());
+    let precision = request["precision"].as_str().and_then(Precision::by_name).unwrap_or_default();
+    let of = (&scheme, levels, reference.as_ref(), precision);
     let row = match request["problem"].as_str() {
         Some(path) => {
             let path = found_beside(&options.directory, path);
@@ -130,9 +129,9 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
             let own = problem_file::read(&path).map_err(|e| e.to_string())?;
             is_unchanged(1, &path, own.mesh_bytes().unwrap_or_default())?;
             match own {
-                AnyOwnProblem::One(own) => row::<T, 1>(own.into(), of, mesh, &values),
-                AnyOwnProblem::Two(own) => row::<T, 2>(own.into(), of, mesh, &values),
-                AnyOwnProblem::Three(own) => row::<T, 3>(own.into(), of, mesh, &values),
+                AnyOwnProblem::One(own) => row::<1>(own.into(), of, mesh, &values),
+                AnyOwnProblem::Two(own) => row::<2>(own.into(), of, mesh, &values),
+                AnyOwnProblem::Three(own) => row::<3>(own.into(), of, mesh, &values),
             }
         }
         None => {
@@ -143,14 +142,14 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
                 .with_contrast(number("contrast", entry.accepts.contrast))
                 .with_load(number("load", entry.accepts.load));
             match entry.make(&parameters).map_err(|e| e.to_string())? {
-                AnyScene::One(scene) => row::<T, 1>(scene.into(), of, mesh, &values),
-                AnyScene::Two(scene) => row::<T, 2>(scene.into(), of, mesh, &values),
-                AnyScene::Three(scene) => row::<T, 3>(scene.into(), of, mesh, &values),
+                AnyScene::One(scene) => row::<1>(scene.into(), of, mesh, &values),
+                AnyScene::Two(scene) => row::<2>(scene.into(), of, mesh, &values),
+                AnyScene::Three(scene) => row::<3>(scene.into(), of, mesh, &values),
             }
         }
     }?;
     let is_within = row.converged();
-    let program = Program::new("judge", T::NAME, rayon::current_num_threads(), 1);
+    let program = Program::new("judge", precision.name(), rayon::current_num_threads(), 1);
     let report = Report::new(program, vec![row]);
     if options.json {
         print(&report.to_json())?;
@@ -177,14 +176,18 @@ fn found_beside(folder: &Path, file: &str) -> PathBuf {
     places.into_iter().find(|place| place.exists()).unwrap_or(file)
 }
 
-fn row<T: Real, const D: usize>(
+/// What is judged: the scheme, its level and the coarsest one, the reference, and the precision of the values.
+type Judged<'a> = (&'a NamedScheme, [usize; 2], Option<&'a (NamedScheme, usize)>, Precision);
+
+fn row<const D: usize>(
     posed: Posed<D>,
-    (scheme, levels, reference): (&NamedScheme, [usize; 2], Option<&(NamedScheme, usize)>),
+    (scheme, levels, reference, precision): Judged<'_>,
     mesh: Option<(MeshFile, Vec<u8>)>,
     values: &[f64],
 ) -> Request<Row> {
-    let study = posed.study::<T>(&|_| {})?;
-    let mut study = study.named_scheme(scheme).levels(each_once(&levels));
+    let study = posed.study(&|_| {})?;
+    let solver = in_precision(precision, ActiveSet::default());
+    let mut study = study.named_scheme(scheme).boxed_solver(solver).levels(each_once(&levels));
     if let Some((file, bytes)) = mesh {
         study = study.on_mesh(file.parse(&bytes, &|_| {})?);
     }

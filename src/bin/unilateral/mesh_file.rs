@@ -6,7 +6,6 @@ use clap::Args;
 use unilateral::input::{excerpt, excerpts};
 use unilateral::mesh::gmsh::{self, GmshWarning};
 use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
-use unilateral::real::Real;
 
 use crate::shared::{Request, read};
 
@@ -23,22 +22,15 @@ pub struct MeshFile {
 
 impl MeshFile {
     /// The mesh, where there is a file; warnings of the file go to `warn`.
-    pub fn read<T: Real, const D: usize>(
-        &self,
-        warn: &dyn Fn(String),
-    ) -> Request<Option<Mesh<T, D>>> {
+    pub fn read<const D: usize>(&self, warn: &dyn Fn(String)) -> Request<Option<Mesh<D>>> {
         let bytes = self.path.as_deref().map(read).transpose()?;
         bytes.map(|bytes| self.parse(&bytes, warn)).transpose()
     }
 
     /// The mesh of the contents of the file.
-    pub fn parse<T: Real, const D: usize>(
-        &self,
-        bytes: &[u8],
-        warn: &dyn Fn(String),
-    ) -> Request<Mesh<T, D>> {
+    pub fn parse<const D: usize>(&self, bytes: &[u8], warn: &dyn Fn(String)) -> Request<Mesh<D>> {
         let path = self.path.as_deref().unwrap_or(Path::new(""));
-        let read = gmsh::parse::<T, D>(bytes).map_err(|e| format!("{}: {e}", path.display()))?;
+        let read = gmsh::parse::<D>(bytes).map_err(|e| format!("{}: {e}", path.display()))?;
         warn_of(&read.warnings, path, warn);
         with_parts(read.mesh, path, &self.boundary)
     }
@@ -52,11 +44,11 @@ pub fn warn_of(warnings: &[GmshWarning], path: &Path, warn: &dyn Fn(String)) {
 }
 
 /// A mesh of a file whose boundary groups have these parts besides those that they name.
-pub fn with_parts<T: Real, const D: usize>(
-    mesh: Mesh<T, D>,
+pub fn with_parts<const D: usize>(
+    mesh: Mesh<D>,
     path: &Path,
     boundary: &[(String, BoundaryPart)],
-) -> Request<Mesh<T, D>> {
+) -> Request<Mesh<D>> {
     let file = path.display();
     let groups: Vec<&str> =
         mesh.boundary_groups().iter().flat_map(|g| &g.names).map(String::as_str).collect();

@@ -9,7 +9,6 @@ use indicatif::{ProgressBar, ProgressStyle};
 use unilateral::input::{beginning, excerpt, read_file};
 use unilateral::measure::Fields;
 use unilateral::nested::Solved;
-use unilateral::real::Real;
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
@@ -194,7 +193,7 @@ pub fn fingerprint(bytes: &[u8]) -> String {
 }
 
 /// The fields of a solution, with the share of each cell in the error bound where there is one; none without an iterate.
-pub fn fields_with_bound<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> Option<Fields> {
+pub fn fields_with_bound<const D: usize>(solved: &Solved<'_, D>) -> Option<Fields> {
     let mut fields = solved.fields()?;
     fields.bound = solved.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
     Some(fields)

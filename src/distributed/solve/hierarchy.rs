@@ -19,7 +19,7 @@ pub struct PartHierarchy<const D: usize> {
 
 #[derive(Debug)]
 struct PartOfLevel<const D: usize> {
-    part: Part<f64, D>,
+    part: Part<D>,
     /// The parents of the vertices in the next coarser part; `None` for the coarsest part.
     refinement: Option<Refinement>,
     /// Seconds for this part and all coarser ones.
@@ -33,7 +33,7 @@ impl<const D: usize> PartHierarchy<D> {
     /// # Errors
     /// [`ExchangeError::Failed`] for fewer cells than parts, and for more cells than can be numbered.
     pub fn new(
-        coarsest: &Mesh<f64, D>,
+        coarsest: &Mesh<D>,
         domain: Option<&Domain<D>>,
         (refinements, layers): (usize, Layers),
         process: &Process,
@@ -69,7 +69,7 @@ impl<const D: usize> PartHierarchy<D> {
     ///
     /// # Panics
     /// If there is no such mesh.
-    pub fn part(&self, position: usize) -> &Part<f64, D> {
+    pub fn part(&self, position: usize) -> &Part<D> {
         &self.parts[position].part
     }
     /// The parents of the vertices of a part in the next coarser one; `None` for the coarsest part.

@@ -93,7 +93,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
     ///
     /// # Panics
     /// If there is no such mesh.
-    pub fn part(&self, position: usize) -> &'a Part<f64, D> {
+    pub fn part(&self, position: usize) -> &'a Part<D> {
         self.hierarchy.part(position)
     }
     /// Replaces the problem by one with another constraint set. The P1 solutions are kept.
@@ -109,7 +109,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
     pub fn solve_on(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<f64, D>,
+        scheme: &dyn AnyScheme<D>,
     ) -> Result<DistributedSolved<'a, D>, ExchangeError> {
         let part = self.hierarchy.part(position);
         agree_on_data(self.check(scheme, part), &part.cells, &*self.process.exchange)?;
@@ -148,7 +148,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
     ///
     /// # Errors
     /// [`Error::Parameter`].
-    pub fn check(&self, scheme: &dyn AnyScheme<f64, D>, part: &Part<f64, D>) -> Result<(), Error> {
+    pub fn check(&self, scheme: &dyn AnyScheme<D>, part: &Part<D>) -> Result<(), Error> {
         let refuse = |parameter, value: &str, allowed: &str| {
             let (value, allowed) = (value.to_owned(), allowed.to_owned());
             Err(Error::Parameter { parameter, value, allowed })
@@ -175,7 +175,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
         &self,
         system: &System<'_, D>,
         layout: Layout,
-        part: &'a Part<f64, D>,
+        part: &'a Part<D>,
         guess: &InitialGuess<f64>,
     ) -> Result<(Solution<f64>, f64), ExchangeError> {
         let clock = Instant::now();
@@ -239,12 +239,12 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
         &self,
         system: &System<'_, D>,
         layout: Layout,
-        part: &'a Part<f64, D>,
+        part: &'a Part<D>,
         guess: &InitialGuess<f64>,
     ) -> Result<Auxiliary, ExchangeError> {
         // the constraint set of the problem is for the scheme
         let problem = self.problem.clone().on(Nodes);
-        let new = |scheme: &dyn AnyScheme<f64, D>| {
+        let new = |scheme: &dyn AnyScheme<D>| {
             System::new(scheme, &problem, part, self.quadrature, &self.process.exchange)
         };
         let is_of_facets = layout.vertex + layout.edge + layout.cell == 0;
@@ -357,7 +357,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
             system.inequality.start = Start::Contact(start.contact.clone());
             guess = guess.values(start.values.clone());
         }
-        let layout = AnyScheme::<f64, D>::layout(&ConformingP1);
+        let layout = AnyScheme::<D>::layout(&ConformingP1);
         let (solution, _) = self.run(&system, layout, part, &guess)?;
         let mut p1 = P1OnPart::new(&system, &solution);
         p1.seconds = clock.elapsed().as_secs_f64() + start.map_or(0.0, |start| start.seconds);

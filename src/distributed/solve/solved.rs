@@ -13,9 +13,7 @@ use crate::distributed::error::ExchangeError;
 use crate::distributed::exchange::Exchange;
 use crate::distributed::merge::merge_all;
 use crate::error_bound::{BoundFigures, ErrorBound, PrimalDualPair, TrueErrors};
-use crate::inequality::{
-    Certificate, Outcome, Solution, certify_with_jump_multipliers, energy_norm,
-};
+use crate::inequality::{Certificate, Outcome, Solution, certify_solution, energy_norm};
 use crate::measure::{Errors, Penetration, Rounding, SquaredErrors};
 use crate::mesh::Part;
 
@@ -24,7 +22,7 @@ use crate::mesh::Part;
 #[non_exhaustive]
 pub struct DistributedSolved<'a, const D: usize> {
     system: System<'a, D>,
-    part: &'a Part<f64, D>,
+    part: &'a Part<D>,
     solution: Solution<f64>,
     certificate: Certificate,
     has_iterate: bool,
@@ -56,20 +54,21 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     /// A solution with its certificate.
     pub(super) fn new(
         system: System<'a, D>,
-        part: &'a Part<f64, D>,
+        part: &'a Part<D>,
         mut solution: Solution<f64>,
     ) -> Self {
         solution.contact = contact_of_owners(&solution.contact, &system.over_parts);
-        let Solution { values, jump_multipliers, algebraic_bound, outcome, .. } = &solution;
+        let Solution { values, outcome, .. } = &solution;
         let over_parts: &dyn Distribution = &*system.over_parts;
         let is_finite = values.iter().all(|v| v.is_finite());
         let has_iterate = outcome.has_iterate() && !any_part(Some(over_parts), !is_finite);
         let certificate = match has_iterate {
-            true => certify_with_jump_multipliers(&system.inequality, values, jump_multipliers)
-                .with_algebraic_bound(*algebraic_bound),
+            true => certify_solution(&system.inequality, &solution),
             false => Certificate::INVALID,
         };
-        if solution.outcome == Outcome::Converged && !certificate.is_within_limits::<f64>() {
+        if solution.outcome == Outcome::Converged
+            && !certificate.is_within_limits(solution.precision)
+        {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
         }
@@ -114,11 +113,11 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         &self.system.inequality
     }
     /// The scheme on this part.
-    pub fn discretisation(&self) -> &Discretisation<'a, f64, D> {
+    pub fn discretisation(&self) -> &Discretisation<'a, D> {
         &self.system.discretisation
     }
     /// The part.
-    pub fn part(&self) -> &'a Part<f64, D> {
+    pub fn part(&self) -> &'a Part<D> {
         self.part
     }
     /// The numbers of the unknowns of this part among those of all parts.
@@ -207,7 +206,10 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     pub fn penetration(&self) -> Result<Option<Penetration>, ExchangeError> {
         let part = self.part;
         let u = &self.solution.values;
-        let own = self.system.discretisation.penetration_of(u, &|cell| part.owns(cell));
+        let own = self
+            .system
+            .discretisation
+            .penetration_of((u, self.solution.precision), &|cell| part.owns(cell));
         let Some(own) = agree_on_data(own, &part.cells, self.exchange())? else { return Ok(None) };
         let most = self.exchange().largest(&own.numbers())?;
         let mut numbers = own.numbers();
@@ -280,13 +282,13 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     }
     fn energy_norm(&self) -> f64 {
         let System { inequality, .. } = &self.system;
-        energy_norm(inequality, &self.solution.values, &self.solution.jump_multipliers)
+        energy_norm(inequality, &self.solution)
     }
     /// Rounding errors in the figures of the solution over all parts.
     pub fn rounding(&self) -> Option<Rounding> {
         let System { discretisation, inequality, .. } = &self.system;
         let of = (self.sizes()[0] as usize, self.energy_norm());
-        discretisation.rounding(inequality, &self.solution.values, of)
+        discretisation.rounding(inequality, &self.solution, of)
     }
     /// The errors against the exact solution; none without one.
     ///

@@ -17,7 +17,7 @@ use crate::scheme::AnyScheme;
 
 /// A scheme applied to a problem on a part of a mesh, with the numbers of its unknowns over all parts.
 pub(super) struct System<'a, const D: usize> {
-    pub discretisation: Discretisation<'a, f64, D>,
+    pub discretisation: Discretisation<'a, D>,
     pub inequality: Inequality<f64>,
     pub over_parts: Arc<OverParts>,
     /// Seconds of assembly, and of the numbers.
@@ -30,9 +30,9 @@ impl<'a, const D: usize> System<'a, D> {
     /// # Errors
     /// [`ExchangeError::Failed`] in all parts with the error of assembly of the lowest part that has one.
     pub fn new(
-        scheme: &dyn AnyScheme<f64, D>,
+        scheme: &dyn AnyScheme<D>,
         problem: &'a Problem<D>,
-        part: &'a Part<f64, D>,
+        part: &'a Part<D>,
         quadrature: DataQuadrature,
         exchange: &Arc<dyn Exchange>,
     ) -> Result<Self, ExchangeError> {

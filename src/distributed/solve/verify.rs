@@ -42,8 +42,8 @@ impl<const D: usize> DistributedSolved<'_, D> {
     /// [`ExchangeError::Failed`] with the error of assembly, and those of the exchange.
     pub fn verify(
         &self,
-        scheme: &dyn AnyScheme<f64, D>,
-        whole: &Mesh<f64, D>,
+        scheme: &dyn AnyScheme<D>,
+        whole: &Mesh<D>,
         quadrature: DataQuadrature,
     ) -> Result<Differences, ExchangeError> {
         let problem = self.discretisation().problem();
@@ -61,7 +61,7 @@ impl<const D: usize> DistributedSolved<'_, D> {
     }
 
     /// The differences of this part.
-    fn differences(&self, of: &Discretisation<'_, f64, D>, all: &Inequality<f64>) -> Differences {
+    fn differences(&self, of: &Discretisation<'_, D>, all: &Inequality<f64>) -> Differences {
         let mut numbers = vec![0; self.inequality().size()];
         for (cell, &whole) in self.part().cells.iter().enumerate() {
             let own = self.discretisation().unknowns_of(cell);

@@ -113,7 +113,8 @@ impl<T: Real> MultigridIterate<'_, T> {
         }
         let mut residual = vec![0.0; values.len()];
         inequality.residual_f64(values, &mut residual);
-        let energy_norm = Scales::of(inequality, values, &residual, &[], &of).energy_norm;
+        let energy_norm =
+            Scales::of(inequality, (values, &residual, &[]), &of, T::PRECISION).energy_norm;
         let (residual, diagonal) = (&residual[..], &diagonal[..]);
         let values = AdmissibleValues { inequality, values, residual, diagonal, energy_norm };
         algebraic_bound(&values, f64::INFINITY, |_, unbalanced| {

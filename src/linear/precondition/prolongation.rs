@@ -28,6 +28,24 @@ enum Entries<T> {
     Weights { fine: RectangularMatrix<T>, coarse: RectangularMatrix<T> },
 }
 
+impl Prolongation<f64> {
+    /// The prolongation with every weight rounded once.
+    pub(super) fn in_precision<T: Real>(&self) -> Prolongation<T> {
+        let entries = match self.entries.clone() {
+            Entries::Midpoints { parents, starts, children, own } => {
+                Entries::Midpoints { parents, starts, children, own }
+            }
+            Entries::Injection { parents, starts, children } => {
+                Entries::Injection { parents, starts, children }
+            }
+            Entries::Weights { fine, coarse } => {
+                Entries::Weights { fine: fine.in_precision(), coarse: coarse.in_precision() }
+            }
+        };
+        Prolongation { entries, n_coarse: self.n_coarse }
+    }
+}
+
 impl<T: Real> Prolongation<T> {
     /// The prolongation of conforming linear functions to a uniform refinement: fine vertex `i` is the midpoint of the
     /// coarse vertices `parents[i]`, which are equal for a vertex of the coarse mesh. Every coarse vertex must be a

@@ -10,15 +10,15 @@ use crate::mesh::error::MeshError;
 use crate::mesh::overlap::lie_on_others;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::GroupedFacet;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A mesh read from a file, and the warnings of the reader.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct GmshMesh<T, const D: usize> {
+pub struct GmshMesh<const D: usize> {
     /// The mesh, with its cells along a Hilbert curve and its vertices in the order in which cells name them
     /// first: whatever the order of the file, what is near in space is near in memory.
-    pub mesh: Mesh<T, D>,
+    pub mesh: Mesh<D>,
     /// The tag in the file of each vertex of the mesh.
     pub node_tags: Vec<u64>,
     /// The tag in the file of each cell of the mesh.
@@ -28,9 +28,7 @@ pub struct GmshMesh<T, const D: usize> {
 }
 
 /// A mesh of dimension `D` from the contents of a file.
-pub(super) fn assemble<T: Real, const D: usize>(
-    contents: &Contents,
-) -> Result<GmshMesh<T, D>, GmshError> {
+pub(super) fn assemble<const D: usize>(contents: &Contents) -> Result<GmshMesh<D>, GmshError> {
     check_dimension(contents, D)?;
     let index = NodeIndex::new(contents)?;
     let cells = cells_of::<D>(contents, &index)?;
@@ -289,7 +287,7 @@ fn vertices_of(error: &MeshError) -> Vec<usize> {
     }
 }
 
-fn warnings<T: Real, const D: usize>(contents: &Contents, mesh: &Mesh<T, D>) -> Vec<GmshWarning> {
+fn warnings<const D: usize>(contents: &Contents, mesh: &Mesh<D>) -> Vec<GmshWarning> {
     let name =
         map_entries([Shape::Point, Shape::Line, Shape::Triangle, Shape::Tetrahedron], Shape::name);
     let straightened = |d: usize| {
@@ -305,7 +303,7 @@ fn warnings<T: Real, const D: usize>(contents: &Contents, mesh: &Mesh<T, D>) -> 
         let mut vertices = mesh.facet_vertices(f.cell as usize, usize::from(f.local));
         tabulate(|_| vertices.next().expect("a facet has as many vertices as dimensions"))
     });
-    let points: Vec<Point<f64, D>> = mesh.vertices().iter().map(point_f64).collect();
+    let points: Vec<Point<D>> = mesh.vertices().to_vec();
     let coincident = lie_on_others(&points, &facets.collect::<Vec<[u32; D]>>());
     let count = coincident.iter().filter(|lies| **lies).count();
     warnings.extend((count > 0).then_some(GmshWarning::Coincident { count }));

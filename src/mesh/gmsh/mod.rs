@@ -53,7 +53,7 @@
 //! $EndElements
 //! "#;
 //! assert_eq!(gmsh::dimension(file)?, 1);
-//! let read = gmsh::parse::<f64, 1>(file)?;
+//! let read = gmsh::parse::<1>(file)?;
 //! assert_eq!(read.mesh.n_cells(), 2);
 //! assert!(read.warnings.is_empty());
 //! # Ok::<(), gmsh::GmshError>(())
@@ -80,7 +80,6 @@ pub use write::{to_text, write};
 
 use crate::input::read_file;
 use crate::instances::compiled;
-use crate::real::Real;
 use sections::{Wanted, read_contents};
 use std::path::Path;
 
@@ -88,7 +87,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// Every [`GmshError`].
-pub fn read<T: Real, const D: usize>(path: &Path) -> Result<GmshMesh<T, D>, GmshError> {
+pub fn read<const D: usize>(path: &Path) -> Result<GmshMesh<D>, GmshError> {
     let bytes =
         read_file(path).map_err(|source| GmshError::Unreadable { path: path.into(), source })?;
     parse(&bytes)
@@ -98,11 +97,11 @@ pub fn read<T: Real, const D: usize>(path: &Path) -> Result<GmshMesh<T, D>, Gmsh
 ///
 /// # Errors
 /// Every [`GmshError`] but [`GmshError::Unreadable`].
-pub fn parse<T: Real, const D: usize>(bytes: &[u8]) -> Result<GmshMesh<T, D>, GmshError> {
-    compiled!(T, D: fn(&[u8]) -> Result<GmshMesh<T, D>, GmshError> = read_bytes)(bytes)
+pub fn parse<const D: usize>(bytes: &[u8]) -> Result<GmshMesh<D>, GmshError> {
+    compiled!(const D: fn(&[u8]) -> Result<GmshMesh<D>, GmshError> = read_bytes)(bytes)
 }
 
-fn read_bytes<T: Real, const D: usize>(bytes: &[u8]) -> Result<GmshMesh<T, D>, GmshError> {
+fn read_bytes<const D: usize>(bytes: &[u8]) -> Result<GmshMesh<D>, GmshError> {
     assemble::assemble(&read_contents(bytes, Wanted::Everything)?)
 }
 

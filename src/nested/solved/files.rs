@@ -7,15 +7,15 @@ use crate::error::{Error, write_error};
 use crate::instances::compiled;
 use crate::paraview::VtuFile;
 use crate::problem::DataOnMesh;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// Adds to a file of fields.
 type Complete<'c, const D: usize> = &'c dyn for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>;
 
-impl<T: Real, const D: usize> Solved<'_, T, D> {
+impl<const D: usize> Solved<'_, D> {
     /// The value of this solution at a point of a cell of a coarser mesh of the same hierarchy, which is at
     /// this position; the cell of this mesh is found through the cells between.
-    fn value_within(&self, position: usize, cell: usize, x: &Point<f64, D>) -> f64 {
+    fn value_within(&self, position: usize, cell: usize, x: &Point<D>) -> f64 {
         let Some((hierarchy, own)) = self.hierarchy else { return f64::NAN };
         let child = |parent: usize, position: usize| {
             let least = |child: usize| {
@@ -36,7 +36,7 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     pub fn write_vtu(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         self.write_vtu_with(path, |file| file)
     }
-    /// Writes a `.vtu` file to which `complete` adds fields or sets the scalar, and its folder if there is
+    /// Writes a `.vtu` file to which `complete` adds fields or sets their number of bits, and its folder if there is
     /// none.
     ///
     /// The solution `u` is written in its degree; above two it is interpolated in degree two. Point data:
@@ -64,14 +64,13 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     pub(crate) fn write_vtu_against(
         &self,
         path: &Path,
-        reference: Option<&Solved<'_, T, D>>,
+        reference: Option<&Solved<'_, D>>,
         complete: impl for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>,
     ) -> Result<(), Error> {
-        compiled!(
-            T, D: for<'s, 'x, 'p, 'r, 'y, 'c> fn(
-                &'s Solved<'x, T, D>,
+        compiled!(const D: for<'s, 'x, 'p, 'r, 'y, 'c> fn(
+                &'s Solved<'x, D>,
                 &'p Path,
-                Option<&'r Solved<'y, T, D>>,
+                Option<&'r Solved<'y, D>>,
                 Complete<'c, D>,
             ) -> Result<(), Error>
                 = |solved, path, reference, complete| {
@@ -82,7 +81,7 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     fn write_fields(
         &self,
         path: &Path,
-        reference: Option<&Solved<'_, T, D>>,
+        reference: Option<&Solved<'_, D>>,
         complete: Complete<'_, D>,
     ) -> Result<(), Error> {
         let Some(fields) = self.fields() else {

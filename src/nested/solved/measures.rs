@@ -8,12 +8,12 @@ use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair, True
 use crate::measure::{ContactErrors, Errors, Penetration, Rounding, contact_difference};
 use crate::parallel::once;
 use crate::problem::Exact;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
-impl<T: Real, const D: usize> Solved<'_, T, D> {
+impl<const D: usize> Solved<'_, D> {
     /// The value at a point, in the first cell that contains the point; none outside the mesh. The
     /// search takes a time proportional to the number of cells.
-    pub fn value_at(&self, point: &Point<f64, D>) -> Option<f64> {
+    pub fn value_at(&self, point: &Point<D>) -> Option<f64> {
         self.discretisation.value_at(self.values(), point)
     }
     /// Errors against the exact solution of the problem; none if the problem has no exact solution
@@ -97,7 +97,10 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// [`Error::DataNotFinite`].
     pub fn penetration(&self) -> Result<Option<Penetration>, Error> {
         match self.has_iterate {
-            true => self.discretisation.penetration(self.values()),
+            true => {
+                let values = (self.values(), self.solution.precision);
+                self.discretisation.penetration_of(values, &|_| true)
+            }
             false => Ok(None),
         }
     }
@@ -160,6 +163,6 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// Rounding errors in the figures of the solution; none without an iterate.
     pub fn rounding(&self) -> Option<Rounding> {
         let of = (self.mesh().n_cells(), self.has_iterate.then(|| self.energy_norm())?);
-        self.discretisation.rounding(&self.inequality, self.values(), of)
+        self.discretisation.rounding(&self.inequality, &self.solution, of)
     }
 }

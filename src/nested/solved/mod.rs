@@ -14,24 +14,23 @@ use crate::assemble::Discretisation;
 use crate::error::Error;
 use crate::error_bound::{ErrorBound, PrimalDualPair};
 use crate::inequality::{
-    Certificate, Outcome, Solution, certify_with_jump_multipliers, count_active, energy_norm,
+    Certificate, Outcome, Solution, certify_solution, count_active, energy_norm,
 };
 use crate::measure::Fields;
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
 ///
 /// Some outcomes have no iterate ([`Solved::has_iterate`]): then there are no errors, energies and
 /// fields, and the certificate is [`Certificate::INVALID`].
-pub struct Solved<'a, T: Real, const D: usize> {
-    discretisation: Discretisation<'a, T, D>,
-    inequality: Inequality<T>,
-    solution: Solution<T>,
+pub struct Solved<'a, const D: usize> {
+    discretisation: Discretisation<'a, D>,
+    inequality: Inequality<f64>,
+    solution: Solution<f64>,
     certificate: Certificate,
     has_iterate: bool,
     /// The hierarchy that has the mesh, and its position there.
-    hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
+    hierarchy: Option<(&'a Hierarchy<D>, usize)>,
     /// The bound with the pair that gives it and the seconds of both, once computed.
     bound: OnceLock<(PrimalDualPair<D>, ErrorBound, f64)>,
     /// Seconds for the mesh and all coarser ones, if it is one of several.
@@ -47,7 +46,7 @@ pub struct Solved<'a, T: Real, const D: usize> {
     pub(crate) warnings: Vec<String>,
 }
 
-impl<T: Real, const D: usize> fmt::Debug for Solved<'_, T, D> {
+impl<const D: usize> fmt::Debug for Solved<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Solved")
             .field("unknowns", &self.values().len())
@@ -57,28 +56,28 @@ impl<T: Real, const D: usize> fmt::Debug for Solved<'_, T, D> {
     }
 }
 
-impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
+impl<'a, const D: usize> Solved<'a, D> {
     /// A solution with its certificate.
     pub(super) fn new(
-        discretisation: Discretisation<'a, T, D>,
-        inequality: Inequality<T>,
-        mut solution: Solution<T>,
-        hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
+        discretisation: Discretisation<'a, D>,
+        inequality: Inequality<f64>,
+        mut solution: Solution<f64>,
+        hierarchy: Option<(&'a Hierarchy<D>, usize)>,
     ) -> Self {
-        let u = &solution.values;
         let has_iterate =
-            solution.outcome.has_iterate() && u.iter().all(|v| v.to_f64().is_finite());
+            solution.outcome.has_iterate() && solution.values.iter().all(|v| v.is_finite());
         let certificate = match has_iterate {
-            true => certify_with_jump_multipliers(&inequality, u, &solution.jump_multipliers)
-                .with_algebraic_bound(solution.algebraic_bound),
+            true => certify_solution(&inequality, &solution),
             false => Certificate::INVALID,
         };
-        if solution.outcome == Outcome::Converged && !certificate.is_within_limits::<T>() {
+        if solution.outcome == Outcome::Converged
+            && !certificate.is_within_limits(solution.precision)
+        {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
         }
         if has_iterate {
-            let norm = energy_norm(&inequality, &solution.values, &solution.jump_multipliers);
+            let norm = energy_norm(&inequality, &solution);
             solution.dual_residual = certificate.largest() * norm;
         }
         Self {
@@ -101,7 +100,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
 
     /// The energy norm to which certificates are relative.
     pub(super) fn energy_norm(&self) -> f64 {
-        energy_norm(&self.inequality, self.values(), &self.solution.jump_multipliers)
+        energy_norm(&self.inequality, &self.solution)
     }
     /// How the solve ended.
     pub fn outcome(&self) -> Outcome {
@@ -116,7 +115,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         self.has_iterate
     }
     /// The unknowns.
-    pub fn values(&self) -> &[T] {
+    pub fn values(&self) -> &[f64] {
         &self.solution.values
     }
     /// Which bound, if any, is active at each unknown.
@@ -176,19 +175,19 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         self.certificate
     }
     /// What the solver returned: values, contact states, numbers of iterations.
-    pub fn solution(&self) -> &Solution<T> {
+    pub fn solution(&self) -> &Solution<f64> {
         &self.solution
     }
     /// The algebraic inequality.
-    pub fn inequality(&self) -> &Inequality<T> {
+    pub fn inequality(&self) -> &Inequality<f64> {
         &self.inequality
     }
     /// The discretisation: scheme, problem and mesh joined.
-    pub fn discretisation(&self) -> &Discretisation<'a, T, D> {
+    pub fn discretisation(&self) -> &Discretisation<'a, D> {
         &self.discretisation
     }
     /// The mesh.
-    pub fn mesh(&self) -> &'a Mesh<T, D> {
+    pub fn mesh(&self) -> &'a Mesh<D> {
         self.discretisation.mesh()
     }
     /// Warnings by type, as text: a penalty below its proven bound, say.

@@ -91,7 +91,7 @@ type Done = Result<(), ProblemFileError>;
 
 impl<const D: usize> Checks<'_, '_, D> {
     /// Holds names and values against a mesh.
-    pub fn run(&self, mesh: &Mesh<f64, D>) -> Done {
+    pub fn run(&self, mesh: &Mesh<D>) -> Done {
         let groups: Vec<&[String]> = mesh.boundary_groups().iter().map(|g| &g.names[..]).collect();
         let regions: Vec<&[String]> = mesh.regions().iter().map(|names| &names[..]).collect();
         for entry in self.entries {
@@ -124,7 +124,7 @@ impl<const D: usize> Checks<'_, '_, D> {
 
     /// Holds the gradient of the exact solution against one-sided difference quotients of its value at the
     /// barycentres of cells, so that a kink there is no fault.
-    fn check_gradient(&self, mesh: &Mesh<f64, D>) -> Done {
+    fn check_gradient(&self, mesh: &Mesh<D>) -> Done {
         let Some(exact) = &self.problem.exact else { return Ok(()) };
         for cell in 0..mesh.n_cells() {
             let x = mesh.barycentre(cell);
@@ -155,8 +155,8 @@ impl<const D: usize> Checks<'_, '_, D> {
         Ok(())
     }
 
-    fn check_values(&self, entry: &Entry<D>, mesh: &Mesh<f64, D>) -> Done {
-        let check = |x: &Point<f64, D>, normal: &Point<f64, D>| {
+    fn check_values(&self, entry: &Entry<D>, mesh: &Mesh<D>) -> Done {
+        let check = |x: &Point<D>, normal: &Point<D>| {
             let value = entry.value.at(x, normal);
             if entry.allowed.holds(value) {
                 return Ok(());

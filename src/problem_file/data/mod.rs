@@ -231,7 +231,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     }
 
     /// Gives gaps that depend on the normal those of the facets of their groups.
-    fn put_normals(&mut self, mesh: &Mesh<f64, D>) {
+    fn put_normals(&mut self, mesh: &Mesh<D>) {
         for ((group, datum), formula) in self.problem.named.gap.iter_mut().zip(&self.gaps) {
             let groups = mesh.boundary_groups();
             let is_meant = |f: &&BoundaryFacet| groups[usize::from(f.group)].names.contains(group);
@@ -340,15 +340,14 @@ pub(super) fn problem<'t, const D: usize>(
     }
     let geometry = match place {
         Place::File { path, bytes, offset, .. } => {
-            let read = gmsh::parse::<f64, D>(bytes);
+            let read = gmsh::parse::<D>(bytes);
             let read = read.map_err(|e| source.mesh_error(*offset, path, e))?;
             let groups = read.mesh.boundary_groups().iter().map(|group| group.names.clone());
             builder.complete(&groups.collect::<Vec<_>>());
             Geometry::File { path: path.clone(), bytes: bytes.clone(), read: Box::new(read) }
         }
         Place::Box { corners } => {
-            let [lower, upper] =
-                [0, 1].map(|k| Point::<f64, D>::from_fn(|axis, _| corners[k][axis]));
+            let [lower, upper] = [0, 1].map(|k| Point::<D>::from_fn(|axis, _| corners[k][axis]));
             builder
                 .complete(&SIDES[..2 * D].iter().map(|&s| vec![s.to_owned()]).collect::<Vec<_>>());
             let mut domain = BoxDomain::dirichlet(lower, upper);

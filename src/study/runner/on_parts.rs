@@ -40,7 +40,7 @@ struct PartsOfLevels<const D: usize> {
     hierarchy: PartHierarchy<D>,
 }
 
-impl<const D: usize> Study<'_, f64, D> {
+impl<const D: usize> Study<'_, D> {
     /// Runs every scheme on every level over the parts of a mesh, of which this process has one. All processes
     /// run the same study, the first with journal and observer; all get the report.
     ///
@@ -118,7 +118,7 @@ impl<const D: usize> Study<'_, f64, D> {
             let own = points.look(&self.scene.problem, &part.mesh);
             let seen = agree(own, &*process.exchange)?;
             let size = process.exchange.largest(&[seen.size()])?[0];
-            let own = seen.crossing::<f64>(size);
+            let own = seen.crossing(size);
             let own = own.map_or(Ok(()), |found| Err(found.error().in_whole_mesh(&part.cells)));
             agree(own, &*process.exchange).map_err(|error| match error {
                 ExchangeError::Failed { part, message, .. } => {
@@ -144,8 +144,8 @@ impl<const D: usize> Study<'_, f64, D> {
     /// The row of a run that failed, in all parts.
     fn row_of_failure(
         &self,
-        (entry, problem): (&Entry<'_, f64, D>, &Problem<D>),
-        (level, part): (usize, &Part<f64, D>),
+        (entry, problem): (&Entry<'_, D>, &Problem<D>),
+        (level, part): (usize, &Part<D>),
         error: &ExchangeError,
         (process, checks): (&Process, PartChecks),
     ) -> Row {
@@ -236,7 +236,7 @@ impl<const D: usize> Study<'_, f64, D> {
     /// The row of a solution.
     fn row_on_parts(
         &self,
-        (entry, problem): (&Entry<'_, f64, D>, &Problem<D>),
+        (entry, problem): (&Entry<'_, D>, &Problem<D>),
         level: usize,
         solved: &DistributedSolved<'_, D>,
         (process, verify): (&Process, bool),
@@ -311,7 +311,7 @@ impl<const D: usize> Study<'_, f64, D> {
     #[cfg(feature = "report")]
     fn write_on_parts(
         &self,
-        entry: &Entry<'_, f64, D>,
+        entry: &Entry<'_, D>,
         problem: &Problem<D>,
         level: usize,
         solved: &DistributedSolved<'_, D>,

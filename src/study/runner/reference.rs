@@ -3,10 +3,9 @@
 use super::{Progress, Study, with_set};
 use crate::nested::{Hierarchy, NestedIteration};
 use crate::problem::Problem;
-use crate::real::Real;
 use crate::study::reference::{FoundReference, Reference};
 
-impl<T: Real, const D: usize> Study<'_, T, D> {
+impl<const D: usize> Study<'_, D> {
     /// The problem with the constraint set of the reference.
     pub(super) fn reference_problem(&self) -> Option<Problem<D>> {
         let reference = self.reference.as_ref()?;
@@ -17,8 +16,8 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     pub(super) fn find_reference<'h>(
         &'h self,
         problem: &'h Option<Problem<D>>,
-        hierarchies: &'h [Hierarchy<T, D>],
-    ) -> Option<FoundReference<'h, T, D>> {
+        hierarchies: &'h [Hierarchy<D>],
+    ) -> Option<FoundReference<'h, D>> {
         let (reference, hierarchy) = (self.reference.as_ref()?, hierarchies.first()?);
         Some(self.solve_reference(reference, problem.as_ref()?, hierarchy))
     }
@@ -26,10 +25,10 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// The reference and its name in rows. Where it cannot be had, rows have no errors and say why.
     fn solve_reference<'h>(
         &'h self,
-        reference: &Reference<'_, T, D>,
+        reference: &Reference<'_, D>,
         problem: &'h Problem<D>,
-        hierarchy: &'h Hierarchy<T, D>,
-    ) -> FoundReference<'h, T, D> {
+        hierarchy: &'h Hierarchy<D>,
+    ) -> FoundReference<'h, D> {
         let name = reference.name(self.scene.problem.constraint_set());
         (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
         let mut nested = NestedIteration::new(problem, hierarchy)

@@ -16,24 +16,24 @@ type Piece = Vec<f64>;
 
 /// The slow assembler: functions are lists of pieces, forms are integrated point by point.
 struct Slow<'a, const D: usize> {
-    mesh: &'a Mesh<f64, D>,
+    mesh: &'a Mesh<D>,
     alpha: &'a dyn Fn(usize) -> f64,
     reaction: f64,
 }
 
 impl<const D: usize> Slow<'_, D> {
-    fn corner(&self, c: usize, k: usize) -> Point<f64, D> {
+    fn corner(&self, c: usize, k: usize) -> Point<D> {
         self.mesh.vertices()[self.mesh.cell(c)[k] as usize]
     }
     /// The gradient of a piece from a linear system in its values.
-    fn gradient(&self, c: usize, piece: &Piece) -> Point<f64, D> {
+    fn gradient(&self, c: usize, piece: &Piece) -> Point<D> {
         let edges =
             nalgebra::DMatrix::from_fn(D, D, |r, k| (self.corner(c, r + 1) - self.corner(c, 0))[k]);
         let rises = nalgebra::DVector::from_fn(D, |r, _| piece[r + 1] - piece[0]);
         let g = edges.lu().solve(&rises).unwrap();
         Point::from_fn(|k, _| g[k])
     }
-    fn value(&self, c: usize, piece: &Piece, x: &Point<f64, D>) -> f64 {
+    fn value(&self, c: usize, piece: &Piece, x: &Point<D>) -> f64 {
         piece[0] + self.gradient(c, piece).dot(&(x - self.corner(c, 0)))
     }
     fn volume(&self, c: usize) -> f64 {
@@ -41,7 +41,7 @@ impl<const D: usize> Slow<'_, D> {
             nalgebra::DMatrix::from_fn(D, D, |r, k| (self.corner(c, r + 1) - self.corner(c, 0))[k]);
         edges.determinant().abs() / (1..=D).map(|k| k as f64).product::<f64>()
     }
-    fn measure(points: &[Point<f64, D>]) -> f64 {
+    fn measure(points: &[Point<D>]) -> f64 {
         match D {
             1 => 1.0,
             2 => (points[1] - points[0]).norm(),
@@ -51,20 +51,20 @@ impl<const D: usize> Slow<'_, D> {
             }
         }
     }
-    fn facet_points(&self, c: usize, local: usize) -> Vec<Point<f64, D>> {
+    fn facet_points(&self, c: usize, local: usize) -> Vec<Point<D>> {
         (0..=D).filter(|&k| k != local).map(|k| self.corner(c, k)).collect()
     }
     fn surface(&self, c: usize) -> f64 {
         (0..=D).map(|k| Self::measure(&self.facet_points(c, k))).sum()
     }
     /// Outward: the part of (facet - opposite corner) orthogonal to the facet.
-    fn normal(&self, c: usize, local: usize) -> Point<f64, D> {
+    fn normal(&self, c: usize, local: usize) -> Point<D> {
         let p = self.facet_points(c, local);
         let mut n = p[0] - self.corner(c, local);
-        let mut basis: Vec<Point<f64, D>> = Vec::new();
+        let mut basis: Vec<Point<D>> = Vec::new();
         for q in &p[1..] {
             let mut t = q - p[0];
-            basis.iter().for_each(|b: &Point<f64, D>| t -= b * b.dot(&t));
+            basis.iter().for_each(|b: &Point<D>| t -= b * b.dot(&t));
             basis.push(t / t.norm());
         }
         basis.iter().for_each(|b| n -= b * b.dot(&n));
@@ -110,7 +110,7 @@ impl<const D: usize> Slow<'_, D> {
                 .flat_map(|p| points.iter().map(move |q| (p - q).norm()))
                 .fold(0.0, f64::max),
         };
-        let jump = |w: &[&Piece], x: &Point<f64, D>| {
+        let jump = |w: &[&Piece], x: &Point<D>| {
             let first = self.value(sides[0].0, w[0], x);
             if sides.len() == 2 { first - self.value(sides[1].0, w[1], x) } else { first }
         };
@@ -121,7 +121,7 @@ impl<const D: usize> Slow<'_, D> {
         };
         let rule = Rule::new(D - 1, 4);
         let at = |b: &[f64; 4]| {
-            points.iter().enumerate().fold(Point::<f64, D>::zeros(), |x, (k, p)| x + p * b[k])
+            points.iter().enumerate().fold(Point::<D>::zeros(), |x, (k, p)| x + p * b[k])
         };
         match form {
             Form::Penalty { sigma, theta } => {
@@ -171,27 +171,25 @@ impl<E, F> Any<E, F> {
     }
 }
 
-impl<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clone> Scheme<f64, D>
-    for Any<E, F>
-{
+impl<const D: usize, E: ReferenceElement<D>, F: FacetForm<D> + Clone> Scheme<D> for Any<E, F> {
     type Element = E;
     type Facet = F;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     fn name(&self) -> &str {
         "any"
     }
-    fn facet(&self, _: &Mesh<f64, D>) -> F {
+    fn facet(&self, _: &Mesh<D>) -> F {
         self.form.clone()
     }
 }
 
-fn alpha_at<const D: usize>(x: &Point<f64, D>) -> f64 {
+fn alpha_at<const D: usize>(x: &Point<D>) -> f64 {
     1.0 + 3.0 * x[0] * x[0]
 }
 
 /// Compares with the dense assembler, entry by entry.
-fn check<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clone>(
-    mesh: &Mesh<f64, D>,
+fn check<const D: usize, E: ReferenceElement<D>, F: FacetForm<D> + Clone>(
+    mesh: &Mesh<D>,
     form: F,
     slow_form: Option<Form>,
     reaction: f64,
@@ -282,8 +280,7 @@ fn mean_basis<const D: usize>(i: usize) -> Piece {
 
 fn check_all<const D: usize>(n: usize) {
     let mut random = Random(3);
-    let mesh =
-        Raw::<D>::jittered(&mixed_box(), n, 0.5, &mut random).shuffled(&mut random).mesh::<f64>();
+    let mesh = Raw::<D>::jittered(&mixed_box(), n, 0.5, &mut random).shuffled(&mut random).mesh();
     let penalty = |rule| InteriorPenalty { symmetry: Symmetry::Symmetric, rule, degree: 1 };
     let over =
         OverPenalty { eta: 0.7, degree: 1, rule: WeightRule::Isotropic, mesh_size: f64::NAN };
@@ -355,7 +352,7 @@ fn dense_oracle_in_three_dimensions() {
 }
 
 /// A function that does not know numbers: of the cell's barycentre and the vertex.
-fn wild<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<f64> {
+fn wild<const D: usize>(mesh: &Mesh<D>) -> Vec<f64> {
     let mut u = Vec::new();
     for c in 0..mesh.n_cells() {
         let b = mesh.barycentre(c);
@@ -377,7 +374,7 @@ fn forms_do_not_depend_on_numbering_or_orientation() {
             .coefficient(alpha_at)
             .source(|x| x[0] * x[0])
             .dirichlet(|x| x.sum());
-        let objective = |mesh: &Mesh<f64, D>, scheme: &dyn AnyScheme<f64, D>| {
+        let objective = |mesh: &Mesh<D>, scheme: &dyn AnyScheme<D>| {
             let inequality = scheme.inequality(&problem, mesh, DataQuadrature::default()).unwrap();
             let u = wild(mesh);
             // the value, and the size of the terms that cancel in it
@@ -385,7 +382,7 @@ fn forms_do_not_depend_on_numbering_or_orientation() {
             let size: f64 = load.iter().zip(&u).map(|(b, u)| (b * u).abs()).sum();
             (inequality.objective(&u), size)
         };
-        let schemes: [&dyn AnyScheme<f64, D>; 3] = [
+        let schemes: [&dyn AnyScheme<D>; 3] = [
             &Sipg::default(),
             &Wopsip::default(),
             &Any::<Broken<P1>, _>::new(InteriorPenalty {
@@ -419,7 +416,7 @@ fn a_form_is_invariant_under_reversing_the_axes() {
     };
     mirrored.vertices.iter_mut().for_each(|x| x[0] = 1.0 - x[0]);
     let problem = Problem::<1>::new();
-    let matrix = |mesh: &Mesh<f64, 1>| {
+    let matrix = |mesh: &Mesh<1>| {
         Discretisation::new(&Sipg::default(), &problem, mesh, DataQuadrature::default())
             .unwrap()
             .matrix()
@@ -431,7 +428,7 @@ fn a_form_is_invariant_under_reversing_the_axes() {
 #[test]
 fn the_same_bits_for_any_number_of_threads() {
     fn check<const D: usize>(n: usize) {
-        let mesh = Raw::<D>::jittered(&mixed_box(), n, 0.3, &mut Random(2)).mesh::<f64>();
+        let mesh = Raw::<D>::jittered(&mixed_box(), n, 0.3, &mut Random(2)).mesh();
         let problem = Problem::<D>::new()
             .coefficient(alpha_at)
             .reaction(1.5)
@@ -440,7 +437,7 @@ fn the_same_bits_for_any_number_of_threads() {
             .neumann(|x, n| x[0] * n[0])
             .obstacle_below(|x| x[0] - 1.0)
             .obstacle_above(|x| x[0] + x[0].cos());
-        let schemes: [&dyn AnyScheme<f64, D>; 5] =
+        let schemes: [&dyn AnyScheme<D>; 5] =
             [&ConformingP1, &ConformingP2, &NonconformingP1, &Sipg::default(), &Wopsip::default()];
         for scheme in schemes {
             let run = |threads| {
@@ -467,13 +464,13 @@ fn the_same_bits_for_any_number_of_threads() {
 /// Data that are not finite in many cells: the message names the same cell for any number of threads.
 #[test]
 fn the_same_error_for_any_number_of_threads() {
-    let mesh = Raw::<2>::jittered(&mixed_box(), 60, 0.3, &mut Random(3)).mesh::<f64>();
-    let nan_beyond = |x: &Point<f64, 2>| if x[0] > 0.2 { f64::NAN } else { 0.0 };
+    let mesh = Raw::<2>::jittered(&mixed_box(), 60, 0.3, &mut Random(3)).mesh();
+    let nan_beyond = |x: &Point<2>| if x[0] > 0.2 { f64::NAN } else { 0.0 };
     let problems = [Problem::new().obstacle_below(nan_beyond), Problem::new().source(nan_beyond)];
     for problem in &problems {
         let error = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let scheme: &dyn AnyScheme<f64, 2> = &Sipg::default();
+            let scheme: &dyn AnyScheme<2> = &Sipg::default();
             let inequality =
                 || scheme.inequality(problem, &mesh, DataQuadrature::default()).map(|_| ());
             pool.install(inequality).unwrap_err().to_string()
@@ -485,8 +482,8 @@ fn the_same_error_for_any_number_of_threads() {
 
 #[test]
 fn refilling_a_pattern_gives_the_same_matrix() {
-    fn check<S: Scheme<f64, 2>>(scheme: &S) {
-        let mesh = Raw::<2>::jittered(&mixed_box(), 7, 0.3, &mut Random(4)).mesh::<f64>();
+    fn check<S: Scheme<2>>(scheme: &S) {
+        let mesh = Raw::<2>::jittered(&mixed_box(), 7, 0.3, &mut Random(4)).mesh();
         let problem = Problem::<2>::new();
         let discretise =
             || Discretisation::new(scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
@@ -511,11 +508,11 @@ fn continuous_functions_have_no_jump_and_constants_no_energy() {
     // pure Neumann and contact boundary: the form of a constant vanishes for every scheme
     let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
     let domain = unilateral::mesh::BoxDomain::<2>::new(Point::zeros(), Point::repeat(1.0), sides);
-    let mesh = Raw::<2>::jittered(&domain, 4, 0.4, &mut Random(9)).mesh::<f64>();
+    let mesh = Raw::<2>::jittered(&domain, 4, 0.4, &mut Random(9)).mesh();
     let problem = Problem::<2>::new();
     let linear: Vec<f64> =
         mesh.cells().iter().map(|&v| 2.0 * mesh.vertices()[v as usize][0] - 1.0).collect();
-    let schemes: [&dyn AnyScheme<f64, 2>; 2] = [&Sipg::default(), &Wopsip::default()];
+    let schemes: [&dyn AnyScheme<2>; 2] = [&Sipg::default(), &Wopsip::default()];
     for scheme in schemes {
         let inequality = scheme.inequality(&problem, &mesh, DataQuadrature::default()).unwrap();
         let one = vec![1.0; inequality.size()];
@@ -532,7 +529,7 @@ fn continuous_functions_have_no_jump_and_constants_no_energy() {
 
 #[test]
 fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [4, 4]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [4, 4]).unwrap();
     let problem = Problem::<2>::new();
     let below_bound = |sigma| {
         let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() };
@@ -557,8 +554,8 @@ fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
         height: 1.0,
     };
     let view = FacetView::new(&mesh, (0, 0), 1.0, side, Some(side));
-    assert_eq!(proven_bound::<f64, 2>(1, &view), 0.5 * 2.0 * 6.0);
+    assert_eq!(proven_bound::<2>(1, &view), 0.5 * 2.0 * 6.0);
     let varying = unilateral::facet::Side { least_coefficient: 0.5, ..side };
     let view = FacetView::new(&mesh, (0, 0), 1.0, side, Some(varying));
-    assert_eq!(proven_bound::<f64, 2>(1, &view), 0.5 * (2.0 * 2.0 / 0.5) * 6.0);
+    assert_eq!(proven_bound::<2>(1, &view), 0.5 * (2.0 * 2.0 / 0.5) * 6.0);
 }

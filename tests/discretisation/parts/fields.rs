@@ -13,9 +13,9 @@ type OwnFields = (Vec<(u64, f64)>, Vec<((u64, usize), f64)>);
 
 /// Multipliers and pressures beside a cut are those of one part: the residuals of ghosts are those of their owners.
 fn holds(scene: &Scene<2>) {
-    let mesh: Mesh<f64, 2> = scene.domain.mesh(4).unwrap();
+    let mesh: Mesh<2> = scene.domain.mesh(4).unwrap();
     for name in ["p1", "sipg", "nipg", "br2", "wopsip"] {
-        let scheme = name.parse::<NamedScheme>().unwrap().make::<f64, 2>();
+        let scheme = name.parse::<NamedScheme>().unwrap().make::<2>();
         let of_parts = |parts: usize| {
             in_process(parts, |number, exchange| -> OwnFields {
                 let process = process(number, exchange);
@@ -71,7 +71,7 @@ fn multipliers_beside_a_cut_are_those_of_the_whole() {
 #[test]
 fn files_of_parts_have_the_arrays_of_their_list() {
     let scene = scenes::signorini_2d();
-    let mesh: Mesh<f64, 2> = scene.domain.mesh(4).unwrap();
+    let mesh: Mesh<2> = scene.domain.mesh(4).unwrap();
     let folder = std::env::temp_dir().join(format!("unilateral-parts-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     in_process(3, |number, exchange| {

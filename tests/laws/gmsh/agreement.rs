@@ -14,7 +14,7 @@ fn folder() -> PathBuf {
     folder.expect("UNILATERAL_MESHES names the folder of meshes").into()
 }
 
-fn boundary_length(mesh: &Mesh<f64, 2>) -> f64 {
+fn boundary_length(mesh: &Mesh<2>) -> f64 {
     let facet_length = |cell: u32, local: u8| {
         let v: Vec<u32> = mesh.facet_vertices(cell as usize, local as usize).collect();
         (mesh.vertices()[v[0] as usize] - mesh.vertices()[v[1] as usize]).norm()
@@ -108,7 +108,7 @@ mod needs_meshes {
     fn the_disc_is_the_same_in_every_version() {
         let folder = folder();
         let read = |name: &str| {
-            gmsh::read::<f64, 2>(&folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")).mesh
+            gmsh::read::<2>(&folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")).mesh
         };
         let discs = [
             ("disc.msh", read("disc.msh")),
@@ -198,7 +198,7 @@ mod needs_meshes_and_time {
                 })
                 .collect();
             let (new, _) = time(&|| {
-                Mesh::<f64, 2>::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &facets)
+                Mesh::<2>::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &facets)
                     .unwrap()
                     .n_cells()
             });

@@ -20,9 +20,9 @@ impl Stream {
 fn read_all(bytes: &[u8]) -> Vec<Result<usize, GmshError>> {
     vec![
         gmsh::dimension(bytes),
-        gmsh::parse::<f64, 1>(bytes).map(|r| r.mesh.n_cells()),
-        gmsh::parse::<f64, 2>(bytes).map(|r| r.mesh.n_cells()),
-        gmsh::parse::<f64, 3>(bytes).map(|r| r.mesh.n_cells()),
+        gmsh::parse::<1>(bytes).map(|r| r.mesh.n_cells()),
+        gmsh::parse::<2>(bytes).map(|r| r.mesh.n_cells()),
+        gmsh::parse::<3>(bytes).map(|r| r.mesh.n_cells()),
     ]
 }
 

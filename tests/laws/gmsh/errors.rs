@@ -7,7 +7,7 @@ use unilateral::mesh::gmsh;
 use unilateral::mesh::gmsh::{FilePosition, GmshError};
 
 pub fn fail<const D: usize>(bytes: &[u8]) -> GmshError {
-    match gmsh::parse::<f64, D>(bytes) {
+    match gmsh::parse::<D>(bytes) {
         Ok(_) => panic!("this must not read"),
         Err(error) => error,
     }
@@ -95,7 +95,7 @@ fn not_flat() {
         let error = fail::<2>(lifted(z).as_bytes());
         assert!(matches!(error, GmshError::NotFlat { node: 5, .. }), "{z}: {error}");
     }
-    assert_eq!(gmsh::parse::<f64, 2>(lifted("1e-10").as_bytes()).unwrap().mesh.n_cells(), 4);
+    assert_eq!(gmsh::parse::<2>(lifted("1e-10").as_bytes()).unwrap().mesh.n_cells(), 4);
     let mut sample = interval();
     sample.nodes[2].1[1] = 1.0;
     let error = fail::<1>(&sample.four(Form::Little));
@@ -200,7 +200,7 @@ fn no_physical_groups() {
 #[test]
 fn a_group_of_undecided_part() {
     let undecided = |text: &str| {
-        let read = gmsh::parse::<f64, 2>(text.as_bytes()).unwrap();
+        let read = gmsh::parse::<2>(text.as_bytes()).unwrap();
         read.mesh.check_boundary_parts().unwrap_err()
     };
     let error = undecided(&change(TWO, "1 2 \"neumann\"", "1 2 \"outer wall\"").0);

@@ -8,7 +8,7 @@ use unilateral::mesh::gmsh::{FilePosition, GmshError};
 
 #[test]
 fn unreadable() {
-    let error = gmsh::read::<f64, 2>(Path::new("no/such/file.msh")).unwrap_err();
+    let error = gmsh::read::<2>(Path::new("no/such/file.msh")).unwrap_err();
     assert!(matches!(error, GmshError::Unreadable { .. }));
     says(&error, &["no/such/file.msh", "No such file"]);
 }

@@ -30,21 +30,21 @@ impl<const SYMMETRIC: bool> Form<SYMMETRIC> {
     const RIGHT: Self = Self { flux: 1.0, mirrored: 1.0, share: 1.5, lean: 0.0, power: 0 };
 }
 
-impl<T: Real, const D: usize, const SYMMETRIC: bool> FacetForm<T, D> for Form<SYMMETRIC> {
+impl<const D: usize, const SYMMETRIC: bool> FacetForm<D> for Form<SYMMETRIC> {
     fn uses_flux(&self) -> bool {
         true
     }
     fn is_symmetric(&self) -> bool {
         SYMMETRIC
     }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         let here_is_larger = facet.there.as_ref().is_some_and(|t| facet.here.volume > t.volume);
         let lean = if here_is_larger { 1.0 + self.lean } else { 1.0 };
-        let power = facet.diameter().to_f64().powi(self.power);
-        T::lit(self.share * lean * power) * proven_bound::<T, D>(1, facet)
+        let power = facet.diameter().powi(self.power);
+        (self.share * lean * power) * proven_bound::<D>(1, facet)
     }
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
-        let [flux, mirrored] = [self.flux, self.mirrored].map(T::lit);
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
+        let [flux, mirrored] = [self.flux, self.mirrored];
         penalty * u.jump * v.jump - flux * u.flux * v.jump - mirrored * v.flux * u.jump
     }
 }
@@ -55,10 +55,10 @@ struct Broken1<E, const SYMMETRIC: bool, const CONSISTENT: bool> {
     element: PhantomData<E>,
 }
 
-impl<T: Real, const D: usize, E, const SYMMETRIC: bool, const CONSISTENT: bool> Scheme<T, D>
+impl<const D: usize, E, const SYMMETRIC: bool, const CONSISTENT: bool> Scheme<D>
     for Broken1<E, SYMMETRIC, CONSISTENT>
 where
-    E: ReferenceElement<T, D>,
+    E: ReferenceElement<D>,
 {
     type Element = Broken<E>;
     type Facet = Form<SYMMETRIC>;
@@ -67,7 +67,7 @@ where
     fn name(&self) -> &str {
         "broken"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> Form<SYMMETRIC> {
+    fn facet(&self, _: &Mesh<D>) -> Form<SYMMETRIC> {
         self.form
     }
 }
@@ -94,19 +94,16 @@ fn caught<R1, R2>(law: Law, alone: Result<R1, KitError>, all: Result<R2, KitErro
 #[test]
 fn the_same_form_without_a_mistake_passes() {
     let scheme = symmetric(Form::RIGHT);
-    let report = check_scheme::<f64, 2, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
-    let sipg = check_scheme::<f64, 2, _>(&Sipg::default()).unwrap_or_else(|e| panic!("{e}"));
+    let report = check_scheme::<2, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+    let sipg = check_scheme::<2, _>(&Sipg::default()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(report.coercivity, sipg.coercivity);
     assert_eq!(report.orders, sipg.orders);
 }
 
 fn wrong_sign<const D: usize>() {
     let scheme = symmetric(Form { flux: -1.0, mirrored: -1.0, ..Form::RIGHT });
-    let error = caught(
-        Law::Consistency,
-        check_consistency::<f64, D, _>(&scheme),
-        check_scheme::<f64, D, _>(&scheme),
-    );
+    let error =
+        caught(Law::Consistency, check_consistency::<D, _>(&scheme), check_scheme::<D, _>(&scheme));
     let KitError::NotConsistent { error, tolerance, .. } = error else { panic!("{error}") };
     assert!(error > 1e6 * tolerance, "{error} against {tolerance}");
 }
@@ -122,7 +119,7 @@ fn a_wrong_sign_of_the_flux_is_not_consistent() {
 fn a_wrong_factor_of_the_flux_is_not_consistent() {
     let scheme = symmetric(Form { flux: 1.001, mirrored: 1.001, ..Form::RIGHT });
     let [alone, all] =
-        [check_consistency::<f64, 2, _>(&scheme).err(), check_scheme::<f64, 2, _>(&scheme).err()];
+        [check_consistency::<2, _>(&scheme).err(), check_scheme::<2, _>(&scheme).err()];
     for error in [alone, all] {
         assert!(matches!(error, Some(KitError::NotConsistent { .. })), "{error:?}");
     }
@@ -130,11 +127,8 @@ fn a_wrong_factor_of_the_flux_is_not_consistent() {
 
 fn lopsided<const D: usize>() {
     let scheme = symmetric(Form { mirrored: 0.0, ..Form::RIGHT });
-    let error = caught(
-        Law::Symmetry,
-        check_symmetry::<f64, D, _>(&scheme),
-        check_scheme::<f64, D, _>(&scheme),
-    );
+    let error =
+        caught(Law::Symmetry, check_symmetry::<D, _>(&scheme), check_scheme::<D, _>(&scheme));
     let KitError::NotSymmetric { row, column, entry, mirrored, .. } = error else {
         panic!("{error}")
     };
@@ -151,21 +145,15 @@ fn an_incomplete_form_is_not_symmetric() {
 #[test]
 fn a_form_that_hides_its_symmetry_is_told() {
     let scheme = NotSymmetric { form: Form::RIGHT, element: PhantomData };
-    let error = caught(
-        Law::Symmetry,
-        check_symmetry::<f32, 2, _>(&scheme),
-        check_scheme::<f32, 2, _>(&scheme),
-    );
+    let error =
+        caught(Law::Symmetry, check_symmetry::<2, _>(&scheme), check_scheme::<2, _>(&scheme));
     assert!(matches!(error, KitError::SymmetricAfterAll { .. }), "{error}");
 }
 
 fn leaning<const D: usize>() {
     let scheme = symmetric(Form { lean: 0.01, ..Form::RIGHT });
-    let error = caught(
-        Law::Invariance,
-        check_invariance::<f64, D, _>(&scheme),
-        check_scheme::<f64, D, _>(&scheme),
-    );
+    let error =
+        caught(Law::Invariance, check_invariance::<D, _>(&scheme), check_scheme::<D, _>(&scheme));
     let KitError::EntryDependsOnNumbering { before, after, .. } = error else { panic!("{error}") };
     assert!((before - after).abs() > 1e-3 * before.abs(), "{before} and {after}");
 }
@@ -179,11 +167,8 @@ fn a_penalty_that_depends_on_orientation_is_not_invariant() {
 
 fn too_weak<const D: usize>(share: f64) {
     let scheme = symmetric(Form { share, ..Form::RIGHT });
-    let error = caught(
-        Law::Coercivity,
-        check_coercivity::<f64, D, _>(&scheme),
-        check_scheme::<f64, D, _>(&scheme),
-    );
+    let error =
+        caught(Law::Coercivity, check_coercivity::<D, _>(&scheme), check_scheme::<D, _>(&scheme));
     let KitError::NotCoercive { not_positive, unknowns, smallest, .. } = error else {
         panic!("{error}")
     };
@@ -201,11 +186,8 @@ fn a_penalty_below_the_threshold_is_not_coercive() {
 #[test]
 fn a_consistent_form_that_says_otherwise_is_told() {
     let scheme = NotConsistent { form: Form::RIGHT, element: PhantomData };
-    let error = caught(
-        Law::Consistency,
-        check_consistency::<f64, 2, _>(&scheme),
-        check_scheme::<f64, 2, _>(&scheme),
-    );
+    let error =
+        caught(Law::Consistency, check_consistency::<2, _>(&scheme), check_scheme::<2, _>(&scheme));
     assert!(matches!(error, KitError::ConsistentAfterAll { .. }), "{error}");
 }
 
@@ -214,8 +196,7 @@ fn a_consistent_form_that_says_otherwise_is_told() {
 fn a_penalty_alone_misses_the_order() {
     let form = Form { flux: 0.0, mirrored: 0.0, ..Form::RIGHT };
     let scheme = NotConsistent { form, element: PhantomData };
-    let error =
-        caught(Law::Orders, check_orders::<f64, 2, _>(&scheme), check_scheme::<f64, 2, _>(&scheme));
+    let error = caught(Law::Orders, check_orders::<2, _>(&scheme), check_scheme::<2, _>(&scheme));
     let KitError::OrderMissed { norm, measured, expected, .. } = error else { panic!("{error}") };
     assert!(norm == "H1" && measured < 0.5 && expected == 1.0, "{norm}: {measured}");
 }
@@ -225,7 +206,7 @@ fn a_penalty_alone_misses_the_order() {
 fn an_over_penalty_alone_does_not() {
     let form = Form { flux: 0.0, mirrored: 0.0, power: -2, ..Form::RIGHT };
     let scheme = NotConsistent { form, element: PhantomData };
-    let orders = check_orders::<f64, 2, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+    let orders = check_orders::<2, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
     assert!(orders.h1 > 0.8, "{orders:?}");
 }
 
@@ -240,23 +221,23 @@ const COUNT: usize = 3;
 const DEGREE: usize = 4;
 const ENTITY: usize = 5;
 
-impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for Wrong<MISTAKE> {
+impl<const D: usize, const MISTAKE: usize> ReferenceElement<D> for Wrong<MISTAKE> {
     const N: usize = D + 1;
     const DEGREE: usize = if MISTAKE == DEGREE { 2 } else { 1 };
     const BASIS_DEGREE: usize = if MISTAKE == DEGREE || MISTAKE == SUM { 2 } else { 1 };
     const LAYOUT: Layout =
         Layout { vertex: 1, edge: 0, facet: 0, cell: if MISTAKE == COUNT { 1 } else { 0 } };
-    fn values(lambda: &[T], out: &mut [T]) {
-        <P1 as ReferenceElement<T, D>>::values(lambda, out);
+    fn values(lambda: &[f64], out: &mut [f64]) {
+        <P1 as ReferenceElement<D>>::values(lambda, out);
         if MISTAKE == SUM {
             // vanishes at all vertices
             out[0] += lambda[0] * lambda[1];
         }
     }
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        <P1 as ReferenceElement<T, D>>::derivatives(lambda, out);
+    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
+        <P1 as ReferenceElement<D>>::derivatives(lambda, out);
         if MISTAKE == DERIVATIVE {
-            out[1][0] = T::lit(0.125);
+            out[1][0] = 0.125;
         }
     }
     fn node(i: usize) -> Node {
@@ -275,28 +256,24 @@ impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for W
 #[derive(Clone, Copy)]
 struct Understated;
 
-impl<T: Real, const D: usize> ReferenceElement<T, D> for Understated {
-    const N: usize = <P2 as ReferenceElement<T, D>>::N;
+impl<const D: usize> ReferenceElement<D> for Understated {
+    const N: usize = <P2 as ReferenceElement<D>>::N;
     const DEGREE: usize = 1;
-    const LAYOUT: Layout = <P2 as ReferenceElement<T, D>>::LAYOUT;
-    fn values(lambda: &[T], out: &mut [T]) {
-        <P2 as ReferenceElement<T, D>>::values(lambda, out);
+    const LAYOUT: Layout = <P2 as ReferenceElement<D>>::LAYOUT;
+    fn values(lambda: &[f64], out: &mut [f64]) {
+        <P2 as ReferenceElement<D>>::values(lambda, out);
     }
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        <P2 as ReferenceElement<T, D>>::derivatives(lambda, out);
+    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
+        <P2 as ReferenceElement<D>>::derivatives(lambda, out);
     }
     fn node(i: usize) -> Node {
-        <P2 as ReferenceElement<T, D>>::node(i)
+        <P2 as ReferenceElement<D>>::node(i)
     }
 }
 
 fn wrong_element<const D: usize, const MISTAKE: usize>() -> KitError {
     let scheme = Broken1::<Wrong<MISTAKE>, true, true> { form: Form::RIGHT, element: PhantomData };
-    caught(
-        Law::Element,
-        check_element::<f64, D, Wrong<MISTAKE>>(),
-        check_scheme::<f64, D, _>(&scheme),
-    )
+    caught(Law::Element, check_element::<D, Wrong<MISTAKE>>(), check_scheme::<D, _>(&scheme))
 }
 
 fn wrong_elements<const D: usize>() {
@@ -308,10 +285,10 @@ fn wrong_elements<const D: usize>() {
     assert!(matches!(error, KitError::NotPartitionOfUnity { .. }), "{error}");
     let error = wrong_element::<D, DEGREE>();
     assert!(matches!(error, KitError::PolynomialMissing { degree: 2, .. }), "{error}");
-    let error = check_element::<f64, D, Understated>().unwrap_err();
+    let error = check_element::<D, Understated>().unwrap_err();
     assert!(matches!(error, KitError::DegreeExceeded { function: 0, stated: 1, .. }), "{error}");
     // the value at a vertex as a functional of the cell, where the vertex owns the unknown
-    let error = check_element::<f64, D, Wrong<ENTITY>>().unwrap_err();
+    let error = check_element::<D, Wrong<ENTITY>>().unwrap_err();
     assert!(matches!(error, KitError::NodeElsewhere { node: 0, .. }), "{error}");
 }
 
@@ -325,7 +302,7 @@ fn mistakes_of_elements_are_told_apart() {
 /// A broken element owns all its unknowns, so the count is wrong of the element itself only.
 #[test]
 fn a_wrong_count_is_told() {
-    let error = check_element::<f64, 2, Wrong<COUNT>>().unwrap_err();
+    let error = check_element::<2, Wrong<COUNT>>().unwrap_err();
     let KitError::LayoutCount { owned, functions, .. } = error else { panic!("{error}") };
     assert_eq!((owned, functions), (4, 3));
 }

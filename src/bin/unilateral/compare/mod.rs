@@ -27,7 +27,6 @@ use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
 use unilateral::mesh::gmsh;
 use unilateral::problem_file::{self, AnyOwnProblem};
-use unilateral::real::Real;
 use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::orders_table;
@@ -47,10 +46,7 @@ pub fn run(options: &Options) -> Request<bool> {
     let resumes = options.adaptive.is_none() && options.dump.is_none();
     let interrupt = Interrupt::install(resumes, move |report| write_all(&copy, report))?;
     let chosen = Chosen::new(options)?;
-    match &options.precision[..] {
-        "f32" => chosen.run::<f32>(options, &interrupt),
-        _ => chosen.run::<f64>(options, &interrupt),
-    }
+    chosen.run(options, &interrupt)
 }
 
 /// How many processes the launcher of an MPI job has started; one without a launcher.
@@ -71,9 +67,9 @@ fn run_over_processes(_: &Options) -> Request<bool> {
 }
 
 /// The program, with all that its rows depend on and do not say.
-fn program<T: Real>(options: &Options, files: &[(&str, String)]) -> Program {
+fn program(options: &Options, files: &[(&str, String)]) -> Program {
     let threads = rayon::current_num_threads();
-    let mut program = Program::new("compare", T::NAME, threads, options.repeat);
+    let mut program = Program::new("compare", &options.precision, threads, options.repeat);
     for (name, value) in
         [("scale", options.scale), ("contrast", options.contrast), ("load", options.load)]
     {
@@ -197,7 +193,7 @@ impl Chosen {
 
     /// Whether every row converged. Nothing runs and nothing is written before everything has been
     /// checked; afterwards no finished row is lost.
-    fn run<T: Real>(self, options: &Options, interrupt: &Interrupt) -> Request<bool> {
+    fn run(self, options: &Options, interrupt: &Interrupt) -> Request<bool> {
         let Self { scenes, schemes, solvers, mesh, own } = self;
         let names = (&schemes[..], &solvers[..]);
         let mesh = mesh.as_ref();
@@ -205,9 +201,9 @@ impl Chosen {
         let mut runs = Vec::new();
         for scene in scenes {
             runs.extend(match scene {
-                AnyScene::One(of) => prepare::<T, 1>(of.into(), options, names, mesh, &watcher)?,
-                AnyScene::Two(of) => prepare::<T, 2>(of.into(), options, names, mesh, &watcher)?,
-                AnyScene::Three(of) => prepare::<T, 3>(of.into(), options, names, mesh, &watcher)?,
+                AnyScene::One(of) => prepare::<1>(of.into(), options, names, mesh, &watcher)?,
+                AnyScene::Two(of) => prepare::<2>(of.into(), options, names, mesh, &watcher)?,
+                AnyScene::Three(of) => prepare::<3>(of.into(), options, names, mesh, &watcher)?,
             });
         }
         let mut files: Vec<(&str, String)> =
@@ -216,21 +212,17 @@ impl Chosen {
             let mesh = own.mesh_bytes().unwrap_or_default();
             files = vec![("problem", fingerprint(&text)), ("mesh", fingerprint(mesh))];
             runs.extend(match own {
-                AnyOwnProblem::One(of) => {
-                    prepare::<T, 1>(of.into(), options, names, None, &watcher)?
-                }
-                AnyOwnProblem::Two(of) => {
-                    prepare::<T, 2>(of.into(), options, names, None, &watcher)?
-                }
+                AnyOwnProblem::One(of) => prepare::<1>(of.into(), options, names, None, &watcher)?,
+                AnyOwnProblem::Two(of) => prepare::<2>(of.into(), options, names, None, &watcher)?,
                 AnyOwnProblem::Three(of) => {
-                    prepare::<T, 3>(of.into(), options, names, None, &watcher)?
+                    prepare::<3>(of.into(), options, names, None, &watcher)?
                 }
             });
         }
         if runs.is_empty() {
             return Err("no scene fits the mesh; name one to be told why".to_owned());
         }
-        let program = program::<T>(options, &files);
+        let program = program(options, &files);
         let contents: Vec<String> = files.into_iter().map(|(_, fingerprint)| fingerprint).collect();
         let journal = start(options, program.clone(), &runs)?;
         interrupt.watch(journal);

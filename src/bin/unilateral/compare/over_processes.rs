@@ -46,7 +46,7 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
         files = vec![("problem", fingerprint(text)), ("mesh", fingerprint(mesh))];
     }
     check_equal(&format!("{options:?} {files:?}"), process)?;
-    let program = program::<f64>(options, &files)
+    let program = program(options, &files)
         .with_request("processes", process.count())
         .with_request("engine", process.engine.name());
     let new_journal = || {
@@ -148,7 +148,7 @@ impl AllRuns<'_> {
         };
         let warn = |warning| watcher.warn_once(warning);
         let mut study =
-            posed.study::<f64>(&warn)?.levels(levels).observer(|progress| watcher.tell(&progress));
+            posed.study(&warn)?.levels(levels).observer(|progress| watcher.tell(&progress));
         study = schemes.iter().fold(study, Study::named_scheme);
         if !options.no_fields {
             let is_double = options.fields == "f64";

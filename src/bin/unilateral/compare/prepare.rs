@@ -15,7 +15,7 @@ use unilateral::linear::LinearMethod;
 use unilateral::nested::Solved;
 use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
-use unilateral::real::Real;
+use unilateral::real::Precision;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, Row, RowKey, Study, file_name};
 
@@ -33,7 +33,7 @@ pub struct Run<'a> {
 const MOST_CELLS: usize = 5000;
 
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
-pub fn prepare<'a, T: Real, const D: usize>(
+pub fn prepare<'a, const D: usize>(
     posed: Posed<D>,
     options: &'a Options,
     (schemes, solvers): (&[NamedScheme], &[String]),
@@ -53,7 +53,7 @@ pub fn prepare<'a, T: Real, const D: usize>(
         None => LinearMethod::BySize,
     };
     let mut study = posed
-        .study::<T>(&|warning| watcher.warn_once(warning))?
+        .study(&|warning| watcher.warn_once(warning))?
         .levels(levels)
         .repeat(options.repeat)
         .steps(watcher.steps())
@@ -83,8 +83,9 @@ pub fn prepare<'a, T: Real, const D: usize>(
     if let Some(directory) = &options.dump {
         study = study.inequalities_to(directory);
     }
+    let precision = Precision::by_name(&options.precision).unwrap_or_default();
     for name in solvers {
-        study = solver_by_name(name, &SolverOptions::default().linear(linear))
+        study = solver_by_name(name, &SolverOptions::default().linear(linear).precision(precision))
             .map(|solver| study.boxed_solver(solver))
             .ok_or_else(|| format!("there is no solver {name}"))?;
     }
@@ -121,10 +122,10 @@ pub fn place(options: &Options, name: &str) -> String {
 }
 
 /// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.
-fn draw<T: Real, const D: usize>(
+fn draw<const D: usize>(
     name: &str,
     level: usize,
-    solved: &Solved<'_, T, D>,
+    solved: &Solved<'_, D>,
     directory: &Path,
 ) -> Result<(), Error> {
     let Some(fields) = fields_with_bound(solved) else { return Ok(()) };

@@ -49,7 +49,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
             _ => {}
         });
     for path in &options.meshes {
-        let read = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let read = gmsh::read::<3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
         if !options.quiet {
             warn_of(&read.warnings, path, &|warning| warn(&warning));
         }

@@ -1,4 +1,4 @@
-//! Work against precision: what schemes, linear solvers and scalars take to reach a given error.
+//! Work against precision: what schemes, linear solvers and precisions take to reach a given error.
 //!
 //! `cargo run --release -- work-precision --help` lists the options; `--quick` ends within a minute.
 //! Exit codes: 0 if every run converged and nothing changed against the baseline, 1 otherwise, 2 if
@@ -12,17 +12,14 @@ use std::process::Command;
 
 use indicatif::ProgressBar;
 pub use options::Options;
-use unilateral::inequality::ActiveSet;
+use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
 use unilateral::problem_file::{self, AnyOwnProblem};
-use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Study, peak_memory_bytes};
-use unilateral::work_precision::{
-    Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
-};
+use unilateral::work_precision::{Case, WorkPrecision, WorkProgress, WorkReport, changes};
 
 use crate::adaptive::words;
 use crate::one_run::take_directory;
@@ -276,38 +273,32 @@ fn peak(options: &Options) -> Request<bool> {
 
 fn run_one(options: &Options) -> Request<()> {
     let one = "--peak runs one case";
-    let is_single = options.precisions().first() == Some(&Precision::Single);
     if let Some(path) = &options.problem {
         return match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) if is_single => once::<f32, 1>(options, own.into()),
-            AnyOwnProblem::One(own) => once::<f64, 1>(options, own.into()),
-            AnyOwnProblem::Two(own) if is_single => once::<f32, 2>(options, own.into()),
-            AnyOwnProblem::Two(own) => once::<f64, 2>(options, own.into()),
-            AnyOwnProblem::Three(own) if is_single => once::<f32, 3>(options, own.into()),
-            AnyOwnProblem::Three(own) => once::<f64, 3>(options, own.into()),
+            AnyOwnProblem::One(own) => once::<1>(options, own.into()),
+            AnyOwnProblem::Two(own) => once::<2>(options, own.into()),
+            AnyOwnProblem::Three(own) => once::<3>(options, own.into()),
         };
     }
     let name = options.scenes().pop().ok_or(one)?;
     match scene(options, &name)? {
-        AnyScene::One(s) if is_single => once::<f32, 1>(options, s.into()),
-        AnyScene::One(s) => once::<f64, 1>(options, s.into()),
-        AnyScene::Two(s) if is_single => once::<f32, 2>(options, s.into()),
-        AnyScene::Two(s) => once::<f64, 2>(options, s.into()),
-        AnyScene::Three(s) if is_single => once::<f32, 3>(options, s.into()),
-        AnyScene::Three(s) => once::<f64, 3>(options, s.into()),
+        AnyScene::One(s) => once::<1>(options, s.into()),
+        AnyScene::Two(s) => once::<2>(options, s.into()),
+        AnyScene::Three(s) => once::<3>(options, s.into()),
     }
 }
 
-fn once<T: Real, const D: usize>(options: &Options, posed: Posed<D>) -> Request<()> {
+fn once<const D: usize>(options: &Options, posed: Posed<D>) -> Request<()> {
     let mesh = options.mesh.read(&|_| {})?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
-    let mut study = posed.study::<T>(&|_| {})?;
+    let mut study = posed.study(&|_| {})?;
     if let Some(mesh) = mesh {
         study = study.on_mesh(mesh);
     }
     let linear = options.linear().first().copied().unwrap_or(LinearMethod::BySize);
-    let study =
-        study.levels(options.levels(D, has_mesh)).solver(ActiveSet::default().linear(linear));
+    let precision = options.precisions().first().copied().unwrap_or_default();
+    let solver = in_precision(precision, ActiveSet::default().linear(linear));
+    let study = study.levels(options.levels(D, has_mesh)).boxed_solver(solver);
     let schemes = options.schemes()?;
     let study = schemes.iter().fold(study, Study::named_scheme);
     study.run().map(drop).map_err(|e| e.to_string())

@@ -131,8 +131,7 @@ impl Options {
     }
 
     pub fn precisions(&self) -> Vec<Precision> {
-        let of = |name: &String| Precision::NAMES.iter().find(|p| p.0 == name).map(|p| p.1);
-        self.precision.iter().filter_map(of).collect()
+        self.precision.iter().filter_map(|name| Precision::by_name(name)).collect()
     }
 
     pub fn rounds(&self) -> usize {
