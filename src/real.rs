@@ -1,5 +1,7 @@
 //! The scalar of the algebra, and points of space.
 
+use std::fmt::Debug;
+
 /// The precision in which an inequality is solved. Meshes, elements, data, matrices, errors and bounds are in `f64`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
@@ -56,7 +58,17 @@ impl Precision {
     message = "`{Self}` is not a scalar this crate can solve in",
     note = "use `f64` or `f32`"
 )]
-pub trait Real: nalgebra::RealField + sealed::Scalar + Copy {
+pub trait Real:
+    num_traits::NumAssign
+    + num_traits::Signed
+    + PartialOrd
+    + Copy
+    + Send
+    + Sync
+    + Debug
+    + 'static
+    + sealed::Scalar
+{
     /// The precision of the scalar.
     const PRECISION: Precision;
     /// Distance from one to the next larger number, as `f64`.
