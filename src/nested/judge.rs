@@ -2,7 +2,7 @@
 
 use super::iteration::NestedIteration;
 use super::solved::Solved;
-use crate::assemble::Discretisation;
+use super::system::System;
 use crate::error::Error;
 use crate::inequality::{Outcome, Solution, contact_of};
 use crate::instances::compiled;
@@ -39,10 +39,8 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         scheme: &dyn AnyScheme<T, D>,
         values: &[f64],
     ) -> Result<Solved<'a, T, D>, Error> {
-        let mesh = self.p1.meshes.mesh(position);
-        let discretisation =
-            Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature)?;
-        let inequality = discretisation.inequality()?;
+        let system = System::new(scheme, self.p1.problem, self.p1.place(position))?;
+        let inequality = system.inequality();
         if values.len() != inequality.size() {
             let allowed =
                 format!("{} has {} unknowns on this mesh", scheme.name(), inequality.size());
@@ -55,10 +53,10 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             return Err(Error::Parameter { parameter: "values", value, allowed });
         }
         let values: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
-        let contact = contact_of(&inequality, &values);
+        let contact = contact_of(inequality, &values);
         let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
         let hierarchy = self.hierarchy(position);
-        let solved = Solved::new(discretisation, inequality, solution, hierarchy);
+        let solved = Solved::new(system, solution, hierarchy);
         Ok(solved.found_elsewhere())
     }
 }

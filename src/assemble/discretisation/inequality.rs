@@ -67,7 +67,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Errors
     /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: see
-    /// [`check_bounds`](crate::distributed::check_bounds). [`Error::DataNotFinite`].
+    /// [`check_bounds`](crate::processes::check_bounds). [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         compiled!(
             T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error>

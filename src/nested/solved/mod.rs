@@ -3,30 +3,33 @@
 #[cfg(feature = "report")]
 mod files;
 mod measures;
+mod totals;
 
-use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::OnceLock;
 
 use super::hierarchy::Hierarchy;
-use crate::algebra::{Contact, Inequality};
+use super::system::System;
+use crate::algebra::{Contact, Inequality, any_part};
 use crate::assemble::Discretisation;
-use crate::error::Error;
 use crate::error_bound::{ErrorBound, PrimalDualPair};
 use crate::inequality::{
     Certificate, Outcome, Solution, certify_with_jump_multipliers, count_active, energy_norm,
 };
 use crate::measure::Fields;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Part};
 use crate::real::Real;
 
 /// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
 ///
 /// Some outcomes have no iterate ([`Solved::has_iterate`]): then there are no errors, energies and
 /// fields, and the certificate is [`Certificate::INVALID`].
+///
+/// On a part of a mesh values, multipliers and fields are those of the part, at own unknowns and ghosts. Certificate,
+/// numbers, totals, errors and bound are those of all parts; all of them call these functions, and an error of one is
+/// [`Error::Processes`](crate::error::Error::Processes) in all. Distances between two solutions are none there.
 pub struct Solved<'a, T: Real, const D: usize> {
-    discretisation: Discretisation<'a, T, D>,
-    inequality: Inequality<T>,
+    system: System<'a, T, D>,
     solution: Solution<T>,
     certificate: Certificate,
     has_iterate: bool,
@@ -36,14 +39,14 @@ pub struct Solved<'a, T: Real, const D: usize> {
     bound: OnceLock<(PrimalDualPair<D>, ErrorBound, f64)>,
     /// Seconds for the mesh and all coarser ones, if it is one of several.
     pub(crate) mesh_seconds: f64,
-    /// Seconds of assembly.
-    pub(crate) assemble_seconds: f64,
     /// Seconds of the solve on this mesh.
     pub(crate) solve_seconds: f64,
     /// Seconds of the start: the P1 solutions on this and all coarser meshes.
     pub(crate) start_seconds: f64,
     pub(crate) coarser_levels: usize,
     pub(crate) start_cycles: usize,
+    /// Bytes that this part sent to others in the solve; messages inside an engine do not count.
+    pub(crate) sent_bytes: u64,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -60,16 +63,16 @@ impl<T: Real, const D: usize> fmt::Debug for Solved<'_, T, D> {
 impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     /// A solution with its certificate.
     pub(super) fn new(
-        discretisation: Discretisation<'a, T, D>,
-        inequality: Inequality<T>,
+        system: System<'a, T, D>,
         mut solution: Solution<T>,
         hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
     ) -> Self {
-        let u = &solution.values;
+        let (inequality, u) = (&system.inequality, &solution.values);
+        let is_finite = u.iter().all(|v| v.to_f64().is_finite());
         let has_iterate =
-            solution.outcome.has_iterate() && u.iter().all(|v| v.to_f64().is_finite());
+            solution.outcome.has_iterate() && !any_part(inequality.distribution(), !is_finite);
         let certificate = match has_iterate {
-            true => certify_with_jump_multipliers(&inequality, u, &solution.jump_multipliers)
+            true => certify_with_jump_multipliers(inequality, u, &solution.jump_multipliers)
                 .with_algebraic_bound(solution.algebraic_bound),
             false => Certificate::INVALID,
         };
@@ -78,30 +81,29 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             solution.outcome = Outcome::Stalled;
         }
         if has_iterate {
-            let norm = energy_norm(&inequality, &solution.values, &solution.jump_multipliers);
+            let norm = energy_norm(inequality, &solution.values, &solution.jump_multipliers);
             solution.dual_residual = certificate.largest() * norm;
         }
         Self {
             mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
-            discretisation,
-            inequality,
+            system,
             solution,
             certificate,
             has_iterate,
             hierarchy,
             bound: OnceLock::new(),
-            assemble_seconds: 0.0,
             solve_seconds: 0.0,
             start_seconds: 0.0,
             coarser_levels: 0,
             start_cycles: 0,
+            sent_bytes: 0,
             warnings: Vec::new(),
         }
     }
 
     /// The energy norm to which certificates are relative.
-    pub(super) fn energy_norm(&self) -> f64 {
-        energy_norm(&self.inequality, self.values(), &self.solution.jump_multipliers)
+    fn energy_norm(&self) -> f64 {
+        energy_norm(self.inequality(), self.values(), &self.solution.jump_multipliers)
     }
     /// How the solve ended.
     pub fn outcome(&self) -> Outcome {
@@ -127,49 +129,27 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     /// [`Discretisation::multipliers`]. None without an inequality or an iterate, and where rounding leaves no digit.
     /// Its density is in [`Solved::fields`].
     pub fn multiplier(&self) -> Option<Vec<f64>> {
-        let multipliers = || self.discretisation.multipliers(&self.inequality, &self.solution);
+        let multipliers = || self.discretisation().multipliers(self.inequality(), &self.solution);
         self.has_iterate.then(multipliers).flatten()
     }
     /// Number of outer iterations on this mesh, by [`Solution::outer`]; none without an iterate.
     pub fn outer(&self) -> Option<usize> {
         self.has_iterate.then_some(self.solution.outer)
     }
+    /// The numbers of cells, unknowns and stored entries of the matrix.
+    pub fn sizes(&self) -> [u64; 3] {
+        self.system.sizes()
+    }
     /// Number of constrained unknowns in contact; none without an iterate.
     pub fn active(&self) -> Option<usize> {
-        self.has_iterate.then(|| count_active(&self.inequality, self.contact()))
+        let own = self.has_iterate.then(|| count_active(self.inequality(), self.contact()))?;
+        Some(self.system.sums([own as f64])[0] as usize)
     }
     /// The objective `a(u,u)/2 - l(u)` with all terms of the scheme; none for schemes that are not
     /// symmetric and without an iterate.
     pub fn objective(&self) -> Option<f64> {
-        let is_minimum = self.inequality.symmetric && self.has_iterate;
-        is_minimum.then(|| self.inequality.objective(self.values()))
-    }
-    /// The energy of the solution, by one formula for every scheme: see [`Discretisation::energy`]. None
-    /// without an iterate.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
-    pub fn energy(&self) -> Result<Option<f64>, Error> {
-        let energy = || self.discretisation.energy(self.values());
-        self.has_iterate.then(energy).transpose()
-    }
-    /// The measure of the discrete contact set, see [`Discretisation::contact_measure`]; none for a problem
-    /// without inequality and for an outcome without iterate.
-    pub fn contact_measure(&self) -> Option<f64> {
-        let measure = || self.discretisation.contact_measure(&self.inequality, &self.solution);
-        self.has_iterate.then(measure).flatten()
-    }
-    /// The total contact force, positive where a lower bound pushes upward: see
-    /// [`Discretisation::resultant`]; none for a problem without inequality and for an outcome without iterate.
-    pub fn resultant(&self) -> Option<f64> {
-        let resultant = || self.discretisation.resultant(&self.inequality, &self.solution);
-        self.has_iterate.then(resultant).flatten()
-    }
-    /// The resultant of each obstacle and each contact group, see [`Discretisation::resultants`]; none where there is
-    /// no resultant.
-    pub fn resultants(&self) -> Option<BTreeMap<String, f64>> {
-        let resultants = || self.discretisation.resultants(&self.inequality, &self.solution);
-        self.has_iterate.then(resultants).flatten()
+        let is_minimum = self.inequality().symmetric && self.has_iterate;
+        is_minimum.then(|| self.inequality().objective(self.values()))
     }
     /// The certificate: violations of the complementarity conditions.
     pub fn certificate(&self) -> Certificate {
@@ -181,15 +161,23 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     }
     /// The algebraic inequality.
     pub fn inequality(&self) -> &Inequality<T> {
-        &self.inequality
+        &self.system.inequality
     }
     /// The discretisation: scheme, problem and mesh joined.
     pub fn discretisation(&self) -> &Discretisation<'a, T, D> {
-        &self.discretisation
+        &self.system.discretisation
     }
-    /// The mesh.
+    /// The system: discretisation and inequality.
+    pub fn system(&self) -> &System<'a, T, D> {
+        &self.system
+    }
+    /// The mesh; on a part of a mesh that of the part.
     pub fn mesh(&self) -> &'a Mesh<T, D> {
-        self.discretisation.mesh()
+        self.system.mesh()
+    }
+    /// The part of a mesh that this process has; none if it has the whole.
+    pub fn part(&self) -> Option<&'a Part<T, D>> {
+        self.system.part()
     }
     /// Warnings by type, as text: a penalty below its proven bound, say.
     pub fn warnings(&self) -> &[String] {
@@ -204,6 +192,6 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {
-        self.has_iterate.then(|| self.discretisation.fields(&self.inequality, &self.solution))
+        self.has_iterate.then(|| self.discretisation().fields(self.inequality(), &self.solution))
     }
 }
