@@ -138,6 +138,10 @@ pub enum Error {
         "solutions are compared on one mesh or on meshes of one hierarchy: solve both on the same `Hierarchy`"
     )]
     NotNested,
+    /// What one of the processes that share a mesh found, or why they do not reach one another: an
+    /// [`ExchangeError`](crate::processes::ExchangeError).
+    #[error(transparent)]
+    Processes(Box<dyn std::error::Error + Send + Sync>),
     /// A parameter outside its range.
     #[error("{parameter} = {value}: {allowed}")]
     Parameter {

@@ -11,7 +11,7 @@ use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::instances::compiled;
-use crate::measure::{Counts, Errors, SquaredErrors};
+use crate::measure::{Counts, SquaredErrors};
 use crate::parallel::cells;
 use crate::quadrature::Rule;
 
@@ -109,7 +109,8 @@ impl<const D: usize> Discretisation<'_, D> {
     /// # Panics
     /// If the pair is not one of this mesh.
     pub fn error_of_pair(&self, pair: &PrimalDualPair<D>) -> Option<f64> {
-        self.errors_and_error_of_pair(None, Some(pair)).ok()?.1
+        self.problem().exact.as_ref()?;
+        Some(self.squared_errors_beside(None, Some(pair), &|_| true).ok()?.of_function())
     }
 
     /// What the cells that count, those of a part of a mesh, add to the bound that a pair gives. Pair and discrete
@@ -131,24 +132,6 @@ impl<const D: usize> Discretisation<'_, D> {
             ) -> Result<PartOfBound<D>, NoBound>
                 = |of, pair, u, counts| of.space.part_of_bound(pair, u, counts)
         )(self, pair, u, counts)
-    }
-
-    /// The errors of a vector of unknowns against the exact solution, and the energy norm of the difference of
-    /// the exact solution and the admissible function of a pair: both at the same points.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
-    pub(crate) fn errors_and_error_of_pair(
-        &self,
-        u: Option<&[f64]>,
-        pair: Option<&PrimalDualPair<D>>,
-    ) -> Result<(Errors, Option<f64>), Error> {
-        if self.problem().exact.is_none() {
-            return Ok(Default::default());
-        }
-        let squares = self.squared_errors_beside(u, pair, &|_| true)?;
-        let errors = if u.is_some() { squares.norms() } else { Errors::default() };
-        Ok((errors, pair.map(|_| squares.of_function())))
     }
 
     /// As [`Self::squared_errors`], with the square of the error of the admissible function of a pair; zero without

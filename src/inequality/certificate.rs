@@ -168,13 +168,12 @@ pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> 
     inequality.bounds.iter().enumerate().map(state).collect()
 }
 
-/// The number of active unknowns; unknowns with a Dirichlet value do not count.
+/// The number of active unknowns; unknowns with a Dirichlet value do not count, nor do those that other parts own.
 #[must_use]
 pub fn count_active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usize {
-    inequality
-        .bounds
-        .iter()
-        .zip(contact)
-        .filter(|(bound, state)| bound.is_inequality() && **state != Contact::Inactive)
-        .count()
+    let states = inequality.bounds.iter().zip(contact).enumerate();
+    let is_active = |(i, (bound, state)): &(usize, (&Bound<T>, &Contact))| {
+        bound.is_inequality() && **state != Contact::Inactive && inequality.owns(*i)
+    };
+    states.filter(is_active).count()
 }

@@ -139,7 +139,7 @@ impl<'a, const D: usize> AdaptiveIteration<'a, D> {
 
     fn step(&mut self, number: usize) -> Result<AdaptiveStep<'a, D>, Error> {
         let mut solved = self.nested.solve_scheme(number, self.scheme)?;
-        self.assemble_seconds += solved.assemble_seconds;
+        self.assemble_seconds += solved.system().assemble_seconds;
         let bound = self.bound(&solved);
         let stop = self.stop(number, &solved, bound.as_ref())?;
         self.solve_seconds += solved.solve_seconds;

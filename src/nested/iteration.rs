@@ -9,6 +9,7 @@ use super::meshes::Meshes;
 use super::p1::{P1Iteration, P1Solution};
 use super::phase::Phase;
 use super::solved::Solved;
+use super::system::{ByInequality, SystemSolver};
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, StepCounter};
@@ -24,6 +25,9 @@ use crate::scheme::AnyScheme;
 /// P1 on the same mesh. On a large mesh without coarser ones conforming P1 starts from a rough solution
 /// by monotone multigrid with coarse spaces by aggregation. The P1 solutions are kept, so that several
 /// schemes on several meshes share them.
+///
+/// On the parts of meshes that several processes share ([`Hierarchy::of_parts`]) it is the same iteration, with a
+/// [`SystemSolver`] over processes: all parts call its functions and those of its results.
 ///
 /// ```
 /// use unilateral::prelude::*;
@@ -65,7 +69,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             problem,
             solutions: vec![None; meshes.len()],
             meshes,
-            solver: Arc::new(ActiveSet::default()),
+            solver: Arc::new(ByInequality(Arc::new(ActiveSet::default()))),
             quadrature: DataQuadrature::default(),
             repeat: 1,
             steps: StepCounter::default(),
@@ -80,7 +84,13 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     /// Sets a solver of the inequality that others use too, or that was chosen at run time. P1
     /// solutions by another solver are dropped.
     #[must_use]
-    pub fn shared_solver(mut self, solver: Arc<dyn InequalitySolver<f64> + 'a>) -> Self {
+    pub fn shared_solver(self, solver: Arc<dyn InequalitySolver<f64> + 'a>) -> Self {
+        self.system_solver(Arc::new(ByInequality(solver)))
+    }
+    /// Sets a solver that asks for more than the inequality, as one over several processes does. P1
+    /// solutions by another solver are dropped.
+    #[must_use]
+    pub fn system_solver(mut self, solver: Arc<dyn SystemSolver<D> + 'a>) -> Self {
         self.p1.solver = solver;
         self.p1.solutions.fill(None);
         self

@@ -2,7 +2,7 @@
 
 use super::iteration::NestedIteration;
 use super::solved::Solved;
-use crate::assemble::Discretisation;
+use super::system::System;
 use crate::error::Error;
 use crate::inequality::{Outcome, Solution, contact_of};
 use crate::instances::compiled;
@@ -37,10 +37,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         scheme: &dyn AnyScheme<D>,
         values: &[f64],
     ) -> Result<Solved<'a, D>, Error> {
-        let mesh = self.p1.meshes.mesh(position);
-        let discretisation =
-            Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature)?;
-        let inequality = discretisation.inequality()?;
+        let system = System::new(scheme, self.p1.problem, self.p1.place(position))?;
+        let inequality = system.inequality();
         if values.len() != inequality.size() {
             let allowed =
                 format!("{} has {} unknowns on this mesh", scheme.name(), inequality.size());
@@ -52,12 +50,12 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             let allowed = "finite numbers".to_owned();
             return Err(Error::Parameter { parameter: "values", value, allowed });
         }
-        let contact = contact_of(&inequality, values);
+        let contact = contact_of(inequality, values);
         let mut solution =
             Solution::new(values.to_vec(), contact, Outcome::Converged).linear_solver("none");
         solution.precision = self.p1.solver.precision();
         let hierarchy = self.hierarchy(position);
-        let solved = Solved::new(discretisation, inequality, solution, hierarchy);
+        let solved = Solved::new(system, solution, hierarchy);
         Ok(solved.found_elsewhere())
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
+use super::piece::SharedPart;
 use crate::element::Layout;
 use crate::linear::Prolongation;
 use crate::mesh::Mesh;
@@ -57,6 +58,13 @@ impl<'a, const D: usize> Meshes<'a, D> {
             Self::Adaptive(meshes) => meshes.mesh(position),
         }
     }
+    /// The part of a mesh that this process has; none if it has the whole.
+    pub(super) fn shared_part(&self, position: usize) -> Option<SharedPart<'a, D>> {
+        match self {
+            Self::Nested(hierarchy) => hierarchy.shared_part(position),
+            Self::Flat(_) | Self::Adaptive(_) => None,
+        }
+    }
     /// Seconds in which a mesh and all coarser ones were made; zero for one mesh.
     pub(super) fn seconds(&self, position: usize) -> f64 {
         match self {
@@ -80,7 +88,7 @@ impl<'a, const D: usize> Meshes<'a, D> {
         match self {
             Self::Flat(_) => coarse.to_vec(),
             Self::Nested(hierarchy) => match hierarchy.refinement(position) {
-                Some((refinement, _)) => refinement.parents.iter().map(between).collect(),
+                Some(refinement) => refinement.parents.iter().map(between).collect(),
                 None => coarse.to_vec(),
             },
             Self::Adaptive(meshes) => meshes.continued(position, coarse, middle),
@@ -95,7 +103,7 @@ impl<'a, const D: usize> Meshes<'a, D> {
         match self {
             Self::Flat(_) => None,
             Self::Nested(hierarchy) => {
-                hierarchy.refinement(position).map(|(_, by)| (position - 1, by))
+                hierarchy.prolongation(position).map(|by| (position - 1, by))
             }
             Self::Adaptive(meshes) => meshes.coarser_level(position),
         }

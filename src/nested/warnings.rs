@@ -10,6 +10,9 @@ use crate::problem::{DataOnMesh, Problem};
 use crate::real::Precision;
 use crate::scheme::AnyScheme;
 
+/// The warning on a part of a mesh where nothing proves that the matrix is positive definite.
+pub(super) const UNPROVEN: &str = "no theory says that the matrix is positive definite: a penalty is below its proven bound, or a reaction is negative";
+
 /// More outer steps than a solve takes on any scene but with bounds at nodes of broken quadratics.
 const MANY_ACTIVE_SETS: usize = 28;
 
@@ -78,7 +81,7 @@ pub(super) fn rounding_of_data(
 }
 
 /// That contact forces are left out, in a precision of this name.
-pub(crate) fn no_digits_of_forces(precision: &str) -> String {
+fn no_digits_of_forces(precision: &str) -> String {
     format!(
         "rounding in {precision} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out"
     )

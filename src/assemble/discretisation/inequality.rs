@@ -65,7 +65,7 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: see
-    /// [`check_bounds`](crate::distributed::check_bounds). [`Error::DataNotFinite`].
+    /// [`check_bounds`](crate::processes::check_bounds). [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<f64>>, Error> {
         compiled!(const D: fn(&Discretisation<'_, D>) -> Result<Vec<Bound<f64>>, Error>
                 = |of| of.checked_bounds()

@@ -1,6 +1,6 @@
 //! Multipliers divided among the data that give the active bounds, and among the cells and facets on which these act.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::entity::{ContactEntity, Place};
 use crate::algebra::{Bound, Contact, Inequality};
@@ -43,11 +43,6 @@ impl<const D: usize> Discretisation<'_, D> {
         solution: &Solution<f64>,
     ) -> Option<BTreeMap<String, f64>> {
         self.resultants_of(inequality, solution, [&|_| true, &|_| true])
-    }
-
-    /// The names of the resultants, each once, in their order.
-    pub(crate) fn names_of_resultants(&self) -> BTreeSet<String> {
-        self.space.names_of_resultants().into_iter().collect()
     }
 
     /// The resultants of the unknowns and, for contact groups, of the facets of cells that count.

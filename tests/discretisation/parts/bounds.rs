@@ -1,11 +1,11 @@
 //! Guaranteed bounds over the parts of a mesh.
 
-use super::gathered::process;
+use super::gathered::{on_parts, parts_of, process};
 use std::collections::HashMap;
-use unilateral::distributed::{DistributedIteration, PartHierarchy, in_process};
 use unilateral::error_bound::Unproven;
-use unilateral::mesh::{Layers, Neighbour, Neighbours};
+use unilateral::mesh::{Neighbour, Neighbours};
 use unilateral::prelude::*;
+use unilateral::processes::in_process;
 use unilateral::scenes::Scene;
 
 /// Refinements of the coarsest mesh.
@@ -32,12 +32,11 @@ fn holds<const D: usize>(scene: &Scene<D>, coarsest: usize, parts: usize) {
         let of_parts = |parts: usize| {
             in_process(parts, |number, exchange| -> OwnPair<D> {
                 let process = process(number, exchange);
-                let by = (REFINEMENTS, Layers::across_vertices(2));
-                let meshes = PartHierarchy::new(&mesh, None, by, &process).unwrap();
-                let mut nested = DistributedIteration::new(&problem, &meshes, process.clone());
+                let meshes = parts_of(&mesh, (REFINEMENTS, 2), &process);
+                let mut nested = on_parts(&problem, &meshes, process.clone());
                 let solved = nested.solve_on(REFINEMENTS, &*scheme).unwrap();
                 assert!(solved.converged(), "{name}");
-                let part = solved.part();
+                let part = solved.part().unwrap();
                 let pair = solved.primal_dual_pair().unwrap();
                 let own = (0..part.mesh.n_cells()).filter(|&cell| part.owns(cell));
                 let (mut fluxes, mut values) = (Vec::new(), Vec::new());
@@ -120,9 +119,8 @@ fn what_one_part_cannot_prove_is_proven_nowhere() {
     let mesh = problem.bind_boundary(mesh).unwrap();
     let unproven = in_process(3, |number, exchange| {
         let process = process(number, exchange);
-        let by = (REFINEMENTS, Layers::across_vertices(2));
-        let meshes = PartHierarchy::new(&mesh, None, by, &process).unwrap();
-        let mut nested = DistributedIteration::new(&problem, &meshes, process.clone());
+        let meshes = parts_of(&mesh, (REFINEMENTS, 2), &process);
+        let mut nested = on_parts(&problem, &meshes, process.clone());
         nested.solve_on(REFINEMENTS, &ConformingP1).unwrap().bound().unwrap().unproven
     });
     assert_eq!(unproven, vec![[Unproven::Boundary]; 3]);

@@ -2,14 +2,14 @@
 
 use super::compare::Assembled;
 use super::meshes::{box_mesh, moved};
-use unilateral::distributed::{
-    Exchange, ExchangeError, InProcess, Merge, Numbering, agree, check_bounds, in_process,
-    merge_all,
-};
 use unilateral::inequality::Violations;
 use unilateral::measure::SquaredErrors;
 use unilateral::mesh::{Extent, Layers};
 use unilateral::prelude::*;
+use unilateral::processes::{
+    Exchange, ExchangeError, InProcess, Merge, Numbering, agree, check_bounds, in_process,
+    merge_all,
+};
 
 /// The message that all parts have.
 #[track_caller]

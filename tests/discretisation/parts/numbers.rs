@@ -3,8 +3,8 @@
 use super::compare::{Assembled, some_values};
 use super::meshes::{bisected, box_mesh, moved};
 use super::problems::{obstacle_problem, schemes};
-use unilateral::distributed::{Numbering, in_process};
 use unilateral::prelude::*;
+use unilateral::processes::{Numbering, in_process};
 
 /// Every unknown of the whole has one number in all parts, numbers of a part are consecutive, and an update
 /// gives every part the values of the whole.

@@ -2,9 +2,9 @@
 
 use super::gathered::process;
 use std::sync::Arc;
-use unilateral::distributed::{Exchange, InProcess, in_process};
 use unilateral::inequality::Outcome;
 use unilateral::prelude::*;
+use unilateral::processes::{Exchange, InProcess, in_process};
 use unilateral::scenes::Scene;
 use unilateral::study::{PartChecks, Row};
 

@@ -5,10 +5,10 @@ use super::meshes::{box_mesh, moved};
 use super::problems::{obstacle_problem, schemes, signorini_problem};
 use std::sync::Arc;
 use unilateral::algebra::Inequality;
-use unilateral::distributed::{InProcess, in_process, merge_all};
 use unilateral::inequality::{Certificate, Violations, certify};
 use unilateral::measure::Errors;
 use unilateral::prelude::*;
+use unilateral::processes::{InProcess, in_process, merge_all};
 
 const ROUNDING: f64 = 1e-14;
 

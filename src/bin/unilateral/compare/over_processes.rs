@@ -2,9 +2,10 @@
 //!
 //! Every process runs the same requests on its part of the meshes. The first one prints, and writes the report.
 
+use unilateral::distributed::Process;
 use unilateral::distributed::petsc::Processes;
-use unilateral::distributed::{ExchangeError, Process, agree};
 use unilateral::paraview::FieldScalar;
+use unilateral::processes::{ExchangeError, agree};
 use unilateral::scenes::AnyScene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, PartChecks, Report, Row, Study};

@@ -22,7 +22,7 @@ pub trait Merge: Sized {
 /// Merges what all parts have found, in the order of the parts, so that all have the same bits; all parts call it.
 ///
 /// ```
-/// use unilateral::distributed::{in_process, merge_all};
+/// use unilateral::processes::{in_process, merge_all};
 /// use unilateral::mesh::{Extent, Layers};
 /// use unilateral::prelude::*;
 ///

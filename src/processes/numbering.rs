@@ -69,7 +69,7 @@ impl Numbering {
         &self.first
     }
     /// The unknowns that other parts own.
-    pub(in crate::distributed) fn ghosts(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn ghosts(&self) -> impl Iterator<Item = usize> + '_ {
         self.received.iter().flatten().map(|&unknown| unknown as usize)
     }
     /// Gives the unknowns that other parts own the values that they have there; all parts call it.
