@@ -223,9 +223,7 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
         // the constraint set of the problem is for the scheme that starts from here
         let problem = self.problem.clone().on(Nodes);
         let discretisation = Discretisation::new(&ConformingP1, &problem, mesh, self.quadrature)?;
-        let mut inequality = discretisation.inequality()?;
-        inequality.is_definite = discretisation.is_coercive();
-        Ok(inequality)
+        discretisation.inequality()
     }
 }
 

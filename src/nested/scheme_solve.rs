@@ -70,15 +70,15 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         discretisation.forget_prepared();
         let guess = self.guess(start.as_deref(), &mut inequality);
         let mut warnings = dirichlet_jumps(self.p1.problem, mesh);
-        let penalty_below_bound = discretisation.penalty_below_bound();
-        warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
+        if !inequality.is_definite {
+            warnings.extend(discretisation.penalty_below_bound().map(|below| below.to_string()));
+        }
         let is_adaptive = matches!(self.p1.meshes, Meshes::Adaptive(_));
         if !is_adaptive {
             let theory = discretisation.form().theory();
             let limit = theory.rounding_limit(T::EPSILON, mesh.domain_diameter());
             warnings.extend(short_edges(mesh, limit));
         }
-        inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
         let refusal = no_digits_of_quadratics(&inequality, (scheme.degree(), D));
         self.enter(Phase::Solve);
         let (solution, solve_seconds) = match &refusal {

@@ -53,7 +53,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             dirichlet_energy,
             kernel: Vec::new(),
             bodies: Vec::new(),
-            is_definite: false,
+            is_definite: self.is_coercive() && self.penalty_below_bound().is_none(),
             distribution: None,
         };
         self.space.set_kernel(&mut inequality, self.form.couples(), free);

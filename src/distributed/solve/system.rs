@@ -48,9 +48,7 @@ impl<'a, const D: usize> System<'a, D> {
         let clock = Instant::now();
         let numbering = Numbering::new(part, &discretisation, &**exchange)?;
         let over_parts = Arc::new(OverParts::new(part.number, numbering, exchange.clone()));
-        let is_proven =
-            discretisation.penalty_below_bound().is_none() && discretisation.is_coercive();
-        inequality.is_definite = !any_part(Some(&*over_parts), !is_proven);
+        inequality.is_definite = !any_part(Some(&*over_parts), !inequality.is_definite);
         inequality.distribution = Some(over_parts.clone());
         let seconds = [in_assembly, clock.elapsed().as_secs_f64()];
         Ok(Self { discretisation, inequality, over_parts, seconds })
