@@ -51,7 +51,7 @@ mod validation;
 mod violations;
 
 pub use active_set::{ActiveSet, Preconditioned};
-pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
+pub use by_name::{SOLVERS, solver_by_name};
 pub(crate) use certificate::count_active;
 pub use certificate::{Certificate, contact_of};
 pub(crate) use certificate::{energy_norm, positive_diagonal, stiffness_diagonal};

@@ -97,14 +97,16 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
 
     /// What a system warns of. What a part of a mesh finds by itself is not the same in all parts.
     fn warnings(&self, system: &System<'_, D>) -> Vec<String> {
-        let System { inequality, penalty_below_bound, .. } = system;
+        let inequality = &system.inequality;
         if system.part().is_some() {
             let is_unproven = !inequality.is_definite;
             return is_unproven.then(|| UNPROVEN.to_owned()).into_iter().collect();
         }
         let (mesh, discretisation) = (system.mesh(), system.discretisation());
         let mut warnings = dirichlet_jumps(self.p1.problem, mesh);
-        warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
+        if !inequality.is_definite {
+            warnings.extend(discretisation.penalty_below_bound().map(|below| below.to_string()));
+        }
         let precision = self.p1.solver.precision();
         warnings.extend(rounding_of_data(inequality, precision));
         if !self.is_adaptive() {

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::piece::SharedPart;
 use crate::algebra::{Inequality, any_part};
-use crate::assemble::{DataQuadrature, Discretisation, PenaltyBelowBound};
+use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
 use crate::error_bound::NoBound;
 use crate::inequality::{InequalitySolver, InitialGuess, Solution};
@@ -29,7 +29,6 @@ pub(super) struct Place<'a, const D: usize> {
 pub struct System<'a, const D: usize> {
     pub(super) discretisation: Discretisation<'a, D>,
     pub(super) inequality: Inequality<f64>,
-    pub(super) penalty_below_bound: Option<PenaltyBelowBound>,
     place: Place<'a, D>,
     over_parts: Option<Arc<OverParts>>,
     /// Seconds of assembly.
@@ -76,13 +75,10 @@ impl<'a, const D: usize> System<'a, D> {
             inequality.distribution = Some(over_parts.clone());
         }
         let numbering_seconds = clock.elapsed().as_secs_f64();
-        let penalty_below_bound = discretisation.penalty_below_bound();
-        let is_proven = penalty_below_bound.is_none() && discretisation.is_coercive();
-        inequality.is_definite = !any_part(inequality.distribution(), !is_proven);
+        inequality.is_definite = !any_part(inequality.distribution(), !inequality.is_definite);
         Ok(Self {
             discretisation,
             inequality,
-            penalty_below_bound,
             place,
             over_parts,
             assemble_seconds,

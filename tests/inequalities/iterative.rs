@@ -186,6 +186,8 @@ fn grid(n: usize, shift: f64) -> Inequality<f64> {
         }
     }
     inequality.bounds.fill(Bound::Free);
+    // the matrix is no longer that of the form
+    inequality.is_definite = false;
     inequality
 }
 

@@ -3,10 +3,11 @@
 use unilateral::algebra::Inequality;
 use unilateral::assemble::DataQuadrature;
 use unilateral::inequality::{
-    ActiveSet, InequalitySolver, Outcome, SOLVERS, Solution, SolverOptions, certify, solver_by_name,
+    ActiveSet, InequalitySolver, Outcome, SOLVERS, Solution, certify, solver_by_name,
 };
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 
 fn square(n: usize) -> Mesh<2> {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
@@ -26,7 +27,8 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 
 /// All solvers of the library.
 fn solvers() -> Vec<Box<dyn InequalitySolver<f64>>> {
-    let by_name = |name| solver_by_name(name, &SolverOptions::default()).unwrap();
+    let by_name =
+        |name| solver_by_name(name, LinearMethod::default(), Precision::default()).unwrap();
     let mut solvers: Vec<_> = SOLVERS.iter().map(|(name, _)| by_name(name)).collect();
     for linear in [LinearMethod::Direct, LinearMethod::Iterative] {
         solvers.push(Box::new(ActiveSet::default().linear(linear)));

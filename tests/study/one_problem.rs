@@ -5,8 +5,10 @@ use std::path::Path;
 use super::scratch::Scratch;
 use unilateral::algebra::Start;
 use unilateral::facet::InteriorPenalty;
-use unilateral::inequality::{ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SOLVERS};
-use unilateral::inequality::{SolverOptions, solver_by_name};
+use unilateral::inequality::{
+    ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SOLVERS, solver_by_name,
+};
+use unilateral::linear::LinearMethod;
 use unilateral::mesh::gmsh;
 use unilateral::prelude::*;
 use unilateral::problem::Exact;
@@ -144,7 +146,8 @@ fn the_solution_writes_itself() {
 #[test]
 fn solvers_stand_side_by_side() {
     let study = Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([8, 16]);
-    let named = |name: &str| solver_by_name(name, &SolverOptions::default()).unwrap();
+    let named =
+        |name: &str| solver_by_name(name, LinearMethod::default(), Precision::default()).unwrap();
     let both = SOLVERS.iter().fold(study, |study, s| study.boxed_solver(named(s.0)));
     let report = both.run().unwrap();
     let solvers: Vec<&str> = report.rows.iter().map(|r| &r.solver[..]).collect();
@@ -159,7 +162,7 @@ fn solvers_stand_side_by_side() {
     assert!((a - b).abs() < 1e-8 * a && (a - c).abs() < 1e-8 * a, "{a} {b} {c}");
     let text = report.to_string();
     assert!(text.contains("\nscheme solver ") && text.contains(two), "{text}");
-    assert!(solver_by_name("magic", &SolverOptions::default()).is_none());
+    assert!(solver_by_name("magic", LinearMethod::default(), Precision::default()).is_none());
     for (name, _) in SOLVERS {
         assert_eq!(named(name).name(), *name);
     }

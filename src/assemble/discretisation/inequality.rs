@@ -51,7 +51,7 @@ impl<const D: usize> Discretisation<'_, D> {
             dirichlet_energy,
             kernel: Vec::new(),
             bodies: Vec::new(),
-            is_definite: false,
+            is_definite: self.is_coercive() && self.penalty_below_bound().is_none(),
             distribution: None,
         };
         self.space.set_kernel(&mut inequality, self.form.couples(), free);

@@ -10,7 +10,7 @@ use crate::posed::Posed;
 use crate::shared::{Request, each_once, fields_with_bound};
 
 use unilateral::error::Error;
-use unilateral::inequality::{SolverOptions, solver_by_name};
+use unilateral::inequality::solver_by_name;
 use unilateral::linear::LinearMethod;
 use unilateral::nested::Solved;
 use unilateral::paraview::FieldScalar;
@@ -85,7 +85,7 @@ pub fn prepare<'a, const D: usize>(
     }
     let precision = Precision::by_name(&options.precision).unwrap_or_default();
     for name in solvers {
-        study = solver_by_name(name, &SolverOptions::default().linear(linear).precision(precision))
+        study = solver_by_name(name, linear, precision)
             .map(|solver| study.boxed_solver(solver))
             .ok_or_else(|| format!("there is no solver {name}"))?;
     }
