@@ -12,6 +12,7 @@ use unilateral::linear::LinearMethod;
 use unilateral::mesh::gmsh;
 use unilateral::prelude::*;
 use unilateral::problem::Exact;
+use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 
 /// A membrane above an obstacle that stops at a part of its boundary too.
