@@ -13,7 +13,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Both by the names users type.
+    /// The precisions by the names users type.
     pub const NAMES: [(&'static str, Self); 2] = [("f64", Self::Double), ("f32", Self::Single)];
 
     /// The name users type and reports state.

@@ -1,7 +1,5 @@
 //! An algebraic inequality rounded to another precision, entry by entry.
 
-use std::mem::take;
-
 use super::bound::Bound;
 use super::inequality::Inequality;
 use super::matrix::SparseMatrix;
@@ -12,7 +10,7 @@ use crate::parallel::vectors::collect;
 use crate::real::Real;
 
 /// The numbers, each rounded to the nearest one of another scalar.
-pub(crate) fn round<T: Real>(values: &[f64]) -> Vec<T> {
+pub(crate) fn rounded<T: Real>(values: &[f64]) -> Vec<T> {
     in_large_pages(collect(values.len(), |k| T::lit(values[k])))
 }
 
@@ -23,18 +21,19 @@ impl SparseMatrix<f64> {
         SparseMatrix {
             row_starts: self.row_starts.clone(),
             columns: self.columns.clone(),
-            values: round(&self.values),
+            values: rounded(&self.values),
         }
     }
 }
 
 impl RectangularMatrix<f64> {
     /// The matrix with every entry rounded once.
+    #[must_use]
     pub fn in_precision<T: Real>(&self) -> RectangularMatrix<T> {
         RectangularMatrix {
             starts: self.starts.clone(),
             columns: self.columns.clone(),
-            values: round(&self.values),
+            values: rounded(&self.values),
         }
     }
 }
@@ -61,11 +60,11 @@ impl PenalisedMatrix<f64> {
             |t: &JumpTerm<f64>| JumpTerm { here: t.here, there: t.there, weight: T::lit(t.weight) };
         PenalisedMatrix {
             block_size: self.block_size,
-            blocks: round(&self.blocks),
+            blocks: rounded(&self.blocks),
             term_starts: self.term_starts.clone(),
             terms: collect(self.terms.len(), |k| term(&self.terms[k])),
-            weights: round(&self.weights),
-            jump_data: round(&self.jump_data),
+            weights: rounded(&self.weights),
+            jump_data: rounded(&self.jump_data),
         }
     }
 }
@@ -81,7 +80,7 @@ impl Inequality<f64> {
         let mut rounded = Inequality {
             matrix: self.matrix.in_precision(),
             symmetric: self.symmetric,
-            load: round(&self.load),
+            load: rounded(&self.load),
             bounds: self.bounds.iter().map(Bound::in_precision).collect(),
             supports: self.supports.clone(),
             conforming_linear: self.conforming_linear,
@@ -94,33 +93,40 @@ impl Inequality<f64> {
             distribution: self.distribution.clone(),
         };
         // rounding of the load is no load that was added
-        let mut bodies = take(&mut rounded.bodies);
-        for body in &mut bodies {
-            if let Some(k) = body.kernel {
-                body.assembled += rounded.load_along(k) - self.load_along(k);
-            }
-        }
-        rounded.bodies = bodies;
+        let added = |k: usize| rounded.load_along(k) - self.load_along(k);
+        let added: Vec<f64> =
+            self.bodies.iter().map(|body| body.kernel.map_or(0.0, added)).collect();
+        rounded.bodies.iter_mut().zip(added).for_each(|(body, added)| body.assembled += added);
         rounded
     }
-    /// Whether the range of another precision holds the data: no diagonal entry and no weight of a penalty loses its
-    /// digits by rounding, and neither does the largest entry of the load, of the bounds or of the Dirichlet data.
+    /// Whether the range of another precision holds the data: no diagonal entry and no part of a penalty loses its digits
+    /// by rounding, and neither does the largest entry of the matrix, the load, the bounds and the Dirichlet data, nor
+    /// the largest quotient of load and diagonal. `false` for sizes that do not match.
     pub(crate) fn is_in_range_of<T: Real>(&self) -> bool {
         let is_held = |x: f64| {
             x == 0.0 || !x.is_finite() || (T::lit(x).to_f64() / x - 1.0).abs() <= T::EPSILON
         };
+        let are_held = |values: &[f64]| values.iter().all(|&x| is_held(x));
         let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let of_bounds = |most: f64, bound: &Bound<f64>| {
             let of = [bound.lower(), bound.upper(), bound.fixed_value()];
             of.into_iter().flatten().fold(most, |most, x| most.max(x.abs()))
         };
-        (0..self.size()).all(|i| is_held(self.matrix.get(i, i)))
+        let diagonal = self.matrix.diagonal();
+        let of_load = |most: f64, (b, d): (&f64, &f64)| {
+            if *d > 0.0 { most.max(b.abs() / d) } else { most }
+        };
+        diagonal.len() == self.size()
+            && are_held(&diagonal)
+            && is_held(largest(&self.matrix.values))
             && is_held(largest(&self.load))
+            && is_held(self.load.iter().zip(&diagonal).fold(0.0, of_load))
             && is_held(self.bounds.iter().fold(0.0, of_bounds))
             && self.penalised.as_ref().is_none_or(|penalised| {
-                penalised.weights.iter().all(|&s| is_held(s))
+                are_held(&penalised.weights)
+                    && penalised.terms.iter().all(|term| is_held(term.weight))
                     && is_held(largest(&penalised.jump_data))
-                    && (0..self.size()).all(|i| is_held(penalised.stiffness_diagonal(i)))
+                    && (0..penalised.size()).all(|i| is_held(penalised.stiffness_diagonal(i)))
             })
     }
     /// The number of unknowns with two bounds that differ, but not in another precision.
@@ -166,6 +172,7 @@ mod tests {
             (1.0, 1e-60, 0.0),
             (1.0, 1e39, 0.0),
             (1.0, 0.0, 1e-50),
+            (1e-20, 1e20, 0.0),
         ] {
             assert!(!problem(a, b, bound).is_in_range_of::<f32>(), "{a} {b} {bound}");
             assert!(problem(a, b, bound).is_in_range_of::<f64>(), "{a} {b} {bound}");

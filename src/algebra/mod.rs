@@ -7,7 +7,8 @@
 //! discontinuous linear functions. `dense`: small dense matrices. `row`: rows in the making.
 //! `dirichlet_energy`: the part of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
-//! unknown. `inequality`: supports of unknowns and the inequality. `index`: the missing index. `in_precision`: all of it rounded.
+//! unknown. `inequality`: supports of unknowns and the inequality. `index`: the missing index. `in_precision`:
+//! matrices, bounds and inequalities rounded.
 
 mod bound;
 pub(crate) mod dense;
@@ -30,7 +31,7 @@ pub use distribution::Distribution;
 pub(crate) use distribution::{any_part, sum_over_parts};
 pub use free_body::FreeBody;
 pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
-pub(crate) use in_precision::round;
+pub(crate) use in_precision::rounded;
 pub(crate) use index::NO_INDEX;
 pub use inequality::{Inequality, Start, Support};
 pub use matrix::SparseMatrix;

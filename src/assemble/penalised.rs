@@ -190,7 +190,7 @@ fn moment(
     there: Option<SideValues<'_>>,
 ) -> Vec<LocalTerm> {
     let largest = here.iter().map(|v| v.abs()).fold(0.0, f64::max);
-    let is_zero = |v: f64| v.abs() <= ROUNDING.max(f64::EPSILON) * largest;
+    let is_zero = |v: f64| v.abs() <= ROUNDING * largest;
     let mut terms = Vec::new();
     let mut is_paired = [false; MAX_BASIS];
     for (i, node) in nodes.iter().enumerate().filter(|(i, _)| !is_zero(here[*i])) {

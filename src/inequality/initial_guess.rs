@@ -1,7 +1,7 @@
 //! The data from which a solver of an inequality starts.
 
 use super::step_counter::StepCounter;
-use crate::algebra::{Contact, Support, round};
+use crate::algebra::{Contact, Support, rounded};
 use crate::linear::CoarseSpaces;
 use crate::real::Real;
 
@@ -70,7 +70,7 @@ impl InitialGuess<f64> {
     pub(super) fn in_precision<T: Real>(&self) -> InitialGuess<T> {
         InitialGuess {
             coarse_spaces: self.coarse_spaces.in_precision(),
-            values: self.values.as_deref().map(round),
+            values: self.values.as_deref().map(rounded),
             energy_tolerance: self.energy_tolerance,
             steps: self.steps.clone(),
         }

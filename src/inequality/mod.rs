@@ -28,9 +28,10 @@
 //! | `by_name` | [`solver_by_name`] |
 //! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`Stage`], [`StageRun`]: the result of a solver |
 //!
-//! [`ActiveSet`] runs other methods where its active set stagnates: `active_set/ladder` is that order;
-//! [`Solution::stages`] contains the methods that ran. If the active set no longer changes, the outcome is
-//! [`Outcome::Converged`] or [`Outcome::Stalled`], depending on the certificate.
+//! Every solver first asks `recession` whether bounds alone hold a body: then the load decides whether a solution exists,
+//! bounds that it does not press are left out at first, and the solver may run twice. [`ActiveSet`] runs other methods
+//! where its active set stagnates: `active_set/ladder` is that order; [`Solution::stages`] contains the methods that ran.
+//! The certificate decides [`Outcome::Converged`] or [`Outcome::Stalled`] when the active set is final.
 
 mod active_set;
 mod algebraic_bound;

@@ -1,10 +1,10 @@
 //! A solve in single precision of an inequality in double precision.
 
 use super::{InequalitySolver, InitialGuess, Outcome, Solution};
-use crate::algebra::Inequality;
+use crate::algebra::{Inequality, any_part};
 use crate::real::Precision;
 
-/// A solver in `f32` for inequalities in `f64`: what does rounding do to the solve?
+/// A solver in `f32` for inequalities in `f64`, which shows what rounding does to the solve.
 ///
 /// The inequality, its coarse spaces and the initial guess are rounded once, entry by entry; the values and the jump
 /// multipliers of the solution are widened exactly. All rounding errors but those of the data are the solver's. Data
@@ -46,12 +46,17 @@ impl InequalitySolver<f64> for SinglePrecision<'_> {
         self.solve_from(inequality, &InitialGuess::default())
     }
     fn solve_from(&self, inequality: &Inequality<f64>, guess: &InitialGuess<f64>) -> Solution<f64> {
-        let rounded = inequality.in_precision();
-        match inequality.is_well_formed() && !inequality.is_in_range_of::<f32>() {
-            true => Solution::without_iterate(&rounded, Outcome::OutOfRange),
-            false => self.solver.solve_from(&rounded, &guess.in_precision()),
+        // collective: every part calls both
+        let of_parts = inequality.distribution();
+        let is_malformed = any_part(of_parts, !inequality.is_well_formed());
+        let is_out_of_range = any_part(of_parts, !inequality.is_in_range_of::<f32>());
+        if is_malformed || is_out_of_range {
+            let outcome = if is_malformed { Outcome::Malformed } else { Outcome::OutOfRange };
+            let mut none = Solution::without_iterate(inequality, outcome);
+            none.precision = Precision::Single;
+            return none;
         }
-        .widened()
+        self.solver.solve_from(&inequality.in_precision(), &guess.in_precision()).widened()
     }
     fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
         self.solver.uses_coarse_spaces(unknowns)

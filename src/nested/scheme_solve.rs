@@ -10,7 +10,8 @@ use super::phase::Phase;
 use super::solved::Solved;
 use super::system::System;
 use super::warnings::{
-    UNPROVEN, active_sets, dirichlet_jumps, no_digits_of_quadratics, rounding_of_data, short_edges,
+    UNPROVEN, active_sets, dirichlet_jumps, no_digits_of_quadratics, no_digits_of_stiffness,
+    rounding_of_data, short_edges,
 };
 use crate::algebra::{Contact, Inequality, Start};
 use crate::error::Error;
@@ -63,13 +64,18 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         let of_degree = (scheme.degree(), D);
         let precision = self.p1.solver.precision();
         let refusal = match system.part() {
-            None => no_digits_of_quadratics(&system.inequality, of_degree, precision),
+            None => no_digits_of_quadratics(&system.inequality, of_degree, precision)
+                .or_else(|| no_digits_of_stiffness(system.discretisation(), precision)),
             Some(_) => None,
         };
         self.enter(Phase::Solve);
         let sent = system.sent_bytes();
         let (solution, solve_seconds) = match &refusal {
-            Some(_) => (Solution::without_iterate(&system.inequality, Outcome::Singular), 0.0),
+            Some(_) => {
+                let mut none = Solution::without_iterate(&system.inequality, Outcome::Singular);
+                none.precision = precision;
+                (none, 0.0)
+            }
             None => self.run(&system, &guess)?,
         };
         let sent = system.sent_bytes() - sent;

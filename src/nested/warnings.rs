@@ -2,6 +2,7 @@
 
 use super::solved::Solved;
 use crate::algebra::Inequality;
+use crate::assemble::Discretisation;
 use crate::constraint::CellMeans;
 use crate::inequality::{Outcome, Solution};
 use crate::input::excerpt;
@@ -60,6 +61,19 @@ pub(super) fn no_digits_of_quadratics(
     })
 }
 
+/// Why a problem is not solved whose penalty leaves no digit of the stiffness in the precision of the solver.
+pub(super) fn no_digits_of_stiffness<const D: usize>(
+    discretisation: &Discretisation<'_, D>,
+    precision: Precision,
+) -> Option<String> {
+    discretisation.penalty_beyond(precision).map(|ratio| {
+        format!(
+            "a penalty of {ratio:.0e} times the stiffness leaves no digit of it in {}: choose a smaller factor",
+            precision.name()
+        )
+    })
+}
+
 /// What rounding of the problem to the precision of the solver loses.
 pub(super) fn rounding_of_data(
     inequality: &Inequality<f64>,
@@ -75,7 +89,7 @@ pub(super) fn rounding_of_data(
     let n = inequality.n_bounds_made_equal::<f32>();
     (n > 0).then(|| {
         format!(
-            "the lower and the upper bound of {n} unknowns differ by less than rounding in {name}, which fixes them"
+            "the lower and the upper bound of {n} unknowns differ by less than rounding in {name}, which fixes them and leaves their forces out"
         )
     })
 }

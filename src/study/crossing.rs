@@ -67,7 +67,7 @@ impl<const D: usize> Seen<D> {
 
     /// The worst place, if the bounds cross there by more than rounding of data of a size.
     pub fn crossing(&self, size: f64) -> Option<Crossing<D>> {
-        let slack = RELATIVE_SLACK.max(16.0 * f64::EPSILON) * size;
+        let slack = RELATIVE_SLACK * size;
         self.worst.filter(|worst| worst.lower - worst.upper > slack)
     }
 

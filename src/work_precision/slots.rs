@@ -102,8 +102,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             study = study.shared_scheme(scheme, set, shown);
         }
         if self.precisions.contains(&Precision::Single) {
-            let allowed =
-                "a reference is computed over f64, and errors of f32 would be no like ones";
+            let allowed = "against a reference every scheme is measured in f64: leave f32 out";
             return Err(wrong("precision", Precision::Single.name().to_owned(), allowed));
         }
         let (scheme, set) = (reference.scheme.clone(), reference.set.clone());

@@ -6,7 +6,8 @@ use super::scratch::Scratch;
 use unilateral::algebra::Start;
 use unilateral::facet::InteriorPenalty;
 use unilateral::inequality::{
-    ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SOLVERS, solver_by_name,
+    ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SOLVERS, SinglePrecision,
+    solver_by_name,
 };
 use unilateral::linear::LinearMethod;
 use unilateral::mesh::gmsh;
@@ -221,6 +222,24 @@ fn two_series_of_one_name_are_refused_before_anything_runs() {
         assert_eq!(rows[1].order, alone.rows[1].order);
         assert!(rows[1].order.h1 > Some(0.7), "{factor}: {:?}", rows[1].order);
     }
+}
+
+#[test]
+fn a_study_has_one_precision() {
+    let study = Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([4]);
+    let single = SinglePrecision::new(MonotoneMultigrid::default());
+    let error = study.solver(ActiveSet::default()).solver(single).run().unwrap_err();
+    assert!(error.to_string().contains("one precision for all solvers"), "{error}");
+}
+
+/// What does not fit together is malformed in single precision too, and no panic.
+#[test]
+fn single_precision_says_what_is_malformed() {
+    let (mesh, problem) = plate();
+    let mut inequality = solve(&problem, &mesh, &ConformingP1).unwrap().inequality().clone();
+    inequality.load.pop();
+    let solution = SinglePrecision::new(ActiveSet::default()).solve(&inequality);
+    assert_eq!(solution.outcome, Outcome::Malformed);
 }
 
 #[test]

@@ -74,7 +74,7 @@ impl<const D: usize> Contradictions<D> {
         for contradiction in &found {
             size = size.max(contradiction.lower.abs()).max(contradiction.upper.abs());
         }
-        Self { found, groups, size, relative_slack: RELATIVE_SLACK.max(16.0 * f64::EPSILON) }
+        Self { found, groups, size, relative_slack: RELATIVE_SLACK }
     }
     /// The largest absolute value of a bound.
     pub fn size(&self) -> f64 {

@@ -120,7 +120,10 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
     };
     let coarsest = request["coarsest"].as_u64().map_or(level, |coarsest| coarsest as usize);
     let levels = [level, if reference.is_some() { coarsest } else { level }];
-    let precision = request["precision"].as_str().and_then(Precision::by_name).unwrap_or_default();
+    let precision = match &request["precision"] {
+        Value::Null => Precision::default(),
+        name => name.as_str().and_then(Precision::by_name).ok_or_else(|| wrong("precision"))?,
+    };
     let of = (&scheme, levels, reference.as_ref(), precision);
     let row = match request["problem"].as_str() {
         Some(path) => {

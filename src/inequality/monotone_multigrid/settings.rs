@@ -22,8 +22,7 @@ pub struct MonotoneMultigrid {
     /// Largest number of cycles.
     pub max_cycles: usize,
     /// Number of consecutive cycles that may leave the change of a cycle above half of its least value; the method ends
-    /// at the next such cycle. Changes that ten cycles do not halve need more than three hundred cycles to the tolerance
-    /// 1e-10.
+    /// at the next such cycle.
     pub stagnation_cycles: usize,
 }
 

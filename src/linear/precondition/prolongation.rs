@@ -28,10 +28,13 @@ enum Entries<T> {
 impl Prolongation<f64> {
     /// The prolongation with every weight rounded once.
     pub(super) fn in_precision<T: Real>(&self) -> Prolongation<T> {
-        let entries = match self.entries.clone() {
-            Entries::Midpoints { parents, starts, children, own } => {
-                Entries::Midpoints { parents, starts, children, own }
-            }
+        let entries = match &self.entries {
+            Entries::Midpoints { parents, starts, children, own } => Entries::Midpoints {
+                parents: parents.clone(),
+                starts: starts.clone(),
+                children: children.clone(),
+                own: own.clone(),
+            },
             Entries::Weights { fine, coarse } => {
                 Entries::Weights { fine: fine.in_precision(), coarse: coarse.in_precision() }
             }

@@ -200,6 +200,13 @@ impl<'a, const D: usize> Study<'a, D> {
         let of_entries = self.entries.iter().zip(&problems);
         let labels = of_entries.map(|(entry, p)| entry.label(p));
         check_names(labels, self.solvers().iter().map(|solver| solver.name()))?;
+        if self.solvers().iter().any(|solver| solver.precision() != self.precision()) {
+            return Err(Error::Parameter {
+                parameter: "precision",
+                value: "f64 and f32".to_owned(),
+                allowed: "one precision for all solvers of a study".to_owned(),
+            });
+        }
         self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
         for (entry, problem) in self.entries.iter().zip(problems) {
             check_scheme(&*entry.scheme, problem, self.quadrature)?;

@@ -11,6 +11,7 @@ use crate::mesh::{Layers, Mesh};
 use crate::nested::{Coarsest, Hierarchy, NestedIteration, Solved};
 use crate::problem::Problem;
 use crate::processes::{ExchangeError, agree};
+use crate::real::Precision;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
 use crate::study::memory::peak_memory_bytes;
@@ -165,7 +166,10 @@ impl<const D: usize> Study<'_, D> {
 
     /// Refuses what parts of a mesh do not have.
     fn check_parts(&self) -> Result<(), Error> {
-        let others = self.solvers.iter().any(|solver| solver.name() != "active-set");
+        let others = self
+            .solvers
+            .iter()
+            .any(|solver| solver.name() != "active-set" || solver.precision() != Precision::Double);
         let asked = [
             ("solver", others),
             ("adaptive meshes", self.adaptive.is_some()),
@@ -176,7 +180,7 @@ impl<const D: usize> Study<'_, D> {
             Some((parameter, _)) => Err(Error::Parameter {
                 parameter,
                 value: "over several processes".to_owned(),
-                allowed: "the active set method on uniform meshes, with errors against the exact solution"
+                allowed: "the active set method in `f64` on uniform meshes, with errors against the exact solution"
                     .to_owned(),
             }),
         }

@@ -1,8 +1,12 @@
 //! The fine solution against which rows are measured.
 
+use std::sync::Arc;
+
 use super::{Progress, Study, with_set};
+use crate::inequality::ActiveSet;
 use crate::nested::{Hierarchy, NestedIteration};
 use crate::problem::Problem;
+use crate::real::Precision;
 use crate::study::reference::{FoundReference, Reference};
 
 impl<const D: usize> Study<'_, D> {
@@ -31,8 +35,13 @@ impl<const D: usize> Study<'_, D> {
     ) -> FoundReference<'h, D> {
         let name = reference.name(self.scene.problem.constraint_set());
         (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
+        // errors in single precision are measured against a reference in double precision
+        let solver = match self.precision() {
+            Precision::Double => self.solvers()[0].clone(),
+            Precision::Single => Arc::new(ActiveSet::default()),
+        };
         let mut nested = NestedIteration::new(problem, hierarchy)
-            .shared_solver(self.solvers()[0].clone())
+            .shared_solver(solver)
             .quadrature(self.quadrature);
         let fails = |why: &str| format!("the reference, {name}, was not found: {why}");
         let solved = nested.solve(&*reference.scheme).map_err(|e| fails(&e.to_string()))?;

@@ -1,7 +1,8 @@
 //! Penalty factors that make no penalty are refused by name; small ones are not.
 
-use unilateral::inequality::Outcome;
+use unilateral::inequality::{ActiveSet, Outcome, in_precision};
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 
 type Schemes<const D: usize> = Vec<(&'static str, Box<dyn AnyScheme<D>>)>;
@@ -66,6 +67,21 @@ fn what_is_no_penalty_is_refused() {
         let error = scheme.discretise(&Problem::new(), &mesh, Default::default()).unwrap_err();
         assert!(error.to_string().contains("times the stiffness"), "{parameter}: {error}");
     }
+}
+
+#[test]
+fn single_precision_refuses_a_penalty_that_leaves_no_digit_of_the_stiffness() {
+    let row = |precision| {
+        let sipg = Sipg { penalty: PenaltyRule::Diameter(1e9), ..Sipg::default() };
+        let study = Study::<2>::new(scenes::radial(1.0)).scheme(sipg).levels([4]);
+        let study = study.boxed_solver(in_precision(precision, ActiveSet::default()));
+        study.run().unwrap().rows.remove(0)
+    };
+    assert_eq!(row(Precision::Double).status, Outcome::Converged);
+    let single = row(Precision::Single);
+    assert_eq!(single.status, Outcome::Singular);
+    let is_told = |warning: &String| warning.contains("leaves no digit of it in f32");
+    assert!(single.warnings.iter().any(is_told), "{:?}", single.warnings);
 }
 
 #[test]

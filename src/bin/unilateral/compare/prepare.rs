@@ -83,7 +83,8 @@ pub fn prepare<'a, const D: usize>(
     if let Some(directory) = &options.dump {
         study = study.inequalities_to(directory);
     }
-    let precision = Precision::by_name(&options.precision).unwrap_or_default();
+    let precision = Precision::by_name(&options.precision);
+    let precision = precision.expect("the command line takes the names of precisions alone");
     for name in solvers {
         study = solver_by_name(name, linear, precision)
             .map(|solver| study.boxed_solver(solver))

@@ -131,7 +131,9 @@ impl Options {
     }
 
     pub fn precisions(&self) -> Vec<Precision> {
-        self.precision.iter().filter_map(|name| Precision::by_name(name)).collect()
+        let of = |name: &String| Precision::by_name(name);
+        let known = self.precision.iter().map(of).collect::<Option<Vec<_>>>();
+        known.expect("the command line takes the names of precisions alone")
     }
 
     pub fn rounds(&self) -> usize {
