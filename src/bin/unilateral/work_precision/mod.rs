@@ -164,7 +164,7 @@ fn prepare<'a, const D: usize>(
             warn(&warning)
         }
     };
-    let mesh = options.mesh.read(&warn)?;
+    let mesh = options.mesh.read_mesh(&warn)?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
     let mut study = posed.work_precision(&warn)?.levels(options.levels(D, has_mesh));
     if let Some(mesh) = mesh {
@@ -289,7 +289,7 @@ fn run_one(options: &Options) -> Request<()> {
 }
 
 fn once<const D: usize>(options: &Options, posed: Posed<D>) -> Request<()> {
-    let mesh = options.mesh.read(&|_| {})?;
+    let mesh = options.mesh.read_mesh(&|_| {})?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
     let mut study = posed.study(&|_| {})?;
     if let Some(mesh) = mesh {
