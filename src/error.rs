@@ -271,7 +271,7 @@ mod tests {
         assert_eq!(format!("{error:?}"), "the mesh has no cells of dimension 2");
         assert_eq!(format!("{error:?}"), error.to_string());
         let source = MeshError::NoCells { dimension: 2 };
-        let error: Error = GmshError::Mesh { source, elements: vec![], nodes: vec![7] }.into();
+        let error: Error = GmshError::of_mesh(source, &["nodes 7".to_owned()]).into();
         let expected = "the mesh has no cells of dimension 2; in the file: nodes 7";
         assert_eq!(format!("{error:?}"), expected);
     }

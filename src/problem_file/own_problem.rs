@@ -17,8 +17,8 @@ pub enum Geometry<const D: usize> {
     File {
         /// Its path.
         path: PathBuf,
-        /// Its contents.
-        bytes: Vec<u8>,
+        /// Its [`fingerprint`](crate::input::fingerprint).
+        fingerprint: String,
         /// The mesh, before the problem says what holds on its boundary.
         read: Box<GmshMesh<D>>,
     },
@@ -30,6 +30,8 @@ pub enum Geometry<const D: usize> {
 pub struct OwnProblem<const D: usize> {
     /// Its name; that of the file if the file gives none.
     pub name: String,
+    /// The [`fingerprint`](crate::input::fingerprint) of the file.
+    pub fingerprint: String,
     /// The data.
     pub problem: Problem<D>,
     /// Mesh file or box.
@@ -70,13 +72,14 @@ pub enum AnyOwnProblem {
 }
 
 impl AnyOwnProblem {
-    /// The contents of the mesh file, if there is one.
-    pub fn mesh_bytes(&self) -> Option<&[u8]> {
-        fn of<const D: usize>(own: &OwnProblem<D>) -> Option<&[u8]> {
-            match &own.geometry {
-                Geometry::File { bytes, .. } => Some(bytes),
-                Geometry::Box(_) => None,
+    /// The fingerprints of the files that have been read: `problem`, and `mesh` if there is one.
+    pub fn fingerprints(&self) -> Vec<(&'static str, String)> {
+        fn of<const D: usize>(own: &OwnProblem<D>) -> Vec<(&'static str, String)> {
+            let mut files = vec![("problem", own.fingerprint.clone())];
+            if let Geometry::File { fingerprint, .. } = &own.geometry {
+                files.push(("mesh", fingerprint.clone()));
             }
+            files
         }
         match self {
             Self::One(own) => of(own),

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use unilateral::exchange::read_vector;
 use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::gmsh::GmshFile;
 use unilateral::problem_file::{self, AnyOwnProblem};
 use unilateral::real::Precision;
 use unilateral::scenes::{self, AnyScene, Parameters};
@@ -20,7 +21,7 @@ use unilateral::study::{Program, Report, Row, RowKey, file_name};
 use crate::compare;
 use crate::mesh_file::MeshFile;
 use crate::posed::Posed;
-use crate::shared::{Request, cannot_write, each_once, fingerprint, print, read, write};
+use crate::shared::{Request, cannot_write, each_once, print, read, write};
 
 /// Judges a vector that another program found for an inequality of `compare --dump`
 #[derive(Args, Debug)]
@@ -85,9 +86,9 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
     let scheme = text("label")?.parse::<NamedScheme>();
     let scheme = scheme.map_err(|e| format!("{}: {e}", path.display()))?;
     let level = request["level"].as_u64().ok_or_else(|| wrong("level"))? as usize;
-    let is_unchanged = |place: usize, file: &Path, bytes: &[u8]| {
+    let is_unchanged = |place: usize, file: &Path, fingerprint: String| {
         let file = file.display();
-        match request["contents"][place] == fingerprint(bytes) {
+        match request["contents"][place] == fingerprint {
             true => Ok(()),
             false => Err(format!(
                 "{file} (or its mesh) is not what it was when {} was written: dump the inequality again",
@@ -99,16 +100,15 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
     let mut mesh = None;
     if let Some(file) = request["mesh"].as_str() {
         let file = found_beside(&options.directory, file);
-        let bytes = read(&file)?;
-        is_unchanged(0, &file, &bytes)?;
         let parts = request["boundary"].as_object().into_iter().flatten();
         let part = |(name, part): (&String, &Value)| {
             Some((name.clone(), BoundaryPart::from_name(part.as_str()?)?))
         };
-        mesh = Some((
-            MeshFile { path: Some(file), boundary: parts.filter_map(part).collect() },
-            bytes,
-        ));
+        let options =
+            MeshFile { path: Some(file.clone()), boundary: parts.filter_map(part).collect() };
+        let contents = options.read()?.expect("a file with a path has contents");
+        is_unchanged(0, &file, contents.fingerprint())?;
+        mesh = Some((options, contents));
     }
     let reference = match &request["reference"] {
         Value::Null => None,
@@ -128,9 +128,10 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
     let row = match request["problem"].as_str() {
         Some(path) => {
             let path = found_beside(&options.directory, path);
-            is_unchanged(0, &path, &read(&path)?)?;
             let own = problem_file::read(&path).map_err(|e| e.to_string())?;
-            is_unchanged(1, &path, own.mesh_bytes().unwrap_or_default())?;
+            for (place, (_, fingerprint)) in own.fingerprints().into_iter().enumerate() {
+                is_unchanged(place, &path, fingerprint)?;
+            }
             match own {
                 AnyOwnProblem::One(own) => row::<1>(own.into(), of, mesh, &values),
                 AnyOwnProblem::Two(own) => row::<2>(own.into(), of, mesh, &values),
@@ -185,14 +186,14 @@ type Judged<'a> = (&'a NamedScheme, [usize; 2], Option<&'a (NamedScheme, usize)>
 fn row<const D: usize>(
     posed: Posed<D>,
     (scheme, levels, reference, precision): Judged<'_>,
-    mesh: Option<(MeshFile, Vec<u8>)>,
+    mesh: Option<(MeshFile, GmshFile)>,
     values: &[f64],
 ) -> Request<Row> {
     let study = posed.study(&|_| {})?;
     let solver = in_precision(precision, ActiveSet::default());
     let mut study = study.named_scheme(scheme).boxed_solver(solver).levels(each_once(&levels));
-    if let Some((file, bytes)) = mesh {
-        study = study.on_mesh(file.parse(&bytes, &|_| {})?);
+    if let Some((options, file)) = mesh {
+        study = study.on_mesh(options.mesh(&file, &|_| {})?);
     }
     if let Some((scheme, level)) = reference {
         study = study.named_reference(scheme, *level);

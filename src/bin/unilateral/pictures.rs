@@ -77,7 +77,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
 /// Draws one level, and writes the fields of the series.
 fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Failure> {
     let warn = |warning: String| warn(&warning);
-    let mesh = options.mesh.read(&warn)?;
+    let mesh = options.mesh.read_mesh(&warn)?;
     let study = |warn: &dyn Fn(String)| -> Request<Study<'_, D>> {
         let study = posed.clone().study(warn)?.named_scheme(&options.scheme);
         let study = match options.adaptive {

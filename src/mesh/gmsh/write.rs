@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::error::GmshError;
+use super::error::{GmshError, GmshErrorKind};
 use crate::instances::compiled;
 use crate::mesh::simplicial::Mesh;
 
@@ -17,7 +17,7 @@ struct Entity<'m> {
     elements: Vec<Vec<u32>>,
 }
 
-/// A mesh as the text of a Gmsh file. What [`parse`](super::parse) reads from it has the vertices of the mesh,
+/// A mesh as the text of a Gmsh file. What a [`GmshFile`](super::GmshFile) reads from it has the vertices of the mesh,
 /// bit by bit, its cells, and the names of regions and boundary groups, in the order of every mesh that is read;
 /// the tag of a node is the number of its vertex from one on. The file keeps the part of a boundary group whose name is that of a part; the part of any other group is left to a
 /// problem.
@@ -29,10 +29,12 @@ pub fn to_text<const D: usize>(mesh: &Mesh<D>) -> String {
 /// Writes a mesh to a file, as [`to_text`] makes it.
 ///
 /// # Errors
-/// [`GmshError::Unwritable`].
+/// [`GmshErrorKind::Unwritable`].
 pub fn write<const D: usize>(mesh: &Mesh<D>, path: &Path) -> Result<(), GmshError> {
-    std::fs::write(path, to_text(mesh))
-        .map_err(|source| GmshError::Unwritable { path: path.into(), source })
+    std::fs::write(path, to_text(mesh)).map_err(|error| {
+        let message = format!("cannot write {}: {error}", path.display());
+        GmshError::new(GmshErrorKind::Unwritable, message).caused_by(error)
+    })
 }
 
 fn text_of<const D: usize>(mesh: &Mesh<D>) -> String {
@@ -124,8 +126,8 @@ fn write_entities(
             }
             let _ = write!(text, " {}", entity.names.len());
             for name in entity.names {
-                let tag = names.iter().position(|known| known == name).map_or(0, |k| k + 1);
-                let _ = write!(text, " {tag}");
+                let known = names.iter().position(|known| known == name);
+                let _ = write!(text, " {}", 1 + known.expect("every name has been written"));
             }
             text.push_str(if *dimension == 0 { "\n" } else { " 0\n" });
         }

@@ -4,7 +4,7 @@ use crate::input::{excerpt, excerpts};
 use crate::mesh::BoundaryPart;
 use crate::mesh::{Mesh, describe_point};
 use crate::problem::{BoundaryFlux, Problem};
-use crate::problem_file::error::{ProblemFileError, ProblemFileFault};
+use crate::problem_file::error::{ProblemFileError, ProblemFileErrorKind};
 use crate::problem_file::table::{Formula, Source};
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
@@ -105,17 +105,23 @@ impl<const D: usize> Checks<'_, '_, D> {
                 let known = if known.is_empty() { "none".to_owned() } else { known };
                 let is_inside = entry.is_boundary && mesh.groups_inside().contains(name);
                 let name = excerpt(name);
-                let fault = match is_inside {
-                    true => ProblemFileFault::GroupInside { name, known },
-                    false => ProblemFileFault::UnknownGroup { kind, name, known },
+                let message = match is_inside {
+                    true => format!(
+                        "`{name}` lies inside the domain, between two cells: data are given on the boundary only, where the mesh has {known}"
+                    ),
+                    false => format!("the mesh has no {kind} `{name}`; it has {known}"),
                 };
-                return Err(self.source.error(entry.offset, fault));
+                let kind = ProblemFileErrorKind::UnknownGroup;
+                return Err(self.source.error(entry.offset, kind, message));
             }
         }
         for names in groups {
             if !names.iter().any(|name| self.parts.iter().any(|(known, _)| known == name)) {
-                let name = names.first().map(excerpt).unwrap_or_default();
-                return Err(self.source.error(0, ProblemFileFault::MissingBoundary { name }));
+                let name = excerpt(names.first().expect("a boundary group has a name"));
+                let message = format!(
+                    "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann or contact, or [boundary.default] for groups without one, if its kind is that of the name"
+                );
+                return Err(self.source.error(0, ProblemFileErrorKind::MissingBoundary, message));
             }
         }
         self.entries.iter().try_for_each(|entry| self.check_values(entry, mesh))?;
@@ -142,13 +148,15 @@ impl<const D: usize> Checks<'_, '_, D> {
                 let (one, other) = (quotient(-step), quotient(step));
                 let (least, most) = (one.min(other) - tolerance, one.max(other) + tolerance);
                 if gradient[k] < least || gradient[k] > most {
-                    let fault = ProblemFileFault::Gradient {
-                        component: k + 1,
-                        value: gradient[k],
-                        quotient: 0.5 * (one + other),
-                        at: describe_point(&x),
-                    };
-                    return Err(self.source.error(self.gradient_offset, fault));
+                    let message = format!(
+                        "component {} of exact.gradient is {} at {}, but difference quotients of exact.value are {}",
+                        k + 1,
+                        gradient[k],
+                        describe_point(&x),
+                        0.5 * (one + other)
+                    );
+                    let kind = ProblemFileErrorKind::Gradient;
+                    return Err(self.source.error(self.gradient_offset, kind, message));
                 }
             }
         }
@@ -161,13 +169,13 @@ impl<const D: usize> Checks<'_, '_, D> {
             if entry.allowed.holds(value) {
                 return Ok(());
             }
-            let fault = ProblemFileFault::Value {
-                datum: entry.datum.clone(),
-                value,
-                at: describe_point(x),
-                allowed: entry.allowed.describe(),
-            };
-            Err(self.source.error(entry.offset, fault))
+            let message = format!(
+                "{} is {value} at {}: it must be {}",
+                entry.datum,
+                describe_point(x),
+                entry.allowed.describe()
+            );
+            Err(self.source.error(entry.offset, ProblemFileErrorKind::Value, message))
         };
         let is_meant = |names: &[String]| match &entry.group {
             Some(name) => names.contains(name),

@@ -36,8 +36,9 @@ pub fn files<const D: usize>(work: &mut dyn FnMut(&Mesh<D>)) {
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "msh"));
     let mut n = 0;
     for path in paths {
-        if gmsh::dimension(&std::fs::read(&path).unwrap()).unwrap() == D {
-            let mesh = gmsh::read::<D>(&path).unwrap().mesh;
+        let file = gmsh::GmshFile::read(&path).unwrap();
+        if file.dimension() == D {
+            let mesh = file.mesh::<D>().unwrap().mesh;
             if mesh.n_cells() > 2 {
                 work(&mesh);
                 n += 1;

@@ -3,11 +3,11 @@
 use super::files::{INTERVAL, SQUARE, SQUARE_V2, TETRAHEDRON};
 use super::writer::{FORMS, Sample, interval, square, tetrahedron};
 use unilateral::mesh::gmsh;
-use unilateral::mesh::gmsh::{GmshMesh, GmshWarning};
+use unilateral::mesh::gmsh::{GmshFile, GmshMesh, GmshWarning};
 use unilateral::mesh::{BoundaryPart, Mesh};
 
 pub fn parse<const D: usize>(bytes: &[u8]) -> GmshMesh<D> {
-    gmsh::parse(bytes).unwrap_or_else(|e| panic!("{e}"))
+    GmshFile::parse(bytes).and_then(|file| file.mesh()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Volume by determinants, independent of the crate's geometry.
@@ -39,7 +39,7 @@ fn all_forms<const D: usize>(sample: &Sample) -> Mesh<D> {
     let first = parse::<D>(&sample.four(FORMS[0])).mesh;
     for form in FORMS {
         for bytes in [sample.four(form), sample.two(form)] {
-            assert_eq!(gmsh::dimension(&bytes).unwrap(), D);
+            assert_eq!(GmshFile::parse(&bytes[..]).unwrap().dimension(), D);
             let read = parse::<D>(&bytes);
             assert!(read.warnings.is_empty());
             assert_eq!(read.mesh.vertices(), first.vertices(), "{form:?}");

@@ -1,5 +1,6 @@
 //! Meshes that are written, and read again.
 
+use super::forms::parse;
 use unilateral::mesh::gmsh;
 use unilateral::prelude::*;
 
@@ -36,7 +37,7 @@ fn sorted(vertices: impl Iterator<Item = u32>, number: &[u64]) -> Vec<u64> {
 
 fn survives<const D: usize>(mesh: &Mesh<D>) {
     let text = gmsh::to_text(mesh);
-    let read = gmsh::parse::<D>(text.as_bytes()).unwrap();
+    let read = parse::<D>(text.as_bytes());
     assert!(read.warnings.is_empty());
     assert_eq!(read.mesh.vertices().len(), mesh.vertices().len());
     for (x, tag) in read.mesh.vertices().iter().zip(&read.node_tags) {

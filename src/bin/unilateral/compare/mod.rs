@@ -19,13 +19,12 @@ use watcher::Watcher;
 use crate::judge::write_requests;
 use crate::one_run::take_directory;
 use crate::shared::{
-    ORDER_TOLERANCE, Request, check_writable, complain, fingerprint, print, print_to, read,
-    use_threads, warn, write,
+    ORDER_TOLERANCE, Request, check_writable, complain, print, print_to, use_threads, warn, write,
 };
 
 use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
-use unilateral::mesh::gmsh;
+use unilateral::mesh::gmsh::GmshFile;
 use unilateral::problem_file::{self, AnyOwnProblem};
 use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
@@ -103,22 +102,14 @@ struct Chosen {
     scenes: Vec<AnyScene>,
     schemes: Vec<NamedScheme>,
     solvers: Vec<String>,
-    mesh: Option<(usize, Vec<u8>)>,
-    /// A problem of a file, in place of scenes, and the contents of the file.
-    own: Option<(AnyOwnProblem, Vec<u8>)>,
+    mesh: Option<GmshFile>,
+    /// A problem of a file, in place of scenes.
+    own: Option<AnyOwnProblem>,
 }
 
 impl Chosen {
     fn new(options: &Options) -> Request<Self> {
-        let mesh = match &options.mesh.path {
-            None => None,
-            Some(path) => {
-                let bytes = read(path)?;
-                let dimension =
-                    gmsh::dimension(&bytes).map_err(|e| format!("{}: {e}", path.display()))?;
-                Some((dimension, bytes))
-            }
-        };
+        let mesh = options.mesh.read()?;
         let schemes = choose_schemes(options)?;
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
@@ -138,15 +129,20 @@ impl Chosen {
                     let path = path.display();
                     return Err(format!("--{name} {x:?}: a parameter of scenes; {path} has none"));
                 }
-                let own = problem_file::read(path).map_err(|e| e.to_string())?;
-                Some((own, read(path)?))
+                Some(problem_file::read(path).map_err(|e| e.to_string())?)
             }
         };
         let scenes = match own {
             Some(_) => Vec::new(),
-            None => Self::scenes(options, mesh.as_ref().map(|m| m.0))?,
+            None => Self::scenes(options, mesh.as_ref().map(GmshFile::dimension))?,
         };
         Ok(Self { scenes, schemes, solvers, mesh, own })
+    }
+
+    /// The names and fingerprints of the files that have been read.
+    fn fingerprints(&self) -> Vec<(&'static str, String)> {
+        let of_mesh = self.mesh.iter().map(|file| ("mesh", file.fingerprint()));
+        of_mesh.chain(self.own.iter().flat_map(AnyOwnProblem::fingerprints)).collect()
     }
 
     fn scenes(options: &Options, mesh: Option<usize>) -> Request<Vec<AnyScene>> {
@@ -194,23 +190,22 @@ impl Chosen {
     /// Whether every row converged. Nothing runs and nothing is written before everything has been
     /// checked; afterwards no finished row is lost.
     fn run(self, options: &Options, interrupt: &Interrupt) -> Request<bool> {
+        let files = self.fingerprints();
         let Self { scenes, schemes, solvers, mesh, own } = self;
         let names = (&schemes[..], &solvers[..]);
-        let mesh = mesh.as_ref();
         let watcher = Watcher::new(options);
         let mut runs = Vec::new();
         for scene in scenes {
+            let mesh = mesh.as_ref();
             runs.extend(match scene {
                 AnyScene::One(of) => prepare::<1>(of.into(), options, names, mesh, &watcher)?,
                 AnyScene::Two(of) => prepare::<2>(of.into(), options, names, mesh, &watcher)?,
                 AnyScene::Three(of) => prepare::<3>(of.into(), options, names, mesh, &watcher)?,
             });
         }
-        let mut files: Vec<(&str, String)> =
-            mesh.iter().map(|(_, bytes)| ("mesh", fingerprint(bytes))).collect();
-        if let Some((own, text)) = own {
-            let mesh = own.mesh_bytes().unwrap_or_default();
-            files = vec![("problem", fingerprint(&text)), ("mesh", fingerprint(mesh))];
+        // the runs have the meshes they need
+        drop(mesh);
+        if let Some(own) = own {
             runs.extend(match own {
                 AnyOwnProblem::One(of) => prepare::<1>(of.into(), options, names, None, &watcher)?,
                 AnyOwnProblem::Two(of) => prepare::<2>(of.into(), options, names, None, &watcher)?,

@@ -12,6 +12,7 @@ use crate::shared::{Request, each_once, fields_with_bound};
 use unilateral::error::Error;
 use unilateral::inequality::solver_by_name;
 use unilateral::linear::LinearMethod;
+use unilateral::mesh::gmsh::GmshFile;
 use unilateral::nested::Solved;
 use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
@@ -37,7 +38,7 @@ pub fn prepare<'a, const D: usize>(
     posed: Posed<D>,
     options: &'a Options,
     (schemes, solvers): (&[NamedScheme], &[String]),
-    mesh: Option<&(usize, Vec<u8>)>,
+    mesh: Option<&GmshFile>,
     watcher: &'a Watcher,
 ) -> Request<Option<Run<'a>>> {
     let name = posed.name().to_owned();
@@ -97,9 +98,9 @@ pub fn prepare<'a, const D: usize>(
         study = study.named_reference(scheme, *level);
     }
     let mut place = place(options, &name);
-    if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh.path) {
+    if let (Some(file), Some(path)) = (mesh, &options.mesh.path) {
         place = format!("{}, {place}", path.display());
-        study = study.on_mesh(options.mesh.parse(bytes, &|warning| watcher.warn_once(warning))?);
+        study = study.on_mesh(options.mesh.mesh(file, &|warning| watcher.warn_once(warning))?);
     }
     match study.check() {
         Err(Error::UnfitMesh { .. }) if !options.scenes_are_named() => return Ok(None),

@@ -15,6 +15,7 @@ pub use options::Options;
 use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
+use unilateral::mesh::gmsh::GmshFile;
 use unilateral::problem_file::{self, AnyOwnProblem};
 use unilateral::scenes::{self, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
@@ -56,19 +57,21 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
     let bar = bar(options.quiet, 0, template);
     let labels = RefCell::new(BTreeSet::new());
+    let file = options.mesh.read()?;
+    let with = (&schemes[..], file.as_ref());
     let mut studies = Vec::new();
     for name in options.scenes() {
         studies.push(match scene(options, &name)? {
-            AnyScene::One(s) => prepare::<1>(options, &schemes, &bar, s.into(), &labels),
-            AnyScene::Two(s) => prepare::<2>(options, &schemes, &bar, s.into(), &labels),
-            AnyScene::Three(s) => prepare::<3>(options, &schemes, &bar, s.into(), &labels),
+            AnyScene::One(s) => prepare::<1>(options, with, &bar, s.into(), &labels),
+            AnyScene::Two(s) => prepare::<2>(options, with, &bar, s.into(), &labels),
+            AnyScene::Three(s) => prepare::<3>(options, with, &bar, s.into(), &labels),
         }?);
     }
     if let Some(path) = &options.problem {
         studies.push(match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) => prepare::<1>(options, &schemes, &bar, own.into(), &labels),
-            AnyOwnProblem::Two(own) => prepare::<2>(options, &schemes, &bar, own.into(), &labels),
-            AnyOwnProblem::Three(own) => prepare::<3>(options, &schemes, &bar, own.into(), &labels),
+            AnyOwnProblem::One(own) => prepare::<1>(options, with, &bar, own.into(), &labels),
+            AnyOwnProblem::Two(own) => prepare::<2>(options, with, &bar, own.into(), &labels),
+            AnyOwnProblem::Three(own) => prepare::<3>(options, with, &bar, own.into(), &labels),
         }?);
     }
     if let (Some(subject), labels) = (&options.subject, labels.borrow())
@@ -80,6 +83,8 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
             format!("--subject {subject}: no scheme has this label; there are: {labels}").into()
         );
     }
+    // the studies have the meshes they need
+    drop(file);
     check_writable(&options.save)?;
     take_directory(&options.out)?;
     end_at_interrupt("the report has the runs so far and is not complete")?;
@@ -142,7 +147,7 @@ type Run<'a> = Box<dyn FnOnce(&mut WorkReport) -> Request<()> + 'a>;
 /// Checks a study with the settings of the options.
 fn prepare<'a, const D: usize>(
     options: &'a Options,
-    schemes: &[NamedScheme],
+    (schemes, file): (&[NamedScheme], Option<&GmshFile>),
     bar: &'a ProgressBar,
     posed: Posed<D>,
     labels: &RefCell<BTreeSet<String>>,
@@ -164,7 +169,7 @@ fn prepare<'a, const D: usize>(
             warn(&warning)
         }
     };
-    let mesh = options.mesh.read(&warn)?;
+    let mesh = file.map(|file| options.mesh.mesh::<D>(file, &warn)).transpose()?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
     let mut study = posed.work_precision(&warn)?.levels(options.levels(D, has_mesh));
     if let Some(mesh) = mesh {
@@ -289,7 +294,7 @@ fn run_one(options: &Options) -> Request<()> {
 }
 
 fn once<const D: usize>(options: &Options, posed: Posed<D>) -> Request<()> {
-    let mesh = options.mesh.read(&|_| {})?;
+    let mesh = options.mesh.read_mesh(&|_| {})?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
     let mut study = posed.study(&|_| {})?;
     if let Some(mesh) = mesh {
