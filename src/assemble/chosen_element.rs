@@ -1,14 +1,12 @@
 //! The element of a scheme in the basis that a constraint set needs.
 
-use super::shared_rows::{CellLoops, loops_of};
 use super::space::AnyElement;
 use crate::constraint::{CONSTRAINT_SETS, ConstraintSet, constraint_set_by_name};
 use crate::element::{ElementVisitor, Node, ReferenceElement};
 
-/// An element without its type, with the loops over its shared rows.
+/// An element without its type.
 pub(crate) struct ChosenElement<const D: usize> {
     pub element: AnyElement,
-    pub loops: Option<CellLoops<D>>,
     /// The names of the constraint sets that the element of the scheme offers an obstacle, or a
     /// Signorini condition.
     pub offered: fn(contact: bool) -> Vec<String>,
@@ -40,11 +38,7 @@ impl<const D: usize> ElementVisitor<D> for Erase {
     type Output = ChosenElement<D>;
 
     fn visit<E: ReferenceElement<D>>(self) -> ChosenElement<D> {
-        ChosenElement {
-            element: AnyElement::of::<E, D>(),
-            loops: loops_of::<D, E>(),
-            offered: offered::<E, D>,
-        }
+        ChosenElement { element: AnyElement::of::<E, D>(), offered: offered::<E, D> }
     }
 }
 

@@ -16,7 +16,6 @@ impl<const D: usize> ReferenceElement<D> for CrouzeixRaviart {
     const N: usize = D + 1;
     const DEGREE: usize = 1;
     const LAYOUT: Layout = Layout { vertex: 0, edge: 0, facet: 1, cell: 0 };
-    const COMPILED: bool = true;
 
     #[inline(always)]
     fn values(lambda: &[f64], out: &mut [f64]) {

@@ -14,7 +14,6 @@ impl<const D: usize> ReferenceElement<D> for P1 {
     const N: usize = D + 1;
     const DEGREE: usize = 1;
     const LAYOUT: Layout = Layout { vertex: 1, edge: 0, facet: 0, cell: 0 };
-    const COMPILED: bool = true;
 
     #[inline(always)]
     fn values(lambda: &[f64], out: &mut [f64]) {

@@ -17,7 +17,6 @@ impl<const D: usize> ReferenceElement<D> for P2 {
     const N: usize = (D + 1) * (D + 2) / 2;
     const DEGREE: usize = 2;
     const LAYOUT: Layout = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
-    const COMPILED: bool = true;
 
     #[inline(always)]
     fn values(lambda: &[f64], out: &mut [f64]) {

@@ -64,10 +64,6 @@ pub trait ReferenceElement<const D: usize>: Copy + Send + Sync + 'static {
     const BASIS_DEGREE: usize = Self::DEGREE;
     /// Unknowns at vertices, edges, facets and inside cells.
     const LAYOUT: Layout;
-    /// Whether this library has compiled the assembly of the element's shared unknowns; no other
-    /// crate sets it.
-    #[doc(hidden)]
-    const COMPILED: bool = false;
     /// Writes the `N` basis functions at a point; `lambda` has `D + 1` entries.
     fn values(lambda: &[f64], out: &mut [f64]);
     /// Writes the derivatives of the `N` basis functions with respect to the `D + 1` barycentric

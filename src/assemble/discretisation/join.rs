@@ -58,15 +58,14 @@ impl<const D: usize> Parts<D> {
         mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
     ) -> Result<Discretisation<'a, D>, Error> {
-        let Self { element: ChosenElement { element, loops, offered }, form, pins } = self;
+        let Self { element: ChosenElement { element, offered }, form, pins } = self;
         check_form::<D>(&element, &*form)?;
         let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, offered)?;
         space.check_penalty_factor(&*form)?;
-        let shared_rows = SharedRows::new(loops);
         Ok(Discretisation {
             space,
             form,
-            shared_rows,
+            shared_rows: SharedRows::default(),
             prepared: OnceLock::new(),
             contradictions: OnceLock::new(),
         })

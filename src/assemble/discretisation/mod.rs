@@ -32,7 +32,7 @@ use crate::problem::Problem;
 pub struct Discretisation<'a, const D: usize> {
     pub(crate) space: Space<'a, D>,
     form: Box<dyn FacetForm<D>>,
-    shared_rows: SharedRows<D>,
+    shared_rows: SharedRows,
     /// What facet forms need of cells and facets, computed when first needed.
     prepared: OnceLock<(Metrics, FacetCoefficients)>,
     /// On a part what its bounds, once found, leave to be judged with the data of all parts.
