@@ -107,7 +107,12 @@ impl<const D: usize> Filling<'_, '_, D> {
         }
         if self.lifted {
             let coupled = Coupled::of::<D>(self.neighbours, cell, true);
-            return (cells.map(|other| coupled.position(other as usize)), coupled.position(cell));
+            // behind a facet of the boundary is no cell, and its entry is not read
+            let across = cells.map(|other| match other {
+                u32::MAX => usize::MAX,
+                other => coupled.position(other as usize),
+            });
+            return (across, coupled.position(cell));
         }
         // ranks by comparison of all pairs, without branches
         let me = cell as u32;
