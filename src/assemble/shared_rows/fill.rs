@@ -158,19 +158,21 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
         mut matrix: M,
     ) {
         let mut numbers = Vec::new();
-        let n = self.unknowns.count();
+        // a copy stays in registers, whatever is written to the values
+        let of_cell = self.unknowns;
+        let n = of_cell.count();
         let square = n * n;
         let positions = &self.positions.in_rows[cells.start * square..cells.end * square];
         let unknowns = self.dofs.of_cells(cells.clone(), &mut numbers);
         let each = unknowns.chunks_exact(n).zip(positions.chunks_exact(square)).zip(cells);
         for ((unknowns, positions), cell) in each {
-            let has = |i: usize| targets[self.unknowns.kind(i)].rows.contains(&unknowns[i]);
+            let has = |i: usize| targets[of_cell.kind(i)].rows.contains(&unknowns[i]);
             if !INSIDE && !(0..n).any(has) {
                 continue;
             }
             matrix.of_cell(cell);
             for i in 0..n {
-                let target = &mut targets[self.unknowns.kind(i)];
+                let target = &mut targets[of_cell.kind(i)];
                 if INSIDE || target.rows.contains(&unknowns[i]) {
                     let row = unknowns[i] as usize;
                     let start = self.row_starts[row] as usize - target.base;

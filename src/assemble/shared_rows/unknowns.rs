@@ -10,6 +10,7 @@ pub(super) const ANY: usize = 0;
 ///
 /// A constant `N` unrolls the loops over them; then one kind owns the first `D + 1` unknowns and one
 /// kind the others, if there are others: so it is with P1, P2 and Crouzeix-Raviart elements.
+#[derive(Clone, Copy)]
 pub(super) struct CellUnknowns<const D: usize, const N: usize = ANY> {
     count: usize,
     kinds: [u8; MAX_BASIS],
