@@ -16,13 +16,13 @@ use crate::assemble::Discretisation;
 use crate::error::Error;
 use crate::inequality::{InitialGuess, Outcome, Solution};
 use crate::mesh::Mesh;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 impl<'a, const D: usize> NestedIteration<'a, D> {
     /// A scheme on a mesh, and its inequality: [`NestedIteration::repeat`] times, with the smallest time.
     fn assembled(
         &self,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         mesh: &'a Mesh<D>,
     ) -> Result<(Discretisation<'a, D>, Inequality<f64>, f64), Error> {
         let discretise = || Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature);
@@ -60,7 +60,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     pub(super) fn solve_scheme(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
     ) -> Result<Solved<'a, D>, Error> {
         self.enter(Phase::Start);
         let start = self.start(position, scheme)?;
@@ -114,7 +114,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     fn start(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
     ) -> Result<Option<Arc<P1Solution>>, Error> {
         let mesh = self.p1.meshes.mesh(position);
         let unknowns = unknowns(mesh, scheme.layout());

@@ -8,7 +8,7 @@ use crate::input::excerpt;
 use crate::mesh::{BoundaryPart, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Problem};
 use crate::real::Precision;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// More outer steps than a solve takes on any scene but with bounds at nodes of broken quadratics.
 const MANY_ACTIVE_SETS: usize = 28;
@@ -173,7 +173,7 @@ pub(super) fn dirichlet_jumps<const D: usize>(problem: &Problem<D>, mesh: &Mesh<
 pub(super) fn active_sets<const D: usize>(
     solution: &Solution<f64>,
     problem: &Problem<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
 ) -> Option<String> {
     let returns =
         matches!(solution.outcome, Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled);
@@ -185,7 +185,7 @@ pub(super) fn active_sets<const D: usize>(
 /// them and nothing else is bound.
 fn advice_on_bounds<const D: usize>(
     problem: &Problem<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
 ) -> Option<String> {
     let set = problem.constraint_set();
     let present = scheme.constraint_on(set)?;

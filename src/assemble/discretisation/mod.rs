@@ -152,7 +152,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// [owner of each cell](crate::mesh::Part::owners).
     ///
     /// Of an unknown of own cells this is the owner on the whole mesh, if the part has as many layers as the
-    /// scheme [needs](crate::scheme::AnyScheme#method.layers). The others are none of the part's own either
+    /// scheme [needs](crate::scheme::Scheme#method.layers). The others are none of the part's own either
     /// way.
     ///
     /// # Panics

@@ -26,7 +26,7 @@ use crate::linear::krylov::symmetric_part;
 use crate::linear::{FactorError, Preconditioner};
 use crate::mesh::Part;
 use crate::problem::Problem;
-use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
+use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 
 /// Multigrid that is a part of a preconditioner is set up again once more unknowns have become free or fixed than this
 /// number of layers of cells along a free boundary of the size of the domain has. On radial-2d at 1024 SIPG takes 31
@@ -109,7 +109,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
     pub fn solve_on(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
     ) -> Result<DistributedSolved<'a, D>, ExchangeError> {
         let part = self.hierarchy.part(position);
         agree_on_data(self.check(scheme, part), &part.cells, &*self.process.exchange)?;
@@ -148,7 +148,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
     ///
     /// # Errors
     /// [`Error::Parameter`].
-    pub fn check(&self, scheme: &dyn AnyScheme<D>, part: &Part<D>) -> Result<(), Error> {
+    pub fn check(&self, scheme: &dyn Scheme<D>, part: &Part<D>) -> Result<(), Error> {
         let refuse = |parameter, value: &str, allowed: &str| {
             let (value, allowed) = (value.to_owned(), allowed.to_owned());
             Err(Error::Parameter { parameter, value, allowed })
@@ -244,7 +244,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
     ) -> Result<Auxiliary, ExchangeError> {
         // the constraint set of the problem is for the scheme
         let problem = self.problem.clone().on(Nodes);
-        let new = |scheme: &dyn AnyScheme<D>| {
+        let new = |scheme: &dyn Scheme<D>| {
             System::new(scheme, &problem, part, self.quadrature, &self.process.exchange)
         };
         let is_of_facets = layout.vertex + layout.edge + layout.cell == 0;
@@ -357,7 +357,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
             system.inequality.start = Start::Contact(start.contact.clone());
             guess = guess.values(start.values.clone());
         }
-        let layout = AnyScheme::<D>::layout(&ConformingP1);
+        let layout = <dyn Scheme<D>>::layout(&ConformingP1);
         let (solution, _) = self.run(&system, layout, part, &guess)?;
         let mut p1 = P1OnPart::new(&system, &solution);
         p1.seconds = clock.elapsed().as_secs_f64() + start.map_or(0.0, |start| start.seconds);

@@ -13,7 +13,7 @@ use crate::distributed::exchange::Exchange;
 use crate::distributed::numbering::Numbering;
 use crate::mesh::Part;
 use crate::problem::Problem;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// A scheme applied to a problem on a part of a mesh, with the numbers of its unknowns over all parts.
 pub(super) struct System<'a, const D: usize> {
@@ -30,7 +30,7 @@ impl<'a, const D: usize> System<'a, D> {
     /// # Errors
     /// [`ExchangeError::Failed`] in all parts with the error of assembly of the lowest part that has one.
     pub fn new(
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         problem: &'a Problem<D>,
         part: &'a Part<D>,
         quadrature: DataQuadrature,

@@ -8,7 +8,7 @@ use crate::distributed::agree::agree;
 use crate::distributed::error::ExchangeError;
 use crate::error::Error;
 use crate::mesh::Mesh;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// How many own rows of all parts were compared with those of the whole mesh, and in how many of them bits differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl<const D: usize> DistributedSolved<'_, D> {
     /// [`ExchangeError::Failed`] with the error of assembly, and those of the exchange.
     pub fn verify(
         &self,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         whole: &Mesh<D>,
         quadrature: DataQuadrature,
     ) -> Result<Differences, ExchangeError> {
