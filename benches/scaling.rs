@@ -74,7 +74,7 @@ const ON_MESH: Case = ("2d-p1-gmsh", 2, false, "p1", 0);
 /// What one process tells another.
 type Failure = Box<dyn std::error::Error>;
 
-fn scheme<const D: usize>(name: &str) -> Box<dyn AnyScheme<D>> {
+fn scheme<const D: usize>(name: &str) -> Box<dyn Scheme<D>> {
     match name {
         "p1" => Box::new(ConformingP1),
         "cr" => Box::new(NonconformingP1),

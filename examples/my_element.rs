@@ -6,6 +6,8 @@
 //! D. N. Arnold, F. Brezzi, M. Fortin, Calcolo 21 (1984), 337-344, where it is one half of an element
 //! for the Stokes problem.
 
+use std::sync::Arc;
+
 use unilateral::element::Layout;
 use unilateral::kit::check_scheme;
 use unilateral::mesh::BoxDomain;
@@ -14,44 +16,41 @@ use unilateral::prelude::*;
 /// Values at the vertices and at the barycentre: `b = (D + 1)^(D + 1) l_0 ... l_D` is one there and
 /// zero on the boundary of the cell, `l_i - b / (D + 1)` is one at vertex `i` and zero at the other
 /// nodes.
-#[derive(Clone, Copy)]
+#[derive(Debug)]
 struct P1WithBubble;
 
-impl<const D: usize> ReferenceElement<D> for P1WithBubble {
-    const N: usize = D + 2;
+impl<const D: usize> Element<D> for P1WithBubble {
     /// Not all quadratics are in the span: orders are those of linears.
-    const DEGREE: usize = 1;
-    /// The bubble is a product of `D + 1` linears: integrals of the basis need rules for it.
-    const BASIS_DEGREE: usize = D + 1;
-    const LAYOUT: Layout = Layout { vertex: 1, edge: 0, facet: 0, cell: 1 };
-
-    fn values(lambda: &[f64], out: &mut [f64]) {
-        let n = (D + 1) as f64;
-        let bubble = lambda.iter().fold(1.0, |product, &l| product * n * l);
-        for i in 0..=D {
-            out[i] = lambda[i] - bubble / n;
-        }
-        out[D + 1] = bubble;
+    fn degree(&self) -> usize {
+        1
     }
-    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
+    /// The bubble is a product of `D + 1` linears: integrals of the basis need rules for it.
+    fn basis_degree(&self) -> usize {
+        D + 1
+    }
+    fn layout(&self) -> Layout {
+        Layout { vertex: 1, edge: 0, facet: 0, cell: 1 }
+    }
+    fn node(&self, i: usize) -> Node {
+        if i <= D { Node::vertex(i) } else { Node::barycentre(D) }
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
         let n = (D + 1) as f64;
-        let mut bubble = [0.0; 4];
+        out[D + 1] = lambda.iter().fold(1.0, |product, l| product * n * l);
+        for i in 0..=D {
+            out[i] = lambda[i] - out[D + 1] / n;
+        }
+    }
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
+        let n = (D + 1) as f64;
         for k in 0..=D {
-            bubble[k] = (0..=D).filter(|&l| l != k).fold(n, |product, l| product * n * lambda[l]);
+            let others = (0..=D).filter(|&l| l != k);
+            out[D + 1][k] = others.fold(n, |product, l| product * n * lambda[l]);
         }
         for i in 0..=D {
-            out[i] = bubble.map(|slope| -slope / n);
+            out[i] = out[D + 1].map(|slope| -slope / n);
             out[i][i] += 1.0;
         }
-        out[D + 1] = bubble;
-    }
-    fn node(i: usize) -> Node {
-        if i <= D {
-            return Node::vertex(i);
-        }
-        let mut barycentre = [0.0; 4];
-        barycentre[..=D].fill(1.0 / (D + 1) as f64);
-        Node::value(Entity::Cell, barycentre)
     }
 }
 
@@ -59,14 +58,11 @@ impl<const D: usize> ReferenceElement<D> for P1WithBubble {
 struct WithBubble;
 
 impl<const D: usize> Scheme<D> for WithBubble {
-    type Element = P1WithBubble;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
     fn name(&self) -> &str {
         "p1-bubble"
     }
-    fn facet(&self, _: &Mesh<D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P1WithBubble)
     }
     /// Those of linears on an equation; under an inequality the values at nodes are a set for which
     /// nothing is claimed here.
@@ -91,8 +87,8 @@ impl ConstraintSet for OnlyVertices {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    print!("{}", check_scheme::<2, _>(&WithBubble)?);
-    print!("{}", check_scheme::<3, _>(&WithBubble)?);
+    print!("{}", check_scheme::<2>(&WithBubble)?);
+    print!("{}", check_scheme::<3>(&WithBubble)?);
 
     let value = |x: &Point<2>| (2.0 * x[0] - x[1]).sin();
     let problem = Problem::new()

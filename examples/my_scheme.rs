@@ -4,6 +4,8 @@
 //!
 //! C. Dawson, S. Sun, M. F. Wheeler, Comput. Methods Appl. Mech. Engrg. 193 (2004), 2565-2580.
 
+use std::sync::Arc;
+
 use unilateral::kit::check_scheme;
 use unilateral::prelude::*;
 
@@ -11,9 +13,6 @@ use unilateral::prelude::*;
 struct Incomplete(f64);
 
 impl<const D: usize> FacetForm<D> for Incomplete {
-    fn uses_flux(&self) -> bool {
-        true
-    }
     fn is_symmetric(&self) -> bool {
         false
     }
@@ -25,29 +24,27 @@ impl<const D: usize> FacetForm<D> for Incomplete {
     }
 }
 
-/// An element, a facet form and a way to impose Dirichlet data.
-struct Iipg {
-    sigma: f64,
-}
+/// A name, an element and a facet form, which imposes Dirichlet data too.
+struct Iipg(f64);
 
 impl<const D: usize> Scheme<D> for Iipg {
-    type Element = Broken<P1>;
-    type Facet = Incomplete;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     fn name(&self) -> &str {
         "iipg"
     }
-    fn facet(&self, _: &Mesh<D>) -> Incomplete {
-        Incomplete(self.sigma)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(P1))
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(Incomplete(self.0))
     }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    print!("{}", check_scheme::<2, _>(&Iipg { sigma: 10.0 })?);
+    print!("{}", check_scheme::<2>(&Iipg(10.0))?);
     let report = Study::<2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
         .scheme(Sipg::default())
-        .scheme(Iipg { sigma: 10.0 })
+        .scheme(Iipg(10.0))
         .levels([8, 16, 32])
         .run()?;
     print!("{report}");

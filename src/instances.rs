@@ -58,12 +58,6 @@ macro_rules! compiled {
 }
 pub(crate) use compiled;
 
-/// The entry of a table that has this type, if there is one.
-#[cfg(not(test))]
-pub(crate) fn look_up<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> Option<F> {
-    entry_of(table, TypeId::of::<F>())?.downcast_ref::<F>().copied()
-}
-
 /// The entry of a table of scalars or dimensions that has this type.
 ///
 /// # Panics
@@ -78,15 +72,8 @@ pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
 
 /// The entry of a type, found by a function that does not depend on the type.
 #[cfg(not(test))]
-fn entry_of<'t>(table: &[&'t (dyn Any + Sync)], id: TypeId) -> Option<&'t dyn Any> {
-    let entry = table.iter().copied().find(|entry| (**entry).type_id() == id)?;
-    Some(entry)
-}
-
-/// As [`entry_of`], where there has to be one.
-#[cfg(not(test))]
 fn required_entry<'t>(table: &[&'t (dyn Any + Sync)], id: TypeId) -> &'t dyn Any {
-    match entry_of(table, id) {
+    match table.iter().copied().find(|entry| (**entry).type_id() == id) {
         Some(entry) => entry,
         None => panic!("functions are compiled for f64 and f32 in one, two and three dimensions"),
     }

@@ -2,7 +2,7 @@
 
 pub use crate::assemble::Discretisation;
 pub use crate::constraint::{BoundBy, CellMeans, ConstraintSet, FacetMeans, Midpoints, Nodes};
-pub use crate::element::{Broken, CrouzeixRaviart, Entity, Node, P1, P2, ReferenceElement};
+pub use crate::element::{Broken, CrouzeixRaviart, Element, Entity, Node, P1, P2};
 pub use crate::error::Error;
 pub use crate::facet::{
     DirichletBy, FacetForm, FacetView, Lifts, NoFacets, PenaltyRule, Trace, WeightRule,

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::mesh::{Mesh, Part};
 use crate::nested::Solved;
 use crate::processes::{OverParts, agree};
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// How many own rows of all parts were compared with those of the whole mesh, and in how many of them bits differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl Differences {
     /// [`Error::Processes`] with the error of assembly, and those of the exchange.
     pub fn from_whole<const D: usize>(
         solved: &Solved<'_, D>,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         whole: &Mesh<D>,
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {

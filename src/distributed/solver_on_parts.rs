@@ -14,7 +14,7 @@ use crate::linear::krylov::symmetric_part;
 use crate::linear::{FactorError, Preconditioner};
 use crate::nested::{System, SystemSolver};
 use crate::processes::{OverParts, agree};
-use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
+use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 
 /// Multigrid that is a part of a preconditioner is set up again once more unknowns have become free or fixed than this
 /// number of layers of cells along a free boundary of the size of the domain has. On radial-2d at 1024 SIPG takes 31
@@ -209,7 +209,7 @@ impl<const D: usize> Solve<'_, '_, D> {
         // the constraint set of the problem is for the scheme
         let problem = self.system.discretisation().problem().clone().on(Nodes);
         let is_penalised = inequality.penalised.is_some();
-        let scheme: &dyn AnyScheme<D> = if is_penalised { &NonconformingP1 } else { &ConformingP1 };
+        let scheme: &dyn Scheme<D> = if is_penalised { &NonconformingP1 } else { &ConformingP1 };
         let beside = self.system.beside(scheme, &problem)?;
         let Some(over_parts) = beside.over_parts() else {
             unreachable!("it is in the same place as the system")

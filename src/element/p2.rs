@@ -1,9 +1,11 @@
 //! Quadratic Lagrange elements.
 
+use std::sync::Arc;
+
 use super::basis::Basis;
+use super::definition::{Element, Layout};
 use super::node::Node;
 use super::quadratic_cell_mean::QuadraticCellMean;
-use super::reference_element::{ElementVisitor, Layout, ReferenceElement};
 use crate::mesh::edge_vertices;
 
 /// Continuous piecewise quadratics: the values at the vertices, then those at the midpoints of the
@@ -13,14 +15,14 @@ use crate::mesh::edge_vertices;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct P2;
 
-impl<const D: usize> ReferenceElement<D> for P2 {
-    const N: usize = (D + 1) * (D + 2) / 2;
-    const DEGREE: usize = 2;
-    const LAYOUT: Layout = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
-    const COMPILED: bool = true;
-
-    #[inline(always)]
-    fn values(lambda: &[f64], out: &mut [f64]) {
+impl<const D: usize> Element<D> for P2 {
+    fn degree(&self) -> usize {
+        2
+    }
+    fn layout(&self) -> Layout {
+        Layout { vertex: 1, edge: 1, facet: 0, cell: 0 }
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
         for (value, &l) in out[..=D].iter_mut().zip(lambda) {
             *value = l * (2.0 * l - 1.0);
         }
@@ -28,8 +30,7 @@ impl<const D: usize> ReferenceElement<D> for P2 {
             *value = 4.0 * lambda[i] * lambda[j];
         }
     }
-    #[inline(always)]
-    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
         for (i, row) in out[..=D].iter_mut().enumerate() {
             *row = [0.0; 4];
             row[i] = 4.0 * lambda[i] - 1.0;
@@ -40,10 +41,10 @@ impl<const D: usize> ReferenceElement<D> for P2 {
             row[j] = 4.0 * lambda[i];
         }
     }
-    fn node(i: usize) -> Node {
+    fn node(&self, i: usize) -> Node {
         if i <= D { Node::vertex(i) } else { Node::midpoint(i - D - 1) }
     }
-    fn broken_in_basis<V: ElementVisitor<D>>(basis: Basis, visitor: V) -> Option<V::Output> {
-        (basis == Basis::CellMean).then(|| visitor.visit::<QuadraticCellMean<P2>>())
+    fn broken_in_basis(&self, basis: Basis) -> Option<Arc<dyn Element<D>>> {
+        (basis == Basis::CellMean).then(|| Arc::new(QuadraticCellMean) as _)
     }
 }

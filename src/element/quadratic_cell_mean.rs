@@ -1,20 +1,21 @@
 //! Quadratics in a basis that has the mean over the cell among its unknowns.
 
+use super::definition::{Element, Layout};
 use super::node::Node;
-use super::reference_element::{Layout, ReferenceElement};
+use super::p2::P2;
 
-/// Discontinuous quadratics with the nodes of `E`, which is [`P2`](super::P2), except that the mean over the cell replaces the
+/// Discontinuous quadratics with the nodes of [`P2`], except that the mean over the cell replaces the
 /// value at the midpoint of the last edge.
 ///
-/// The mean is `sum_i m_i v_i` over the nodes of `E`, with `m = (2 - D) / ((D + 1)(D + 2))` at
+/// The mean is `sum_i m_i v_i` over the nodes of `P2`, with `m = (2 - D) / ((D + 1)(D + 2))` at
 /// vertices and `4 / ((D + 1)(D + 2))` at midpoints: Simpson's rule in one dimension, the mean of
-/// the three midpoints in two. With the functions `phi` of `E` and `e` the last edge the basis is
+/// the three midpoints in two. With the functions `phi` of `P2` and `e` the last edge the basis is
 /// `phi_i - m_i / m_e phi_e`, and `phi_e / m_e` for the mean. The replaced node is a midpoint because
 /// in two dimensions `m = 0` at vertices.
 ///
-/// The space is that of [`Broken<E>`](super::Broken).
+/// The space is that of [`Broken(P2)`](super::Broken).
 #[derive(Clone, Copy, Debug, Default)]
-pub struct QuadraticCellMean<E>(pub E);
+pub struct QuadraticCellMean;
 
 /// The mean of function `i` of quadratic Lagrange elements over the cell.
 const fn mean(dimension: usize, i: usize) -> f64 {
@@ -22,25 +23,33 @@ const fn mean(dimension: usize, i: usize) -> f64 {
     numerator / ((dimension + 1) * (dimension + 2)) as f64
 }
 
-impl<const D: usize, E: ReferenceElement<D>> ReferenceElement<D> for QuadraticCellMean<E> {
-    const N: usize = E::N;
-    const DEGREE: usize = 2;
-    const LAYOUT: Layout = Layout::in_cells(E::N);
+/// The number of the last edge's function.
+const fn last(dimension: usize) -> usize {
+    (dimension + 1) * (dimension + 2) / 2 - 1
+}
 
-    #[inline(always)]
-    fn values(lambda: &[f64], out: &mut [f64]) {
-        E::values(lambda, out);
-        let last = E::N - 1;
+impl<const D: usize> Element<D> for QuadraticCellMean {
+    fn degree(&self) -> usize {
+        2
+    }
+    fn layout(&self) -> Layout {
+        Layout::in_cells(last(D) + 1)
+    }
+    fn node(&self, i: usize) -> Node {
+        if i == last(D) { Node::cell_mean() } else { Element::<D>::node(&P2, i) }
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
+        Element::<D>::values(&P2, lambda, out);
+        let last = last(D);
         let of_mean = out[last] / mean(D, last);
         for (i, value) in out[..last].iter_mut().enumerate() {
             *value -= mean(D, i) * of_mean;
         }
         out[last] = of_mean;
     }
-    #[inline(always)]
-    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
-        E::derivatives(lambda, out);
-        let last = E::N - 1;
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
+        Element::<D>::derivatives(&P2, lambda, out);
+        let last = last(D);
         let of_mean = out[last].map(|slope| slope / mean(D, last));
         for (i, row) in out[..last].iter_mut().enumerate() {
             for (slope, &of_mean) in row.iter_mut().zip(&of_mean) {
@@ -48,8 +57,5 @@ impl<const D: usize, E: ReferenceElement<D>> ReferenceElement<D> for QuadraticCe
             }
         }
         out[last] = of_mean;
-    }
-    fn node(i: usize) -> Node {
-        if i + 1 == E::N { Node::cell_mean() } else { E::node(i) }
     }
 }

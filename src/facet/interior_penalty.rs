@@ -49,9 +49,6 @@ impl InteriorPenalty {
 }
 
 impl<const D: usize> FacetForm<D> for InteriorPenalty {
-    fn uses_flux(&self) -> bool {
-        true
-    }
     fn is_symmetric(&self) -> bool {
         self.symmetry == Symmetry::Symmetric
     }

@@ -48,8 +48,9 @@ pub struct FacetLifts {
     pub eta: f64,
     /// The degree of the lifts.
     pub lift_degree: usize,
-    /// Whether the form needs `eta` above the number of facets of a cell.
-    pub bounded: bool,
+    /// Whether `int alpha r(u) . r(v)` is added, with which the form is coercive for every positive `eta`;
+    /// without it `eta` must be above the number of facets of a cell.
+    pub with_all_lifts: bool,
 }
 
 impl FacetLifts {
@@ -63,8 +64,8 @@ impl FacetLifts {
 }
 
 impl<const D: usize> FacetForm<D> for FacetLifts {
-    fn uses_flux(&self) -> bool {
-        true
+    fn is_lifted(&self) -> bool {
+        self.with_all_lifts
     }
     fn moments(&self, _: usize) -> usize {
         self.lift_degree
@@ -87,9 +88,9 @@ impl<const D: usize> FacetForm<D> for FacetLifts {
         let (eta, rule) = (Some(self.eta), Some("eta int r_F . r_F".to_owned()));
         let theory =
             FormTheory::new().with_parameters(PenaltyParameters { sigma: None, eta, rule });
-        match self.bounded {
-            true => theory.with_least_penalty(|facet| Self::weight((D + 1) as f64, facet)),
-            false => theory.with_coercivity(self.eta > 0.0),
+        match self.with_all_lifts {
+            true => theory.with_coercivity(self.eta > 0.0),
+            false => theory.with_least_penalty(|facet| Self::weight((D + 1) as f64, facet)),
         }
     }
     fn is_uniform(&self) -> bool {
@@ -98,51 +99,5 @@ impl<const D: usize> FacetForm<D> for FacetLifts {
     #[inline(always)]
     fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
-    }
-}
-
-/// The form inside, and besides `int alpha r(u) . r(v)`: with the consistency terms of a symmetric
-/// form this completes the square `|grad v + r(v)|^2`.
-///
-/// Source: D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002),
-/// 1749-1779, section 3.
-#[derive(Clone, Copy, Debug)]
-pub struct Lifted<F>(pub F);
-
-impl<const D: usize, F: FacetForm<D>> FacetForm<D> for Lifted<F> {
-    fn uses_flux(&self) -> bool {
-        self.0.uses_flux()
-    }
-    fn is_lifted(&self) -> bool {
-        true
-    }
-    fn is_symmetric(&self) -> bool {
-        self.0.is_symmetric()
-    }
-    fn lift_degree(&self, degree: usize) -> usize {
-        self.0.lift_degree(degree)
-    }
-    fn moments(&self, degree: usize) -> usize {
-        self.0.moments(degree)
-    }
-    fn average_weight(&self, facet: &FacetView<D>) -> f64 {
-        self.0.average_weight(facet)
-    }
-    #[inline(always)]
-    fn penalty(&self, facet: &FacetView<D>) -> f64 {
-        self.0.penalty(facet)
-    }
-    fn moment_weight(&self, degree: usize) -> f64 {
-        self.0.moment_weight(degree)
-    }
-    fn theory(&self) -> FormTheory<'_, D> {
-        self.0.theory()
-    }
-    fn is_uniform(&self) -> bool {
-        self.0.is_uniform()
-    }
-    #[inline(always)]
-    fn integrand(&self, facet: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
-        self.0.integrand(facet, v, u, penalty)
     }
 }

@@ -28,15 +28,13 @@ mod view;
 
 pub use dirichlet::DirichletBy;
 pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
-pub use lifting::{FacetLifts, Lifted, Lifts};
+pub use lifting::{FacetLifts, Lifts};
 pub use none::NoFacets;
 pub use over_penalty::{OverPenalty, WeightRule};
 pub use parameters::PenaltyParameters;
 pub use proven::proven_bound;
 pub use theory::FormTheory;
 pub use view::{FacetKind, FacetView, Side};
-
-use std::any::Any;
 
 /// A moment of the jump and of the mean normal flux of a function on a facet.
 #[derive(Clone, Copy, Debug)]
@@ -55,16 +53,22 @@ pub struct Trace {
 /// From the one formula come the matrix, the load of Dirichlet data (which enter as the trial trace
 /// `{ jump: u_D, flux: 0 }`: wherever `[u]` stands on a Dirichlet facet, `[u] - u_D` is meant) and
 /// the penalty part of the norm (the formula at traces without flux).
-pub trait FacetForm<const D: usize>: Any + Send + Sync {
+pub trait FacetForm<const D: usize>: Send + Sync {
     /// Whether there is a form at all. Without one, facets are not even built.
     fn couples(&self) -> bool {
         true
     }
     /// Whether the formula reads fluxes; if not, no normal derivative is computed, and those it would
-    /// read are not numbers. There is no default: a form that forgot to say so would read them.
-    fn uses_flux(&self) -> bool;
+    /// read are not numbers.
+    fn uses_flux(&self) -> bool {
+        true
+    }
     /// Whether `int alpha r(v) . r(u)` is added, which couples cells with the neighbours of their
-    /// neighbours. Only broken elements of degree one or two carry such a form.
+    /// neighbours: with the consistency terms of a symmetric form it completes the square
+    /// `|grad v + r(v)|^2`. Only broken elements of degree one or two carry such a form.
+    ///
+    /// Source: D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002),
+    /// 1749-1779, section 3.
     fn is_lifted(&self) -> bool {
         false
     }

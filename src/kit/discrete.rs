@@ -13,17 +13,17 @@ use crate::measure::Errors;
 use crate::mesh::{BoxDomain, Mesh};
 use crate::problem::Problem;
 use crate::real::Point;
-use crate::scheme::{AnyScheme, ExpectedOrders, Regularity, Setting};
+use crate::scheme::{ExpectedOrders, Regularity, Scheme, Setting};
 
 /// A scheme under test with its constraint set.
 pub(super) struct Tested<'s, const D: usize> {
-    pub scheme: &'s dyn AnyScheme<D>,
+    pub scheme: &'s dyn Scheme<D>,
     pub set: Arc<dyn ConstraintSet>,
 }
 
 impl<'s, const D: usize> Tested<'s, D> {
     /// A scheme with bounds at its nodes.
-    pub fn new(scheme: &'s dyn AnyScheme<D>) -> Self {
+    pub fn new(scheme: &'s dyn Scheme<D>) -> Self {
         Self { scheme, set: Arc::new(Nodes) }
     }
     /// The problem with the constraint set.
@@ -33,7 +33,7 @@ impl<'s, const D: usize> Tested<'s, D> {
 }
 
 impl<'s, const D: usize> Deref for Tested<'s, D> {
-    type Target = dyn AnyScheme<D> + 's;
+    type Target = dyn Scheme<D> + 's;
 
     fn deref(&self) -> &Self::Target {
         self.scheme
@@ -54,14 +54,14 @@ fn quadrature(degree: usize) -> DataQuadrature {
 }
 
 /// Whether the form declares itself symmetric.
-pub(super) fn is_symmetric<const D: usize>(scheme: &dyn AnyScheme<D>) -> bool {
+pub(super) fn is_symmetric<const D: usize>(scheme: &dyn Scheme<D>) -> bool {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::kuhn_box(&domain, [1; D]);
     mesh.is_ok_and(|mesh| scheme.form(&mesh).is_symmetric())
 }
 
 /// The orders that the scheme promises for a smooth solution without inequalities.
-pub(super) fn promised<const D: usize>(scheme: &dyn AnyScheme<D>) -> ExpectedOrders {
+pub(super) fn promised<const D: usize>(scheme: &dyn Scheme<D>) -> ExpectedOrders {
     scheme.expected_orders(&Setting::new(D, Regularity::smooth()).with_regular_dual(true))
 }
 

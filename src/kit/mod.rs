@@ -20,11 +20,11 @@
 //! use unilateral::kit::check_scheme;
 //! use unilateral::prelude::*;
 //!
-//! let report = check_scheme::<2, _>(&Sipg::default()).unwrap();
+//! let report = check_scheme::<2>(&Sipg::default()).unwrap();
 //! assert!(report.coercivity.smallest > 0.0);
 //!
 //! let too_weak = Sipg { penalty: PenaltyRule::Diameter(1.0), ..Sipg::default() };
-//! let error = check_scheme::<2, _>(&too_weak).unwrap_err();
+//! let error = check_scheme::<2>(&too_weak).unwrap_err();
 //! assert!(error.to_string().starts_with("coercivity: "));
 //! ```
 
@@ -62,7 +62,7 @@ use discrete::Tested;
 ///
 /// # Errors
 /// The first law that does not hold.
-pub fn check_scheme<const D: usize, S: Scheme<D>>(scheme: &S) -> Result<KitReport, KitError> {
+pub fn check_scheme<const D: usize>(scheme: &dyn Scheme<D>) -> Result<KitReport, KitError> {
     check_scheme_on(scheme, Nodes)
 }
 
@@ -70,11 +70,11 @@ pub fn check_scheme<const D: usize, S: Scheme<D>>(scheme: &S) -> Result<KitRepor
 ///
 /// # Errors
 /// The first law that does not hold.
-pub fn check_scheme_on<const D: usize, S: Scheme<D>>(
-    scheme: &S,
+pub fn check_scheme_on<const D: usize>(
+    scheme: &dyn Scheme<D>,
     set: impl ConstraintSet + 'static,
 ) -> Result<KitReport, KitError> {
-    let element = check_element::<D, S::Element>()?;
+    let element = check_element(&*scheme.element())?;
     let tested: &Tested<'_, D> = &Tested { set: Arc::new(set), ..Tested::new(scheme) };
     Ok(KitReport {
         scheme: tested.name().to_owned(),
@@ -92,9 +92,7 @@ pub fn check_scheme_on<const D: usize, S: Scheme<D>>(
 ///
 /// # Errors
 /// [`KitError::NotSymmetric`], [`KitError::SymmetricAfterAll`].
-pub fn check_symmetry<const D: usize, S: Scheme<D>>(
-    scheme: &S,
-) -> Result<SymmetryReport, KitError> {
+pub fn check_symmetry<const D: usize>(scheme: &dyn Scheme<D>) -> Result<SymmetryReport, KitError> {
     symmetry::check::<D>(&Tested::new(scheme))
 }
 
@@ -102,8 +100,8 @@ pub fn check_symmetry<const D: usize, S: Scheme<D>>(
 ///
 /// # Errors
 /// [`KitError::NotCoercive`].
-pub fn check_coercivity<const D: usize, S: Scheme<D>>(
-    scheme: &S,
+pub fn check_coercivity<const D: usize>(
+    scheme: &dyn Scheme<D>,
 ) -> Result<CoercivityReport, KitError> {
     coercivity::check::<D>(&Tested::new(scheme))
 }
@@ -114,19 +112,19 @@ pub fn check_coercivity<const D: usize, S: Scheme<D>>(
 /// # Errors
 /// [`KitError::EntryDependsOnNumbering`], [`KitError::LoadDependsOnNumbering`],
 /// [`KitError::SolutionDependsOnNumbering`], [`KitError::UnknownsNotTold`].
-pub fn check_invariance<const D: usize, S: Scheme<D>>(
-    scheme: &S,
+pub fn check_invariance<const D: usize>(
+    scheme: &dyn Scheme<D>,
 ) -> Result<InvarianceReport, KitError> {
     invariance::check::<D>(&Tested::new(scheme))
 }
 
 /// The patch test: a polynomial of the element's degree is reproduced to rounding if the scheme
-/// declares itself consistent ([`Scheme::CONSISTENT`]), and measurably missed otherwise.
+/// declares itself consistent ([`Scheme::is_consistent`]), and measurably missed otherwise.
 ///
 /// # Errors
 /// [`KitError::NotConsistent`], [`KitError::ConsistentAfterAll`].
-pub fn check_consistency<const D: usize, S: Scheme<D>>(
-    scheme: &S,
+pub fn check_consistency<const D: usize>(
+    scheme: &dyn Scheme<D>,
 ) -> Result<ConsistencyReport, KitError> {
     consistency::check::<D>(&Tested::new(scheme))
 }
@@ -138,6 +136,6 @@ pub fn check_consistency<const D: usize, S: Scheme<D>>(
 ///
 /// # Errors
 /// [`KitError::OrderMissed`].
-pub fn check_orders<const D: usize, S: Scheme<D>>(scheme: &S) -> Result<OrdersReport, KitError> {
+pub fn check_orders<const D: usize>(scheme: &dyn Scheme<D>) -> Result<OrdersReport, KitError> {
     orders::check::<D>(&Tested::new(scheme))
 }

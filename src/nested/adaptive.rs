@@ -14,7 +14,7 @@ use crate::error_bound::ErrorBound;
 use crate::instances::compiled;
 use crate::mesh::MeshError;
 use crate::problem::Problem;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// A step of adaptive refinement: the solution on one mesh of the sequence.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl<const D: usize> AdaptiveStep<'_, D> {
 pub struct AdaptiveIteration<'a, const D: usize> {
     nested: NestedIteration<'a, D>,
     meshes: &'a AdaptiveMeshes<D>,
-    scheme: &'a dyn AnyScheme<D>,
+    scheme: &'a dyn Scheme<D>,
     adaptivity: Adaptivity,
     /// The position of the next step; none after the last one.
     next: Option<usize>,
@@ -95,7 +95,7 @@ impl<const D: usize> fmt::Debug for AdaptiveIteration<'_, D> {
 pub fn adapt<'a, const D: usize>(
     problem: &'a Problem<D>,
     meshes: &'a AdaptiveMeshes<D>,
-    scheme: &'a dyn AnyScheme<D>,
+    scheme: &'a dyn Scheme<D>,
     adaptivity: Adaptivity,
 ) -> Result<AdaptiveIteration<'a, D>, Error> {
     AdaptiveIteration::new(NestedIteration::new(problem, meshes), scheme, adaptivity)
@@ -110,7 +110,7 @@ impl<'a, const D: usize> AdaptiveIteration<'a, D> {
     /// without a bound.
     pub fn new(
         nested: NestedIteration<'a, D>,
-        scheme: &'a dyn AnyScheme<D>,
+        scheme: &'a dyn Scheme<D>,
         adaptivity: Adaptivity,
     ) -> Result<Self, Error> {
         adaptivity.check()?;

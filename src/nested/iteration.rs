@@ -16,7 +16,7 @@ use crate::inequality::{ActiveSet, InequalitySolver, StepCounter};
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// One problem on nested meshes: the settings of its solves, and the conforming P1 solutions from which
 /// they start.
@@ -156,7 +156,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     ///
     /// # Errors
     /// [`Error::NotAdaptive`] and those of [`Discretisation::new`](crate::assemble::Discretisation::new).
-    pub(crate) fn check_bound(&self, scheme: &dyn AnyScheme<D>) -> Result<(), Error> {
+    pub(crate) fn check_bound(&self, scheme: &dyn Scheme<D>) -> Result<(), Error> {
         let mesh = self.p1.meshes.mesh(self.p1.meshes.len() - 1);
         let of = scheme.discretise(self.p1.problem, mesh, self.p1.quadrature)?;
         of.check_flux().map_err(|why| Error::NotAdaptive {
@@ -189,7 +189,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     /// # Errors
     /// Those of assembly: bad data. A solve that does not converge is no error: see
     /// [`Solved::outcome`].
-    pub fn solve(&mut self, scheme: &dyn AnyScheme<D>) -> Result<Solved<'a, D>, Error> {
+    pub fn solve(&mut self, scheme: &dyn Scheme<D>) -> Result<Solved<'a, D>, Error> {
         self.solve_on(self.p1.meshes.len() - 1, scheme)
     }
 
@@ -200,13 +200,13 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     pub fn solve_on(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
     ) -> Result<Solved<'a, D>, Error> {
         self.check_position(position)?;
         compiled!(const D: for<'n, 'p, 's> fn(
                 &'n mut NestedIteration<'p, D>,
                 usize,
-                &'s dyn AnyScheme<D>,
+                &'s dyn Scheme<D>,
             ) -> Result<Solved<'p, D>, Error>
                 = |nested, position, scheme| nested.solve_scheme(position, scheme)
         )(self, position, scheme)
@@ -255,7 +255,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
 pub fn solve<'a, const D: usize>(
     problem: &'a Problem<D>,
     meshes: impl Into<Meshes<'a, D>>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
 ) -> Result<Solved<'a, D>, Error> {
     NestedIteration::new(problem, meshes).solve(scheme)
 }

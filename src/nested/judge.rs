@@ -6,7 +6,7 @@ use super::system::System;
 use crate::error::Error;
 use crate::inequality::{Outcome, Solution, contact_of};
 use crate::instances::compiled;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 impl<'a, const D: usize> NestedIteration<'a, D> {
     /// The result on a mesh, by its position, for values that another program found: certificate, errors and
@@ -18,14 +18,14 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     pub fn judge_on(
         &self,
         position: usize,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         values: &[f64],
     ) -> Result<Solved<'a, D>, Error> {
         self.check_position(position)?;
         compiled!(const D: for<'n, 'p, 's, 'v> fn(
                 &'n NestedIteration<'p, D>,
                 usize,
-                &'s dyn AnyScheme<D>,
+                &'s dyn Scheme<D>,
                 &'v [f64],
             ) -> Result<Solved<'p, D>, Error>
                 = |nested, position, scheme, values| nested.judge_values(position, scheme, values)
@@ -34,7 +34,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     fn judge_values(
         &self,
         position: usize,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         values: &[f64],
     ) -> Result<Solved<'a, D>, Error> {
         let system = System::new(scheme, self.p1.problem, self.p1.place(position))?;

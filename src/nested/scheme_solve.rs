@@ -16,11 +16,11 @@ use super::warnings::{
 use crate::algebra::{Contact, Inequality, Start};
 use crate::error::Error;
 use crate::inequality::{InitialGuess, Outcome, Solution};
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 impl<'a, const D: usize> NestedIteration<'a, D> {
     /// A scheme on a mesh: [`NestedIteration::repeat`] times, with the smallest time.
-    fn system(&self, position: usize, scheme: &dyn AnyScheme<D>) -> Result<System<'a, D>, Error> {
+    fn system(&self, position: usize, scheme: &dyn Scheme<D>) -> Result<System<'a, D>, Error> {
         let assemble = || System::new(scheme, self.p1.problem, self.p1.place(position));
         let mut system = assemble()?;
         for _ in 1..self.p1.repeat {
@@ -52,7 +52,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     pub(super) fn solve_scheme(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
     ) -> Result<Solved<'a, D>, Error> {
         self.enter(Phase::Start);
         let start = self.start(position, scheme)?;
@@ -131,7 +131,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     fn start(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
     ) -> Result<Option<Arc<P1Solution>>, Error> {
         let mesh = self.p1.meshes.mesh(position);
         let unknowns = unknowns(mesh, scheme.layout());

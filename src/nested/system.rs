@@ -14,7 +14,7 @@ use crate::mesh::{Mesh, Part};
 use crate::problem::Problem;
 use crate::processes::{Numbering, OverParts, agree, agree_on_data, check_bounds, merge_all};
 use crate::real::Precision;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// A mesh, or the part of a mesh that one process has, with the quadrature of data on it.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +43,7 @@ impl<'a, const D: usize> System<'a, D> {
     /// # Errors
     /// Those of assembly; on a part [`Error::Processes`] in all parts, with the error of the lowest part that has one.
     pub(super) fn new(
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         problem: &'a Problem<D>,
         place: Place<'a, D>,
     ) -> Result<Self, Error> {
@@ -92,7 +92,7 @@ impl<'a, const D: usize> System<'a, D> {
     /// Those of [`System::new`].
     pub(crate) fn beside<'p>(
         &self,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         problem: &'p Problem<D>,
     ) -> Result<System<'p, D>, Error>
     where

@@ -9,7 +9,7 @@ use crate::input::excerpt;
 use crate::mesh::{BoundaryPart, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Problem};
 use crate::real::Precision;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// The warning on a part of a mesh where nothing proves that the matrix is positive definite.
 pub(super) const UNPROVEN: &str = "no theory says that the matrix is positive definite: a penalty is below its proven bound, or a reaction is negative";
@@ -190,7 +190,7 @@ pub(super) fn dirichlet_jumps<const D: usize>(problem: &Problem<D>, mesh: &Mesh<
 pub(super) fn active_sets<const D: usize>(
     solution: &Solution<f64>,
     problem: &Problem<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
 ) -> Option<String> {
     let returns =
         matches!(solution.outcome, Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled);
@@ -202,7 +202,7 @@ pub(super) fn active_sets<const D: usize>(
 /// them and nothing else is bound.
 fn advice_on_bounds<const D: usize>(
     problem: &Problem<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
 ) -> Option<String> {
     let set = problem.constraint_set();
     let present = scheme.constraint_on(set)?;

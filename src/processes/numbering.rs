@@ -34,7 +34,7 @@ impl Numbering {
     ///
     /// # Errors
     /// [`ExchangeError::Failed`] in all parts if cells have other owners in one part than in another, or if a part
-    /// has too few [layers](crate::scheme::AnyScheme#method.layers) to know who numbers an unknown; those of the
+    /// has too few [layers](crate::scheme::Scheme#method.layers) to know who numbers an unknown; those of the
     /// exchange.
     pub fn new<const D: usize>(
         part: &Part<D>,

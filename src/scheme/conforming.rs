@@ -1,9 +1,9 @@
 //! Conforming elements.
 
-use super::{DirichletBy, ExpectedOrders, Scheme, Setting, energy_order, with_duality};
-use crate::element::{P1, P2};
-use crate::facet::NoFacets;
-use crate::mesh::Mesh;
+use std::sync::Arc;
+
+use super::{ExpectedOrders, Scheme, Setting, energy_order, with_duality};
+use crate::element::{Element, P1, P2};
 
 /// Continuous piecewise linears, bounds at vertices, Dirichlet values pinned.
 ///
@@ -14,15 +14,11 @@ use crate::mesh::Mesh;
 pub struct ConformingP1;
 
 impl<const D: usize> Scheme<D> for ConformingP1 {
-    type Element = P1;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
-
     fn name(&self) -> &str {
         "p1"
     }
-    fn facet(&self, _: &Mesh<D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P1)
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(energy_order(setting, 1), setting)
@@ -45,15 +41,11 @@ impl<const D: usize> Scheme<D> for ConformingP1 {
 pub struct ConformingP2;
 
 impl<const D: usize> Scheme<D> for ConformingP2 {
-    type Element = P2;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
-
     fn name(&self) -> &str {
         "p2"
     }
-    fn facet(&self, _: &Mesh<D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P2)
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(energy_order(setting, 2), setting)

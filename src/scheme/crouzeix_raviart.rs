@@ -1,9 +1,9 @@
 //! Non-conforming linear elements.
 
-use super::{DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, with_duality};
-use crate::element::CrouzeixRaviart;
-use crate::facet::NoFacets;
-use crate::mesh::Mesh;
+use std::sync::Arc;
+
+use super::{ExpectedOrders, Scheme, Setting, broken_energy_order, with_duality};
+use crate::element::{CrouzeixRaviart, Element};
 
 /// Piecewise linears with continuous facet means, bounds on those means, Dirichlet means pinned.
 ///
@@ -13,15 +13,11 @@ use crate::mesh::Mesh;
 pub struct NonconformingP1;
 
 impl<const D: usize> Scheme<D> for NonconformingP1 {
-    type Element = CrouzeixRaviart;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
-
     fn name(&self) -> &str {
         "cr"
     }
-    fn facet(&self, _: &Mesh<D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(CrouzeixRaviart)
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(broken_energy_order(setting, 1), setting)

@@ -1,11 +1,13 @@
 //! The local discontinuous Galerkin method.
 
+use std::sync::Arc;
+
 use super::{
-    DirichletBy, ExpectedOrders, Scheme, SchemeOptions, Setting, broken_energy_order,
-    name_of_degree, with_duality,
+    ExpectedOrders, Scheme, SchemeOptions, Setting, broken_energy_order, name_of_degree,
+    with_duality,
 };
-use crate::element::{Broken, P1, ReferenceElement};
-use crate::facet::{FacetForm, FacetView, FormTheory, Lifted, Lifts, PenaltyParameters, Trace};
+use crate::element::{Broken, Element, P1};
+use crate::facet::{FacetForm, FacetView, FormTheory, Lifts, PenaltyParameters, Trace};
 use crate::mesh::Mesh;
 
 /// `int alpha (grad u + r(u)) . (grad v + r(v)) + eta alpha_F / h_F [u][v]` on broken elements:
@@ -17,8 +19,8 @@ use crate::mesh::Mesh;
 /// 1749-1779.
 /// Orders: F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733 for obstacles and
 /// IMA J. Numer. Anal. 31 (2011), 1754-1772 for Signorini.
-#[derive(Clone, Copy, Debug)]
-pub struct Ldg<E = P1> {
+#[derive(Clone, Debug)]
+pub struct Ldg<const D: usize> {
     /// The factor of the penalty; by default one.
     pub eta: f64,
     /// The switch `beta`: off for the mean flux, on for the flux of one side, the side from which a
@@ -26,57 +28,53 @@ pub struct Ldg<E = P1> {
     pub switch: bool,
     /// The degree of the lifts.
     pub lifts: Lifts,
-    /// The element whose broken version carries the scheme.
-    pub element: E,
+    /// The element, which is broken.
+    pub element: Arc<dyn Element<D>>,
 }
 
-impl Default for Ldg {
+impl<const D: usize> Default for Ldg<D> {
     fn default() -> Self {
-        Self { eta: 1.0, switch: false, lifts: Lifts::Reduced, element: P1 }
+        Self { eta: 1.0, switch: false, lifts: Lifts::Reduced, element: Arc::new(Broken(P1)) }
     }
 }
 
-impl Ldg {
+impl<const D: usize> Ldg<D> {
     /// The scheme by name: with the penalty factor that the options give.
     pub(super) fn with_options(options: &SchemeOptions, switch: bool) -> Self {
         let default = Self::default();
         let lifts = options.lifts.unwrap_or_default();
         Self { eta: options.sigma.unwrap_or(default.eta), switch, lifts, ..default }
     }
-}
-
-impl<E> Ldg<E> {
     /// The scheme on the broken version of another element: `Ldg::default().on(P2)`.
     #[must_use]
-    pub fn on<F>(self, element: F) -> Ldg<F> {
-        Ldg { eta: self.eta, switch: self.switch, lifts: self.lifts, element }
+    pub fn on(self, element: impl Element<D> + 'static) -> Self {
+        Self { element: Arc::new(Broken(element)), ..self }
     }
 }
 
-impl<const D: usize, E: ReferenceElement<D>> Scheme<D> for Ldg<E> {
-    type Element = Broken<E>;
-    type Facet = Lifted<LocalFluxes>;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
-
+impl<const D: usize> Scheme<D> for Ldg<D> {
     fn name(&self) -> &str {
         match self.switch {
-            false => name_of_degree!("ldg", E::DEGREE),
-            true => name_of_degree!("ldg-switch", E::DEGREE),
+            false => name_of_degree!("ldg", self.element.degree()),
+            true => name_of_degree!("ldg-switch", self.element.degree()),
         }
     }
+    fn element(&self) -> Arc<dyn Element<D>> {
+        self.element.clone()
+    }
     fn choices(&self) -> SchemeOptions {
-        let sigma = Some(self.eta).filter(|&eta| eta != Ldg::default().eta);
+        let sigma = Some(self.eta).filter(|&eta| eta != Self::default().eta);
         SchemeOptions { sigma, lifts: self.lifts.unless_default(), ..SchemeOptions::default() }
     }
-    fn facet(&self, _: &Mesh<D>) -> Lifted<LocalFluxes> {
-        Lifted(LocalFluxes { eta: self.eta, switch: self.switch, lifts: self.lifts })
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(LocalFluxes { eta: self.eta, switch: self.switch, lifts: self.lifts })
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(broken_energy_order(setting, E::DEGREE), setting)
+        with_duality(broken_energy_order(setting, self.element.degree()), setting)
     }
 }
 
-/// The facet terms of the method besides the products of lifts.
+/// The facet terms of the method.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalFluxes {
     eta: f64,
@@ -88,7 +86,7 @@ pub struct LocalFluxes {
 const DIRECTION: [f64; 3] = [1.0, 0.377, 0.142];
 
 impl<const D: usize> FacetForm<D> for LocalFluxes {
-    fn uses_flux(&self) -> bool {
+    fn is_lifted(&self) -> bool {
         true
     }
     fn lift_degree(&self, degree: usize) -> usize {

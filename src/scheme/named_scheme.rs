@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use super::{AnyScheme, SCHEMES, SchemeOptions, keys_of_scheme, scheme_by_name};
+use super::{SCHEMES, Scheme, SchemeOptions, keys_of_scheme, scheme_by_name};
 use crate::constraint::{CONSTRAINT_SETS, ConstraintSet, Nodes, constraint_set_by_name};
 use crate::input::excerpt;
 
@@ -201,7 +201,7 @@ impl NamedScheme {
         self
     }
     /// The scheme.
-    pub fn make<const D: usize>(&self) -> Box<dyn AnyScheme<D>> {
+    pub fn make<const D: usize>(&self) -> Box<dyn Scheme<D>> {
         match scheme_by_name(self.name, &self.options) {
             Some(scheme) => scheme,
             None => unreachable!("the name is one of the list"),

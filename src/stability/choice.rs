@@ -6,7 +6,7 @@ use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::scheme::{AnyScheme, NamedScheme};
+use crate::scheme::{NamedScheme, Scheme};
 
 /// The schemes of the study, as users write them.
 pub(crate) const NAMES: [&str; 7] =
@@ -101,7 +101,7 @@ impl Choice {
         self.make::<D>().inequality(&problem, mesh, DataQuadrature::default())
     }
     /// The scheme.
-    pub fn make<const D: usize>(&self) -> Box<dyn AnyScheme<D>> {
+    pub fn make<const D: usize>(&self) -> Box<dyn Scheme<D>> {
         match self.penalty {
             Penalty::Unweighted => Box::new(UnweightedWopsip::default()),
             _ => self.named().make(),

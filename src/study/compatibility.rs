@@ -7,7 +7,7 @@ use crate::mesh::{BoundaryPart, BoxDomain, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Datum, NamedData, Problem};
 use crate::real::Point;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
+use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 
 /// Checks that a mesh is compatible with a scene. Returns the barycentre of a facet on which the
 /// exact solution of the scene breaks the contact condition, or none.
@@ -57,7 +57,7 @@ fn check_data<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Result<(), Er
 /// # Errors
 /// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::Quadrature`].
 pub(super) fn check_scheme<const D: usize>(
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     problem: Problem<D>,
     quadrature: DataQuadrature,
 ) -> Result<(), Error> {

@@ -10,7 +10,7 @@ use crate::parallel::cells;
 use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::facet_to_cell;
 use crate::real::Point;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// Bounds cross if they do so by more than this share of the largest of them: less is rounding in the data.
 const RELATIVE_SLACK: f64 = 1e-9;
@@ -83,7 +83,7 @@ impl Points {
     /// rules for data. They are those on any mesh. A scheme that is made for none has none.
     pub fn add<const D: usize>(
         &mut self,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         without_data: &Problem<D>,
         quadrature: DataQuadrature,
     ) -> Result<(), Error> {

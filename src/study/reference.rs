@@ -7,7 +7,7 @@ use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::mesh::Domain;
 use crate::nested::Solved;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 use crate::study::row::Row;
 
 /// How many times as fine as every other level of a domain a reference is at least.
@@ -18,7 +18,7 @@ const REFINEMENTS: usize = 2;
 
 /// The scheme and the level whose solution takes the place of the exact one.
 pub(super) struct Reference<'a, const D: usize> {
-    pub scheme: Arc<dyn AnyScheme<D> + 'a>,
+    pub scheme: Arc<dyn Scheme<D> + 'a>,
     pub set: Option<Arc<dyn ConstraintSet>>,
     pub level: usize,
 }

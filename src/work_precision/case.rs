@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::constraint::ConstraintSet;
 use crate::error::Error;
-use crate::scheme::{AnyScheme, NamedScheme, SchemeOptions};
+use crate::scheme::{NamedScheme, Scheme, SchemeOptions};
 use crate::study::{Row, Study, peak_memory_bytes};
 
 use super::measured::Phases;
@@ -12,7 +12,7 @@ use super::measured::Phases;
 /// A scheme, as a study takes it.
 #[derive(Clone)]
 pub(crate) struct Candidate<'a, const D: usize> {
-    pub scheme: Arc<dyn AnyScheme<D> + 'a>,
+    pub scheme: Arc<dyn Scheme<D> + 'a>,
     /// Its constraint set, if that is not the problem's.
     pub set: Option<Arc<dyn ConstraintSet>>,
     /// The choices in its label, if those that are default are among them.
@@ -21,7 +21,7 @@ pub(crate) struct Candidate<'a, const D: usize> {
 
 impl<'a, const D: usize> Candidate<'a, D> {
     /// A scheme.
-    pub fn new(scheme: impl AnyScheme<D> + 'a) -> Self {
+    pub fn new(scheme: impl Scheme<D> + 'a) -> Self {
         Self { scheme: Arc::new(scheme), set: None, shown: None }
     }
     /// A scheme as users write it.

@@ -30,7 +30,7 @@ use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::Adaptivity;
 use crate::problem::Problem;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, NamedScheme};
+use crate::scheme::{NamedScheme, Scheme};
 use case::Candidate;
 
 /// Progress of a study.
@@ -140,7 +140,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// [`Study::reference`](crate::study::Study::reference) does, for cases over `f64`. Every case is solved once
     /// more for its errors, outside the clock, also those above the limit of seconds.
     #[must_use]
-    pub fn reference(mut self, scheme: impl AnyScheme<D> + 'a, level: usize) -> Self {
+    pub fn reference(mut self, scheme: impl Scheme<D> + 'a, level: usize) -> Self {
         self.reference = Some((Candidate::new(scheme), level));
         self
     }
@@ -152,7 +152,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
     /// Adds a scheme.
     #[must_use]
-    pub fn scheme(mut self, scheme: impl AnyScheme<D> + 'a) -> Self {
+    pub fn scheme(mut self, scheme: impl Scheme<D> + 'a) -> Self {
         self.candidates.push(Candidate::new(scheme));
         self
     }
@@ -160,7 +160,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     #[must_use]
     pub fn scheme_on(
         mut self,
-        scheme: impl AnyScheme<D> + 'a,
+        scheme: impl Scheme<D> + 'a,
         set: impl ConstraintSet + 'static,
     ) -> Self {
         let set: Option<Arc<dyn ConstraintSet>> = Some(Arc::new(set));

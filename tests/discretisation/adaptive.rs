@@ -43,7 +43,7 @@ struct Figures {
 
 fn steps<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     adaptivity: Adaptivity,
 ) -> Vec<Figures> {
     let meshes = AdaptiveMeshes::new(scene.domain.mesh(4).unwrap());
@@ -75,7 +75,7 @@ fn slope(steps: &[Figures], figure: fn(&Figures) -> f64) -> f64 {
 /// bound from step to step, and it stays within three times the error.
 fn check_optimal<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     adaptivity: Adaptivity,
     steeper: f64,
 ) {
@@ -92,7 +92,7 @@ fn check_optimal<const D: usize>(
     }
 }
 
-fn four_schemes<const D: usize>(mut f: impl FnMut(&dyn AnyScheme<D>)) {
+fn four_schemes<const D: usize>(mut f: impl FnMut(&dyn Scheme<D>)) {
     f(&ConformingP1);
     f(&NonconformingP1);
     f(&Sipg::default());
@@ -247,10 +247,10 @@ fn what_cannot_be_refined_is_refused() {
     let scene = scenes::radial::<2>(1.0);
     let mesh = scene.domain.mesh(4).unwrap();
     let meshes = AdaptiveMeshes::new(mesh.clone());
-    let message = |scheme: &dyn AnyScheme<2>, adaptivity| {
+    let message = |scheme: &dyn Scheme<2>, adaptivity| {
         adapt(&scene.problem, &meshes, scheme, adaptivity).unwrap_err().to_string()
     };
-    for scheme in [&ConformingP3 as &dyn AnyScheme<2>, &Sipg::default().on(P3)] {
+    for scheme in [&ConformingP3 as &dyn Scheme<2>, &Sipg::default().on(P3)] {
         let message = message(scheme, Adaptivity::default());
         assert!(message.contains(scheme.name()) && message.contains("no flux"), "{message}");
     }
@@ -322,7 +322,7 @@ fn preconditioners_work_on_adaptive_meshes_as_on_uniform_ones() {
 
 #[test]
 fn every_dimension_is_refined() {
-    fn check<const D: usize>(scene: &Scene<D>, scheme: &dyn AnyScheme<D>) {
+    fn check<const D: usize>(scene: &Scene<D>, scheme: &dyn Scheme<D>) {
         let meshes = AdaptiveMeshes::new(scene.domain.mesh(4).unwrap());
         let adaptivity = Adaptivity::default().steps(3);
         let steps = adapt(&scene.problem, &meshes, scheme, adaptivity).unwrap();

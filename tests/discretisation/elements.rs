@@ -1,5 +1,7 @@
 //! Elements made outside the crate: cubics, continuous and broken.
 
+use std::sync::Arc;
+
 use crate::runs::own_scene;
 use crate::support::checks::Checks;
 use unilateral::algebra::Contact;
@@ -12,7 +14,7 @@ use unilateral::prelude::*;
 
 /// Continuous cubics: values at the vertices, at the thirds of edges and at the barycentres of
 /// triangles.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct P3;
 
 const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [1, 2], [0, 3], [1, 3], [2, 3]];
@@ -51,25 +53,28 @@ fn at_node(dimension: usize, i: usize) -> f64 {
     }
 }
 
-impl<const D: usize> ReferenceElement<D> for P3 {
-    const N: usize = (D + 1) * (D + 2) * (D + 3) / 6;
-    const DEGREE: usize = 3;
-    const LAYOUT: Layout = Layout {
-        vertex: 1,
-        edge: 2,
-        facet: if D == 3 { 1 } else { 0 },
-        cell: if D == 2 { 1 } else { 0 },
-    };
+impl<const D: usize> Element<D> for P3 {
+    fn degree(&self) -> usize {
+        3
+    }
+    fn layout(&self) -> Layout {
+        Layout {
+            vertex: 1,
+            edge: 2,
+            facet: if D == 3 { 1 } else { 0 },
+            cell: if D == 2 { 1 } else { 0 },
+        }
+    }
 
-    fn values(lambda: &[f64], out: &mut [f64]) {
-        for (i, value) in out.iter_mut().enumerate().take(<Self as ReferenceElement<D>>::N) {
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
+        for (i, value) in out.iter_mut().enumerate() {
             let factor = |(v, m): (usize, f64)| 3.0 * lambda[v] - m;
             let [a, b, c] = factors(D, i).map(factor);
             *value = a * b * c / at_node(D, i);
         }
     }
-    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
-        for (i, row) in out.iter_mut().enumerate().take(<Self as ReferenceElement<D>>::N) {
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
+        for (i, row) in out.iter_mut().enumerate() {
             let of = factors(D, i);
             let [a, b, c] = of.map(|(v, m)| 3.0 * lambda[v] - m);
             *row = [0.0; 4];
@@ -78,7 +83,7 @@ impl<const D: usize> ReferenceElement<D> for P3 {
             }
         }
     }
-    fn node(i: usize) -> Node {
+    fn node(&self, i: usize) -> Node {
         let edges = D * (D + 1) / 2;
         match i.checked_sub(D + 1) {
             None => Node::vertex(i),
@@ -96,14 +101,11 @@ impl<const D: usize> ReferenceElement<D> for P3 {
 pub struct ConformingP3;
 
 impl<const D: usize> Scheme<D> for ConformingP3 {
-    type Element = P3;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
     fn name(&self) -> &str {
         "p3"
     }
-    fn facet(&self, _: &Mesh<D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P3)
     }
 }
 
@@ -141,9 +143,9 @@ fn cubics_have_orders_four_and_three() {
 }
 
 fn kit<const D: usize>() {
-    let report = check_scheme::<D, _>(&Sipg::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
+    let report = check_scheme::<D>(&Sipg::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((report.scheme.as_str(), report.element.functions), ("sipg-p3", [4, 10, 20][D - 1]));
-    check_scheme::<D, _>(&ConformingP3).unwrap_or_else(|e| panic!("{e}"));
+    check_scheme::<D>(&ConformingP3).unwrap_or_else(|e| panic!("{e}"));
 }
 
 #[test]
@@ -156,7 +158,7 @@ fn cubics_pass_the_kit() {
 /// The penalty by lifts of single facets knows every degree.
 #[test]
 fn lifts_of_cubics_pass_the_kit() {
-    check_scheme::<2, _>(&Br2::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
+    check_scheme::<2>(&Br2::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
 }
 
 /// With a constant obstacle above zero load, bounds at nodes hold at the nodes, and multipliers and

@@ -1,5 +1,7 @@
 //! Guaranteed bounds on the error: the identity, effectivity, fluxes, perturbed pairs.
 
+use std::sync::Arc;
+
 use crate::elements::ConformingP3;
 use crate::runs::small_mesh;
 use crate::support::checks::Checks;
@@ -93,7 +95,7 @@ fn right_side<const D: usize>(
 }
 
 /// A scene with the placement of a scheme, and the scheme.
-pub fn placed<const D: usize>(scene: &Scene<D>, name: &str) -> (Scene<D>, Box<dyn AnyScheme<D>>) {
+pub fn placed<const D: usize>(scene: &Scene<D>, name: &str) -> (Scene<D>, Box<dyn Scheme<D>>) {
     let named: NamedScheme = name.parse().unwrap();
     let mut scene = scene.clone();
     scene.problem.constraint_set = named.constraint_set();
@@ -104,7 +106,7 @@ pub fn placed<const D: usize>(scene: &Scene<D>, name: &str) -> (Scene<D>, Box<dy
 pub fn bounded<const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
 ) -> (PrimalDualPair<D>, ErrorBound, f64) {
     let solved = solve(&scene.problem, mesh, scheme).unwrap();
     assert!(solved.converged(), "{} {}", scene.name, scheme.name());
@@ -358,9 +360,6 @@ fn any_admissible_function_and_any_flux_give_a_bound() {
 pub struct Incomplete(pub f64);
 
 impl<const D: usize> FacetForm<D> for Incomplete {
-    fn uses_flux(&self) -> bool {
-        true
-    }
     fn is_symmetric(&self) -> bool {
         false
     }
@@ -378,14 +377,14 @@ struct Iipg {
 }
 
 impl<const D: usize> Scheme<D> for Iipg {
-    type Element = Broken<P1>;
-    type Facet = Incomplete;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     fn name(&self) -> &str {
         "iipg"
     }
-    fn facet(&self, _: &Mesh<D>) -> Incomplete {
-        Incomplete(self.sigma)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(P1))
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(Incomplete(self.sigma))
     }
 }
 
@@ -404,7 +403,7 @@ fn a_scheme_of_ones_own_has_its_bound() {
 fn what_is_proven_and_what_has_no_bound() {
     let scene = scenes::radial::<2>(1.0);
     let mesh = scene.domain.mesh(4).unwrap();
-    let unproven = |problem: &Problem<2>, scheme: &dyn AnyScheme<2>| {
+    let unproven = |problem: &Problem<2>, scheme: &dyn Scheme<2>| {
         solve(problem, &mesh, scheme).unwrap().bound().map(|bound| bound.unproven)
     };
     let problem = Problem::new().constant_source(-2.0).obstacle_below(|x| -0.1 - 0.02 * x[0]);

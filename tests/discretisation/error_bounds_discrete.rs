@@ -15,7 +15,7 @@ const SCHEMES: &str = "p1 p2 cr sipg nipg iipg ldg br2 bmmpr wopsip wopsip:facet
     sipg:facet-means wopsip@eta=1e4 ldg-switch sipg-p2 nipg-p2 iipg-p2 ldg-p2 br2-p2 \
     bmmpr-p2 wopsip-p2";
 
-fn scheme_of<const D: usize>(name: &str) -> (NamedScheme, Box<dyn AnyScheme<D>>) {
+fn scheme_of<const D: usize>(name: &str) -> (NamedScheme, Box<dyn Scheme<D>>) {
     let named: NamedScheme = name.parse().unwrap();
     let scheme = named.make();
     (named, scheme)
@@ -187,7 +187,7 @@ fn bound_of_zero<const D: usize>(problem: &Problem<D>, mesh: &Mesh<D>) -> ErrorB
 }
 
 fn bound_of_zero_by<const D: usize>(
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
     mesh: &Mesh<D>,
 ) -> ErrorBound {
@@ -245,7 +245,7 @@ fn a_load_counts_by_its_mean_and_by_the_rest() {
     let mesh = Mesh::<1>::kuhn_box(&interval, [1]).unwrap();
     let problem = Problem::new().source(|x: &Point<1>| x[0]);
     let expected = 2.0 / std::f64::consts::PI * ((2.0_f64 / 3.0).sqrt() + 2.0_f64.sqrt());
-    for scheme in [&ConformingP1 as &dyn AnyScheme<1>, &ConformingP2] {
+    for scheme in [&ConformingP1 as &dyn Scheme<1>, &ConformingP2] {
         let bound = bound_of_zero_by(scheme, &problem, &mesh);
         for found in [bound.total, bound.discrete] {
             assert!((found / expected - 1.0).abs() < 1e-12, "{}: {found}", scheme.name());
@@ -425,7 +425,7 @@ fn a_reaction_of_degree_two_counts_by_its_least_bernstein_coefficient() {
 #[test]
 fn the_admissible_function_follows_by_hand() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let function = |problem: &Problem<1>, n: usize, scheme: &dyn AnyScheme<1>, values: &[f64]| {
+    let function = |problem: &Problem<1>, n: usize, scheme: &dyn Scheme<1>, values: &[f64]| {
         let mesh = Mesh::<1>::kuhn_box(&domain, [n]).unwrap();
         let of = scheme.discretise(problem, &mesh, DataQuadrature::default()).unwrap();
         let contact = vec![Contact::Inactive; values.len()];

@@ -174,7 +174,7 @@ fn rules_follow_the_degree_of_the_reaction() {
     let mesh = Mesh::<1>::kuhn_box(&free_interval(), [2]).unwrap();
     let reaction = |x: &Point<1>| 1.0 + 3.0 * x[0] * x[0];
     let problem = |datum: Datum<1>| Problem::new().constant_source(-4.0).reaction(datum);
-    for scheme in [&ConformingP1 as &dyn AnyScheme<1>, &ConformingP2] {
+    for scheme in [&ConformingP1 as &dyn Scheme<1>, &ConformingP2] {
         let [by_degree, by_rules] =
             [Datum::polynomial(2, reaction), reaction.into()].map(|datum| {
                 let (problem, quadrature) = (problem(datum), DataQuadrature::default().cell(26));
@@ -215,7 +215,7 @@ fn every_datum_is_held_against_what_a_bound_needs() {
     let constant =
         || Problem::new().constant_source(-1.0).signorini(|_| -0.3).obstacles_of_degree(0);
     let unproven = |problem: &Problem<2>| -> [Vec<Unproven>; 2] {
-        [&ConformingP1 as &dyn AnyScheme<2>, &ConformingP2]
+        [&ConformingP1 as &dyn Scheme<2>, &ConformingP2]
             .map(|scheme| solve(problem, &mesh, scheme).unwrap().bound().unwrap().unproven)
     };
     let square = |x: &Point<2>| x[0] * x[0];

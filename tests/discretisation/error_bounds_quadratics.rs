@@ -174,7 +174,7 @@ fn any_admissible_quadratic_and_any_flux_give_a_bound() {
 #[test]
 fn what_is_proven_for_quadratics() {
     let mesh = scenes::radial::<2>(1.0).domain.mesh(4).unwrap();
-    let unproven = |problem: &Problem<2>, scheme: &dyn AnyScheme<2>| {
+    let unproven = |problem: &Problem<2>, scheme: &dyn Scheme<2>| {
         solve(problem, &mesh, scheme).unwrap().bound().unwrap().unproven
     };
     let problem = Problem::new()

@@ -5,7 +5,7 @@ use unilateral::error::Error;
 use unilateral::mesh::{BoundaryGroup, GroupedFacet, MeshError};
 use unilateral::prelude::*;
 
-fn boxed<const D: usize>(names: &[&str]) -> Vec<Box<dyn AnyScheme<D>>> {
+fn boxed<const D: usize>(names: &[&str]) -> Vec<Box<dyn Scheme<D>>> {
     names.iter().map(|name| name.parse::<NamedScheme>().unwrap().make()).collect()
 }
 

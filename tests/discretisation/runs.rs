@@ -13,7 +13,7 @@ use unilateral::scheme::Regularity;
 
 /// Solves on one mesh from a cold start.
 pub fn solve<const D: usize>(
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
     mesh: &Mesh<D>,
 ) -> Figures {
@@ -23,7 +23,7 @@ pub fn solve<const D: usize>(
 /// As [`solve`], in a precision.
 pub fn solve_in<const D: usize>(
     precision: Precision,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
     mesh: &Mesh<D>,
 ) -> Figures {

@@ -15,7 +15,7 @@ fn with(linear: LinearMethod) -> ActiveSet {
 
 fn rows<const D: usize>(
     scene: Scene<D>,
-    scheme: impl AnyScheme<D>,
+    scheme: impl Scheme<D>,
     levels: &[usize],
     linear: LinearMethod,
 ) -> Vec<Row> {
@@ -40,11 +40,11 @@ fn rows<const D: usize>(
 /// Solves with both and compares; returns the inner iterations of every level.
 fn counts<const D: usize>(
     scene: fn(f64) -> Scene<D>,
-    scheme: impl AnyScheme<D> + Copy,
+    scheme: impl Scheme<D> + Clone,
     levels: &[usize],
     linear: &str,
 ) -> Vec<usize> {
-    let found = rows(scene(1.0), scheme, levels, LinearMethod::Iterative);
+    let found = rows(scene(1.0), scheme.clone(), levels, LinearMethod::Iterative);
     let exact = rows(scene(1.0), scheme, levels, LinearMethod::Direct);
     for (row, exact) in found.iter().zip(&exact) {
         assert_eq!((&*row.linear, &*exact.linear), (linear, "direct"));

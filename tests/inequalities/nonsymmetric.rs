@@ -75,7 +75,7 @@ fn solutions_are_those_of_factors() {
 /// Rows of a study, which knows nested meshes, on several levels.
 fn rows<const D: usize>(
     scene: fn(f64) -> Scene<D>,
-    scheme: impl AnyScheme<D>,
+    scheme: impl Scheme<D>,
     levels: &[usize],
     linear: LinearMethod,
 ) -> Vec<Row> {
@@ -102,11 +102,7 @@ fn rows<const D: usize>(
 }
 
 /// On nested meshes at most as many inner iterations on each level as told.
-fn level_counts<const D: usize>(
-    scheme: impl AnyScheme<D>,
-    levels: &[usize],
-    most: usize,
-) -> Vec<Row> {
+fn level_counts<const D: usize>(scheme: impl Scheme<D>, levels: &[usize], most: usize) -> Vec<Row> {
     let found = rows(scenes::radial, scheme, levels, LinearMethod::Iterative);
     for row in &found {
         assert_eq!((row.status, &*row.linear), (Outcome::Converged, "auxiliary-space"));

@@ -21,7 +21,7 @@ fn balanced() -> Problem<2> {
     Problem::new().source(|x| x[0] - 0.5).signorini(|x| 0.1 * x[0])
 }
 
-fn schemes() -> Vec<(Box<dyn AnyScheme<2>>, bool)> {
+fn schemes() -> Vec<(Box<dyn Scheme<2>>, bool)> {
     vec![
         (Box::new(ConformingP1), false),
         (Box::new(ConformingP2), false),
@@ -110,7 +110,7 @@ fn each_component_is_tested() {
         let load = move |x: &Point<1>| if x[0] < 1.5 { 1.0 } else { right };
         Problem::new().source(load).obstacle_below(|_| -1.0)
     };
-    let schemes: [&dyn AnyScheme<1>; 4] =
+    let schemes: [&dyn Scheme<1>; 4] =
         [&ConformingP1, &NonconformingP1, &Sipg::default(), &Wopsip::default()];
     for scheme in schemes {
         for (right, outcome) in

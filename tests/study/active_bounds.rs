@@ -86,7 +86,7 @@ fn penetration_is_that_between_the_nodes() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::<2>::kuhn_box(&domain, [1, 1]).unwrap();
     let problem = Problem::new().constant_source(-1.0).obstacle_below(|x| -x[0] * x[0]);
-    let of = |scheme: &dyn AnyScheme<2>, u: &dyn Fn(f64) -> f64| {
+    let of = |scheme: &dyn Scheme<2>, u: &dyn Fn(f64) -> f64| {
         let space = scheme.discretise(&problem, &mesh, DataQuadrature::default()).unwrap();
         let xs = mesh.vertices().iter().map(|x| x[0]);
         let values: Vec<f64> = xs.map(u).collect();

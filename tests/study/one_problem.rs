@@ -1,10 +1,11 @@
 //! One problem solved by one call, and several solvers side by side.
 
+use std::sync::Arc;
+
 use std::path::Path;
 
 use super::scratch::Scratch;
 use unilateral::algebra::Start;
-use unilateral::facet::InteriorPenalty;
 use unilateral::inequality::{
     ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SOLVERS, SinglePrecision,
     solver_by_name,
@@ -41,7 +42,7 @@ fn one_call_and_a_study_give_the_same_bits() {
     let study = study.scheme(ConformingP1).scheme(Sipg::default()).scheme(Wopsip::default());
     let rows = study.run().unwrap().rows;
     let meshes = Hierarchy::refine(&mesh, 3).unwrap();
-    let schemes: [&dyn AnyScheme<2>; 3] = [&ConformingP1, &Sipg::default(), &Wopsip::default()];
+    let schemes: [&dyn Scheme<2>; 3] = [&ConformingP1, &Sipg::default(), &Wopsip::default()];
     for (scheme, rows) in schemes.iter().zip(rows.chunks(2)) {
         let flat = solve(&problem, &mesh, *scheme).unwrap();
         let nested = solve(&problem, &meshes, *scheme).unwrap();
@@ -61,7 +62,7 @@ fn a_large_mesh_without_coarser_ones_needs_few_active_sets() {
     let problem = Problem::new()
         .constant_source(-8.0)
         .obstacle_below(|x| -0.2 - 0.5 * (x - Point::from([0.4, 0.5])).norm_squared());
-    for scheme in [&ConformingP1 as &dyn AnyScheme<2>, &Sipg::default()] {
+    for scheme in [&ConformingP1 as &dyn Scheme<2>, &Sipg::default()] {
         let u = solve(&problem, &mesh, scheme).unwrap();
         assert!(u.converged() && u.certificate().largest() < 1e-9, "{}", scheme.name());
         assert!(u.outer() <= Some(6), "{}: {:?} active sets", scheme.name(), u.outer());
@@ -78,7 +79,7 @@ fn values_at_points_are_those_of_the_function() {
     let exact = || Exact::new(linear, |_: &Point<2>| Point::from([2.0, -3.0]));
     let problem = Problem::new().solved_by(exact());
     let mesh = square(5);
-    for scheme in [&ConformingP1 as &dyn AnyScheme<2>, &ConformingP2, &Br2::default()] {
+    for scheme in [&ConformingP1 as &dyn Scheme<2>, &ConformingP2, &Br2::default()] {
         let u = solve(&problem, &mesh, scheme).unwrap();
         for x in [[0.0, 0.0], [1.0, 1.0], [0.37, 0.81], [0.6, 0.4]] {
             let x = Point::from(x);
@@ -180,18 +181,18 @@ struct Mine {
 }
 
 impl<const D: usize> Scheme<D> for Mine {
-    type Element = Broken<P1>;
-    type Facet = InteriorPenalty;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     fn name(&self) -> &str {
         match self.factor {
             1.0 if self.tells => "mine-1",
             _ => "mine",
         }
     }
-    fn facet(&self, mesh: &Mesh<D>) -> InteriorPenalty {
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(P1))
+    }
+    fn form(&self, mesh: &Mesh<D>) -> Box<dyn FacetForm<D>> {
         let penalty = PenaltyRule::Diameter(self.factor);
-        Scheme::<D>::facet(&Nipg { penalty, ..Nipg::default() }, mesh)
+        Nipg { penalty, ..Nipg::default() }.form(mesh)
     }
 }
 

@@ -20,7 +20,7 @@ const ACROSS: f64 = 204.0;
 /// The picture of a scheme on a scene, with the mesh and what was found.
 fn picture<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     level: usize,
 ) -> (Picture, Mesh<D>, Fields) {
     let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();

@@ -187,7 +187,7 @@ fn bounds_on_polynomial_data_are_guaranteed() {
         let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
         let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
         let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
-        [&ConformingP1 as &dyn AnyScheme<2>, &ConformingP2]
+        [&ConformingP1 as &dyn Scheme<2>, &ConformingP2]
             .map(|scheme| solve(&own.problem, &mesh, scheme).unwrap().bound().unwrap().unproven)
     };
     for (datum, other, [of_linears, of_quadratics]) in [

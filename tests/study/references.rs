@@ -129,7 +129,7 @@ fn a_constant_multiplier_is_the_same_on_a_finer_mesh() {
     let meshes = Hierarchy::refine(&mesh, 2).unwrap();
     let problem = Problem::new().constant_source(-3.0).obstacle_below(|_| 0.5);
     let mut nested = NestedIteration::new(&problem, &meshes);
-    for scheme in [&ConformingP1 as &dyn AnyScheme<2>, &NonconformingP1, &Sipg::default()] {
+    for scheme in [&ConformingP1 as &dyn Scheme<2>, &NonconformingP1, &Sipg::default()] {
         let [coarse, _, fine] = [0, 1, 2].map(|k| nested.solve_on(k, scheme).unwrap());
         let found = coarse.contact_difference(&fine).unwrap();
         let name = scheme.name();

@@ -8,7 +8,7 @@ use unilateral::scenes::{Scene, torsion_2d};
 use unilateral::study::Row;
 
 /// Schemes of every kind: conforming, nonconforming, symmetric and not, lifted, over-penalised.
-fn schemes<const D: usize>() -> Vec<Box<dyn AnyScheme<D>>> {
+fn schemes<const D: usize>() -> Vec<Box<dyn Scheme<D>>> {
     vec![
         Box::new(ConformingP1),
         Box::new(ConformingP2),
@@ -87,7 +87,7 @@ fn one_function_has_one_energy() {
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         let domain = domain.side(0, 1, BoundaryPart::Neumann);
         let mesh = Mesh::<D>::kuhn_box(&domain, [cells; D]).unwrap();
-        let space = |scheme: &dyn AnyScheme<D>| {
+        let space = |scheme: &dyn Scheme<D>| {
             scheme.discretise(&problem, &mesh, DataQuadrature::default()).unwrap()
         };
         let conforming = space(&ConformingP1);
@@ -97,7 +97,7 @@ fn one_function_has_one_energy() {
         let objective = conforming.inequality().unwrap().objective(&u);
         assert!((energy / objective - 1.0).abs() < 1e-12, "{D}: {energy} and {objective}");
         let broken = conforming.vertex_values(&u);
-        for scheme in [&Sipg::default() as &dyn AnyScheme<D>, &Wopsip::default()] {
+        for scheme in [&Sipg::default() as &dyn Scheme<D>, &Wopsip::default()] {
             let other = space(scheme).energy(&broken).unwrap();
             assert!((other / energy - 1.0).abs() < 1e-12, "{D}, {}: {other}", scheme.name());
         }
@@ -220,7 +220,7 @@ fn a_constant_density_is_the_same_everywhere() {
         (3.0, Problem::new().obstacle_above_in("left", 0.5).obstacle_above_in("right", 0.5)),
     ] {
         let problem = problem.constant_source(load);
-        for scheme in [&ConformingP1 as &dyn AnyScheme<1>, &Sipg::default()] {
+        for scheme in [&ConformingP1 as &dyn Scheme<1>, &Sipg::default()] {
             let solved = solve(&problem, &line, scheme).unwrap();
             near(&solved.fields().unwrap().multiplier, -load, scheme.name());
         }
@@ -234,7 +234,7 @@ fn a_constant_density_is_the_same_everywhere() {
         let pressed = |_: &Point<D>, n: &Point<D>| -3.0 * n[D - 1].max(0.0);
         let problem = Problem::new().neumann(pressed).signorini(|_| 0.5);
         let mesh = Mesh::<D>::kuhn_box(&foot, [2; D]).unwrap();
-        for scheme in [&ConformingP1 as &dyn AnyScheme<D>, &Sipg::default()] {
+        for scheme in [&ConformingP1 as &dyn Scheme<D>, &Sipg::default()] {
             let fields = solve(&problem, &mesh, scheme).unwrap().fields().unwrap();
             near(&fields.pressure, 3.0, scheme.name());
             assert!(fields.gap.iter().all(|gap| gap.abs() < 1e-9), "{:?}", fields.gap);
@@ -255,7 +255,7 @@ fn contact_reaches_dirichlet_data_on_one_of_two_obstacles() {
             .constant_source(-sign)
             .obstacle_below(move |_| if sign > 0.0 { 0.0 } else { -5.0 })
             .obstacle_above(move |_| if sign > 0.0 { 5.0 } else { 0.0 });
-        for scheme in [&ConformingP1 as &dyn AnyScheme<2>, &NonconformingP1] {
+        for scheme in [&ConformingP1 as &dyn Scheme<2>, &NonconformingP1] {
             let found = solve(&problem, &mesh, scheme).unwrap();
             let measure = found.contact_measure().unwrap();
             assert!((measure - 1.0).abs() < 1e-12, "{}: {measure}", scheme.name());

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use flate2::read::ZlibDecoder;
-use unilateral::element::{P2, ReferenceElement};
+use unilateral::element::{Element, P2};
 use unilateral::mesh::{BoundaryPart, BoxDomain, Domain, GroupedFacet, Mesh};
 use unilateral::paraview::{FieldScalar, VtuFile};
 use unilateral::prelude::*;
@@ -241,11 +241,7 @@ fn fields_of_the_wrong_length_are_refused_by_name() {
 }
 
 /// The file of a scheme on a scene, and the sum of the multipliers.
-fn solution<const D: usize>(
-    scene: &Scene<D>,
-    scheme: &dyn AnyScheme<D>,
-    level: usize,
-) -> (Grid, f64) {
+fn solution<const D: usize>(scene: &Scene<D>, scheme: &dyn Scheme<D>, level: usize) -> (Grid, f64) {
     let scratch =
         Scratch::new(&format!("vtu-{}", file_name(&format!("{}-{}", scene.name, scheme.name()))));
     let meshes = Hierarchy::<_>::of_domain(&scene.domain, level).unwrap();
@@ -259,7 +255,7 @@ fn solution<const D: usize>(
 #[test]
 fn points_are_shared_where_the_space_shares_them() {
     let scene = scenes::radial::<2>(1.0);
-    let size = |scheme: &dyn AnyScheme<2>| {
+    let size = |scheme: &dyn Scheme<2>| {
         let (grid, _) = solution(&scene, scheme, 4);
         (grid.points().len(), grid.integers("Cells", "types")[0])
     };
@@ -288,7 +284,7 @@ fn quadratics_are_written_as_quadratics() {
         // the format has the edges (0, 1), (1, 2), (0, 2), the element (0, 1), (0, 2), (1, 2)
         let own = [0, 1, 2, 3, 5, 4].map(|k| u[cell[k]]);
         let mut basis = [0.0; 6];
-        <P2 as ReferenceElement<2>>::values(&lambda, &mut basis);
+        Element::<2>::values(&P2, &lambda, &mut basis);
         let value: f64 = own.iter().zip(basis).map(|(u, phi)| u * phi).sum();
         let expected = solved.value_at(&Point::from([x[0], x[1]])).unwrap();
         assert!((value - expected).abs() < 1e-12);
@@ -306,7 +302,7 @@ fn is_broken(scheme: &str) -> bool {
 
 /// The integral of the pressure over the contact boundary, as a reader of the file computes it, is the
 /// total contact force, here the sum of the multipliers.
-fn integrates<const D: usize>(scene: &Scene<D>, scheme: &dyn AnyScheme<D>, level: usize) {
+fn integrates<const D: usize>(scene: &Scene<D>, scheme: &dyn Scheme<D>, level: usize) {
     let (grid, force) = solution(scene, scheme, level);
     let (points, dimensions) = (grid.points(), grid.integers("CellData", "dimension"));
     let [pressure, gap, contact] =

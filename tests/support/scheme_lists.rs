@@ -6,7 +6,7 @@ use unilateral::prelude::*;
 
 /// A scheme with a constraint set.
 pub fn entry<const D: usize>(
-    scheme: impl AnyScheme<D> + 'static,
+    scheme: impl Scheme<D> + 'static,
     set: impl ConstraintSet + 'static,
 ) -> Entry<D> {
     Entry { scheme: Box::new(scheme), set: Arc::new(set) }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use unilateral::prelude::*;
 
 /// A scheme chosen at run time.
-pub type Boxed<const D: usize> = Box<dyn AnyScheme<D>>;
+pub type Boxed<const D: usize> = Box<dyn Scheme<D>>;
 
 /// A scheme with its constraint set: an entry of a list.
 pub struct Entry<const D: usize> {
@@ -20,7 +20,7 @@ impl<const D: usize> From<Boxed<D>> for Entry<D> {
 }
 
 impl<const D: usize> Deref for Entry<D> {
-    type Target = dyn AnyScheme<D>;
+    type Target = dyn Scheme<D>;
 
     fn deref(&self) -> &Self::Target {
         &*self.scheme
@@ -28,11 +28,11 @@ impl<const D: usize> Deref for Entry<D> {
 }
 
 /// Interior penalty with `sigma / h_F`.
-pub fn sipg(sigma: f64) -> Sipg {
+pub fn sipg<const D: usize>(sigma: f64) -> Sipg<D> {
     Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() }
 }
 
 /// Over-penalty with `eta / h_F^3`.
-pub fn wopsip(eta: f64) -> Wopsip {
+pub fn wopsip<const D: usize>(eta: f64) -> Wopsip<D> {
     Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() }
 }

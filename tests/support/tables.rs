@@ -35,7 +35,7 @@ impl Figures {
 /// A scheme's solution on a level with the rules of those tables.
 pub fn solve_as_tables<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     level: usize,
 ) -> (Mesh<D>, Figures) {
     solve_by_rule(scene, scheme, level, DEGREE_OF_TABLES)
@@ -46,7 +46,7 @@ pub fn solve_as_tables<const D: usize>(
 /// cells that are cut gain is tested by itself.
 pub fn solve_by_rule<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     level: usize,
     degree: usize,
 ) -> (Mesh<D>, Figures) {

@@ -32,7 +32,7 @@ use crate::problem::Problem;
 pub struct Discretisation<'a, const D: usize> {
     pub(crate) space: Space<'a, D>,
     form: Box<dyn FacetForm<D>>,
-    shared_rows: SharedRows<D>,
+    shared_rows: SharedRows,
     /// What facet forms need of cells and facets, computed when first needed.
     prepared: OnceLock<(Metrics, FacetCoefficients)>,
     /// On a part what its bounds, once found, leave to be judged with the data of all parts.
@@ -152,7 +152,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// [owner of each cell](crate::mesh::Part::owners).
     ///
     /// Of an unknown of own cells this is the owner on the whole mesh, if the part has as many layers as the
-    /// scheme [needs](crate::scheme::AnyScheme#method.layers). The others are none of the part's own either
+    /// scheme [needs](crate::scheme::Scheme#method.layers). The others are none of the part's own either
     /// way.
     ///
     /// # Panics

@@ -1,11 +1,10 @@
 //! The matrix of one cell, as a list.
 
-use std::marker::PhantomData;
-
+use super::unknowns::CellUnknowns;
 use crate::assemble::local::{Local, zero_local};
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, shape};
-use crate::element::{MAX_BASIS, ReferenceElement};
+use crate::element::MAX_BASIS;
 
 /// The upper triangle of a cell's matrix, by rows; a power of two holds the largest.
 type Triangle = [f64; TRIANGLE];
@@ -23,11 +22,6 @@ pub(crate) trait CellMatrix {
     fn entry(&self, i: usize, j: usize) -> f64;
 }
 
-/// Whether basis functions are linear and as many as the vertices of a cell.
-pub(crate) const fn is_linear<E: ReferenceElement<D>, const D: usize>() -> bool {
-    E::BASIS_DEGREE == 1 && E::N == D + 1
-}
-
 /// What cells contribute, tabulated.
 pub(crate) struct CellMatrices<'s, 'a, const D: usize> {
     space: &'s Space<'a, D>,
@@ -40,21 +34,23 @@ pub(crate) struct CellMatrices<'s, 'a, const D: usize> {
 }
 
 impl<'s, 'a, const D: usize> CellMatrices<'s, 'a, D> {
-    pub fn new<E: ReferenceElement<D>>(space: &'s Space<'a, D>) -> Self {
+    pub fn new(space: &'s Space<'a, D>) -> Self {
         let zero = 0.0;
+        let n = space.per_cell();
         let table = space.stiffness_table();
         let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
-        let mut square = is_linear::<E, D>().then(|| table.entry::<D>(&unit(0, 1), 0, 1));
+        let is_linear = space.basis_degree == 1 && n == D + 1;
+        let mut square = is_linear.then(|| table.entry::<D>(&unit(0, 1), 0, 1));
         let mut pairs = [[zero; TRIANGLE]; PAIRS];
         let mut places = [0; MAX_BASIS * MAX_BASIS];
         for (pair, (k, l)) in pairs_of::<D>().enumerate() {
             let mut place = 0;
-            for i in 0..E::N {
-                for j in i..E::N {
+            for i in 0..n {
+                for j in i..n {
                     let entry = table.entry::<D>(&unit(k, l), i, j);
                     pairs[pair][place] = entry;
-                    places[i * E::N + j] = place as u8;
-                    places[j * E::N + i] = place as u8;
+                    places[i * n + j] = place as u8;
+                    places[j * n + i] = place as u8;
                     place += 1;
                     let alone = if (i, j) == (k, l) { square } else { Some(zero) };
                     if i != j && Some(entry) != alone {
@@ -85,16 +81,16 @@ impl<'s, 'a, const D: usize> CellMatrices<'s, 'a, D> {
 
     /// Writes the matrix of a cell.
     #[inline(always)]
-    fn write<E: ReferenceElement<D>>(&self, cell: usize, out: &mut Triangle, local: &mut Local) {
+    fn write(&self, n: usize, cell: usize, out: &mut Triangle, local: &mut Local) {
         let (volume, shape) = shape(self.space.mesh, cell, self.space.alpha(cell));
         let mut products = [0.0; PAIRS];
         for (product, (k, l)) in products.iter_mut().zip(pairs_of::<D>()) {
             *product = shape[k][l];
         }
-        if const { E::BASIS_DEGREE > 1 } && self.space.varying_in(cell).is_some() {
+        if self.space.varying_in(cell).is_some() {
             self.write_varying(cell, out);
         } else {
-            for place in 0..E::N * (E::N + 1) / 2 {
+            for place in 0..n * (n + 1) / 2 {
                 let mut sum = products[0] * self.pairs[0][place];
                 for pair in 1..D * (D + 1) / 2 {
                     sum += products[pair] * self.pairs[pair][place];
@@ -103,11 +99,11 @@ impl<'s, 'a, const D: usize> CellMatrices<'s, 'a, D> {
             }
         }
         if let Some(reaction) = &self.space.reaction {
-            local[..E::N].iter_mut().for_each(|row| row[..E::N].fill(0.0));
+            local[..n].iter_mut().for_each(|row| row[..n].fill(0.0));
             reaction.add(self.space.mesh, cell, volume, local);
             let mut place = 0;
-            for i in 0..E::N {
-                for j in i..E::N {
+            for i in 0..n {
+                for j in i..n {
                     out[place] += local[i][j];
                     place += 1;
                 }
@@ -148,29 +144,29 @@ impl<const D: usize> CellMatrix for Gradients<'_, '_, '_, D> {
 }
 
 /// Matrices of any kind.
-pub(crate) struct General<'c, 's, 'a, E, const D: usize> {
+pub(crate) struct General<'c, 's, 'a, const D: usize, const N: usize> {
     cells: &'c CellMatrices<'s, 'a, D>,
+    unknowns: &'c CellUnknowns<D, N>,
     triangle: Triangle,
     /// Workspace: the reaction term of a cell.
     local: Local,
-    element: PhantomData<E>,
 }
 
-impl<'c, 's, 'a, E, const D: usize> General<'c, 's, 'a, E, D> {
-    pub fn new(cells: &'c CellMatrices<'s, 'a, D>) -> Self {
-        let triangle = [0.0; TRIANGLE];
-        Self { cells, triangle, local: zero_local(), element: PhantomData }
+impl<'c, 's, 'a, const D: usize, const N: usize> General<'c, 's, 'a, D, N> {
+    pub fn new(cells: &'c CellMatrices<'s, 'a, D>, unknowns: &'c CellUnknowns<D, N>) -> Self {
+        Self { cells, unknowns, triangle: [0.0; TRIANGLE], local: zero_local() }
     }
 }
 
-impl<E: ReferenceElement<D>, const D: usize> CellMatrix for General<'_, '_, '_, E, D> {
+impl<const D: usize, const N: usize> CellMatrix for General<'_, '_, '_, D, N> {
     #[inline(always)]
     fn of_cell(&mut self, cell: usize) {
-        self.cells.write::<E>(cell, &mut self.triangle, &mut self.local);
+        self.cells.write(self.unknowns.count(), cell, &mut self.triangle, &mut self.local);
     }
     #[inline(always)]
     fn entry(&self, i: usize, j: usize) -> f64 {
-        self.triangle[self.cells.places[i * E::N + j] as usize % TRIANGLE]
+        let entry = i * self.unknowns.count() + j;
+        self.triangle[self.cells.places[entry] as usize % TRIANGLE]
     }
 }
 

@@ -14,7 +14,7 @@ use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable, Derivatives};
 use crate::arrays::map_entries;
 use crate::assemble::local::StiffnessTable;
-use crate::element::MAX_BASIS;
+use crate::element::{Element, MAX_BASIS};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::DataByGroup;
@@ -70,9 +70,9 @@ impl VaryingCoefficient {
         alpha: &DataByGroup<'_, D>,
         mesh: &Mesh<D>,
         constants: &[f64],
-        basis_degree: usize,
-        basis: fn(&[f64; 4]) -> BasisAt,
+        element: &dyn Element<D>,
     ) -> Result<Option<Self>, Error> {
+        let basis_degree = element.basis_degree();
         // the same whatever the order of vertices
         let rule = |dimension| FullySymmetric.rule(dimension, 2 * basis_degree);
         let (cell_rule, facet_rule) = (rule(D)?, rule(D - 1)?);
@@ -103,7 +103,7 @@ impl VaryingCoefficient {
         }
         let at_point = |(&point, &weight)| {
             let rule = Rule { points: vec![point], weights: vec![weight] };
-            StiffnessTable::new(D, &CellTable::new(rule, basis))
+            StiffnessTable::new(D, &CellTable::new(rule, element))
         };
         let polynomials = OrthonormalPolynomials::new(D - 1, basis_degree);
         let moments = 0..polynomials.len();
@@ -113,7 +113,7 @@ impl VaryingCoefficient {
             for k in 0..flux_moments {
                 for (point, weight) in facet_rule.iter() {
                     let scale = weight * polynomials.value(k, point);
-                    let basis = basis(&facet_to_cell(point, local));
+                    let basis = BasisAt::new(element, &facet_to_cell(point, local));
                     derivatives.push(map_entries(basis.derivatives, |row| {
                         map_entries(row, |d| scale * d)
                     }));

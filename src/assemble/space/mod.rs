@@ -1,11 +1,10 @@
 //! The discrete space on a mesh: all that does not depend on the facet form.
 //!
-//! Nothing here is generic in scheme or element, so that all is compiled once for each dimension: the element enters as an [`AnyElement`].
+//! Nothing here is generic in scheme or element, so that all is compiled once for each dimension.
 //!
 //! | file | content |
 //! |---|---|
 //! | `mod` | the space: rules, unknowns, nodes, points of cells and facets |
-//! | `any_element` | an element without its type |
 //! | `tables` | basis functions and their derivatives at the points of a rule, moments on facets |
 //! | `metric` | the geometry of cells as forms need it |
 //! | `dofs` | the numbers of the unknowns of a cell |
@@ -18,7 +17,6 @@
 //! | `supports`, `node_vertices` | the supports of basis functions, by the vertices that stand for a node |
 
 pub(crate) mod active_obstacles;
-mod any_element;
 mod bounds;
 mod coefficient;
 pub(crate) mod contradictions;
@@ -31,18 +29,17 @@ pub(crate) mod reaction_term;
 mod supports;
 pub(crate) mod tables;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
-use crate::constraint::BoundBy;
-use crate::element::{Entity, MAX_BASIS, Node};
+use crate::constraint::{BoundBy, in_basis_of, offered};
+use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours};
 use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::Point;
-pub(crate) use any_element::AnyElement;
 use coefficient::VaryingCoefficient;
 pub(crate) use coefficient::{INWARD, Place};
 use dofs::Dofs;
@@ -90,24 +87,26 @@ pub(crate) struct Space<'a, const D: usize> {
     /// By what a Signorini condition binds each of a cell's unknowns, if it does and the node lies on
     /// a contact facet.
     on_contact: Vec<Option<BoundBy>>,
-    basis: fn(&[f64; 4]) -> BasisAt,
+    element: Arc<dyn Element<D>>,
     /// Integrals of the load by cell, once computed.
     pub load_by_cell: OnceLock<Vec<f64>>,
 }
 
 impl<'a, const D: usize> Space<'a, D> {
-    /// The space of an element; facets are built only if asked for or numbered.
+    /// The space of an element, in the basis that the problem's constraint set needs; facets are built
+    /// only if asked for or numbered.
     pub fn new(
-        element: AnyElement,
+        own: Arc<dyn Element<D>>,
         problem: &'a Problem<D>,
         mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
         with_facets: bool,
         pins: bool,
-        offered: fn(contact: bool) -> Vec<String>,
     ) -> Result<Self, Error> {
-        let AnyElement { degree, basis_degree, layout, nodes, basis } = element;
         let set = problem.constraint_set();
+        let element = in_basis_of(set, own.clone());
+        let (degree, basis_degree) = (element.degree(), element.basis_degree());
+        let (layout, nodes) = (element.layout(), element.nodes());
         let data = DataOnMesh::new(problem, mesh)?;
         let neighbours = (with_facets || layout.facet > 0).then(|| {
             count::facet_topologies(1);
@@ -125,13 +124,13 @@ impl<'a, const D: usize> Space<'a, D> {
                 let is_constant = data.reaction.all().all(|datum| datum.constant().is_some());
                 let degree = if is_constant { products } else { products.max(cell_degree) };
                 let rule = rule(quadrature.reaction, D, degree)?;
-                Some(ReactionTerm::new(data.reaction.clone(), rule, degree, basis, nodes.len()))
+                Some(ReactionTerm::new(data.reaction.clone(), rule, degree, element.clone()))
             }
         };
         let coefficients = data::coefficients(&data.coefficient, mesh)?;
         let varying = match &coefficients {
             Some(constants) if basis_degree > 1 => {
-                VaryingCoefficient::new(&data.coefficient, mesh, constants, basis_degree, basis)?
+                VaryingCoefficient::new(&data.coefficient, mesh, constants, &*element)?
             }
             _ => None,
         };
@@ -155,18 +154,19 @@ impl<'a, const D: usize> Space<'a, D> {
             basis_degree,
             broken: layout.is_broken(),
             pins,
-            basis,
+            element,
             load_by_cell: OnceLock::new(),
         };
-        space.check_constraint_set(offered)?;
+        space.check_constraint_set(&own)?;
         Ok(space)
     }
 
-    /// Refuses an inequality that would bind nothing at all.
-    fn check_constraint_set(&self, offered: fn(contact: bool) -> Vec<String>) -> Result<(), Error> {
+    /// Refuses an inequality that would bind nothing at all, and names the sets that the element of the
+    /// scheme offers.
+    fn check_constraint_set(&self, own: &Arc<dyn Element<D>>) -> Result<(), Error> {
         let refuse = |condition, contact| {
             let constraint = self.problem.constraint_set().name_on(&self.nodes).to_owned();
-            let allowed = match &offered(contact)[..] {
+            let allowed = match &offered(own, contact)[..] {
                 [] => "another element: this one has no nodes on facets".to_owned(),
                 names => names.join(" or "),
             };
@@ -203,7 +203,7 @@ impl<'a, const D: usize> Space<'a, D> {
     }
     /// The basis at a point of the cell.
     pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt {
-        (self.basis)(point)
+        BasisAt::new(&*self.element, point)
     }
     /// The factor `c` if the gradient of each basis function `i` is `c` times that of barycentric
     /// coordinate `i`, so that products of gradients make the whole stiffness.
@@ -229,11 +229,11 @@ impl<'a, const D: usize> Space<'a, D> {
     }
     /// Moments of the basis on facets, up to a degree.
     pub fn facet_table(&self, degree: usize) -> FacetTable {
-        FacetTable::new(D, self.basis_degree, self.basis, degree)
+        FacetTable::new(&*self.element, degree)
     }
     /// The basis at the points of a cell rule.
     pub fn cell_table(&self, rule: Rule) -> CellTable {
-        CellTable::new(rule, self.basis)
+        CellTable::new(rule, &*self.element)
     }
     /// The unknowns of a cell in `f64`.
     pub fn local_values(&self, cell: usize, u: &[f64]) -> [f64; MAX_BASIS] {

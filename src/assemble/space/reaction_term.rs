@@ -1,10 +1,13 @@
 //! The reaction term in the matrix of a cell.
 
 use super::data::finite;
+use std::sync::Arc;
+
 use super::tables::{BasisAt, CellTable};
 use crate::assemble::count;
 use crate::assemble::cut_simplices::{CutRule, Visit};
 use crate::assemble::local::Local;
+use crate::element::Element;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::{DataByGroup, DatumRef};
@@ -17,24 +20,23 @@ pub(crate) struct ReactionTerm<'a, const D: usize> {
     table: CellTable,
     /// Where a datum has a level: the rule on cells that its zero set cuts.
     cut: Option<CutRule>,
-    basis: fn(&[f64; 4]) -> BasisAt,
+    element: Arc<dyn Element<D>>,
     n: usize,
 }
 
 impl<'a, const D: usize> ReactionTerm<'a, D> {
-    /// The term of data with `n` basis functions at the points of a rule. A rule at vertices alone,
+    /// The term of data with the basis of an element at the points of a rule. A rule at vertices alone,
     /// which lumps the term, is used on cells that are cut too.
     pub fn new(
         data: DataByGroup<'a, D>,
         rule: Rule,
         degree: usize,
-        basis: fn(&[f64; 4]) -> BasisAt,
-        n: usize,
+        element: Arc<dyn Element<D>>,
     ) -> Self {
         let is_lumped = rule.points.iter().all(|point| point.contains(&1.0));
         let has_level = data.any(&|datum| datum.level().is_some());
         let cut = (has_level && !is_lumped).then(|| CutRule::new(D, degree));
-        Self { data, table: CellTable::new(rule, basis), cut, basis, n }
+        Self { data, table: CellTable::new(rule, &*element), cut, n: element.per_cell(), element }
     }
     /// Adds `(c phi_j, phi_i)` over a cell.
     pub fn add(&self, mesh: &Mesh<D>, cell: usize, volume: f64, out: &mut Local) {
@@ -49,7 +51,7 @@ impl<'a, const D: usize> ReactionTerm<'a, D> {
             }
         };
         if self.visit_cut(datum, mesh, cell, &mut |point, x, weight| {
-            add(datum.at(x), weight, &(self.basis)(point));
+            add(datum.at(x), weight, &BasisAt::new(&*self.element, point));
         }) {
             return;
         }

@@ -1,6 +1,6 @@
 //! Basis functions tabulated once per assembly: the small arrays that hot loops read.
 
-use crate::element::{MAX_BASIS, ReferenceElement};
+use crate::element::{Element, MAX_BASIS};
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 
 /// Derivatives of all basis functions along barycentric coordinates.
@@ -14,10 +14,11 @@ pub(crate) struct BasisAt {
 }
 
 impl BasisAt {
-    pub fn new<E: ReferenceElement<D>, const D: usize>(point: &[f64; 4]) -> Self {
-        let mut basis = Self::zero();
-        E::values(&point[..=D], &mut basis.values);
-        E::derivatives(&point[..=D], &mut basis.derivatives);
+    /// The basis of an element at a point of the cell.
+    pub fn new<const D: usize>(element: &dyn Element<D>, point: &[f64; 4]) -> Self {
+        let (mut basis, n) = (Self::zero(), element.per_cell());
+        element.values(&point[..=D], &mut basis.values[..n]);
+        element.derivatives(&point[..=D], &mut basis.derivatives[..n]);
         basis
     }
     fn zero() -> Self {
@@ -41,10 +42,11 @@ pub(crate) struct CellTable {
 }
 
 impl CellTable {
-    /// The table of a basis.
-    pub fn new(rule: Rule, basis: fn(&[f64; 4]) -> BasisAt) -> Self {
+    /// The table of the basis of an element.
+    pub fn new<const D: usize>(rule: Rule, element: &dyn Element<D>) -> Self {
         let Rule { points, weights } = rule;
-        Self { basis: points.iter().map(basis).collect(), points, weights }
+        let basis = points.iter().map(|point| BasisAt::new(element, point)).collect();
+        Self { points, weights, basis }
     }
 }
 
@@ -57,19 +59,16 @@ pub(crate) struct FacetTable {
 }
 
 impl FacetTable {
-    /// Moments up to a degree of a basis of some degree.
-    pub fn new(
-        dimension: usize,
-        basis_degree: usize,
-        basis: fn(&[f64; 4]) -> BasisAt,
-        degree: usize,
-    ) -> Self {
-        let polynomials = OrthonormalPolynomials::new(dimension - 1, degree);
-        let rule = Rule::new(dimension - 1, degree + basis_degree);
+    /// Moments of the basis of an element, up to a degree.
+    pub fn new<const D: usize>(element: &dyn Element<D>, degree: usize) -> Self {
+        let basis_degree = element.basis_degree();
+        let polynomials = OrthonormalPolynomials::new(D - 1, degree);
+        let rule = Rule::new(D - 1, degree + basis_degree);
         let moment = |local: usize, k: usize| {
             let mut moment = BasisAt::zero();
             for (point, w) in rule.iter() {
-                moment.add(w * polynomials.value(k, point), &basis(&facet_to_cell(point, local)));
+                let basis = BasisAt::new(element, &facet_to_cell(point, local));
+                moment.add(w * polynomials.value(k, point), &basis);
             }
             // derivatives have no moments of the element's own degree: what is left is rounding
             if polynomials.degree(k) >= basis_degree {
@@ -80,7 +79,7 @@ impl FacetTable {
         let n = polynomials.len();
         Self {
             degrees: (0..n).map(|k| polynomials.degree(k)).collect(),
-            basis: (0..(dimension + 1) * n).map(|i| moment(i / n, i % n)).collect(),
+            basis: (0..(D + 1) * n).map(|i| moment(i / n, i % n)).collect(),
         }
     }
     /// The moments on facet `local`.

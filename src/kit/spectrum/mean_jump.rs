@@ -6,7 +6,7 @@ use crate::mesh::{BoundaryPart, Facets, Mesh, Neighbours};
 /// The change of variables that takes facet means of a broken space apart into their mean and
 /// their jump: a sparse matrix `E` with at most two entries in each row.
 ///
-/// The broken space is that of [`Broken<CrouzeixRaviart>`](crate::element::Broken), whose unknowns
+/// The broken space is that of [`Broken(CrouzeixRaviart)`](crate::element::Broken), whose unknowns
 /// are the facet means `c` of each cell. On an interior facet `mean = (c_here + c_there) / 2` and
 /// `jump = c_here - c_there`; a Dirichlet facet has a jump only and a Neumann or contact facet a
 /// mean only, both equal to `c`. Means come first: those of interior facets, then Neumann, then

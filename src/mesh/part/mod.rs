@@ -60,7 +60,7 @@ impl fmt::Display for Layers {
 /// whole, its diameter and its mesh size, are those of the whole mesh ([`Extent`]). Cells and vertices keep
 /// their order, regions and boundary facets their names, so that a scheme has on the part, for the unknowns of
 /// own cells, the matrix, load and bounds that it has on the whole mesh, bit for bit, if there are as many
-/// layers as [it needs](crate::scheme::AnyScheme#method.layers).
+/// layers as [it needs](crate::scheme::Scheme#method.layers).
 ///
 /// ```
 /// use unilateral::mesh::Layers;

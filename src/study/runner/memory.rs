@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::instances::compiled;
 use crate::problem::Problem;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 use crate::study::memory::{
     MemoryEstimate, estimate, estimate_without_factors, memory_of_process, peak_memory_bytes,
     unknowns_about,
@@ -26,7 +26,7 @@ impl<const D: usize> Study<'_, D> {
             Some(_) => self.first_level(),
             None => self.levels.iter().copied().max()?,
         };
-        let run = |scheme: &dyn AnyScheme<D>, level: usize| {
+        let run = |scheme: &dyn Scheme<D>, level: usize| {
             let most = self
                 .adaptive
                 .map_or(0.0, |of| of.unknowns as f64 / unknowns_about(D, scheme.layout(), 1.0));
@@ -39,7 +39,7 @@ impl<const D: usize> Study<'_, D> {
     }
 
     /// Bytes that the process needs for a scheme on so many cells.
-    fn memory_of(&self, scheme: &dyn AnyScheme<D>, cells: f64) -> f64 {
+    fn memory_of(&self, scheme: &dyn Scheme<D>, cells: f64) -> f64 {
         let layout = scheme.layout();
         let unknowns = unknowns_about(D, layout, cells) as usize;
         let solvers = self.solvers();
@@ -75,7 +75,7 @@ impl<const D: usize> Study<'_, D> {
     /// Checks that a scheme on a level fits into so many bytes.
     pub(super) fn check_level(
         &self,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         level: usize,
         available: Option<u64>,
     ) -> Result<(), Error> {
@@ -86,7 +86,7 @@ impl<const D: usize> Study<'_, D> {
     /// Checks that a scheme on the next mesh of adaptive refinement fits into the memory.
     pub(super) fn check_step(
         &self,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         (step, cells): (usize, usize),
     ) -> Result<(), Error> {
         let run = || format!("scheme {}, step {step} with {cells} cells", scheme.name());

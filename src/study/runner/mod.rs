@@ -25,7 +25,7 @@ use crate::nested::{Adaptivity, Coarsest, Hierarchy, NestedIteration, Phase, Sol
 use crate::problem::Problem;
 use crate::real::Precision;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, SchemeOptions};
+use crate::scheme::{Scheme, SchemeOptions};
 use crate::study::compatibility::{check_domain, check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
@@ -97,7 +97,7 @@ type EachSolution<'a, const D: usize> =
 
 /// A scheme, with its constraint set if that is not the problem's.
 struct Entry<'a, const D: usize> {
-    scheme: Arc<dyn AnyScheme<D> + 'a>,
+    scheme: Arc<dyn Scheme<D> + 'a>,
     set: Option<Arc<dyn ConstraintSet>>,
     /// The choices in its label, if those that are default are among them.
     shown: Option<SchemeOptions>,

@@ -11,7 +11,7 @@ use crate::nested::{NestedIteration, Phase, Solved};
 use crate::problem::Problem;
 use crate::scenes::check::Violation;
 use crate::scenes::check_exact_on;
-use crate::scheme::{AnyScheme, ExpectedOrders};
+use crate::scheme::{ExpectedOrders, Scheme};
 use crate::study::crossing::Crossing;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
@@ -254,7 +254,7 @@ impl<const D: usize> Study<'_, D> {
     /// The orders that theory proves; none without an exact solution that holds on the mesh.
     fn expected_orders(
         &self,
-        scheme: &dyn AnyScheme<D>,
+        scheme: &dyn Scheme<D>,
         set: &dyn ConstraintSet,
         failure: Option<&str>,
     ) -> ExpectedOrders {

@@ -14,7 +14,7 @@ use crate::mesh::Mesh;
 use crate::nested::Solved;
 #[cfg(feature = "report")]
 use crate::paraview::FieldScalar;
-use crate::scheme::{AnyScheme, NamedScheme, SchemeOptions};
+use crate::scheme::{NamedScheme, Scheme, SchemeOptions};
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
 use crate::study::reference::Reference;
@@ -38,7 +38,7 @@ impl<'a, const D: usize> Study<'a, D> {
     /// # }
     /// ```
     #[must_use]
-    pub fn reference(mut self, scheme: impl AnyScheme<D> + 'a, level: usize) -> Self {
+    pub fn reference(mut self, scheme: impl Scheme<D> + 'a, level: usize) -> Self {
         self.reference = Some(Reference { scheme: Arc::new(scheme), set: None, level });
         self
     }
@@ -50,7 +50,7 @@ impl<'a, const D: usize> Study<'a, D> {
     /// As [`Study::reference`], with a scheme that other studies have too.
     pub(crate) fn shared_reference(
         mut self,
-        scheme: Arc<dyn AnyScheme<D> + 'a>,
+        scheme: Arc<dyn Scheme<D> + 'a>,
         set: Option<Arc<dyn ConstraintSet>>,
         level: usize,
     ) -> Self {
@@ -59,29 +59,25 @@ impl<'a, const D: usize> Study<'a, D> {
     }
     /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
-    pub fn scheme(self, scheme: impl AnyScheme<D> + 'a) -> Self {
+    pub fn scheme(self, scheme: impl Scheme<D> + 'a) -> Self {
         self.shared_scheme(Arc::new(scheme), None, None)
     }
     /// Adds a scheme with a constraint set of its own, so that one scheme may stand beside itself with
     /// other bounds.
     #[must_use]
-    pub fn scheme_on(
-        self,
-        scheme: impl AnyScheme<D> + 'a,
-        set: impl ConstraintSet + 'static,
-    ) -> Self {
+    pub fn scheme_on(self, scheme: impl Scheme<D> + 'a, set: impl ConstraintSet + 'static) -> Self {
         self.shared_scheme(Arc::new(scheme), Some(Arc::new(set)), None)
     }
     /// Adds a scheme chosen at run time, with the constraint set of the problem.
     #[must_use]
-    pub fn boxed_scheme(self, scheme: Box<dyn AnyScheme<D> + 'a>) -> Self {
+    pub fn boxed_scheme(self, scheme: Box<dyn Scheme<D> + 'a>) -> Self {
         self.shared_scheme(scheme.into(), None, None)
     }
     /// Adds a scheme chosen at run time, with a constraint set of its own.
     #[must_use]
     pub fn boxed_scheme_on(
         self,
-        scheme: Box<dyn AnyScheme<D> + 'a>,
+        scheme: Box<dyn Scheme<D> + 'a>,
         set: impl ConstraintSet + 'static,
     ) -> Self {
         self.shared_scheme(scheme.into(), Some(Arc::new(set)), None)
@@ -94,7 +90,7 @@ impl<'a, const D: usize> Study<'a, D> {
     /// Adds a scheme that other studies have too, with its own constraint set and the choices in its label.
     pub(crate) fn shared_scheme(
         mut self,
-        scheme: Arc<dyn AnyScheme<D> + 'a>,
+        scheme: Arc<dyn Scheme<D> + 'a>,
         set: Option<Arc<dyn ConstraintSet>>,
         shown: Option<SchemeOptions>,
     ) -> Self {

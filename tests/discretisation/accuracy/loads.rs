@@ -65,7 +65,7 @@ fn quadratics_on_a_load_with_jumps_keep_their_order() {
 }
 
 /// The sum of all entries of the load, which is the integral of the source.
-fn integral<const D: usize>(scheme: &dyn AnyScheme<D>, n: usize, load: Datum<D>) -> f64 {
+fn integral<const D: usize>(scheme: &dyn Scheme<D>, n: usize, load: Datum<D>) -> f64 {
     let domain = BoxDomain::dirichlet(Point::repeat(-1.0), Point::repeat(1.0));
     let mesh = Mesh::<D>::kuhn_box(&domain, [n; D]).unwrap();
     let mut problem = Problem::new();
@@ -158,7 +158,7 @@ fn a_reaction_that_jumps_is_integrated_exactly() {
     let mesh = Mesh::<1>::kuhn_box(&domain, [4]).unwrap();
     let level = |x: &Point<1>| x[0] - 0.3;
     let jump = Datum::piecewise(move |x| if level(x) > 0.0 { 5.0 } else { 1.0 }, level);
-    let total = |scheme: &dyn AnyScheme<1>| {
+    let total = |scheme: &dyn Scheme<1>| {
         let problem = Problem::new().reaction(jump.clone());
         let of = Discretisation::new(scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
         let ones = vec![1.0; of.unknowns()];

@@ -92,7 +92,7 @@ fn a_set_of_the_problem_is_that_of_an_entry() {
 /// The refusal names what the element of the scheme offers.
 #[test]
 fn refusals_name_what_the_element_offers() {
-    fn refusal(scheme: &dyn AnyScheme<2>, problem: Problem<2>) -> String {
+    fn refusal(scheme: &dyn Scheme<2>, problem: Problem<2>) -> String {
         let mesh = scenes::signorini_2d().domain.mesh(2).unwrap();
         let refused: Result<Discretisation<'_, 2>, Error> =
             Discretisation::new(scheme, &problem, &mesh, Default::default());
@@ -100,11 +100,7 @@ fn refusals_name_what_the_element_offers() {
     }
     let obstacle = || Problem::new().obstacle_below(|_| 0.0);
     for (scheme, problem, offered) in [
-        (
-            &Sipg::default() as &dyn AnyScheme<2>,
-            obstacle().on(Midpoints),
-            "vertices or facet-means",
-        ),
+        (&Sipg::default() as &dyn Scheme<2>, obstacle().on(Midpoints), "vertices or facet-means"),
         (&ConformingP1, obstacle().on(FacetMeans), "vertices"),
         (&NonconformingP1, obstacle().on(AllVerticesButOne), "facet-means"),
         (&Sipg::default().on(P2), obstacle().on(FacetMeans), "nodes or midpoints or cell-means"),
@@ -123,7 +119,7 @@ fn refusals_name_what_the_element_offers() {
 #[test]
 fn orders_remain_where_the_set_is_that_of_the_nodes() {
     let smooth = Setting::new(2, Regularity::new(2.5)).with_obstacle(true);
-    let orders = |scheme: &dyn AnyScheme<2>, set: &dyn ConstraintSet| {
+    let orders = |scheme: &dyn Scheme<2>, set: &dyn ConstraintSet| {
         scheme.expected_orders_on(set, &smooth).h1
     };
     assert_eq!(orders(&NonconformingP1, &FacetMeans), Some(1.0));

@@ -124,7 +124,7 @@ fn stretched_meshes() {
     let scene = sines();
     let meshes =
         ratios.map(|r| Mesh::<2>::kuhn_box(&scene.domain.bounding_box(), [16, 16 * r]).unwrap());
-    let mut spread = |scheme: &dyn AnyScheme<2>, printed: [&str; 4], jumps: [&str; 4]| {
+    let mut spread = |scheme: &dyn Scheme<2>, printed: [&str; 4], jumps: [&str; 4]| {
         let mut energies = Vec::new();
         for ((mesh, ratio), (h1, jump)) in
             meshes.iter().zip(ratios).zip(printed.into_iter().zip(jumps))
@@ -175,8 +175,7 @@ fn stretched_meshes_with_the_default_factor() {
     let relative: Vec<f64> = [1, 4, 16, 64]
         .map(|r| {
             let mesh = Mesh::<2>::kuhn_box(&scene.domain.bounding_box(), [16, 16 * r]).unwrap();
-            let energy =
-                |s: &dyn AnyScheme<2>| solve(s, &scene.problem, &mesh).error.energy.unwrap();
+            let energy = |s: &dyn Scheme<2>| solve(s, &scene.problem, &mesh).error.energy.unwrap();
             energy(&robust) / energy(&NonconformingP1)
         })
         .to_vec();

@@ -31,7 +31,7 @@ fn check(row: &Row, reference: &Value) {
 }
 
 /// Runs the scheme of a reference row; none for schemes that are not here.
-fn scheme(reference: &Value) -> Option<Box<dyn AnyScheme<2>>> {
+fn scheme(reference: &Value) -> Option<Box<dyn Scheme<2>>> {
     let eta = || Eta::Absolute(reference["eta"].as_f64().unwrap());
     Some(match reference["scheme"].as_str()? {
         "p1" => Box::new(ConformingP1),

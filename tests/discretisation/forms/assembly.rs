@@ -2,6 +2,8 @@
 //! scheme, on small meshes with moved vertices; invariance under renumbering; the same bits for any
 //! number of threads; facet identities.
 
+use std::sync::Arc;
+
 use crate::support::meshes::{Random, Raw, mixed_box};
 use std::collections::BTreeMap;
 use unilateral::assemble::{DataQuadrature, Discretisation};
@@ -161,25 +163,26 @@ enum Form {
 
 /// Schemes of the test: any element with any form.
 struct Any<E, F> {
-    element: std::marker::PhantomData<E>,
+    element: E,
     form: F,
 }
 
-impl<E, F> Any<E, F> {
-    fn new(form: F) -> Self {
-        Self { element: std::marker::PhantomData, form }
-    }
-}
-
-impl<const D: usize, E: ReferenceElement<D>, F: FacetForm<D> + Clone> Scheme<D> for Any<E, F> {
-    type Element = E;
-    type Facet = F;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize, E, F> Scheme<D> for Any<E, F>
+where
+    E: Element<D> + Copy + 'static,
+    F: FacetForm<D> + Clone + 'static,
+{
     fn name(&self) -> &str {
         "any"
     }
-    fn facet(&self, _: &Mesh<D>) -> F {
-        self.form.clone()
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(self.element)
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(self.form.clone())
+    }
+    fn dirichlet(&self) -> DirichletBy {
+        DirichletBy::FacetForm
     }
 }
 
@@ -188,9 +191,10 @@ fn alpha_at<const D: usize>(x: &Point<D>) -> f64 {
 }
 
 /// Compares with the dense assembler, entry by entry.
-fn check<const D: usize, E: ReferenceElement<D>, F: FacetForm<D> + Clone>(
+fn check<const D: usize>(
     mesh: &Mesh<D>,
-    form: F,
+    element: impl Element<D> + Copy + 'static,
+    form: impl FacetForm<D> + Clone + 'static,
     slow_form: Option<Form>,
     reaction: f64,
     // vertex values of the cell's basis function i
@@ -200,20 +204,20 @@ fn check<const D: usize, E: ReferenceElement<D>, F: FacetForm<D> + Clone>(
     if reaction > 0.0 {
         problem = problem.reaction(reaction);
     }
-    let scheme = Any::<E, F>::new(form);
+    let layout = element.layout();
+    let scheme = Any { element, form };
     let space = Discretisation::new(&scheme, &problem, mesh, DataQuadrature::default()).unwrap();
     let matrix = space.matrix();
     // unknowns of each cell, from their supports
     let supports = space.supports();
     let find = |c: usize, i: usize| {
         let piece = basis(i);
-        let node: Vec<u32> = if E::LAYOUT.vertex == 1 || (E::LAYOUT.is_broken() && piece[i] == 1.0)
-        {
+        let node: Vec<u32> = if layout.vertex == 1 || (layout.is_broken() && piece[i] == 1.0) {
             vec![mesh.cell(c)[i]]
         } else {
             mesh.facet_vertices(c, i).collect()
         };
-        let owner = E::LAYOUT.is_broken().then_some(c as u32);
+        let owner = layout.is_broken().then_some(c as u32);
         (0..supports.len())
             .find(|&k| supports[k].cell() == owner && supports[k].vertices() == node)
             .unwrap()
@@ -284,21 +288,23 @@ fn check_all<const D: usize>(n: usize) {
     let penalty = |rule| InteriorPenalty { symmetry: Symmetry::Symmetric, rule, degree: 1 };
     let over =
         OverPenalty { eta: 0.7, degree: 1, rule: WeightRule::Isotropic, mesh_size: f64::NAN };
-    check::<D, P1, _>(&mesh, NoFacets, None, 0.0, vertex_basis::<D>);
-    check::<D, P1, _>(&mesh, NoFacets, None, 2.5, vertex_basis::<D>);
+    check::<D>(&mesh, P1, NoFacets, None, 0.0, vertex_basis::<D>);
+    check::<D>(&mesh, P1, NoFacets, None, 2.5, vertex_basis::<D>);
     if D > 1 {
         // in one dimension a facet mean is a vertex value and the test tells unknowns by place
-        check::<D, CrouzeixRaviart, _>(&mesh, NoFacets, None, 2.5, mean_basis::<D>);
+        check::<D>(&mesh, CrouzeixRaviart, NoFacets, None, 2.5, mean_basis::<D>);
         let sym = Form::Penalty { sigma: Some(10.0), theta: -1.0 };
-        check::<D, CrouzeixRaviart, _>(
+        check::<D>(
             &mesh,
+            CrouzeixRaviart,
             penalty(PenaltyRule::Diameter(10.0)),
             Some(sym),
             0.0,
             mean_basis::<D>,
         );
-        check::<D, Broken<CrouzeixRaviart>, _>(
+        check::<D>(
             &mesh,
+            Broken(CrouzeixRaviart),
             over,
             Some(Form::Over { eta: 0.7 }),
             0.0,
@@ -306,31 +312,34 @@ fn check_all<const D: usize>(n: usize) {
         );
     }
     let sym = |sigma| Some(Form::Penalty { sigma, theta: -1.0 });
-    check::<D, Broken<P1>, _>(
+    check::<D>(
         &mesh,
+        Broken(P1),
         penalty(PenaltyRule::Diameter(10.0)),
         sym(Some(10.0)),
         0.0,
         vertex_basis::<D>,
     );
-    check::<D, Broken<P1>, _>(
+    check::<D>(
         &mesh,
+        Broken(P1),
         penalty(PenaltyRule::Proven(0.5)),
         sym(None),
         1.0,
         vertex_basis::<D>,
     );
-    check::<D, Broken<P1>, _>(&mesh, over, Some(Form::Over { eta: 0.7 }), 0.0, vertex_basis::<D>);
+    check::<D>(&mesh, Broken(P1), over, Some(Form::Over { eta: 0.7 }), 0.0, vertex_basis::<D>);
     let non_symmetric = InteriorPenalty {
         symmetry: Symmetry::NonSymmetric,
         rule: PenaltyRule::Diameter(1.0),
         degree: 1,
     };
     let slow = Some(Form::Penalty { sigma: Some(1.0), theta: 1.0 });
-    check::<D, Broken<P1>, _>(&mesh, non_symmetric, slow, 0.0, vertex_basis::<D>);
+    check::<D>(&mesh, Broken(P1), non_symmetric, slow, 0.0, vertex_basis::<D>);
     // a conforming space with a facet form: its jumps vanish, its fluxes do not
-    check::<D, P1, _>(
+    check::<D>(
         &mesh,
+        P1,
         penalty(PenaltyRule::Diameter(10.0)),
         sym(Some(10.0)),
         0.0,
@@ -374,7 +383,7 @@ fn forms_do_not_depend_on_numbering_or_orientation() {
             .coefficient(alpha_at)
             .source(|x| x[0] * x[0])
             .dirichlet(|x| x.sum());
-        let objective = |mesh: &Mesh<D>, scheme: &dyn AnyScheme<D>| {
+        let objective = |mesh: &Mesh<D>, scheme: &dyn Scheme<D>| {
             let inequality = scheme.inequality(&problem, mesh, DataQuadrature::default()).unwrap();
             let u = wild(mesh);
             // the value, and the size of the terms that cancel in it
@@ -382,14 +391,17 @@ fn forms_do_not_depend_on_numbering_or_orientation() {
             let size: f64 = load.iter().zip(&u).map(|(b, u)| (b * u).abs()).sum();
             (inequality.objective(&u), size)
         };
-        let schemes: [&dyn AnyScheme<D>; 3] = [
+        let schemes: [&dyn Scheme<D>; 3] = [
             &Sipg::default(),
             &Wopsip::default(),
-            &Any::<Broken<P1>, _>::new(InteriorPenalty {
-                symmetry: Symmetry::NonSymmetric,
-                rule: PenaltyRule::Diameter(2.0),
-                degree: 1,
-            }),
+            &Any {
+                element: Broken(P1),
+                form: InteriorPenalty {
+                    symmetry: Symmetry::NonSymmetric,
+                    rule: PenaltyRule::Diameter(2.0),
+                    degree: 1,
+                },
+            },
         ];
         for scheme in schemes {
             let (first, size) = objective(&raw.mesh(), scheme);
@@ -437,7 +449,7 @@ fn the_same_bits_for_any_number_of_threads() {
             .neumann(|x, n| x[0] * n[0])
             .obstacle_below(|x| x[0] - 1.0)
             .obstacle_above(|x| x[0] + x[0].cos());
-        let schemes: [&dyn AnyScheme<D>; 5] =
+        let schemes: [&dyn Scheme<D>; 5] =
             [&ConformingP1, &ConformingP2, &NonconformingP1, &Sipg::default(), &Wopsip::default()];
         for scheme in schemes {
             let run = |threads| {
@@ -470,7 +482,7 @@ fn the_same_error_for_any_number_of_threads() {
     for problem in &problems {
         let error = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let scheme: &dyn AnyScheme<2> = &Sipg::default();
+            let scheme: &dyn Scheme<2> = &Sipg::default();
             let inequality =
                 || scheme.inequality(problem, &mesh, DataQuadrature::default()).map(|_| ());
             pool.install(inequality).unwrap_err().to_string()
@@ -512,7 +524,7 @@ fn continuous_functions_have_no_jump_and_constants_no_energy() {
     let problem = Problem::<2>::new();
     let linear: Vec<f64> =
         mesh.cells().iter().map(|&v| 2.0 * mesh.vertices()[v as usize][0] - 1.0).collect();
-    let schemes: [&dyn AnyScheme<2>; 2] = [&Sipg::default(), &Wopsip::default()];
+    let schemes: [&dyn Scheme<2>; 2] = [&Sipg::default(), &Wopsip::default()];
     for scheme in schemes {
         let inequality = scheme.inequality(&problem, &mesh, DataQuadrature::default()).unwrap();
         let one = vec![1.0; inequality.size()];

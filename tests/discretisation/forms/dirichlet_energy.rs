@@ -21,7 +21,7 @@ fn energy(inequality: &Inequality<f64>, u: &[f64]) -> f64 {
     product - linear + data.constant()
 }
 
-fn check<const D: usize>(mesh: &Mesh<D>, schemes: &[Box<dyn AnyScheme<D>>]) {
+fn check<const D: usize>(mesh: &Mesh<D>, schemes: &[Box<dyn Scheme<D>>]) {
     let slope: Point<D> = Point::from_fn(|k, _| 1.0 - 0.6 * k as f64);
     let linear = move |x: &Point<D>| 3.0 + x.dot(&slope);
     let problem = Problem::new().dirichlet(linear).coefficient(|_| 2.0);
@@ -44,7 +44,7 @@ fn check<const D: usize>(mesh: &Mesh<D>, schemes: &[Box<dyn AnyScheme<D>>]) {
     }
 }
 
-fn schemes<const D: usize>() -> Vec<Box<dyn AnyScheme<D>>> {
+fn schemes<const D: usize>() -> Vec<Box<dyn Scheme<D>>> {
     vec![
         Box::new(Sipg::default()),
         Box::new(Nipg::default()),

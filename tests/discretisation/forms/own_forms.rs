@@ -1,7 +1,9 @@
 //! Forms made outside the library whose formula depends on the facet.
 
+use std::sync::Arc;
+
 use unilateral::algebra::Inequality;
-use unilateral::facet::{FacetKind, Lifted};
+use unilateral::facet::FacetKind;
 use unilateral::kit::check_scheme;
 use unilateral::mesh::{BoundaryPart, BoxDomain, Mesh};
 use unilateral::prelude::*;
@@ -12,9 +14,6 @@ struct NitscheAtBoundary {
 }
 
 impl<const D: usize> FacetForm<D> for NitscheAtBoundary {
-    fn uses_flux(&self) -> bool {
-        true
-    }
     fn penalty(&self, facet: &FacetView<D>) -> f64 {
         let h = facet.diameter();
         match facet.kind() {
@@ -35,14 +34,17 @@ impl<const D: usize> FacetForm<D> for NitscheAtBoundary {
 struct Nitsche;
 
 impl<const D: usize> Scheme<D> for Nitsche {
-    type Element = P1;
-    type Facet = NitscheAtBoundary;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     fn name(&self) -> &str {
         "nitsche"
     }
-    fn facet(&self, _: &Mesh<D>) -> NitscheAtBoundary {
-        NitscheAtBoundary { between_cells: 0.0 }
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P1)
+    }
+    fn dirichlet(&self) -> DirichletBy {
+        DirichletBy::FacetForm
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(NitscheAtBoundary { between_cells: 0.0 })
     }
 }
 
@@ -50,15 +52,17 @@ impl<const D: usize> Scheme<D> for Nitsche {
 struct OverPenaltyWithNitsche;
 
 impl<const D: usize> Scheme<D> for OverPenaltyWithNitsche {
-    type Element = Broken<P1>;
-    type Facet = NitscheAtBoundary;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
-    const CONSISTENT: bool = false;
     fn name(&self) -> &str {
         "over-penalty-with-nitsche"
     }
-    fn facet(&self, _: &Mesh<D>) -> NitscheAtBoundary {
-        NitscheAtBoundary { between_cells: 10.0 }
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(P1))
+    }
+    fn is_consistent(&self) -> bool {
+        false
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(NitscheAtBoundary { between_cells: 10.0 })
     }
 }
 
@@ -66,9 +70,9 @@ impl<const D: usize> Scheme<D> for OverPenaltyWithNitsche {
 #[test]
 fn no_flux_inside_and_nitsche_on_the_boundary_is_one_form() {
     fn on<const D: usize>() {
-        let nitsche = check_scheme::<D, _>(&Nitsche).unwrap_or_else(|e| panic!("{e}"));
+        let nitsche = check_scheme::<D>(&Nitsche).unwrap_or_else(|e| panic!("{e}"));
         assert!(nitsche.consistency.declared && nitsche.consistency.error < 1e-12, "{nitsche}");
-        let broken = check_scheme::<D, _>(&OverPenaltyWithNitsche);
+        let broken = check_scheme::<D>(&OverPenaltyWithNitsche);
         let broken = broken.unwrap_or_else(|e| panic!("{e}"));
         assert!(!broken.consistency.declared && broken.orders.h1 > 0.75, "{broken}");
     }
@@ -94,9 +98,6 @@ fn no_flux_inside_and_nitsche_on_the_boundary_is_one_form() {
 struct WeightInFormula(f64);
 
 impl<const D: usize> FacetForm<D> for WeightInFormula {
-    fn uses_flux(&self) -> bool {
-        true
-    }
     fn penalty(&self, _: &FacetView<D>) -> f64 {
         1.0
     }
@@ -108,15 +109,15 @@ impl<const D: usize> FacetForm<D> for WeightInFormula {
 
 struct SipgByFormula<E>(E);
 
-impl<const D: usize, E: ReferenceElement<D>> Scheme<D> for SipgByFormula<E> {
-    type Element = Broken<E>;
-    type Facet = WeightInFormula;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize, E: Element<D> + Copy + 'static> Scheme<D> for SipgByFormula<E> {
     fn name(&self) -> &str {
         "sipg-by-formula"
     }
-    fn facet(&self, _: &Mesh<D>) -> WeightInFormula {
-        WeightInFormula(30.0)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(self.0))
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(WeightInFormula(30.0))
     }
 }
 
@@ -136,7 +137,7 @@ fn same_matrix_and_load(a: &Inequality<f64>, b: &Inequality<f64>) {
 /// those of the penalty.
 #[test]
 fn a_formula_may_differ_from_facet_to_facet() {
-    fn check<const D: usize, E: ReferenceElement<D>>(element: E) {
+    fn check<const D: usize, E: Element<D> + Copy + 'static>(element: E) {
         let sides = [[BoundaryPart::Dirichlet, BoundaryPart::Neumann]; D];
         let mut upper = Point::repeat(1.0);
         upper[0] = 1.7;
@@ -164,11 +165,11 @@ fn a_formula_may_differ_from_facet_to_facet() {
     check::<3, _>(P2);
 }
 
-/// The terms of the local discontinuous Galerkin method besides its lifts, of which they say nothing.
+/// The local discontinuous Galerkin method, without a word on the degree of its lifts.
 struct FluxesAndJumps;
 
 impl<const D: usize> FacetForm<D> for FluxesAndJumps {
-    fn uses_flux(&self) -> bool {
+    fn is_lifted(&self) -> bool {
         true
     }
     fn penalty(&self, facet: &FacetView<D>) -> f64 {
@@ -181,22 +182,22 @@ impl<const D: usize> FacetForm<D> for FluxesAndJumps {
 
 struct OwnLdg<E>(E);
 
-impl<const D: usize, E: ReferenceElement<D>> Scheme<D> for OwnLdg<E> {
-    type Element = Broken<E>;
-    type Facet = Lifted<FluxesAndJumps>;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize, E: Element<D> + Copy + 'static> Scheme<D> for OwnLdg<E> {
     fn name(&self) -> &str {
         "own-ldg"
     }
-    fn facet(&self, _: &Mesh<D>) -> Lifted<FluxesAndJumps> {
-        Lifted(FluxesAndJumps)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(self.0))
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(FluxesAndJumps)
     }
 }
 
 /// Without a word on lifts they have one degree less than the element.
 #[test]
 fn lifts_have_the_degree_of_gradients_by_default() {
-    fn check<E: ReferenceElement<2>>(element: E) {
+    fn check<E: Element<2> + Copy + 'static>(element: E) {
         let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [3; 2]).unwrap();
         let problem = Problem::new().dirichlet(|x: &Point<2>| x[0] * x[1]);
         let known = Ldg::default().on(element);

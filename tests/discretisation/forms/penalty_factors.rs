@@ -5,7 +5,7 @@ use unilateral::prelude::*;
 use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 
-type Schemes<const D: usize> = Vec<(&'static str, Box<dyn AnyScheme<D>>)>;
+type Schemes<const D: usize> = Vec<(&'static str, Box<dyn Scheme<D>>)>;
 
 /// Every scheme with a penalty, with this factor, and the name of the parameter.
 fn with_factor<const D: usize>(x: f64) -> Schemes<D> {
@@ -139,7 +139,7 @@ fn without_a_penalty_nothing_is_proven() {
     let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
     let is_proven = |penalty| {
         let scheme = Nipg { penalty, ..Nipg::default() };
-        AnyScheme::<2>::form(&scheme, &mesh).theory().is_coercive
+        Scheme::<2>::form(&scheme, &mesh).theory().is_coercive
     };
     for rule in [PenaltyRule::Diameter, |factor| PenaltyRule::Proven(factor - 1.0)] {
         assert!(is_proven(rule(1e-8)));
@@ -158,7 +158,7 @@ fn coefficients_out_of_range_are_refused() {
         (f64::NAN, "coefficient is NaN at ("),
     ] {
         let problem = Problem::new().coefficient(move |_| value);
-        for scheme in [&ConformingP1 as &dyn AnyScheme<2>, &Wopsip::default()] {
+        for scheme in [&ConformingP1 as &dyn Scheme<2>, &Wopsip::default()] {
             let error = scheme.discretise(&problem, &mesh, Default::default()).unwrap_err();
             assert!(error.to_string().contains(why), "{value}: {error}");
         }

@@ -164,7 +164,7 @@ fn errors_on_a_line_fall_to_the_root_of_rounding() {
 /// The solution at vertices and the L2 error, `None` if it did not converge.
 fn solved<const D: usize>(
     precision: Precision,
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
     mesh: &Mesh<D>,
 ) -> Result<(Vec<f64>, f64), String> {
@@ -181,7 +181,7 @@ fn solved<const D: usize>(
 /// Solves in `f64` in two units of force, in which everything is rounded otherwise, and in `f32`:
 /// the largest difference over the root mean square of the error, in both precisions.
 fn rounding_over_error<const D: usize>(
-    (scheme, is_in_single): (&dyn AnyScheme<D>, bool),
+    (scheme, is_in_single): (&dyn Scheme<D>, bool),
     scene: &Scene<D>,
     in_thirds: &Scene<D>,
     level: usize,
@@ -217,8 +217,8 @@ fn rounding_is_small_for_every_factor() {
     });
     for eta in FACTORS {
         let w = wopsip(eta);
-        type Pair<'s> = (&'s dyn AnyScheme<2>, bool);
-        let p2 = w.on(P2);
+        type Pair<'s> = (&'s dyn Scheme<2>, bool);
+        let p2 = w.clone().on(P2);
         let pairs: [(Pair<'_>, &[Scene<2>; 2], usize); 3] = [
             ((&w, true), &in_units, 32),
             ((&w, true), &on_means, 32),

@@ -1,7 +1,7 @@
 //! The weights of forms on facets of meshes with known geometry.
 
 use crate::support::checks::Checks;
-use unilateral::facet::{FacetLifts, Lifted, Side};
+use unilateral::facet::{FacetLifts, Side};
 use unilateral::mesh::{BoxDomain, Mesh};
 use unilateral::prelude::*;
 
@@ -43,7 +43,7 @@ fn penalties_on_two_triangles() {
     };
     // harmonic mean 3/2 of the coefficients 1 and 3, one half of the flux from each side
     let (ones, jumps) = ([1.0, 1.0], [1.0, 3.0]);
-    let of = |scheme: &dyn AnyScheme<2>| scheme.form(&mesh);
+    let of = |scheme: &dyn Scheme<2>| scheme.form(&mesh);
     // boundary over volume of a cell, halved between cells, times three halves
     let ratio = (2.0 + root) / 0.5;
     close("sipg", &*of(&Sipg::default()), ones, [0.75 * ratio, 1.5 * ratio]);
@@ -80,7 +80,7 @@ fn the_proven_bound_is_that_of_the_worse_cell() {
     };
     let penalty = |here: f64, there: f64| {
         let view = FacetView::new(&mesh, (0, 1), 1.0, side(here), Some(side(there)));
-        AnyScheme::<2>::form(&Sipg::default(), &mesh).penalty(&view)
+        Scheme::<2>::form(&Sipg::default(), &mesh).penalty(&view)
     };
     assert!((penalty(0.5, 0.1) / (0.75 * 3.0 / 0.1) - 1.0).abs() < 1e-14);
     assert_eq!(penalty(0.5, 0.1), penalty(0.1, 0.5));
@@ -93,7 +93,7 @@ fn the_bound_of_lifts_is_the_number_of_facets() {
     let problem = Problem::new();
     for (eta, is_below) in [(2.5, true), (2.99, true), (3.01, false), (4.5, false)] {
         let scheme = Br2 { eta: Some(eta), ..Br2::default() };
-        let of = scheme.discretise(&problem, &mesh, Default::default()).unwrap();
+        let of = Discretisation::new(&scheme, &problem, &mesh, Default::default()).unwrap();
         assert_eq!(of.penalty_below_bound().is_some(), is_below, "eta = {eta}");
     }
 }
@@ -104,7 +104,7 @@ fn the_bound_of_lifts_is_the_number_of_facets() {
 #[test]
 fn moments_of_lifts() {
     fn of<const D: usize>(degree: usize, moment: usize) -> f64 {
-        let form = Lifted(FacetLifts { eta: 1.0, lift_degree: degree - 1, bounded: false });
+        let form = FacetLifts { eta: 1.0, lift_degree: degree - 1, with_all_lifts: true };
         FacetForm::<D>::moment_weight(&form, moment)
     }
     // means into constants: the lift is constant, of energy |F|^2 / |K|
@@ -135,14 +135,14 @@ fn the_diameter_of_a_vertex() {
     let end = FacetView::new(&mesh, (0, 1), 1.0, side(0.2), None);
     assert_eq!((between.diameter(), end.diameter()), (0.4, 0.2));
     let over = Wopsip { eta: Eta::Absolute(1.0), ..Wopsip::default() };
-    let form = AnyScheme::<1>::form(&over, &mesh);
+    let form = Scheme::<1>::form(&over, &mesh);
     assert!((form.penalty(&between) - 0.4_f64.powi(-3)).abs() < 1e-12);
 }
 
 /// The default factor of the over-penalty has no dimension: a penalty scales as the stiffness does.
 #[test]
 fn the_default_over_penalty_scales_with_the_domain() {
-    fn check<const D: usize>(scheme: &dyn AnyScheme<D>, power: i32) {
+    fn check<const D: usize>(scheme: &dyn Scheme<D>, power: i32) {
         let factor = |scale: f64| {
             let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(scale));
             let mesh = Mesh::<D>::kuhn_box(&domain, [2; D]).unwrap();
@@ -163,7 +163,7 @@ fn the_default_over_penalty_scales_with_the_domain() {
 #[test]
 fn the_limit_of_rounding_is_a_length() {
     let mesh = unit_square();
-    for scheme in [&ConformingP1 as &dyn AnyScheme<2>, &Sipg::default(), &Wopsip::default()] {
+    for scheme in [&ConformingP1 as &dyn Scheme<2>, &Sipg::default(), &Wopsip::default()] {
         let form = scheme.form(&mesh);
         let limit = |epsilon, length| form.theory().rounding_limit(epsilon, length);
         for length in [1e-3, 1.0, 1e3] {

@@ -17,7 +17,7 @@ pub struct Assembled<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Assembled<'a, D> {
-    pub fn new(scheme: &dyn AnyScheme<D>, problem: &'a Problem<D>, mesh: &'a Mesh<D>) -> Self {
+    pub fn new(scheme: &dyn Scheme<D>, problem: &'a Problem<D>, mesh: &'a Mesh<D>) -> Self {
         let quadrature = DataQuadrature::default();
         let discretisation = Discretisation::new(scheme, problem, mesh, quadrature).unwrap();
         let inequality = discretisation.inequality().unwrap();
@@ -67,7 +67,7 @@ fn bits_of_bound(bound: &Bound<f64>) -> [Option<u64>; 3] {
 
 /// Compares all parts of a mesh with the whole.
 pub fn differences<const D: usize>(
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
     mesh: &Mesh<D>,
     (parts, layers): (usize, Layers),
@@ -80,7 +80,7 @@ pub fn differences<const D: usize>(
 
 /// Compares parts of a mesh with the whole, given the owners of its cells.
 pub fn differences_of<const D: usize>(
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
     mesh: &Mesh<D>,
     owners: &[u32],
@@ -127,7 +127,7 @@ pub fn differences_of<const D: usize>(
 /// Holds all parts of a mesh to the bits of the whole, with the layers that the scheme asks for.
 #[track_caller]
 pub fn same_bits<const D: usize>(
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
     mesh: &Mesh<D>,
     parts: usize,

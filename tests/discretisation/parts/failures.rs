@@ -195,7 +195,7 @@ fn parts_with_too_few_layers_have_no_numbers() {
 fn contradicting_bounds_of_one_part_are_an_error_of_all() {
     let mesh = moved::<2>(6);
     let owners = mesh.partition(4).unwrap();
-    let check = |problem: &Problem<2>, scheme: &dyn AnyScheme<2>| {
+    let check = |problem: &Problem<2>, scheme: &dyn Scheme<2>| {
         in_process(4, |number, exchange| {
             let part = mesh.part(&owners, number, scheme.layers(&mesh)).unwrap();
             let on_part = Assembled::new(scheme, problem, &part.mesh).discretisation;
@@ -250,7 +250,7 @@ fn data_that_are_not_finite_in_one_part_are_an_error_of_all() {
             |k: usize| geometry.gradient(k).dot(&(x - vertices[corners[k] as usize])) > -1.0;
         if (0..3).all(inside) { f64::NAN } else { 1.0 }
     });
-    let (scheme, quadrature): (&dyn AnyScheme<2>, _) = (&ConformingP1, Default::default());
+    let (scheme, quadrature): (&dyn Scheme<2>, _) = (&ConformingP1, Default::default());
     let serial = scheme.inequality(&problem, &mesh, quadrature).unwrap_err();
     assert!(serial.to_string().contains(&format!("in cell {bad}:")), "{serial}");
     let part = |number| mesh.part(&owners, number, Layers::across_vertices(1)).unwrap();

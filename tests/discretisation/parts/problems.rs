@@ -9,15 +9,18 @@ use unilateral::prelude::*;
 /// Incomplete interior penalty by a form of its own, on any element: broken ones, and ones that share unknowns.
 pub struct OwnScheme<E>(pub E);
 
-impl<const D: usize, E: ReferenceElement<D>> Scheme<D> for OwnScheme<E> {
-    type Element = E;
-    type Facet = Incomplete;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize, E: Element<D> + Copy + 'static> Scheme<D> for OwnScheme<E> {
     fn name(&self) -> &str {
         "own"
     }
-    fn facet(&self, _: &Mesh<D>) -> Incomplete {
-        Incomplete(10.0)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(self.0)
+    }
+    fn dirichlet(&self) -> DirichletBy {
+        DirichletBy::FacetForm
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(Incomplete(10.0))
     }
 }
 
@@ -35,7 +38,7 @@ pub fn schemes<const D: usize>() -> Vec<Entry<D>> {
             }
         }
     }
-    let own: [Box<dyn AnyScheme<D>>; 4] = [
+    let own: [Box<dyn Scheme<D>>; 4] = [
         Box::new(OwnScheme(Broken::<P1>::default())),
         Box::new(OwnScheme(P1)),
         Box::new(OwnScheme(P2)),

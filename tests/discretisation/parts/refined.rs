@@ -40,11 +40,11 @@ impl<const D: usize> Level<D> {
         Self { mesh, owners: owners.collect(), parts }
     }
     /// Rows of own unknowns with other columns or bits than on the whole mesh.
-    fn differences(&self, scheme: &dyn AnyScheme<D>, problem: &Problem<D>) -> Differences {
+    fn differences(&self, scheme: &dyn Scheme<D>, problem: &Problem<D>) -> Differences {
         differences_of(scheme, problem, &self.mesh, &self.owners, &self.parts)
     }
     #[track_caller]
-    fn same_bits(&self, scheme: &dyn AnyScheme<D>, problem: &Problem<D>) {
+    fn same_bits(&self, scheme: &dyn Scheme<D>, problem: &Problem<D>) {
         let quadrature = DataQuadrature::default();
         let discretisation = Discretisation::new(scheme, problem, &self.mesh, quadrature).unwrap();
         let expected = Differences::only_rows(discretisation.unknowns());

@@ -58,7 +58,7 @@ fn parts_of_meshes_from_files_have_the_rows_of_the_whole_mesh() {
     on::<3>();
 }
 
-/// With a layer less than [`AnyScheme::layers`] some rows differ, for schemes of every kind.
+/// With a layer less than [`Scheme::layers`] some rows differ, for schemes of every kind.
 #[test]
 fn one_layer_less_is_not_enough() {
     fn on<const D: usize>(mesh: &Mesh<D>, names: &[&str]) {

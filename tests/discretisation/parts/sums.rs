@@ -33,7 +33,7 @@ type Merged = ([Certificate; 2], Option<Errors>);
 
 /// What the parts merge, each in a thread of its own; all find the same bits.
 fn merged<const D: usize>(
-    scheme: &dyn AnyScheme<D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
     mesh: &Mesh<D>,
     (parts, x): (usize, &[f64]),

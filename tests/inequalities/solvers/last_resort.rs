@@ -64,7 +64,7 @@ fn scenes_of_all_kinds() -> Vec<Scene<2>> {
     ]
 }
 
-fn wopsip(eta: f64) -> Wopsip {
+fn wopsip<const D: usize>(eta: f64) -> Wopsip<D> {
     Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() }
 }
 
@@ -133,10 +133,11 @@ fn all_schemes_agree_with_the_oracle() {
 }
 
 /// Converged, certified, and with at most so many steps.
-fn converges<const D: usize>(scene: Scene<D>, scheme: Wopsip, level: usize, most: usize) {
+fn converges<const D: usize>(scene: Scene<D>, scheme: Wopsip<D>, level: usize, most: usize) {
+    let eta = scheme.eta;
     let report = Study::<D>::new(scene).scheme(scheme).levels([level]).run().unwrap();
     let row = &report.rows[0];
-    let what = format!("{} at level {level}, {:?}", row.scene, scheme.eta);
+    let what = format!("{} at level {level}, {:?}", row.scene, eta);
     assert!(row.converged(), "{what}");
     assert!(row.certificate.largest() < 1e-9, "{what}: {:?}", row.certificate);
     let outer = row.iterations.outer.unwrap();

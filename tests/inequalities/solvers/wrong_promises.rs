@@ -64,7 +64,7 @@ fn a_negative_reaction_converges_while_the_form_is_coercive() {
         (-1000.0, Outcome::NotCoercive),
     ] {
         let problem = Problem::new().reaction(reaction).source(|_| -1.0).obstacle_below(|_| -10.0);
-        for scheme in [&ConformingP1 as &dyn AnyScheme<2>, &Sipg::default()] {
+        for scheme in [&ConformingP1 as &dyn Scheme<2>, &Sipg::default()] {
             let outcome = solve(&problem, &mesh, scheme).unwrap().solution().outcome;
             assert_eq!(outcome, expected, "{} with {reaction}", scheme.name());
         }

@@ -1,6 +1,8 @@
 //! Nothing in the kit assumes linear elements: quadratics on triangles in the basis of vertex
 //! values and means over sides.
 
+use std::sync::Arc;
+
 use unilateral::element::{Layout, Node};
 use unilateral::facet::{InteriorPenalty, Symmetry};
 use unilateral::kit::{KitError, check_consistency, check_scheme};
@@ -8,21 +10,24 @@ use unilateral::prelude::*;
 
 /// `6 l_j l_k` has mean one over its side and vanishes on the others and at vertices;
 /// `l_i - 3 l_i (l_j + l_k)` is one at its vertex and has mean zero over every side.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct SideMeans;
 
-impl ReferenceElement<2> for SideMeans {
-    const N: usize = 6;
-    const DEGREE: usize = 2;
-    const LAYOUT: Layout = Layout { vertex: 1, edge: 0, facet: 1, cell: 0 };
-    fn values(lambda: &[f64], out: &mut [f64]) {
+impl Element<2> for SideMeans {
+    fn degree(&self) -> usize {
+        2
+    }
+    fn layout(&self) -> Layout {
+        Layout { vertex: 1, edge: 0, facet: 1, cell: 0 }
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             out[i] = lambda[i] - 3.0 * lambda[i] * (lambda[j] + lambda[k]);
             out[3 + i] = 6.0 * lambda[j] * lambda[k];
         }
     }
-    fn derivatives(lambda: &[f64], out: &mut [[f64; 4]]) {
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             [out[i], out[3 + i]] = [[0.0; 4]; 2];
@@ -33,7 +38,7 @@ impl ReferenceElement<2> for SideMeans {
             out[3 + i][k] = 6.0 * lambda[j];
         }
     }
-    fn node(i: usize) -> Node {
+    fn node(&self, i: usize) -> Node {
         if i < 3 { Node::vertex(i) } else { Node::facet_mean(i - 3) }
     }
 }
@@ -44,27 +49,27 @@ struct Quadratic {
 }
 
 impl Scheme<2> for Quadratic {
-    type Element = Broken<SideMeans>;
-    type Facet = InteriorPenalty;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     fn name(&self) -> &str {
         "quadratic"
     }
-    fn facet(&self, _: &Mesh<2>) -> InteriorPenalty {
-        InteriorPenalty { symmetry: self.symmetry, rule: self.rule, degree: 2 }
+    fn element(&self) -> Arc<dyn Element<2>> {
+        Arc::new(Broken(SideMeans))
+    }
+    fn form(&self, _: &Mesh<2>) -> Box<dyn FacetForm<2>> {
+        Box::new(InteriorPenalty { symmetry: self.symmetry, rule: self.rule, degree: 2 })
     }
 }
 
 #[test]
 fn quadratics_pass() {
     let symmetric = Quadratic { symmetry: Symmetry::Symmetric, rule: PenaltyRule::Proven(0.5) };
-    let report = check_scheme::<2, _>(&symmetric).unwrap_or_else(|e| panic!("{e}"));
+    let report = check_scheme::<2>(&symmetric).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((report.element.degree, report.element.functions), (2, 6));
     assert_eq!((report.orders.h1_expected, report.orders.l2_expected), (2.0, Some(3.0)));
     assert!(report.orders.h1 > 1.75 && report.orders.l2 > 2.75, "{report}");
     // without symmetry even degrees lose an order in L2, which nothing promised
     let without = Quadratic { symmetry: Symmetry::NonSymmetric, rule: PenaltyRule::Diameter(10.0) };
-    let report = check_scheme::<2, _>(&without).unwrap_or_else(|e| panic!("{e}"));
+    let report = check_scheme::<2>(&without).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(report.orders.l2_expected, None);
 }
 
@@ -72,9 +77,6 @@ fn quadratics_pass() {
 struct MeansOnly;
 
 impl FacetForm<2> for MeansOnly {
-    fn uses_flux(&self) -> bool {
-        true
-    }
     fn moments(&self, _: usize) -> usize {
         0
     }
@@ -89,19 +91,19 @@ impl FacetForm<2> for MeansOnly {
 struct UnderSampled;
 
 impl Scheme<2> for UnderSampled {
-    type Element = Broken<SideMeans>;
-    type Facet = MeansOnly;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     fn name(&self) -> &str {
         "under-sampled"
     }
-    fn facet(&self, _: &Mesh<2>) -> MeansOnly {
-        MeansOnly
+    fn element(&self) -> Arc<dyn Element<2>> {
+        Arc::new(Broken(SideMeans))
+    }
+    fn form(&self, _: &Mesh<2>) -> Box<dyn FacetForm<2>> {
+        Box::new(MeansOnly)
     }
 }
 
 #[test]
 fn quadratics_with_terms_for_linears_are_not_consistent() {
-    let error = check_consistency::<2, _>(&UnderSampled).unwrap_err();
+    let error = check_consistency::<2>(&UnderSampled).unwrap_err();
     assert!(matches!(error, KitError::NotConsistent { degree: 2, .. }), "{error}");
 }

@@ -19,7 +19,7 @@ use unilateral::scenes::Scene;
 use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 /// Symmetric interior penalty on broken quadratics.
-fn broken() -> Sipg<P2> {
+fn broken<const D: usize>() -> Sipg<D> {
     Sipg::default().on(P2)
 }
 
@@ -69,7 +69,7 @@ fn h1_as_tables(scene: &Scene<2>, set: impl ConstraintSet + 'static, level: usiz
             // the side that the rule collapses lies at the first vertex
             let point = [point[2], point[1], point[0]];
             let mut slopes = [[0.0; 4]; 10];
-            <P2 as ReferenceElement<2>>::derivatives(&point, &mut slopes);
+            Element::<2>::derivatives(&P2, &point, &mut slopes);
             let mut error = -(exact.gradient)(&mesh.point(cell, &point));
             for k in 0..3 {
                 let slope: f64 = values.iter().zip(&slopes).map(|(u, s)| u * s[k]).sum();
@@ -304,7 +304,7 @@ fn the_basis_with_the_cell_mean_spans_the_quadratics() {
         let mut means = [0.0; 10];
         for (point, weight) in simplex.iter() {
             let mut values = vec![0.0; 10];
-            <P2 as ReferenceElement<D>>::values(&point[..=D], &mut values);
+            Element::<D>::values(&P2, &point[..=D], &mut values);
             means.iter_mut().zip(&values).for_each(|(m, v)| *m += weight * v);
         }
         let to_nodal = |i: usize, v: &[f64]| {
