@@ -19,7 +19,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     ///
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
-    /// [`Error::Parameter`] for a penalty factor that makes no penalty.
+    /// [`Error::Parameter`] for a penalty factor that makes no penalty, and for a matrix with too many entries.
     pub(crate) fn of(
         (element, form, dirichlet): (Arc<dyn Element<D>>, Box<dyn FacetForm<D>>, DirichletBy),
         problem: &'a Problem<D>,
@@ -27,6 +27,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
         check_fit(&*element, &*form)?;
+        check_size(mesh.n_cells(), &*element, &*form)?;
         let pins = matches!(dirichlet, DirichletBy::Pinning);
         let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins)?;
         space.check_penalty_factor(&*form)?;
@@ -68,4 +69,50 @@ fn check_fit<const D: usize>(
         );
     }
     Ok(())
+}
+
+/// Refuses a matrix whose entries 32-bit numbers may not count, before anything is allocated: each cell has at most the
+/// products of its unknowns with those of the cells that the form couples to it.
+fn check_size<const D: usize>(
+    n_cells: usize,
+    element: &dyn Element<D>,
+    form: &dyn FacetForm<D>,
+) -> Result<(), Error> {
+    let coupled = match form.couples() && element.layout().is_broken() {
+        true if form.is_lifted() => 1 + (D + 1) * (D + 1),
+        true => D + 2,
+        false => 1,
+    };
+    let entries = n_cells as u128 * (element.per_cell().pow(2) * coupled) as u128;
+    let limit = u128::from(u32::MAX);
+    if entries <= limit {
+        return Ok(());
+    }
+    Err(Error::Parameter {
+        parameter: "entries of the matrix",
+        value: entries.to_string(),
+        allowed: format!("at most {limit}; choose a coarser mesh or a lower degree"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{Broken, P2};
+    use crate::facet::{InteriorPenalty, NoFacets, PenaltyRule, Symmetry};
+
+    #[test]
+    fn matrices_that_32_bit_numbers_do_not_count_are_refused_before_they_are_made() {
+        let rule = PenaltyRule::Proven(0.5);
+        let form = InteriorPenalty { symmetry: Symmetry::Symmetric, rule, degree: 2 };
+        let broken: &dyn Element<3> = &Broken(P2);
+        // ten unknowns in each of five cells
+        assert!(check_size(8_500_000, broken, &form).is_ok());
+        let error = check_size(8_600_000, broken, &form).unwrap_err().to_string();
+        assert!(
+            error.starts_with("entries of the matrix = 4300000000: at most 4294967295"),
+            "{error}"
+        );
+        assert!(check_size::<3>(8_600_000, &P2, &NoFacets).is_ok());
+    }
 }
