@@ -1,6 +1,5 @@
 //! The mesh of a file, from its contents.
 
-use super::GmshFile;
 use super::contents::{Contents, Membership, Simplices};
 use super::element_types::SIMPLICES;
 use super::error::{GmshError, GmshErrorKind, GmshWarning};
@@ -28,14 +27,12 @@ pub struct GmshMesh<const D: usize> {
     pub warnings: Vec<GmshWarning>,
 }
 
-/// A mesh of dimension `D` from a file.
-pub(super) fn assemble<const D: usize>(file: &GmshFile) -> Result<GmshMesh<D>, GmshError> {
-    let contents = &file.contents;
-    check_dimension(file.dimension, D)?;
-    let index = NodeIndex::new(file)?;
-    let cells = cells_of::<D>(file, &index)?;
-    check_flat::<D>(file, &cells.vertices)?;
-    let boundary = grouped_facets::<D>(file, &index)?;
+/// A mesh of dimension `D` from the contents of a file.
+pub(super) fn assemble<const D: usize>(contents: &Contents) -> Result<GmshMesh<D>, GmshError> {
+    let index = NodeIndex::new(contents)?;
+    let cells = cells_of::<D>(contents, &index)?;
+    check_flat::<D>(contents, &cells.vertices)?;
+    let boundary = grouped_facets::<D>(contents, &index)?;
     let vertices = contents.nodes.points.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
     let Cells { vertices: corners, elements, regions, of_cells } = cells;
     let mut is_used = vec![false; contents.nodes.tags.len()];
@@ -43,7 +40,7 @@ pub(super) fn assemble<const D: usize>(file: &GmshFile) -> Result<GmshMesh<D>, G
     let mesh = Mesh::with_groups(vertices, corners, &boundary.facets, &boundary.names);
     let mesh = mesh
         .and_then(|mesh| mesh.with_regions(regions, of_cells))
-        .map_err(|error| in_file::<D>(error, file, (&elements, &boundary.elements)))?;
+        .map_err(|error| in_file::<D>(error, contents, (&elements, &boundary.elements)))?;
     let (mesh, order, numbers) = mesh.along_curve();
     // vertices are the nodes that a cell uses
     let used = contents.nodes.tags.iter().zip(is_used).filter(|(_, is_used)| *is_used);
@@ -58,26 +55,27 @@ pub(super) fn assemble<const D: usize>(file: &GmshFile) -> Result<GmshMesh<D>, G
 /// The error of a mesh by the elements and nodes of the file, given the elements of cells and of facets.
 fn in_file<const D: usize>(
     error: MeshError,
-    file: &GmshFile,
+    contents: &Contents,
     (cells, facets): (&[usize], &[usize]),
 ) -> GmshError {
     let element = |dimension: usize, index: usize| {
-        let simplices = &file.contents.simplices[dimension];
-        let position = file.position(simplices.offsets[index]);
+        let simplices = &contents.simplices[dimension];
+        let position = contents.position(simplices.offsets[index]);
         format!("element {} ({position})", simplices.tags[index])
     };
     let of_cells = error.cells().into_iter().map(|cell| element(D, cells[cell]));
     let of_facet = error.tagged_facet().map(|tag| element(D - 1, facets[tag]));
     let mut names: Vec<String> = of_cells.chain(of_facet).collect();
     let nodes: Vec<String> =
-        vertices_of(&error).iter().map(|&v| file.contents.nodes.tags[v].to_string()).collect();
+        vertices_of(&error).iter().map(|&v| contents.nodes.tags[v].to_string()).collect();
     if !nodes.is_empty() {
         names.push(format!("nodes {}", nodes.join(", ")));
     }
     GmshError::of_mesh(error, &names)
 }
 
-fn check_dimension(found: usize, asked: usize) -> Result<(), GmshError> {
+/// An error if the mesh has another dimension than asked for.
+pub(super) fn check_dimension(found: usize, asked: usize) -> Result<(), GmshError> {
     if found == asked {
         return Ok(());
     }
@@ -116,8 +114,8 @@ impl Cells {
 }
 
 /// The cells, their elements and their regions.
-fn cells_of<const D: usize>(file: &GmshFile, index: &NodeIndex) -> Result<Cells, GmshError> {
-    let simplices = &file.contents.simplices[D];
+fn cells_of<const D: usize>(contents: &Contents, index: &NodeIndex) -> Result<Cells, GmshError> {
+    let simplices = &contents.simplices[D];
     let mut cells = Cells {
         vertices: Vec::with_capacity(simplices.corners.len()),
         elements: Vec::with_capacity(simplices.tags.len()),
@@ -126,7 +124,7 @@ fn cells_of<const D: usize>(file: &GmshFile, index: &NodeIndex) -> Result<Cells,
     };
     let first = first_listings::<D>(simplices);
     for (run, membership) in simplices.runs() {
-        let names = file.contents.names_of(D, membership);
+        let names = contents.names_of(D, membership);
         let region = cells.region(names.clone())?;
         for element in run {
             if let Some(cell) =
@@ -142,7 +140,7 @@ fn cells_of<const D: usize>(file: &GmshFile, index: &NodeIndex) -> Result<Cells,
             }
             for &node in &simplices.corners[element * (D + 1)..(element + 1) * (D + 1)] {
                 let vertex =
-                    index.find(node).ok_or_else(|| unknown_node(file, D, element, node))?;
+                    index.find(node).ok_or_else(|| unknown_node(contents, D, element, node))?;
                 cells.vertices.push(vertex);
             }
             cells.elements.push(element);
@@ -175,13 +173,13 @@ fn first_listings<const D: usize>(simplices: &Simplices) -> Vec<usize> {
     first
 }
 
-fn unknown_node(file: &GmshFile, dimension: usize, element: usize, node: u64) -> GmshError {
-    let simplices = &file.contents.simplices[dimension];
+fn unknown_node(contents: &Contents, dimension: usize, element: usize, node: u64) -> GmshError {
+    let simplices = &contents.simplices[dimension];
     let message = format!(
         "element {} names node {node}, which section $Nodes does not have; save the mesh again",
         simplices.tags[element]
     );
-    file.error(simplices.offsets[element], GmshErrorKind::UnknownNode, message)
+    contents.error(simplices.offsets[element], GmshErrorKind::UnknownNode, message)
 }
 
 /// The boundary facets that are in a group, the index of the element of each, and the names of the groups.
@@ -192,14 +190,14 @@ struct GroupedFacets<const D: usize> {
 }
 
 fn grouped_facets<const D: usize>(
-    file: &GmshFile,
+    contents: &Contents,
     index: &NodeIndex,
 ) -> Result<GroupedFacets<D>, GmshError> {
-    let simplices = &file.contents.simplices[D - 1];
+    let simplices = &contents.simplices[D - 1];
     let (mut facets, mut elements, mut names) = (Vec::new(), Vec::new(), Vec::<String>::new());
     for (run, membership) in simplices.runs() {
         let mut groups = Vec::new();
-        for name in file.contents.names_of(D - 1, membership) {
+        for name in contents.names_of(D - 1, membership) {
             let known = names.iter().position(|known| *known == name);
             let number = known.unwrap_or(names.len());
             if known.is_none() {
@@ -211,7 +209,7 @@ fn grouped_facets<const D: usize>(
             let mut vertices = [0; D];
             for (vertex, &node) in vertices.iter_mut().zip(&simplices.corners[element * D..]) {
                 *vertex =
-                    index.find(node).ok_or_else(|| unknown_node(file, D - 1, element, node))?;
+                    index.find(node).ok_or_else(|| unknown_node(contents, D - 1, element, node))?;
             }
             for &group in &groups {
                 facets.push(GroupedFacet { vertices, group });
@@ -231,8 +229,8 @@ fn grouped_facets<const D: usize>(
 }
 
 /// An error unless a mesh of lines lies in a line along x, a mesh of triangles in a plane of constant z.
-fn check_flat<const D: usize>(file: &GmshFile, cells: &[u32]) -> Result<(), GmshError> {
-    let nodes = &file.contents.nodes;
+fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), GmshError> {
+    let nodes = &contents.nodes;
     let points = &nodes.points;
     let reference = points[cells[0] as usize];
     if points.iter().all(|point| point[D..] == reference[D..]) {
@@ -255,7 +253,7 @@ fn check_flat<const D: usize>(file: &GmshFile, cells: &[u32]) -> Result<(), Gmsh
             let message = format!(
                 "node {node} has {axis} = {value}, another node {axis} = {constant}; a mesh of dimension {D} must lie in {within}, turn it there or mesh the solid it bounds"
             );
-            return Err(file.error(nodes.offsets[v], GmshErrorKind::NotFlat, message));
+            return Err(contents.error(nodes.offsets[v], GmshErrorKind::NotFlat, message));
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! The contents of a file before a mesh is made of them.
 
-use super::error::{GmshError, GmshErrorKind};
+use super::error::{FilePosition, GmshError, GmshErrorKind};
 use super::source::Source;
 use std::collections::{BTreeMap, HashMap};
 
@@ -95,6 +95,8 @@ impl Simplices {
 /// The contents of a file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
+    /// The bytes of the file.
+    pub(super) bytes: Vec<u8>,
     /// Whether the file is binary.
     pub(super) is_binary: bool,
     /// The names of the physical groups, by dimension and tag.
@@ -112,6 +114,14 @@ impl Contents {
     /// The largest dimension of an element that is not a point.
     pub(super) fn dimension(&self) -> Option<usize> {
         (1..=3).rev().find(|&d| !self.simplices[d].tags.is_empty())
+    }
+    /// The position of a byte.
+    pub(super) fn position(&self, offset: usize) -> FilePosition {
+        FilePosition::of(offset, &self.bytes, self.is_binary)
+    }
+    /// An error at a byte.
+    pub(super) fn error(&self, offset: usize, kind: GmshErrorKind, message: String) -> GmshError {
+        GmshError::new(kind, message).at(self.position(offset))
     }
     /// The names of all groups of an element; the number of a group without a name.
     pub(super) fn names_of(&self, dimension: usize, membership: Membership) -> Vec<String> {

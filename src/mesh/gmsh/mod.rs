@@ -83,7 +83,6 @@ use std::path::Path;
 /// A file that has been read, for the mesh of its dimension.
 #[derive(Clone)]
 pub struct GmshFile {
-    bytes: Vec<u8>,
     contents: Contents,
     dimension: usize,
 }
@@ -105,13 +104,12 @@ impl GmshFile {
     /// # Errors
     /// Errors of the format; [`GmshErrorKind::NoCells`] if the file has only points.
     pub fn parse(bytes: impl Into<Vec<u8>>) -> Result<Self, GmshError> {
-        let bytes = bytes.into();
-        let contents = sections::read_contents(&bytes)?;
+        let contents = sections::read_contents(bytes.into())?;
         let dimension = contents.dimension().ok_or_else(|| {
             let message = "the file has no lines, triangles or tetrahedra; mesh before saving, and put the domain in a physical group: Gmsh saves only elements of groups once there is one";
             GmshError::new(GmshErrorKind::NoCells, message)
         })?;
-        Ok(Self { bytes, contents, dimension })
+        Ok(Self { contents, dimension })
     }
     /// The dimension of the mesh: the largest one of an element.
     pub fn dimension(&self) -> usize {
@@ -119,23 +117,17 @@ impl GmshFile {
     }
     /// The [`fingerprint`](input::fingerprint) of the file.
     pub fn fingerprint(&self) -> String {
-        input::fingerprint(&self.bytes)
+        input::fingerprint(&self.contents.bytes)
     }
     /// The mesh, of dimension `D`.
     ///
     /// # Errors
     /// [`GmshErrorKind::WrongDimension`], and errors of nodes, elements and groups that do not make a mesh.
     pub fn mesh<const D: usize>(&self) -> Result<GmshMesh<D>, GmshError> {
-        compiled!(const D: fn(&GmshFile) -> Result<GmshMesh<D>, GmshError> = assemble::assemble)(
-            self,
+        assemble::check_dimension(self.dimension, D)?;
+        compiled!(const D: fn(&Contents) -> Result<GmshMesh<D>, GmshError> = assemble::assemble)(
+            &self.contents,
         )
-    }
-    fn position(&self, offset: usize) -> FilePosition {
-        FilePosition::of(offset, &self.bytes, self.contents.is_binary)
-    }
-    /// An error at a byte.
-    fn error(&self, offset: usize, kind: GmshErrorKind, message: String) -> GmshError {
-        GmshError::new(kind, message).at(self.position(offset))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The map from the tags of nodes to their numbers in the order of the file.
 
-use super::GmshFile;
+use super::contents::Contents;
 use super::error::{GmshError, GmshErrorKind};
 use crate::mesh::error::MeshError;
 use std::collections::HashMap;
@@ -18,8 +18,8 @@ const ABSENT: u32 = u32::MAX;
 
 impl NodeIndex {
     /// The index of all nodes of a file, whose tags must be distinct.
-    pub(super) fn new(file: &GmshFile) -> Result<Self, GmshError> {
-        let nodes = &file.contents.nodes;
+    pub(super) fn new(contents: &Contents) -> Result<Self, GmshError> {
+        let nodes = &contents.nodes;
         let tags = &nodes.tags;
         let count = tags.len();
         if count >= ABSENT as usize {
@@ -34,9 +34,9 @@ impl NodeIndex {
             let message = format!(
                 "node {} is given a second time (first: {}); tags of nodes must be distinct, renumber the mesh in Gmsh",
                 tags[second as usize],
-                file.position(nodes.offsets[first as usize])
+                contents.position(nodes.offsets[first as usize])
             );
-            file.error(nodes.offsets[second as usize], GmshErrorKind::RepeatedNode, message)
+            contents.error(nodes.offsets[second as usize], GmshErrorKind::RepeatedNode, message)
         };
         if largest <= 4 * count as u64 + 1024 {
             let mut table = vec![ABSENT; largest as usize + 1];

@@ -14,8 +14,8 @@ enum Version {
 }
 
 /// Reads a file up to its end.
-pub(super) fn read_contents(bytes: &[u8]) -> Result<Contents, GmshError> {
-    let mut source = Source::new(bytes);
+pub(super) fn read_contents(bytes: Vec<u8>) -> Result<Contents, GmshError> {
+    let mut source = Source::new(&bytes);
     let version = read_header(&mut source)?;
     let mut contents = Contents { is_binary: source.is_binary(), ..Contents::default() };
     let (mut has_nodes, mut has_elements) = (false, false);
@@ -59,7 +59,7 @@ pub(super) fn read_contents(bytes: &[u8]) -> Result<Contents, GmshError> {
             return Err(GmshError::new(GmshErrorKind::MissingSection, message));
         }
     }
-    Ok(contents)
+    Ok(Contents { bytes, ..contents })
 }
 
 /// Reads the line of the name of the next section; returns the name, nothing at the end of the file.
