@@ -45,6 +45,6 @@ impl<const D: usize> Element<D> for P2 {
         if i <= D { Node::vertex(i) } else { Node::midpoint(i - D - 1) }
     }
     fn broken_in_basis(&self, basis: Basis) -> Option<Arc<dyn Element<D>>> {
-        (basis == Basis::CellMean).then(|| Arc::new(QuadraticCellMean) as _)
+        (basis == Basis::CellMean).then(|| Arc::new(QuadraticCellMean(P2)) as _)
     }
 }

@@ -2,20 +2,19 @@
 
 use super::definition::{Element, Layout};
 use super::node::Node;
-use super::p2::P2;
 
-/// Discontinuous quadratics with the nodes of [`P2`], except that the mean over the cell replaces the
+/// Discontinuous quadratics with the nodes of `E`, which is [`P2`](super::P2), except that the mean over the cell replaces the
 /// value at the midpoint of the last edge.
 ///
-/// The mean is `sum_i m_i v_i` over the nodes of `P2`, with `m = (2 - D) / ((D + 1)(D + 2))` at
+/// The mean is `sum_i m_i v_i` over the nodes of `E`, with `m = (2 - D) / ((D + 1)(D + 2))` at
 /// vertices and `4 / ((D + 1)(D + 2))` at midpoints: Simpson's rule in one dimension, the mean of
-/// the three midpoints in two. With the functions `phi` of `P2` and `e` the last edge the basis is
+/// the three midpoints in two. With the functions `phi` of `E` and `e` the last edge the basis is
 /// `phi_i - m_i / m_e phi_e`, and `phi_e / m_e` for the mean. The replaced node is a midpoint because
 /// in two dimensions `m = 0` at vertices.
 ///
-/// The space is that of [`Broken(P2)`](super::Broken).
+/// The space is that of [`Broken<E>`](super::Broken).
 #[derive(Clone, Copy, Debug, Default)]
-pub struct QuadraticCellMean;
+pub struct QuadraticCellMean<E>(pub E);
 
 /// The mean of function `i` of quadratic Lagrange elements over the cell.
 const fn mean(dimension: usize, i: usize) -> f64 {
@@ -28,7 +27,7 @@ const fn last(dimension: usize) -> usize {
     (dimension + 1) * (dimension + 2) / 2 - 1
 }
 
-impl<const D: usize> Element<D> for QuadraticCellMean {
+impl<const D: usize, E: Element<D>> Element<D> for QuadraticCellMean<E> {
     fn degree(&self) -> usize {
         2
     }
@@ -36,10 +35,10 @@ impl<const D: usize> Element<D> for QuadraticCellMean {
         Layout::in_cells(last(D) + 1)
     }
     fn node(&self, i: usize) -> Node {
-        if i == last(D) { Node::cell_mean() } else { Element::<D>::node(&P2, i) }
+        if i == last(D) { Node::cell_mean() } else { self.0.node(i) }
     }
     fn values(&self, lambda: &[f64], out: &mut [f64]) {
-        Element::<D>::values(&P2, lambda, out);
+        self.0.values(lambda, out);
         let last = last(D);
         let of_mean = out[last] / mean(D, last);
         for (i, value) in out[..last].iter_mut().enumerate() {
@@ -48,7 +47,7 @@ impl<const D: usize> Element<D> for QuadraticCellMean {
         out[last] = of_mean;
     }
     fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
-        Element::<D>::derivatives(&P2, lambda, out);
+        self.0.derivatives(lambda, out);
         let last = last(D);
         let of_mean = out[last].map(|slope| slope / mean(D, last));
         for (i, row) in out[..last].iter_mut().enumerate() {

@@ -310,7 +310,7 @@ mod tests {
         check::<D>(&P1);
         check::<D>(&P2);
         check::<D>(&CrouzeixRaviart);
-        check::<D>(&QuadraticCellMean);
+        check::<D>(&QuadraticCellMean(P2));
         check::<D>(&Broken(P1));
         check::<D>(&Broken(P2));
         check::<D>(&Broken(CrouzeixRaviart));
