@@ -11,7 +11,7 @@ use crate::real::Precision;
 /// that `f32` does not hold have the outcome [`Outcome::OutOfRange`].
 ///
 /// ```
-/// use unilateral::inequality::SinglePrecision;
+/// use unilateral::inequality::{ActiveSet, SinglePrecision};
 /// use unilateral::prelude::*;
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// let scene = scenes::radial::<2>(1.0);
