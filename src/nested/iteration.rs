@@ -1,6 +1,7 @@
 //! Nested iteration: one problem on one or several nested meshes, solved by any scheme.
 
 use std::fmt;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use super::adaptive_meshes::AdaptiveMeshes;
@@ -69,7 +70,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             problem,
             solutions: vec![None; meshes.len()],
             meshes,
-            solver: Arc::new(ByInequality(Arc::new(ActiveSet::default()))),
+            solver: Rc::new(ByInequality(Arc::new(ActiveSet::default()))),
             quadrature: DataQuadrature::default(),
             repeat: 1,
             steps: StepCounter::default(),
@@ -85,12 +86,12 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     /// solutions by another solver are dropped.
     #[must_use]
     pub fn shared_solver(self, solver: Arc<dyn InequalitySolver<f64> + 'a>) -> Self {
-        self.system_solver(Arc::new(ByInequality(solver)))
+        self.system_solver(Rc::new(ByInequality(solver)))
     }
     /// Sets a solver that asks for more than the inequality, as one over several processes does. P1
     /// solutions by another solver are dropped.
     #[must_use]
-    pub fn system_solver(mut self, solver: Arc<dyn SystemSolver<D> + 'a>) -> Self {
+    pub fn system_solver(mut self, solver: Rc<dyn SystemSolver<D> + 'a>) -> Self {
         self.p1.solver = solver;
         self.p1.solutions.fill(None);
         self

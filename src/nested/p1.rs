@@ -1,5 +1,6 @@
 //! The conforming P1 solutions from which all schemes start.
 
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -81,7 +82,7 @@ impl P1Solution {
 pub(super) struct P1Iteration<'a, const D: usize> {
     pub problem: &'a Problem<D>,
     pub meshes: Meshes<'a, D>,
-    pub solver: Arc<dyn SystemSolver<D> + 'a>,
+    pub solver: Rc<dyn SystemSolver<D> + 'a>,
     pub quadrature: DataQuadrature,
     /// Times are the smallest of this many runs, at least one.
     pub repeat: usize,

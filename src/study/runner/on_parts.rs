@@ -1,7 +1,7 @@
 //! A study over the parts of a mesh, one in each process.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::rc::Rc;
 
 use super::{Entry, Progress, Study};
 use crate::distributed::{Differences, Process, SolverOnParts};
@@ -42,7 +42,7 @@ impl<const D: usize> Study<'_, D> {
         self.check_parts()?;
         let problems = self.problems();
         let hierarchies = self.hierarchies_on_parts(process)?;
-        let solver = Arc::new(SolverOnParts::new(process.clone()).by_engine(checks.by_engine));
+        let solver = Rc::new(SolverOnParts::new(process.clone()).by_engine(checks.by_engine));
         let on_parts = |hierarchy| {
             let nested = NestedIteration::new(&self.scene.problem, hierarchy);
             nested.quadrature(self.quadrature).system_solver(solver.clone())

@@ -1,5 +1,6 @@
 //! An engine without a library: every part has all rows, and factors them.
 
+use std::rc::Rc;
 use std::sync::Arc;
 use unilateral::algebra::SparseMatrix;
 use unilateral::distributed::{
@@ -38,7 +39,7 @@ pub fn on_parts<'a, const D: usize>(
     parts: &'a Hierarchy<D>,
     process: Process,
 ) -> NestedIteration<'a, D> {
-    NestedIteration::new(problem, parts).system_solver(Arc::new(SolverOnParts::new(process)))
+    NestedIteration::new(problem, parts).system_solver(Rc::new(SolverOnParts::new(process)))
 }
 
 /// The lists of all parts, one after the other.
