@@ -87,7 +87,7 @@ struct Case {
 }
 
 impl Case {
-    fn new<const D: usize>(name: String, mesh: &Mesh<f64, D>) -> Result<Self, Box<dyn Error>> {
+    fn new<const D: usize>(name: String, mesh: &Mesh<D>) -> Result<Self, Box<dyn Error>> {
         let problem = Problem::new().source(|_| 1.0);
         let (mut assembly, mut inequality) = (f64::INFINITY, None);
         for _ in 0..3 {
@@ -174,11 +174,11 @@ fn all() -> Result<(), Box<dyn Error>> {
     let square = BoxDomain::dirichlet(Point::from([0.0; 2]), Point::from([1.0; 2]));
     let cube = BoxDomain::dirichlet(Point::from([0.0; 3]), Point::from([1.0; 3]));
     let mut cases = vec![
-        Case::new("square 1024".into(), &Mesh::<f64, 2>::kuhn_box(&square, [1024; 2])?)?,
-        Case::new("cube 64".into(), &Mesh::<f64, 3>::kuhn_box(&cube, [64; 3])?)?,
+        Case::new("square 1024".into(), &Mesh::<2>::kuhn_box(&square, [1024; 2])?)?,
+        Case::new("cube 64".into(), &Mesh::<3>::kuhn_box(&cube, [64; 3])?)?,
     ];
     for path in values("--mesh") {
-        cases.push(Case::new(path.to_owned(), &gmsh::read::<f64, 3>(Path::new(path))?.mesh)?);
+        cases.push(Case::new(path.to_owned(), &gmsh::read::<3>(Path::new(path))?.mesh)?);
     }
     let file = std::env::temp_dir().join(format!("unilateral-{}.bin", std::process::id()));
     for case in &mut cases {

@@ -74,7 +74,7 @@ const ON_MESH: Case = ("2d-p1-gmsh", 2, false, "p1", 0);
 /// What one process tells another.
 type Failure = Box<dyn std::error::Error>;
 
-fn scheme<const D: usize>(name: &str) -> Box<dyn AnyScheme<f64, D>> {
+fn scheme<const D: usize>(name: &str) -> Box<dyn Scheme<D>> {
     match name {
         "p1" => Box::new(ConformingP1),
         "cr" => Box::new(NonconformingP1),
@@ -95,7 +95,7 @@ fn run<const D: usize>(
     if name == "wopsip-means" {
         scene.problem = scene.problem.on(FacetMeans);
     }
-    let report = Study::<f64, D>::new(scene)
+    let report = Study::<D>::new(scene)
         .boxed_scheme(scheme(name))
         .solver(ActiveSet::default().linear(linear))
         .levels([level])
@@ -105,9 +105,9 @@ fn run<const D: usize>(
 
 /// Conforming linears on refinements of a mesh of a disc.
 fn run_on_mesh(path: &str, linear: LinearMethod) -> Result<Row, Failure> {
-    let mesh = gmsh::read::<f64, 2>(Path::new(path))?.mesh;
+    let mesh = gmsh::read::<2>(Path::new(path))?.mesh;
     let times = (1e6 / mesh.vertices().len() as f64).log2() / 2.0;
-    let report = Study::<f64, 2>::new(scenes::radial::<2>(1.0))
+    let report = Study::<2>::new(scenes::radial::<2>(1.0))
         .scheme(ConformingP1)
         .solver(ActiveSet::default().linear(linear))
         .on_mesh(mesh)

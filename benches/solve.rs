@@ -13,9 +13,9 @@ use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
 
 /// One scheme on one mesh: the linear system, without inequalities.
-fn scheme<const D: usize, S: Scheme<f64, D>>(c: &mut Criterion, scheme: &S, subdivisions: usize) {
+fn scheme<const D: usize, S: Scheme<D>>(c: &mut Criterion, scheme: &S, subdivisions: usize) {
     let scene = scenes::radial::<D>(1.0);
-    let Ok(mesh) = scene.domain.mesh::<f64>(subdivisions) else { return };
+    let Ok(mesh) = scene.domain.mesh(subdivisions) else { return };
     let quadrature = DataQuadrature::default();
     let Ok(space) = Discretisation::new(scheme, &scene.problem, &mesh, quadrature) else { return };
     let Ok(mut inequality) = space.inequality() else { return };

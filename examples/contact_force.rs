@@ -13,7 +13,7 @@ fn main() -> Result<(), Error> {
         "exact: force {:.5}, largest pressure 0.500, contact length 1",
         std::f64::consts::PI / 8.0
     );
-    let schemes: [Box<dyn AnyScheme<f64, 2>>; 3] =
+    let schemes: [Box<dyn Scheme<2>>; 3] =
         [Box::new(ConformingP1), Box::new(Sipg::default()), Box::new(ConformingP2)];
     for level in [8, 16, 32] {
         let meshes = Hierarchy::of_domain(&hertz.domain, level)?;

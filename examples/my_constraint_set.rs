@@ -18,7 +18,7 @@ impl ConstraintSet for AllVerticesButOne {
 
 fn main() -> Result<(), Error> {
     // a set belongs to an entry of a study ...
-    let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    let report = Study::<2>::new(scenes::radial(1.0))
         .scheme(Sipg::default())
         .scheme_on(Sipg::default(), FacetMeans)
         .scheme_on(Sipg::default(), AllVerticesButOne)
@@ -28,7 +28,7 @@ fn main() -> Result<(), Error> {
 
     // ... or to a problem
     let scene = scenes::radial::<2>(1.0);
-    let mesh = scene.domain.mesh::<f64>(8)?;
+    let mesh = scene.domain.mesh(8)?;
     let problem = scene.problem.on(AllVerticesButOne);
     let discretisation =
         Discretisation::new(&Sipg::default(), &problem, &mesh, Default::default())?;

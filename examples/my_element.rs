@@ -6,6 +6,8 @@
 //! D. N. Arnold, F. Brezzi, M. Fortin, Calcolo 21 (1984), 337-344, where it is one half of an element
 //! for the Stokes problem.
 
+use std::sync::Arc;
+
 use unilateral::element::Layout;
 use unilateral::kit::check_scheme;
 use unilateral::mesh::BoxDomain;
@@ -14,59 +16,53 @@ use unilateral::prelude::*;
 /// Values at the vertices and at the barycentre: `b = (D + 1)^(D + 1) l_0 ... l_D` is one there and
 /// zero on the boundary of the cell, `l_i - b / (D + 1)` is one at vertex `i` and zero at the other
 /// nodes.
-#[derive(Clone, Copy)]
+#[derive(Debug)]
 struct P1WithBubble;
 
-impl<T: Real, const D: usize> ReferenceElement<T, D> for P1WithBubble {
-    const N: usize = D + 2;
+impl<const D: usize> Element<D> for P1WithBubble {
     /// Not all quadratics are in the span: orders are those of linears.
-    const DEGREE: usize = 1;
+    fn degree(&self) -> usize {
+        1
+    }
     /// The bubble is a product of `D + 1` linears: integrals of the basis need rules for it.
-    const BASIS_DEGREE: usize = D + 1;
-    const LAYOUT: Layout = Layout { vertex: 1, edge: 0, facet: 0, cell: 1 };
-
-    fn values(lambda: &[T], out: &mut [T]) {
-        let n = T::lit((D + 1) as f64);
-        let bubble = lambda.iter().fold(T::lit(1.0), |product, &l| product * n * l);
-        for i in 0..=D {
-            out[i] = lambda[i] - bubble / n;
-        }
-        out[D + 1] = bubble;
+    fn basis_degree(&self) -> usize {
+        D + 1
     }
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        let n = T::lit((D + 1) as f64);
-        let mut bubble = [T::lit(0.0); 4];
+    fn layout(&self) -> Layout {
+        Layout { vertex: 1, edge: 0, facet: 0, cell: 1 }
+    }
+    fn node(&self, i: usize) -> Node {
+        if i <= D { Node::vertex(i) } else { Node::barycentre(D) }
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
+        let n = (D + 1) as f64;
+        out[D + 1] = lambda.iter().fold(1.0, |product, l| product * n * l);
+        for i in 0..=D {
+            out[i] = lambda[i] - out[D + 1] / n;
+        }
+    }
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
+        let n = (D + 1) as f64;
         for k in 0..=D {
-            bubble[k] = (0..=D).filter(|&l| l != k).fold(n, |product, l| product * n * lambda[l]);
+            let others = (0..=D).filter(|&l| l != k);
+            out[D + 1][k] = others.fold(n, |product, l| product * n * lambda[l]);
         }
         for i in 0..=D {
-            out[i] = bubble.map(|slope| -slope / n);
-            out[i][i] += T::lit(1.0);
+            out[i] = out[D + 1].map(|slope| -slope / n);
+            out[i][i] += 1.0;
         }
-        out[D + 1] = bubble;
-    }
-    fn node(i: usize) -> Node {
-        if i <= D {
-            return Node::vertex(i);
-        }
-        let mut barycentre = [0.0; 4];
-        barycentre[..=D].fill(1.0 / (D + 1) as f64);
-        Node::value(Entity::Cell, barycentre)
     }
 }
 
 /// The conforming scheme, without terms on facets and with bounds at all nodes.
 struct WithBubble;
 
-impl<T: Real, const D: usize> Scheme<T, D> for WithBubble {
-    type Element = P1WithBubble;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
+impl<const D: usize> Scheme<D> for WithBubble {
     fn name(&self) -> &str {
         "p1-bubble"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P1WithBubble)
     }
     /// Those of linears on an equation; under an inequality the values at nodes are a set for which
     /// nothing is claimed here.
@@ -91,17 +87,17 @@ impl ConstraintSet for OnlyVertices {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    print!("{}", check_scheme::<f64, 2, _>(&WithBubble)?);
-    print!("{}", check_scheme::<f64, 3, _>(&WithBubble)?);
+    print!("{}", check_scheme::<2>(&WithBubble)?);
+    print!("{}", check_scheme::<3>(&WithBubble)?);
 
-    let value = |x: &Point<f64, 2>| (2.0 * x[0] - x[1]).sin();
+    let value = |x: &Point<2>| (2.0 * x[0] - x[1]).sin();
     let problem = Problem::new()
         .exact(value, |x| Point::from([2.0, -1.0]) * (2.0 * x[0] - x[1]).cos())
         .source(move |x| 5.0 * value(x));
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let equation = scenes::Scene::new("sine", square, problem).regularity(Regularity::smooth());
     let study = |scene| {
-        Study::<f64, 2>::new(scene).scheme(ConformingP1).scheme(WithBubble).levels([4, 8, 16, 32])
+        Study::<2>::new(scene).scheme(ConformingP1).scheme(WithBubble).levels([4, 8, 16, 32])
     };
     let report = study(equation).run()?;
     print!("{report}");

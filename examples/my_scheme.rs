@@ -4,50 +4,47 @@
 //!
 //! C. Dawson, S. Sun, M. F. Wheeler, Comput. Methods Appl. Mech. Engrg. 193 (2004), 2565-2580.
 
+use std::sync::Arc;
+
 use unilateral::kit::check_scheme;
 use unilateral::prelude::*;
 
 /// `sigma / h_F [u][v] - {d_n u}[v]`: no symmetrising term.
 struct Incomplete(f64);
 
-impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
-    fn uses_flux(&self) -> bool {
-        true
-    }
+impl<const D: usize> FacetForm<D> for Incomplete {
     fn is_symmetric(&self) -> bool {
         false
     }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
-        T::lit(self.0) * facet.coefficient() / facet.diameter()
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
+        self.0 * facet.coefficient() / facet.diameter()
     }
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump - u.flux * v.jump
     }
 }
 
-/// An element, a facet form and a way to impose Dirichlet data.
-struct Iipg {
-    sigma: f64,
-}
+/// A name, an element and a facet form, which imposes Dirichlet data too.
+struct Iipg(f64);
 
-impl<T: Real, const D: usize> Scheme<T, D> for Iipg {
-    type Element = Broken<P1>;
-    type Facet = Incomplete;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize> Scheme<D> for Iipg {
     fn name(&self) -> &str {
         "iipg"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> Incomplete {
-        Incomplete(self.sigma)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(P1))
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(Incomplete(self.0))
     }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    print!("{}", check_scheme::<f64, 2, _>(&Iipg { sigma: 10.0 })?);
-    let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    print!("{}", check_scheme::<2>(&Iipg(10.0))?);
+    let report = Study::<2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
         .scheme(Sipg::default())
-        .scheme(Iipg { sigma: 10.0 })
+        .scheme(Iipg(10.0))
         .levels([8, 16, 32])
         .run()?;
     print!("{report}");

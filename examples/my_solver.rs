@@ -7,27 +7,30 @@ use unilateral::inequality::{
     ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, certify,
 };
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 
 /// Relaxation by this factor, between one and two.
 struct ProjectedSor(f64);
 
-impl<T: Real> InequalitySolver<T> for ProjectedSor {
+impl InequalitySolver<f64> for ProjectedSor {
     fn name(&self) -> &'static str {
         "projected-sor"
     }
-    fn solve(&self, inequality: &Inequality<T>) -> Solution<T> {
+    fn solve(&self, inequality: &Inequality<f64>) -> Solution<f64> {
         self.solve_from(inequality, &InitialGuess::default())
     }
-    fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
+    fn solve_from(&self, inequality: &Inequality<f64>, guess: &InitialGuess<f64>) -> Solution<f64> {
         let Inequality { matrix, bounds, .. } = inequality;
         let load = inequality.assembled_load();
-        let zeros = || vec![T::lit(0.0); bounds.len()];
+        let zeros = || vec![0.0; bounds.len()];
         let mut u = guess.values.clone().filter(|u| u.len() == bounds.len()).unwrap_or_else(zeros);
         let mut sweeps = 0;
-        while sweeps < 10_000 && certify(inequality, &u).largest() > T::CERTIFICATE_LIMIT {
+        while sweeps < 10_000
+            && certify(inequality, &u).largest() > Precision::Double.certificate_limit()
+        {
             for (i, bound) in bounds.iter().enumerate() {
                 let step = (load[i] - matrix.row_dot(i, &u)) / matrix.get(i, i);
-                u[i] = bound.nearest(u[i] + T::lit(self.0) * step);
+                u[i] = bound.nearest(u[i] + self.0 * step);
             }
             sweeps += 1;
         }
@@ -43,7 +46,7 @@ impl<T: Real> InequalitySolver<T> for ProjectedSor {
 }
 
 fn main() -> Result<(), Error> {
-    let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    let report = Study::<2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
         .scheme(Sipg::default())
         .solver(ActiveSet::default())

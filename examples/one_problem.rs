@@ -11,10 +11,10 @@ use unilateral::prelude::*;
 fn main() -> Result<(), Error> {
     let bracket = Problem::new()
         .source_in("steel", -1.0)
-        .signorini_on("foot", |x: &Point<f64, 3>| -1.5 * (x[0] - 0.5).powi(2))
+        .signorini_on("foot", |x: &Point<3>| -1.5 * (x[0] - 0.5).powi(2))
         .neumann_on("head", |x, _| -2.0 + 30.0 * (x[0] - 0.15))
         .neumann_on("sides", |_, _| 0.0);
-    let mesh = gmsh::read::<f64, 3>("examples/problems/bracket.msh".as_ref())?.mesh;
+    let mesh = gmsh::read::<3>("examples/problems/bracket.msh".as_ref())?.mesh;
     let mesh = bracket.bind_boundary(mesh)?;
     // one on the volume of 0.342, two on the head of 0.18
     println!("load: -0.702");

@@ -6,7 +6,7 @@ use unilateral::prelude::*;
 
 /// The schemes on one problem with a known solution.
 fn compare(scene: scenes::Scene<2>) -> Result<Report, Error> {
-    Study::<f64, 2>::new(scene)
+    Study::<2>::new(scene)
         .scheme(ConformingP1)
         .scheme(Sipg::default())
         .scheme(Wopsip::default())

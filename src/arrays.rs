@@ -1,8 +1,8 @@
 //! Arrays filled by a loop.
 //!
 //! [`std::array::from_fn`] and the method `map` of arrays account for panics and for entries that need to be
-//! dropped, and compile to five times as much code. Most functions here exist for two scalars and three
-//! dimensions, so that this is a noticeable part of the library's compilation.
+//! dropped, and compile to five times as much code. Most functions here exist for three dimensions,
+//! so that this is a noticeable part of the library's compilation.
 
 /// The array of the values of a function at `0`, `1`, ..., in this order. It has at least one entry.
 pub(crate) fn tabulate<X: Copy, const N: usize>(mut entry: impl FnMut(usize) -> X) -> [X; N] {

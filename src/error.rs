@@ -138,6 +138,10 @@ pub enum Error {
         "solutions are compared on one mesh or on meshes of one hierarchy: solve both on the same `Hierarchy`"
     )]
     NotNested,
+    /// What one of the processes that share a mesh found, or why they do not reach one another: an
+    /// [`ExchangeError`](crate::processes::ExchangeError).
+    #[error(transparent)]
+    Processes(Box<dyn std::error::Error + Send + Sync>),
     /// A parameter outside its range.
     #[error("{parameter} = {value}: {allowed}")]
     Parameter {
@@ -267,7 +271,7 @@ mod tests {
         assert_eq!(format!("{error:?}"), "the mesh has no cells of dimension 2");
         assert_eq!(format!("{error:?}"), error.to_string());
         let source = MeshError::NoCells { dimension: 2 };
-        let error: Error = GmshError::Mesh { source, elements: vec![], nodes: vec![7] }.into();
+        let error: Error = GmshError::of_mesh(source, &["nodes 7".to_owned()]).into();
         let expected = "the mesh has no cells of dimension 2; in the file: nodes 7";
         assert_eq!(format!("{error:?}"), expected);
     }

@@ -32,6 +32,14 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// The length and a hash of the contents of a file.
+pub fn fingerprint(bytes: &[u8]) -> String {
+    // the hash of Fowler, Noll and Vo, which has the same value on every machine
+    let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325, step);
+    format!("{} bytes {hash:016x}", bytes.len())
+}
+
 /// Foreign text for a message: at most 40 characters, an ellipsis in place of the rest, control
 /// characters as escapes, bytes that are not UTF-8 replaced by U+FFFD.
 pub fn excerpt(text: impl AsRef<[u8]>) -> String {

@@ -12,7 +12,7 @@
 //! }
 //! ```
 //!
-//! The function after the equals sign is written with the same names of scalar and dimension as the
+//! The function after the equals sign is written with the same name of scalar or dimension as the
 //! signature. A method of a type with a lifetime parameter is written as a closure.
 //!
 //! The unit tests of this library are a second crate, in which static tables would compile every instance again.
@@ -29,39 +29,23 @@ macro_rules! compiled {
     };
 }
 
-/// The instance of a function for the scalar `T`, the dimension `D`, or both.
+/// The instance of a function for the scalar `T` or the dimension `D`.
 #[cfg(not(test))]
 macro_rules! compiled {
-    ($T:ident, $D:ident: $signature:ty = $function:expr) => {{
-        static INSTANCES: [&(dyn ::std::any::Any + Sync); 6] = [
-            &$crate::instances::compiled!(@ type $T = f64; const $D: usize = 1; $signature = $function),
-            &$crate::instances::compiled!(@ type $T = f64; const $D: usize = 2; $signature = $function),
-            &$crate::instances::compiled!(@ type $T = f64; const $D: usize = 3; $signature = $function),
-            &$crate::instances::compiled!(@ type $T = f32; const $D: usize = 1; $signature = $function),
-            &$crate::instances::compiled!(@ type $T = f32; const $D: usize = 2; $signature = $function),
-            &$crate::instances::compiled!(@ type $T = f32; const $D: usize = 3; $signature = $function),
-        ];
-        $crate::instances::find::<$signature>(&INSTANCES)
-    }};
     ($T:ident: $signature:ty = $function:expr) => {{
         static INSTANCES: [&(dyn ::std::any::Any + Sync); 2] = [
-            &$crate::instances::compiled!(@ type $T = f64; $signature = $function),
-            &$crate::instances::compiled!(@ type $T = f32; $signature = $function),
+        &$crate::instances::compiled!(@ type $T = f64; $signature = $function),
+        &$crate::instances::compiled!(@ type $T = f32; $signature = $function),
         ];
         $crate::instances::find::<$signature>(&INSTANCES)
     }};
     (const $D:ident: $signature:ty = $function:expr) => {{
         static INSTANCES: [&(dyn ::std::any::Any + Sync); 3] = [
-            &$crate::instances::compiled!(@ const $D: usize = 1; $signature = $function),
-            &$crate::instances::compiled!(@ const $D: usize = 2; $signature = $function),
-            &$crate::instances::compiled!(@ const $D: usize = 3; $signature = $function),
+        &$crate::instances::compiled!(@ const $D: usize = 1; $signature = $function),
+        &$crate::instances::compiled!(@ const $D: usize = 2; $signature = $function),
+        &$crate::instances::compiled!(@ const $D: usize = 3; $signature = $function),
         ];
         $crate::instances::find::<$signature>(&INSTANCES)
-    }};
-    (@ type $T:ident = $scalar:ty; const $D:ident: usize = $d:literal; $signature:ty = $function:expr) => {{
-        type $T = $scalar;
-        const $D: usize = $d;
-        $function as $signature
     }};
     (@ type $T:ident = $scalar:ty; $signature:ty = $function:expr) => {{
         type $T = $scalar;
@@ -74,13 +58,7 @@ macro_rules! compiled {
 }
 pub(crate) use compiled;
 
-/// The entry of a table that has this type, if there is one.
-#[cfg(not(test))]
-pub(crate) fn look_up<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> Option<F> {
-    entry_of(table, TypeId::of::<F>())?.downcast_ref::<F>().copied()
-}
-
-/// The entry of a table of scalars and dimensions that has this type.
+/// The entry of a table of scalars or dimensions that has this type.
 ///
 /// # Panics
 /// If there is none: for a dimension other than one, two and three.
@@ -94,15 +72,8 @@ pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
 
 /// The entry of a type, found by a function that does not depend on the type.
 #[cfg(not(test))]
-fn entry_of<'t>(table: &[&'t (dyn Any + Sync)], id: TypeId) -> Option<&'t dyn Any> {
-    let entry = table.iter().copied().find(|entry| (**entry).type_id() == id)?;
-    Some(entry)
-}
-
-/// As [`entry_of`], where there has to be one.
-#[cfg(not(test))]
 fn required_entry<'t>(table: &[&'t (dyn Any + Sync)], id: TypeId) -> &'t dyn Any {
-    match entry_of(table, id) {
+    match table.iter().copied().find(|entry| (**entry).type_id() == id) {
         Some(entry) => entry,
         None => panic!("functions are compiled for f64 and f32 in one, two and three dimensions"),
     }

@@ -46,6 +46,7 @@ pub mod prelude;
 pub mod problem;
 #[cfg(feature = "problem-files")]
 pub mod problem_file;
+pub mod processes;
 pub mod quadrature;
 mod readable_debug;
 pub mod real;

@@ -2,7 +2,7 @@
 
 pub use crate::assemble::Discretisation;
 pub use crate::constraint::{BoundBy, CellMeans, ConstraintSet, FacetMeans, Midpoints, Nodes};
-pub use crate::element::{Broken, CrouzeixRaviart, Entity, Node, P1, P2, ReferenceElement};
+pub use crate::element::{Broken, CrouzeixRaviart, Element, Entity, Node, P1, P2};
 pub use crate::error::Error;
 pub use crate::facet::{
     DirichletBy, FacetForm, FacetView, Lifts, NoFacets, PenaltyRule, Trace, WeightRule,
@@ -11,7 +11,7 @@ pub use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
 pub use crate::nested::{AdaptiveMeshes, Adaptivity, Stop, adapt};
 pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
 pub use crate::problem::Problem;
-pub use crate::real::{Point, Real};
+pub use crate::real::Point;
 pub use crate::scenes;
 pub use crate::scheme::*;
 #[cfg(feature = "report")]

@@ -1,16 +1,76 @@
-//! The scalar of assembly and solve, and points of space.
+//! The scalar of the algebra, and points of space.
 
-/// A real scalar this crate can assemble and solve in: `f64`, or `f32`.
+use std::fmt::Debug;
+
+/// The precision in which an inequality is solved. Meshes, elements, data, matrices, errors and bounds are in `f64`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// `f64`.
+    #[default]
+    Double,
+    /// `f32`.
+    Single,
+}
+
+impl Precision {
+    /// The precisions by the names users type.
+    pub const NAMES: [(&'static str, Self); 2] = [("f64", Self::Double), ("f32", Self::Single)];
+
+    /// The name users type and reports state.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Double => "f64",
+            Self::Single => "f32",
+        }
+    }
+    /// The precision of a name that users type.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::NAMES.iter().find(|(known, _)| *known == name).map(|(_, precision)| *precision)
+    }
+    /// Distance from one to the next larger number.
+    pub fn epsilon(self) -> f64 {
+        match self {
+            Self::Double => f64::EPSILON,
+            Self::Single => f64::from(f32::EPSILON),
+        }
+    }
+    /// [`Real::CERTIFICATE_LIMIT`] of its scalar.
+    pub fn certificate_limit(self) -> f64 {
+        match self {
+            Self::Double => f64::CERTIFICATE_LIMIT,
+            Self::Single => f32::CERTIFICATE_LIMIT,
+        }
+    }
+    /// [`Real::ALGEBRAIC_BOUND_LIMIT`] of its scalar.
+    pub fn algebraic_bound_limit(self) -> f64 {
+        match self {
+            Self::Double => f64::ALGEBRAIC_BOUND_LIMIT,
+            Self::Single => f32::ALGEBRAIC_BOUND_LIMIT,
+        }
+    }
+}
+
+/// A real scalar that matrices and solvers are generic over: `f64`, or `f32`.
 ///
-/// Data of a scene are always evaluated in `f64` and rounded once, by [`Real::lit`]. The trait is
-/// sealed: the solvers are compiled for these two scalars, in this library.
+/// Problems are assembled in `f64` and rounded once. The trait is sealed: the solvers are compiled for these two
+/// scalars, in this library.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a scalar this crate can solve in",
     note = "use `f64` or `f32`"
 )]
-pub trait Real: nalgebra::RealField + sealed::Scalar + Copy {
-    /// The name users type and reports state.
-    const NAME: &'static str;
+pub trait Real:
+    num_traits::NumAssign
+    + num_traits::Signed
+    + PartialOrd
+    + Copy
+    + Send
+    + Sync
+    + Debug
+    + 'static
+    + sealed::Scalar
+{
+    /// The precision of the scalar.
+    const PRECISION: Precision;
     /// Distance from one to the next larger number, as `f64`.
     const EPSILON: f64;
     /// A certificate above this is not that of a solution, whatever the size of rounding: 1e-9, and
@@ -33,7 +93,7 @@ mod sealed {
 }
 
 impl Real for f64 {
-    const NAME: &'static str = "f64";
+    const PRECISION: Precision = Precision::Double;
     const EPSILON: f64 = f64::EPSILON;
     const CERTIFICATE_LIMIT: f64 = 1e-9;
     const ALGEBRAIC_BOUND_LIMIT: f64 = 1e-6;
@@ -48,7 +108,7 @@ impl Real for f64 {
 }
 
 impl Real for f32 {
-    const NAME: &'static str = "f32";
+    const PRECISION: Precision = Precision::Single;
     const EPSILON: f64 = f32::EPSILON as f64;
     const CERTIFICATE_LIMIT: f64 = 1e-4;
     const ALGEBRAIC_BOUND_LIMIT: f64 = 1e-2;
@@ -63,13 +123,7 @@ impl Real for f32 {
 }
 
 /// A point or vector of `D`-dimensional space.
-pub type Point<T, const D: usize> = nalgebra::SVector<T, D>;
-
-/// The point in `f64`, in which all data are evaluated.
-#[inline(always)]
-pub(crate) fn point_f64<T: Real, const D: usize>(x: &Point<T, D>) -> Point<f64, D> {
-    Point::from_fn(|k, _| x[k].to_f64())
-}
+pub type Point<const D: usize> = nalgebra::SVector<f64, D>;
 
 /// The larger number; NaN if one of the two is NaN, which [`f64::max`] drops.
 #[inline(always)]

@@ -39,18 +39,18 @@ pub fn on(threads: usize, work: &mut (dyn FnMut() + Send)) {
 }
 
 /// A Kuhn mesh of the unit box.
-pub fn unit_box<const D: usize>(subdivisions: usize) -> Mesh<f64, D> {
+pub fn unit_box<const D: usize>(subdivisions: usize) -> Mesh<D> {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     Mesh::kuhn_box(&domain, [subdivisions; D]).expect("a mesh of the unit box")
 }
 
 /// Bytes of cells and vertices.
-fn mesh_bytes<const D: usize>(mesh: &Mesh<f64, D>) -> usize {
+fn mesh_bytes<const D: usize>(mesh: &Mesh<D>) -> usize {
     4 * mesh.cells().len() + 8 * D * mesh.vertices().len()
 }
 
 /// Assembly of a scheme, from nothing and into a known pattern.
-fn assembly<const D: usize, S: Scheme<f64, D>>(
+fn assembly<const D: usize, S: Scheme<D>>(
     scheme: &S,
     subdivisions: usize,
     run: &mut dyn FnMut(&mut Case<'_>),

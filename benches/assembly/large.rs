@@ -47,7 +47,7 @@ pub fn one(arguments: &[String]) {
     }
 }
 
-fn run<const D: usize, S: Scheme<f64, D>>(name: &str, scheme: &S, n: usize) {
+fn run<const D: usize, S: Scheme<D>>(name: &str, scheme: &S, n: usize) {
     let mesh = unit_box::<D>(n);
     let problem = Problem::<D>::new();
     let discretise = || {

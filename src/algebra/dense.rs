@@ -76,7 +76,7 @@ pub(crate) fn invert_positive_definite<T: Real>(a: &mut [T], size: usize, fixed:
     let one = T::lit(1.0);
     for k in (0..size).filter(|&k| !fixed[k]) {
         let pivot = a[k * size + k];
-        if pivot <= T::lit(0.0) || !pivot.is_finite() {
+        if pivot <= T::lit(0.0) || !pivot.to_f64().is_finite() {
             return false;
         }
         let inverse = one / pivot;

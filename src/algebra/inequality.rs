@@ -99,7 +99,8 @@ pub struct Inequality<T> {
     /// is a body, and its resultant the sum of the load along it.
     pub bodies: Vec<FreeBody>,
     /// Whether theory or a test says that `A`, or its symmetric part, is positive definite on all
-    /// unknowns that are not fixed, but for the kernel.
+    /// unknowns that are not fixed, but for the kernel. Reset it after a change
+    /// of the matrix or of fixed unknowns by hand.
     pub is_definite: bool,
     /// The other parts, if this inequality is that of one part of a mesh. Only [`ActiveSet`] with a
     /// preconditioner for distributed matrices solves such an inequality.

@@ -7,13 +7,15 @@
 //! discontinuous linear functions. `dense`: small dense matrices. `row`: rows in the making.
 //! `dirichlet_energy`: the part of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
-//! unknown. `inequality`: supports of unknowns and the inequality. `index`: the missing index.
+//! unknown. `inequality`: supports of unknowns and the inequality. `index`: the missing index. `in_precision`:
+//! matrices, bounds and inequalities rounded.
 
 mod bound;
 pub(crate) mod dense;
 mod dirichlet_energy;
 mod distribution;
 mod free_body;
+mod in_precision;
 mod index;
 mod inequality;
 mod matrix;
@@ -29,6 +31,7 @@ pub use distribution::Distribution;
 pub(crate) use distribution::{any_part, sum_over_parts};
 pub use free_body::FreeBody;
 pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
+pub(crate) use in_precision::rounded;
 pub(crate) use index::NO_INDEX;
 pub use inequality::{Inequality, Start, Support};
 pub use matrix::SparseMatrix;

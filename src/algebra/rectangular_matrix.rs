@@ -97,6 +97,10 @@ pub(crate) fn galerkin_product<T: Real>(
     let image = RectangularMatrix::by_groups(matrix.size(), &|range| {
         let mut sum = SparseSum::new(n_coarse);
         RectangularMatrix::by_rows(range, |i, columns, values| {
+            if prolongation.row(i).0.is_empty() {
+                // no row of P^T reads this row of A P
+                return;
+            }
             let (neighbours, entries) = matrix.row(i);
             for (&j, &a) in neighbours.iter().zip(entries) {
                 if a != T::lit(0.0) {

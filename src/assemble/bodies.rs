@@ -15,7 +15,6 @@ use crate::mesh::{BoundaryPart, Components, Neighbours};
 use crate::parallel::cells;
 use crate::problem::DatumRef;
 use crate::quadrature::Rule;
-use crate::real::Real;
 
 /// The degrees of the two rules on facets.
 const FACET_DEGREES: [usize; 2] = [15, 19];
@@ -68,7 +67,7 @@ fn add(integrals: &mut Integrals, k: usize, term: f64) {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The free bodies with their resultants. A part of a mesh does not know the bodies of the whole and has none.
     pub fn free_bodies(&self) -> Result<FreeBodies, Error> {
         if self.mesh.is_supported() || self.mesh.is_part() {
@@ -117,26 +116,26 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 bodies.measures.push(0.0);
             }
             of_cell[cell] = of_cell[root];
-            bodies.measures[of_cell[cell] as usize] += mesh.geometry(cell).volume.to_f64();
+            bodies.measures[of_cell[cell] as usize] += mesh.geometry(cell).volume;
         }
         bodies.of_cell = of_cell;
         bodies
     }
 
     /// The values of the unknowns of a cell of the constant one.
-    pub fn constants(&self) -> Vec<T> {
+    pub fn constants(&self) -> Vec<f64> {
         let terms = self.node_terms(&Rule::new(D - 1, 1), &Rule::new(D, 1));
-        terms.iter().map(|terms| T::lit(terms.iter().map(|(_, w)| w).sum())).collect()
+        terms.iter().map(|terms| terms.iter().map(|(_, w)| w).sum()).collect()
     }
 
     /// The reaction term of the constant one on a cell.
-    fn reaction_of(&self, cell: usize, constants: &[T]) -> f64 {
+    fn reaction_of(&self, cell: usize, constants: &[f64]) -> f64 {
         let Some(reaction) = &self.reaction else { return 0.0 };
         let mut local = zero_local();
         reaction.add(self.mesh, cell, self.mesh.geometry(cell).volume, &mut local);
         let row = |i: usize| -> f64 {
             let terms = constants.iter().enumerate();
-            terms.map(|(j, c)| (local[i][j] * *c * constants[i]).to_f64()).sum()
+            terms.map(|(j, c)| local[i][j] * *c * constants[i]).sum()
         };
         (0..constants.len()).map(row).sum()
     }
@@ -199,7 +198,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for (body, sums) in bodies.bodies.iter_mut().zip(&sums) {
             let [coarse, fine, absolute] = sums.map(Sum::value);
             body.resultant = fine;
-            let rounding = RESULTANT_ROUNDING * T::EPSILON * absolute;
+            let rounding = RESULTANT_ROUNDING * f64::EPSILON * absolute;
             body.uncertainty = (2.0 * (fine - coarse).abs()).max(rounding);
         }
         Ok(())
@@ -212,7 +211,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         cell: usize,
         rules: &CellRules,
     ) -> Result<Integrals, Error> {
-        let volume = self.mesh.geometry(cell).volume.to_f64();
+        let volume = self.mesh.geometry(cell).volume;
         if let Some(constant) = source.constant() {
             return Ok([volume * constant, volume * constant, (volume * constant).abs()]);
         }
@@ -247,20 +246,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Adds a constant source to the load of each body's cells, so that its sum is the resultant of the body, or zero
     /// where that is undecided: the rule of the scheme has an error, by which a body that is pressed might be pulled.
     /// Loads that differ by rounding are not changed.
-    pub fn correct_resultants(&self, bodies: &FreeBodies, by_cell: &mut [T]) {
+    pub fn correct_resultants(&self, bodies: &FreeBodies, by_cell: &mut [f64]) {
         let (n, constants) = (self.per_cell(), self.constants());
         let mut sums = vec![(Sum::default(), 0.0); bodies.bodies.len()];
         for (cell, entries) in by_cell.chunks_exact(n).enumerate() {
             let Some(body) = bodies.of(cell) else { continue };
             for (entry, constant) in entries.iter().zip(&constants) {
-                let term = (*entry * *constant).to_f64();
+                let term = *entry * *constant;
                 sums[body].0.add(term);
                 sums[body].1 += term.abs();
             }
         }
         let correction = |(body, (sum, absolute)): (usize, (Sum, f64))| {
             let missing = bodies.bodies[body].decided_resultant() - sum.value();
-            let is_rounding = missing.abs() <= RESULTANT_ROUNDING * T::EPSILON * absolute;
+            let is_rounding = missing.abs() <= RESULTANT_ROUNDING * f64::EPSILON * absolute;
             if is_rounding { 0.0 } else { missing / bodies.measures[body] }
         };
         let corrections: Vec<f64> = sums.into_iter().enumerate().map(correction).collect();
@@ -270,9 +269,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let means = self.basis_means();
         for (cell, entries) in by_cell.chunks_exact_mut(n).enumerate() {
             let Some(body) = bodies.of(cell) else { continue };
-            let scale = corrections[body] * self.mesh.geometry(cell).volume.to_f64();
+            let scale = corrections[body] * self.mesh.geometry(cell).volume;
             for (entry, mean) in entries.iter_mut().zip(&means) {
-                *entry += T::lit(scale * mean);
+                *entry += scale * mean;
             }
         }
     }

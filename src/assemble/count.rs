@@ -60,10 +60,7 @@ mod tests {
     use crate::scheme::{ConformingP1, NonconformingP1, Scheme, Sipg, Wopsip};
 
     /// What assembling an inequality counts, on one thread.
-    fn counted<S: Scheme<f64, 2>>(
-        scheme: &S,
-        problem: &Problem<2>,
-    ) -> BTreeMap<&'static str, usize> {
+    fn counted<S: Scheme<2>>(scheme: &S, problem: &Problem<2>) -> BTreeMap<&'static str, usize> {
         let sides = [
             [BoundaryPart::Dirichlet, BoundaryPart::Neumann],
             [BoundaryPart::Contact, BoundaryPart::Dirichlet],

@@ -7,15 +7,14 @@ use super::space::Space;
 use super::space::metric::Metrics;
 use crate::algebra::{DirichletEnergy, DirichletTerm};
 use crate::facet::{FacetForm, Trace};
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The terms `B(v_i, u_D) + B(u_D, v_i)` and `B(u_D, u_D)` of a form `B` on Dirichlet facets, lifts
     /// included, for the moments of the data `u_D` on facets. Metrics are needed where jumps are lifted.
     pub fn dirichlet_energy<'m>(
         &self,
-        form: &dyn FacetForm<T, D>,
-        metrics: &dyn Fn() -> &'m Metrics<T>,
+        form: &dyn FacetForm<D>,
+        metrics: &dyn Fn() -> &'m Metrics,
         data: &[FacetDatum],
     ) -> DirichletEnergy {
         let n = self.per_cell();
@@ -30,11 +29,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let mut linear = vec![0.0; n];
             let mut constant = 0.0;
             for (k, (basis, &value)) in table.on(*local).iter().zip(values).enumerate() {
-                let penalty = penalty * T::lit(form.moment_weight(table.degrees[k]));
-                let integrand =
-                    |v, u| (facet.measure * form.integrand(&facet, v, u, penalty)).to_f64();
-                let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
-                let weighted = self.flux_derivatives((*cell, *local), None, T::lit(1.0), k);
+                let penalty = penalty * form.moment_weight(table.degrees[k]);
+                let integrand = |v, u| facet.measure * form.integrand(&facet, v, u, penalty);
+                let datum = Trace { jump: value, flux: 0.0 };
+                let weighted = self.flux_derivatives((*cell, *local), None, 1.0, k);
                 let functions = traces(form, &facet, &here, true, (basis, weighted.as_ref()), n);
                 for (i, &v) in functions.iter().enumerate().take(n) {
                     let tested = integrand(v, datum);
@@ -61,28 +59,30 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Adds the products of lifts of the data with lifts of functions, and with one another.
     fn add_lifted_energy(
         &self,
-        form: &dyn FacetForm<T, D>,
-        metrics: &Metrics<T>,
+        form: &dyn FacetForm<D>,
+        metrics: &Metrics,
         data: &[FacetDatum],
         energy: &mut DirichletEnergy,
     ) {
         let table = LiftTable::new(self, form.lift_degree(self.basis_degree));
         let lifting = Lifting { space: self, form, metrics, table: &table };
-        let mut load = vec![T::lit(0.0); self.dofs.size()];
+        let mut load = vec![0.0; self.dofs.size()];
         for (cell, datum) in data {
             lifting.add_load(self.coupled_neighbours(), *cell, datum, &mut load);
         }
-        let nonzero = load.iter().enumerate().filter(|(_, load)| load.to_f64() != 0.0);
-        energy.terms.extend(nonzero.map(|(i, load)| {
-            let load = load.to_f64();
-            DirichletTerm { unknown: i as u32, load, linear: 2.0 * load, constant: 0.0 }
+        let nonzero = load.iter().enumerate().filter(|&(_, &load)| load != 0.0);
+        energy.terms.extend(nonzero.map(|(i, &load)| DirichletTerm {
+            unknown: i as u32,
+            load,
+            linear: 2.0 * load,
+            constant: 0.0,
         }));
         for of_cell in by_facet(data).chunk_by(|a, b| a.0 == b.0) {
             let neighbours = self.coupled_neighbours();
             for (cell, first) in of_cell {
-                let products = of_cell.iter().map(|(_, second)| {
-                    lifting.product_of_data(neighbours, *cell, first, second).to_f64()
-                });
+                let products = of_cell
+                    .iter()
+                    .map(|(_, second)| lifting.product_of_data(neighbours, *cell, first, second));
                 let (unknown, constant) = (self.dofs.of(*cell, 0) as u32, products.sum());
                 energy.terms.push(DirichletTerm { unknown, load: 0.0, linear: 0.0, constant });
             }

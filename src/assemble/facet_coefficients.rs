@@ -11,18 +11,17 @@ use crate::facet::{FacetForm, FacetKind, FacetView, Trace};
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
-use crate::real::Real;
 
 /// A coefficient of the form, at most linear in the penalty weight.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Coefficient<T> {
-    constant: T,
-    by_penalty: T,
+pub(crate) struct Coefficient {
+    constant: f64,
+    by_penalty: f64,
 }
 
-impl<T: Real> Coefficient<T> {
+impl Coefficient {
     #[inline(always)]
-    pub fn at(&self, penalty: T) -> T {
+    pub fn at(&self, penalty: f64) -> f64 {
         self.constant + self.by_penalty * penalty
     }
 }
@@ -30,26 +29,23 @@ impl<T: Real> Coefficient<T> {
 /// The coefficients of a form in moments of traces: of `[v][u]`, `[v] flux(u)`, `flux(v) [u]` and
 /// `flux(v) flux(u)`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Coefficients<T> {
-    pub jump_jump: Coefficient<T>,
-    pub jump_flux: Coefficient<T>,
-    pub flux_jump: Coefficient<T>,
-    pub flux_flux: Coefficient<T>,
+pub(crate) struct Coefficients {
+    pub jump_jump: Coefficient,
+    pub jump_flux: Coefficient,
+    pub flux_jump: Coefficient,
+    pub flux_flux: Coefficient,
 }
 
-impl<T: Real> Coefficients<T> {
+impl Coefficients {
     /// The coefficients on a facet.
-    fn of<const D: usize>(form: &dyn FacetForm<T, D>, facet: &FacetView<T, D>) -> Self {
+    fn of<const D: usize>(form: &dyn FacetForm<D>, facet: &FacetView<D>) -> Self {
         // a form that reads fluxes it did not ask for shall fail its first test
-        let none = T::lit(if form.uses_flux() { 0.0 } else { f64::NAN });
-        let jump = Trace { jump: T::lit(1.0), flux: none };
-        let flux = Trace { jump: T::lit(0.0), flux: T::lit(1.0) };
+        let none = if form.uses_flux() { 0.0 } else { f64::NAN };
+        let jump = Trace { jump: 1.0, flux: none };
+        let flux = Trace { jump: 0.0, flux: 1.0 };
         let read = |v, u| {
-            let constant = form.integrand(facet, v, u, T::lit(0.0));
-            Coefficient {
-                constant,
-                by_penalty: form.integrand(facet, v, u, T::lit(1.0)) - constant,
-            }
+            let constant = form.integrand(facet, v, u, 0.0);
+            Coefficient { constant, by_penalty: form.integrand(facet, v, u, 1.0) - constant }
         };
         Self {
             jump_jump: read(jump, jump),
@@ -60,7 +56,7 @@ impl<T: Real> Coefficients<T> {
     }
     /// Those of no form.
     fn zero() -> Self {
-        let zero = Coefficient { constant: T::lit(0.0), by_penalty: T::lit(0.0) };
+        let zero = Coefficient { constant: 0.0, by_penalty: 0.0 };
         Self { jump_jump: zero, jump_flux: zero, flux_jump: zero, flux_flux: zero }
     }
 }
@@ -69,45 +65,45 @@ impl<T: Real> Coefficients<T> {
 /// weights of the normal derivatives of its two cells in the flux; where the coefficient varies in one of
 /// these, their average weights. The numbers of a facet stand with
 /// the cell here, so that each is computed once.
-pub(crate) struct FacetCoefficients<T> {
+pub(crate) struct FacetCoefficients {
     /// For a uniform form those on interior and on Dirichlet facets, else those of each facet of each
     /// cell.
-    coefficients: Vec<Coefficients<T>>,
+    coefficients: Vec<Coefficients>,
     is_uniform: bool,
-    entries: Vec<T>,
+    entries: Vec<f64>,
     /// Numbers for each facet of each cell.
     stride: usize,
 }
 
 /// The numbers of one facet.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FacetWeight<'w, T> {
-    pub coefficients: &'w Coefficients<T>,
-    pub penalty: T,
+pub(crate) struct FacetWeight<'w> {
+    pub coefficients: &'w Coefficients,
+    pub penalty: f64,
     /// The weight in the flux of the cell whose rows are made; its average weight where the coefficient
     /// varies in one of the cells.
-    pub own_flux_weight: T,
+    pub own_flux_weight: f64,
     /// The same of the cell across.
-    pub other_flux_weight: T,
+    pub other_flux_weight: f64,
 }
 
-impl<T: Real> FacetCoefficients<T> {
+impl FacetCoefficients {
     /// The weights of a form, in parallel.
     pub fn of<const D: usize>(
-        space: &Space<'_, T, D>,
-        form: &dyn FacetForm<T, D>,
-        metrics: &Metrics<T>,
+        space: &Space<'_, D>,
+        form: &dyn FacetForm<D>,
+        metrics: &Metrics,
     ) -> Self {
         let uses_flux = form.uses_flux();
         let stride = if uses_flux { 3 } else { 1 };
         let per_cell = stride * (D + 1);
         let n_cells = space.mesh.n_cells();
-        let mut entries = in_large_pages(vec![T::lit(0.0); per_cell * n_cells]);
+        let mut entries = in_large_pages(vec![0.0; per_cell * n_cells]);
         let across = |(cell, local)| match space.coupled_neighbours().across(cell, local) {
             Neighbour::Cell { cell, local } => Some((cell as usize, local as usize)),
             Neighbour::Boundary(_) | Neighbour::Cut => None,
         };
-        let fill = |cells: Range<usize>, chunk: &mut [T]| {
+        let fill = |cells: Range<usize>, chunk: &mut [f64]| {
             for (cell, out) in cells.zip(chunk.chunks_exact_mut(per_cell)) {
                 for (local, out) in out.chunks_exact_mut(stride).enumerate() {
                     let Some(facet) = kept_view(space, metrics, cell, local) else { continue };
@@ -116,7 +112,7 @@ impl<T: Real> FacetCoefficients<T> {
                         let average_weight = form.average_weight(&facet);
                         (out[1], out[2]) = if space.varies_at((cell, local), across((cell, local)))
                         {
-                            (average_weight, T::lit(1.0) - average_weight)
+                            (average_weight, 1.0 - average_weight)
                         } else {
                             let of = |is_here| flux_weight(&facet, average_weight, is_here);
                             (of(true), of(false))
@@ -130,8 +126,8 @@ impl<T: Real> FacetCoefficients<T> {
         let is_uniform = form.is_uniform();
         let facets = || (0..n_cells * (D + 1)).map(|k| (k / (D + 1), k % (D + 1)));
         let view = |(cell, local)| kept_view(space, metrics, cell, local);
-        let of = |facet: FacetView<'_, T, D>| Coefficients::of(form, &facet);
-        let or_zero = |of: Option<Coefficients<T>>| of.unwrap_or_else(Coefficients::zero);
+        let of = |facet: FacetView<'_, D>| Coefficients::of(form, &facet);
+        let or_zero = |of: Option<Coefficients>| of.unwrap_or_else(Coefficients::zero);
         let coefficients = if is_uniform {
             let interior = facets().filter_map(view).find(|f| f.kind() == FacetKind::Interior);
             let dirichlet = space.facets_of(BoundaryPart::Dirichlet).find_map(view);
@@ -150,12 +146,12 @@ impl<T: Real> FacetCoefficients<T> {
         here: (usize, usize),
         from_here: bool,
         kind: FacetKind,
-    ) -> FacetWeight<'_, T> {
+    ) -> FacetWeight<'_> {
         let facet = here.0 * (D + 1) + here.1;
         let coefficients = &self.coefficients[if self.is_uniform { kind as usize } else { facet }];
         let start = facet * self.stride;
         let kept = &self.entries[start..start + self.stride];
-        let (mut own_flux_weight, mut other_flux_weight) = (T::lit(0.0), T::lit(0.0));
+        let (mut own_flux_weight, mut other_flux_weight) = (0.0, 0.0);
         if self.stride > 1 {
             (own_flux_weight, other_flux_weight) =
                 if from_here { (kept[1], kept[2]) } else { (kept[2], kept[1]) };
@@ -167,12 +163,12 @@ impl<T: Real> FacetCoefficients<T> {
 /// The view of a facet that carries a form, from the cell with the lower number: what was kept of the
 /// cells is read, and products of gradients are left out.
 #[inline(always)]
-fn kept_view<'a, T: Real, const D: usize>(
-    space: &Space<'a, T, D>,
-    metrics: &Metrics<T>,
+fn kept_view<'a, const D: usize>(
+    space: &Space<'a, D>,
+    metrics: &Metrics,
     cell: usize,
     local: usize,
-) -> Option<FacetView<'a, T, D>> {
+) -> Option<FacetView<'a, D>> {
     let side = |place| metrics.side::<D>(place, space.extreme_coefficients(place));
     let there = match space.coupled_neighbours().across(cell, local) {
         Neighbour::Cell { cell: other, .. } if (other as usize) < cell => return None,

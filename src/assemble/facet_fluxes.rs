@@ -12,11 +12,10 @@ use crate::error::Error;
 use crate::facet::FacetKind;
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
-use crate::real::Real;
 
 /// The sum of coefficients times values.
-fn product<T: Real>(coefficients: &[f64], values: &[T]) -> f64 {
-    coefficients.iter().zip(values).map(|(c, v)| c * v.to_f64()).sum()
+fn product(coefficients: &[f64], values: &[f64]) -> f64 {
+    coefficients.iter().zip(values).map(|(c, v)| c * v).sum()
 }
 
 /// The two cells of a facet that carries the form: cell and number of the facet in it.
@@ -24,10 +23,9 @@ type Sides = ((usize, usize), Option<(usize, usize)>);
 
 /// What all facets share: the basis functions on them, the moments of Dirichlet data, and what the form needs of cells
 /// and facets.
-type TablesOfFacets<'t, T> =
-    (&'t FacetTable<T>, &'t FacetMoments<'t>, &'t (Metrics<T>, FacetCoefficients<T>));
+type TablesOfFacets<'t> = (&'t FacetTable, &'t FacetMoments<'t>, &'t (Metrics, FacetCoefficients));
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// By facet of each cell the first `kept` moments of a flux `q.n` out of the cell, times the measure of
     /// the facet: minus the facet form of `u` tested with the function in the cell that has this moment on
     /// the facet, zero elsewhere, without its flux. Both cells of a facet have the same moments with
@@ -41,7 +39,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// [`Error::DataNotFinite`].
     pub(crate) fn facet_fluxes(
         &self,
-        u: &[T],
+        u: &[f64],
         jump_multipliers: Option<&[f64]>,
         kept: usize,
     ) -> Result<Vec<f64>, Error> {
@@ -73,7 +71,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         })?;
         let place = |(cell, local): (usize, usize)| cell * (D + 1) + local;
         let mut fluxes = vec![0.0; n_cells * (D + 1) * kept];
-        let mut jumps = vec![T::lit(0.0); n_cells * (D + 1) * n_lifted];
+        let mut jumps = vec![0.0; n_cells * (D + 1) * n_lifted];
         for (k, of_facet) in here.chunks_exact(stride).enumerate() {
             let Some((own, across)) = self.sides((k / (D + 1), k % (D + 1))) else { continue };
             for (side, sign) in [(Some(own), 1.0), (across, -1.0)] {
@@ -82,7 +80,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 let to = &mut fluxes[side * kept..][..kept];
                 to.iter_mut().zip(moments).for_each(|(to, from)| *to = sign * from);
                 let to = &mut jumps[side * n_lifted..][..n_lifted];
-                to.iter_mut().zip(lifted).for_each(|(to, &from)| *to = T::lit(sign * from));
+                to.iter_mut().zip(lifted).for_each(|(to, &from)| *to = sign * from);
             }
         }
         if form.is_lifted() {
@@ -118,9 +116,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// The moments of the flux through a facet out of the cell here, after them those of the jump.
     fn moments_on_facet(
         &self,
-        u: &[T],
+        u: &[f64],
         ((cell, local), across): Sides,
-        (table, data, (metrics, weights)): TablesOfFacets<'_, T>,
+        (table, data, (metrics, weights)): TablesOfFacets<'_>,
         multipliers: Option<&[f64]>,
         kept: usize,
         out: &mut [f64],
@@ -134,7 +132,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let datum = match across {
             Some(_) => Vec::new(),
             None => {
-                let group = space.mesh.boundary_group(cell, local).unwrap_or(0);
+                let group = space.mesh.boundary_group(cell, local);
+                let group = group.expect("a boundary facet has a group");
                 space.dirichlet_moments(data, (cell, local), group)?
             }
         };
@@ -148,18 +147,18 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let measure = metrics.at::<D>(cell).measures[local];
         let (fluxes, lifted) = out.split_at_mut(kept);
         for (k, out) in fluxes.iter_mut().enumerate().take(table.degrees.len()) {
-            let penalty = weight.penalty * T::lit(form.moment_weight(table.degrees[k]));
+            let penalty = weight.penalty * form.moment_weight(table.degrees[k]);
             let coefficients = weight.coefficients;
             let mut tested = match multipliers {
                 Some(multipliers) => multipliers[k],
-                None => (measure * coefficients.jump_jump.at(penalty)).to_f64() * jump(k),
+                None => (measure * coefficients.jump_jump.at(penalty)) * jump(k),
             };
             if form.uses_flux() {
-                let derivatives = |(cell, local): (usize, usize), across, weight: T| {
+                let derivatives = |(cell, local): (usize, usize), across, weight: f64| {
                     let metric = metrics.at::<D>(cell);
                     let side = space.side(cell, local, &metric);
                     match space.flux_derivatives((cell, local), across, weight, k) {
-                        Some(weighted) => side.normal_derivatives(&weighted, n, T::lit(1.0)),
+                        Some(weighted) => side.normal_derivatives(&weighted, n, 1.0),
                         None => {
                             let basis = &table.on(local)[k];
                             side.normal_derivatives(&basis.derivatives, n, weight)
@@ -173,7 +172,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                     flux -=
                         product(&values[..n], &derivatives(there, here, weight.other_flux_weight));
                 }
-                tested += coefficients.jump_flux.at(penalty).to_f64() * flux;
+                tested += coefficients.jump_flux.at(penalty) * flux;
             }
             *out = -tested;
         }
@@ -184,13 +183,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
 
     /// Adds what the products of lifts tell of the fluxes, from the jumps as each cell sees them.
-    fn add_lifted_fluxes(
-        &self,
-        jumps: &[T],
-        kept: usize,
-        metrics: &Metrics<T>,
-        fluxes: &mut [f64],
-    ) {
+    fn add_lifted_fluxes(&self, jumps: &[f64], kept: usize, metrics: &Metrics, fluxes: &mut [f64]) {
         let (space, form) = (&self.space, self.form());
         let neighbours = space.coupled_neighbours();
         let table = LiftTable::new(space, form.lift_degree(space.basis_degree));
@@ -199,7 +192,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             let of_centre = |centre: usize| {
                 let jump = |local: usize, k: usize| match local <= D {
                     true => jumps[(centre * (D + 1) + local) * MAX_MOMENTS + k],
-                    false => T::lit(0.0),
+                    false => 0.0,
                 };
                 let jumps = std::array::from_fn(|local| std::array::from_fn(|k| jump(local, k)));
                 lifting.products_with_moments(neighbours, centre, &jumps, kept)

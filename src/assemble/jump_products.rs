@@ -3,32 +3,31 @@
 use super::local::{Local, zero_local};
 use super::space::tables::FacetTable;
 use crate::element::MAX_BASIS;
-use crate::real::Real;
 
 /// For each pair of facets the sums over moments of the products of basis functions: what the
 /// integral of `[v][u]` over a facet is, per unit measure. Moments whose penalty weights differ
 /// make classes of their own.
-pub(crate) struct JumpProducts<T> {
+pub(crate) struct JumpProducts {
     /// By what each class multiplies the penalty weight.
-    pub weights: Vec<T>,
+    pub weights: Vec<f64>,
     /// By facet of this cell, then by class.
-    own: Vec<Local<T>>,
+    own: Vec<Local>,
     /// By facet of this cell, facet of the other cell, then by class.
-    across: Vec<Local<T>>,
+    across: Vec<Local>,
     facets: usize,
 }
 
-impl<T: Real> JumpProducts<T> {
+impl JumpProducts {
     /// The products of the moments in a table, with the weight of each degree.
-    pub fn new<const D: usize>(table: &FacetTable<T>, weight: impl Fn(usize) -> T) -> Self {
-        let of_degree: Vec<T> = table.degrees.iter().map(|&k| weight(k)).collect();
-        let mut weights: Vec<T> = Vec::new();
+    pub fn new<const D: usize>(table: &FacetTable, weight: impl Fn(usize) -> f64) -> Self {
+        let of_degree: Vec<f64> = table.degrees.iter().map(|&k| weight(k)).collect();
+        let mut weights: Vec<f64> = Vec::new();
         for &w in &of_degree {
             if !weights.contains(&w) {
                 weights.push(w);
             }
         }
-        let sum = |local: usize, other: usize, class: T| {
+        let sum = |local: usize, other: usize, class: f64| {
             let mut sum = zero_local();
             let moments = table.on(local).iter().zip(table.on(other)).zip(&of_degree);
             for ((mine, theirs), _) in moments.filter(|(_, w)| **w == class) {
@@ -55,13 +54,13 @@ impl<T: Real> JumpProducts<T> {
     }
     /// This cell with itself, by class.
     #[inline(always)]
-    pub fn own(&self, local: usize) -> &[Local<T>] {
+    pub fn own(&self, local: usize) -> &[Local] {
         let n = self.weights.len();
         &self.own[local * n..(local + 1) * n]
     }
     /// This cell with the other, by class.
     #[inline(always)]
-    pub fn across(&self, local: usize, other: usize) -> &[Local<T>] {
+    pub fn across(&self, local: usize, other: usize) -> &[Local] {
         let n = self.weights.len();
         let pair = local * self.facets + other;
         &self.across[pair * n..(pair + 1) * n]

@@ -4,21 +4,25 @@ use super::bodies::FreeBodies;
 use super::space::Space;
 use crate::algebra::{Inequality, NO_INDEX};
 use crate::mesh::{Components, Neighbour};
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Sets bodies and kernel of an inequality with a load. For each connected component of the space without a cell
     /// of a body that is held, the kernel has the unknowns of the function that is one there and zero elsewhere. Cells
     /// are connected if they share an unknown, or, with a facet form, a facet: a component may have several bodies that
     /// touch.
-    pub fn set_kernel(&self, inequality: &mut Inequality<T>, couples: bool, mut free: FreeBodies) {
+    pub fn set_kernel(
+        &self,
+        inequality: &mut Inequality<f64>,
+        couples: bool,
+        mut free: FreeBodies,
+    ) {
         if free.bodies.is_empty() {
             return;
         }
         let mut components = self.components_of_unknowns(couples);
         let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
         let mut is_held = vec![false; self.dofs.size()];
-        let mut values = vec![T::lit(0.0); self.dofs.size()];
+        let mut values = vec![0.0; self.dofs.size()];
         let constants = self.constants();
         for cell in 0..n_cells {
             is_held[components.find(self.dofs.of(cell, 0))] |= free.of(cell).is_none();
@@ -28,7 +32,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let kernel = &mut inequality.kernel;
         for (unknown, &value) in values.iter().enumerate() {
             let root = components.find(unknown);
-            if is_held[root] || value.to_f64() == 0.0 {
+            if is_held[root] || value == 0.0 {
                 continue;
             }
             if of_root[root] == NO_INDEX {

@@ -19,7 +19,7 @@ use crate::mesh::BoundaryPart;
 use crate::parallel::vectors::zeros;
 use crate::parallel::{cells, once};
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A cell, one of its facets and the moments of the Dirichlet datum on it.
 pub(crate) type FacetDatum = (usize, (usize, Vec<f64>));
@@ -32,9 +32,9 @@ pub(super) fn by_facet(data: &[FacetDatum]) -> Vec<&FacetDatum> {
 }
 
 /// What is added to a cell's part of the load.
-type OfCell<'w, T> = &'w (dyn Fn(usize, &mut [T]) -> Result<(), Error> + Sync);
+type OfCell<'w> = &'w (dyn Fn(usize, &mut [f64]) -> Result<(), Error> + Sync);
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Whether Dirichlet data enter through the facet form.
     fn has_weak_data(&self) -> bool {
         !self.pins
@@ -45,7 +45,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Source and Neumann data tested with each cell's basis functions; empty if neither they nor
     /// weak Dirichlet data are there. Integrals of a source that varies are kept for cells that share unknowns:
     /// load, energy and bound ask for them.
-    pub fn load_by_cell(&self) -> Result<Cow<'_, [T]>, Error> {
+    pub fn load_by_cell(&self) -> Result<Cow<'_, [f64]>, Error> {
         let varies = self.data.source.any(&|f| f.constant().is_none());
         if self.broken || !varies {
             return self.integrate_load().map(Cow::Owned);
@@ -60,7 +60,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(Cow::Borrowed(load))
     }
 
-    fn integrate_load(&self) -> Result<Vec<T>, Error> {
+    fn integrate_load(&self) -> Result<Vec<f64>, Error> {
         let flux = self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
         let source = &self.data.source;
         if !source.is_given() && !self.has_weak_data() && !flux {
@@ -80,26 +80,26 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Adds up what the cells of each unknown hold.
-    fn gather_load(&self, by_cell: Cow<'_, [T]>) -> Vec<T> {
+    fn gather_load(&self, by_cell: Cow<'_, [f64]>) -> Vec<f64> {
         if self.broken && !by_cell.is_empty() {
             return by_cell.into_owned();
         }
         let n = self.per_cell();
-        let mut load = vec![T::lit(0.0); self.dofs.size()];
+        let mut load = vec![0.0; self.dofs.size()];
         for (k, &value) in by_cell.iter().enumerate() {
             load[self.dofs.of(k / n, k % n)] += value;
         }
         load
     }
 
-    fn add_constant_source(&self, f: f64, load: &mut [T]) -> Result<(), Error> {
+    fn add_constant_source(&self, f: f64, load: &mut [f64]) -> Result<(), Error> {
         count::source(1);
-        let f = data::finite(f, "source", &Point::<f64, D>::zeros(), 0)?;
+        let f = data::finite(f, "source", &Point::<D>::zeros(), 0)?;
         let means: Vec<f64> = self.basis_means().iter().map(|mean| f * mean).collect();
         self.fill_each_cell(load, &|cell, out| {
-            let volume = self.mesh.geometry(cell).volume.to_f64();
+            let volume = self.mesh.geometry(cell).volume;
             for (value, mean) in out.iter_mut().zip(&means) {
-                *value += T::lit(volume * mean);
+                *value += volume * mean;
             }
             Ok(())
         })
@@ -114,18 +114,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         (0..self.per_cell()).map(mean).collect()
     }
 
-    fn add_source(&self, load: &mut [T]) -> Result<(), Error> {
+    fn add_source(&self, load: &mut [f64]) -> Result<(), Error> {
         let table = self.cell_table(self.cell_rule.clone());
         let has_level = self.data.source.any(&|f| f.level().is_some());
         let cut_rule = has_level.then(|| CutRule::new(D, self.cell_degree));
         self.fill_each_cell(load, &|cell, out| {
             let Some(f) = self.data.source.of(self.mesh.region(cell)) else { return Ok(()) };
-            let volume = self.mesh.geometry(cell).volume.to_f64();
-            let mut add = |x: &Point<f64, D>, weight: f64, basis: &BasisAt<f64>| {
+            let volume = self.mesh.geometry(cell).volume;
+            let mut add = |x: &Point<D>, weight: f64, basis: &BasisAt| {
                 count::source(1);
                 let value = weight * volume * data::finite(f.at(x), "source", x, cell)?;
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
-                    *out += T::lit(value * phi);
+                    *out += value * phi;
                 }
                 Ok(())
             };
@@ -148,12 +148,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Sets the load to zero and calls a function with each cell and its part of the load, in parallel.
-    fn fill_each_cell(&self, load: &mut [T], work: OfCell<'_, T>) -> Result<(), Error> {
+    fn fill_each_cell(&self, load: &mut [f64], work: OfCell<'_>) -> Result<(), Error> {
         let n = self.per_cell();
-        let add_cells = |mut cells: Range<usize>, entries: &mut [T]| {
+        let add_cells = |mut cells: Range<usize>, entries: &mut [f64]| {
             // the first access to memory of zeros is a write: reading first takes two page faults, and the second
             // page fault interrupts all other threads
-            entries.fill(T::lit(0.0));
+            entries.fill(0.0);
             entries.chunks_exact_mut(n).try_for_each(|out| match cells.next() {
                 Some(cell) => work(cell, out),
                 None => Ok(()),
@@ -162,7 +162,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         cells::for_each(self.mesh.n_cells(), &|c| c * n, load, &add_cells)
     }
 
-    fn add_neumann(&self, load: &mut [T]) -> Result<(), Error> {
+    fn add_neumann(&self, load: &mut [f64]) -> Result<(), Error> {
         let n = self.per_cell();
         for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
             let (cell, local) = place;
@@ -172,7 +172,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let flux = weight * measure * self.neumann_at(place, group, point)?;
                 let basis = self.basis_at(&facet_to_cell(point, local));
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
-                    *out += T::lit(flux * phi);
+                    *out += flux * phi;
                 }
             }
         }
@@ -188,7 +188,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<f64, Error> {
         count::neumann(1);
         let x = self.facet_point(point, cell, local);
-        let normal = || point_f64(&self.mesh.geometry(cell).normal(local));
+        let normal = || self.mesh.geometry(cell).normal(local);
         let flux = match (self.data.neumann.of(group), &self.problem.exact) {
             (Some(q), _) => q.at(&x, &normal()),
             (None, Some(exact)) => {
@@ -234,13 +234,13 @@ impl<'r> FacetMoments<'r> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The load of all unknowns; the metrics of all cells are asked for only where jumps are lifted.
     pub fn load<'m>(
         &self,
-        form: &dyn FacetForm<T, D>,
-        metrics: &dyn Fn() -> &'m Metrics<T>,
-    ) -> Result<Vec<T>, Error> {
+        form: &dyn FacetForm<D>,
+        metrics: &dyn Fn() -> &'m Metrics,
+    ) -> Result<Vec<f64>, Error> {
         let bodies = self.free_bodies()?;
         Ok(self.load_and_data(form, metrics, &bodies, true)?.0)
     }
@@ -249,11 +249,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// loads of free bodies have their resultants.
     pub fn load_and_data<'m>(
         &self,
-        form: &dyn FacetForm<T, D>,
-        metrics: &dyn Fn() -> &'m Metrics<T>,
+        form: &dyn FacetForm<D>,
+        metrics: &dyn Fn() -> &'m Metrics,
         bodies: &FreeBodies,
         with_data: bool,
-    ) -> Result<(Vec<T>, Vec<FacetDatum>), Error> {
+    ) -> Result<(Vec<f64>, Vec<FacetDatum>), Error> {
         let mut by_cell = self.load_by_cell()?;
         if !bodies.bodies.is_empty() && !by_cell.is_empty() {
             self.correct_resultants(bodies, by_cell.to_mut());
@@ -273,7 +273,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// The moments of Dirichlet data that the facet form imposes, facet by facet.
-    fn weak_data(&self, form: &dyn FacetForm<T, D>) -> Result<Vec<FacetDatum>, Error> {
+    fn weak_data(&self, form: &dyn FacetForm<D>) -> Result<Vec<FacetDatum>, Error> {
         let degree = form.moments(self.basis_degree);
         let moments = FacetMoments::new(D, degree, &self.facet_rule);
         let of_facet = |((cell, local), group)| {
@@ -283,7 +283,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Dirichlet data as the trial trace of the facet form.
-    fn add_dirichlet(&self, form: &dyn FacetForm<T, D>, data: &[FacetDatum], load: &mut [T]) {
+    fn add_dirichlet(&self, form: &dyn FacetForm<D>, data: &[FacetDatum], load: &mut [f64]) {
         let n = self.per_cell();
         let table = self.facet_table(form.moments(self.basis_degree));
         for &(cell, (local, ref values)) in data {
@@ -293,10 +293,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let penalty = form.penalty(&facet);
             let out = &mut load[cell * n..(cell + 1) * n];
             for (k, (basis, &value)) in table.on(local).iter().zip(values).enumerate() {
-                let weighted = self.flux_derivatives((cell, local), None, T::lit(1.0), k);
+                let weighted = self.flux_derivatives((cell, local), None, 1.0, k);
                 let test = traces(form, &facet, &here, true, (basis, weighted.as_ref()), n);
-                let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
-                let penalty = penalty * T::lit(form.moment_weight(table.degrees[k]));
+                let datum = Trace { jump: value, flux: 0.0 };
+                let penalty = penalty * form.moment_weight(table.degrees[k]);
                 for (out, &v) in out.iter_mut().zip(&test) {
                     *out += facet.measure * form.integrand(&facet, v, datum, penalty);
                 }
@@ -307,10 +307,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// What the products of lifts make of Dirichlet data.
     fn add_lifted(
         &self,
-        form: &dyn FacetForm<T, D>,
-        metrics: &Metrics<T>,
+        form: &dyn FacetForm<D>,
+        metrics: &Metrics,
         data: &[FacetDatum],
-        load: &mut [T],
+        load: &mut [f64],
     ) {
         let table = LiftTable::new(self, form.lift_degree(self.basis_degree));
         let lifting = Lifting { space: self, form, metrics, table: &table };

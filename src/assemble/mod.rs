@@ -8,7 +8,6 @@
 //! same bits for any number of threads.
 
 mod bodies;
-mod chosen_element;
 pub(crate) mod count;
 pub(crate) mod cut_simplices;
 mod data_quadrature;
@@ -27,7 +26,6 @@ mod penalty_factor;
 mod shared_rows;
 pub(crate) mod space;
 
-pub(crate) use chosen_element::ChosenElement;
 pub use data_quadrature::DataQuadrature;
 pub use discretisation::Discretisation;
 pub use penalty_below_bound::PenaltyBelowBound;

@@ -13,28 +13,27 @@ use crate::element::{MAX_BASIS, Node};
 use crate::facet::{FacetForm, FacetKind};
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
-use crate::real::Real;
 
 /// Moments up to this share of the largest are what quadrature leaves of zero, and differences up to
 /// this share are none.
 const ROUNDING: f64 = 1e-12;
 
 /// Whether all there is of a form is a sum of products of jumps.
-pub(crate) fn applies<T: Real, const D: usize>(form: &dyn FacetForm<T, D>) -> bool {
+pub(crate) fn applies<const D: usize>(form: &dyn FacetForm<D>) -> bool {
     !form.uses_flux() && !form.is_lifted() && form.is_symmetric()
 }
 
 /// The parts: stiffness and reaction by cells, jumps of moments over facets with their weights, Dirichlet data.
-pub(crate) fn penalised_matrix<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
-    form: &dyn FacetForm<T, D>,
-    (metrics, weights): (&Metrics<T>, &FacetCoefficients<T>),
+pub(crate) fn penalised_matrix<const D: usize>(
+    space: &Space<'_, D>,
+    form: &dyn FacetForm<D>,
+    (metrics, weights): (&Metrics, &FacetCoefficients),
     dirichlet: &[FacetDatum],
-) -> PenalisedMatrix<T> {
+) -> PenalisedMatrix<f64> {
     let mut dirichlet = by_facet(dirichlet).into_iter().peekable();
     let table = space.facet_table(form.moments(space.basis_degree));
     let templates = Templates::new(D, &space.nodes, &table);
-    let of_degree: Vec<T> = table.degrees.iter().map(|&k| T::lit(form.moment_weight(k))).collect();
+    let of_degree: Vec<f64> = table.degrees.iter().map(|&k| form.moment_weight(k)).collect();
     let n_jumps = n_facets_with_jumps(space) * of_degree.len();
     let mut out = PenalisedMatrix {
         block_size: space.per_cell(),
@@ -56,9 +55,9 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
                 None => continue,
             };
             let datum = dirichlet.next_if(|(c, (l, _))| (*c, *l) == (cell, local));
-            let zeros = of_degree.iter().map(|_| T::lit(0.0));
+            let zeros = of_degree.iter().map(|_| 0.0);
             match &datum {
-                Some((_, (_, values))) => out.jump_data.extend(values.iter().map(|&v| T::lit(v))),
+                Some((_, (_, values))) => out.jump_data.extend(values.iter().copied()),
                 None => out.jump_data.extend(zeros),
             }
             let weight = weights.at::<D>((cell, local), true, kind);
@@ -76,8 +75,8 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
 
 /// `None` if the jump on a facet does not count in this cell; else the place on the other side of the facet, or
 /// `Some(None)` on the Dirichlet part. A jump counts in the first of two cells, and where Dirichlet data are weak.
-fn jump_across<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
+fn jump_across<const D: usize>(
+    space: &Space<'_, D>,
     (cell, local): Place,
 ) -> Option<Option<Place>> {
     match space.coupled_neighbours().across(cell, local) {
@@ -90,18 +89,18 @@ fn jump_across<T: Real, const D: usize>(
 }
 
 /// The number of facets on which jumps count.
-fn n_facets_with_jumps<T: Real, const D: usize>(space: &Space<'_, T, D>) -> usize {
+fn n_facets_with_jumps<const D: usize>(space: &Space<'_, D>) -> usize {
     let place = |k: usize| (k / (D + 1), k % (D + 1));
     let n = space.mesh.n_cells() * (D + 1);
     (0..n).filter(|&k| jump_across(space, place(k)).is_some()).count()
 }
 
 /// Stiffness and reaction of all cells.
-fn blocks<T: Real, const D: usize>(space: &Space<'_, T, D>, metrics: &Metrics<T>) -> Vec<T> {
+fn blocks<const D: usize>(space: &Space<'_, D>, metrics: &Metrics) -> Vec<f64> {
     let n = space.per_cell();
     let stiffness = space.stiffness_table();
-    let mut blocks = vec![T::lit(0.0); n * n * space.mesh.n_cells()];
-    let fill = |cells: std::ops::Range<usize>, chunk: &mut [T]| {
+    let mut blocks = vec![0.0; n * n * space.mesh.n_cells()];
+    let fill = |cells: std::ops::Range<usize>, chunk: &mut [f64]| {
         for (cell, out) in cells.zip(chunk.chunks_exact_mut(n * n)) {
             let metric = metrics.at::<D>(cell);
             let coefficient = space.alpha(cell);
@@ -128,16 +127,16 @@ fn blocks<T: Real, const D: usize>(space: &Space<'_, T, D>, metrics: &Metrics<T>
 }
 
 /// A term by the numbers of unknowns in their cells.
-struct LocalTerm<T> {
+struct LocalTerm {
     here: Option<usize>,
     there: Option<usize>,
-    weight: T,
+    weight: f64,
 }
 
-impl<T: Real> LocalTerm<T> {
-    fn between(&self, cell: usize, other: usize, n: usize) -> JumpTerm<T> {
+impl LocalTerm {
+    fn between(&self, cell: usize, other: usize, n: usize) -> JumpTerm<f64> {
         let unknown = |cell: usize, i: Option<usize>| {
-            i.map_or(JumpTerm::<T>::NO_UNKNOWN, |i| (cell * n + i) as u32)
+            i.map_or(JumpTerm::<f64>::NO_UNKNOWN, |i| (cell * n + i) as u32)
         };
         JumpTerm {
             here: unknown(cell, self.here),
@@ -148,13 +147,13 @@ impl<T: Real> LocalTerm<T> {
 }
 
 /// The terms of each moment, for each pair of facet numbers and for facets without a cell there.
-struct Templates<T> {
+struct Templates {
     facets: usize,
-    pairs: Vec<Vec<Vec<LocalTerm<T>>>>,
+    pairs: Vec<Vec<Vec<LocalTerm>>>,
 }
 
-impl<T: Real> Templates<T> {
-    fn new(dimension: usize, nodes: &[Node], table: &FacetTable<T>) -> Self {
+impl Templates {
+    fn new(dimension: usize, nodes: &[Node], table: &FacetTable) -> Self {
         let facets = dimension + 1;
         let terms = |here: usize, there: Option<usize>| {
             let moments = 0..table.degrees.len();
@@ -168,30 +167,30 @@ impl<T: Real> Templates<T> {
         let pairs = (0..facets * facets).map(pair).chain((0..facets).map(alone)).collect();
         Self { facets, pairs }
     }
-    fn between(&self, here: usize, there: usize) -> &[Vec<LocalTerm<T>>] {
+    fn between(&self, here: usize, there: usize) -> &[Vec<LocalTerm>] {
         &self.pairs[here * self.facets + there]
     }
     /// The largest number of terms of a moment.
     fn most_terms(&self) -> usize {
         self.pairs.iter().flatten().map(Vec::len).max().unwrap_or(0)
     }
-    fn on_boundary(&self, here: usize) -> &[Vec<LocalTerm<T>>] {
+    fn on_boundary(&self, here: usize) -> &[Vec<LocalTerm>] {
         &self.pairs[self.facets * self.facets + here]
     }
 }
 
 /// A facet of a cell and the moments of the cell's functions on it.
-type SideValues<'t, T> = (usize, &'t [T; MAX_BASIS]);
+type SideValues<'t> = (usize, &'t [f64; MAX_BASIS]);
 
 /// The terms of one moment: unknowns at the same node make one, if they weigh the same.
-fn moment<T: Real>(
+fn moment(
     dimension: usize,
     nodes: &[Node],
-    (facet, here): SideValues<'_, T>,
-    there: Option<SideValues<'_, T>>,
-) -> Vec<LocalTerm<T>> {
-    let largest = here.iter().map(|v| v.to_f64().abs()).fold(0.0, f64::max);
-    let is_zero = |v: T| v.to_f64().abs() <= ROUNDING.max(T::EPSILON) * largest;
+    (facet, here): SideValues<'_>,
+    there: Option<SideValues<'_>>,
+) -> Vec<LocalTerm> {
+    let largest = here.iter().map(|v| v.abs()).fold(0.0, f64::max);
+    let is_zero = |v: f64| v.abs() <= ROUNDING * largest;
     let mut terms = Vec::new();
     let mut is_paired = [false; MAX_BASIS];
     for (i, node) in nodes.iter().enumerate().filter(|(i, _)| !is_zero(here[*i])) {

@@ -4,12 +4,11 @@ use super::local::view;
 use super::space::Space;
 use crate::facet::{FacetForm, FacetView};
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
-use crate::real::Real;
 
-impl<'a, T: Real, const D: usize> Space<'a, T, D> {
+impl<'a, const D: usize> Space<'a, D> {
     /// The facets whose penalty lies below the bound that proves coercivity: their number and the
     /// one with the smallest quotient of penalty and bound; none if the form has no such bound.
-    pub fn penalty_below_bound(&self, form: &dyn FacetForm<T, D>) -> Option<PenaltyBelowBound> {
+    pub fn penalty_below_bound(&self, form: &dyn FacetForm<D>) -> Option<PenaltyBelowBound> {
         let neighbours = self.neighbours.as_ref()?;
         let least_penalty = form.theory().least_penalty?;
         let mut worst: Option<PenaltyBelowBound> = None;
@@ -23,8 +22,8 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
                 let Some(view) = self.facet_view(neighbours, cell, local) else {
                     continue;
                 };
-                let needed = least_penalty(&view).to_f64();
-                let weight = form.penalty(&view).to_f64();
+                let needed = least_penalty(&view);
+                let weight = form.penalty(&view);
                 if weight >= needed {
                     continue;
                 }
@@ -47,7 +46,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         neighbours: &Neighbours,
         cell: usize,
         local: usize,
-    ) -> Option<FacetView<'a, T, D>> {
+    ) -> Option<FacetView<'a, D>> {
         let metric = self.metric(cell);
         let here = self.side(cell, local, &metric);
         match neighbours.across(cell, local) {

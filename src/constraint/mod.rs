@@ -13,6 +13,7 @@ mod constraint_set;
 mod facet_means;
 mod midpoints;
 mod nodes;
+mod on_element;
 
 pub use by_name::{CONSTRAINT_SETS, constraint_set_by_name};
 pub use cell_means::CellMeans;
@@ -20,3 +21,4 @@ pub use constraint_set::{BoundBy, ConstraintSet};
 pub use facet_means::FacetMeans;
 pub use midpoints::Midpoints;
 pub use nodes::Nodes;
+pub(crate) use on_element::{in_basis_of, offered};

@@ -1,34 +1,27 @@
-//! Parts of a mesh in several processes: the numbers that unknowns have in all parts together, the values of
-//! unknowns that other parts own, and what parts find together.
+//! Inequalities solved over the parts of a mesh, one in each process, with a library for distributed matrices.
 //!
-//! A process assembles its [part](crate::mesh::Part) of a mesh by the same code as a whole mesh; rows, load
-//! and bounds of its own unknowns are those of the whole, bit for bit. What processes have to tell one another
-//! passes through one function, [`Exchange::exchange`]. [`in_process`] runs the parts as threads of one
-//! process, for tests and as a model of an exchange between processes.
+//! [`SolverOnParts`] is the solver of a [`NestedIteration`](crate::nested::NestedIteration) on the
+//! [parts](crate::nested::Hierarchy::of_parts) of nested meshes: the active set method of one process, whose
+//! preconditioners have an [`Engine`] in place of multigrid and factors. What processes tell one another is in
+//! [`processes`](crate::processes).
 //!
-//! Two things depend on all data and so on all parts: the mesh size of a
-//! [refined part](crate::mesh::Part::refine), which [`merge_all`] finds, and whether bounds contradict each other,
-//! which [`check_bounds`] tells. A step that may fail in one part ends in [`agree`], which makes its error one
-//! of all parts.
+//! `engine`: what a library does. `process`: one of the processes. `solver_on_parts`: the solve. `preconditioner`,
+//! `own_unknowns`: preconditioners of one process with an engine inside; `auxiliary_space`: blocks of cells and
+//! conforming linear functions. `differences`: whether a part has the bits of the whole. `petsc`: MPI and PETSc.
 
-mod agree;
-mod check_bounds;
+mod auxiliary_space;
+mod differences;
 mod engine;
-mod error;
-mod exchange;
-mod merge;
-mod numbering;
+
+mod own_unknowns;
 #[cfg(feature = "petsc")]
 pub mod petsc;
+mod preconditioner;
 mod process;
-mod solve;
+mod solver_on_parts;
 
-pub use agree::agree;
-pub use check_bounds::check_bounds;
+pub use differences::Differences;
 pub use engine::{Engine, EngineMethod, EngineSolver, OwnData, OwnRows};
-pub use error::ExchangeError;
-pub use exchange::{Exchange, InProcess, in_process};
-pub use merge::{Merge, merge_all};
-pub use numbering::Numbering;
+
 pub use process::Process;
-pub use solve::{Differences, DistributedIteration, DistributedSolved, PartHierarchy};
+pub use solver_on_parts::SolverOnParts;

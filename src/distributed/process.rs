@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::engine::Engine;
-use super::exchange::Exchange;
+use crate::processes::Exchange;
 
 /// One of the processes, or threads, that share a mesh: its number, the exchange with the others, the engine.
 #[derive(Clone, Debug)]

@@ -1,35 +1,38 @@
 //! The discontinuous version of any element.
 
+use std::sync::Arc;
+
 use super::basis::Basis;
+use super::definition::{Element, Layout};
 use super::node::Node;
-use super::reference_element::{ElementVisitor, Layout, ReferenceElement};
-use crate::real::Real;
 
 /// The basis of `E` with all unknowns inside the cells.
 ///
-/// `Broken<P1>` and `Broken<CrouzeixRaviart>` span the same space, in the bases of vertex values and
+/// `Broken(P1)` and `Broken(CrouzeixRaviart)` span the same space, in the bases of vertex values and
 /// of facet means; the basis determines the functionals on which a scheme can impose bounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Broken<E>(pub E);
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D> for Broken<E> {
-    const N: usize = E::N;
-    const DEGREE: usize = E::DEGREE;
-    const BASIS_DEGREE: usize = E::BASIS_DEGREE;
-    const LAYOUT: Layout = Layout::in_cells(E::N);
-
-    #[inline(always)]
-    fn values(lambda: &[T], out: &mut [T]) {
-        E::values(lambda, out);
+impl<const D: usize, E: Element<D>> Element<D> for Broken<E> {
+    fn degree(&self) -> usize {
+        self.0.degree()
     }
-    #[inline(always)]
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        E::derivatives(lambda, out);
+    fn basis_degree(&self) -> usize {
+        self.0.basis_degree()
     }
-    fn node(i: usize) -> Node {
-        E::node(i)
+    fn layout(&self) -> Layout {
+        Layout::in_cells(self.0.layout().per_cell(D))
     }
-    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
-        E::broken_in_basis(basis, visitor)
+    fn node(&self, i: usize) -> Node {
+        self.0.node(i)
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
+        self.0.values(lambda, out);
+    }
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
+        self.0.derivatives(lambda, out);
+    }
+    fn broken_in_basis(&self, basis: Basis) -> Option<Arc<dyn Element<D>>> {
+        self.0.broken_in_basis(basis)
     }
 }

@@ -1,8 +1,7 @@
 //! The Crouzeix-Raviart element.
 
+use super::definition::{Element, Layout};
 use super::node::Node;
-use super::reference_element::{Layout, ReferenceElement};
-use crate::real::Real;
 
 /// Piecewise linears with continuous means over facets.
 ///
@@ -13,26 +12,25 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CrouzeixRaviart;
 
-impl<T: Real, const D: usize> ReferenceElement<T, D> for CrouzeixRaviart {
-    const N: usize = D + 1;
-    const DEGREE: usize = 1;
-    const LAYOUT: Layout = Layout { vertex: 0, edge: 0, facet: 1, cell: 0 };
-    const COMPILED: bool = true;
-
-    #[inline(always)]
-    fn values(lambda: &[T], out: &mut [T]) {
+impl<const D: usize> Element<D> for CrouzeixRaviart {
+    fn degree(&self) -> usize {
+        1
+    }
+    fn layout(&self) -> Layout {
+        Layout { vertex: 0, edge: 0, facet: 1, cell: 0 }
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
         for (value, &l) in out[..=D].iter_mut().zip(lambda) {
-            *value = T::lit(1.0) - T::lit(D as f64) * l;
+            *value = 1.0 - (D as f64) * l;
         }
     }
-    #[inline(always)]
-    fn derivatives(_: &[T], out: &mut [[T; 4]]) {
+    fn derivatives(&self, _: &[f64], out: &mut [[f64; 4]]) {
         for (i, row) in out[..=D].iter_mut().enumerate() {
-            *row = [T::lit(0.0); 4];
-            row[i] = T::lit(-(D as f64));
+            *row = [0.0; 4];
+            row[i] = -(D as f64);
         }
     }
-    fn node(i: usize) -> Node {
+    fn node(&self, i: usize) -> Node {
         Node::facet_mean(i)
     }
 }

@@ -78,6 +78,11 @@ impl Node {
         (point[first], point[second]) = (1.0 - share, share);
         Self::value(Entity::Edge(edge), point)
     }
+    /// The value at the barycentre of a cell of this dimension.
+    pub fn barycentre(dimension: usize) -> Self {
+        let share = 1.0 / (dimension + 1) as f64;
+        Self::value(Entity::Cell, tabulate(|k| if k <= dimension { share } else { 0.0 }))
+    }
     /// The mean over the facet opposite a vertex of the cell.
     pub fn facet_mean(k: usize) -> Self {
         Self { entity: Entity::Facet(k), functional: Functional::Mean }

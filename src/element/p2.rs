@@ -1,11 +1,12 @@
 //! Quadratic Lagrange elements.
 
+use std::sync::Arc;
+
 use super::basis::Basis;
+use super::definition::{Element, Layout};
 use super::node::Node;
 use super::quadratic_cell_mean::QuadraticCellMean;
-use super::reference_element::{ElementVisitor, Layout, ReferenceElement};
 use crate::mesh::edge_vertices;
-use crate::real::Real;
 
 /// Continuous piecewise quadratics: the values at the vertices, then those at the midpoints of the
 /// edges in the order of [`Layout::edge`].
@@ -14,37 +15,36 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct P2;
 
-impl<T: Real, const D: usize> ReferenceElement<T, D> for P2 {
-    const N: usize = (D + 1) * (D + 2) / 2;
-    const DEGREE: usize = 2;
-    const LAYOUT: Layout = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
-    const COMPILED: bool = true;
-
-    #[inline(always)]
-    fn values(lambda: &[T], out: &mut [T]) {
+impl<const D: usize> Element<D> for P2 {
+    fn degree(&self) -> usize {
+        2
+    }
+    fn layout(&self) -> Layout {
+        Layout { vertex: 1, edge: 1, facet: 0, cell: 0 }
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
         for (value, &l) in out[..=D].iter_mut().zip(lambda) {
-            *value = l * (T::lit(2.0) * l - T::lit(1.0));
+            *value = l * (2.0 * l - 1.0);
         }
         for (value, &[i, j]) in out[D + 1..].iter_mut().zip(edge_vertices(D)) {
-            *value = T::lit(4.0) * lambda[i] * lambda[j];
+            *value = 4.0 * lambda[i] * lambda[j];
         }
     }
-    #[inline(always)]
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
         for (i, row) in out[..=D].iter_mut().enumerate() {
-            *row = [T::lit(0.0); 4];
-            row[i] = T::lit(4.0) * lambda[i] - T::lit(1.0);
+            *row = [0.0; 4];
+            row[i] = 4.0 * lambda[i] - 1.0;
         }
         for (row, &[i, j]) in out[D + 1..].iter_mut().zip(edge_vertices(D)) {
-            *row = [T::lit(0.0); 4];
-            row[i] = T::lit(4.0) * lambda[j];
-            row[j] = T::lit(4.0) * lambda[i];
+            *row = [0.0; 4];
+            row[i] = 4.0 * lambda[j];
+            row[j] = 4.0 * lambda[i];
         }
     }
-    fn node(i: usize) -> Node {
+    fn node(&self, i: usize) -> Node {
         if i <= D { Node::vertex(i) } else { Node::midpoint(i - D - 1) }
     }
-    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
-        (basis == Basis::CellMean).then(|| visitor.visit::<QuadraticCellMean<P2>>())
+    fn broken_in_basis(&self, basis: Basis) -> Option<Arc<dyn Element<D>>> {
+        (basis == Basis::CellMean).then(|| Arc::new(QuadraticCellMean(P2)) as _)
     }
 }

@@ -1,8 +1,7 @@
 //! Quadratics in a basis that has the mean over the cell among its unknowns.
 
+use super::definition::{Element, Layout};
 use super::node::Node;
-use super::reference_element::{Layout, ReferenceElement};
-use crate::real::Real;
 
 /// Discontinuous quadratics with the nodes of `E`, which is [`P2`](super::P2), except that the mean over the cell replaces the
 /// value at the midpoint of the last edge.
@@ -23,36 +22,39 @@ const fn mean(dimension: usize, i: usize) -> f64 {
     numerator / ((dimension + 1) * (dimension + 2)) as f64
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D>
-    for QuadraticCellMean<E>
-{
-    const N: usize = E::N;
-    const DEGREE: usize = 2;
-    const LAYOUT: Layout = Layout::in_cells(E::N);
+/// The number of the last edge's function.
+const fn last(dimension: usize) -> usize {
+    (dimension + 1) * (dimension + 2) / 2 - 1
+}
 
-    #[inline(always)]
-    fn values(lambda: &[T], out: &mut [T]) {
-        E::values(lambda, out);
-        let last = E::N - 1;
-        let of_mean = out[last] / T::lit(mean(D, last));
+impl<const D: usize, E: Element<D>> Element<D> for QuadraticCellMean<E> {
+    fn degree(&self) -> usize {
+        2
+    }
+    fn layout(&self) -> Layout {
+        Layout::in_cells(last(D) + 1)
+    }
+    fn node(&self, i: usize) -> Node {
+        if i == last(D) { Node::cell_mean() } else { self.0.node(i) }
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
+        self.0.values(lambda, out);
+        let last = last(D);
+        let of_mean = out[last] / mean(D, last);
         for (i, value) in out[..last].iter_mut().enumerate() {
-            *value -= T::lit(mean(D, i)) * of_mean;
+            *value -= mean(D, i) * of_mean;
         }
         out[last] = of_mean;
     }
-    #[inline(always)]
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        E::derivatives(lambda, out);
-        let last = E::N - 1;
-        let of_mean = out[last].map(|slope| slope / T::lit(mean(D, last)));
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
+        self.0.derivatives(lambda, out);
+        let last = last(D);
+        let of_mean = out[last].map(|slope| slope / mean(D, last));
         for (i, row) in out[..last].iter_mut().enumerate() {
             for (slope, &of_mean) in row.iter_mut().zip(&of_mean) {
-                *slope -= T::lit(mean(D, i)) * of_mean;
+                *slope -= mean(D, i) * of_mean;
             }
         }
         out[last] = of_mean;
-    }
-    fn node(i: usize) -> Node {
-        if i + 1 == E::N { Node::cell_mean() } else { E::node(i) }
     }
 }

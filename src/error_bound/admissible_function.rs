@@ -9,7 +9,7 @@ use crate::assemble::space::{Place, Space};
 use crate::element::Node;
 use crate::mesh::{BoundaryPart, Edges, edge_vertices};
 use crate::problem::DatumRef;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// The nodes of the admissible function: the vertices of the mesh and, for quadratics, after them the
 /// midpoints of its edges.
@@ -37,7 +37,7 @@ impl FunctionNodes<'_> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The nodes of the function of a pair in a cell.
     pub(super) fn pair_nodes(
         &self,
@@ -65,8 +65,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// obstacle, at midpoints that with its Bernstein coefficient.
     pub(super) fn admissible_function(
         &self,
-        u: &[T],
-        states: (&[Bound<T>], &[Contact]),
+        u: &[f64],
+        states: (&[Bound<f64>], &[Contact]),
     ) -> PrimalDualPair<D> {
         let degree = self.degree;
         let (n_edges, edges) = match degree {
@@ -100,7 +100,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// An unknown whose basis function has no positive mean does not count.
     fn states_of_nodes(
         &self,
-        (bounds, contact): (&[Bound<T>], &[Contact]),
+        (bounds, contact): (&[Bound<f64>], &[Contact]),
         nodes: &FunctionNodes<'_>,
     ) -> Option<Vec<Contact>> {
         let has_means = self.nodes.iter().any(|node| node.point().is_none());
@@ -133,12 +133,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// At each node the mean of the values in the cells around, with the coefficient as weights.
-    fn means(&self, u: &[T], nodes: &FunctionNodes<'_>) -> Vec<f64> {
+    fn means(&self, u: &[f64], nodes: &FunctionNodes<'_>) -> Vec<f64> {
         if self.is_conforming_linear() && nodes.n_edges == 0 {
-            return u.iter().map(|u| u.to_f64()).collect();
+            return u.to_vec();
         }
         let midpoints = if nodes.n_edges > 0 { edge_vertices(D).len() } else { 0 };
-        let basis: Vec<BasisAt<f64>> = (0..D + 1)
+        let basis: Vec<BasisAt> = (0..D + 1)
             .map(Node::vertex)
             .chain((0..midpoints).map(Node::midpoint))
             .map(|node| self.basis_at(&node.centre(D)))
@@ -146,7 +146,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let n = self.per_cell();
         let mut sums = vec![(0.0, 0.0); nodes.n_vertices + nodes.n_edges];
         for cell in 0..self.mesh.n_cells() {
-            let (alpha, local) = (self.alpha(cell).to_f64(), self.local_values(cell, u));
+            let (alpha, local) = (self.alpha(cell), self.local_values(cell, u));
             let vertices = self.mesh.cell(cell).iter().map(|&v| v as usize);
             let all = vertices.chain(nodes.of_edges(D, cell).map(|(_, node)| node));
             for (node, basis) in all.zip(&basis) {
@@ -165,7 +165,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         // obstacles without names are the same in all cells
         let by_region = self.data.lower.has_names() || self.data.upper.has_names();
         let mut add = |v: usize, region: usize| {
-            let x = point_f64(&self.mesh.vertices()[v]);
+            let x = self.mesh.vertices()[v];
             let (low, high) = &mut bounds[v];
             *low = self.data.lower.of(region).map_or(*low, |psi| psi.at(&x).max(*low));
             *high = self.data.upper.of(region).map_or(*high, |psi| psi.at(&x).min(*high));
@@ -181,7 +181,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             for v in self.mesh.facet_vertices(cell, local) {
-                let x = point_f64(&self.mesh.vertices()[v as usize]);
+                let x = self.mesh.vertices()[v as usize];
                 let low = &mut bounds[v as usize].0;
                 *low = low.max(gap.at(&x));
             }
@@ -189,7 +189,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let groups = self.dirichlet_groups();
         for (v, value) in values.iter_mut().enumerate() {
             *value = match groups[v] {
-                Some(group) => self.dirichlet_at(group, &point_f64(&self.mesh.vertices()[v])),
+                Some(group) => self.dirichlet_at(group, &(self.mesh.vertices()[v])),
                 None => value.min(bounds[v].1).max(bounds[v].0),
             };
         }
@@ -204,7 +204,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         // what a datum asks of the value at the midpoint of an edge
         let least = |datum: DatumRef<'_, D>, cell: usize, &[a, b]: &[usize; 2]| {
             let ends = map_entries([a, b], |k| self.mesh.cell(cell)[k] as usize);
-            let [x, y] = map_entries(ends, |v| point_f64(&self.mesh.vertices()[v]));
+            let [x, y] = map_entries(ends, |v| self.mesh.vertices()[v]);
             let middle = datum.at(&midpoint(&x, &y));
             let [of_x, of_y] = map_entries(ends, |v| at_vertices[v]);
             middle + (of_x + of_y - datum.at(&x) - datum.at(&y)) / 4.0
@@ -240,7 +240,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 if rank < ranks[edge] {
                     ranks[edge] = rank;
                     let [x, y] = map_entries([a, b], |k| self.mesh.cell(cell)[k] as usize);
-                    let [x, y] = map_entries([x, y], |v| point_f64(&self.mesh.vertices()[v]));
+                    let [x, y] = map_entries([x, y], |v| self.mesh.vertices()[v]);
                     at_midpoints[edge] = self.dirichlet_at(group, &midpoint(&x, &y));
                 }
             }
@@ -249,6 +249,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 }
 
 /// The middle of two points.
-fn midpoint<const D: usize>(x: &Point<f64, D>, y: &Point<f64, D>) -> Point<f64, D> {
+fn midpoint<const D: usize>(x: &Point<D>, y: &Point<D>) -> Point<D> {
     (x + y) * 0.5
 }

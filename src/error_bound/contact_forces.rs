@@ -5,7 +5,6 @@ use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::{Place, Space};
 use crate::mesh::BoundaryPart;
 use crate::quadrature::facet_to_cell;
-use crate::real::{Real, point_f64};
 
 /// The part of the contact force of a node that acts on one of its contact facets.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +19,7 @@ pub(super) struct NodeForce {
     pub value: f64,
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The contact forces: that of each node in contact with a gap, divided by measure among those of its contact
     /// facets whose gap binds it and, in the plane, if there are any, all of whose nodes are in contact: the other
     /// facet of a node is open there. In space facets around the end of contact are many, and few of them are in
@@ -28,10 +27,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// the part of the flux of the discrete function `u` stands for it, and any number would do.
     pub(super) fn contact_forces(
         &self,
-        inequality: &Inequality<T>,
+        inequality: &Inequality<f64>,
         contact: &[Contact],
         (residual, obstacles): (&[f64], &ActiveObstacles),
-        u: &[T],
+        u: &[f64],
     ) -> Vec<NodeForce> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let mut forces: Vec<NodeForce> = Vec::new();
@@ -102,16 +101,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// The integral over a facet of `alpha grad u . n` times a basis function.
-    fn flux_at_node(&self, (cell, local): Place, node: usize, u: &[T]) -> f64 {
+    fn flux_at_node(&self, (cell, local): Place, node: usize, u: &[f64]) -> f64 {
         let geometry = self.mesh.geometry(cell);
-        let (values, normal) = (self.local_values(cell, u), point_f64(&geometry.normal(local)));
-        let scale = self.facet_measure((cell, local)) * self.alpha(cell).to_f64();
+        let (values, normal) = (self.local_values(cell, u), (geometry.normal(local)));
+        let scale = self.facet_measure((cell, local)) * self.alpha(cell);
         let mut sum = 0.0;
         for (point, weight) in self.facet_rule.iter() {
             let basis = self.basis_at(&facet_to_cell(point, local));
             for k in 0..=D {
                 let slope: f64 = values.iter().zip(&basis.derivatives).map(|(u, d)| u * d[k]).sum();
-                let along = point_f64(geometry.gradient(k)).dot(&normal);
+                let along = geometry.gradient(k).dot(&normal);
                 sum += weight * scale * slope * along * basis.values[node];
             }
         }

@@ -11,10 +11,9 @@ use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::instances::compiled;
-use crate::measure::{Counts, Errors, SquaredErrors};
+use crate::measure::{Counts, SquaredErrors};
 use crate::parallel::cells;
 use crate::quadrature::Rule;
-use crate::real::Real;
 
 /// A term of a bound that is not proven for a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,7 +77,7 @@ impl ErrorBound {
     }
 }
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// The bound that an admissible function and a flux give, and the distance of the function from the
     /// discrete function `u`. A pair gives a bound if its function has the Dirichlet data, and if its flux has
     /// equal and opposite values on the two sides of facets, the mean of the datum on Neumann facets, and no
@@ -94,12 +93,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Panics
     /// If the pair is not one of this mesh, or `u` is shorter than the number of unknowns.
-    pub fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[T]) -> Result<ErrorBound, NoBound> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
+    pub fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[f64]) -> Result<ErrorBound, NoBound> {
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
                 &PrimalDualPair<D>,
-                &[T],
+                &[f64],
             ) -> Result<ErrorBound, NoBound>
                 = |of, pair, u| of.space.error_bound(pair, u)
         )(self, pair, u)
@@ -111,7 +109,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If the pair is not one of this mesh.
     pub fn error_of_pair(&self, pair: &PrimalDualPair<D>) -> Option<f64> {
-        self.errors_and_error_of_pair(None, Some(pair)).ok()?.1
+        self.problem().exact.as_ref()?;
+        Some(self.squared_errors_beside(None, Some(pair), &|_| true).ok()?.of_function())
     }
 
     /// What the cells that count, those of a part of a mesh, add to the bound that a pair gives. Pair and discrete
@@ -122,36 +121,17 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     pub(crate) fn part_of_bound(
         &self,
         pair: &PrimalDualPair<D>,
-        u: &[T],
+        u: &[f64],
         counts: Counts<'_>,
     ) -> Result<PartOfBound<D>, NoBound> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
                 &PrimalDualPair<D>,
-                &[T],
+                &[f64],
                 Counts<'_>,
             ) -> Result<PartOfBound<D>, NoBound>
                 = |of, pair, u, counts| of.space.part_of_bound(pair, u, counts)
         )(self, pair, u, counts)
-    }
-
-    /// The errors of a vector of unknowns against the exact solution, and the energy norm of the difference of
-    /// the exact solution and the admissible function of a pair: both at the same points.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
-    pub(crate) fn errors_and_error_of_pair(
-        &self,
-        u: Option<&[T]>,
-        pair: Option<&PrimalDualPair<D>>,
-    ) -> Result<(Errors, Option<f64>), Error> {
-        if self.problem().exact.is_none() {
-            return Ok(Default::default());
-        }
-        let squares = self.squared_errors_beside(u, pair, &|_| true)?;
-        let errors = if u.is_some() { squares.norms() } else { Errors::default() };
-        Ok((errors, pair.map(|_| squares.of_function())))
     }
 
     /// As [`Self::squared_errors`], with the square of the error of the admissible function of a pair; zero without
@@ -161,14 +141,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// [`Error::DataNotFinite`].
     pub(crate) fn squared_errors_beside(
         &self,
-        u: Option<&[T]>,
+        u: Option<&[f64]>,
         pair: Option<&PrimalDualPair<D>>,
         counts: Counts<'_>,
     ) -> Result<SquaredErrors, Error> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
-                Option<&[T]>,
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
+                Option<&[f64]>,
                 Option<&PrimalDualPair<D>>,
                 Counts<'_>,
             ) -> Result<SquaredErrors, Error>
@@ -255,8 +234,8 @@ impl<const D: usize> PartOfBound<D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
-    fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[T]) -> Result<ErrorBound, NoBound> {
+impl<const D: usize> Space<'_, D> {
+    fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[f64]) -> Result<ErrorBound, NoBound> {
         let terms = self.terms_of_bound((pair, u), &|_| true)?;
         let totals = Totals::of(&terms);
         let of_solver = totals.of_solver(FriedrichsData::of(self.mesh).constant())?;
@@ -270,7 +249,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn part_of_bound(
         &self,
         pair: &PrimalDualPair<D>,
-        u: &[T],
+        u: &[f64],
         counts: Counts<'_>,
     ) -> Result<PartOfBound<D>, NoBound> {
         let terms = self.terms_of_bound((pair, u), counts)?;
@@ -310,7 +289,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The terms of the cells that count, by chunk, as they come: copies of them would cost more than their sums.
     fn terms_of_bound(
         &self,
-        (pair, u): (&PrimalDualPair<D>, &[T]),
+        (pair, u): (&PrimalDualPair<D>, &[f64]),
         counts: Counts<'_>,
     ) -> Result<Vec<Vec<CellTerms>>, NoBound> {
         let table = self.cell_table(Rule::new(D, self.degree_of_terms(pair.degree)));

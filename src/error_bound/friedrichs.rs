@@ -3,7 +3,7 @@
 use crate::algebra::Distribution;
 use crate::arrays::{map_entries, tabulate};
 use crate::mesh::{BoundaryPart, Mesh};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A normal whose component is smaller than this is orthogonal to the axis.
 const PARALLEL: f64 = 1e-9;
@@ -12,25 +12,23 @@ const PARALLEL: f64 = 1e-9;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FriedrichsData<const D: usize> {
     /// The least box around the mesh.
-    low: Point<f64, D>,
-    high: Point<f64, D>,
+    low: Point<D>,
+    high: Point<D>,
     /// For each axis whether all lines in its direction end, and whether all begin, on the Dirichlet part.
     is_held: [[bool; 2]; D],
 }
 
 impl<const D: usize> FriedrichsData<D> {
-    pub fn of<T: Real>(mesh: &Mesh<T, D>) -> Self {
-        let first = point_f64(&mesh.vertices()[0]);
+    pub fn of(mesh: &Mesh<D>) -> Self {
+        let first = mesh.vertices()[0];
         let (mut low, mut high) = (first, first);
         for x in mesh.vertices() {
-            let x = point_f64(x);
+            let x = *x;
             low = low.zip_map(&x, f64::min);
             high = high.zip_map(&x, f64::max);
         }
         let free = mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet);
-        let normal = |cell: u32, local: u8| {
-            point_f64(&mesh.geometry(cell as usize).normal(usize::from(local)))
-        };
+        let normal = |cell: u32, local: u8| mesh.geometry(cell as usize).normal(usize::from(local));
         let normals: Vec<_> = free.map(|f| normal(f.cell, f.local)).collect();
         let is_held = tabulate(|axis| {
             map_entries([1.0, -1.0], |sign| normals.iter().all(|n| sign * n[axis] <= PARALLEL))
@@ -81,7 +79,7 @@ mod tests {
     fn constants_of_the_unit_square() {
         let square = || BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
         let constant = |domain: &BoxDomain<2>| {
-            let mesh = Mesh::<f64, 2>::kuhn_box(domain, [3, 3]).expect("a mesh");
+            let mesh = Mesh::<2>::kuhn_box(domain, [3, 3]).expect("a mesh");
             FriedrichsData::of(&mesh).constant().map(|c| c * std::f64::consts::PI)
         };
         let near = |a: Option<f64>, b: f64| a.is_some_and(|a| (a - b).abs() < 1e-12);
@@ -96,7 +94,7 @@ mod tests {
         // over parts too, where one end alone is held
         for end in [0, 1] {
             let held = all(BoundaryPart::Neumann).side(0, end, BoundaryPart::Dirichlet);
-            let mesh = Mesh::<f64, 2>::kuhn_box(&held, [3, 3]).expect("a mesh");
+            let mesh = Mesh::<2>::kuhn_box(&held, [3, 3]).expect("a mesh");
             let data = FriedrichsData::of(&mesh);
             for data in [data, data.over_parts(&OnePart)] {
                 assert!(near(data.constant().map(|c| c * std::f64::consts::PI), 2.0), "{data:?}");

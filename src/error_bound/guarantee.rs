@@ -8,7 +8,6 @@ use crate::assemble::space::{Place, Space};
 use crate::measure::Counts;
 use crate::mesh::BoundaryPart;
 use crate::problem::{DataByGroup, DatumRef};
-use crate::real::{Real, point_f64};
 
 /// Numbers that differ by less than this share are equal but for rounding.
 const AGREEMENT: f64 = 1e-12;
@@ -16,7 +15,7 @@ const AGREEMENT: f64 = 1e-12;
 /// The highest degree of data that the rules of a bound follow.
 const HIGHEST_DEGREE: usize = 12;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The terms that are not proven; the arguments say whether the term of the solver is, and whether the bound from
     /// below for the reaction is positive or zero. Facets count with their cells.
     pub(super) fn unproven_terms(
@@ -99,7 +98,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let exceeds = |bound: Option<DatumRef<'_, D>>, sign, cell, (ends, node): PairNode| {
             let Some(bound) = bound else { return true };
             let ends = map_entries(ends, |k| self.mesh.cell(cell)[k] as usize);
-            let [x, y] = map_entries(ends, |v| point_f64(&self.mesh.vertices()[v]));
+            let [x, y] = map_entries(ends, |v| self.mesh.vertices()[v]);
             let coefficient = |middle: f64, [a, b]: [f64; 2]| {
                 [4.0 * middle - a - b, 4.0 * middle.abs() + a.abs() + b.abs()]
             };
@@ -132,7 +131,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             !counts(place.0)
                 || nodes.all(|(ends, node)| {
                     let [x, y] = map_entries(ends, |k| self.mesh.cell(place.0)[k] as usize);
-                    let [x, y] = map_entries([x, y], |v| point_f64(&self.mesh.vertices()[v]));
+                    let [x, y] = map_entries([x, y], |v| self.mesh.vertices()[v]);
                     let datum = self.dirichlet_at(group, &((x + y) * 0.5));
                     let value = pair.function[node];
                     (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())

@@ -17,7 +17,6 @@ use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
-use crate::real::Real;
 
 /// A continuous, piecewise linear or quadratic function within the constraints, and a flux of the space of
 /// Raviart and Thomas of degree one less, whose normal component is single-valued: what a bound on the error
@@ -38,7 +37,7 @@ pub struct PrimalDualPair<const D: usize> {
     pub flux: Flux<D>,
 }
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// The pair of a solution.
     ///
     /// *Broken linears.* The flux through a facet is minus the facet form tested with the function that is
@@ -61,8 +60,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// If the solution has fewer values than there are unknowns.
     pub fn primal_dual_pair(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
         self.check_flux()?;
         self.compiled_pair(inequality, solution, &|_| true)
@@ -74,8 +73,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// [`NoBound`].
     pub(crate) fn pair_on_part(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
         counts: Counts<'_>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
         self.check_element()?;
@@ -86,15 +85,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
     fn compiled_pair(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
         counts: Counts<'_>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
-                &Inequality<T>,
-                &Solution<T>,
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
+                &Inequality<f64>,
+                &Solution<f64>,
                 Counts<'_>,
             ) -> Result<PrimalDualPair<D>, NoBound>
                 = |of, inequality, solution, counts| of.pair(inequality, solution, counts)
@@ -122,20 +120,20 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
     fn pair(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
         counts: Counts<'_>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
         let (space, u) = (&self.space, &solution.values[..]);
         let penalised = inequality.penalised.as_ref();
         let multipliers = penalised.map(|p| match solution.jump_multipliers.len() == p.n_jumps() {
-            true => solution.jump_multipliers.iter().map(|m| m.to_f64()).collect(),
-            false => p.jump_multipliers(|i| u[i].to_f64()),
+            true => solution.jump_multipliers.clone(),
+            false => p.jump_multipliers(|i| u[i]),
         });
         let mut residual = vec![0.0; space.dofs.size()];
         match (penalised, &multipliers) {
             (Some(penalised), Some(multipliers)) => {
-                let value = |i: usize| u[i].to_f64();
+                let value = |i: usize| u[i];
                 let (load, of_jump) = (&inequality.load, |k: usize| multipliers[k]);
                 penalised.residual_with_jump_multipliers(load, value, of_jump, &mut residual);
             }
@@ -184,7 +182,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// The flux of a discrete quadratic function, from the residual and the multipliers of jumps.
     fn quadratic_flux(
         &self,
-        (inequality, solution): (&Inequality<T>, &Solution<T>),
+        (inequality, solution): (&Inequality<f64>, &Solution<f64>),
         (of_solver, multipliers): ((&[f64], &ActiveObstacles), Option<&[f64]>),
         forces: &[NodeForce],
         function: &PrimalDualPair<D>,
@@ -217,7 +215,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The integral of the Neumann datum over a facet.
     fn neumann_flux(&self, place: (usize, usize), group: usize) -> Result<f64, NoBound> {
         let measure = self.facet_measure(place);
@@ -250,12 +248,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn cell_residual(
         &self,
         cell: usize,
-        metric: &CellMetric<T, D>,
-        u: &[T],
-        load: &[T],
+        metric: &CellMetric<D>,
+        u: &[f64],
+        load: &[f64],
     ) -> [f64; 4] {
-        let gradient = self.gradient_factor().map_or(1.0, Real::to_f64);
-        let scale = self.alpha(cell).to_f64() * gradient * gradient;
+        let gradient = self.gradient_factor().unwrap_or(1.0);
+        let scale = self.alpha(cell) * gradient * gradient;
         let values = self.local_values(cell, u);
         let mut products = zero_local();
         if let Some(reaction) = &self.reaction {
@@ -265,10 +263,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for (i, residual) in residual.iter_mut().enumerate().take(D + 1) {
             for j in 0..=D {
                 // gradients sum to zero: without the common part of the values a constant adds no rounding
-                *residual += scale * metric.products[i][j].to_f64() * (values[j] - values[0])
-                    + products[i][j].to_f64() * values[j];
+                *residual += scale * metric.products[i][j] * (values[j] - values[0])
+                    + products[i][j] * values[j];
             }
-            *residual -= load.get(cell * (D + 1) + i).map_or(0.0, |b| b.to_f64());
+            *residual -= load.get(cell * (D + 1) + i).copied().unwrap_or(0.0);
         }
         residual
     }
@@ -277,7 +275,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// both carry a part of the multiplier of their facet, or neither, each has half of it.
     fn crouzeix_raviart_fluxes(
         &self,
-        u: &[T],
+        u: &[f64],
         obstacles: &ActiveObstacles,
     ) -> Result<Flux<D>, NoBound> {
         let load = self.load_by_cell()?;

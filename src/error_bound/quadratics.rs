@@ -27,7 +27,6 @@ use crate::assemble::space::{Place, Space};
 use crate::mesh::{BoundaryPart, edge_vertices};
 use crate::parallel::cells;
 use crate::quadrature::{OrthonormalPolynomials, facet_to_cell};
-use crate::real::Real;
 
 /// A mean of a basis function below this is rounding.
 const MEAN_ROUNDING: f64 = 1e-12;
@@ -63,7 +62,7 @@ pub(super) fn densities<const D: usize>(products: &[f64; 4], facet: usize) -> [f
     })
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Whether the unknowns of a cell are the values of a continuous quadratic at vertices and midpoints.
     pub(super) fn is_conforming_quadratic(&self) -> bool {
         !self.broken && self.has_values_of_quadratics()
@@ -82,9 +81,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// multipliers cells share.
     pub(super) fn cell_loads(
         &self,
-        u: &[T],
+        u: &[f64],
         (residual, obstacles): (&[f64], &ActiveObstacles),
-        (bounds, contact): (&[Bound<T>], &[Contact]),
+        (bounds, contact): (&[Bound<f64>], &[Contact]),
         forces: &[NodeForce],
         numbers: Option<Vec<u32>>,
     ) -> Result<CellLoads, NoBound> {
@@ -117,14 +116,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// The load less the reaction term of a discrete function, by cell and unknown.
-    fn loads_less_reaction(&self, u: &[T]) -> Result<Vec<f64>, NoBound> {
+    fn loads_less_reaction(&self, u: &[f64]) -> Result<Vec<f64>, NoBound> {
         let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
         let load = self.load_by_cell()?;
         let mut loads = vec![0.0; n_cells * n];
         let fill = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
                 let own = load.get(cell * n..).unwrap_or_default();
-                out.iter_mut().zip(own).for_each(|(out, load)| *out = load.to_f64());
+                out.iter_mut().zip(own).for_each(|(out, load)| *out = *load);
                 let Some(reaction) = &self.reaction else { continue };
                 let mut products = zero_local();
                 let volume = self.mesh.geometry(cell).volume;
@@ -132,7 +131,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let local = self.local_values(cell, u);
                 for (i, out) in out.iter_mut().enumerate() {
                     let terms = products[i].iter().zip(&local).take(n);
-                    *out -= terms.map(|(c, value)| c.to_f64() * value).sum::<f64>();
+                    *out -= terms.map(|(c, value)| c * value).sum::<f64>();
                 }
             }
             Ok::<(), Infallible>(())

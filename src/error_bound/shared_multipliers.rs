@@ -7,7 +7,6 @@ use crate::algebra::{Bound, Contact};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::BoundaryPart;
-use crate::real::Real;
 
 /// The nodes of quadratics that cells share.
 pub(super) struct SharedNodes {
@@ -17,7 +16,7 @@ pub(super) struct SharedNodes {
     pub surrounded: Vec<bool>,
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The numbers of the nodes of quadratics, by cell and unknown of the cell: of broken functions those of vertices
     /// and, after them, of edges; none if the unknowns are other ones than values at vertices and midpoints.
     pub(super) fn node_numbers(&self, edges: &[u32]) -> Option<Vec<u32>> {
@@ -40,12 +39,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn add_multipliers(
         &self,
         multipliers: &[f64],
-        (bounds, contact, obstacles): (&[Bound<T>], &[Contact], &ActiveObstacles),
+        (bounds, contact, obstacles): (&[Bound<f64>], &[Contact], &ActiveObstacles),
         numbers: Vec<u32>,
         values: &mut [f64],
     ) -> SharedNodes {
         let n = self.per_cell();
-        let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
+        let volume = |cell: usize| self.mesh.geometry(cell).volume;
         let held: Vec<bool> = self.cells_in_contact(bounds, contact);
         let n_nodes = numbers.iter().max().map_or(0, |&most| most as usize + 1);
         // of broken functions, copies that no obstacle binds have no part
@@ -94,7 +93,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// For each cell whether no bounded unknown with a basis function of positive mean is free.
-    fn cells_in_contact(&self, bounds: &[Bound<T>], contact: &[Contact]) -> Vec<bool> {
+    fn cells_in_contact(&self, bounds: &[Bound<f64>], contact: &[Contact]) -> Vec<bool> {
         let decides = self.unknowns_with_positive_mean();
         let is_free = |unknown: usize| {
             bounds[unknown].is_inequality() && contact.get(unknown) == Some(&Contact::Inactive)

@@ -11,7 +11,6 @@ use crate::error::{Error, write_error};
 use crate::files::replace;
 use crate::instances::compiled;
 use crate::mesh::Mesh;
-use crate::real::{Real, point_f64};
 
 /// Writes the inequality "find `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v` within the
 /// bounds" to a directory, which is made if need be:
@@ -24,36 +23,34 @@ use crate::real::{Real, point_f64};
 /// * `places.csv`: for each unknown the cell that owns it, if one does, and its place: coordinates of the
 ///   barycentre of the vertices around its node, and these vertices.
 ///
-/// Numbers are 64-bit whatever the scalar.
-///
 /// # Errors
 /// [`Error::Write`].
 ///
 /// # Panics
 /// If a support of the inequality names a vertex that the mesh does not have.
-pub fn write_inequality<T: Real, const D: usize>(
+pub fn write_inequality<const D: usize>(
     directory: impl AsRef<Path>,
-    inequality: &Inequality<T>,
-    mesh: &Mesh<T, D>,
+    inequality: &Inequality<f64>,
+    mesh: &Mesh<D>,
 ) -> Result<(), Error> {
     compiled!(
-        T, D: fn(&Path, &Inequality<T>, &Mesh<T, D>) -> Result<(), Error>
+        const D: fn(&Path, &Inequality<f64>, &Mesh<D>) -> Result<(), Error>
             = write_files
     )(directory.as_ref(), inequality, mesh)
 }
 
-fn write_files<T: Real, const D: usize>(
+fn write_files<const D: usize>(
     directory: &Path,
-    inequality: &Inequality<T>,
-    mesh: &Mesh<T, D>,
+    inequality: &Inequality<f64>,
+    mesh: &Mesh<D>,
 ) -> Result<(), Error> {
     write_files_with(directory, inequality, &|file| write_places(file, &inequality.supports, mesh))
 }
 
-/// As [`write_files`], compiled for scalars, not for dimensions.
-fn write_files_with<T: Real>(
+/// As [`write_files`], compiled once for all dimensions.
+fn write_files_with(
     directory: &Path,
-    inequality: &Inequality<T>,
+    inequality: &Inequality<f64>,
     write_places: &dyn Fn(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<(), Error> {
     fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
@@ -67,18 +64,12 @@ fn write_files_with<T: Real>(
     };
     text("matrix.mtx", &|file| write_matrix(file, matrix))?;
     text("places.csv", write_places)?;
-    let lower = |bound: &Bound<T>| bound.lower().or(bound.fixed_value());
-    let upper = |bound: &Bound<T>| bound.upper().or(bound.fixed_value());
+    let lower = |bound: &Bound<f64>| bound.lower().or(bound.fixed_value());
+    let upper = |bound: &Bound<f64>| bound.upper().or(bound.fixed_value());
     let vectors = [
-        ("load.npy", numbers(&mut load.iter().map(|b| b.to_f64()))),
-        (
-            "lower.npy",
-            numbers(&mut bounds.iter().map(|b| lower(b).map_or(f64::NEG_INFINITY, Real::to_f64))),
-        ),
-        (
-            "upper.npy",
-            numbers(&mut bounds.iter().map(|b| upper(b).map_or(f64::INFINITY, Real::to_f64))),
-        ),
+        ("load.npy", numbers(&mut load.iter().copied())),
+        ("lower.npy", numbers(&mut bounds.iter().map(|b| lower(b).unwrap_or(f64::NEG_INFINITY)))),
+        ("upper.npy", numbers(&mut bounds.iter().map(|b| upper(b).unwrap_or(f64::INFINITY)))),
     ];
     for (name, bytes) in &vectors {
         replace(&directory.join(name), |draft| fs::write(draft, bytes))?;
@@ -89,7 +80,7 @@ fn write_files_with<T: Real>(
         ("shape.npy", array("<i8", 2, [n, n].into_iter().flat_map(i64::to_le_bytes))),
         ("indptr.npy", indices(&matrix.row_starts)),
         ("indices.npy", indices(&matrix.columns)),
-        ("data.npy", numbers(&mut matrix.values.iter().map(|a| a.to_f64()))),
+        ("data.npy", numbers(&mut matrix.values.iter().copied())),
     ];
     files.extend(vectors);
     let path = directory.join("inequality.npz");
@@ -109,23 +100,23 @@ fn indices(values: &[u32]) -> Vec<u8> {
     array("<i8", values.len(), values.iter().flat_map(|&i| i64::from(i).to_le_bytes()))
 }
 
-fn write_matrix<T: Real>(file: &mut dyn Write, matrix: &SparseMatrix<T>) -> std::io::Result<()> {
+fn write_matrix(file: &mut dyn Write, matrix: &SparseMatrix<f64>) -> std::io::Result<()> {
     let n = matrix.size();
     writeln!(file, "%%MatrixMarket matrix coordinate real general")?;
     writeln!(file, "{n} {n} {}", matrix.nonzeros())?;
     for i in 0..n {
         let (columns, values) = matrix.row(i);
         for (j, a) in columns.iter().zip(values) {
-            writeln!(file, "{} {} {:e}", i + 1, j + 1, a.to_f64())?;
+            writeln!(file, "{} {} {:e}", i + 1, j + 1, a)?;
         }
     }
     Ok(())
 }
 
-fn write_places<T: Real, const D: usize>(
+fn write_places<const D: usize>(
     file: &mut dyn Write,
     supports: &[Support],
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
 ) -> std::io::Result<()> {
     let axes = &["x", "y", "z"][..D];
     writeln!(file, "unknown,cell,{},vertices", axes.join(","))?;
@@ -134,8 +125,7 @@ fn write_places<T: Real, const D: usize>(
         let cell = support.cell().map_or_else(String::new, |cell| cell.to_string());
         write!(file, "{unknown},{cell}")?;
         for k in 0..D {
-            let sum: f64 =
-                vertices.iter().map(|&v| point_f64(&mesh.vertices()[v as usize])[k]).sum();
+            let sum: f64 = vertices.iter().map(|&v| mesh.vertices()[v as usize][k]).sum();
             write!(file, ",{:?}", sum / vertices.len() as f64)?;
         }
         let names: Vec<String> = vertices.iter().map(u32::to_string).collect();

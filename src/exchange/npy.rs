@@ -76,12 +76,12 @@ fn from_npy(bytes: &[u8]) -> Result<Vec<f64>, String> {
     let kind = value("descr").unwrap_or_default();
     let values: Vec<f64> = match kind.split(['\'', '"']).nth(1) {
         Some("<f8") => {
-            let numbers = data.chunks_exact(8).map(|b| b.try_into().unwrap_or_default());
-            numbers.map(f64::from_le_bytes).collect()
+            let numbers = data.as_chunks::<8>().0.iter();
+            numbers.map(|b| f64::from_le_bytes(*b)).collect()
         }
         Some("<f4") => {
-            let numbers = data.chunks_exact(4).map(|b| b.try_into().unwrap_or_default());
-            numbers.map(|b| f64::from(f32::from_le_bytes(b))).collect()
+            let numbers = data.as_chunks::<4>().0.iter();
+            numbers.map(|b| f64::from(f32::from_le_bytes(*b))).collect()
         }
         other => {
             return Err(format!("numbers of type {}: {allowed}", excerpt(other.unwrap_or("?"))));

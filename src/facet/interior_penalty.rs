@@ -1,7 +1,6 @@
 //! Interior penalty.
 
 use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace, proven_bound};
-use crate::real::Real;
 
 /// How an interior penalty gets its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,23 +48,20 @@ impl InteriorPenalty {
     }
 }
 
-impl<T: Real, const D: usize> FacetForm<T, D> for InteriorPenalty {
-    fn uses_flux(&self) -> bool {
-        true
-    }
+impl<const D: usize> FacetForm<D> for InteriorPenalty {
     fn is_symmetric(&self) -> bool {
         self.symmetry == Symmetry::Symmetric
     }
     #[inline(always)]
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         match self.rule {
             PenaltyRule::Proven(margin) => {
-                T::lit((1.0 + margin) * self.part()) * proven_bound::<T, D>(self.degree, facet)
+                ((1.0 + margin) * self.part()) * proven_bound::<D>(self.degree, facet)
             }
-            PenaltyRule::Diameter(sigma) => T::lit(sigma) * facet.coefficient() / facet.diameter(),
+            PenaltyRule::Diameter(sigma) => sigma * facet.coefficient() / facet.diameter(),
         }
     }
-    fn theory(&self) -> FormTheory<'_, T, D> {
+    fn theory(&self) -> FormTheory<'_, D> {
         let (sigma, rule) = match self.rule {
             PenaltyRule::Proven(margin) => (None, format!("proven bound times {}", 1.0 + margin)),
             PenaltyRule::Diameter(sigma) => (Some(sigma), "sigma / h_F".to_owned()),
@@ -84,21 +80,20 @@ impl<T: Real, const D: usize> FacetForm<T, D> for InteriorPenalty {
                 theory.with_coercivity(sigma > 0.0)
             }
             (PenaltyRule::Proven(margin), _) if margin >= 0.0 => theory.with_coercivity(true),
-            _ => theory.with_least_penalty(|facet| {
-                T::lit(self.part()) * proven_bound::<T, D>(self.degree, facet)
-            }),
+            _ => theory
+                .with_least_penalty(|facet| self.part() * proven_bound::<D>(self.degree, facet)),
         }
     }
     fn is_uniform(&self) -> bool {
         true
     }
     #[inline(always)]
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         let theta = match self.symmetry {
             Symmetry::Symmetric => -1.0,
             Symmetry::Incomplete => 0.0,
             Symmetry::NonSymmetric => 1.0,
         };
-        penalty * u.jump * v.jump - u.flux * v.jump + T::lit(theta) * v.flux * u.jump
+        penalty * u.jump * v.jump - u.flux * v.jump + theta * v.flux * u.jump
     }
 }

@@ -2,7 +2,6 @@
 
 use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace};
 use crate::arrays::map_entries;
-use crate::real::Real;
 
 /// The degree of the polynomials that jumps are lifted to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,23 +48,24 @@ pub struct FacetLifts {
     pub eta: f64,
     /// The degree of the lifts.
     pub lift_degree: usize,
-    /// Whether the form needs `eta` above the number of facets of a cell.
-    pub bounded: bool,
+    /// Whether `int alpha r(u) . r(v)` is added, with which the form is coercive for every positive `eta`;
+    /// without it `eta` must be above the number of facets of a cell.
+    pub with_all_lifts: bool,
 }
 
 impl FacetLifts {
-    fn weight<T: Real, const D: usize>(eta: f64, facet: &FacetView<T, D>) -> T {
-        let average = T::lit(if facet.there.is_some() { 0.5 } else { 1.0 });
+    fn weight<const D: usize>(eta: f64, facet: &FacetView<D>) -> f64 {
+        let average = if facet.there.is_some() { 0.5 } else { 1.0 };
         let w = facet.coefficient() * average;
         let energy =
             facet.sum(|side| w * w * facet.measure / (side.least_coefficient * side.volume));
-        T::lit(eta) * energy
+        eta * energy
     }
 }
 
-impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
-    fn uses_flux(&self) -> bool {
-        true
+impl<const D: usize> FacetForm<D> for FacetLifts {
+    fn is_lifted(&self) -> bool {
+        self.with_all_lifts
     }
     fn moments(&self, _: usize) -> usize {
         self.lift_degree
@@ -73,7 +73,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
     fn lift_degree(&self, _: usize) -> usize {
         self.lift_degree
     }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         Self::weight(self.eta, facet)
     }
     /// `|K| / |F|^2 int_K s^2` for the polynomial `s` of the lift's degree `p - 1` with
@@ -84,66 +84,20 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
         let [d, p, m] = map_entries([D, self.lift_degree + 1, moment], |k| k as f64);
         (p - m) * (p + m + d - 1.0) / d
     }
-    fn theory(&self) -> FormTheory<'_, T, D> {
+    fn theory(&self) -> FormTheory<'_, D> {
         let (eta, rule) = (Some(self.eta), Some("eta int r_F . r_F".to_owned()));
         let theory =
             FormTheory::new().with_parameters(PenaltyParameters { sigma: None, eta, rule });
-        match self.bounded {
-            true => theory.with_least_penalty(|facet| Self::weight((D + 1) as f64, facet)),
-            false => theory.with_coercivity(self.eta > 0.0),
+        match self.with_all_lifts {
+            true => theory.with_coercivity(self.eta > 0.0),
+            false => theory.with_least_penalty(|facet| Self::weight((D + 1) as f64, facet)),
         }
     }
     fn is_uniform(&self) -> bool {
         true
     }
     #[inline(always)]
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
-    }
-}
-
-/// The form inside, and besides `int alpha r(u) . r(v)`: with the consistency terms of a symmetric
-/// form this completes the square `|grad v + r(v)|^2`.
-///
-/// Source: D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002),
-/// 1749-1779, section 3.
-#[derive(Clone, Copy, Debug)]
-pub struct Lifted<F>(pub F);
-
-impl<T: Real, const D: usize, F: FacetForm<T, D>> FacetForm<T, D> for Lifted<F> {
-    fn uses_flux(&self) -> bool {
-        self.0.uses_flux()
-    }
-    fn is_lifted(&self) -> bool {
-        true
-    }
-    fn is_symmetric(&self) -> bool {
-        self.0.is_symmetric()
-    }
-    fn lift_degree(&self, degree: usize) -> usize {
-        self.0.lift_degree(degree)
-    }
-    fn moments(&self, degree: usize) -> usize {
-        self.0.moments(degree)
-    }
-    fn average_weight(&self, facet: &FacetView<T, D>) -> T {
-        self.0.average_weight(facet)
-    }
-    #[inline(always)]
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
-        self.0.penalty(facet)
-    }
-    fn moment_weight(&self, degree: usize) -> f64 {
-        self.0.moment_weight(degree)
-    }
-    fn theory(&self) -> FormTheory<'_, T, D> {
-        self.0.theory()
-    }
-    fn is_uniform(&self) -> bool {
-        self.0.is_uniform()
-    }
-    #[inline(always)]
-    fn integrand(&self, facet: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
-        self.0.integrand(facet, v, u, penalty)
     }
 }

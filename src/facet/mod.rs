@@ -28,7 +28,7 @@ mod view;
 
 pub use dirichlet::DirichletBy;
 pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
-pub use lifting::{FacetLifts, Lifted, Lifts};
+pub use lifting::{FacetLifts, Lifts};
 pub use none::NoFacets;
 pub use over_penalty::{OverPenalty, WeightRule};
 pub use parameters::PenaltyParameters;
@@ -36,17 +36,13 @@ pub use proven::proven_bound;
 pub use theory::FormTheory;
 pub use view::{FacetKind, FacetView, Side};
 
-use std::any::Any;
-
-use crate::real::Real;
-
 /// A moment of the jump and of the mean normal flux of a function on a facet.
 #[derive(Clone, Copy, Debug)]
-pub struct Trace<T> {
+pub struct Trace {
     /// Here minus there.
-    pub jump: T,
+    pub jump: f64,
     /// The mean normal flux; not a number where the form says it does not use it.
-    pub flux: T,
+    pub flux: f64,
 }
 
 /// A facet term of a bilinear form, written as its integrand.
@@ -57,16 +53,22 @@ pub struct Trace<T> {
 /// From the one formula come the matrix, the load of Dirichlet data (which enter as the trial trace
 /// `{ jump: u_D, flux: 0 }`: wherever `[u]` stands on a Dirichlet facet, `[u] - u_D` is meant) and
 /// the penalty part of the norm (the formula at traces without flux).
-pub trait FacetForm<T: Real, const D: usize>: Any + Send + Sync {
+pub trait FacetForm<const D: usize>: Send + Sync {
     /// Whether there is a form at all. Without one, facets are not even built.
     fn couples(&self) -> bool {
         true
     }
     /// Whether the formula reads fluxes; if not, no normal derivative is computed, and those it would
-    /// read are not numbers. There is no default: a form that forgot to say so would read them.
-    fn uses_flux(&self) -> bool;
+    /// read are not numbers.
+    fn uses_flux(&self) -> bool {
+        true
+    }
     /// Whether `int alpha r(v) . r(u)` is added, which couples cells with the neighbours of their
-    /// neighbours. Only broken elements of degree one or two carry such a form.
+    /// neighbours: with the consistency terms of a symmetric form it completes the square
+    /// `|grad v + r(v)|^2`. Only broken elements of degree one or two carry such a form.
+    ///
+    /// Source: D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002),
+    /// 1749-1779, section 3.
     fn is_lifted(&self) -> bool {
         false
     }
@@ -84,19 +86,19 @@ pub trait FacetForm<T: Real, const D: usize>: Any + Send + Sync {
     }
     /// The weight of the cell here in the mean flux; the weight of the cell there is what is left to
     /// one.
-    fn average_weight(&self, facet: &FacetView<T, D>) -> T {
+    fn average_weight(&self, facet: &FacetView<D>) -> f64 {
         let _ = facet;
-        T::lit(0.5)
+        0.5
     }
     /// The penalty weight of a facet, computed once for each.
-    fn penalty(&self, facet: &FacetView<T, D>) -> T;
+    fn penalty(&self, facet: &FacetView<D>) -> f64;
     /// By what the penalty weight is multiplied for moments of this degree.
     fn moment_weight(&self, degree: usize) -> f64 {
         let _ = degree;
         1.0
     }
     /// What theory and reports say of the form: parameters in force, the least penalty.
-    fn theory(&self) -> FormTheory<'_, T, D> {
+    fn theory(&self) -> FormTheory<'_, D> {
         FormTheory::new()
     }
     /// Whether the formula is the same on all interior facets and the same on all Dirichlet facets,
@@ -108,5 +110,5 @@ pub trait FacetForm<T: Real, const D: usize>: Any + Send + Sync {
     /// traces, and at most linear in the penalty weight. It may differ between facets, by their kind,
     /// normal, diameter or coefficient. The assembler reads it off at unit traces, with the weights
     /// zero and one.
-    fn integrand(&self, facet: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T;
+    fn integrand(&self, facet: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64;
 }

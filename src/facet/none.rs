@@ -1,27 +1,26 @@
 //! No facet terms.
 
 use super::{FacetForm, FacetView, FormTheory, Trace};
-use crate::real::Real;
 
 /// The form of schemes that have no terms on facets.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoFacets;
 
-impl<T: Real, const D: usize> FacetForm<T, D> for NoFacets {
+impl<const D: usize> FacetForm<D> for NoFacets {
     fn uses_flux(&self) -> bool {
         false
     }
     fn couples(&self) -> bool {
         false
     }
-    fn penalty(&self, _: &FacetView<T, D>) -> T {
-        T::lit(0.0)
+    fn penalty(&self, _: &FacetView<D>) -> f64 {
+        0.0
     }
-    fn theory(&self) -> FormTheory<'_, T, D> {
+    fn theory(&self) -> FormTheory<'_, D> {
         FormTheory::new().with_coercivity(true)
     }
     #[inline(always)]
-    fn integrand(&self, _: &FacetView<T, D>, _: Trace<T>, _: Trace<T>, _: T) -> T {
-        T::lit(0.0)
+    fn integrand(&self, _: &FacetView<D>, _: Trace, _: Trace, _: f64) -> f64 {
+        0.0
     }
 }

@@ -1,7 +1,6 @@
 //! The weak over-penalty.
 
 use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace};
-use crate::real::Real;
 
 /// How the over-penalty gets its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +32,7 @@ pub struct OverPenalty {
     pub mesh_size: f64,
 }
 
-impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
+impl<const D: usize> FacetForm<D> for OverPenalty {
     fn uses_flux(&self) -> bool {
         false
     }
@@ -41,8 +40,8 @@ impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
         self.degree - 1
     }
     #[inline(always)]
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
-        let eta = T::lit(self.eta) * facet.coefficient();
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
+        let eta = self.eta * facet.coefficient();
         match self.rule {
             WeightRule::Isotropic => {
                 let h = facet.diameter();
@@ -57,12 +56,12 @@ impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
                         sum * sum
                     }
                 };
-                let h = T::lit(self.mesh_size);
+                let h = self.mesh_size;
                 (0..self.degree).fold(eta / length, |weight, _| weight / (h * h))
             }
         }
     }
-    fn theory(&self) -> FormTheory<'_, T, D> {
+    fn theory(&self) -> FormTheory<'_, D> {
         let k = self.degree;
         let rule = match self.rule {
             WeightRule::Isotropic => format!("eta / h_F^{}", 2 * k + 1),
@@ -77,7 +76,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
         true
     }
     #[inline(always)]
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump
     }
 }

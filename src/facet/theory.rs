@@ -3,14 +3,13 @@
 use std::fmt;
 
 use super::{FacetView, PenaltyParameters};
-use crate::real::Real;
 
 /// The least penalty weight of a facet with which a form is provably coercive.
-pub type LeastPenalty<'f, T, const D: usize> = Box<dyn Fn(&FacetView<'_, T, D>) -> T + 'f>;
+pub type LeastPenalty<'f, const D: usize> = Box<dyn Fn(&FacetView<'_, D>) -> f64 + 'f>;
 
 /// What theory and measurement say of a form: nothing of it enters matrix or load.
 #[non_exhaustive]
-pub struct FormTheory<'f, T: Real, const D: usize> {
+pub struct FormTheory<'f, const D: usize> {
     /// The factors in force, for reports.
     pub parameters: PenaltyParameters,
     /// Whether theory proves the form coercive, for a reaction that is not negative and with penalties of
@@ -19,14 +18,14 @@ pub struct FormTheory<'f, T: Real, const D: usize> {
     pub is_coercive: bool,
     /// The least weight with which the form is provably coercive; none if its weights are positive and
     /// need no bound, or are chosen by that very bound.
-    pub least_penalty: Option<LeastPenalty<'f, T, D>>,
+    pub least_penalty: Option<LeastPenalty<'f, D>>,
     /// The margin over a proven bound, where the weight is chosen by that bound.
     pub margin: Option<f64>,
     /// By what [`Self::rounding_limit`] is scaled; one half by default, as measured for linears.
     pub rounding_factor: f64,
 }
 
-impl<'f, T: Real, const D: usize> FormTheory<'f, T, D> {
+impl<'f, const D: usize> FormTheory<'f, D> {
     /// No parameters, no proof of coercivity, no least penalty.
     #[must_use]
     pub fn new() -> Self {
@@ -64,7 +63,7 @@ impl<'f, T: Real, const D: usize> FormTheory<'f, T, D> {
     }
     /// Sets the least weight of a facet with which the form is provably coercive.
     #[must_use]
-    pub fn with_least_penalty(self, least: impl Fn(&FacetView<'_, T, D>) -> T + 'f) -> Self {
+    pub fn with_least_penalty(self, least: impl Fn(&FacetView<'_, D>) -> f64 + 'f) -> Self {
         Self { is_coercive: true, least_penalty: Some(Box::new(least)), ..self }
     }
     /// Sets the factor of the rounding limit.
@@ -81,13 +80,13 @@ impl<'f, T: Real, const D: usize> FormTheory<'f, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Default for FormTheory<'_, T, D> {
+impl<const D: usize> Default for FormTheory<'_, D> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<T: Real, const D: usize> fmt::Debug for FormTheory<'_, T, D> {
+impl<const D: usize> fmt::Debug for FormTheory<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("FormTheory")
             .field("parameters", &self.parameters)

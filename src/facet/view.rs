@@ -1,22 +1,22 @@
 //! A facet and its cells, as a penalty may see them.
 
 use crate::mesh::Mesh;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// One cell as its facet sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Side<T> {
+pub struct Side {
     /// The diffusion coefficient of the cell; where it varies within the cell and the element sees it, the
     /// largest value on the facet.
-    pub coefficient: T,
+    pub coefficient: f64,
     /// The least value of the diffusion coefficient in the cell.
-    pub least_coefficient: T,
+    pub least_coefficient: f64,
     /// The volume of the cell.
-    pub volume: T,
+    pub volume: f64,
     /// The measure of the cell's whole boundary.
-    pub surface: T,
+    pub surface: f64,
     /// The height of the cell over the facet.
-    pub height: T,
+    pub height: f64,
 }
 
 /// The facets that carry a form.
@@ -32,27 +32,27 @@ pub enum FacetKind {
 ///
 /// Diameter, normal and coefficient are methods, computed only for forms that call them.
 #[derive(Clone, Copy, Debug)]
-pub struct FacetView<'a, T: Real, const D: usize> {
-    mesh: &'a Mesh<T, D>,
+pub struct FacetView<'a, const D: usize> {
+    mesh: &'a Mesh<D>,
     /// The cell here, and the facet's number in it.
     place: (usize, usize),
     /// The measure of the facet; one in one dimension.
-    pub measure: T,
+    pub measure: f64,
     /// The cell here.
-    pub here: Side<T>,
+    pub here: Side,
     /// The cell there; none on the boundary.
-    pub there: Option<Side<T>>,
+    pub there: Option<Side>,
 }
 
-impl<'a, T: Real, const D: usize> FacetView<'a, T, D> {
+impl<'a, const D: usize> FacetView<'a, D> {
     /// The view of facet `local` of the cell here.
     #[inline(always)]
     pub fn new(
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         place: (usize, usize),
-        measure: T,
-        here: Side<T>,
-        there: Option<Side<T>>,
+        measure: f64,
+        here: Side,
+        there: Option<Side>,
     ) -> Self {
         Self { mesh, place, measure, here, there }
     }
@@ -63,37 +63,37 @@ impl<'a, T: Real, const D: usize> FacetView<'a, T, D> {
     }
     /// The diameter `h_F` of the facet; in one dimension the mean length of the cells it joins.
     #[inline(always)]
-    pub fn diameter(&self) -> T {
+    pub fn diameter(&self) -> f64 {
         match (D, &self.there) {
             (1, None) => self.here.volume,
-            (1, Some(there)) => (self.here.volume + there.volume) * T::lit(0.5),
+            (1, Some(there)) => (self.here.volume + there.volume) * 0.5,
             _ => self.mesh.facet_diameter(self.place.0, self.place.1),
         }
     }
     /// The unit normal, from here to there, outward on the boundary.
-    pub fn normal(&self) -> Point<T, D> {
+    pub fn normal(&self) -> Point<D> {
         self.mesh.geometry(self.place.0).normal(self.place.1)
     }
     /// The harmonic mean of the coefficients, `2 a b / (a + b)`; on the boundary the coefficient.
     #[inline(always)]
-    pub fn coefficient(&self) -> T {
-        self.conductance(T::lit(0.5))
+    pub fn coefficient(&self) -> f64 {
+        self.conductance(0.5)
     }
     /// The harmonic mean of the coefficients with this average weight of the cell here; on the
     /// boundary the coefficient.
     #[inline(always)]
-    pub fn conductance(&self, weight: T) -> T {
+    pub fn conductance(&self, weight: f64) -> f64 {
         match &self.there {
             None => self.here.coefficient,
             Some(there) => {
                 let (a, b) = (self.here.coefficient, there.coefficient);
-                a * b / (weight * b + (T::lit(1.0) - weight) * a)
+                a * b / (weight * b + (1.0 - weight) * a)
             }
         }
     }
     /// The larger of a quantity on the two sides.
     #[inline(always)]
-    pub fn largest(&self, quantity: impl Fn(&Side<T>) -> T) -> T {
+    pub fn largest(&self, quantity: impl Fn(&Side) -> f64) -> f64 {
         let here = quantity(&self.here);
         match &self.there {
             Some(there) if quantity(there) > here => quantity(there),
@@ -102,7 +102,7 @@ impl<'a, T: Real, const D: usize> FacetView<'a, T, D> {
     }
     /// The sum of a quantity over the sides.
     #[inline(always)]
-    pub fn sum(&self, quantity: impl Fn(&Side<T>) -> T) -> T {
-        quantity(&self.here) + self.there.as_ref().map_or(T::lit(0.0), quantity)
+    pub fn sum(&self, quantity: impl Fn(&Side) -> f64) -> f64 {
+        quantity(&self.here) + self.there.as_ref().map_or(0.0, quantity)
     }
 }

@@ -1,8 +1,9 @@
 //! The certificate: violations of the complementarity conditions, computed from the data and `u` alone.
 
+use super::Solution;
 use super::scales::Scales;
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::real::{Real, maximum};
+use crate::real::{Precision, Real, maximum};
 
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
 ///
@@ -75,12 +76,13 @@ impl Certificate {
         self
     }
 
-    /// Whether the four violations are within [`Real::CERTIFICATE_LIMIT`], and the bound on the
-    /// algebraic error, where it is known, within [`Real::ALGEBRAIC_BOUND_LIMIT`].
+    /// Whether the four violations of values that were computed in a precision are within its
+    /// [`Precision::certificate_limit`], and the bound on the algebraic error, where it is known, within its
+    /// [`Precision::algebraic_bound_limit`].
     #[must_use]
-    pub fn is_within_limits<T: Real>(&self) -> bool {
-        self.largest() <= T::CERTIFICATE_LIMIT
-            && self.algebraic_bound.is_none_or(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT)
+    pub fn is_within_limits(&self, precision: Precision) -> bool {
+        self.largest() <= precision.certificate_limit()
+            && self.algebraic_bound.is_none_or(|bound| bound <= precision.algebraic_bound_limit())
     }
 
     /// The largest of the four violations; NaN if one of them is NaN, which is within no limit.
@@ -91,16 +93,14 @@ impl Certificate {
     }
 }
 
-/// The energy norm `E` of `u` to which certificates and tolerances are relative.
-pub(crate) fn energy_norm<T: Real>(
-    inequality: &Inequality<T>,
-    u: &[T],
-    jump_multipliers: &[T],
-) -> f64 {
+/// The energy norm `E` of a solution to which certificates and tolerances are relative.
+pub(crate) fn energy_norm(inequality: &Inequality<f64>, solution: &Solution<f64>) -> f64 {
+    let Solution { values, jump_multipliers, precision, .. } = solution;
     let mut r = vec![0.0; inequality.size()];
-    residual(inequality, u, jump_multipliers, &mut r);
+    residual(inequality, values, jump_multipliers, &mut r);
     let diagonal = |i: usize| positive_diagonal(inequality, i);
-    Scales::of(inequality, u, &r, jump_multipliers, &diagonal).energy_norm
+    let of = (&values[..], &r[..], &jump_multipliers[..]);
+    Scales::of(inequality, of, &diagonal, *precision).energy_norm
 }
 
 /// Sets `residual` to `b - A u`, or to `c - K u - M^T p` if the jump multipliers `p` are given.
@@ -168,13 +168,12 @@ pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> 
     inequality.bounds.iter().enumerate().map(state).collect()
 }
 
-/// The number of active unknowns; unknowns with a Dirichlet value do not count.
+/// The number of active unknowns; unknowns with a Dirichlet value do not count, nor do those that other parts own.
 #[must_use]
 pub fn count_active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usize {
-    inequality
-        .bounds
-        .iter()
-        .zip(contact)
-        .filter(|(bound, state)| bound.is_inequality() && **state != Contact::Inactive)
-        .count()
+    let states = inequality.bounds.iter().zip(contact).enumerate();
+    let is_active = |(i, (bound, state)): &(usize, (&Bound<T>, &Contact))| {
+        bound.is_inequality() && **state != Contact::Inactive && inequality.owns(*i)
+    };
+    states.filter(is_active).count()
 }

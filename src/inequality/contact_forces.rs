@@ -5,7 +5,7 @@ use super::certificate::{residual, stiffness_diagonal};
 use crate::algebra::{Contact, Inequality, JumpTerm, PenalisedMatrix};
 use crate::mesh::Components;
 use crate::parallel::vectors::collect;
-use crate::real::Real;
+use crate::real::{Precision, Real};
 
 /// Forces have no digit where their errors may exceed this share of them.
 const LARGEST_ERROR: f64 = 0.1;
@@ -35,7 +35,7 @@ pub(crate) struct ContactForces {
 impl ContactForces {
     /// The forces of a solution. All parts of a distributed inequality call it.
     pub fn of<T: Real>(inequality: &Inequality<T>, solution: &Solution<T>) -> Self {
-        let Solution { values: u, contact, jump_multipliers, .. } = solution;
+        let Solution { values: u, contact, jump_multipliers, precision, .. } = solution;
         let state = |i: usize| match inequality.bounds[i].is_inequality() {
             true => contact[i],
             false => Contact::Inactive,
@@ -45,11 +45,11 @@ impl ContactForces {
         residual(inequality, u, jump_multipliers, &mut r);
         let force = |i: usize| if is_active(i) { -r[i] } else { 0.0 };
         let terms = |i: usize| squared_terms(inequality, i, u, jump_multipliers);
-        let size = |i: usize| if is_active(i) { rounding::<T>(terms(i)) } else { 0.0 };
+        let size = |i: usize| if is_active(i) { rounding(terms(i), *precision) } else { 0.0 };
         let mut forces = Self { values: collect(u.len(), force), rounding: collect(u.len(), size) };
         if let Some(nodes) = BalancedNodes::of(inequality) {
             let Self { values, rounding } = &mut forces;
-            nodes.share(u, &state, values, Some(rounding));
+            nodes.share(u, &state, values, Some((rounding, *precision)));
         }
         if let Some(distribution) = inequality.distribution() {
             distribution.update(&mut forces.values);
@@ -71,7 +71,7 @@ impl ContactForces {
         if let Some(distribution) = inequality.distribution() {
             distribution.largest(&mut largest);
         }
-        let slack = T::CERTIFICATE_LIMIT * largest[0];
+        let slack = solution.precision.certificate_limit() * largest[0];
         let is_near = |i: usize| {
             let bound = &inequality.bounds[i];
             bound.distances(solution.values[i].to_f64()).iter().any(|distance| *distance <= slack)
@@ -95,8 +95,8 @@ impl ContactForces {
 }
 
 /// The size of the rounding error of a sum with these squared terms, whose values are rounded.
-fn rounding<T: Real>(squared_terms: f64) -> f64 {
-    0.5 * T::EPSILON * squared_terms.sqrt()
+fn rounding(squared_terms: f64, precision: Precision) -> f64 {
+    0.5 * precision.epsilon() * squared_terms.sqrt()
 }
 
 /// The sum of the squares of the terms of row `i` of `A u`; of `K u` where jump multipliers are known beside `u`.
@@ -169,7 +169,7 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
         u: &[T],
         state: &impl Fn(usize) -> Contact,
         forces: &mut [f64],
-        mut rounding_errors: Option<&mut Vec<f64>>,
+        mut rounding_errors: Option<(&mut Vec<f64>, Precision)>,
     ) {
         let mut sums = vec![SumOverCopies::default(); self.node.len()];
         for (i, &node) in
@@ -193,8 +193,8 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
             let sum = sums[node as usize];
             if let Some(n) = sum.n_sharing().filter(|_| state(i) != Contact::Inactive) {
                 forces[i] = sum.force / n;
-                if let Some(rounding_errors) = &mut rounding_errors {
-                    rounding_errors[i] = rounding::<T>(sum.terms) / n;
+                if let Some((rounding_errors, precision)) = &mut rounding_errors {
+                    rounding_errors[i] = rounding(sum.terms, *precision) / n;
                 }
             }
         }
@@ -235,7 +235,7 @@ mod tests {
     /// Jump multipliers moved by any numbers: the forces of balanced nodes do not change, those of others do.
     fn moved_multipliers<const D: usize>(problem: Problem<D>) {
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let mesh = Mesh::<f64, D>::kuhn_box(&domain, [3; D]).unwrap();
+        let mesh = Mesh::<D>::kuhn_box(&domain, [3; D]).unwrap();
         let scheme = Wopsip::default();
         let of = Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
         let inequality = of.inequality().unwrap();

@@ -1,7 +1,7 @@
 //! The data from which a solver of an inequality starts.
 
 use super::step_counter::StepCounter;
-use crate::algebra::{Contact, Support};
+use crate::algebra::{Contact, Support, rounded};
 use crate::linear::CoarseSpaces;
 use crate::real::Real;
 
@@ -62,6 +62,18 @@ impl<T> InitialGuess<T> {
     pub fn steps(mut self, steps: StepCounter) -> Self {
         self.steps = steps;
         self
+    }
+}
+
+impl InitialGuess<f64> {
+    /// The guess with values and coarse spaces rounded once.
+    pub(super) fn in_precision<T: Real>(&self) -> InitialGuess<T> {
+        InitialGuess {
+            coarse_spaces: self.coarse_spaces.in_precision(),
+            values: self.values.as_deref().map(rounded),
+            energy_tolerance: self.energy_tolerance,
+            steps: self.steps.clone(),
+        }
     }
 }
 

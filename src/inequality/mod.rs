@@ -23,13 +23,15 @@
 //! | `scales` | the energy norm and the largest value to which violations are relative |
 //! | `recession` | whether a solution exists and is unique where only bounds hold a body |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
+//! | `single_precision` | [`SinglePrecision`]: a solver in `f32` for inequalities in `f64` |
 //! | `step_counter` | [`StepCounter`]: the number of the present outer step of a solver |
 //! | `by_name` | [`solver_by_name`] |
 //! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`Stage`], [`StageRun`]: the result of a solver |
 //!
-//! [`ActiveSet`] runs other methods where its active set stagnates: `active_set/ladder` is that order;
-//! [`Solution::stages`] contains the methods that ran. If the active set no longer changes, the outcome is
-//! [`Outcome::Converged`] or [`Outcome::Stalled`], depending on the certificate.
+//! Every solver first asks `recession` whether bounds alone hold a body: then the load decides whether a solution exists,
+//! bounds that it does not press are left out at first, and the solver may run twice. [`ActiveSet`] runs other methods
+//! where its active set stagnates: `active_set/ladder` is that order; [`Solution::stages`] contains the methods that ran.
+//! The certificate decides [`Outcome::Converged`] or [`Outcome::Stalled`] when the active set is final.
 
 mod active_set;
 mod algebraic_bound;
@@ -42,6 +44,7 @@ mod monotone_multigrid;
 mod outcome;
 mod recession;
 mod scales;
+mod single_precision;
 mod solution;
 mod stage;
 mod step_counter;
@@ -49,7 +52,7 @@ mod validation;
 mod violations;
 
 pub use active_set::{ActiveSet, Preconditioned};
-pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
+pub use by_name::{SOLVERS, solver_by_name};
 pub(crate) use certificate::count_active;
 pub use certificate::{Certificate, contact_of};
 pub(crate) use certificate::{energy_norm, positive_diagonal, stiffness_diagonal};
@@ -59,19 +62,24 @@ pub use interior_point::InteriorPoint;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
 pub(crate) use recession::explanation;
+pub use single_precision::{SinglePrecision, in_precision};
 pub use solution::Solution;
 pub use stage::{Stage, StageRun};
 pub use step_counter::StepCounter;
-pub(crate) use violations::certify_with_jump_multipliers;
+pub(crate) use violations::certify_solution;
 pub use violations::{Violations, certify};
 
 use crate::algebra::Inequality;
-use crate::real::Real;
+use crate::real::{Precision, Real};
 
 /// A solver of the algebraic variational inequality.
 pub trait InequalitySolver<T: Real>: Sync {
     /// The name in reports and options; the solvers of a study must have different ones.
     fn name(&self) -> &'static str;
+    /// The precision in which the solver computes, whatever the scalar of the inequality.
+    fn precision(&self) -> Precision {
+        T::PRECISION
+    }
     /// Solves the inequality; a failure is an [`Outcome`].
     fn solve(&self, inequality: &Inequality<T>) -> Solution<T>;
     /// Solves the inequality with coarse spaces, starting values and a tolerance. The default ignores

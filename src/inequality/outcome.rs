@@ -14,7 +14,7 @@ pub enum Outcome {
     Converged,
     /// The iteration limit was reached while the active set still changed.
     IterationLimit,
-    /// The active set returned to an earlier one, and no method resolved the cycle.
+    /// The active set did not settle, and no later method found a solution.
     Cycling,
     /// Rounding prevents the complementarity conditions from holding to the tolerance.
     Stalled,
@@ -31,7 +31,7 @@ pub enum Outcome {
     NotUnique,
     /// A number is not finite.
     NotFinite,
-    /// The squares of the data underflow or overflow.
+    /// The squares of the data underflow or overflow, or single precision does not hold the data.
     OutOfRange,
     /// The lower bound of an unknown exceeds its upper bound.
     Infeasible,
@@ -103,7 +103,7 @@ impl Outcome {
                 "the limit of iterations was reached while the active set still changed; raise it, or use another solver"
             }
             Outcome::Cycling => {
-                "the active set returned to an earlier one, and no later stage of the solver found a solution"
+                "the active set did not settle, and no later method found a solution"
             }
             Outcome::Stalled => {
                 "rounding, or the tolerance of the solver, keeps the certificate above its limit; use f64, a smaller penalty, a coarser mesh or a tighter tolerance"

@@ -7,7 +7,7 @@
 //! Comm. Pure Appl. Math. 20 (1967) 493-519, section 5.)
 
 use super::validation::check_input;
-use super::{Outcome, Solution};
+use super::{InitialGuess, Outcome, Solution};
 use crate::algebra::{Bound, FreeBody, Inequality, RESULTANT_ROUNDING};
 use crate::real::Real;
 
@@ -91,8 +91,10 @@ fn present_resultant<T: Real>(body: &FreeBody, inequality: &Inequality<T>) -> f6
 /// bounds left out. Else these bounds act, and the next solve has them.
 pub(crate) fn solve_with_kernel<T: Real>(
     inequality: &Inequality<T>,
+    guess: &InitialGuess<T>,
     solve: impl Fn(&Inequality<T>) -> Solution<T>,
 ) -> Solution<T> {
+    guess.steps.set(0);
     if inequality.kernel.is_empty() && inequality.bodies.is_empty() {
         return solve(inequality);
     }
@@ -130,7 +132,7 @@ pub(crate) fn solve_with_kernel<T: Real>(
         let has_room = relaxed.iter().any(|(vector, _)| kernel == Some(*vector));
         tested.motion == Motion::Undecided && (has_room || !(stops_below && stops_above))
     };
-    if solution.outcome.has_iterate() && tested.iter().any(is_undecided) {
+    if solution.outcome == Outcome::Converged && tested.iter().any(is_undecided) {
         solution.outcome = Outcome::NotUnique;
         solution.algebraic_bound = None;
     }

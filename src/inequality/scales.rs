@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use crate::algebra::{Distribution, Inequality};
 use crate::parallel::vectors::map_chunks;
-use crate::real::{Real, maximum};
+use crate::real::{Precision, Real, maximum};
 
 /// The multiple of machine epsilon times the sum of the absolute values of its terms below which an energy counts as
 /// zero.
@@ -45,21 +45,20 @@ pub(super) struct Sums {
 }
 
 impl Scales {
-    /// The scales of `u`. `residual` is `b - A u`, or `c - K u - M^T p` with jump multipliers `p` if they are not
-    /// empty; `diagonal` is the positive diagonal. Numbers that are not finite give norms that are not finite.
+    /// The scales of `u`, given as `values` with the residual and the jump multipliers: `b - A u`, or `c - K u - M^T p`
+    /// with jump multipliers `p` if they are not empty. `diagonal` is the positive diagonal, `precision` that in which
+    /// the values were computed. Numbers that are not finite give norms that are not finite.
     pub fn of<T: Real>(
         inequality: &Inequality<T>,
-        u: &[T],
-        residual: &[f64],
-        jump_multipliers: &[T],
+        values: (&[T], &[f64], &[T]),
         diagonal: &(dyn Fn(usize) -> f64 + Sync),
+        precision: Precision,
     ) -> Self {
-        let values = (u, residual, jump_multipliers);
         let mut sums = Sums::of(inequality, values, diagonal, &|i| inequality.owns(i));
         if let Some(distribution) = inequality.distribution() {
             sums = sums.over_parts(distribution);
         }
-        sums.scales(T::EPSILON)
+        sums.scales(precision.epsilon())
     }
 }
 
@@ -109,7 +108,7 @@ impl Sums {
         }
         sums
     }
-    /// The scales; `epsilon` is machine epsilon of the scalar.
+    /// The scales; `epsilon` is machine epsilon of the precision.
     pub fn scales(&self, epsilon: f64) -> Scales {
         let least = VANISHING * epsilon * self.terms;
         let energy = [(self.energy, least), (self.load_energy, 0.0), (self.diagonal_energy, 0.0)]

@@ -3,7 +3,7 @@
 use super::Outcome;
 use super::stage::StageRun;
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::real::Real;
+use crate::real::{Precision, Real};
 
 /// The result of a solver of an inequality.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,9 +41,31 @@ pub struct Solution<T> {
     pub(crate) dual_residual: f64,
     /// The stages of the solver that ran, in their order; empty for a solver without stages.
     pub stages: Vec<StageRun>,
+    /// The precision in which the values were computed.
+    pub precision: Precision,
 }
 
-impl<T> Solution<T> {
+impl Solution<f32> {
+    /// The solution with values and jump multipliers as numbers in `f64`, exactly.
+    pub(super) fn widened(self) -> Solution<f64> {
+        let widen = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
+        Solution {
+            values: widen(self.values),
+            contact: self.contact,
+            outcome: self.outcome,
+            outer: self.outer,
+            linear: self.linear,
+            linear_solver: self.linear_solver,
+            algebraic_bound: self.algebraic_bound,
+            jump_multipliers: widen(self.jump_multipliers),
+            dual_residual: self.dual_residual,
+            stages: self.stages,
+            precision: self.precision,
+        }
+    }
+}
+
+impl<T: Real> Solution<T> {
     /// A result with zero iterations, the linear solver `direct`, no algebraic bound and no jump
     /// multipliers, to be completed by the setters.
     #[must_use]
@@ -59,14 +81,12 @@ impl<T> Solution<T> {
             jump_multipliers: Vec::new(),
             dual_residual: 0.0,
             stages: Vec::new(),
+            precision: T::PRECISION,
         }
     }
     /// The result of a solve that ends before the first iterate: the admissible values nearest to zero, all contact
     /// states inactive.
-    pub(crate) fn without_iterate(inequality: &Inequality<T>, outcome: Outcome) -> Self
-    where
-        T: Real,
-    {
+    pub(crate) fn without_iterate(inequality: &Inequality<T>, outcome: Outcome) -> Self {
         let nearest = |bound: &Bound<T>| bound.nearest(T::lit(0.0));
         let values: Vec<T> = inequality.bounds.iter().map(nearest).collect();
         let contact = vec![Contact::Inactive; values.len()];

@@ -4,15 +4,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The number of the present outer step of a solver, from which another thread can display the progress. Clones share
-/// the number. Solvers of this library count linear systems with a new active set, steps of the interior point method
-/// (when that method ends), and cycles of monotone multigrid.
+/// the number. Solvers of this library count linear systems with a new active set, steps of the interior point method,
+/// and cycles of monotone multigrid.
 ///
 /// ```
 /// use unilateral::inequality::StepCounter;
 /// use unilateral::prelude::*;
 /// # fn main() -> Result<(), Error> {
 /// let steps = StepCounter::default();
-/// let study = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(Sipg::default()).levels([8]);
+/// let study = Study::<2>::new(scenes::radial(1.0)).scheme(Sipg::default()).levels([8]);
 /// let report = study.steps(steps.clone()).run()?;
 /// assert_eq!(Some(steps.get()), report.rows[0].iterations.outer);
 /// # Ok(())

@@ -12,20 +12,14 @@ use super::{meshes, problems};
 use crate::algebra::SparseMatrix;
 use crate::instances::compiled;
 use crate::linear::FactorError;
-use crate::real::Real;
 
-pub(super) fn check<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<CoercivityReport, KitError> {
-    compiled!(
-        T, D: fn(&Tested<'_, T, D>) -> Result<CoercivityReport, KitError>
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<CoercivityReport, KitError> {
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<CoercivityReport, KitError>
             = check_scheme
     )(scheme)
 }
 
-fn check_scheme<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<CoercivityReport, KitError> {
+fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<CoercivityReport, KitError> {
     let (law, domain, n) = (Law::Coercivity, meshes::clamped(), meshes::subdivisions(D));
     let mut smallest = f64::INFINITY;
     // without reaction, which would help

@@ -9,29 +9,23 @@ use crate::arrays::map_entries;
 use crate::instances::compiled;
 use crate::mesh::describe_point;
 use crate::problem::Problem;
-use crate::real::{Real, point_f64};
 
 /// Rounding units that the error may have: some hundreds for the condition of a small matrix,
 /// some tens for the sums of its entries.
 const UNITS: f64 = 8192.0;
 
-pub(super) fn check<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<ConsistencyReport, KitError> {
-    compiled!(
-        T, D: fn(&Tested<'_, T, D>) -> Result<ConsistencyReport, KitError>
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<ConsistencyReport, KitError> {
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<ConsistencyReport, KitError>
             = check_scheme
     )(scheme)
 }
 
-fn check_scheme<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<ConsistencyReport, KitError> {
+fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<ConsistencyReport, KitError> {
     let (law, domain, n) = (Law::Consistency, meshes::mixed(), meshes::subdivisions(D));
     let declared = scheme.is_consistent();
     let degree = scheme.degree();
     let problem = problems::polynomial::<D>(degree);
-    let tolerance = UNITS * T::EPSILON;
+    let tolerance = UNITS * f64::EPSILON;
     let mut error = if declared { 0.0 } else { f64::INFINITY };
     for sample in [meshes::regular(law, &domain, n)?, meshes::moved(law, &domain, n)?] {
         let judged = solve_and_judge(law, scheme, &problem, &sample)?;
@@ -55,16 +49,16 @@ fn check_scheme<T: Real, const D: usize>(
 
 /// The larger of the errors at nodes and of mesh size times that of the gradient, relative to the
 /// polynomial; not a number where there is none.
-fn relative_error<T: Real, const D: usize>(
+fn relative_error<const D: usize>(
     judged: &Judged,
     problem: &Problem<D>,
-    sample: &Sample<T, D>,
+    sample: &Sample<D>,
 ) -> f64 {
     let [value, gradient] =
         map_entries([judged.errors.max, judged.errors.h1], |e| e.unwrap_or(f64::NAN));
     let vertices = sample.mesh.vertices();
     let size = vertices.iter().fold(1.0, |m, x| {
-        let value: f64 = problem.dirichlet_at(&point_f64(x));
+        let value: f64 = problem.dirichlet_at(x);
         f64::max(m, value.abs())
     });
     let gradient = gradient * sample.mesh.mesh_size();
@@ -72,21 +66,21 @@ fn relative_error<T: Real, const D: usize>(
 }
 
 /// The cell with the largest error at a vertex, and its barycentre.
-fn worst_cell<T: Real, const D: usize>(
+fn worst_cell<const D: usize>(
     judged: &Judged,
     problem: &Problem<D>,
-    sample: &Sample<T, D>,
+    sample: &Sample<D>,
 ) -> (usize, String) {
     let mesh = &sample.mesh;
     let (mut largest, mut worst) = (0.0, 0);
     for (cell, values) in judged.vertex_values.chunks_exact(D + 1).enumerate() {
         for (&v, value) in mesh.cell(cell).iter().zip(values) {
-            let exact = problem.dirichlet_at(&point_f64(&mesh.vertices()[v as usize]));
+            let exact = problem.dirichlet_at(&(mesh.vertices()[v as usize]));
             let error = (value - exact).abs();
             if error > largest {
                 (largest, worst) = (error, cell);
             }
         }
     }
-    (worst, describe_point(&point_f64(&mesh.barycentre(worst))))
+    (worst, describe_point(&(mesh.barycentre(worst))))
 }

@@ -12,18 +12,18 @@ use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
 use crate::measure::Errors;
 use crate::mesh::{BoxDomain, Mesh};
 use crate::problem::Problem;
-use crate::real::{Point, Real};
-use crate::scheme::{AnyScheme, ExpectedOrders, Regularity, Setting};
+use crate::real::Point;
+use crate::scheme::{ExpectedOrders, Regularity, Scheme, Setting};
 
 /// A scheme under test with its constraint set.
-pub(super) struct Tested<'s, T: Real, const D: usize> {
-    pub scheme: &'s dyn AnyScheme<T, D>,
+pub(super) struct Tested<'s, const D: usize> {
+    pub scheme: &'s dyn Scheme<D>,
     pub set: Arc<dyn ConstraintSet>,
 }
 
-impl<'s, T: Real, const D: usize> Tested<'s, T, D> {
+impl<'s, const D: usize> Tested<'s, D> {
     /// A scheme with bounds at its nodes.
-    pub fn new(scheme: &'s dyn AnyScheme<T, D>) -> Self {
+    pub fn new(scheme: &'s dyn Scheme<D>) -> Self {
         Self { scheme, set: Arc::new(Nodes) }
     }
     /// The problem with the constraint set.
@@ -32,8 +32,8 @@ impl<'s, T: Real, const D: usize> Tested<'s, T, D> {
     }
 }
 
-impl<'s, T: Real, const D: usize> Deref for Tested<'s, T, D> {
-    type Target = dyn AnyScheme<T, D> + 's;
+impl<'s, const D: usize> Deref for Tested<'s, D> {
+    type Target = dyn Scheme<D> + 's;
 
     fn deref(&self) -> &Self::Target {
         self.scheme
@@ -54,35 +54,35 @@ fn quadrature(degree: usize) -> DataQuadrature {
 }
 
 /// Whether the form declares itself symmetric.
-pub(super) fn is_symmetric<T: Real, const D: usize>(scheme: &dyn AnyScheme<T, D>) -> bool {
+pub(super) fn is_symmetric<const D: usize>(scheme: &dyn Scheme<D>) -> bool {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::kuhn_box(&domain, [1; D]);
     mesh.is_ok_and(|mesh| scheme.form(&mesh).is_symmetric())
 }
 
 /// The orders that the scheme promises for a smooth solution without inequalities.
-pub(super) fn promised<T: Real, const D: usize>(scheme: &dyn AnyScheme<T, D>) -> ExpectedOrders {
+pub(super) fn promised<const D: usize>(scheme: &dyn Scheme<D>) -> ExpectedOrders {
     scheme.expected_orders(&Setting::new(D, Regularity::smooth()).with_regular_dual(true))
 }
 
 /// The inequality of a problem on a mesh.
-pub(super) fn assemble<T: Real, const D: usize>(
+pub(super) fn assemble<const D: usize>(
     law: Law,
-    scheme: &Tested<'_, T, D>,
+    scheme: &Tested<'_, D>,
     problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
-) -> Result<Inequality<T>, KitError> {
+    mesh: &Mesh<D>,
+) -> Result<Inequality<f64>, KitError> {
     scheme
         .inequality(&scheme.problem(problem), mesh, quadrature(scheme.degree()))
         .map_err(|why| KitError::NotAssembled { law, why })
 }
 
 /// The solution of a linear problem.
-pub(super) fn solve<T: Real, const D: usize>(
+pub(super) fn solve<const D: usize>(
     law: Law,
-    inequality: &Inequality<T>,
-    sample: &Sample<T, D>,
-) -> Result<Vec<T>, KitError> {
+    inequality: &Inequality<f64>,
+    sample: &Sample<D>,
+) -> Result<Vec<f64>, KitError> {
     let solution = ActiveSet::default().solve(inequality);
     match solution.outcome {
         Outcome::Converged => Ok(solution.values),
@@ -91,11 +91,11 @@ pub(super) fn solve<T: Real, const D: usize>(
 }
 
 /// The discrete solution of a linear problem against the exact one.
-pub(super) fn solve_and_judge<T: Real, const D: usize>(
+pub(super) fn solve_and_judge<const D: usize>(
     law: Law,
-    scheme: &Tested<'_, T, D>,
+    scheme: &Tested<'_, D>,
     problem: &Problem<D>,
-    sample: &Sample<T, D>,
+    sample: &Sample<D>,
 ) -> Result<Judged, KitError> {
     let inequality = assemble(law, scheme, problem, &sample.mesh)?;
     let u = solve(law, &inequality, sample)?;

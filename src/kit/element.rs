@@ -2,10 +2,9 @@
 
 use super::error::KitError;
 use super::report::ElementReport;
-use crate::element::{Entity, Layout, MAX_BASIS, Node, ReferenceElement};
+use crate::element::{Element, Entity, Layout, MAX_BASIS, Node};
 use crate::mesh::edge_vertices;
 use crate::quadrature::Rule;
-use crate::real::Real;
 
 /// Largest deviation of values and derivatives, in rounding units.
 const UNITS: f64 = 256.0;
@@ -16,54 +15,31 @@ const STEP: f64 = 0.125;
 /// A functional as barycentric points with weights.
 type Terms = Vec<([f64; 4], f64)>;
 
-/// An element without its type, and the points at which its laws are tested.
-struct ErasedElement {
-    dimension: usize,
+/// An element and the points at which its laws are tested.
+struct Tested<'e, const D: usize> {
+    element: &'e dyn Element<D>,
     functions: usize,
-    degree: usize,
-    basis_degree: usize,
-    layout: Layout,
     nodes: Vec<Node>,
     /// By node, its functional, exact for the basis.
     terms: Vec<Terms>,
-    values: fn(&[f64; 4]) -> [f64; MAX_BASIS],
-    derivatives: fn(&[f64; 4]) -> [[f64; 4]; MAX_BASIS],
     points: Vec<[f64; 4]>,
 }
 
-/// Tests the laws of a reference element: as many functions as the layout has unknowns, nodes dual to
-/// basis functions and tied to the entities that own them, partition of unity, polynomials of its degree
-/// in its span, basis functions of the degree that it states, derivatives equal to those of the
-/// values. Derivatives are compared along the simplex, as they enter gradients.
+/// Tests the laws of an element: nodes dual to basis functions and tied to the entities that own them,
+/// partition of unity, polynomials of its degree in its span, basis functions of the degree that it
+/// states, derivatives equal to those of the values. Derivatives are compared along the simplex, as
+/// they enter gradients.
 ///
 /// # Errors
-/// [`KitError::LayoutCount`], [`KitError::NotDual`], [`KitError::NodeElsewhere`],
-/// [`KitError::NotPartitionOfUnity`], [`KitError::PolynomialMissing`], [`KitError::DegreeExceeded`],
-/// [`KitError::WrongDerivative`].
-pub fn check_element<T: Real, const D: usize, E: ReferenceElement<T, D>>()
--> Result<ElementReport, KitError> {
-    if E::N > MAX_BASIS {
-        let owned = E::LAYOUT.per_cell(D);
-        return Err(KitError::LayoutCount { owned, functions: E::N, limit: MAX_BASIS });
+/// [`KitError::TooManyFunctions`], [`KitError::NotANumber`], [`KitError::NotDual`],
+/// [`KitError::NodeElsewhere`], [`KitError::NotPartitionOfUnity`], [`KitError::PolynomialMissing`],
+/// [`KitError::DegreeExceeded`], [`KitError::WrongDerivative`].
+pub fn check_element<const D: usize>(element: &dyn Element<D>) -> Result<ElementReport, KitError> {
+    let functions = element.per_cell();
+    if functions > MAX_BASIS {
+        return Err(KitError::TooManyFunctions { functions, limit: MAX_BASIS });
     }
-    ErasedElement::new::<T, D, E>(Rule::new(D, 5).points).check(UNITS * T::EPSILON)
-}
-
-fn values<T: Real, const D: usize, E: ReferenceElement<T, D>>(
-    point: &[f64; 4],
-) -> [f64; MAX_BASIS] {
-    let mut out = [T::lit(0.0); MAX_BASIS];
-    E::values(&point.map(T::lit)[..=D], &mut out);
-    out.map(T::to_f64)
-}
-
-fn derivatives<T: Real, const D: usize, E: ReferenceElement<T, D>>(
-    point: &[f64; 4],
-) -> [[f64; 4]; MAX_BASIS] {
-    // not a number, so that an entry left unwritten is no zero that happens to be right
-    let mut out = [[T::lit(f64::NAN); 4]; MAX_BASIS];
-    E::derivatives(&point.map(T::lit)[..=D], &mut out);
-    out.map(|row| row.map(T::to_f64))
+    Tested::new(element, Rule::new(D, 5).points).check(UNITS * f64::EPSILON)
 }
 
 /// A functional, as points with weights, at a function.
@@ -77,44 +53,57 @@ fn polynomial(degree: usize, point: &[f64; 4]) -> f64 {
     (0.9 * a - 0.7 * b + 0.4 * c - 1.1 * d).powi(degree as i32)
 }
 
-impl ErasedElement {
-    fn new<T: Real, const D: usize, E: ReferenceElement<T, D>>(points: Vec<[f64; 4]>) -> Self {
-        let nodes: Vec<Node> = (0..E::N).map(E::node).collect();
-        let [facet_rule, cell_rule] = [D - 1, D].map(|d| Rule::new(d, E::BASIS_DEGREE));
-        Self {
-            dimension: D,
-            functions: E::N,
-            degree: E::DEGREE,
-            basis_degree: E::BASIS_DEGREE,
-            layout: E::LAYOUT,
-            terms: nodes.iter().map(|node| node.terms(&facet_rule, &cell_rule)).collect(),
-            nodes,
-            values: values::<T, D, E>,
-            derivatives: derivatives::<T, D, E>,
-            points,
-        }
+impl<'e, const D: usize> Tested<'e, D> {
+    fn new(element: &'e dyn Element<D>, points: Vec<[f64; 4]>) -> Self {
+        let nodes = element.nodes();
+        let [facet_rule, cell_rule] = [D - 1, D].map(|d| Rule::new(d, element.basis_degree()));
+        let terms = nodes.iter().map(|node| node.terms(&facet_rule, &cell_rule)).collect();
+        Self { element, functions: nodes.len(), nodes, terms, points }
+    }
+
+    // not numbers at first, so that an entry left unwritten is no zero that happens to be right
+
+    fn values_at(&self, point: &[f64; 4]) -> [f64; MAX_BASIS] {
+        let mut out = [f64::NAN; MAX_BASIS];
+        self.element.values(&point[..=D], &mut out[..self.functions]);
+        out
+    }
+
+    fn derivatives_at(&self, point: &[f64; 4]) -> [[f64; 4]; MAX_BASIS] {
+        let mut out = [[0.0; 4]; MAX_BASIS];
+        out.iter_mut().for_each(|row| row[..=D].fill(f64::NAN));
+        self.element.derivatives(&point[..=D], &mut out[..self.functions]);
+        out
     }
 
     fn check(&self, tolerance: f64) -> Result<ElementReport, KitError> {
-        let &Self { dimension, functions, degree, layout, .. } = self;
-        let owned = layout.per_cell(dimension);
-        if owned != functions {
-            return Err(KitError::LayoutCount { owned, functions, limit: MAX_BASIS });
-        }
+        self.numbers()?;
         // means of basis functions are taken by rules for the degree of the basis
         self.basis_degree(tolerance)?;
         let duality = self.duality(tolerance)?;
         self.owners()?;
         let interpolation = self.interpolation(tolerance)?;
         let derivatives = self.derivatives(tolerance)?;
+        let (functions, degree) = (self.functions, self.element.degree());
         Ok(ElementReport { functions, degree, duality, interpolation, derivatives })
+    }
+
+    /// Every function that the layout has an unknown for is written.
+    fn numbers(&self) -> Result<(), KitError> {
+        for point in &self.points {
+            let values = self.values_at(point);
+            if let Some(function) = values[..self.functions].iter().position(|v| v.is_nan()) {
+                return Err(KitError::NotANumber { function, at: self.describe(point) });
+            }
+        }
+        Ok(())
     }
 
     fn duality(&self, tolerance: f64) -> Result<f64, KitError> {
         let mut largest: f64 = 0.0;
         for (i, terms) in self.terms.iter().enumerate() {
             for j in 0..self.functions {
-                let function = |point: &[f64; 4]| (self.values)(point)[j];
+                let function = |point: &[f64; 4]| self.values_at(point)[j];
                 let found = apply(terms, &function);
                 let expected = f64::from(u8::from(i == j));
                 let difference = (found - expected).abs();
@@ -129,8 +118,8 @@ impl ErasedElement {
 
     /// Nodes of shared unknowns are tied to the vertex, edge or facet that owns the unknown.
     fn owners(&self) -> Result<(), KitError> {
-        let Layout { vertex, edge, facet, .. } = self.layout;
-        let d = self.dimension;
+        let Layout { vertex, edge, facet, .. } = self.element.layout();
+        let d = D;
         let repeat = |n: usize, of: fn(usize) -> Entity, each: usize| {
             (0..n).flat_map(move |k| std::iter::repeat_n(of(k), each))
         };
@@ -150,10 +139,10 @@ impl ErasedElement {
     /// Rules that integrate products of polynomials of the stated degree are exact for the squares
     /// of basis functions.
     fn basis_degree(&self, tolerance: f64) -> Result<(), KitError> {
-        let stated = self.basis_degree;
-        let [rule, finer] = [2 * stated, 2 * stated + 6].map(|k| Rule::new(self.dimension, k));
+        let stated = self.element.basis_degree();
+        let [rule, finer] = [2 * stated, 2 * stated + 6].map(|k| Rule::new(D, k));
         for function in 0..self.functions {
-            let square = |point: &[f64; 4]| (self.values)(point)[function].powi(2);
+            let square = |point: &[f64; 4]| self.values_at(point)[function].powi(2);
             let mean = |rule: &Rule| rule.iter().map(|(p, w)| w * square(p)).sum::<f64>();
             let (found, expected) = (mean(&rule), mean(&finer));
             if !within(found - expected, tolerance) {
@@ -167,16 +156,16 @@ impl ErasedElement {
     fn interpolation(&self, tolerance: f64) -> Result<f64, KitError> {
         let mut largest: f64 = 0.0;
         for point in &self.points {
-            let values = (self.values)(point);
+            let values = self.values_at(point);
             let sum: f64 = values[..self.functions].iter().sum();
             if !within(sum - 1.0, tolerance) {
                 return Err(KitError::NotPartitionOfUnity { at: self.describe(point), sum });
             }
-            for degree in 0..=self.degree {
+            for degree in 0..=self.element.degree() {
                 let f = |point: &[f64; 4]| polynomial(degree, point);
                 let difference = self.interpolant(&f, &values) - f(point);
                 if !within(difference, tolerance) {
-                    let (stated, at) = (self.degree, self.describe(point));
+                    let (stated, at) = (self.element.degree(), self.describe(point));
                     return Err(KitError::PolynomialMissing { degree, stated, at, difference });
                 }
                 largest = largest.max(difference.abs());
@@ -194,8 +183,8 @@ impl ErasedElement {
     fn derivatives(&self, tolerance: f64) -> Result<f64, KitError> {
         let mut largest: f64 = 0.0;
         for point in &self.points {
-            let rows = (self.derivatives)(point);
-            for from in 0..=self.dimension {
+            let rows = self.derivatives_at(point);
+            for from in 0..=D {
                 for to in 0..from {
                     let along = self.difference(point, from, to);
                     for (function, row) in rows[..self.functions].iter().enumerate() {
@@ -226,9 +215,9 @@ impl ErasedElement {
             let mut moved = *point;
             moved[from] -= steps * STEP;
             moved[to] += steps * STEP;
-            (self.values)(&moved)
+            self.values_at(&moved)
         };
-        let n = self.basis_degree.div_ceil(2).max(2);
+        let n = self.element.basis_degree().div_ceil(2).max(2);
         let mut sum = [0.0; MAX_BASIS];
         // the weights of central differences with 2 n + 1 points
         let mut weight = 1.0;
@@ -243,8 +232,7 @@ impl ErasedElement {
     }
 
     fn describe(&self, point: &[f64; 4]) -> String {
-        let coordinates: Vec<String> =
-            point[..=self.dimension].iter().map(|b| format!("{b:.3}")).collect();
+        let coordinates: Vec<String> = point[..=D].iter().map(|b| format!("{b:.3}")).collect();
         format!("({})", coordinates.join(", "))
     }
 }
@@ -273,13 +261,13 @@ mod tests {
 
     /// The polynomials `1` and `p_a p_b^(degree - 1)`, which span those of the element's degree, are
     /// reproduced.
-    fn check_monomials(element: &ErasedElement) {
-        let power = element.degree as i32 - 1;
-        for a in 0..=element.dimension {
-            for b in 0..=element.dimension {
+    fn check_monomials<const D: usize>(element: &Tested<'_, D>) {
+        let power = element.element.degree() as i32 - 1;
+        for a in 0..=D {
+            for b in 0..=D {
                 let f = |p: &[f64; 4]| if a == b { 1.0 } else { p[a] * p[b].powi(power) };
                 for point in &element.points {
-                    let found = element.interpolant(&f, &(element.values)(point));
+                    let found = element.interpolant(&f, &element.values_at(point));
                     assert!((found - f(point)).abs() < 1e-13, "{a} {b} at {point:?}: {found}");
                 }
             }
@@ -288,15 +276,15 @@ mod tests {
 
     /// Derivatives are those of the values in every barycentric coordinate, taken as independent.
     /// Central differences are exact for quadratics up to rounding.
-    fn check_partial_derivatives(element: &ErasedElement) {
+    fn check_partial_derivatives<const D: usize>(element: &Tested<'_, D>) {
         let step = 0.25;
         for point in &element.points {
-            let stated = (element.derivatives)(point);
-            for k in 0..=element.dimension {
+            let stated = element.derivatives_at(point);
+            for k in 0..=D {
                 let moved = |by: f64| {
                     let mut moved = *point;
                     moved[k] += by;
-                    (element.values)(&moved)
+                    element.values_at(&moved)
                 };
                 let (after, before) = (moved(step), moved(-step));
                 for i in 0..element.functions {
@@ -309,13 +297,9 @@ mod tests {
     }
 
     /// The laws of [`check_element`], with finer tolerances and at more points.
-    fn check<E, const D: usize>()
-    where
-        E: ReferenceElement<f64, D> + ReferenceElement<f32, D>,
-    {
-        check_element::<f64, D, E>().unwrap();
-        check_element::<f32, D, E>().unwrap();
-        let element = ErasedElement::new::<f64, D, E>(points(D));
+    fn check<const D: usize>(element: &dyn Element<D>) {
+        check_element(element).unwrap();
+        let element = Tested::new(element, points(D));
         let report = element.check(1e-13).unwrap();
         assert!(report.duality < 1e-14 && report.derivatives < 1e-13, "{report:?}");
         check_monomials(&element);
@@ -323,13 +307,13 @@ mod tests {
     }
 
     fn check_all<const D: usize>() {
-        check::<P1, D>();
-        check::<P2, D>();
-        check::<CrouzeixRaviart, D>();
-        check::<QuadraticCellMean<P2>, D>();
-        check::<Broken<P1>, D>();
-        check::<Broken<P2>, D>();
-        check::<Broken<CrouzeixRaviart>, D>();
+        check::<D>(&P1);
+        check::<D>(&P2);
+        check::<D>(&CrouzeixRaviart);
+        check::<D>(&QuadraticCellMean(P2));
+        check::<D>(&Broken(P1));
+        check::<D>(&Broken(P2));
+        check::<D>(&Broken(CrouzeixRaviart));
     }
 
     #[test]

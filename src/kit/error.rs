@@ -66,17 +66,21 @@ pub enum KitError {
         /// The mean.
         expected: f64,
     },
-    /// The layout does not own as many unknowns as there are basis functions.
-    #[error(
-        "element: the layout owns {owned} unknowns of a cell, there are {functions} basis functions (at most {limit})"
-    )]
-    LayoutCount {
+    /// The layout owns more unknowns of a cell than there may be basis functions.
+    #[error("element: the layout owns {functions} unknowns of a cell, at most {limit} are allowed")]
+    TooManyFunctions {
         /// Unknowns of a cell by its layout.
-        owned: usize,
-        /// Number of basis functions.
         functions: usize,
         /// Largest number allowed.
         limit: usize,
+    },
+    /// A basis function for which the layout has an unknown is not a number, or was not written.
+    #[error("element: basis function {function} is not a number at {at}")]
+    NotANumber {
+        /// The basis function.
+        function: usize,
+        /// The point, in barycentric coordinates.
+        at: String,
     },
     /// A node is not dual to the basis.
     #[error("element: node {node} of basis function {function} is {found:.6}, not {expected}")]
@@ -102,7 +106,7 @@ pub enum KitError {
     },
     /// A basis function has a degree above the stated one.
     #[error(
-        "element: a rule for basis functions of degree {stated} gives {found:.6e} for the mean of the square of function {function}, which is {expected:.6e}: state the degree of the basis as `BASIS_DEGREE`"
+        "element: a rule for basis functions of degree {stated} gives {found:.6e} for the mean of the square of function {function}, which is {expected:.6e}: state the degree of the basis as `basis_degree`"
     )]
     DegreeExceeded {
         /// The basis function.
@@ -342,7 +346,8 @@ impl KitError {
     pub fn law(&self) -> Law {
         match self {
             Self::RuleNotExact { .. } => Law::Quadrature,
-            Self::LayoutCount { .. }
+            Self::TooManyFunctions { .. }
+            | Self::NotANumber { .. }
             | Self::NotDual { .. }
             | Self::NodeElsewhere { .. }
             | Self::DegreeExceeded { .. }

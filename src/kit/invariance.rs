@@ -10,51 +10,41 @@ use super::report::InvarianceReport;
 use super::{meshes, problems};
 use crate::algebra::Support;
 use crate::instances::compiled;
-use crate::real::Real;
 
 /// Rounding units by which entries of matrix and load may change.
 const ENTRY_UNITS: f64 = 512.0;
 /// Rounding units by which unknowns may change, which condition magnifies.
 const SOLUTION_UNITS: f64 = 8192.0;
 
-pub(super) fn check<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<InvarianceReport, KitError> {
-    compiled!(
-        T, D: fn(&Tested<'_, T, D>) -> Result<InvarianceReport, KitError>
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<InvarianceReport, KitError> {
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<InvarianceReport, KitError>
             = check_scheme
     )(scheme)
 }
 
-fn check_scheme<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<InvarianceReport, KitError> {
+fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<InvarianceReport, KitError> {
     let law = Law::Invariance;
-    let sample = meshes::moved::<T, D>(law, &meshes::mixed(), meshes::subdivisions(D))?;
+    let sample = meshes::moved::<D>(law, &meshes::mixed(), meshes::subdivisions(D))?;
     let problem = problems::rich();
     let inequality = assemble(law, scheme, &problem, &sample.mesh)?;
     let u = solve(law, &inequality, &sample)?;
-    let before = Numbered { assembled: Assembled::of(&inequality), solution: in_f64(&u) };
+    let before = Numbered { assembled: Assembled::of(&inequality), solution: u.clone() };
     let mut report = InvarianceReport { matrix: 0.0, load: 0.0, solution: 0.0 };
     for seed in [1, 2] {
         let Renumbered { mesh, vertices, cells } = meshes::renumbered(law, &sample.mesh, seed)?;
         let other = Sample { name: "a renumbered box", mesh };
         let inequality = assemble(law, scheme, &problem, &other.mesh)?;
         let u = solve(law, &inequality, &other)?;
-        let after = Numbered { assembled: Assembled::of(&inequality), solution: in_f64(&u) };
+        let after = Numbered { assembled: Assembled::of(&inequality), solution: u.clone() };
         let new = after.numbers_of(&before, &vertices, &cells)?;
         let Numbered { assembled, .. } = &before;
-        let tolerance = ENTRY_UNITS * T::EPSILON;
+        let tolerance = ENTRY_UNITS * f64::EPSILON;
         report.matrix = report.matrix.max(matrix(assembled, &after.assembled, &new, tolerance)?);
         report.load = report.load.max(before.load(&after, &new, tolerance)?);
-        let tolerance = SOLUTION_UNITS * T::EPSILON;
+        let tolerance = SOLUTION_UNITS * f64::EPSILON;
         report.solution = report.solution.max(before.solution(&after, &new, tolerance)?);
     }
     Ok(report)
-}
-
-fn in_f64<T: Real>(u: &[T]) -> Vec<f64> {
-    u.iter().map(|x| x.to_f64()).collect()
 }
 
 /// A linear problem and its solution in one numbering.

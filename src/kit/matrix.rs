@@ -1,9 +1,8 @@
 //! What the laws need of a matrix, in `f64`.
 
 use crate::algebra::{Inequality, SparseMatrix, Support};
-use crate::real::Real;
 
-/// Matrix, load and supports in `f64`: exactly those of the scalar they were assembled in.
+/// Matrix, load and supports.
 pub(super) struct Assembled {
     pub matrix: SparseMatrix<f64>,
     pub symmetric: bool,
@@ -14,17 +13,17 @@ pub(super) struct Assembled {
 }
 
 impl Assembled {
-    pub fn of<T: Real>(inequality: &Inequality<T>) -> Self {
+    pub fn of(inequality: &Inequality<f64>) -> Self {
         let matrix = &inequality.matrix;
         let is_free = |i: &usize| inequality.bounds[*i].fixed_value().is_none();
         Self {
             matrix: SparseMatrix {
                 row_starts: matrix.row_starts.clone(),
                 columns: matrix.columns.clone(),
-                values: matrix.values.iter().map(|a| a.to_f64()).collect(),
+                values: matrix.values.clone(),
             },
             symmetric: inequality.symmetric,
-            load: inequality.assembled_load().iter().map(|b| b.to_f64()).collect(),
+            load: inequality.assembled_load().into_owned(),
             supports: inequality.supports.clone(),
             free: (0..inequality.size()).filter(is_free).map(|i| i as u32).collect(),
         }

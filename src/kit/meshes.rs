@@ -3,20 +3,20 @@
 use super::error::{KitError, Law};
 use super::split_mix::SplitMix64;
 use crate::mesh::{BoundaryPart, BoxDomain, Mesh, TaggedFacet};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// Largest displacement of a vertex along an axis, in units of the distance between neighbours.
 const SHIFT: f64 = 0.2;
 
 /// A mesh with a name for messages.
-pub(super) struct Sample<T, const D: usize> {
+pub(super) struct Sample<const D: usize> {
     pub name: &'static str,
-    pub mesh: Mesh<T, D>,
+    pub mesh: Mesh<D>,
 }
 
 /// A mesh with renumbered vertices and cells, and their numbers before.
-pub(super) struct Renumbered<T, const D: usize> {
-    pub mesh: Mesh<T, D>,
+pub(super) struct Renumbered<const D: usize> {
+    pub mesh: Mesh<D>,
     /// The old number of each vertex.
     pub vertices: Vec<u32>,
     /// The old number of each cell.
@@ -43,11 +43,11 @@ pub(super) fn mixed<const D: usize>() -> BoxDomain<D> {
 }
 
 /// The Kuhn triangulation of a box.
-pub(super) fn regular<T: Real, const D: usize>(
+pub(super) fn regular<const D: usize>(
     law: Law,
     domain: &BoxDomain<D>,
     n: usize,
-) -> Result<Sample<T, D>, KitError> {
+) -> Result<Sample<D>, KitError> {
     let mesh = Mesh::kuhn_box(domain, [n; D])
         .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
     Ok(Sample { name: "a regular box", mesh })
@@ -55,14 +55,14 @@ pub(super) fn regular<T: Real, const D: usize>(
 
 /// The Kuhn triangulation of a box with pseudo-randomly moved vertices; vertices of the boundary move
 /// along the boundary.
-pub(super) fn moved<T: Real, const D: usize>(
+pub(super) fn moved<const D: usize>(
     law: Law,
     domain: &BoxDomain<D>,
     n: usize,
-) -> Result<Sample<T, D>, KitError> {
-    let mesh = regular::<f64, D>(law, domain, n)?.mesh;
+) -> Result<Sample<D>, KitError> {
+    let mesh = regular::<D>(law, domain, n)?.mesh;
     let mut random = SplitMix64(7);
-    let move_one = |x: &Point<f64, D>| {
+    let move_one = |x: &Point<D>| {
         Point::from_fn(|k, _| {
             let shift = SHIFT * (2.0 * random.unit() - 1.0) / n as f64;
             let inside = x[k] > domain.lower[k] && x[k] < domain.upper[k];
@@ -76,10 +76,7 @@ pub(super) fn moved<T: Real, const D: usize>(
 }
 
 /// The facets of the boundary by the new numbers of their vertices.
-fn tagged<T: Real, const D: usize>(
-    mesh: &Mesh<T, D>,
-    number: impl Fn(u32) -> u32,
-) -> Vec<TaggedFacet<D>> {
+fn tagged<const D: usize>(mesh: &Mesh<D>, number: impl Fn(u32) -> u32) -> Vec<TaggedFacet<D>> {
     let tag = |facet: &crate::mesh::BoundaryFacet| {
         let mut vertices = [0; D];
         let old = mesh.facet_vertices(facet.cell as usize, facet.local as usize);
@@ -90,11 +87,11 @@ fn tagged<T: Real, const D: usize>(
 }
 
 /// A mesh with pseudo-randomly renumbered vertices and cells.
-pub(super) fn renumbered<T: Real, const D: usize>(
+pub(super) fn renumbered<const D: usize>(
     law: Law,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
     seed: u64,
-) -> Result<Renumbered<T, D>, KitError> {
+) -> Result<Renumbered<D>, KitError> {
     let mut random = SplitMix64(seed);
     let vertices = random.permutation(mesh.vertices().len());
     let cells = random.permutation(mesh.n_cells());
@@ -102,7 +99,7 @@ pub(super) fn renumbered<T: Real, const D: usize>(
     for (k, &old) in vertices.iter().enumerate() {
         new[old as usize] = k as u32;
     }
-    let points = vertices.iter().map(|&old| point_f64(&mesh.vertices()[old as usize])).collect();
+    let points = vertices.iter().map(|&old| mesh.vertices()[old as usize]).collect();
     let mut corners = Vec::with_capacity(mesh.cells().len());
     for &old in &cells {
         corners.extend(mesh.cell(old as usize).iter().map(|&v| new[v as usize]));

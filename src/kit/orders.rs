@@ -6,7 +6,6 @@ use super::report::OrdersReport;
 use super::{meshes, problems};
 use crate::instances::compiled;
 use crate::measure::observed_order;
-use crate::real::Real;
 
 /// Largest deficit of an order observed on two small meshes.
 const SLACK: f64 = 0.25;
@@ -25,23 +24,18 @@ const fn levels(dimension: usize, degree: usize) -> [usize; 2] {
     }
 }
 
-pub(super) fn check<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<OrdersReport, KitError> {
-    compiled!(
-        T, D: fn(&Tested<'_, T, D>) -> Result<OrdersReport, KitError>
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<OrdersReport, KitError> {
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<OrdersReport, KitError>
             = check_scheme
     )(scheme)
 }
 
-fn check_scheme<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<OrdersReport, KitError> {
+fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<OrdersReport, KitError> {
     let law = Law::Orders;
     let problem = problems::smooth::<D>();
     let domain = meshes::clamped();
     let errors = |level: usize| {
-        let sample = meshes::regular::<T, D>(law, &domain, level)?;
+        let sample = meshes::regular::<D>(law, &domain, level)?;
         let errors = solve_and_judge(law, scheme, &problem, &sample)?.errors;
         Ok::<_, KitError>([errors.l2, errors.h1].map(|e| e.unwrap_or(f64::NAN)))
     };
@@ -57,7 +51,7 @@ fn check_scheme<T: Real, const D: usize>(
         (scheme.is_consistent() && is_symmetric(scheme.scheme)).then_some(degree + 1.0);
     let l2_expected = promised.l2.into_iter().chain(by_duality).reduce(f64::max);
     let h1_expected = promised.h1.map_or(degree, |h1| h1.max(degree));
-    let rounding = UNITS * T::EPSILON * problem.dirichlet_at(&domain.upper);
+    let rounding = UNITS * f64::EPSILON * problem.dirichlet_at(&domain.upper);
     Ok(OrdersReport {
         h1: pair(1).order("H1", Some(h1_expected), rounding * fine_level as f64)?,
         h1_expected,

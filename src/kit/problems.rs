@@ -4,7 +4,7 @@ use crate::problem::Problem;
 use crate::real::Point;
 
 /// A direction for each number, none of them in a symmetry of the box.
-fn direction<const D: usize>(number: usize) -> Point<f64, D> {
+fn direction<const D: usize>(number: usize) -> Point<D> {
     let entries = [0.7, -0.4, 0.5, -0.8, 0.3];
     Point::from_fn(|k, _| entries[(number + 2 * k) % entries.len()])
 }
@@ -13,7 +13,7 @@ fn direction<const D: usize>(number: usize) -> Point<f64, D> {
 /// boundary data and is not the solution. The load is linear: quadrature rules that are not symmetric
 /// in the vertices of a cell integrate it exactly in every numbering.
 pub(super) fn rich<const D: usize>() -> Problem<D> {
-    let x_along = |x: &Point<f64, D>| direction::<D>(0).dot(x);
+    let x_along = |x: &Point<D>| direction::<D>(0).dot(x);
     Problem::new()
         .exact(move |x| 1.0 + x_along(x).powi(2), move |x| direction(0) * (2.0 * x_along(x)))
         .coefficient(move |x| 1.0 + 0.5 * x_along(x).sin())
@@ -25,9 +25,9 @@ pub(super) fn rich<const D: usize>() -> Problem<D> {
 /// functions.
 pub(super) fn polynomial<const D: usize>(degree: usize) -> Problem<D> {
     let alpha = 2.5;
-    let at = |m: usize, x: &Point<f64, D>| direction::<D>(m).dot(x);
-    let value = move |x: &Point<f64, D>| (0..=degree).map(|m| at(m, x).powi(m as i32)).sum();
-    let gradient = move |x: &Point<f64, D>| {
+    let at = |m: usize, x: &Point<D>| direction::<D>(m).dot(x);
+    let value = move |x: &Point<D>| (0..=degree).map(|m| at(m, x).powi(m as i32)).sum();
+    let gradient = move |x: &Point<D>| {
         let term = |m: usize| direction(m) * (m as f64 * at(m, x).powi(m as i32 - 1));
         (1..=degree).map(term).fold(Point::zeros(), |s, g| s + g)
     };
@@ -46,7 +46,7 @@ pub(super) fn polynomial<const D: usize>(degree: usize) -> Problem<D> {
 
 /// A smooth solution that is no polynomial: an exponential, largest at the upper corner.
 pub(super) fn smooth<const D: usize>() -> Problem<D> {
-    let value = |x: &Point<f64, D>| direction::<D>(0).dot(x).exp();
+    let value = |x: &Point<D>| direction::<D>(0).dot(x).exp();
     Problem::new()
         .exact(value, move |x| direction(0) * value(x))
         .source(move |x| -direction::<D>(0).norm_squared() * value(x))

@@ -96,8 +96,6 @@ pub struct KitReport {
     pub scheme: String,
     /// Dimension of space.
     pub dimension: usize,
-    /// Name of the scalar.
-    pub scalar: &'static str,
     /// The element.
     pub element: ElementReport,
     /// Symmetry.
@@ -118,7 +116,7 @@ impl fmt::Display for KitReport {
         let declared = |holds: bool, word: &str| {
             if holds { word.to_owned() } else { format!("not {word}") }
         };
-        writeln!(f, "{} in {} dimensions, {}", self.scheme, self.dimension, self.scalar)?;
+        writeln!(f, "{} in {} dimensions", self.scheme, self.dimension)?;
         writeln!(
             f,
             "  element      {} functions of degree {}, duality {:.1e}, interpolation {:.1e}, derivatives {:.1e}",

@@ -6,26 +6,20 @@ use super::matrix::{Assembled, row_sizes};
 use super::report::SymmetryReport;
 use super::{meshes, problems};
 use crate::instances::compiled;
-use crate::real::Real;
 
 /// Rounding units by which an entry may differ from its mirror image.
 const UNITS: f64 = 256.0;
 
-pub(super) fn check<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<SymmetryReport, KitError> {
-    compiled!(
-        T, D: fn(&Tested<'_, T, D>) -> Result<SymmetryReport, KitError>
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<SymmetryReport, KitError> {
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<SymmetryReport, KitError>
             = check_scheme
     )(scheme)
 }
 
-fn check_scheme<T: Real, const D: usize>(
-    scheme: &Tested<'_, T, D>,
-) -> Result<SymmetryReport, KitError> {
+fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<SymmetryReport, KitError> {
     let sample = meshes::moved(Law::Symmetry, &meshes::mixed(), meshes::subdivisions(D))?;
     let inequality = assemble(Law::Symmetry, scheme, &problems::rich(), &sample.mesh)?;
-    compare(&Assembled::of(&inequality), UNITS * T::EPSILON)
+    compare(&Assembled::of(&inequality), UNITS * f64::EPSILON)
 }
 
 fn compare(assembled: &Assembled, tolerance: f64) -> Result<SymmetryReport, KitError> {

@@ -15,11 +15,11 @@ pub(crate) struct Admissible<'d, const D: usize> {
     /// At the vertices.
     pub values: [f64; 4],
     /// The gradient of the linear interpolant.
-    pub gradient: Point<f64, D>,
+    pub gradient: Point<D>,
     /// For quadratics, by edge, four times the value at the midpoint less that of the linear interpolant.
     pub excess: Option<[f64; 6]>,
     /// The gradients of the barycentric coordinates.
-    pub gradients: [Point<f64, D>; 4],
+    pub gradients: [Point<D>; 4],
     /// The obstacles, lower and upper one.
     pub bounds: [Option<DatumRef<'d, D>>; 2],
     /// The diameter of the cell.
@@ -28,7 +28,7 @@ pub(crate) struct Admissible<'d, const D: usize> {
 
 impl<const D: usize> Admissible<'_, D> {
     /// Value and gradient at a point, by barycentric coordinates and in space.
-    pub fn at(&self, point: &[f64; 4], x: &Point<f64, D>) -> (f64, Point<f64, D>) {
+    pub fn at(&self, point: &[f64; 4], x: &Point<D>) -> (f64, Point<D>) {
         let mut value = self.values.iter().zip(point).map(|(v, b)| v * b).sum();
         let mut gradient = self.gradient;
         if let Some(excess) = &self.excess {
@@ -55,7 +55,7 @@ impl<const D: usize> Admissible<'_, D> {
     }
     /// Whether the function has the value of an obstacle at some of the corners of its cell and not at all of them:
     /// the obstacle may exceed it in a part of the cell that is small.
-    pub fn touches_in_part(&self, corner: impl Fn(usize) -> Point<f64, D>) -> bool {
+    pub fn touches_in_part(&self, corner: impl Fn(usize) -> Point<D>) -> bool {
         self.bounds.iter().flatten().any(|bound| {
             let touches = |k: &usize| bound.at(&corner(*k)) == self.values[*k];
             (1..=D).contains(&(0..D + 1).filter(touches).count())

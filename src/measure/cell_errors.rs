@@ -16,7 +16,7 @@ use crate::mesh::edge_vertices;
 use crate::parallel::cells;
 use crate::problem::DatumRef;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule};
-use crate::real::{Point, Real, maximum, point_f64};
+use crate::real::{Point, maximum};
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
 /// limit what it measures. Cells that the exact free boundary or a jump of load, coefficient or reaction
@@ -64,28 +64,28 @@ const MEAN_DEGREE: usize = 5;
 pub(crate) type Counts<'c> = &'c (dyn Fn(usize) -> bool + Sync);
 
 /// What the errors of all cells read.
-struct Measure<'m, 'r, 'f, T: Real, const D: usize> {
-    exact: &'m Reference<'r, T, D>,
+struct Measure<'m, 'r, 'f, const D: usize> {
+    exact: &'m Reference<'r, D>,
     /// The rule of highest degree.
-    table: CellTable<f64>,
+    table: CellTable,
     /// Two rules that are tried before.
-    lower: Option<[CellTable<f64>; 2]>,
+    lower: Option<[CellTable; 2]>,
     /// The rules on cells that kinks cut, the second one for cells in which admissible functions have no kinks.
     cut_rules: Option<[CutRule; 2]>,
     /// By region the functions whose zeros are kinks.
     kinks: Vec<Kinks<D>>,
     /// The functional of each node.
     nodes: Vec<Terms>,
-    u: Option<&'m [T]>,
+    u: Option<&'m [f64]>,
     function: Option<InCells<'f, D>>,
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Squares of the errors of a vector of unknowns and of a function in cells over the cells that count.
     pub(super) fn cell_errors(
         &self,
-        exact: &Reference<'_, T, D>,
-        u: Option<&[T]>,
+        exact: &Reference<'_, D>,
+        u: Option<&[f64]>,
         function: Option<InCells<'_, D>>,
         counts: Counts<'_>,
     ) -> Result<SquaredErrors, Error> {
@@ -160,12 +160,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// What the error is integrated with in a cell.
     fn integrand_in<'c, 'f: 'c>(
         &'c self,
-        of: &'c Measure<'_, '_, 'f, T, D>,
+        of: &'c Measure<'_, '_, 'f, D>,
         cell: usize,
-    ) -> CellIntegrand<'c, T, D> {
+    ) -> CellIntegrand<'c, D> {
         let geometry = self.mesh.geometry(cell);
-        let gradients: [Point<f64, D>; 4] = tabulate(|k| match k <= D {
-            true => point_f64(geometry.gradient(k)),
+        let gradients: [Point<D>; 4] = tabulate(|k| match k <= D {
+            true => *geometry.gradient(k),
             false => Point::zeros(),
         });
         let discrete = of.u.map(|u| {
@@ -182,11 +182,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         CellIntegrand {
             exact: of.exact,
             cell,
-            volume: geometry.volume.to_f64(),
+            volume: geometry.volume,
             gradients,
             discrete,
             admissible: of.function.map(|f| f(cell)),
-            alpha: self.alpha(cell).to_f64(),
+            alpha: self.alpha(cell),
             varying: coefficient.filter(|_| self.varying_in(cell).is_some()),
             coefficient,
             reaction: self.data.reaction.of(region),
@@ -196,12 +196,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The squares of a cell by two rules; by the same one if it is the one of highest degree.
     fn squares_in(
         &self,
-        of: &Measure<'_, '_, '_, T, D>,
+        of: &Measure<'_, '_, '_, D>,
         cell: usize,
         try_lower: bool,
     ) -> Result<[Squares; 2], Error> {
         let integrand = self.integrand_in(of, cell);
-        let by_rule = |table: &CellTable<f64>| {
+        let by_rule = |table: &CellTable| {
             let CellTable { points, basis, weights } = table;
             let in_space = |point: &[f64; 4]| self.cell_point(point, cell);
             let mut sums = Squares::default();
@@ -238,7 +238,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if let Some(squares) = on_parts {
             return squares.map(|squares| [squares; 2]);
         }
-        let corner = |k: usize| point_f64(&self.mesh.vertices()[self.mesh.cell(cell)[k] as usize]);
+        let corner = |k: usize| self.mesh.vertices()[self.mesh.cell(cell)[k] as usize];
         let touches_in_part = || {
             let admissible = integrand.admissible.as_ref();
             admissible.is_some_and(|function| function.touches_in_part(corner))
@@ -268,7 +268,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// The largest error at the nodes of a cell.
-    fn largest_at_nodes(&self, of: &Measure<'_, '_, '_, T, D>, cell: usize) -> Result<f64, Error> {
+    fn largest_at_nodes(&self, of: &Measure<'_, '_, '_, D>, cell: usize) -> Result<f64, Error> {
         let Some(u) = of.u else { return Ok(0.0) };
         let mut largest = 0.0_f64;
         for (i, (node, terms)) in self.nodes.iter().zip(&of.nodes).enumerate() {
@@ -280,7 +280,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 true => value,
                 false => data::finite(value, "exact solution", &self.node_point(cell, node), cell)?,
             };
-            let error = (u[self.dofs.of(cell, i)].to_f64() - value).abs();
+            let error = (u[self.dofs.of(cell, i)] - value).abs();
             largest = maximum(largest, error);
         }
         Ok(largest)
@@ -290,7 +290,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 /// Whether a coefficient may jump within a cell with these corners, though no level says so.
 fn may_jump<const D: usize>(
     coefficient: Option<DatumRef<'_, D>>,
-    corner: impl Fn(usize) -> Point<f64, D>,
+    corner: impl Fn(usize) -> Point<D>,
 ) -> bool {
     let Some(alpha) = coefficient else { return false };
     if alpha.constant().is_some() || alpha.level().is_some() {

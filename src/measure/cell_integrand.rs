@@ -8,7 +8,7 @@ use crate::assemble::space::tables::BasisAt;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::problem::DatumRef;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// A discrete function in a cell.
 pub(super) struct LocalFunction<const D: usize> {
@@ -17,16 +17,16 @@ pub(super) struct LocalFunction<const D: usize> {
     /// The unknowns of the cell.
     pub values: [f64; MAX_BASIS],
     /// The gradient of a linear function; none for functions of a higher degree.
-    pub slope: Option<Point<f64, D>>,
+    pub slope: Option<Point<D>>,
 }
 
 /// What the error is integrated with in a cell.
-pub(super) struct CellIntegrand<'a, T: Real, const D: usize> {
-    pub exact: &'a Reference<'a, T, D>,
+pub(super) struct CellIntegrand<'a, const D: usize> {
+    pub exact: &'a Reference<'a, D>,
     pub cell: usize,
     pub volume: f64,
     /// The gradients of the barycentric coordinates.
-    pub gradients: [Point<f64, D>; 4],
+    pub gradients: [Point<D>; 4],
     /// The discrete function, if its error is measured.
     pub discrete: Option<LocalFunction<D>>,
     /// The admissible function, if its error is measured.
@@ -39,14 +39,14 @@ pub(super) struct CellIntegrand<'a, T: Real, const D: usize> {
     pub reaction: Option<DatumRef<'a, D>>,
 }
 
-impl<T: Real, const D: usize> CellIntegrand<'_, T, D> {
+impl<const D: usize> CellIntegrand<'_, D> {
     /// Adds the squares of the error at a point, with the weight of the point, to sums over points.
     pub fn add(
         &self,
         sums: &mut Squares,
-        (point, x): (&[f64; 4], &Point<f64, D>),
+        (point, x): (&[f64; 4], &Point<D>),
         weight: f64,
-        basis: &BasisAt<f64>,
+        basis: &BasisAt,
     ) {
         let weight = weight * self.volume;
         let value = self.exact.value(self.cell, x);
@@ -79,7 +79,7 @@ impl<T: Real, const D: usize> CellIntegrand<'_, T, D> {
     pub fn checked(
         &self,
         sums: Squares,
-        points: impl FnOnce() -> Vec<Point<f64, D>>,
+        points: impl FnOnce() -> Vec<Point<D>>,
     ) -> Result<Squares, Error> {
         if sums.iter().all(|square| square.is_finite()) {
             return Ok(sums);
@@ -95,8 +95,8 @@ impl<T: Real, const D: usize> CellIntegrand<'_, T, D> {
 
 impl<const D: usize> LocalFunction<D> {
     /// The gradient at a point.
-    pub fn gradient(&self, basis: &BasisAt<f64>, gradients: &[Point<f64, D>; 4]) -> Point<f64, D> {
-        let mut gradient = Point::<f64, D>::zeros();
+    pub fn gradient(&self, basis: &BasisAt, gradients: &[Point<D>; 4]) -> Point<D> {
+        let mut gradient = Point::<D>::zeros();
         for (k, of_coordinate) in gradients.iter().enumerate().take(D + 1) {
             let slope: f64 = (0..self.n).map(|i| self.values[i] * basis.derivatives[i][k]).sum();
             gradient += of_coordinate * slope;

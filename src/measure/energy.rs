@@ -9,9 +9,9 @@ use crate::error::Error;
 use crate::instances::compiled;
 use crate::parallel::cells;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// The energy of a vector of unknowns,
     ///
     /// ```text
@@ -28,20 +28,19 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
-    pub fn energy(&self, u: &[T]) -> Result<f64, Error> {
+    pub fn energy(&self, u: &[f64]) -> Result<f64, Error> {
         self.energy_of(u, &|_| true)
     }
 
     /// The energy of the cells for which `counts` is true, and of their boundary facets.
     pub(crate) fn energy_of(
         &self,
-        u: &[T],
+        u: &[f64],
         counts: &(dyn Fn(usize) -> bool + Sync),
     ) -> Result<f64, Error> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
-                &[T],
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
+                &[f64],
                 &(dyn Fn(usize) -> bool + Sync),
             ) -> Result<f64, Error>
                 = |of, u, counts| of.space.energy(u, counts)
@@ -49,8 +48,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
-    fn energy(&self, u: &[T], counts: &(dyn Fn(usize) -> bool + Sync)) -> Result<f64, Error> {
+impl<const D: usize> Space<'_, D> {
+    fn energy(&self, u: &[f64], counts: &(dyn Fn(usize) -> bool + Sync)) -> Result<f64, Error> {
         let load = self.load_by_cell()?;
         let rule = match self.has_varying_coefficient() {
             // the rule at whose points the stiffness has the coefficient
@@ -74,8 +73,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     };
                     // the gradients of barycentric coordinates sum to zero: without the common part of
                     // the slopes a constant adds no rounding
-                    let gradient = (1..=D).fold(Point::zeros(), |sum: Point<f64, D>, k| {
-                        sum + point_f64(geometry.gradient(k)) * (slope(k) - slope(0))
+                    let gradient = (1..=D).fold(Point::zeros(), |sum: Point<D>, k| {
+                        sum + geometry.gradient(k) * (slope(k) - slope(0))
                     });
                     let alpha = self.alpha_at(cell, &self.cell_point(point, cell));
                     gradients += weight * alpha * gradient.norm_squared();
@@ -86,14 +85,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     term.add(self.mesh, cell, geometry.volume, &mut products);
                     for i in 0..n {
                         for j in 0..n {
-                            reaction += local[i] * products[i][j].to_f64() * local[j];
+                            reaction += local[i] * products[i][j] * local[j];
                         }
                     }
                 }
-                sum += 0.5 * (geometry.volume.to_f64() * gradients + reaction);
+                sum += 0.5 * (geometry.volume * gradients + reaction);
                 // without sources the list is empty
                 let of_cell = load.iter().skip(cell * n).zip(&local[..n]);
-                sum -= of_cell.map(|(b, u)| b.to_f64() * u).sum::<f64>();
+                sum -= of_cell.map(|(b, u)| b * u).sum::<f64>();
             }
             sum
         });

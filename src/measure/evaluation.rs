@@ -6,22 +6,22 @@ use crate::assemble::space::tables::BasisAt;
 use crate::element::MAX_BASIS;
 use crate::instances::compiled;
 use crate::problem::Exact;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A barycentric coordinate that is negative by no more than this counts as zero.
 const ROUNDING: f64 = 1e-10;
 
 /// The function against which errors are measured.
-pub(super) enum Reference<'r, T: Real, const D: usize> {
+pub(super) enum Reference<'r, const D: usize> {
     /// A function with its gradient.
     Exact(&'r Exact<D>),
     /// A discrete function on the mesh of which the mesh of the error is a refinement.
-    Coarse { space: &'r Space<'r, T, D>, values: &'r [T], refinements: usize },
+    Coarse { space: &'r Space<'r, D>, values: &'r [f64], refinements: usize },
 }
 
-impl<T: Real, const D: usize> Reference<'_, T, D> {
+impl<const D: usize> Reference<'_, D> {
     /// The value at a point of a cell.
-    pub fn value(&self, cell: usize, x: &Point<f64, D>) -> f64 {
+    pub fn value(&self, cell: usize, x: &Point<D>) -> f64 {
         match self {
             Self::Exact(exact) => (exact.value)(x),
             Self::Coarse { space, values, refinements } => {
@@ -31,34 +31,29 @@ impl<T: Real, const D: usize> Reference<'_, T, D> {
         }
     }
     /// The gradient at a point of a cell.
-    pub fn gradient(&self, cell: usize, x: &Point<f64, D>) -> Point<f64, D> {
+    pub fn gradient(&self, cell: usize, x: &Point<D>) -> Point<D> {
         match self {
             Self::Exact(exact) => (exact.gradient)(x),
             Self::Coarse { space, values, refinements } => {
                 let cell = cell >> (D * refinements);
                 let (basis, local) = space.evaluate(cell, x, values);
                 let geometry = space.mesh.geometry(cell);
-                (0..D + 1).fold(Point::zeros(), |sum: Point<f64, D>, k| {
+                (0..D + 1).fold(Point::zeros(), |sum: Point<D>, k| {
                     let slope: f64 =
                         local.iter().zip(&basis.derivatives).map(|(c, d)| c * d[k]).sum();
-                    sum + point_f64(geometry.gradient(k)) * slope
+                    sum + geometry.gradient(k) * slope
                 })
             }
         }
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The basis at a point of a cell, and the unknowns of the cell.
-    fn evaluate(
-        &self,
-        cell: usize,
-        x: &Point<f64, D>,
-        u: &[T],
-    ) -> (BasisAt<f64>, [f64; MAX_BASIS]) {
+    fn evaluate(&self, cell: usize, x: &Point<D>, u: &[f64]) -> (BasisAt, [f64; MAX_BASIS]) {
         (self.basis_at(&self.mesh.barycentric(cell, x)), self.local_values(cell, u))
     }
-    fn value_at(&self, u: &[T], x: &Point<f64, D>) -> Option<f64> {
+    fn value_at(&self, u: &[f64], x: &Point<D>) -> Option<f64> {
         let contains = |&cell: &usize| {
             self.mesh.barycentric(cell, x)[..=D].iter().all(|&lambda| lambda >= -ROUNDING)
         };
@@ -68,15 +63,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// The value of a vector of unknowns at a point, in the first cell that contains the point; none
     /// outside the mesh. The search takes a time proportional to the number of cells.
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
-    pub fn value_at(&self, u: &[T], point: &Point<f64, D>) -> Option<f64> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &[T], &Point<f64, D>) -> Option<f64>
+    pub fn value_at(&self, u: &[f64], point: &Point<D>) -> Option<f64> {
+        compiled!(const D: fn(&Discretisation<'_, D>, &[f64], &Point<D>) -> Option<f64>
                 = |of, u, point| of.space.value_at(u, point)
         )(self, u, point)
     }
@@ -85,7 +79,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If there is no such cell, or `u` is shorter than the number of unknowns.
     #[cfg(feature = "report")]
-    pub(crate) fn value_in(&self, u: &[T], cell: usize, point: &Point<f64, D>) -> f64 {
+    pub(crate) fn value_in(&self, u: &[f64], cell: usize, point: &Point<D>) -> f64 {
         let (basis, local) = self.space.evaluate(cell, point, u);
         basis.value(&local)
     }

@@ -8,7 +8,6 @@ use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, edge_vertices};
 use crate::quadrature::facet_to_cell;
-use crate::real::{Real, point_f64};
 
 /// Fields on the cells of the mesh, for pictures.
 #[derive(Clone, Debug, Default)]
@@ -53,21 +52,20 @@ impl Fields {
     }
 }
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// Solution, obstacle, multiplier and contact set on cells, for pictures.
-    pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Fields
+    pub fn fields(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Fields {
+        compiled!(const D: fn(&Discretisation<'_, D>, &Inequality<f64>, &Solution<f64>) -> Fields
                 = |of, inequality, solution| of.space.fields(inequality, solution)
         )(self, inequality, solution)
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Fields of a solution; see `Discretisation::fields`.
-    pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
+    pub fn fields(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Fields {
         let u = &solution.values;
-        let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
+        let corner = |&v: &u32| self.mesh.vertices()[v as usize];
         let mut obstacle = Vec::new();
         for cell in (0..self.mesh.n_cells()).filter(|_| self.problem.has_obstacle()) {
             let region = self.mesh.region(cell);
@@ -117,7 +115,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// The mean of `u - g` over a facet.
-    fn mean_gap(&self, (cell, local): (usize, usize), u: &[T]) -> f64 {
+    fn mean_gap(&self, (cell, local): (usize, usize), u: &[f64]) -> f64 {
         let values = self.local_values(cell, u);
         let group = self.mesh.boundary_group(cell, local);
         let gap = group.and_then(|group| self.data.gap.of(group));
@@ -130,7 +128,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// The values of a function that is not linear on cells at the midpoints of each cell's edges, in
     /// the order of [`edge_vertices`]; none for a linear one, which its vertex values determine.
-    fn midpoint_values(&self, u: &[T]) -> Vec<f64> {
+    fn midpoint_values(&self, u: &[f64]) -> Vec<f64> {
         if self.basis_degree < 2 {
             return Vec::new();
         }

@@ -8,7 +8,6 @@ use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
 use crate::mesh::Mesh;
 use crate::problem::{Exact, Field};
-use crate::real::Real;
 
 /// The functions of a region whose zeros are kinks of the exact solution.
 pub(super) struct Kinks<const D: usize> {
@@ -19,10 +18,10 @@ impl<const D: usize> Kinks<D> {
     /// The function along whose zeros a cell is divided; `None` if no function is known. Of functions that have the
     /// same zeros in the cell it is the first one: in some scenes the free boundary and jumps of load and coefficient
     /// coincide. Of functions with different zeros it is the product.
-    pub fn level_in<T: Real>(
+    pub fn level_in(
         &self,
         rule: &CutRule,
-        mesh: &Mesh<T, D>,
+        mesh: &Mesh<D>,
         cell: usize,
     ) -> Option<Cow<'_, Field<D>>> {
         if let [level] = &self.levels[..] {
@@ -58,10 +57,10 @@ impl<const D: usize> Kinks<D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The functions whose zeros are the exact free boundary, where there is an obstacle, and the levels of load,
     /// coefficient and reaction of a region: first or second derivatives of the exact solution jump there.
-    pub(super) fn kinks(&self, exact: &Reference<'_, T, D>, region: usize) -> Kinks<D> {
+    pub(super) fn kinks(&self, exact: &Reference<'_, D>, region: usize) -> Kinks<D> {
         let Reference::Exact(Exact { contact, .. }) = exact else {
             return Kinks { levels: Vec::new() };
         };
@@ -83,7 +82,7 @@ mod tests {
     /// coordinate 1/2.
     fn level_in<const D: usize>(levels: &[&Field<D>]) -> Option<Field<D>> {
         let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let mesh = Mesh::<f64, D>::kuhn_box(&square, [1; D]).unwrap();
+        let mesh = Mesh::<D>::kuhn_box(&square, [1; D]).unwrap();
         let kinks = Kinks { levels: levels.iter().copied().cloned().collect() };
         kinks.level_in(&CutRule::new(D, 4), &mesh, 0).map(Cow::into_owned)
     }

@@ -18,9 +18,8 @@ use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::problem::Exact;
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// Errors of a vector of unknowns against the exact solution; none where there is no exact
     /// solution.
     ///
@@ -34,7 +33,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
-    pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
+    pub fn errors(&self, u: &[f64]) -> Result<Errors, Error> {
         match &self.space.problem.exact {
             Some(exact) => self.errors_against(exact, u),
             None => Ok(Errors::default()),
@@ -50,9 +49,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
-    pub fn errors_against(&self, exact: &Exact<D>, u: &[T]) -> Result<Errors, Error> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &Exact<D>, &[T]) -> Result<Errors, Error>
+    pub fn errors_against(&self, exact: &Exact<D>, u: &[f64]) -> Result<Errors, Error> {
+        compiled!(const D: fn(&Discretisation<'_, D>, &Exact<D>, &[f64]) -> Result<Errors, Error>
                 = |of, exact, u| Ok(of.squares_beside(exact, Some(u), None, &|_| true)?.norms())
         )(self, exact, u)
     }
@@ -71,14 +69,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     pub fn squared_errors(
         &self,
         exact: &Exact<D>,
-        u: &[T],
+        u: &[f64],
         counts: &(dyn Fn(usize) -> bool + Sync),
     ) -> Result<SquaredErrors, Error> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
                 &Exact<D>,
-                &[T],
+                &[f64],
                 &(dyn Fn(usize) -> bool + Sync),
             ) -> Result<SquaredErrors, Error>
                 = |of, exact, u, counts| of.squares_beside(exact, Some(u), None, counts)
@@ -89,14 +86,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// refinement after some `refinements`: L2, H1 and the maximum over the nodes of this space.
     pub(crate) fn difference(
         &self,
-        u: &[T],
-        (coarse, values, refinements): (&Discretisation<'_, T, D>, &[T], usize),
+        u: &[f64],
+        (coarse, values, refinements): (&Discretisation<'_, D>, &[f64], usize),
     ) -> Result<Errors, Error> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
-                &[T],
-                (&Discretisation<'_, T, D>, &[T], usize),
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
+                &[f64],
+                (&Discretisation<'_, D>, &[f64], usize),
             ) -> Result<Errors, Error>
                 = |of, u, (coarse, values, refinements)| {
                     let space = &coarse.space;
@@ -112,7 +108,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     pub(crate) fn squares_beside(
         &self,
         exact: &Exact<D>,
-        u: Option<&[T]>,
+        u: Option<&[f64]>,
         function: Option<InCells<'_, D>>,
         counts: Counts<'_>,
     ) -> Result<SquaredErrors, Error> {
@@ -126,21 +122,21 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The facet form at the jumps of the error, on the facets whose first cell counts.
     fn facet_error(
         &self,
-        form: &dyn FacetForm<T, D>,
+        form: &dyn FacetForm<D>,
         neighbours: &Neighbours,
-        u: &[T],
+        u: &[f64],
         counts: Counts<'_>,
     ) -> Result<f64, Error> {
         let degree = form.moments(self.basis_degree);
         let table = self.facet_table(degree);
         let moments = FacetMoments::new(D, degree, &self.facet_rule);
         let n = self.per_cell();
-        let value = |basis: &BasisAt<T>, local: &[f64; MAX_BASIS]| -> f64 {
-            local[..n].iter().zip(&basis.values).map(|(c, v)| c * v.to_f64()).sum()
+        let value = |basis: &BasisAt, local: &[f64; MAX_BASIS]| -> f64 {
+            local[..n].iter().zip(&basis.values).map(|(c, v)| c * v).sum()
         };
         let terms_of = |cell: usize, terms: &mut Vec<f64>| -> Result<(), Error> {
             let mine = self.local_values(cell, u);
@@ -152,7 +148,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                         (Some((values, usize::from(local))), Vec::new())
                     }
                     Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
-                        let group = self.mesh.boundary_group(cell, local).unwrap_or(0);
+                        let group = self.mesh.boundary_group(cell, local);
+                        let group = group.expect("a boundary facet has a group");
                         (None, self.dirichlet_moments(&moments, (cell, local), group)?)
                     }
                     Neighbour::Boundary(_) | Neighbour::Cut => continue,
@@ -167,10 +164,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let Some(view) = self.facet_view(neighbours, cell, local) else { continue };
                 let penalty = form.penalty(&view);
                 for (k, &degree) in table.degrees.iter().enumerate() {
-                    let trace = Trace { jump: T::lit(jump(k)), flux: T::lit(0.0) };
-                    let penalty = penalty * T::lit(form.moment_weight(degree));
+                    let trace = Trace { jump: jump(k), flux: 0.0 };
+                    let penalty = penalty * form.moment_weight(degree);
                     let term = view.measure * form.integrand(&view, trace, trace, penalty);
-                    terms.push(term.to_f64());
+                    terms.push(term);
                 }
             }
             Ok(())

@@ -14,7 +14,7 @@ use crate::mesh::{BoundaryPart, edge_vertices};
 use crate::parallel::cells;
 use crate::problem::{DataByGroup, DatumRef};
 use crate::quadrature::facet_to_cell;
-use crate::real::{Point, Real, point_f64};
+use crate::real::{Point, Precision};
 
 /// Beyond a bound by more than this share of the largest distance from it there is a warning.
 const SHARE_OF_DISTANCE: f64 = 0.1;
@@ -110,7 +110,7 @@ impl Penetration {
     }
 }
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// How far a discrete function lies beyond obstacles and gaps: in each cell beyond the obstacles of its region, on
     /// each contact facet beyond the gap of its group. It is looked at at vertices, midpoints of edges and the points
     /// of the rule for loads, on facets of that for Neumann data; at vertices alone where function and datum are
@@ -121,38 +121,42 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
-    pub fn penetration(&self, u: &[T]) -> Result<Option<Penetration>, Error> {
-        self.penetration_of(u, &|_| true)
+    pub fn penetration(&self, u: &[f64]) -> Result<Option<Penetration>, Error> {
+        self.penetration_of((u, Precision::Double), &|_| true)
     }
 
-    /// The penetration in the cells that count, those of a part of a mesh, and on their facets.
+    /// The penetration of values that were computed in a precision, in the cells that count, those of a part of a mesh,
+    /// and on their facets.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub(crate) fn penetration_of(
         &self,
-        u: &[T],
+        values: (&[f64], Precision),
         counts: Counts<'_>,
     ) -> Result<Option<Penetration>, Error> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
-                &[T],
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
+                (&[f64], Precision),
                 Counts<'_>,
             ) -> Result<Option<Penetration>, Error>
-                = |of, u, counts| {
+                = |of, values, counts| {
                     let is_constrained = of.problem().is_constrained();
-                    is_constrained.then(|| of.space.penetration(u, counts)).transpose()
+                    is_constrained.then(|| of.space.penetration(values, counts)).transpose()
                 }
-        )(self, u, counts)
+        )(self, values, counts)
     }
 }
 
 /// Points of a cell with the basis there.
-type Points = Vec<([f64; 4], BasisAt<f64>)>;
+type Points = Vec<([f64; 4], BasisAt)>;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
-    fn penetration(&self, u: &[T], counts: Counts<'_>) -> Result<Penetration, Error> {
+impl<const D: usize> Space<'_, D> {
+    fn penetration(
+        &self,
+        (u, precision): (&[f64], Precision),
+        counts: Counts<'_>,
+    ) -> Result<Penetration, Error> {
         let data = [&self.data.lower, &self.data.upper, &self.data.gap];
         let is_linear = self.basis_degree == 1;
         let at_vertices = data.map(|data| is_linear && self.is_affine(data));
@@ -179,13 +183,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
         let is_affine = self.has_affine_data();
-        let largest_value = u.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max);
+        let largest_value = u.iter().map(|u| u.abs()).fold(0.0, f64::max);
         // a solution that vanishes is as large as rounding of what its load would do
         let size = largest_value.max(self.size_of_load());
         Ok(Penetration {
             largest_value,
             is_affine: data.map(|data| is_affine && self.is_affine(data)),
-            rounding: T::EPSILON * ROUNDINGS * size,
+            rounding: precision.epsilon() * ROUNDINGS * size,
             ..found
         })
     }
@@ -194,9 +198,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// times the square of the diameter of the mesh.
     fn size_of_load(&self) -> f64 {
         let of_cell = |cell: usize| {
-            let x = point_f64(&self.mesh.barycentre(cell));
+            let x = self.mesh.barycentre(cell);
             let load = self.data.source.of(self.mesh.region(cell)).map_or(0.0, |f| f.at(&x));
-            load.abs() / self.alpha(cell).to_f64()
+            load.abs() / self.alpha(cell)
         };
         let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
         let largest = cells::map(self.mesh.n_cells(), &of_chunk).into_iter().fold(0.0, f64::max);
@@ -207,7 +211,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn add_penetration(
         &self,
         cell: usize,
-        u: &[T],
+        u: &[f64],
         points: &Points,
         found: &mut Penetration,
     ) -> Result<(), Error> {
@@ -234,13 +238,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         (cell, _): Place,
         gap: DatumRef<'_, D>,
-        u: &[T],
+        u: &[f64],
         points: &Points,
         found: &mut Penetration,
     ) -> Result<(), Error> {
         let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
         for (point, basis) in points {
-            let x: Point<f64, D> = in_space(point, &corners);
+            let x: Point<D> = in_space(point, &corners);
             let gap = finite(gap.at(&x), "gap", &x, cell)?;
             found.add(2, 1.0, [basis.value(&values), gap]);
         }

@@ -3,9 +3,9 @@
 use super::errors::Errors;
 use crate::algebra::Inequality;
 use crate::assemble::Discretisation;
-use crate::inequality::{positive_diagonal, stiffness_diagonal};
+use crate::inequality::{Solution, positive_diagonal, stiffness_diagonal};
 use crate::parallel::vectors::map_chunks;
-use crate::real::{Real, maximum};
+use crate::real::maximum;
 
 /// Rounding errors of a solve in the energy norm, in units of machine epsilon, where the discrete space contains the
 /// solution: up to five times less is observed.
@@ -33,16 +33,17 @@ pub struct Rounding {
     pub force: f64,
 }
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
-    /// Rounding errors in the figures of values of this energy norm, on a mesh of so many cells; none where they are
+impl<const D: usize> Discretisation<'_, D> {
+    /// Rounding errors in the figures of a solution of this energy norm, on a mesh of so many cells; none where they are
     /// not finite. All parts of a mesh call it.
     pub(crate) fn rounding(
         &self,
-        inequality: &Inequality<T>,
-        u: &[T],
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
         (cells, energy_norm): (usize, f64),
     ) -> Option<Rounding> {
-        let mut load: Vec<f64> = inequality.load.iter().map(|c| c.to_f64()).collect();
+        let (u, epsilon) = (&solution.values, solution.precision.epsilon());
+        let mut load = inequality.load.clone();
         for term in inequality.dirichlet_energy.iter().flat_map(|data| &data.terms) {
             load[term.unknown as usize] -= term.load;
         }
@@ -51,7 +52,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             for i in range.filter(|&i| inequality.owns(i)) {
                 let d = positive_diagonal(inequality, i);
                 let k = stiffness_diagonal(inequality, i);
-                largest = maximum(largest, u[i].to_f64().abs());
+                largest = maximum(largest, u[i].abs());
                 let terms = [d, k, k * k, load[i].abs(), load[i] * load[i] / k];
                 sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
             }
@@ -72,13 +73,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let of_load = if force > 0.0 { n * n * load_energy / force } else { 0.0 };
         let value = maximum(largest[0], of_load);
         let per_cell = if D == 1 || self.space.degree > 1 { PER_CELL } else { 0.0 };
-        let one = (ROUNDINGS + per_cell * n) * T::EPSILON;
+        let one = (ROUNDINGS + per_cell * n) * epsilon;
         let max = one * n * value / 16.0;
         let l2 = max * length.powf(0.5 * dimension);
         let error = Errors {
             l2: Some(l2),
             h1: Some(16.0 * l2 / length),
-            energy: Some(value * (one * stiffness.sqrt() + 0.25 * T::EPSILON * diagonal.sqrt())),
+            energy: Some(value * (one * stiffness.sqrt() + 0.25 * epsilon * diagonal.sqrt())),
             broken_energy: Some(one * value * stiffness.sqrt()),
             max: Some(max),
         };

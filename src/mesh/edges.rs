@@ -9,7 +9,6 @@ use crate::parallel::vectors::for_each_chunk_of_groups;
 use super::simplicial::Mesh;
 use super::stars::{NeighbourNumbers, VertexToCells};
 use crate::memory::in_large_pages;
-use crate::real::Real;
 
 /// Local vertices of the edges of a cell, ordered by their second vertex. A cell of dimension `D`
 /// has the first `D (D + 1) / 2` of them.
@@ -32,12 +31,12 @@ pub struct Edges {
 
 impl Edges {
     /// The edges of a mesh, in time linear in its cells.
-    pub fn new<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
+    pub fn new<const D: usize>(mesh: &Mesh<D>) -> Self {
         Self::from_cells::<D>(mesh.cells(), mesh.vertices().len(), None)
     }
     /// The edges of a mesh, and the number of every edge of every cell, ordered in each cell by the
     /// second local vertex of the edge.
-    pub fn with_cell_edges<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> (Self, Vec<u32>) {
+    pub fn with_cell_edges<const D: usize>(mesh: &Mesh<D>) -> (Self, Vec<u32>) {
         let pairs = edge_vertices(D);
         let mut ranks = in_large_pages(Vec::with_capacity(pairs.len() * mesh.n_cells()));
         ranks.resize_with(pairs.len() * mesh.n_cells(), AtomicU32::default);
@@ -102,10 +101,9 @@ impl Edges {
         &self.upper[self.first_at(a) as usize..self.first_at(a + 1) as usize]
     }
     /// The second result of [`Edges::with_cell_edges`], by a search for every edge of every cell.
-    pub fn cell_edges<T: Real, const D: usize>(&self, mesh: &Mesh<T, D>) -> Vec<u32> {
+    pub fn cell_edges<const D: usize>(&self, mesh: &Mesh<D>) -> Vec<u32> {
         let of_cell = |cell: &[u32], [i, j]: [usize; 2]| {
-            // every pair of a cell's vertices is an edge
-            self.number(cell[i], cell[j]).unwrap_or_default()
+            self.number(cell[i], cell[j]).expect("every pair of a cell's vertices is an edge")
         };
         let mut numbers = Vec::with_capacity(mesh.n_cells() * edge_vertices(D).len());
         for cell in mesh.cells().chunks_exact(D + 1) {
@@ -190,7 +188,7 @@ mod tests {
 
     fn check<const D: usize>(counts: [usize; D]) -> usize {
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let mesh = Mesh::<f64, D>::kuhn_box(&domain, counts).unwrap();
+        let mesh = Mesh::<D>::kuhn_box(&domain, counts).unwrap();
         let (edges, numbers) = Edges::with_cell_edges(&mesh);
         assert_eq!(edges, Edges::new(&mesh));
         assert_eq!(numbers, edges.cell_edges(&mesh));

@@ -181,15 +181,13 @@ pub enum MeshError {
     },
     /// The rounding of its new vertex changes the shape of half a cell.
     #[error(
-        "cell {cell} cannot be bisected at {at}: the rounding of {scalar} changes the volume of its halves; mark no cell there"
+        "cell {cell} cannot be bisected at {at}: rounding changes the volume of its halves; mark no cell there"
     )]
     TooSmallToBisect {
         /// The cell of the mesh before the bisection.
         cell: usize,
         /// The new vertex, as coordinates in parentheses.
         at: String,
-        /// The scalar of the mesh.
-        scalar: &'static str,
     },
 }
 

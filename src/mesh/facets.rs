@@ -11,7 +11,6 @@ use super::error::MeshError;
 use super::simplicial::Mesh;
 use super::stars::{NeighbourNumbers, VertexToCells};
 use crate::memory::in_large_pages;
-use crate::real::Real;
 
 /// The other side of a facet of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,10 +56,9 @@ fn half_facet_code(cell: usize, local: usize) -> u32 {
 
 impl Neighbours {
     /// The neighbours in a mesh, in time linear in its cells.
-    pub fn new<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
-        // the matching of a mesh succeeds: `Mesh::new` has made it
+    pub fn new<const D: usize>(mesh: &Mesh<D>) -> Self {
         let mut found = Self::match_facets::<D>(mesh.cells(), mesh.vertices().len())
-            .unwrap_or_else(|_| Self { codes: Vec::new(), per_cell: D + 1 });
+            .expect("the facets of a mesh were matched when it was made");
         for f in mesh.boundary() {
             found.set(f.cell as usize, f.local as usize, f.part);
         }
@@ -216,7 +214,7 @@ pub struct Facets {
 
 impl Facets {
     /// The facets of a mesh.
-    pub fn new<T: Real, const D: usize>(mesh: &Mesh<T, D>, neighbours: &Neighbours) -> Self {
+    pub fn new<const D: usize>(mesh: &Mesh<D>, neighbours: &Neighbours) -> Self {
         let n = (mesh.cells().len() + mesh.boundary().len()) / 2;
         let mut half_facets = in_large_pages(Vec::with_capacity(n));
         for here in 0..mesh.n_cells() {

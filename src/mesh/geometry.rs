@@ -1,34 +1,34 @@
 //! The affine geometry of one cell.
 
 use super::simplicial::Mesh;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// Volume of a cell and gradients of its barycentric coordinates.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
-pub struct CellGeometry<T, const D: usize> {
+pub struct CellGeometry<const D: usize> {
     /// The cell's `D`-dimensional measure.
-    pub volume: T,
-    gradients: [Point<T, D>; 4],
+    pub volume: f64,
+    gradients: [Point<D>; 4],
     is_positive: bool,
 }
 
-impl<T: Real, const D: usize> CellGeometry<T, D> {
+impl<const D: usize> CellGeometry<D> {
     /// The geometry of the simplex with these `D + 1` corners.
     ///
     /// The gradients of a simplex without volume are zero; no mesh has such cells.
     #[inline(always)]
-    pub fn new(corner: impl Fn(usize) -> Point<T, D>) -> Self {
+    pub fn new(corner: impl Fn(usize) -> Point<D>) -> Self {
         const { assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only") }
         let origin = corner(0);
         let edge = |k: usize| corner(k + 1) - origin;
         let mut gradients = [Point::zeros(); 4];
-        let zero = T::lit(0.0);
+        let zero = 0.0;
         let determinant;
         match D {
             1 => {
                 determinant = edge(0)[0];
-                gradients[1][0] = T::lit(1.0);
+                gradients[1][0] = 1.0;
             }
             2 => {
                 let (a, b) = (edge(0), edge(1));
@@ -44,14 +44,14 @@ impl<T: Real, const D: usize> CellGeometry<T, D> {
                 determinant = a.dot(&gradients[1]);
             }
         }
-        let inverse = if determinant == zero { zero } else { T::lit(1.0) / determinant };
+        let inverse = if determinant == zero { zero } else { 1.0 / determinant };
         for k in 1..=D {
             gradients[k] *= inverse;
             let gradient = gradients[k];
             gradients[0] -= gradient;
         }
         let magnitude = if determinant < zero { -determinant } else { determinant };
-        let volume = magnitude / T::lit(FACTORIAL[D]);
+        let volume = magnitude / FACTORIAL[D];
         Self { volume, gradients, is_positive: determinant > zero }
     }
 
@@ -63,28 +63,28 @@ impl<T: Real, const D: usize> CellGeometry<T, D> {
 
     /// The gradient of barycentric coordinate `i`.
     #[inline(always)]
-    pub fn gradient(&self, i: usize) -> &Point<T, D> {
+    pub fn gradient(&self, i: usize) -> &Point<D> {
         &self.gradients[i]
     }
     /// The height over facet `i`: `1 / |gradient i|`.
     #[inline(always)]
-    pub fn height(&self, i: usize) -> T {
-        T::lit(1.0) / self.gradients[i].norm()
+    pub fn height(&self, i: usize) -> f64 {
+        1.0 / self.gradients[i].norm()
     }
     /// The outward unit normal of facet `i`.
     #[inline(always)]
-    pub fn normal(&self, i: usize) -> Point<T, D> {
+    pub fn normal(&self, i: usize) -> Point<D> {
         self.gradients[i] * -self.height(i)
     }
     /// The `(D - 1)`-dimensional measure of facet `i`; one in one dimension.
     #[inline(always)]
-    pub fn facet_measure(&self, i: usize) -> T {
-        if D == 1 { T::lit(1.0) } else { T::lit(D as f64) * self.volume * self.gradients[i].norm() }
+    pub fn facet_measure(&self, i: usize) -> f64 {
+        if D == 1 { 1.0 } else { (D as f64) * self.volume * self.gradients[i].norm() }
     }
     /// The measure of the whole boundary of the cell.
     #[inline(always)]
-    pub fn surface(&self) -> T {
-        (0..D + 1).fold(T::lit(0.0), |s, i| s + self.facet_measure(i))
+    pub fn surface(&self) -> f64 {
+        (0..D + 1).fold(0.0, |s, i| s + self.facet_measure(i))
     }
 }
 
@@ -92,49 +92,49 @@ const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
 
 /// The vector product; meaningful for `D = 3` only.
 #[inline(always)]
-fn cross<T: Real, const D: usize>(a: &Point<T, D>, b: &Point<T, D>) -> Point<T, D> {
-    let at = |v: &Point<T, D>, k: usize| v[k % D.max(1)];
+fn cross<const D: usize>(a: &Point<D>, b: &Point<D>) -> Point<D> {
+    let at = |v: &Point<D>, k: usize| v[k % D.max(1)];
     Point::from_fn(|k, _| at(a, k + 1) * at(b, k + 2) - at(a, k + 2) * at(b, k + 1))
 }
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// The geometry of a cell.
     #[inline(always)]
-    pub fn geometry(&self, c: usize) -> CellGeometry<T, D> {
+    pub fn geometry(&self, c: usize) -> CellGeometry<D> {
         let cell = self.cell(c);
         CellGeometry::new(|k| self.vertices[cell[k] as usize])
     }
     /// The barycentric coordinates of a point in a cell, and zeros.
-    pub(crate) fn barycentric(&self, c: usize, x: &Point<f64, D>) -> [f64; 4] {
+    pub(crate) fn barycentric(&self, c: usize, x: &Point<D>) -> [f64; 4] {
         let geometry = self.geometry(c);
         let mut lambda = [0.0; 4];
         for ((k, coordinate), &v) in lambda.iter_mut().enumerate().zip(self.cell(c)) {
-            let from = x - point_f64(&self.vertices[v as usize]);
-            *coordinate = 1.0 + point_f64(geometry.gradient(k)).dot(&from);
+            let from = x - (self.vertices[v as usize]);
+            *coordinate = 1.0 + geometry.gradient(k).dot(&from);
         }
         lambda
     }
     /// The point of a cell with these barycentric coordinates.
     #[inline(always)]
-    pub fn point(&self, c: usize, barycentric: &[T]) -> Point<T, D> {
+    pub fn point(&self, c: usize, barycentric: &[f64]) -> Point<D> {
         self.cell(c)
             .iter()
             .zip(barycentric)
             .fold(Point::zeros(), |x, (&v, &b)| x + self.vertices[v as usize] * b)
     }
     /// The barycentre of a facet.
-    pub fn facet_barycentre(&self, c: usize, local: usize) -> Point<T, D> {
+    pub fn facet_barycentre(&self, c: usize, local: usize) -> Point<D> {
         let sum = self
             .facet_vertices(c, local)
-            .fold(Point::zeros(), |s: Point<T, D>, v| s + self.vertices[v as usize]);
-        sum / T::lit(D as f64)
+            .fold(Point::zeros(), |s: Point<D>, v| s + self.vertices[v as usize]);
+        sum / (D as f64)
     }
     /// The largest distance of two vertices of a facet: the length of an edge in two dimensions,
     /// the diameter of a triangle in three; zero in one.
     #[inline(always)]
-    pub fn facet_diameter(&self, c: usize, local: usize) -> T {
+    pub fn facet_diameter(&self, c: usize, local: usize) -> f64 {
         let cell = self.cell(c);
-        let mut largest = T::lit(0.0);
+        let mut largest = 0.0;
         for i in 0..=D {
             for j in 0..i {
                 if i != local && j != local {
@@ -149,7 +149,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
 }
 
 /// The coordinates of a point in parentheses, for messages.
-pub(crate) fn describe_point<const D: usize>(x: &Point<f64, D>) -> String {
+pub(crate) fn describe_point<const D: usize>(x: &Point<D>) -> String {
     let coordinates: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
     format!("({})", coordinates.join(", "))
 }
@@ -159,10 +159,10 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    fn check<const D: usize>(corners: &[Point<f64, D>], volume: f64) {
+    fn check<const D: usize>(corners: &[Point<D>], volume: f64) {
         let geometry = CellGeometry::new(|k| corners[k]);
         assert_relative_eq!(geometry.volume, volume, max_relative = 1e-14);
-        let mut closed = Point::<f64, D>::zeros();
+        let mut closed = Point::<D>::zeros();
         for i in 0..=D {
             // duality with the corners, and normals that point away from the opposite vertex
             for j in 0..=D {

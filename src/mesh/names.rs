@@ -10,9 +10,8 @@ use super::simplicial::Mesh;
 use super::validate::is_supported;
 use crate::input::excerpt;
 use crate::instances::compiled;
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// The names of each region, by number.
     pub fn regions(&self) -> &[Vec<String>] {
         &self.groups.regions
@@ -38,15 +37,6 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// on the boundary only.
     pub fn groups_inside(&self) -> &[String] {
         &self.groups.inside
-    }
-
-    /// The mesh with the regions and boundary groups of another one, which has the same cells.
-    #[cfg(feature = "report")]
-    pub(crate) fn with_names_of<S>(mut self, other: &Mesh<S, D>) -> Self {
-        self.groups = other.groups.clone();
-        self.cell_regions.clone_from(&other.cell_regions);
-        self.boundary.clone_from(&other.boundary);
-        self
     }
 
     /// The mesh with these regions: the names of each, and the number of the region of each cell.
@@ -83,11 +73,10 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         self,
         part_of: &dyn Fn(&str) -> Option<BoundaryPart>,
     ) -> Result<Self, MeshError> {
-        compiled!(
-            T, D: fn(
-                Mesh<T, D>,
+        compiled!(const D: fn(
+                Mesh<D>,
                 &dyn Fn(&str) -> Option<BoundaryPart>,
-            ) -> Result<Mesh<T, D>, MeshError>
+            ) -> Result<Mesh<D>, MeshError>
                 = Mesh::decide_parts
         )(self, part_of)
     }

@@ -10,7 +10,7 @@ use super::simplicial::Mesh;
 use super::validate::check_size;
 use crate::instances::compiled;
 use crate::memory::in_large_pages;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// The parents of the vertices of a refined mesh. The parent of fine cell `c` is coarse cell
 /// `c / 2^D`; on [parts](super::Part::refine) this holds for the numbers of cells in the whole mesh.
@@ -88,11 +88,11 @@ const SHORTER: f64 = 1e-3;
 /// Bey's rule alone makes at most three shapes of descendants, but depends on the order of vertices,
 /// which in a mesh from a file is arbitrary, and may choose the longest diagonal. Refined Kuhn
 /// triangulations of boxes are Kuhn triangulations.
-fn children<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> Children {
+fn children<const D: usize>(mesh: &Mesh<D>, cell: usize) -> Children {
     if D < 3 {
         return CHILDREN[D - 1];
     }
-    let x = |k: usize| point_f64(&mesh.vertices[mesh.cell(cell)[k] as usize]);
+    let x = |k: usize| mesh.vertices[mesh.cell(cell)[k] as usize];
     let diagonal = |[a, b, c, d]: [usize; 4]| (x(a) + x(b) - x(c) - x(d)).norm();
     let mut best = (diagonal([0, 2, 1, 3]) * (1.0 - SHORTER), CHILDREN[2]);
     for (ends, children) in [([0, 1, 2, 3], AROUND_01_23), ([0, 3, 1, 2], AROUND_03_12)] {
@@ -135,14 +135,13 @@ fn midpoints<const D: usize>(edges: &Edges, cell: &[u32], numbers: &[u32]) -> [[
     midpoints
 }
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// Cuts every cell into `2^D` of equal volume; regions, boundary parts and groups are inherited.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`].
     pub fn refine(&self) -> Result<(Self, Refinement), MeshError> {
-        compiled!(
-            T, D: fn(&Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError>
+        compiled!(const D: fn(&Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError>
                 = Mesh::refine_uniformly
         )(self)
     }
@@ -153,7 +152,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let (edges, numbers) = Edges::with_cell_edges(self);
         let parents = parents(&edges, self.vertices.len());
         check_size(n_fine, parents.len())?;
-        let half = T::lit(0.5);
+        let half = 0.5;
         let mut vertices = vec![Point::zeros(); parents.len()];
         for_each_chunk(&mut vertices, |range, vertices| {
             for (vertex, &[a, b]) in vertices.iter_mut().zip(&parents[range]) {

@@ -6,12 +6,11 @@ use super::boundary::BoundaryFacet;
 use super::simplicial::Mesh;
 use crate::arrays::tabulate;
 use crate::parallel::vectors::collect;
-use crate::real::Real;
 
 /// Bits of each coordinate on the lattice of the curve.
 const BITS: u32 = 21;
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// The same cells with the vertices in the order in which cells name them first, and the new numbers of the
     /// vertices.
     pub(crate) fn in_order_of_cells(&self) -> (Self, Vec<u32>) {
@@ -34,9 +33,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 corner(v).partial_cmp(corner(w)).unwrap_or(Ordering::Equal)
             });
         }
-        let barycentre = |cell: &[u32]| {
-            tabulate(|k| cell.iter().map(|&v| corner(v)[k].to_f64() / (D + 1) as f64).sum())
-        };
+        let barycentre =
+            |cell: &[u32]| tabulate(|k| cell.iter().map(|&v| corner(v)[k] / (D + 1) as f64).sum());
         let points: Vec<[f64; D]> =
             collect(self.n_cells(), |c| barycentre(&sorted[c * (D + 1)..][..D + 1]));
         let order = order_along_curve(&points);

@@ -7,12 +7,12 @@ use super::boundary::{BoundaryFacet, BoundaryPart};
 use super::groups::Groups;
 use super::part::extent::Extent;
 use crate::parallel::cells;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A conforming simplicial mesh of a domain in `D` dimensions (1, 2 or 3).
 #[derive(Clone, Debug)]
-pub struct Mesh<T, const D: usize> {
-    pub(in crate::mesh) vertices: Vec<Point<T, D>>,
+pub struct Mesh<const D: usize> {
+    pub(in crate::mesh) vertices: Vec<Point<D>>,
     pub(in crate::mesh) cells: Vec<u32>,
     pub(in crate::mesh) boundary: Vec<BoundaryFacet>,
     /// Whether every component of the mesh, connected through facets, has a Dirichlet facet.
@@ -25,33 +25,14 @@ pub struct Mesh<T, const D: usize> {
     pub(in crate::mesh) whole: Option<Extent<D>>,
 }
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// Number of vertices of a cell.
     pub const CELL_VERTICES: usize = {
         assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only");
         D + 1
     };
-
-    /// The mesh with coordinates of 64 bits: the mesh itself where it has them.
-    #[cfg(feature = "report")]
-    pub(crate) fn in_double(&self) -> std::borrow::Cow<'_, Mesh<f64, D>> {
-        use std::borrow::Cow;
-        let mesh: &dyn std::any::Any = self;
-        match mesh.downcast_ref() {
-            Some(mesh) => Cow::Borrowed(mesh),
-            None => Cow::Owned(Mesh {
-                vertices: self.vertices.iter().map(point_f64).collect(),
-                cells: self.cells.clone(),
-                boundary: self.boundary.clone(),
-                is_supported: self.is_supported,
-                groups: self.groups.clone(),
-                cell_regions: self.cell_regions.clone(),
-                whole: self.whole,
-            }),
-        }
-    }
     /// Coordinates of the vertices.
-    pub fn vertices(&self) -> &[Point<T, D>] {
+    pub fn vertices(&self) -> &[Point<D>] {
         &self.vertices
     }
     /// Number of cells.
@@ -64,10 +45,10 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         &self.cells[c * Self::CELL_VERTICES..(c + 1) * Self::CELL_VERTICES]
     }
     /// The points of the vertices of a cell, zero beyond the last.
-    pub(crate) fn corners(&self, cell: usize) -> [Point<f64, D>; 4] {
+    pub(crate) fn corners(&self, cell: usize) -> [Point<D>; 4] {
         let mut corners = [Point::zeros(); 4];
         for (corner, &v) in corners.iter_mut().zip(self.cell(cell)) {
-            *corner = point_f64(&self.vertices[v as usize]);
+            *corner = self.vertices[v as usize];
         }
         corners
     }
@@ -93,17 +74,17 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         self.cell(c).iter().enumerate().filter(move |(i, _)| *i != local).map(|(_, &v)| v)
     }
     /// The barycentre of a cell.
-    pub fn barycentre(&self, c: usize) -> Point<T, D> {
+    pub fn barycentre(&self, c: usize) -> Point<D> {
         let sum = self
             .cell(c)
             .iter()
-            .fold(Point::zeros(), |s: Point<T, D>, &v| s + self.vertices[v as usize]);
-        sum / T::lit(Self::CELL_VERTICES as f64)
+            .fold(Point::zeros(), |s: Point<D>, &v| s + self.vertices[v as usize]);
+        sum / (Self::CELL_VERTICES as f64)
     }
     /// The largest distance of two vertices of a cell.
-    pub fn cell_diameter(&self, c: usize) -> T {
+    pub fn cell_diameter(&self, c: usize) -> f64 {
         let cell = self.cell(c);
-        let mut largest = T::lit(0.0);
+        let mut largest = 0.0;
         for (i, &a) in cell.iter().enumerate() {
             for &b in &cell[..i] {
                 let d = (self.vertices[a as usize] - self.vertices[b as usize]).norm_squared();
@@ -120,7 +101,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 for (i, &a) in cell.iter().enumerate() {
                     for &b in &cell[..i] {
                         let edge = self.vertices[a as usize] - self.vertices[b as usize];
-                        shortest = shortest.min(edge.norm_squared().to_f64());
+                        shortest = shortest.min(edge.norm_squared());
                     }
                 }
             }
@@ -160,13 +141,13 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
     }
     pub(in crate::mesh) fn largest_cell_diameter(&self) -> f64 {
-        (0..self.n_cells()).map(|c| self.cell_diameter(c).to_f64()).fold(0.0, f64::max)
+        (0..self.n_cells()).map(|c| self.cell_diameter(c)).fold(0.0, f64::max)
     }
     /// The ends of the smallest box around the vertices.
-    pub(in crate::mesh) fn own_box(&self) -> [Point<f64, D>; 2] {
-        let first = point_f64(&self.vertices[0]);
-        self.vertices.iter().map(point_f64).fold([first; 2], |[lower, upper], x| {
-            [lower.zip_map(&x, f64::min), upper.zip_map(&x, f64::max)]
+    pub(in crate::mesh) fn own_box(&self) -> [Point<D>; 2] {
+        let first = self.vertices[0];
+        self.vertices.iter().fold([first; 2], |[lower, upper], x| {
+            [lower.zip_map(x, f64::min), upper.zip_map(x, f64::max)]
         })
     }
 }

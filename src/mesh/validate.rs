@@ -14,7 +14,7 @@ use crate::arrays::tabulate;
 use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::parallel::cells;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A facet of the boundary by its `D` vertices, in any order, and its part of the boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub struct GroupedFacet<const D: usize> {
     pub group: u16,
 }
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// A mesh from vertices, cells (`D + 1` vertices each, in any order) and the parts of its
     /// boundary facets.
     ///
@@ -46,7 +46,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// overlaps where one of the lines through boundary facets meets them: through all up to 64, through eight
     /// from 512 facets on.
     pub fn new(
-        vertices: Vec<Point<f64, D>>,
+        vertices: Vec<Point<D>>,
         cells: Vec<u32>,
         boundary: &[TaggedFacet<D>],
     ) -> Result<Self, MeshError> {
@@ -64,23 +64,22 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// As [`Mesh::new`], and [`MeshError::Parameter`] for a number of a group without a name.
     pub fn with_groups(
-        vertices: Vec<Point<f64, D>>,
+        vertices: Vec<Point<D>>,
         cells: Vec<u32>,
         boundary: &[GroupedFacet<D>],
         names: &[String],
     ) -> Result<Self, MeshError> {
-        compiled!(
-            T, D: fn(
-                Vec<Point<f64, D>>,
+        compiled!(const D: fn(
+                Vec<Point<D>>,
                 Vec<u32>,
                 &[GroupedFacet<D>],
                 &[String],
-            ) -> Result<Mesh<T, D>, MeshError>
+            ) -> Result<Mesh<D>, MeshError>
                 = Mesh::from_lists
         )(vertices, cells, boundary, names)
     }
     fn from_lists(
-        vertices: Vec<Point<f64, D>>,
+        vertices: Vec<Point<D>>,
         mut cells: Vec<u32>,
         boundary: &[GroupedFacet<D>],
         names: &[String],
@@ -89,9 +88,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         for cell in cells.chunks_exact_mut(D + 1) {
             cell.sort_unstable();
         }
-        let rounded: Vec<Point<T, D>> =
-            vertices.iter().map(|x| Point::from_fn(|k, _| T::lit(x[k]))).collect();
-        let is_positive = check_volumes::<T, D>(&rounded, &cells)?;
+        let rounded: Vec<Point<D>> = vertices.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
+        let is_positive = check_volumes::<D>(&rounded, &cells)?;
         let neighbours = Neighbours::match_facets::<D>(&cells, vertices.len())?;
         check_folds::<D>(&cells, &neighbours, &is_positive)?;
         let (boundary, groups) = match_boundary(&vertices, &cells, &neighbours, (boundary, names))?;
@@ -114,7 +112,7 @@ pub(super) fn is_supported(neighbours: &Neighbours, boundary: &[BoundaryFacet]) 
     (0..neighbours.n_cells()).all(|cell| has_dirichlet[components.find(cell)])
 }
 
-fn check_lists<const D: usize>(vertices: &[Point<f64, D>], cells: &[u32]) -> Result<(), MeshError> {
+fn check_lists<const D: usize>(vertices: &[Point<D>], cells: &[u32]) -> Result<(), MeshError> {
     let per_cell = D + 1;
     if cells.is_empty() {
         return Err(MeshError::NoCells { dimension: D });
@@ -149,13 +147,13 @@ pub(super) fn check_size(cells: usize, vertices: usize) -> Result<(), MeshError>
 
 /// Refuses cells whose volume is at the rounding level of its diameter: their gradients are lost.
 /// Returns whether the determinant of the edges of each cell is positive.
-fn check_volumes<T: Real, const D: usize>(
-    vertices: &[Point<T, D>],
+fn check_volumes<const D: usize>(
+    vertices: &[Point<D>],
     cells: &[u32],
 ) -> Result<Vec<bool>, MeshError> {
     let check = |c: usize| {
         let cell = &cells[c * (D + 1)..][..D + 1];
-        let corner = |k: usize| point_f64(&vertices[cell[k] as usize]);
+        let corner = |k: usize| vertices[cell[k] as usize];
         let geometry = CellGeometry::new(corner);
         let volume = geometry.volume;
         let mut diameter = 0.0_f64;
@@ -166,7 +164,7 @@ fn check_volumes<T: Real, const D: usize>(
         }
         let scaled = volume / diameter.powi(D as i32);
         // overflow and underflow count as degenerate
-        if scaled.is_nan() || scaled <= 8.0 * T::EPSILON {
+        if scaled.is_nan() || scaled <= 8.0 * f64::EPSILON {
             let vertices = cell.to_vec();
             return Err(MeshError::DegenerateCell { cell: c, vertices, volume, diameter });
         }
@@ -192,7 +190,7 @@ fn part_of(names: &[String]) -> Option<BoundaryPart> {
 
 /// Gives every facet of the boundary its group and part.
 fn match_boundary<const D: usize>(
-    vertices: &[Point<f64, D>],
+    vertices: &[Point<D>],
     cells: &[u32],
     neighbours: &Neighbours,
     (grouped, names): (&[GroupedFacet<D>], &[String]),
@@ -255,7 +253,7 @@ fn match_boundary<const D: usize>(
     let mut groups = Vec::new();
     for (&(key, cell, local), set) in open.iter().zip(set_of) {
         let Some(set) = set else {
-            let sum = key.iter().fold(Point::<f64, D>::zeros(), |s, &v| s + vertices[v as usize]);
+            let sum = key.iter().fold(Point::<D>::zeros(), |s, &v| s + vertices[v as usize]);
             let at = describe_point(&(sum / D as f64));
             let coincident = coincident(vertices, &open, key);
             return Err(MeshError::UntaggedFacet { vertices: key.to_vec(), cell, at, coincident });
@@ -281,7 +279,7 @@ fn match_boundary<const D: usize>(
 
 /// How many facets of the boundary lie on others, if this one does.
 fn coincident<const D: usize>(
-    vertices: &[Point<f64, D>],
+    vertices: &[Point<D>],
     open: &[OpenFacet<D>],
     facet: [u32; D],
 ) -> usize {
@@ -293,10 +291,10 @@ fn coincident<const D: usize>(
     }
 }
 
-fn drop_unused<T: Real, const D: usize>(
-    mut vertices: Vec<Point<T, D>>,
+fn drop_unused<const D: usize>(
+    mut vertices: Vec<Point<D>>,
     mut cells: Vec<u32>,
-) -> (Vec<Point<T, D>>, Vec<u32>) {
+) -> (Vec<Point<D>>, Vec<u32>) {
     let mut number = vec![0_u32; vertices.len()];
     for &v in &cells {
         number[v as usize] = 1;

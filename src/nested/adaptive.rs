@@ -14,17 +14,16 @@ use crate::error_bound::ErrorBound;
 use crate::instances::compiled;
 use crate::mesh::MeshError;
 use crate::problem::Problem;
-use crate::real::Real;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// A step of adaptive refinement: the solution on one mesh of the sequence.
 #[derive(Debug)]
 #[non_exhaustive]
-pub struct AdaptiveStep<'a, T: Real, const D: usize> {
+pub struct AdaptiveStep<'a, const D: usize> {
     /// Number of refinements, and position of the mesh.
     pub number: usize,
     /// The solution; [`Solved::bound`] has its bound.
-    pub solved: Solved<'a, T, D>,
+    pub solved: Solved<'a, D>,
     /// Why this step is the last one; none if another follows.
     pub stop: Option<Stop>,
     /// Seconds of assembly, of solves with their starts, and of bounds with marking, of this step and all
@@ -34,7 +33,7 @@ pub struct AdaptiveStep<'a, T: Real, const D: usize> {
     pub(crate) bound_seconds: f64,
 }
 
-impl<T: Real, const D: usize> AdaptiveStep<'_, T, D> {
+impl<const D: usize> AdaptiveStep<'_, D> {
     /// Seconds of this step and all before: meshes, assembly, solves, bounds.
     pub fn seconds(&self) -> f64 {
         let mesh = self.solved.mesh_seconds;
@@ -48,10 +47,10 @@ impl<T: Real, const D: usize> AdaptiveStep<'_, T, D> {
 ///
 /// Conforming P1 starts each step from its solution on the mesh before, with values and contact carried to
 /// new vertices; every other scheme from conforming P1 on the same mesh.
-pub struct AdaptiveIteration<'a, T: Real, const D: usize> {
-    nested: NestedIteration<'a, T, D>,
-    meshes: &'a AdaptiveMeshes<T, D>,
-    scheme: &'a dyn AnyScheme<T, D>,
+pub struct AdaptiveIteration<'a, const D: usize> {
+    nested: NestedIteration<'a, D>,
+    meshes: &'a AdaptiveMeshes<D>,
+    scheme: &'a dyn Scheme<D>,
     adaptivity: Adaptivity,
     /// The position of the next step; none after the last one.
     next: Option<usize>,
@@ -60,7 +59,7 @@ pub struct AdaptiveIteration<'a, T: Real, const D: usize> {
     bound_seconds: f64,
 }
 
-impl<T: Real, const D: usize> fmt::Debug for AdaptiveIteration<'_, T, D> {
+impl<const D: usize> fmt::Debug for AdaptiveIteration<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("AdaptiveIteration")
             .field("scheme", &self.scheme.name())
@@ -78,7 +77,7 @@ impl<T: Real, const D: usize> fmt::Debug for AdaptiveIteration<'_, T, D> {
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
 /// let membrane = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.2);
-/// let meshes = AdaptiveMeshes::new(Mesh::<f64, 2>::kuhn_box(&square, [4, 4])?);
+/// let meshes = AdaptiveMeshes::new(Mesh::<2>::kuhn_box(&square, [4, 4])?);
 /// let sipg = Sipg::default();
 /// let steps = adapt(&membrane, &meshes, &sipg, Adaptivity::to_bound(0.5))?;
 /// let steps = steps.collect::<Result<Vec<_>, _>>()?;
@@ -93,16 +92,16 @@ impl<T: Real, const D: usize> fmt::Debug for AdaptiveIteration<'_, T, D> {
 ///
 /// # Errors
 /// Those of [`AdaptiveIteration::new`].
-pub fn adapt<'a, T: Real, const D: usize>(
+pub fn adapt<'a, const D: usize>(
     problem: &'a Problem<D>,
-    meshes: &'a AdaptiveMeshes<T, D>,
-    scheme: &'a dyn AnyScheme<T, D>,
+    meshes: &'a AdaptiveMeshes<D>,
+    scheme: &'a dyn Scheme<D>,
     adaptivity: Adaptivity,
-) -> Result<AdaptiveIteration<'a, T, D>, Error> {
+) -> Result<AdaptiveIteration<'a, D>, Error> {
     AdaptiveIteration::new(NestedIteration::new(problem, meshes), scheme, adaptivity)
 }
 
-impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
+impl<'a, const D: usize> AdaptiveIteration<'a, D> {
     /// The refinement for a scheme, with the settings of a nested iteration on [`AdaptiveMeshes`], from their
     /// finest mesh on.
     ///
@@ -110,8 +109,8 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
     /// [`Error::Parameter`] for other meshes and for settings out of range, [`Error::NotAdaptive`] for a scheme
     /// without a bound.
     pub fn new(
-        nested: NestedIteration<'a, T, D>,
-        scheme: &'a dyn AnyScheme<T, D>,
+        nested: NestedIteration<'a, D>,
+        scheme: &'a dyn Scheme<D>,
         adaptivity: Adaptivity,
     ) -> Result<Self, Error> {
         adaptivity.check()?;
@@ -138,9 +137,9 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         })
     }
 
-    fn step(&mut self, number: usize) -> Result<AdaptiveStep<'a, T, D>, Error> {
+    fn step(&mut self, number: usize) -> Result<AdaptiveStep<'a, D>, Error> {
         let mut solved = self.nested.solve_scheme(number, self.scheme)?;
-        self.assemble_seconds += solved.assemble_seconds;
+        self.assemble_seconds += solved.system().assemble_seconds;
         let bound = self.bound(&solved);
         let stop = self.stop(number, &solved, bound.as_ref())?;
         self.solve_seconds += solved.solve_seconds;
@@ -170,7 +169,7 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
     }
 
     /// The bound of a solution.
-    fn bound(&mut self, solved: &Solved<'a, T, D>) -> Option<ErrorBound> {
+    fn bound(&mut self, solved: &Solved<'a, D>) -> Option<ErrorBound> {
         self.nested.enter(Phase::Bound);
         let clock = Instant::now();
         let bound = solved.bound().ok();
@@ -182,7 +181,7 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
     fn stop(
         &mut self,
         number: usize,
-        solved: &Solved<'a, T, D>,
+        solved: &Solved<'a, D>,
         bound: Option<&ErrorBound>,
     ) -> Result<Option<Stop>, Error> {
         if !solved.converged() {
@@ -219,16 +218,15 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
     }
 }
 
-impl<'a, T: Real, const D: usize> Iterator for AdaptiveIteration<'a, T, D> {
-    type Item = Result<AdaptiveStep<'a, T, D>, Error>;
+impl<'a, const D: usize> Iterator for AdaptiveIteration<'a, D> {
+    type Item = Result<AdaptiveStep<'a, D>, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let number = self.next.take()?;
-        let step = compiled!(
-            T, D: for<'n, 'p> fn(
-                &'n mut AdaptiveIteration<'p, T, D>,
+        let step = compiled!(const D: for<'n, 'p> fn(
+                &'n mut AdaptiveIteration<'p, D>,
                 usize,
-            ) -> Result<AdaptiveStep<'p, T, D>, Error>
+            ) -> Result<AdaptiveStep<'p, D>, Error>
                 = |iteration, number| iteration.step(number)
         );
         Some(step(self, number))

@@ -9,7 +9,6 @@ use crate::instances::compiled;
 use crate::linear::Prolongation;
 use crate::mesh::{BisectedMesh, Mesh};
 use crate::parallel::once;
-use crate::real::Real;
 
 /// A mesh has at least so many times the vertices of the next coarser level of multigrid. A cycle then
 /// takes at most three times the work of one on the finest level alone, whatever a step refines.
@@ -27,7 +26,7 @@ const HALF: f64 = 0.375;
 /// use unilateral::prelude::*;
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// let scene = scenes::radial::<2>(1.0);
-/// let meshes = AdaptiveMeshes::new(scene.domain.mesh::<f64>(4)?);
+/// let meshes = AdaptiveMeshes::new(scene.domain.mesh(4)?);
 /// let coarse = meshes.mesh(0);
 /// meshes.bisect(&[0, 5])?;
 /// assert!(meshes.n_meshes() == 2 && meshes.finest().n_cells() > coarse.n_cells());
@@ -35,8 +34,8 @@ const HALF: f64 = 0.375;
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct AdaptiveMeshes<T, const D: usize> {
-    coarsest: MeshOfSequence<T, D>,
+pub struct AdaptiveMeshes<const D: usize> {
+    coarsest: MeshOfSequence<D>,
 }
 
 /// A mesh of the sequence.
@@ -44,10 +43,10 @@ pub struct AdaptiveMeshes<T, const D: usize> {
 /// Bisection appends vertices, so that neighbours are far apart in its list. The mesh that is solved on has
 /// its vertices in the order of cells: smoothers work on neighbours of near numbers.
 #[derive(Debug)]
-pub(super) struct MeshOfSequence<T, const D: usize> {
+pub(super) struct MeshOfSequence<const D: usize> {
     /// The mesh with its vertices in the order in which they came to be.
-    bisected: BisectedMesh<T, D>,
-    mesh: Mesh<T, D>,
+    bisected: BisectedMesh<D>,
+    mesh: Mesh<D>,
     /// The numbers that the vertices of `bisected` have in `mesh`.
     numbers: Vec<u32>,
     /// The parents of the vertices that the mesh before does not have, in the numbers of `bisected`.
@@ -55,12 +54,12 @@ pub(super) struct MeshOfSequence<T, const D: usize> {
     /// Seconds for this mesh and all before.
     seconds: f64,
     /// The prolongation from the next coarser level of multigrid, computed on demand.
-    prolongation: OnceLock<Arc<Prolongation<T>>>,
+    prolongation: OnceLock<Arc<Prolongation<f64>>>,
     finer: OnceLock<Box<Self>>,
 }
 
-impl<T: Real, const D: usize> MeshOfSequence<T, D> {
-    pub fn mesh(&self) -> &Mesh<T, D> {
+impl<const D: usize> MeshOfSequence<D> {
+    pub fn mesh(&self) -> &Mesh<D> {
         &self.mesh
     }
     fn n_vertices(&self) -> usize {
@@ -68,9 +67,9 @@ impl<T: Real, const D: usize> MeshOfSequence<T, D> {
     }
 }
 
-impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
+impl<const D: usize> AdaptiveMeshes<D> {
     /// A sequence of one mesh.
-    pub fn new(mesh: Mesh<T, D>) -> Self {
+    pub fn new(mesh: Mesh<D>) -> Self {
         let clock = Instant::now();
         let coarsest = MeshOfSequence {
             bisected: BisectedMesh::new(mesh.clone()),
@@ -84,10 +83,10 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         Self { coarsest }
     }
 
-    fn steps(&self) -> impl Iterator<Item = &MeshOfSequence<T, D>> {
+    fn steps(&self) -> impl Iterator<Item = &MeshOfSequence<D>> {
         successors(Some(&self.coarsest), |step| step.finer.get().map(|finer| &**finer))
     }
-    fn step(&self, position: usize) -> &MeshOfSequence<T, D> {
+    fn step(&self, position: usize) -> &MeshOfSequence<D> {
         match self.steps().nth(position) {
             Some(step) => step,
             None => panic!("there are {} meshes, none at position {position}", self.n_meshes()),
@@ -103,12 +102,12 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
     /// # Panics
     /// If there is no such mesh.
     #[must_use]
-    pub fn mesh(&self, position: usize) -> &Mesh<T, D> {
+    pub fn mesh(&self, position: usize) -> &Mesh<D> {
         self.step(position).mesh()
     }
     /// The finest mesh.
     #[must_use]
-    pub fn finest(&self) -> &Mesh<T, D> {
+    pub fn finest(&self) -> &Mesh<D> {
         self.mesh(self.n_meshes() - 1)
     }
     /// Seconds in which a mesh and all before were made.
@@ -124,8 +123,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
     /// [`Error::Mesh`] as for [`BisectedMesh::bisect`], [`Error::Parameter`] if another thread adds a mesh
     /// meanwhile.
     pub fn bisect(&self, marked: &[usize]) -> Result<(), Error> {
-        compiled!(
-            T, D: fn(&AdaptiveMeshes<T, D>, &[usize]) -> Result<(), Error>
+        compiled!(const D: fn(&AdaptiveMeshes<D>, &[usize]) -> Result<(), Error>
                 = |meshes, marked| meshes.bisect_finest(marked)
         )(self, marked)
     }
@@ -133,7 +131,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         self.add(self.bisected(marked)?)
     }
     /// The mesh that [`Self::bisect`] adds.
-    pub(super) fn bisected(&self, marked: &[usize]) -> Result<MeshOfSequence<T, D>, Error> {
+    pub(super) fn bisected(&self, marked: &[usize]) -> Result<MeshOfSequence<D>, Error> {
         let clock = Instant::now();
         let finest = self.step(self.n_meshes() - 1);
         let (mut bisected, bisection) = finest.bisected.bisect(marked)?;
@@ -158,7 +156,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         })
     }
     /// Adds a bisection of the finest mesh.
-    pub(super) fn add(&self, step: MeshOfSequence<T, D>) -> Result<(), Error> {
+    pub(super) fn add(&self, step: MeshOfSequence<D>) -> Result<(), Error> {
         let finest = self.step(self.n_meshes() - 1);
         finest.finer.set(Box::new(step)).map_err(|_| Error::Parameter {
             parameter: "marked cells",
@@ -189,10 +187,13 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
 
     /// The next coarser level of multigrid: the position of the finest mesh with few enough vertices, and
     /// the prolongation of conforming linear functions from there.
-    pub(super) fn coarser_level(&self, position: usize) -> Option<(usize, &Arc<Prolongation<T>>)> {
+    pub(super) fn coarser_level(
+        &self,
+        position: usize,
+    ) -> Option<(usize, &Arc<Prolongation<f64>>)> {
         let step = self.step(position);
         let few = step.n_vertices() as f64 / GROWTH;
-        let is_coarser = |step: &MeshOfSequence<T, D>| step.n_vertices() as f64 <= few;
+        let is_coarser = |step: &MeshOfSequence<D>| step.n_vertices() as f64 <= few;
         let coarser = self.steps().take(position).take_while(|step| is_coarser(step)).count();
         let coarser = coarser.checked_sub(1)?;
         let prolongation = once(&step.prolongation, || {
@@ -209,15 +210,15 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
 }
 
 /// The cells of a bisected mesh that are half of a marked cell.
-fn halves<T: Real, const D: usize>(
-    old: &Mesh<T, D>,
-    new: &Mesh<T, D>,
+fn halves<const D: usize>(
+    old: &Mesh<D>,
+    new: &Mesh<D>,
     ancestors: &[u32],
     marked: &[usize],
 ) -> Vec<usize> {
     let mut is_marked = vec![false; old.n_cells()];
     marked.iter().for_each(|&cell| is_marked[cell] = true);
-    let volume = |mesh: &Mesh<T, D>, cell: usize| mesh.geometry(cell).volume.to_f64();
+    let volume = |mesh: &Mesh<D>, cell: usize| mesh.geometry(cell).volume;
     let is_half = |&(cell, &ancestor): &(usize, &u32)| {
         let ancestor = ancestor as usize;
         is_marked[ancestor] && volume(new, cell) > HALF * volume(old, ancestor)

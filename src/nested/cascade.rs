@@ -3,7 +3,6 @@
 use crate::algebra::{Bound, Inequality};
 use crate::inequality::{InequalitySolver, InitialGuess, MonotoneMultigrid, Solution};
 use crate::linear::{CoarseLevel, CoarseSpaces, Prolongation};
-use crate::real::Real;
 
 /// Relative tolerance in the energy norm on each space.
 const ENERGY_TOLERANCE: f64 = 1e-3;
@@ -16,20 +15,19 @@ const MAX_CYCLES: usize = 60;
 ///
 /// A coarse function is bound by the means of the bounds over its children: the coarse solution need not be
 /// admissible, because the solver projects its starting values.
-pub(super) fn solve_cascade<T: Real>(
-    inequality: &Inequality<T>,
-    coarser: Option<&CoarseLevel<T>>,
-) -> Solution<T> {
+pub(super) fn solve_cascade(
+    inequality: &Inequality<f64>,
+    coarser: Option<&CoarseLevel<f64>>,
+) -> Solution<f64> {
     let mut guess = InitialGuess::default().energy_tolerance(ENERGY_TOLERANCE);
     if let Some(coarser) = coarser {
         let (level, prolongation) = (coarser.level(), coarser.prolongation());
-        let data = inequality.bounds.iter().map(|b| b.fixed_value().unwrap_or(T::lit(0.0)));
-        let mut values: Vec<T> = data.collect();
+        let data = inequality.bounds.iter().map(|b| b.fixed_value().unwrap_or(0.0));
+        let mut values: Vec<f64> = data.collect();
         let mut residual = vec![0.0; values.len()];
         inequality.residual_f64(&values, &mut residual);
         let mut load = vec![0.0; level.size()];
         prolongation.restrict(&residual, &mut load);
-        let load = load.into_iter().map(T::lit).collect();
         let bounds = (0..level.size()).map(|j| mean_bound(&inequality.bounds, prolongation, j));
         let coarse = Inequality::new(level.matrix().clone(), true, load, bounds.collect());
         let solution = solve_cascade(&coarse, level.coarser());
@@ -41,17 +39,17 @@ pub(super) fn solve_cascade<T: Real>(
 }
 
 /// The means of the bounds of the children of a coarse unknown, with the weights of the prolongation.
-fn mean_bound<T: Real>(bounds: &[Bound<T>], prolongation: &Prolongation<T>, j: usize) -> Bound<T> {
+fn mean_bound(bounds: &[Bound<f64>], prolongation: &Prolongation<f64>, j: usize) -> Bound<f64> {
     let mut sums = [(0.0, 0.0); 2];
     prolongation.for_each_child(j, |i, weight| {
-        let weight = weight.to_f64().max(0.0);
+        let weight = weight.max(0.0);
         for (sum, bound) in sums.iter_mut().zip([bounds[i].lower(), bounds[i].upper()]) {
             if let Some(bound) = bound {
-                *sum = (sum.0 + weight * bound.to_f64(), sum.1 + weight);
+                *sum = (sum.0 + weight * bound, sum.1 + weight);
             }
         }
     });
-    let mean = |(sum, weight): (f64, f64)| (weight > 0.0).then(|| T::lit(sum / weight));
+    let mean = |(sum, weight): (f64, f64)| (weight > 0.0).then(|| sum / weight);
     match sums.map(mean) {
         [Some(lower), Some(upper)] if lower <= upper => Bound::Both(lower, upper),
         [Some(lower), _] => Bound::Lower(lower),

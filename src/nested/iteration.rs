@@ -1,6 +1,7 @@
 //! Nested iteration: one problem on one or several nested meshes, solved by any scheme.
 
 use std::fmt;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use super::adaptive_meshes::AdaptiveMeshes;
@@ -9,14 +10,14 @@ use super::meshes::Meshes;
 use super::p1::{P1Iteration, P1Solution};
 use super::phase::Phase;
 use super::solved::Solved;
+use super::system::{ByInequality, SystemSolver};
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, StepCounter};
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::real::Real;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
 /// One problem on nested meshes: the settings of its solves, and the conforming P1 solutions from which
 /// they start.
@@ -26,11 +27,14 @@ use crate::scheme::AnyScheme;
 /// by monotone multigrid with coarse spaces by aggregation. The P1 solutions are kept, so that several
 /// schemes on several meshes share them.
 ///
+/// On the parts of meshes that several processes share ([`Hierarchy::of_parts`]) it is the same iteration, with a
+/// [`SystemSolver`] over processes: all parts call its functions and those of its results.
+///
 /// ```
 /// use unilateral::prelude::*;
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// let scene = scenes::radial::<2>(1.0);
-/// let meshes = Hierarchy::<f64, 2>::of_domain(&scene.domain, 16)?;
+/// let meshes = Hierarchy::<2>::of_domain(&scene.domain, 16)?;
 /// let mut nested = NestedIteration::new(&scene.problem, &meshes);
 /// let p1 = nested.solve(&ConformingP1)?;
 /// let sipg = nested.solve(&Sipg::default())?;
@@ -38,13 +42,13 @@ use crate::scheme::AnyScheme;
 /// # Ok(())
 /// # }
 /// ```
-pub struct NestedIteration<'a, T: Real, const D: usize> {
-    pub(super) p1: P1Iteration<'a, T, D>,
+pub struct NestedIteration<'a, const D: usize> {
+    pub(super) p1: P1Iteration<'a, D>,
     pub(super) has_cold_start: bool,
     observer: Box<dyn Fn(Phase) + 'a>,
 }
 
-impl<T: Real, const D: usize> fmt::Debug for NestedIteration<'_, T, D> {
+impl<const D: usize> fmt::Debug for NestedIteration<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("NestedIteration")
             .field("problem", self.p1.problem)
@@ -57,16 +61,16 @@ impl<T: Real, const D: usize> fmt::Debug for NestedIteration<'_, T, D> {
     }
 }
 
-impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
+impl<'a, const D: usize> NestedIteration<'a, D> {
     /// A problem on a mesh or a hierarchy, with the active set method and the usual quadrature.
     #[must_use]
-    pub fn new(problem: &'a Problem<D>, meshes: impl Into<Meshes<'a, T, D>>) -> Self {
+    pub fn new(problem: &'a Problem<D>, meshes: impl Into<Meshes<'a, D>>) -> Self {
         let meshes = meshes.into();
         let p1 = P1Iteration {
             problem,
             solutions: vec![None; meshes.len()],
             meshes,
-            solver: Arc::new(ActiveSet::default()),
+            solver: Rc::new(ByInequality(Arc::new(ActiveSet::default()))),
             quadrature: DataQuadrature::default(),
             repeat: 1,
             steps: StepCounter::default(),
@@ -75,13 +79,19 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     }
     /// Sets the solver of the inequality.
     #[must_use]
-    pub fn solver(self, solver: impl InequalitySolver<T> + 'a) -> Self {
+    pub fn solver(self, solver: impl InequalitySolver<f64> + 'a) -> Self {
         self.shared_solver(Arc::new(solver))
     }
     /// Sets a solver of the inequality that others use too, or that was chosen at run time. P1
     /// solutions by another solver are dropped.
     #[must_use]
-    pub fn shared_solver(mut self, solver: Arc<dyn InequalitySolver<T> + 'a>) -> Self {
+    pub fn shared_solver(self, solver: Arc<dyn InequalitySolver<f64> + 'a>) -> Self {
+        self.system_solver(Rc::new(ByInequality(solver)))
+    }
+    /// Sets a solver that asks for more than the inequality, as one over several processes does. P1
+    /// solutions by another solver are dropped.
+    #[must_use]
+    pub fn system_solver(mut self, solver: Rc<dyn SystemSolver<D> + 'a>) -> Self {
         self.p1.solver = solver;
         self.p1.solutions.fill(None);
         self
@@ -133,11 +143,11 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         }
     }
     /// A mesh, by its position.
-    pub(crate) fn mesh(&self, position: usize) -> &'a Mesh<T, D> {
+    pub(crate) fn mesh(&self, position: usize) -> &'a Mesh<D> {
         self.p1.meshes.mesh(position)
     }
     /// The meshes, if they are adaptive.
-    pub(super) fn adaptive_meshes(&self) -> Option<&'a AdaptiveMeshes<T, D>> {
+    pub(super) fn adaptive_meshes(&self) -> Option<&'a AdaptiveMeshes<D>> {
         match self.p1.meshes {
             Meshes::Adaptive(meshes) => Some(meshes),
             _ => None,
@@ -147,7 +157,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     ///
     /// # Errors
     /// [`Error::NotAdaptive`] and those of [`Discretisation::new`](crate::assemble::Discretisation::new).
-    pub(crate) fn check_bound(&self, scheme: &dyn AnyScheme<T, D>) -> Result<(), Error> {
+    pub(crate) fn check_bound(&self, scheme: &dyn Scheme<D>) -> Result<(), Error> {
         let mesh = self.p1.meshes.mesh(self.p1.meshes.len() - 1);
         let of = scheme.discretise(self.p1.problem, mesh, self.p1.quadrature)?;
         of.check_flux().map_err(|why| Error::NotAdaptive {
@@ -168,10 +178,9 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     ///
     /// # Errors
     /// [`Error::Parameter`] if there is no such mesh, and those of assembly.
-    pub fn p1_solution(&mut self, position: usize) -> Result<Arc<P1Solution<T>>, Error> {
+    pub fn p1_solution(&mut self, position: usize) -> Result<Arc<P1Solution>, Error> {
         self.check_position(position)?;
-        compiled!(
-            T, D: fn(&mut NestedIteration<'_, T, D>, usize) -> Result<Arc<P1Solution<T>>, Error>
+        compiled!(const D: fn(&mut NestedIteration<'_, D>, usize) -> Result<Arc<P1Solution>, Error>
                 = |nested, position| nested.p1.solve(position)
         )(self, position)
     }
@@ -181,7 +190,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     /// # Errors
     /// Those of assembly: bad data. A solve that does not converge is no error: see
     /// [`Solved::outcome`].
-    pub fn solve(&mut self, scheme: &dyn AnyScheme<T, D>) -> Result<Solved<'a, T, D>, Error> {
+    pub fn solve(&mut self, scheme: &dyn Scheme<D>) -> Result<Solved<'a, D>, Error> {
         self.solve_on(self.p1.meshes.len() - 1, scheme)
     }
 
@@ -192,21 +201,20 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     pub fn solve_on(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-    ) -> Result<Solved<'a, T, D>, Error> {
+        scheme: &dyn Scheme<D>,
+    ) -> Result<Solved<'a, D>, Error> {
         self.check_position(position)?;
-        compiled!(
-            T, D: for<'n, 'p, 's> fn(
-                &'n mut NestedIteration<'p, T, D>,
+        compiled!(const D: for<'n, 'p, 's> fn(
+                &'n mut NestedIteration<'p, D>,
                 usize,
-                &'s dyn AnyScheme<T, D>,
-            ) -> Result<Solved<'p, T, D>, Error>
+                &'s dyn Scheme<D>,
+            ) -> Result<Solved<'p, D>, Error>
                 = |nested, position, scheme| nested.solve_scheme(position, scheme)
         )(self, position, scheme)
     }
 
     /// The hierarchy that has the mesh, and its position there.
-    pub(super) fn hierarchy(&self, position: usize) -> Option<(&'a Hierarchy<T, D>, usize)> {
+    pub(super) fn hierarchy(&self, position: usize) -> Option<(&'a Hierarchy<D>, usize)> {
         match self.p1.meshes {
             Meshes::Flat(_) | Meshes::Adaptive(_) => None,
             Meshes::Nested(hierarchy) => Some((hierarchy, position)),
@@ -232,7 +240,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
 /// use unilateral::prelude::*;
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-/// let mesh = Mesh::<f64, 2>::kuhn_box(&square, [16, 16])?;
+/// let mesh = Mesh::<2>::kuhn_box(&square, [16, 16])?;
 /// let membrane = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.2);
 /// let u = solve(&membrane, &mesh, &ConformingP1)?;
 /// assert!(u.converged() && u.certificate().largest() < 1e-9);
@@ -245,10 +253,10 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
 ///
 /// # Errors
 /// Those of [`NestedIteration::solve`].
-pub fn solve<'a, T: Real, const D: usize>(
+pub fn solve<'a, const D: usize>(
     problem: &'a Problem<D>,
-    meshes: impl Into<Meshes<'a, T, D>>,
-    scheme: &dyn AnyScheme<T, D>,
-) -> Result<Solved<'a, T, D>, Error> {
+    meshes: impl Into<Meshes<'a, D>>,
+    scheme: &dyn Scheme<D>,
+) -> Result<Solved<'a, D>, Error> {
     NestedIteration::new(problem, meshes).solve(scheme)
 }

@@ -2,14 +2,13 @@
 
 use super::iteration::NestedIteration;
 use super::solved::Solved;
-use crate::assemble::Discretisation;
+use super::system::System;
 use crate::error::Error;
 use crate::inequality::{Outcome, Solution, contact_of};
 use crate::instances::compiled;
-use crate::real::Real;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
-impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
+impl<'a, const D: usize> NestedIteration<'a, D> {
     /// The result on a mesh, by its position, for values that another program found: certificate, errors and
     /// totals. Its outcome is `converged` if the certificate is within its limits, else `not-a-solution`.
     ///
@@ -19,46 +18,44 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     pub fn judge_on(
         &self,
         position: usize,
-        scheme: &dyn AnyScheme<T, D>,
+        scheme: &dyn Scheme<D>,
         values: &[f64],
-    ) -> Result<Solved<'a, T, D>, Error> {
+    ) -> Result<Solved<'a, D>, Error> {
         self.check_position(position)?;
-        compiled!(
-            T, D: for<'n, 'p, 's, 'v> fn(
-                &'n NestedIteration<'p, T, D>,
+        compiled!(const D: for<'n, 'p, 's, 'v> fn(
+                &'n NestedIteration<'p, D>,
                 usize,
-                &'s dyn AnyScheme<T, D>,
+                &'s dyn Scheme<D>,
                 &'v [f64],
-            ) -> Result<Solved<'p, T, D>, Error>
+            ) -> Result<Solved<'p, D>, Error>
                 = |nested, position, scheme, values| nested.judge_values(position, scheme, values)
         )(self, position, scheme, values)
     }
     fn judge_values(
         &self,
         position: usize,
-        scheme: &dyn AnyScheme<T, D>,
+        scheme: &dyn Scheme<D>,
         values: &[f64],
-    ) -> Result<Solved<'a, T, D>, Error> {
-        let mesh = self.p1.meshes.mesh(position);
-        let discretisation =
-            Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature)?;
-        let inequality = discretisation.inequality()?;
+    ) -> Result<Solved<'a, D>, Error> {
+        let system = System::new(scheme, self.p1.problem, self.p1.place(position))?;
+        let inequality = system.inequality();
         if values.len() != inequality.size() {
             let allowed =
                 format!("{} has {} unknowns on this mesh", scheme.name(), inequality.size());
             let value = values.len().to_string();
             return Err(Error::Parameter { parameter: "number of values", value, allowed });
         }
-        if let Some(k) = values.iter().position(|x| !T::lit(*x).to_f64().is_finite()) {
+        if let Some(k) = values.iter().position(|x| !(*x).is_finite()) {
             let value = format!("{} at position {k}, from zero", values[k]);
-            let allowed = format!("finite numbers in {}", T::NAME);
+            let allowed = "finite numbers".to_owned();
             return Err(Error::Parameter { parameter: "values", value, allowed });
         }
-        let values: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
-        let contact = contact_of(&inequality, &values);
-        let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
+        let contact = contact_of(inequality, values);
+        let mut solution =
+            Solution::new(values.to_vec(), contact, Outcome::Converged).linear_solver("none");
+        solution.precision = self.p1.solver.precision();
         let hierarchy = self.hierarchy(position);
-        let solved = Solved::new(discretisation, inequality, solution, hierarchy);
+        let solved = Solved::new(system, solution, hierarchy);
         Ok(solved.found_elsewhere())
     }
 }

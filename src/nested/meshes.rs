@@ -4,44 +4,44 @@ use std::sync::Arc;
 
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
+use super::piece::SharedPart;
 use crate::element::Layout;
 use crate::linear::Prolongation;
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// The meshes of a problem: one mesh, or nested ones.
 ///
 /// Of several meshes the solution on a coarser one is the start on the next finer one.
 #[derive(Debug)]
 #[non_exhaustive]
-pub enum Meshes<'a, T, const D: usize> {
+pub enum Meshes<'a, const D: usize> {
     /// One mesh.
-    Flat(&'a Mesh<T, D>),
+    Flat(&'a Mesh<D>),
     /// Uniform refinements.
-    Nested(&'a Hierarchy<T, D>),
+    Nested(&'a Hierarchy<D>),
     /// Bisections; the sequence may grow.
-    Adaptive(&'a AdaptiveMeshes<T, D>),
+    Adaptive(&'a AdaptiveMeshes<D>),
 }
 
-impl<'a, T, const D: usize> From<&'a Mesh<T, D>> for Meshes<'a, T, D> {
-    fn from(mesh: &'a Mesh<T, D>) -> Self {
+impl<'a, const D: usize> From<&'a Mesh<D>> for Meshes<'a, D> {
+    fn from(mesh: &'a Mesh<D>) -> Self {
         Self::Flat(mesh)
     }
 }
 
-impl<'a, T, const D: usize> From<&'a Hierarchy<T, D>> for Meshes<'a, T, D> {
-    fn from(hierarchy: &'a Hierarchy<T, D>) -> Self {
+impl<'a, const D: usize> From<&'a Hierarchy<D>> for Meshes<'a, D> {
+    fn from(hierarchy: &'a Hierarchy<D>) -> Self {
         Self::Nested(hierarchy)
     }
 }
 
-impl<'a, T, const D: usize> From<&'a AdaptiveMeshes<T, D>> for Meshes<'a, T, D> {
-    fn from(meshes: &'a AdaptiveMeshes<T, D>) -> Self {
+impl<'a, const D: usize> From<&'a AdaptiveMeshes<D>> for Meshes<'a, D> {
+    fn from(meshes: &'a AdaptiveMeshes<D>) -> Self {
         Self::Adaptive(meshes)
     }
 }
 
-impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
+impl<'a, const D: usize> Meshes<'a, D> {
     /// Number of meshes.
     pub(super) fn len(&self) -> usize {
         match self {
@@ -51,11 +51,18 @@ impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
         }
     }
     /// A mesh by its position, zero for the coarsest.
-    pub(super) fn mesh(&self, position: usize) -> &'a Mesh<T, D> {
+    pub(super) fn mesh(&self, position: usize) -> &'a Mesh<D> {
         match self {
             Self::Flat(mesh) => mesh,
             Self::Nested(hierarchy) => hierarchy.mesh(position),
             Self::Adaptive(meshes) => meshes.mesh(position),
+        }
+    }
+    /// The part of a mesh that this process has; none if it has the whole.
+    pub(super) fn shared_part(&self, position: usize) -> Option<SharedPart<'a, D>> {
+        match self {
+            Self::Nested(hierarchy) => hierarchy.shared_part(position),
+            Self::Flat(_) | Self::Adaptive(_) => None,
         }
     }
     /// Seconds in which a mesh and all coarser ones were made; zero for one mesh.
@@ -81,7 +88,7 @@ impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
         match self {
             Self::Flat(_) => coarse.to_vec(),
             Self::Nested(hierarchy) => match hierarchy.refinement(position) {
-                Some((refinement, _)) => refinement.parents.iter().map(between).collect(),
+                Some(refinement) => refinement.parents.iter().map(between).collect(),
                 None => coarse.to_vec(),
             },
             Self::Adaptive(meshes) => meshes.continued(position, coarse, middle),
@@ -92,11 +99,11 @@ impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
     pub(super) fn coarser_level(
         &self,
         position: usize,
-    ) -> Option<(usize, &'a Arc<Prolongation<T>>)> {
+    ) -> Option<(usize, &'a Arc<Prolongation<f64>>)> {
         match self {
             Self::Flat(_) => None,
             Self::Nested(hierarchy) => {
-                hierarchy.refinement(position).map(|(_, by)| (position - 1, by))
+                hierarchy.prolongation(position).map(|by| (position - 1, by))
             }
             Self::Adaptive(meshes) => meshes.coarser_level(position),
         }
@@ -104,7 +111,7 @@ impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
 }
 
 /// Number of unknowns of a layout on a mesh.
-pub(super) fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
+pub(super) fn unknowns<const D: usize>(mesh: &Mesh<D>, layout: Layout) -> usize {
     let facets = ((D + 1) * mesh.n_cells() + mesh.boundary().len()) / 2;
     let (vertices, cells) = (mesh.vertices().len(), mesh.n_cells());
     // in space Euler's formula for a ball, which estimates the number of edges of other domains
@@ -129,7 +136,7 @@ mod tests {
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         let (mesh, problem) = (Mesh::kuhn_box(&domain, [2; D]).unwrap(), Problem::new());
         for name in ["p1", "p2", "cr", "sipg", "wopsip-p2"] {
-            let scheme = name.parse::<NamedScheme>().unwrap().make::<f64, D>();
+            let scheme = name.parse::<NamedScheme>().unwrap().make::<D>();
             let of = Discretisation::new(&*scheme, &problem, &mesh, Default::default()).unwrap();
             assert_eq!(unknowns(&mesh, scheme.layout()), of.unknowns(), "{name}, {D}");
         }

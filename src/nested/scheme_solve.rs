@@ -8,41 +8,34 @@ use super::meshes::{Meshes, unknowns};
 use super::p1::P1Solution;
 use super::phase::Phase;
 use super::solved::Solved;
-use super::warnings::{active_sets, dirichlet_jumps, no_digits_of_quadratics, short_edges};
+use super::system::System;
+use super::warnings::{
+    UNPROVEN, active_sets, dirichlet_jumps, no_digits_of_quadratics, no_digits_of_stiffness,
+    rounding_of_data, short_edges,
+};
 use crate::algebra::{Contact, Inequality, Start};
-use crate::assemble::Discretisation;
 use crate::error::Error;
 use crate::inequality::{InitialGuess, Outcome, Solution};
-use crate::mesh::Mesh;
-use crate::real::Real;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 
-impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
-    /// A scheme on a mesh, and its inequality: [`NestedIteration::repeat`] times, with the smallest time.
-    fn assembled(
-        &self,
-        scheme: &dyn AnyScheme<T, D>,
-        mesh: &'a Mesh<T, D>,
-    ) -> Result<(Discretisation<'a, T, D>, Inequality<T>, f64), Error> {
-        let discretise = || Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature);
-        let clock = Instant::now();
-        let discretisation = discretise()?;
-        let inequality = discretisation.inequality()?;
-        let mut seconds = clock.elapsed().as_secs_f64();
+impl<'a, const D: usize> NestedIteration<'a, D> {
+    /// A scheme on a mesh: [`NestedIteration::repeat`] times, with the smallest time.
+    fn system(&self, position: usize, scheme: &dyn Scheme<D>) -> Result<System<'a, D>, Error> {
+        let assemble = || System::new(scheme, self.p1.problem, self.p1.place(position));
+        let mut system = assemble()?;
         for _ in 1..self.p1.repeat {
-            let clock = Instant::now();
-            drop(discretise()?.inequality()?);
-            seconds = seconds.min(clock.elapsed().as_secs_f64());
+            let again = assemble()?;
+            system.assemble_seconds = system.assemble_seconds.min(again.assemble_seconds);
         }
-        Ok((discretisation, inequality, seconds))
+        Ok(system)
     }
 
     /// The initial guess from the start, whose contact the inequality takes.
     fn guess(
         &self,
-        start: Option<&P1Solution<T>>,
-        inequality: &mut Inequality<T>,
-    ) -> InitialGuess<T> {
+        start: Option<&P1Solution>,
+        inequality: &mut Inequality<f64>,
+    ) -> InitialGuess<f64> {
         let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
         if let Some(start) = start {
             // a start without contact stays cold: the solver must detect a body that only contact holds
@@ -59,41 +52,42 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     pub(super) fn solve_scheme(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-    ) -> Result<Solved<'a, T, D>, Error> {
+        scheme: &dyn Scheme<D>,
+    ) -> Result<Solved<'a, D>, Error> {
         self.enter(Phase::Start);
         let start = self.start(position, scheme)?;
         self.enter(Phase::Assembly);
-        let mesh = self.p1.meshes.mesh(position);
-        let (mut discretisation, mut inequality, assemble_seconds) =
-            self.assembled(scheme, mesh)?;
-        discretisation.forget_prepared();
-        let guess = self.guess(start.as_deref(), &mut inequality);
-        let mut warnings = dirichlet_jumps(self.p1.problem, mesh);
-        let penalty_below_bound = discretisation.penalty_below_bound();
-        warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
-        let is_adaptive = matches!(self.p1.meshes, Meshes::Adaptive(_));
-        if !is_adaptive {
-            let theory = discretisation.form().theory();
-            let limit = theory.rounding_limit(T::EPSILON, mesh.domain_diameter());
-            warnings.extend(short_edges(mesh, limit));
-        }
-        inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
-        let refusal = no_digits_of_quadratics(&inequality, (scheme.degree(), D));
-        self.enter(Phase::Solve);
-        let (solution, solve_seconds) = match &refusal {
-            Some(_) => (Solution::without_iterate(&inequality, Outcome::Singular), 0.0),
-            None => self.run(&mut inequality, &guess),
+        let mut system = self.system(position, scheme)?;
+        let guess = self.guess(start.as_deref(), &mut system.inequality);
+        let mut warnings = self.warnings(&system);
+        // over parts no solver takes them, and what a part finds by itself is not the same in all
+        let of_degree = (scheme.degree(), D);
+        let precision = self.p1.solver.precision();
+        let refusal = match system.part() {
+            None => no_digits_of_quadratics(&system.inequality, of_degree, precision)
+                .or_else(|| no_digits_of_stiffness(system.discretisation(), precision)),
+            Some(_) => None,
         };
+        self.enter(Phase::Solve);
+        let sent = system.sent_bytes();
+        let (solution, solve_seconds) = match &refusal {
+            Some(_) => {
+                let mut none = Solution::without_iterate(&system.inequality, Outcome::Singular);
+                none.precision = precision;
+                (none, 0.0)
+            }
+            None => self.run(&system, &guess)?,
+        };
+        let sent = system.sent_bytes() - sent;
         warnings.extend(refusal);
         warnings.extend(active_sets(&solution, self.p1.problem, scheme));
         let hierarchy = self.hierarchy(position);
-        let mut solved = Solved::new(discretisation, inequality, solution, hierarchy);
+        let mut solved = Solved::new(system, solution, hierarchy);
         solved.warnings = warnings;
         solved.mesh_seconds = self.p1.meshes.seconds(position);
-        (solved.assemble_seconds, solved.solve_seconds) = (assemble_seconds, solve_seconds);
-        let is_p1 = scheme.is_conforming_linear(mesh);
-        if is_p1 && is_adaptive {
+        (solved.solve_seconds, solved.sent_bytes) = (solve_seconds, sent);
+        let is_p1 = scheme.is_conforming_linear(solved.mesh());
+        if is_p1 && self.is_adaptive() {
             // every step of an adaptive sequence is solved: the next one starts from here
             self.p1.keep_solved(position, start.as_deref(), &solved);
         }
@@ -107,12 +101,38 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         Ok(solved)
     }
 
+    /// What a system warns of. What a part of a mesh finds by itself is not the same in all parts.
+    fn warnings(&self, system: &System<'_, D>) -> Vec<String> {
+        let inequality = &system.inequality;
+        if system.part().is_some() {
+            let is_unproven = !inequality.is_definite;
+            return is_unproven.then(|| UNPROVEN.to_owned()).into_iter().collect();
+        }
+        let (mesh, discretisation) = (system.mesh(), system.discretisation());
+        let mut warnings = dirichlet_jumps(self.p1.problem, mesh);
+        if !inequality.is_definite {
+            warnings.extend(discretisation.penalty_below_bound().map(|below| below.to_string()));
+        }
+        let precision = self.p1.solver.precision();
+        warnings.extend(rounding_of_data(inequality, precision));
+        if !self.is_adaptive() {
+            let theory = discretisation.form().theory();
+            let limit = theory.rounding_limit(precision.epsilon(), mesh.domain_diameter());
+            warnings.extend(short_edges(mesh, (limit, precision)));
+        }
+        warnings
+    }
+
+    fn is_adaptive(&self) -> bool {
+        matches!(self.p1.meshes, Meshes::Adaptive(_))
+    }
+
     /// The start: that of P1 for schemes with its unknowns, P1 on the same mesh for all other schemes.
     fn start(
         &mut self,
         position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
+        scheme: &dyn Scheme<D>,
+    ) -> Result<Option<Arc<P1Solution>>, Error> {
         let mesh = self.p1.meshes.mesh(position);
         let unknowns = unknowns(mesh, scheme.layout());
         let needs_none =
@@ -127,16 +147,20 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     }
 
     /// Solves [`NestedIteration::repeat`] times and returns the last solution with the smallest time.
-    fn run(&self, inequality: &mut Inequality<T>, guess: &InitialGuess<T>) -> (Solution<T>, f64) {
+    fn run(
+        &self,
+        system: &System<'_, D>,
+        guess: &InitialGuess<f64>,
+    ) -> Result<(Solution<f64>, f64), Error> {
         let mut seconds = f64::INFINITY;
         let mut last = None;
         for _ in 0..self.p1.repeat {
             let clock = Instant::now();
-            last = Some(self.p1.solver.solve_from(inequality, guess));
+            last = Some(self.p1.solver.solve(system, guess)?);
             seconds = seconds.min(clock.elapsed().as_secs_f64());
         }
         match last {
-            Some(solution) => (solution, seconds),
+            Some(solution) => Ok((solution, seconds)),
             None => unreachable!("at least one run"),
         }
     }

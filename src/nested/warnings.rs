@@ -2,13 +2,17 @@
 
 use super::solved::Solved;
 use crate::algebra::Inequality;
+use crate::assemble::Discretisation;
 use crate::constraint::CellMeans;
 use crate::inequality::{Outcome, Solution};
 use crate::input::excerpt;
 use crate::mesh::{BoundaryPart, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Problem};
-use crate::real::{Real, point_f64};
-use crate::scheme::AnyScheme;
+use crate::real::Precision;
+use crate::scheme::Scheme;
+
+/// The warning on a part of a mesh where nothing proves that the matrix is positive definite.
+pub(super) const UNPROVEN: &str = "no theory says that the matrix is positive definite: a penalty is below its proven bound, or a reaction is negative";
 
 /// More outer steps than a solve takes on any scene but with bounds at nodes of broken quadratics.
 const MANY_ACTIVE_SETS: usize = 28;
@@ -16,15 +20,15 @@ const MANY_ACTIVE_SETS: usize = 28;
 /// Edges shorter than a limit, on meshes that were not refined locally: conditions of matrices on bisected meshes depend on
 /// the number of cells, but for a logarithm not on the smallest one (R. E. Bank, L. R. Scott, SIAM J. Numer. Anal. 26
 /// (1989), 1383-1394).
-pub(super) fn short_edges<T: Real, const D: usize>(
-    mesh: &Mesh<T, D>,
-    limit: f64,
+pub(super) fn short_edges<const D: usize>(
+    mesh: &Mesh<D>,
+    (limit, precision): (f64, Precision),
 ) -> Option<String> {
     let shortest = mesh.shortest_edge();
     (shortest < limit).then(|| {
         format!(
             "edges of length {shortest:.1e} are below {limit:.1e}, where rounding in {} may outweigh the discretisation error",
-            T::NAME
+            precision.name()
         )
     })
 }
@@ -38,28 +42,62 @@ const NO_DIGITS: f64 = 1.0;
 /// factored for them, leaves no digit. It is machine epsilon times an upper estimate of the condition number: the largest
 /// ratio of a penalty to the stiffness, `η h^-4`, times that of the stiffness, `n^(2/D)` on `n` cells of about equal
 /// size.
-pub(super) fn no_digits_of_quadratics<T: Real>(
-    inequality: &Inequality<T>,
+pub(super) fn no_digits_of_quadratics(
+    inequality: &Inequality<f64>,
     (degree, dimension): (usize, usize),
+    precision: Precision,
 ) -> Option<String> {
     let penalised = inequality.penalised.as_ref().filter(|_| degree > 1 && dimension > 1)?;
     let n_cells = (inequality.size() / penalised.block_size) as f64;
     let ratio = penalised.largest_ratio();
-    let rounding = T::EPSILON * ratio * n_cells.powf(2.0 / dimension as f64);
+    let rounding = precision.epsilon() * ratio * n_cells.powf(2.0 / dimension as f64);
     // false for numbers that are not finite
     let has_digits = rounding < NO_DIGITS;
     (!has_digits).then(|| {
         format!(
             "over-penalised quadratics are not solved: a penalty of {ratio:.0e} times the stiffness on {n_cells} cells leaves no digit in {}; choose a smaller `factor` or `eta`, or a coarser mesh",
-            T::NAME
+            precision.name()
         )
     })
 }
 
-/// That contact forces are left out, in a scalar of this name.
-pub(crate) fn no_digits_of_forces(scalar: &str) -> String {
+/// Why a problem is not solved whose penalty leaves no digit of the stiffness in the precision of the solver.
+pub(super) fn no_digits_of_stiffness<const D: usize>(
+    discretisation: &Discretisation<'_, D>,
+    precision: Precision,
+) -> Option<String> {
+    discretisation.penalty_beyond(precision).map(|ratio| {
+        format!(
+            "a penalty of {ratio:.0e} times the stiffness leaves no digit of it in {}: choose a smaller factor",
+            precision.name()
+        )
+    })
+}
+
+/// What rounding of the problem to the precision of the solver loses.
+pub(super) fn rounding_of_data(
+    inequality: &Inequality<f64>,
+    precision: Precision,
+) -> Option<String> {
+    if precision == Precision::Double {
+        return None;
+    }
+    let name = precision.name();
+    if !inequality.is_in_range_of::<f32>() {
+        return Some(format!("{name} does not hold the numbers of the problem: scale it"));
+    }
+    let n = inequality.n_bounds_made_equal::<f32>();
+    (n > 0).then(|| {
+        format!(
+            "the lower and the upper bound of {n} unknowns differ by less than rounding in {name}, which fixes them and leaves their forces out"
+        )
+    })
+}
+
+/// That contact forces are left out, in a precision of this name.
+fn no_digits_of_forces(precision: &str) -> String {
     format!(
-        "rounding in {scalar} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out"
+        "rounding in {precision} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out"
     )
 }
 
@@ -69,28 +107,29 @@ const LARGEST_IMBALANCE: f64 = 1e-6;
 
 /// Contact forces of which rounding leaves no digit, or that do not balance the load of a body that contact alone
 /// holds.
-pub(crate) fn warnings_of_forces<T: Real, const D: usize>(
-    solved: &Solved<'_, T, D>,
+pub(crate) fn warnings_of_forces<const D: usize>(
+    solved: &Solved<'_, D>,
     forces: Option<&[f64]>,
 ) -> Vec<String> {
     if !solved.has_iterate() || !solved.discretisation().problem().is_constrained() {
         return Vec::new();
     }
+    let precision = solved.solution().precision;
     let Some(forces) = forces else {
-        return vec![no_digits_of_forces(T::NAME)];
+        return vec![no_digits_of_forces(precision.name())];
     };
     let inequality = solved.inequality();
-    let imbalance = |body: &Vec<(u32, T)>| {
+    let imbalance = |body: &Vec<(u32, f64)>| {
         let (mut sum, mut size) = (0.0, 0.0);
         for &(i, value) in body {
-            let load = value.to_f64() * inequality.load[i as usize].to_f64();
-            sum += value.to_f64() * forces[i as usize] + load;
+            let load = value * inequality.load[i as usize];
+            sum += value * forces[i as usize] + load;
             size += load.abs();
         }
         (sum, size)
     };
     let bodies = inequality.kernel.iter().map(imbalance);
-    let largest = LARGEST_IMBALANCE.max(T::EPSILON.sqrt());
+    let largest = LARGEST_IMBALANCE.max(precision.epsilon().sqrt());
     let unbalanced = bodies.filter(|(sum, size)| sum.abs() > largest * size);
     let text = |(sum, size): (f64, f64)| {
         format!(
@@ -105,10 +144,7 @@ const AGREEMENT: f64 = 1e-9;
 
 /// For each two groups whose Dirichlet values differ at a vertex where they meet a sentence with the first such vertex:
 /// no function of finite energy takes both values.
-pub(super) fn dirichlet_jumps<T: Real, const D: usize>(
-    problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
-) -> Vec<String> {
+pub(super) fn dirichlet_jumps<const D: usize>(problem: &Problem<D>, mesh: &Mesh<D>) -> Vec<String> {
     let Some(data) =
         DataOnMesh::new(problem, mesh).ok().filter(|d| D > 1 && d.dirichlet.has_names())
     else {
@@ -119,7 +155,7 @@ pub(super) fn dirichlet_jumps<T: Real, const D: usize>(
     for facet in of_facets {
         let group = usize::from(facet.group);
         for v in mesh.facet_vertices(facet.cell as usize, usize::from(facet.local)) {
-            let x = point_f64(&mesh.vertices()[v as usize]);
+            let x = mesh.vertices()[v as usize];
             values.push((v, group, data.dirichlet.of(group).map_or(0.0, |u| u.at(&x))));
         }
     }
@@ -139,7 +175,7 @@ pub(super) fn dirichlet_jumps<T: Real, const D: usize>(
             let name = |group: usize| {
                 mesh.boundary_groups()[group].names.first().map(excerpt).unwrap_or_default()
             };
-            let x = describe_point(&point_f64(&mesh.vertices()[v as usize]));
+            let x = describe_point(&(mesh.vertices()[v as usize]));
             sentences.push(format!(
                 "the Dirichlet values of `{}` and `{}` differ where they meet, {value} and {of_other} at {x}: no function of finite energy takes both, energies grow with the mesh, and bounds are not proven",
                 name(first),
@@ -151,10 +187,10 @@ pub(super) fn dirichlet_jumps<T: Real, const D: usize>(
 }
 
 /// What helps a solution that took many active sets, or whose active sets changed to the end.
-pub(super) fn active_sets<T: Real, const D: usize>(
-    solution: &Solution<T>,
+pub(super) fn active_sets<const D: usize>(
+    solution: &Solution<f64>,
     problem: &Problem<D>,
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &dyn Scheme<D>,
 ) -> Option<String> {
     let returns =
         matches!(solution.outcome, Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled);
@@ -164,9 +200,9 @@ pub(super) fn active_sets<T: Real, const D: usize>(
 
 /// What helps a scheme whose obstacle takes many active sets: bounds on cell means, where its element has
 /// them and nothing else is bound.
-fn advice_on_bounds<T: Real, const D: usize>(
+fn advice_on_bounds<const D: usize>(
     problem: &Problem<D>,
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &dyn Scheme<D>,
 ) -> Option<String> {
     let set = problem.constraint_set();
     let present = scheme.constraint_on(set)?;

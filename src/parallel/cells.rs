@@ -1,7 +1,6 @@
 //! Parallel loops of the assembly over chunks of cells, rows or patches.
 //!
-//! The work on a chunk is a `dyn Fn`, so that a loop is compiled once for each scalar and not once
-//! for each scheme.
+//! The work on a chunk is a `dyn Fn`, so that a loop is compiled once and not once for each scheme.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};

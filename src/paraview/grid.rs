@@ -13,7 +13,7 @@ const VTK_TYPES: [[u8; 2]; 4] = [[1, 1], [3, 21], [5, 22], [10, 24]];
 /// The cells of a mesh, then the facets of its boundary, on points that the cells share or that each has for
 /// itself.
 pub(super) struct Grid<const D: usize> {
-    pub points: Vec<Point<f64, D>>,
+    pub points: Vec<Point<D>>,
     /// For each point the place of its value among the values of all cells.
     pub sources: Vec<usize>,
     /// The points of each cell and facet, one after the other.
@@ -32,9 +32,9 @@ impl<const D: usize> Grid<D> {
     /// The grid of a function with `n` values in each cell: at the vertices, then at the midpoints of
     /// the edges if the function is quadratic. Cells share their points if the function is continuous up
     /// to its relative rounding.
-    pub fn new(mesh: &Mesh<f64, D>, (u, epsilon): (&[f64], f64), n: usize) -> Self {
+    pub fn new(mesh: &Mesh<D>, u: &[f64], n: usize) -> Self {
         let is_quadratic = n > D + 1;
-        let (sources, numbers) = shared(mesh, (u, epsilon), n)
+        let (sources, numbers) = shared(mesh, u, n)
             .unwrap_or_else(|| ((0..u.len()).collect(), (0..u.len() as u32).collect()));
         let point = |&k: &usize| {
             let vertex = |i: usize| mesh.vertices()[mesh.cell(k / n)[i] as usize];
@@ -94,13 +94,9 @@ impl<const D: usize> Grid<D> {
 
 /// The place of a value of each shared point, and the points of every cell; none if the cells at a point
 /// do not agree in its value.
-fn shared<const D: usize>(
-    mesh: &Mesh<f64, D>,
-    (u, epsilon): (&[f64], f64),
-    n: usize,
-) -> Option<(Vec<usize>, Vec<u32>)> {
+fn shared<const D: usize>(mesh: &Mesh<D>, u: &[f64], n: usize) -> Option<(Vec<usize>, Vec<u32>)> {
     let largest = u.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let rounding = 16.0 * epsilon * largest;
+    let rounding = 16.0 * f64::EPSILON * largest;
     let first_edge = mesh.vertices().len();
     let edges = (n > D + 1).then(|| Edges::with_cell_edges(mesh));
     let (n_edges, of_cells) = edges.map_or((0, Vec::new()), |(edges, of)| (edges.len(), of));
@@ -126,7 +122,7 @@ fn shared<const D: usize>(
 }
 
 /// Positive if the vertices of a cell in this order span a positive volume or area.
-fn orientation<const D: usize>(mesh: &Mesh<f64, D>, cell: usize, order: &[usize]) -> f64 {
+fn orientation<const D: usize>(mesh: &Mesh<D>, cell: usize, order: &[usize]) -> f64 {
     let vertex = |i: usize| mesh.vertices()[mesh.cell(cell)[order[i]] as usize];
     let edge = |i: usize| -> [f64; 3] {
         let step = vertex(i) - vertex(0);

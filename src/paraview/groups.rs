@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 /// The groups of cells and of boundary facets: the name of the array of each, distinct from those that are
 /// taken, and the name of the group. A group of cells and one of facets with the same name are one.
 pub(super) fn array_names<const D: usize>(
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
     mut taken: BTreeSet<String>,
 ) -> Vec<(String, &str)> {
     let regions = mesh.regions().iter();
@@ -28,7 +28,7 @@ pub(super) fn array_names<const D: usize>(
 }
 
 /// For each cell, then each boundary facet: one if it is in the group, otherwise zero.
-pub(super) fn members<const D: usize>(mesh: &Mesh<f64, D>, group: &str) -> Vec<u8> {
+pub(super) fn members<const D: usize>(mesh: &Mesh<D>, group: &str) -> Vec<u8> {
     let has = |names: &Vec<String>| u8::from(names.iter().any(|name| name == group));
     let regions: Vec<u8> = mesh.regions().iter().map(has).collect();
     let boundary: Vec<u8> = mesh.boundary_groups().iter().map(|g| has(&g.names)).collect();

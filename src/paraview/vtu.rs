@@ -4,7 +4,6 @@
 //! the file as raw bytes, compressed by zlib: the smallest encoding of the format, and the one that ParaView
 //! writes itself.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -19,7 +18,7 @@ use crate::error::Error;
 use crate::files::{replace, replace_text};
 use crate::instances::compiled;
 use crate::mesh::{BoundaryFacet, Mesh};
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// The scalar of the fields in a file; coordinates have 64 bits always.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,10 +32,10 @@ pub enum FieldScalar {
 }
 
 /// A function of space.
-type Function<'a, const D: usize> = &'a (dyn Fn(&Point<f64, D>) -> f64 + 'a);
+type Function<'a, const D: usize> = &'a (dyn Fn(&Point<D>) -> f64 + 'a);
 
 /// A function of space that may jump between cells: of the number of a cell and a point in it.
-type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<f64, D>) -> f64 + 'a>;
+type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<D>) -> f64 + 'a>;
 
 /// Data on facets: their name, the facets as cell and number in the cell, and a value for each.
 type OnFacets<'a> = (&'a str, &'a [(usize, usize)], &'a [f64]);
@@ -49,7 +48,7 @@ type OnFacets<'a> = (&'a str, &'a [(usize, usize)], &'a [f64]);
 /// use unilateral::real::Point;
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// let square = BoxDomain::dirichlet(Point::from([0.0, 0.0]), Point::from([1.0, 1.0]));
-/// let mesh = Mesh::<f64, 2>::kuhn_box(&square, [1, 1])?;
+/// let mesh = Mesh::<2>::kuhn_box(&square, [1, 1])?;
 /// let u = [0.0, 1.0, 2.0, 0.0, 1.5, 2.0];
 /// let path = std::env::temp_dir().join(format!("unilateral-{}.vtu", std::process::id()));
 /// VtuFile::new(&mesh, &u).function("distance", &|x| x.norm()).write(&path)?;
@@ -59,9 +58,7 @@ type OnFacets<'a> = (&'a str, &'a [(usize, usize)], &'a [f64]);
 /// ```
 #[must_use]
 pub struct VtuFile<'a, const D: usize> {
-    mesh: Cow<'a, Mesh<f64, D>>,
-    /// The relative rounding of values.
-    epsilon: f64,
+    mesh: &'a Mesh<D>,
     u: &'a [f64],
     functions: Vec<(&'a str, InCell<'a, D>)>,
     exact: Option<InCell<'a, D>>,
@@ -87,10 +84,9 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     /// of [`Layout::edge`](crate::element::Layout::edge): linear cells (types 3, 5, 10) or quadratic ones
     /// (21, 22, 24). Cells share their points if the values of all cells agree at every point up to
     /// rounding; otherwise each cell has its own points, so that jumps are visible.
-    pub fn new<T: Real>(mesh: &'a Mesh<T, D>, u: &'a [f64]) -> Self {
+    pub fn new(mesh: &'a Mesh<D>, u: &'a [f64]) -> Self {
         Self {
-            mesh: mesh.in_double(),
-            epsilon: T::EPSILON,
+            mesh,
             u,
             functions: Vec::new(),
             exact: None,
@@ -109,7 +105,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     pub fn function_in_cells(
         mut self,
         name: &'a str,
-        f: impl Fn(usize, &Point<f64, D>) -> f64 + 'a,
+        f: impl Fn(usize, &Point<D>) -> f64 + 'a,
     ) -> Self {
         self.functions.push((name, Box::new(f)));
         self
@@ -119,10 +115,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         self.error_from_in_cells(move |_, x| exact(x))
     }
     /// Adds the difference of `u` from a function of cell and point as the point data `error`.
-    pub fn error_from_in_cells(
-        mut self,
-        exact: impl Fn(usize, &Point<f64, D>) -> f64 + 'a,
-    ) -> Self {
+    pub fn error_from_in_cells(mut self, exact: impl Fn(usize, &Point<D>) -> f64 + 'a) -> Self {
         self.exact = Some(Box::new(exact));
         self
     }
@@ -172,7 +165,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     fn write_checked(&self, path: &Path) -> Result<(), Error> {
         let written = replace(path, |draft| {
             let n = self.check()?;
-            let arrays = self.arrays(&Grid::new(&self.mesh, (self.u, self.epsilon), n))?;
+            let arrays = self.arrays(&Grid::new(self.mesh, self.u, n))?;
             let mut file = BufWriter::new(File::create(draft)?);
             arrays.write(&mut file)?;
             file.flush()
@@ -233,7 +226,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     /// The groups of the mesh: the name of the array of each, and its own.
     fn groups(&self) -> Vec<(String, &str)> {
         let fields = self.cell_names().into_iter().chain(["dimension"]);
-        array_names(&self.mesh, fields.map(str::to_owned).collect())
+        array_names(self.mesh, fields.map(str::to_owned).collect())
     }
 
     /// Number of values of each cell. Refuses a field whose length does not fit the mesh, and facets that
@@ -348,7 +341,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
         to.push("UInt8", "dimension", 1, &dimensions)?;
         for (name, group) in self.groups() {
-            to.push("UInt8", &escape(&name), 1, &members(&self.mesh, group))?;
+            to.push("UInt8", &escape(&name), 1, &members(self.mesh, group))?;
         }
         Ok(())
     }

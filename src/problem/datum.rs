@@ -6,12 +6,11 @@ use std::sync::Arc;
 use crate::real::Point;
 
 /// A scalar function of space, shared by the clones of a problem.
-pub type Field<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> f64 + Send + Sync>;
+pub type Field<const D: usize> = Arc<dyn Fn(&Point<D>) -> f64 + Send + Sync>;
 /// A vector function of space.
-pub type VectorField<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync>;
+pub type VectorField<const D: usize> = Arc<dyn Fn(&Point<D>) -> Point<D> + Send + Sync>;
 /// A scalar function of a boundary point and the outward unit normal there.
-pub type BoundaryField<const D: usize> =
-    Arc<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
+pub type BoundaryField<const D: usize> = Arc<dyn Fn(&Point<D>, &Point<D>) -> f64 + Send + Sync>;
 
 /// A flux through the boundary: a constant, or a function of the point and the outward unit normal.
 #[derive(Clone)]
@@ -48,7 +47,7 @@ impl<const D: usize> BoundaryFlux<D> {
         }
     }
     /// The flux at a point with this outward unit normal.
-    pub fn at(&self, x: &Point<f64, D>, normal: &Point<f64, D>) -> f64 {
+    pub fn at(&self, x: &Point<D>, normal: &Point<D>) -> f64 {
         match self {
             BoundaryFlux::Constant(c) => *c,
             BoundaryFlux::Function(value) | BoundaryFlux::Polynomial { value, .. } => {
@@ -99,20 +98,20 @@ pub enum Datum<const D: usize> {
 impl<const D: usize> Datum<D> {
     /// A function that may jump, or have a kink, where `level` changes its sign.
     pub fn piecewise(
-        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-        level: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        value: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
+        level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         Datum::Piecewise { value: Arc::new(value), level: Arc::new(level) }
     }
     /// A function that is in every cell a polynomial of at most this degree.
     pub fn polynomial(
         degree: usize,
-        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        value: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         Datum::Polynomial { value: Arc::new(value), degree }
     }
     /// The value at a point.
-    pub fn at(&self, x: &Point<f64, D>) -> f64 {
+    pub fn at(&self, x: &Point<D>) -> f64 {
         match self {
             Datum::Constant(c) => *c,
             Datum::Function(value)
@@ -145,7 +144,7 @@ impl<const D: usize> From<f64> for Datum<D> {
 
 impl<const D: usize, F> From<F> for Datum<D>
 where
-    F: Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    F: Fn(&Point<D>) -> f64 + Send + Sync + 'static,
 {
     fn from(f: F) -> Self {
         Datum::Function(Arc::new(f))

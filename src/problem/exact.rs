@@ -34,14 +34,14 @@ pub struct ContactSet<const D: usize> {
     /// Points of the free boundary: all of them in one dimension and for a Signorini condition in
     /// two, otherwise a sample whose distances are far below mesh sizes. Empty where the free
     /// boundary is empty.
-    pub free_boundary: Vec<Point<f64, D>>,
+    pub free_boundary: Vec<Point<D>>,
 }
 
 impl<const D: usize> Exact<D> {
     /// A solution and its gradient, without multiplier and contact set.
     pub fn new(
-        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-        gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
+        value: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
+        gradient: impl Fn(&Point<D>) -> Point<D> + Send + Sync + 'static,
     ) -> Self {
         Self {
             value: Arc::new(value),
@@ -54,7 +54,7 @@ impl<const D: usize> Exact<D> {
     #[must_use]
     pub fn with_multiplier(
         mut self,
-        lambda: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        lambda: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         self.multiplier = Some(Arc::new(lambda));
         self
@@ -64,8 +64,8 @@ impl<const D: usize> Exact<D> {
     #[must_use]
     pub fn with_contact(
         mut self,
-        indicator: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-        free_boundary: Vec<Point<f64, D>>,
+        indicator: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
+        free_boundary: Vec<Point<D>>,
     ) -> Self {
         self.contact = Some(ContactSet { indicator: Arc::new(indicator), free_boundary });
         self

@@ -1,4 +1,4 @@
-//! The data of a variational inequality, written once, independent of mesh, scheme and scalar.
+//! The data of a variational inequality, written once, independent of mesh and scheme.
 //!
 //! ```text
 //! -div(alpha grad u) + c u = f + lambda      in the domain
@@ -138,7 +138,7 @@ impl<const D: usize> Problem<D> {
     }
     /// Sets a load that is a smooth function of space.
     #[must_use]
-    pub fn source(mut self, f: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
+    pub fn source(mut self, f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
         self.source = Some(Datum::Function(Arc::new(f)));
         self
     }
@@ -156,23 +156,23 @@ impl<const D: usize> Problem<D> {
     /// ```
     /// use unilateral::prelude::*;
     /// // pressed down near the ends of (0, 1), lifted between
-    /// let away = |x: &Point<f64, 1>| (x[0] - 0.5).abs() - 0.3;
-    /// let load = move |x: &Point<f64, 1>| if away(x) > 0.0 { -16.0 } else { 8.0 };
+    /// let away = |x: &Point<1>| (x[0] - 0.5).abs() - 0.3;
+    /// let load = move |x: &Point<1>| if away(x) > 0.0 { -16.0 } else { 8.0 };
     /// let problem = Problem::new().piecewise_source(load, away);
     /// # assert!(problem.source.is_some());
     /// ```
     #[must_use]
     pub fn piecewise_source(
         mut self,
-        f: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-        level: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
+        level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         self.source = Some(Datum::piecewise(f, level));
         self
     }
     /// Sets Dirichlet data.
     #[must_use]
-    pub fn dirichlet(mut self, u: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
+    pub fn dirichlet(mut self, u: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
         self.dirichlet = Some(u.into());
         self
     }
@@ -180,7 +180,7 @@ impl<const D: usize> Problem<D> {
     #[must_use]
     pub fn neumann(
         mut self,
-        q: impl Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync + 'static,
+        q: impl Fn(&Point<D>, &Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         self.neumann = Some(BoundaryFlux::Function(Arc::new(q)));
         self
@@ -193,10 +193,7 @@ impl<const D: usize> Problem<D> {
     /// barycentre but for rounding, that one alone is used. The coefficient may jump between cells. Where it
     /// jumps within them no element reaches more than the order 1/2 in H1.
     #[must_use]
-    pub fn coefficient(
-        mut self,
-        alpha: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-    ) -> Self {
+    pub fn coefficient(mut self, alpha: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
         self.coefficient = Some(alpha.into());
         self
     }
@@ -207,14 +204,14 @@ impl<const D: usize> Problem<D> {
     #[must_use]
     pub fn piecewise_coefficient(
         mut self,
-        alpha: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-        level: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        alpha: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
+        level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         self.coefficient = Some(Datum::piecewise(alpha, level));
         self
     }
     /// Sets the reaction coefficient: a number, a closure whose argument is written with its
-    /// type, `|x: &Point<f64, 2>| ..`, or [`Datum::piecewise`].
+    /// type, `|x: &Point<2>| ..`, or [`Datum::piecewise`].
     #[must_use]
     pub fn reaction(mut self, c: impl Into<Datum<D>>) -> Self {
         self.reaction = Some(c.into());
@@ -224,7 +221,7 @@ impl<const D: usize> Problem<D> {
     #[must_use]
     pub fn obstacle_below(
         mut self,
-        psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        psi: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         self.lower = Some(psi.into());
         self
@@ -233,17 +230,14 @@ impl<const D: usize> Problem<D> {
     #[must_use]
     pub fn obstacle_above(
         mut self,
-        psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        psi: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         self.upper = Some(psi.into());
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact part.
     #[must_use]
-    pub fn signorini(
-        mut self,
-        gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-    ) -> Self {
+    pub fn signorini(mut self, gap: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Some(gap.into());
         self
     }
@@ -254,7 +248,7 @@ impl<const D: usize> Problem<D> {
     /// use unilateral::prelude::*;
     /// # fn main() -> Result<(), Error> {
     /// let scene = scenes::radial::<2>(1.0);
-    /// let mesh = scene.domain.mesh::<f64>(4)?;
+    /// let mesh = scene.domain.mesh(4)?;
     /// let problem = scene.problem.on(FacetMeans);
     /// let discretisation =
     ///     Discretisation::new(&Wopsip::default(), &problem, &mesh, Default::default())?;
@@ -295,8 +289,8 @@ impl<const D: usize> Problem<D> {
     #[must_use]
     pub fn exact(
         self,
-        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-        gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
+        value: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
+        gradient: impl Fn(&Point<D>) -> Point<D> + Send + Sync + 'static,
     ) -> Self {
         self.solved_by(Exact::new(value, gradient))
     }
@@ -318,7 +312,7 @@ impl<const D: usize> Problem<D> {
         self.constraint_set.as_deref().unwrap_or(&Nodes)
     }
     /// The Dirichlet value at a point.
-    pub fn dirichlet_at(&self, x: &Point<f64, D>) -> f64 {
+    pub fn dirichlet_at(&self, x: &Point<D>) -> f64 {
         match (&self.dirichlet, &self.exact) {
             (Some(u), _) => u.at(x),
             (None, Some(exact)) => (exact.value)(x),
@@ -366,7 +360,7 @@ mod tests {
     fn debug_lists_the_data_that_are_present() {
         let problem = Problem::<2>::new()
             .constant_source(-1.0)
-            .reaction(|x: &Point<f64, 2>| x[0])
+            .reaction(|x: &Point<2>| x[0])
             .obstacle_below(|_| 0.0);
         let expected =
             "Problem { source: Constant(-1.0), reaction: Function(..), lower: Function(..) }";

@@ -7,7 +7,7 @@ use super::datum::{BoundaryFlux, Datum};
 use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, Mesh, MeshError};
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// Data by the name of a region or boundary group, in the order in which they were given.
 ///
@@ -61,7 +61,7 @@ impl<const D: usize> NamedData<D> {
 /// # fn main() -> Result<(), Error> {
 /// // the square with its sides, its lower half of another material
 /// let domain = BoxDomain::<2>::centred(1.0).side(1, 0, BoundaryPart::Contact);
-/// let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [8, 8])?;
+/// let mesh = Mesh::<2>::kuhn_box(&domain, [8, 8])?;
 /// let is_below = |c| usize::from(mesh.barycentre(c)[1] < 0.0);
 /// let of_cells = (0..mesh.n_cells()).map(|c| is_below(c) as u16).collect();
 /// let names = vec![vec!["steel".to_owned()], vec!["rubber".to_owned()]];
@@ -82,7 +82,7 @@ impl<const D: usize> NamedData<D> {
 /// ```
 impl<const D: usize> Problem<D> {
     /// Sets the diffusion coefficient in a region: a number, or a closure whose argument is written with
-    /// its type, `|x: &Point<f64, 2>| ..`. It is one in regions for which none is given.
+    /// its type, `|x: &Point<2>| ..`. It is one in regions for which none is given.
     #[must_use]
     pub fn coefficient_in(mut self, region: &str, alpha: impl Into<Datum<D>>) -> Self {
         self.named.coefficient.push((region.to_owned(), alpha.into()));
@@ -127,7 +127,7 @@ impl<const D: usize> Problem<D> {
     pub fn neumann_on(
         mut self,
         group: &str,
-        q: impl Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync + 'static,
+        q: impl Fn(&Point<D>, &Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         let flux = BoundaryFlux::Function(Arc::new(q));
         self.named.neumann.push((group.to_owned(), flux));
@@ -176,13 +176,12 @@ impl<const D: usize> Problem<D> {
     /// # Errors
     /// [`MeshError::GroupInTwoParts`], also where a group `dirichlet`, `neumann` or `contact` is given
     /// data of another kind.
-    pub fn bind_boundary<T: Real>(&self, mesh: Mesh<T, D>) -> Result<Mesh<T, D>, MeshError> {
-        compiled!(
-            T, D: fn(&Problem<D>, Mesh<T, D>) -> Result<Mesh<T, D>, MeshError>
+    pub fn bind_boundary(&self, mesh: Mesh<D>) -> Result<Mesh<D>, MeshError> {
+        compiled!(const D: fn(&Problem<D>, Mesh<D>) -> Result<Mesh<D>, MeshError>
                 = Problem::bind
         )(self, mesh)
     }
-    fn bind<T: Real>(&self, mesh: Mesh<T, D>) -> Result<Mesh<T, D>, MeshError> {
+    fn bind(&self, mesh: Mesh<D>) -> Result<Mesh<D>, MeshError> {
         let all: Vec<(&str, BoundaryPart)> = self.named.boundary_groups().collect();
         for &(name, part) in &all {
             let own = BoundaryPart::from_name(name).map(|part| (name, part));

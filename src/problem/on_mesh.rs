@@ -5,7 +5,7 @@ use super::datum::{BoundaryFlux, Datum, Field};
 use crate::error::Error;
 use crate::input::{excerpt, excerpts};
 use crate::mesh::{BoundaryGroup, BoundaryPart, Mesh, MeshError};
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// A datum, whether it was given as such or as a function.
 #[derive(Clone, Copy)]
@@ -17,7 +17,7 @@ pub(crate) enum DatumRef<'a, const D: usize> {
 impl<'a, const D: usize> DatumRef<'a, D> {
     /// The value at a point.
     #[inline(always)]
-    pub fn at(self, x: &Point<f64, D>) -> f64 {
+    pub fn at(self, x: &Point<D>) -> f64 {
         match self {
             Self::Datum(datum) => datum.at(x),
             Self::Function(function) => function(x),
@@ -122,12 +122,12 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
     /// # Errors
     /// [`Error::UnknownGroup`] for a name that the mesh does not have, [`Error::Mesh`] for a boundary
     /// group of undecided part, [`Error::UnboundBoundary`] for one of another part than that of its data.
-    pub fn new<T: Real>(problem: &'a Problem<D>, mesh: &'a Mesh<T, D>) -> Result<Self, Error> {
+    pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<D>) -> Result<Self, Error> {
         mesh.check_boundary_parts()?;
         Self::of_groups(problem, mesh.regions(), mesh.boundary_groups(), mesh.groups_inside())
     }
 
-    /// The data of a problem in regions and boundary groups, whatever the scalar of the mesh.
+    /// The data of a problem in regions and boundary groups.
     fn of_groups(
         problem: &'a Problem<D>,
         regions: &[Vec<String>],

@@ -1,158 +1,78 @@
 //! What may be wrong with a problem file.
 
-use std::io;
+use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use crate::error::Error;
-use crate::mesh::gmsh::GmshError;
 use crate::readable_debug::debug_by_display;
 
-/// Why a problem file is not a problem, with the place in the file. `Debug` prints the message.
+/// Why a problem file is not a problem: what is wrong, where, and what is allowed. `Debug` prints the message.
 #[derive(thiserror::Error)]
+#[error("{}{}: {message}", path.display(), place.map_or(String::new(), |[line, column]| format!(":{line}:{column}")))]
 #[non_exhaustive]
-pub enum ProblemFileError {
-    /// The file cannot be read.
-    #[error("{}: {source}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// Something in the file is wrong.
-    #[error("{}:{line}:{column}: {fault}", path.display())]
-    At {
-        /// The file.
-        path: PathBuf,
-        /// The line, from one.
-        line: usize,
-        /// The column in characters, from one.
-        column: usize,
-        /// What is wrong.
-        fault: ProblemFileFault,
-    },
-    /// The mesh file that it names is no mesh.
-    #[error("{}:{line}:{column}: {}", path.display(), with_path(mesh, source))]
-    Mesh {
-        /// The problem file.
-        path: PathBuf,
-        /// The line of the name, from one.
-        line: usize,
-        /// Its column in characters, from one.
-        column: usize,
-        /// The mesh file.
-        mesh: PathBuf,
-        /// Why.
-        source: Box<GmshError>,
-    },
-    /// Its data do not make a problem.
-    #[error("{}: {source}", path.display())]
-    Problem {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: Box<Error>,
-    },
+pub struct ProblemFileError {
+    /// What is wrong.
+    pub kind: ProblemFileErrorKind,
+    /// The file.
+    pub path: PathBuf,
+    /// Line and column in characters, from one, of what is wrong at one place of the file.
+    pub place: Option<[usize; 2]>,
+    message: String,
+    /// The error of the system, of the mesh file, or of the problem.
+    source: Option<Box<dyn Error + Send + Sync>>,
 }
 
 debug_by_display!(ProblemFileError);
 
-/// The message on a mesh file, with its path once.
-fn with_path(mesh: &Path, error: &GmshError) -> String {
-    match error {
-        GmshError::Unreadable { .. } => error.to_string(),
-        _ => format!("mesh {}: {error}", mesh.display()),
+impl ProblemFileError {
+    /// The error at a place of a file.
+    pub(super) fn at(
+        path: &Path,
+        place: [usize; 2],
+        kind: ProblemFileErrorKind,
+        message: String,
+    ) -> Self {
+        Self { kind, path: path.into(), place: Some(place), message, source: None }
+    }
+    /// The error of a file that another error causes, which is its message.
+    pub(super) fn of_file(
+        path: &Path,
+        kind: ProblemFileErrorKind,
+        source: impl Error + Send + Sync + 'static,
+    ) -> Self {
+        let message = source.to_string();
+        Self { kind, path: path.into(), place: None, message, source: Some(Box::new(source)) }
+    }
+    pub(super) fn caused_by(self, source: impl Error + Send + Sync + 'static) -> Self {
+        Self { source: Some(Box::new(source)), ..self }
     }
 }
 
-/// What is wrong at a place of a problem file.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// What is wrong with a problem file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum ProblemFileFault {
+pub enum ProblemFileErrorKind {
+    /// The file cannot be read.
+    Unreadable,
     /// The file is not TOML.
-    #[error("{0}")]
-    Syntax(String),
+    Syntax,
     /// A key that means nothing.
-    #[error("unknown key `{key}`; allowed are {allowed}")]
-    UnknownKey {
-        /// The key.
-        key: String,
-        /// The keys that are allowed.
-        allowed: String,
-    },
+    UnknownKey,
     /// A key is missing in a table.
-    #[error("`{key}` is missing: {purpose}")]
-    Missing {
-        /// The key.
-        key: &'static str,
-        /// What it is for.
-        purpose: &'static str,
-    },
+    Missing,
     /// A value of another type.
-    #[error("`{key}` must be {expected}, not {found}")]
-    WrongType {
-        /// The key.
-        key: String,
-        /// What is expected.
-        expected: &'static str,
-        /// What is there.
-        found: String,
-    },
+    WrongType,
     /// An expression cannot be read.
-    #[error("{0}")]
-    Expression(String),
+    Expression,
     /// A number or expression has a value that the datum cannot have.
-    #[error("{datum} is {value} at {at}: it must be {allowed}")]
-    Value {
-        /// The datum.
-        datum: String,
-        /// The value.
-        value: f64,
-        /// The point, as coordinates in parentheses.
-        at: String,
-        /// What is allowed.
-        allowed: &'static str,
-    },
+    Value,
     /// A component of the gradient of the exact solution is not that of its value.
-    #[error(
-        "component {component} of exact.gradient is {value} at {at}, but difference quotients of exact.value are {quotient}"
-    )]
-    Gradient {
-        /// The component, from one.
-        component: usize,
-        /// The value.
-        value: f64,
-        /// The difference quotient of the exact solution.
-        quotient: f64,
-        /// The point, as coordinates in parentheses.
-        at: String,
-    },
+    Gradient,
     /// The mesh has no such region or boundary group.
-    #[error("the mesh has no {kind} `{name}`; it has {known}")]
-    UnknownGroup {
-        /// "region" or "boundary group".
-        kind: &'static str,
-        /// The name.
-        name: String,
-        /// The names that there are.
-        known: String,
-    },
-    /// The file has data for a group of facets between two cells.
-    #[error(
-        "`{name}` lies inside the domain, between two cells: data are given on the boundary only, where the mesh has {known}"
-    )]
-    GroupInside {
-        /// The name.
-        name: String,
-        /// The names of the boundary groups.
-        known: String,
-    },
+    UnknownGroup,
     /// The file does not say what holds on a boundary group of the mesh.
-    #[error(
-        "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann or contact, or [boundary.default] for groups without one, if its kind is that of the name"
-    )]
-    MissingBoundary {
-        /// The name.
-        name: String,
-    },
+    MissingBoundary,
+    /// The mesh file that it names is no mesh: the source is a [`GmshError`](crate::mesh::gmsh::GmshError).
+    Mesh,
+    /// Its data do not make a problem: the source is an [`Error`](crate::error::Error).
+    Problem,
 }

@@ -43,7 +43,7 @@ mod expression;
 mod own_problem;
 mod table;
 
-pub use error::{ProblemFileError, ProblemFileFault};
+pub use error::{ProblemFileError, ProblemFileErrorKind};
 pub use own_problem::{AnyOwnProblem, Geometry, OwnProblem};
 
 use std::path::Path;
@@ -56,7 +56,8 @@ use table::Source;
 /// # Errors
 /// Every [`ProblemFileError`].
 pub fn read(path: &Path) -> Result<AnyOwnProblem, ProblemFileError> {
-    let unreadable = |source| ProblemFileError::Unreadable { path: path.into(), source };
+    let unreadable =
+        |error| ProblemFileError::of_file(path, ProblemFileErrorKind::Unreadable, error);
     let text = String::from_utf8(read_file(path).map_err(unreadable)?)
         .map_err(|e| unreadable(std::io::Error::new(std::io::ErrorKind::InvalidData, e)))?;
     let source = Source { path, text: &text };

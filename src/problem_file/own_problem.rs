@@ -1,13 +1,11 @@
 //! A problem from a file.
 
-use std::any::Any;
 use std::path::PathBuf;
 
 use crate::error::Error;
-use crate::mesh::gmsh::{self, GmshMesh};
+use crate::mesh::gmsh::GmshMesh;
 use crate::mesh::{BoxDomain, Mesh};
 use crate::problem::Problem;
-use crate::real::Real;
 
 /// Where a problem is posed.
 #[derive(Clone, Debug)]
@@ -19,10 +17,10 @@ pub enum Geometry<const D: usize> {
     File {
         /// Its path.
         path: PathBuf,
-        /// Its contents.
-        bytes: Vec<u8>,
+        /// Its [`fingerprint`](crate::input::fingerprint).
+        fingerprint: String,
         /// The mesh, before the problem says what holds on its boundary.
-        read: Box<GmshMesh<f64, D>>,
+        read: Box<GmshMesh<D>>,
     },
 }
 
@@ -32,6 +30,8 @@ pub enum Geometry<const D: usize> {
 pub struct OwnProblem<const D: usize> {
     /// Its name; that of the file if the file gives none.
     pub name: String,
+    /// The [`fingerprint`](crate::input::fingerprint) of the file.
+    pub fingerprint: String,
     /// The data.
     pub problem: Problem<D>,
     /// Mesh file or box.
@@ -42,19 +42,15 @@ impl<const D: usize> OwnProblem<D> {
     /// The mesh of the file, with the parts of its boundary as the problem says; none for a box.
     ///
     /// # Errors
-    /// [`Error::Gmsh`] and [`Error::Mesh`], in a scalar in which the mesh degenerates, say.
-    pub fn mesh<T: Real>(&self) -> Result<Option<GmshMesh<T, D>>, Error> {
-        let Geometry::File { bytes, read, .. } = &self.geometry else { return Ok(None) };
-        let known: &dyn Any = &**read;
-        let mut read = match known.downcast_ref::<GmshMesh<T, D>>() {
-            Some(read) => read.clone(),
-            None => gmsh::parse::<T, D>(bytes)?,
-        };
+    /// [`Error::Mesh`].
+    pub fn mesh(&self) -> Result<Option<GmshMesh<D>>, Error> {
+        let Geometry::File { read, .. } = &self.geometry else { return Ok(None) };
+        let mut read = GmshMesh::clone(read);
         read.mesh = self.problem.bind_boundary(read.mesh)?;
         Ok(Some(read))
     }
     /// A mesh to hold the data against, of a box one with few cells, whatever its sides.
-    pub(super) fn sample_mesh(&self) -> Result<Mesh<f64, D>, Error> {
+    pub(super) fn sample_mesh(&self) -> Result<Mesh<D>, Error> {
         match &self.geometry {
             Geometry::Box(domain) => {
                 Ok(Mesh::kuhn_box(domain, domain.counts(4).map(|n| n.min(64)))?)
@@ -76,13 +72,14 @@ pub enum AnyOwnProblem {
 }
 
 impl AnyOwnProblem {
-    /// The contents of the mesh file, if there is one.
-    pub fn mesh_bytes(&self) -> Option<&[u8]> {
-        fn of<const D: usize>(own: &OwnProblem<D>) -> Option<&[u8]> {
-            match &own.geometry {
-                Geometry::File { bytes, .. } => Some(bytes),
-                Geometry::Box(_) => None,
+    /// The fingerprints of the files that have been read: `problem`, and `mesh` if there is one.
+    pub fn fingerprints(&self) -> Vec<(&'static str, String)> {
+        fn of<const D: usize>(own: &OwnProblem<D>) -> Vec<(&'static str, String)> {
+            let mut files = vec![("problem", own.fingerprint.clone())];
+            if let Geometry::File { fingerprint, .. } = &own.geometry {
+                files.push(("mesh", fingerprint.clone()));
             }
+            files
         }
         match self {
             Self::One(own) => of(own),

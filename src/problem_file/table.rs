@@ -6,10 +6,11 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::{ProblemFileError, ProblemFileFault};
+use super::error::{ProblemFileError, ProblemFileErrorKind};
 use super::expression::Expression;
-use crate::input::{excerpt, read_file};
-use crate::mesh::{FacetSearch, gmsh};
+use crate::input::excerpt;
+use crate::mesh::FacetSearch;
+use crate::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile};
 use crate::problem::{BoundaryField, BoundaryFlux, Datum, Field};
 use crate::real::Point;
 
@@ -17,7 +18,7 @@ use crate::real::Point;
 pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The corners of a facet and its outward unit normal.
-pub(super) type FacetWithNormal<const D: usize> = ([Point<f64, D>; D], Point<f64, D>);
+pub(super) type FacetWithNormal<const D: usize> = ([Point<D>; D], Point<D>);
 
 /// Normals that differ by less are one.
 const SAME_NORMAL: f64 = 1e-12;
@@ -58,7 +59,7 @@ impl Formula {
         let normal = normals.first().copied().unwrap_or_else(Point::zeros);
         if normals.iter().any(|other| (other - normal).norm() > SAME_NORMAL) {
             let size = corners.iter().flatten().map(|x| x.amax()).fold(0.0, f64::max);
-            let from_first = |x: &Point<f64, D>| (x - corners[0][0]).amax();
+            let from_first = |x: &Point<D>| (x - corners[0][0]).amax();
             let extent = corners.iter().flatten().map(from_first).fold(f64::MIN_POSITIVE, f64::max);
             let rounding = 2.0 * f64::from(f32::EPSILON) * size / extent;
             let search = FacetSearch::new(corners, IN_FACET.max(rounding));
@@ -99,8 +100,7 @@ pub(super) enum Place {
     /// The offset is that of the name in the problem file.
     File {
         path: PathBuf,
-        bytes: Vec<u8>,
-        dimension: usize,
+        file: Box<GmshFile>,
         offset: usize,
     },
 }
@@ -109,7 +109,7 @@ impl Place {
     pub fn dimension(&self) -> usize {
         match self {
             Self::Box { corners } => corners[0].len(),
-            Self::File { dimension, .. } => *dimension,
+            Self::File { file, .. } => file.dimension(),
         }
     }
 }
@@ -124,21 +124,34 @@ type Found<V> = Result<V, ProblemFileError>;
 
 impl<'t> Source<'t> {
     /// The error at an offset in bytes.
-    pub fn error(&self, offset: usize, fault: ProblemFileFault) -> ProblemFileError {
-        let [line, column] = self.position(offset);
-        ProblemFileError::At { path: self.path.into(), line, column, fault }
-    }
-
-    /// The error for a mesh file that is named at an offset in bytes.
-    pub fn mesh_error(
+    pub fn error(
         &self,
         offset: usize,
-        mesh: &Path,
-        source: gmsh::GmshError,
+        kind: ProblemFileErrorKind,
+        message: String,
     ) -> ProblemFileError {
-        let [line, column] = self.position(offset);
-        let (path, mesh) = (self.path.into(), mesh.into());
-        ProblemFileError::Mesh { path, line, column, mesh, source: Box::new(source) }
+        ProblemFileError::at(self.path, self.position(offset), kind, message)
+    }
+
+    /// The error for a mesh file that is named at an offset in bytes, with its path once.
+    pub fn mesh_error(&self, offset: usize, mesh: &Path, error: GmshError) -> ProblemFileError {
+        let message = match error.kind {
+            GmshErrorKind::Unreadable => error.to_string(),
+            _ => format!("mesh {}: {error}", mesh.display()),
+        };
+        self.error(offset, ProblemFileErrorKind::Mesh, message).caused_by(error)
+    }
+
+    /// The error for a key that is missing in the table at an offset in bytes.
+    pub fn missing(&self, offset: usize, key: &str, purpose: &str) -> ProblemFileError {
+        let message = format!("`{key}` is missing: {purpose}");
+        self.error(offset, ProblemFileErrorKind::Missing, message)
+    }
+
+    /// The error for a key at an offset in bytes that means nothing.
+    fn unknown_key(&self, offset: usize, key: &str, allowed: &str) -> ProblemFileError {
+        let message = format!("unknown key `{}`; allowed are {allowed}", excerpt(key));
+        self.error(offset, ProblemFileErrorKind::UnknownKey, message)
     }
 
     /// Line and column of an offset in bytes, from one.
@@ -154,28 +167,22 @@ impl<'t> Source<'t> {
     pub fn root(&self) -> Found<DeTable<'t>> {
         let syntax = |e: toml::de::Error| {
             let offset = e.span().map_or(0, |span| span.start);
-            self.error(offset, ProblemFileFault::Syntax(e.message().to_owned()))
+            self.error(offset, ProblemFileErrorKind::Syntax, e.message().to_owned())
         };
         Ok(DeTable::parse(self.text).map_err(syntax)?.into_inner())
     }
 
     /// Mesh file or box.
     pub fn place(&self, root: &DeTable<'t>) -> Found<Place> {
-        let missing = ProblemFileFault::Missing {
-            key: "mesh",
-            purpose: "the Gmsh file of the domain, or `box` with its two corners",
-        };
+        let purpose = "the Gmsh file of the domain, or `box` with its two corners";
         match (root.get("mesh"), root.get("box")) {
             (Some(file), None) => self.mesh_file(file),
             (None, Some(corners)) => self.corners(corners),
-            (None, None) => Err(self.error(0, missing)),
-            (Some(_), Some(second)) => Err(self.error(
-                second.span().start,
-                ProblemFileFault::UnknownKey {
-                    key: "box".to_owned(),
-                    allowed: "`mesh` or `box`, not both".to_owned(),
-                },
-            )),
+            (None, None) => Err(self.missing(0, "mesh", purpose)),
+            (Some(_), Some(second)) => {
+                let allowed = "`mesh` or `box`, not both";
+                Err(self.unknown_key(second.span().start, "box", allowed))
+            }
         }
     }
 
@@ -183,12 +190,8 @@ impl<'t> Source<'t> {
         let name = self.string("mesh", value)?;
         let path = self.path.parent().unwrap_or(Path::new("")).join(name);
         let offset = value.span().start;
-        let failed = |source| self.mesh_error(offset, &path, source);
-        let unreadable =
-            |source| failed(gmsh::GmshError::Unreadable { path: path.clone(), source });
-        let bytes = read_file(&path).map_err(unreadable)?;
-        let dimension = gmsh::dimension(&bytes).map_err(failed)?;
-        Ok(Place::File { path, bytes, dimension, offset })
+        let file = GmshFile::read(&path).map_err(|e| self.mesh_error(offset, &path, e))?;
+        Ok(Place::File { path, file: Box::new(file), offset })
     }
 
     fn corners(&self, value: &Value<'t>) -> Found<Place> {
@@ -214,27 +217,18 @@ impl<'t> Source<'t> {
     /// Refuses a key that is not in the list.
     pub fn allow(&self, table: &DeTable<'t>, allowed: &[&str]) -> Found<()> {
         match table.keys().find(|key| !allowed.contains(&&**key.get_ref())) {
-            Some(key) => Err(self.error(
-                key.span().start,
-                ProblemFileFault::UnknownKey {
-                    key: excerpt(&**key.get_ref()),
-                    allowed: allowed.join(", "),
-                },
-            )),
+            Some(key) => {
+                Err(self.unknown_key(key.span().start, key.get_ref(), &allowed.join(", ")))
+            }
             None => Ok(()),
         }
     }
 
     /// The error for a value of another type.
-    pub fn wrong_type(
-        &self,
-        key: &str,
-        value: &Value<'t>,
-        expected: &'static str,
-    ) -> ProblemFileError {
+    pub fn wrong_type(&self, key: &str, value: &Value<'t>, expected: &str) -> ProblemFileError {
         let found = excerpt(&self.text[value.span()]);
-        let key = key.to_owned();
-        self.error(value.span().start, ProblemFileFault::WrongType { key, expected, found })
+        let message = format!("`{key}` must be {expected}, not {found}");
+        self.error(value.span().start, ProblemFileErrorKind::WrongType, message)
     }
 
     /// A table within a table.
@@ -271,7 +265,7 @@ impl<'t> Source<'t> {
             // an empty string is all quotes
             let quotes = if text.is_empty() { quotes / 2 } else { quotes };
             let offset = value.span().start + quotes + error.offset;
-            self.error(offset, ProblemFileFault::Expression(error.message))
+            self.error(offset, ProblemFileErrorKind::Expression, error.message)
         })?;
         // constants are integrated exactly
         Ok(expression.constant().map_or(Formula::Expression(expression), Formula::Number))

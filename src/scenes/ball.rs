@@ -97,11 +97,11 @@ fn over<const D: usize>(
     let a = dome.contact;
     let below_top = move |s: f64| dome.radius * dome.radius - s;
     let amplitude = a.powi(D as i32) / below_top(a * a).sqrt();
-    let value = move |x: &Point<f64, D>| {
+    let value = move |x: &Point<D>| {
         let r = x.norm();
         if r <= a { dome.height(r) } else { amplitude * outside(r) }
     };
-    let gradient = move |x: &Point<f64, D>| {
+    let gradient = move |x: &Point<D>| {
         let s = x.norm_squared();
         if s <= a * a {
             -x / below_top(s).sqrt()
@@ -109,7 +109,7 @@ fn over<const D: usize>(
             x * (-amplitude / s.sqrt().powi(D as i32))
         }
     };
-    let multiplier = move |x: &Point<f64, D>| {
+    let multiplier = move |x: &Point<D>| {
         let s = x.norm_squared();
         let curvature = D as f64 * below_top(s) + s;
         if s <= a * a { curvature / below_top(s).powf(1.5) } else { 0.0 }
@@ -122,9 +122,7 @@ fn over<const D: usize>(
         name: name.into(),
         summary,
         domain,
-        problem: problem
-            .obstacle_below(move |x: &Point<f64, D>| dome.height(x.norm()))
-            .solved_by(exact),
+        problem: problem.obstacle_below(move |x: &Point<D>| dome.height(x.norm())).solved_by(exact),
         regularity: Regularity::new(2.5),
     }
 }

@@ -14,7 +14,7 @@ use crate::scheme::Regularity;
 /// `-Laplace u = f` holds everywhere, so the multiplier vanishes: the membrane touches the half
 /// `x <= 0` without force, and the data do not determine the contact set. `u` lies in `H^s` for `s < 9/2`.
 pub fn biactive_half_2d() -> Scene<2> {
-    let power = |x: &Point<f64, 2>| positive_power(x[0], 4);
+    let power = |x: &Point<2>| positive_power(x[0], 4);
     Scene {
         name: "biactive-half-2d".into(),
         summary: "half of the membrane touches a plane obstacle without force",
@@ -39,9 +39,9 @@ pub fn biactive_half_2d() -> Scene<2> {
 /// beyond, where the multiplier is 1; elsewhere it vanishes. `u` lies in `H^s` for `s < 9/2`.
 pub fn biactive_ring_2d() -> Scene<2> {
     // derivatives with respect to s, where |grad s|^2 = 4 r^2 and Laplace s = -4
-    let power = |x: &Point<f64, 2>| positive_power(0.25 - x.norm_squared(), 4);
-    let outside = |x: &Point<f64, 2>| x.norm_squared() > 0.75;
-    let source = move |x: &Point<f64, 2>| {
+    let power = |x: &Point<2>| positive_power(0.25 - x.norm_squared(), 4);
+    let outside = |x: &Point<2>| x.norm_squared() > 0.75;
+    let source = move |x: &Point<2>| {
         let [_, first, second] = power(x);
         let pressed = if outside(x) { 1.0 } else { 0.0 };
         -256.0 * (second * 4.0 * x.norm_squared() - 4.0 * first) - pressed

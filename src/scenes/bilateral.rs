@@ -24,15 +24,15 @@ const M: f64 = SQRT_2 / 2.0 * (1.0 - FRAC_PI_4);
 pub fn bilateral_1d() -> Scene<1> {
     let load = |x: f64| PI * PI * (PI * x).sin();
     let distance = |x: f64| x.abs().min(1.0 - x.abs());
-    let value = move |x: &Point<f64, 1>| {
+    let value = move |x: &Point<1>| {
         let t = distance(x[0]);
         let u = if t < 0.25 { (PI * t).sin() - PI * SQRT_2 / 2.0 * t } else { M };
         u * x[0].signum()
     };
-    let gradient = move |x: &Point<f64, 1>| {
+    let gradient = move |x: &Point<1>| {
         let t = distance(x[0]);
         let slope = if t < 0.25 { PI * (PI * t).cos() - PI * SQRT_2 / 2.0 } else { 0.0 };
-        Point::<f64, 1>::new(if x[0].abs() < 0.5 { slope } else { -slope })
+        Point::<1>::new(if x[0].abs() < 0.5 { slope } else { -slope })
     };
     let inside = move |x: f64| distance(x) - 0.25;
     let exact = Exact::new(value, gradient)

@@ -22,17 +22,17 @@ const A: f64 = 0.5;
 /// obstacle*: `u` is convex along rays, so above its tangent, which is `psi`.
 pub fn cone<const D: usize>() -> Scene<D> {
     const { assert!(D == 2 || D == 3, "the solution is known in two and three dimensions") };
-    let value = |x: &Point<f64, D>| match x.norm() {
+    let value = |x: &Point<D>| match x.norm() {
         r if r <= A => 1.0 - r,
         r if D == 2 => -A * r.ln() + A * (1.0 - LN_2),
         r => A * A / r,
     };
-    let gradient = |x: &Point<f64, D>| match x.norm() {
+    let gradient = |x: &Point<D>| match x.norm() {
         0.0 => Point::zeros(),
         r if r <= A => -x / r,
         r => -x * (A / r).powi(D as i32 - 1) / r,
     };
-    let multiplier = |x: &Point<f64, D>| {
+    let multiplier = |x: &Point<D>| {
         let r = x.norm();
         if r <= A { (D as f64 - 1.0) / r } else { 0.0 }
     };
@@ -40,7 +40,7 @@ pub fn cone<const D: usize>() -> Scene<D> {
         name: format!("cone-{D}d"),
         summary: "no load, the obstacle is a cone; unbounded force at its apex",
         domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new().obstacle_below(|x: &Point<f64, D>| 1.0 - x.norm()).solved_by(
+        problem: Problem::new().obstacle_below(|x: &Point<D>| 1.0 - x.norm()).solved_by(
             Exact::new(value, gradient)
                 .with_multiplier(multiplier)
                 .with_contact(|x| A - x.norm(), free_boundary::sphere(A, 2.0)),

@@ -18,11 +18,11 @@ use crate::scheme::Regularity;
 /// interface for `s < 5/2`.
 pub fn contrast<const D: usize>(contrast: f64) -> Scene<D> {
     let alpha = move |x: f64| if x < 0.5 { contrast } else { 1.0 };
-    let value = move |x: &Point<f64, D>| {
+    let value = move |x: &Point<D>| {
         let v = |x: f64| (x - 0.25).max(0.0).powi(2) / 2.0;
         if x[0] < 0.5 { v(x[0]) / contrast } else { v(0.5) / contrast + (v(x[0]) - v(0.5)) }
     };
-    let gradient = move |x: &Point<f64, D>| {
+    let gradient = move |x: &Point<D>| {
         let slope = (x[0] - 0.25).max(0.0) / alpha(x[0]);
         Point::from_fn(|k, _| if k == 0 { slope } else { 0.0 })
     };
@@ -61,15 +61,15 @@ const A: f64 = 0.5;
 /// contact*: the multiplier is 2; `v` and `v'` vanish at `r = a`. *Across the interface*: `u` and
 /// `alpha du/dr = v'` are continuous. For `contrast != 1` the slope jumps: `H^s` for `s < 3/2`.
 pub fn contrast_disc_2d(contrast: f64) -> Scene<2> {
-    let alpha = move |x: &Point<f64, 2>| if x.norm() < 1.0 { contrast } else { 1.0 };
+    let alpha = move |x: &Point<2>| if x.norm() < 1.0 { contrast } else { 1.0 };
     let profile = |r: f64| {
         if r <= A { 0.0 } else { (r * r - A * A) / 2.0 - A * A * (r / A).ln() }
     };
-    let value = move |x: &Point<f64, 2>| match x.norm() {
+    let value = move |x: &Point<2>| match x.norm() {
         r if r < 1.0 => profile(r) / contrast,
         r => profile(1.0) / contrast + (profile(r) - profile(1.0)),
     };
-    let gradient = move |x: &Point<f64, 2>| {
+    let gradient = move |x: &Point<2>| {
         let s = x.norm_squared();
         if s <= A * A { Point::zeros() } else { x * ((1.0 - A * A / s) / alpha(x)) }
     };

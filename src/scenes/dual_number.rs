@@ -14,7 +14,7 @@ use crate::real::Point;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DualNumber<const D: usize> {
     pub value: f64,
-    pub gradient: Point<f64, D>,
+    pub gradient: Point<D>,
     pub laplacian: f64,
 }
 
@@ -25,7 +25,7 @@ impl<const D: usize> DualNumber<D> {
         Self { value, gradient, laplacian: second }
     }
     /// `prod_k (1 - x_k^2)`, which vanishes on the boundary of `(-1, 1)^D`.
-    pub fn bubble(x: &Point<f64, D>) -> Self {
+    pub fn bubble(x: &Point<D>) -> Self {
         (0..D)
             .map(|k| Self::along(k, [1.0 - x[k] * x[k], -2.0 * x[k], -2.0]))
             .fold(Self::along(0, [1.0, 0.0, 0.0]), |product, factor| product * factor)
@@ -33,7 +33,7 @@ impl<const D: usize> DualNumber<D> {
     /// The harmonic `Re (s (x - c) + iy)^{3/2}` for the first coordinate `x` and the last one `y`;
     /// `s` is `facing`, 1 for a function that vanishes on `y = 0`, `x < c` and -1 for its mirror
     /// image.
-    pub fn three_halves(x: &Point<f64, D>, c: f64, facing: f64) -> Self {
+    pub fn three_halves(x: &Point<D>, c: f64, facing: f64) -> Self {
         let z = halfplane::point(facing * (x[0] - c), x[D - 1]);
         let (value, [along, across]) = halfplane::three_halves(z);
         let mut gradient = Point::zeros();

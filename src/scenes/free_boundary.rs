@@ -14,7 +14,7 @@ const ON_SURFACES: f64 = 1.0 / 100.0;
 ///
 /// The spiral has equal areas between equal steps of height and turns by the golden angle from
 /// point to point; see R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132 (2006), 1769-1793.
-pub(super) fn sphere<const D: usize>(radius: f64, side: f64) -> Vec<Point<f64, D>> {
+pub(super) fn sphere<const D: usize>(radius: f64, side: f64) -> Vec<Point<D>> {
     let on = |axes: &[f64]| Point::from_fn(|k, _| radius * axes[k]);
     match D {
         1 => vec![on(&[-1.0]), on(&[1.0])],
@@ -39,17 +39,13 @@ pub(super) fn sphere<const D: usize>(radius: f64, side: f64) -> Vec<Point<f64, D
 }
 
 /// Points of a segment, both ends among them, in a domain of this side.
-pub(super) fn segment<const D: usize>(
-    from: Point<f64, D>,
-    to: Point<f64, D>,
-    side: f64,
-) -> Vec<Point<f64, D>> {
+pub(super) fn segment<const D: usize>(from: Point<D>, to: Point<D>, side: f64) -> Vec<Point<D>> {
     let n = ((to - from).norm() / (ON_CURVES * side)).ceil().max(1.0);
     (0..=n as u32).map(|k| from + (to - from) * (f64::from(k) / n)).collect()
 }
 
 /// Points of the circle of this radius around the origin in the plane where the last coordinate is
 /// zero, in a domain of this side.
-pub(super) fn circle(radius: f64, side: f64) -> Vec<Point<f64, 3>> {
+pub(super) fn circle(radius: f64, side: f64) -> Vec<Point<3>> {
     sphere::<2>(radius, side).iter().map(|x| x.push(0.0)).collect()
 }

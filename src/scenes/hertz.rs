@@ -31,16 +31,16 @@ const A: f64 = 0.5;
 /// branch points at `w = -a` and `w = a`, so `u` has two singularities of type `r^{3/2}` and lies
 /// in `H^s` for `s < 5/2`.
 pub fn hertz_2d() -> Scene<2> {
-    let value = |x: &Point<f64, 2>| {
+    let value = |x: &Point<2>| {
         let w = halfplane::point(x[0], x[1]);
         let s = root(w);
         // Only the modulus of w + s enters the real part, so the logarithm needs no branch.
         (-(w * w) / 2.0 + w * s / 2.0).re - A * A / 2.0 * ((w + s).norm() / A).ln()
     };
-    let gradient = |x: &Point<f64, 2>| {
+    let gradient = |x: &Point<2>| {
         let w = halfplane::point(x[0], x[1]);
         let derivative = root(w) - w;
-        Point::<f64, 2>::new(derivative.re, -derivative.im)
+        Point::<2>::new(derivative.re, -derivative.im)
     };
     let exact = Exact::new(value, gradient)
         .with_multiplier(|x| (A * A - x[0] * x[0]).max(0.0).sqrt())

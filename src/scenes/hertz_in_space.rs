@@ -31,17 +31,17 @@ const A: f64 = 0.5;
 /// around the circle `rho = a` a singularity of type `r^{3/2}`: `H^s` for `s < 5/2`. See K. L.
 /// Johnson, *Contact Mechanics*, Cambridge 1985, chapter 3.
 pub fn hertz_3d() -> Scene<3> {
-    let value = |x: &Point<f64, 3>| {
+    let value = |x: &Point<3>| {
         let Spheroidal { z, s, angle, bulge, .. } = Spheroidal::at(x);
         let rho_squared = x[0] * x[0] + x[1] * x[1];
         (2.0 * A * A * angle - rho_squared * bulge) / PI - 2.0 / PI * z * (s - z * angle)
     };
-    let gradient = |x: &Point<f64, 3>| {
+    let gradient = |x: &Point<3>| {
         let Spheroidal { z, s, angle, bulge } = Spheroidal::at(x);
         let across = -2.0 / PI * bulge;
-        Point::<f64, 3>::new(across * x[0], across * x[1], -4.0 / PI * (s - z * angle))
+        Point::<3>::new(across * x[0], across * x[1], -4.0 / PI * (s - z * angle))
     };
-    let inside = |x: &Point<f64, 3>| A * A - x[0] * x[0] - x[1] * x[1];
+    let inside = |x: &Point<3>| A * A - x[0] * x[0] - x[1] * x[1];
     let exact = Exact::new(value, gradient)
         .with_multiplier(move |x| 4.0 / PI * inside(x).max(0.0).sqrt())
         .with_contact(inside, free_boundary::circle(A, 2.0));
@@ -72,7 +72,7 @@ struct Spheroidal {
 impl Spheroidal {
     /// `t^2` and `-s^2` are the roots of `T^2 - K T - a^2 z^2`, so that of `t` and `s` the larger
     /// is formed without cancellation and the other follows from `s t = a z`.
-    fn at(x: &Point<f64, 3>) -> Self {
+    fn at(x: &Point<3>) -> Self {
         let z = if x[2] <= 0.0 { 0.0 } else { x[2] };
         let k = x[0] * x[0] + x[1] * x[1] + z * z - A * A;
         let larger = ((k.abs() + k.hypot(2.0 * A * z)) / 2.0).sqrt();

@@ -24,12 +24,12 @@ use crate::scheme::Regularity;
 /// ring `3/4 < r < 5/4` is in contact without force. At the corner `u` behaves like `r^{2/3}`: it
 /// lies in `H^s` for `s < 5/3`.
 pub fn lshape_2d() -> Scene<2> {
-    let pressed = |x: &Point<f64, 2>| if x.norm() > 1.25 { 1.0 } else { 0.0 };
-    let value = |x: &Point<f64, 2>| {
+    let pressed = |x: &Point<2>| if x.norm() > 1.25 { 1.0 } else { 0.0 };
+    let value = |x: &Point<2>| {
         let (r, phi) = polar(x);
         r.powf(2.0 / 3.0) * cut_off(r)[0] * (2.0 * phi / 3.0).sin()
     };
-    let gradient = |x: &Point<f64, 2>| {
+    let gradient = |x: &Point<2>| {
         let (r, phi) = polar(x);
         if r == 0.0 {
             return Point::zeros();
@@ -38,9 +38,9 @@ pub fn lshape_2d() -> Scene<2> {
         let root = r.powf(-1.0 / 3.0);
         let radial = (2.0 / 3.0 * root * g + r * root * slope) * (2.0 * phi / 3.0).sin();
         let angular = 2.0 / 3.0 * root * g * (2.0 * phi / 3.0).cos();
-        (x * radial + Point::<f64, 2>::new(-x[1], x[0]) * angular) / r
+        (x * radial + Point::<2>::new(-x[1], x[0]) * angular) / r
     };
-    let source = move |x: &Point<f64, 2>| {
+    let source = move |x: &Point<2>| {
         let (r, phi) = polar(x);
         let [_, slope, curvature] = cut_off(r);
         let smooth = if slope == 0.0 {
@@ -68,7 +68,7 @@ pub fn lshape_2d() -> Scene<2> {
 /// Distance from the corner and angle from the positive `x` axis. `atan2` is applied to the angle from
 /// the bisector of the domain: its branch cut bisects the removed quadrant and does not lie on the
 /// boundary, where rounding errors would cross it.
-fn polar(x: &Point<f64, 2>) -> (f64, f64) {
+fn polar(x: &Point<2>) -> (f64, f64) {
     let middle = FRAC_PI_2 + FRAC_PI_4;
     let (sin, cos) = middle.sin_cos();
     let from_middle = (cos * x[1] - sin * x[0]).atan2(cos * x[0] + sin * x[1]);

@@ -44,12 +44,11 @@ pub fn oscillating_1d() -> Scene<1> {
         x if x > FIRST && x < LAST => Some((-1.0, 0.0)),
         _ => None,
     };
-    let value = move |x: &Point<f64, 1>| {
-        linear(x[0]).map_or(1.0, |(added, _)| 2.0 * (K * x[0]).sin() + added)
-    };
-    let gradient = move |x: &Point<f64, 1>| {
+    let value =
+        move |x: &Point<1>| linear(x[0]).map_or(1.0, |(added, _)| 2.0 * (K * x[0]).sin() + added);
+    let gradient = move |x: &Point<1>| {
         let slope = linear(x[0]).map_or(0.0, |(_, slope)| 2.0 * K * (K * x[0]).cos() + slope);
-        Point::<f64, 1>::new(slope)
+        Point::<1>::new(slope)
     };
     let inside = |x: f64| ((x - X0).min(FIRST - x)).max((x - LAST).min(X3 - x));
     let exact = Exact::new(value, gradient)

@@ -21,12 +21,12 @@ const R0: f64 = 0.7;
 /// `H^s` for `s < 5/2`.
 pub fn polynomial<const D: usize>() -> Scene<D> {
     let force = |s: f64| 8.0 * R0 * R0 * (1.0 - s + R0 * R0);
-    let source = move |x: &Point<f64, D>| {
+    let source = move |x: &Point<D>| {
         let s = x.norm_squared();
         if s > R0 * R0 { -power::<D>(x, 2).laplacian } else { -force(s) }
     };
     let exact = Exact::new(|x| power(x, 2).value, |x| power(x, 2).gradient)
-        .with_multiplier(move |x: &Point<f64, D>| {
+        .with_multiplier(move |x: &Point<D>| {
             let s = x.norm_squared();
             if s > R0 * R0 { 0.0 } else { force(s) }
         })
@@ -69,12 +69,12 @@ pub fn degenerate(k: i32) -> Scene<2> {
 }
 
 /// `r^2 - r0^2`.
-fn from_sphere<const D: usize>(x: &Point<f64, D>) -> f64 {
+fn from_sphere<const D: usize>(x: &Point<D>) -> f64 {
     x.norm_squared() - R0 * R0
 }
 
 /// `max(r^2 - r0^2, 0)^k`: with `s = r^2 - r0^2`, `|grad s|^2 = 4 r^2` and `Laplace s = 2 D`.
-fn power<const D: usize>(x: &Point<f64, D>, k: i32) -> DualNumber<D> {
+fn power<const D: usize>(x: &Point<D>, k: i32) -> DualNumber<D> {
     let r_squared = x.norm_squared();
     let [value, first, second] = positive_power(from_sphere(x), k);
     let laplacian = second * 4.0 * r_squared + first * 2.0 * D as f64;

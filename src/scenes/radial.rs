@@ -25,8 +25,8 @@ use crate::scheme::Regularity;
 /// and finite; [`Entry::make`](crate::scenes::Entry::make) checks that, this function does not.
 pub fn radial<const D: usize>(scale: f64) -> Scene<D> {
     const { assert!(D >= 1 && D <= 3, "radial scenes exist in one, two and three dimensions") };
-    let value = move |x: &Point<f64, D>| profile::<D>((x / scale).norm());
-    let gradient = move |x: &Point<f64, D>| {
+    let value = move |x: &Point<D>| profile::<D>((x / scale).norm());
+    let gradient = move |x: &Point<D>| {
         let x = x / scale;
         let r = x.norm();
         // Zero in contact, so the direction x/r is never formed at the origin.

@@ -18,7 +18,7 @@ pub fn ridge<const D: usize>() -> Scene<D> {
         name: format!("ridge-{D}d"),
         summary: "no load, the obstacle is a ridge; a force on a line or plane",
         domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new().obstacle_below(|x: &Point<f64, D>| 0.5 - x[0].abs()).exact(
+        problem: Problem::new().obstacle_below(|x: &Point<D>| 0.5 - x[0].abs()).exact(
             |x| (1.0 - x[0].abs()) / 2.0,
             |x| Point::from_fn(|k, _| if k == 0 { -x[0].signum() / 2.0 } else { 0.0 }),
         ),
@@ -34,8 +34,8 @@ pub fn ridge<const D: usize>() -> Scene<D> {
 /// positive. `u` lies in `H^s` for `s < 3/2`. On meshes of which one diagonal is not a line the
 /// error of conforming linear elements is that of interpolation.
 pub fn pyramid_full_2d() -> Scene<2> {
-    let height = |x: &Point<f64, 2>| 1.0 - x[0].abs().max(x[1].abs());
-    let gradient = |x: &Point<f64, 2>| {
+    let height = |x: &Point<2>| 1.0 - x[0].abs().max(x[1].abs());
+    let gradient = |x: &Point<2>| {
         let axis = usize::from(x[1].abs() > x[0].abs());
         Point::from_fn(|k, _| if k == axis { -x[k].signum() } else { 0.0 })
     };

@@ -50,8 +50,7 @@ pub fn signorini_line_3d() -> Scene<3> {
 /// `sigma >= 0` and `u sigma = 0`. *Regularity*: `r^{3/2}` lies in `H^s` for `s < 5/2`, the best
 /// that a change of contact generically admits.
 fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> Scene<D> {
-    let solution =
-        move |x: &Point<f64, D>| DualNumber::bubble(x) * DualNumber::three_halves(x, c, 1.0);
+    let solution = move |x: &Point<D>| DualNumber::bubble(x) * DualNumber::three_halves(x, c, 1.0);
     let end = |y: f64| {
         Point::from_fn(|k, _| match k {
             0 => c,
@@ -97,12 +96,12 @@ const STEP: f64 = 0.2;
 /// convex combination of their pressures; elsewhere the argument of [`signorini_2d`] applies.
 /// `H^s` for `s < 5/2`.
 pub fn signorini_two_2d() -> Scene<2> {
-    let solution = |x: &Point<f64, 2>| {
+    let solution = |x: &Point<2>| {
         let left = DualNumber::three_halves(x, LEFT, -1.0);
         let right = DualNumber::three_halves(x, RIGHT, 1.0);
         DualNumber::bubble(x) * (left + DualNumber::along(0, step(x[0])) * (right - left))
     };
-    let pressure = |x: &Point<f64, 2>| {
+    let pressure = |x: &Point<2>| {
         let [s, _, _] = step(x[0]);
         let (left, right) = ((x[0] - LEFT).max(0.0).sqrt(), (RIGHT - x[0]).max(0.0).sqrt());
         1.5 * (1.0 - x[0] * x[0]) * ((1.0 - s) * left + s * right)

@@ -20,8 +20,8 @@ use crate::scheme::Regularity;
 /// gradient are continuous up to the tip, where both vanish. *Regularity*: `H^s` for `s < 5/2`.
 pub fn signorini_harmonic<const D: usize>() -> Scene<D> {
     const { assert!(D == 2 || D == 3, "a contact boundary needs two or three dimensions") };
-    let power = |x: &Point<f64, D>| halfplane::three_halves(halfplane::point(x[0], x[D - 1]));
-    let gradient = move |x: &Point<f64, D>| {
+    let power = |x: &Point<D>| halfplane::three_halves(halfplane::point(x[0], x[D - 1]));
+    let gradient = move |x: &Point<D>| {
         let (_, [along, across]) = power(x);
         let mut gradient = Point::zeros();
         gradient[0] = along;

@@ -18,17 +18,16 @@ use crate::scheme::Regularity;
 /// slope jumps for `contrast != 1`: `u` lies in `H^s` for `s < 3/2` only, on either side for
 /// `s < 7/2`.
 pub fn signorini_layers_2d(contrast: f64) -> Scene<2> {
-    let alpha = move |x: &Point<f64, 2>| if x[1] < 0.5 { contrast } else { 1.0 };
+    let alpha = move |x: &Point<2>| if x[1] < 0.5 { contrast } else { 1.0 };
     let depth = move |y: f64| if y < 0.5 { y / contrast } else { 0.5 / contrast + (y - 0.5) };
-    let value = move |x: &Point<f64, 2>| {
-        positive_power(x[0], 3)[0] - depth(x[1]) * positive_power(-x[0], 3)[0]
-    };
-    let gradient = move |x: &Point<f64, 2>| {
+    let value =
+        move |x: &Point<2>| positive_power(x[0], 3)[0] - depth(x[1]) * positive_power(-x[0], 3)[0];
+    let gradient = move |x: &Point<2>| {
         let ([_, open, _], [closed, steep, _]) =
             (positive_power(x[0], 3), positive_power(-x[0], 3));
-        Point::<f64, 2>::new(open + depth(x[1]) * steep, -closed / alpha(x))
+        Point::<2>::new(open + depth(x[1]) * steep, -closed / alpha(x))
     };
-    let source = move |x: &Point<f64, 2>| {
+    let source = move |x: &Point<2>| {
         -alpha(x) * (positive_power(x[0], 3)[2] - depth(x[1]) * positive_power(-x[0], 3)[2])
     };
     let exact = Exact::new(value, gradient)

@@ -56,7 +56,7 @@ fn wedge(k: i32, b: f64) -> Exact<2> {
         .with_multiplier(move |x| (1.0 - x[0] * x[0]) * positive_power(-x[0] - b, k)[0])
 }
 
-fn wedge_solution(x: &Point<f64, 2>, k: i32, b: f64) -> DualNumber<2> {
+fn wedge_solution(x: &Point<2>, k: i32, b: f64) -> DualNumber<2> {
     let [value, first, second] = positive_power(-x[0] - b, k);
     let open = DualNumber::along(0, positive_power(x[0] - b, k));
     let pressed = DualNumber::along(0, [value, -first, second]);
@@ -69,7 +69,7 @@ fn wedge_solution(x: &Point<f64, 2>, k: i32, b: f64) -> DualNumber<2> {
 /// `p = x^2 + y^2 - 1/4`; the load is `-Laplace u`. *Contact side*: `u = max(p, 0)^k` and
 /// `sigma = max(-p, 0)^k`. `u` lies in `H^s` for `s < k + 1/2`.
 pub fn signorini_disc(k: i32) -> Scene<3> {
-    let solution = move |x: &Point<f64, 3>| {
+    let solution = move |x: &Point<3>| {
         let height = DualNumber::along(2, [x[2], 1.0, 0.0]);
         disc_power(x, 1.0, k) - height * disc_power(x, -1.0, k)
     };
@@ -90,14 +90,14 @@ pub fn signorini_disc(k: i32) -> Scene<3> {
 }
 
 /// `x^2 + y^2 - 1/4`.
-fn from_circle(x: &Point<f64, 3>) -> f64 {
+fn from_circle(x: &Point<3>) -> f64 {
     x[0] * x[0] + x[1] * x[1] - 0.25
 }
 
 /// `max(sign p, 0)^k`: `|grad p|^2 = 4 (x^2 + y^2)` and `Laplace p = 4`.
-fn disc_power(x: &Point<f64, 3>, sign: f64, k: i32) -> DualNumber<3> {
+fn disc_power(x: &Point<3>, sign: f64, k: i32) -> DualNumber<3> {
     let [value, first, second] = positive_power(sign * from_circle(x), k);
-    let gradient = Point::<f64, 3>::new(x[0], x[1], 0.0) * (2.0 * sign * first);
+    let gradient = Point::<3>::new(x[0], x[1], 0.0) * (2.0 * sign * first);
     let laplacian = second * 4.0 * (x[0] * x[0] + x[1] * x[1]) + sign * first * 4.0;
     DualNumber { value, gradient, laplacian }
 }

@@ -17,9 +17,9 @@ const C2: f64 = 0.165_204_152_153_577_5;
 /// are; they are fixed by `u(-1) = 0` and `u'(1) = 0`. Then `sigma(-1) = -u'(-1) = 0.20726` and
 /// `u(1) = 0.27213`, both positive. The solution is smooth.
 pub fn signorini_reaction_1d() -> Scene<1> {
-    let value = |x: &Point<f64, 1>| C1 * x[0].exp() + C2 * (-x[0]).exp() + x[0].sin() / 2.0;
+    let value = |x: &Point<1>| C1 * x[0].exp() + C2 * (-x[0]).exp() + x[0].sin() / 2.0;
     let slope = |x: f64| C1 * x.exp() - C2 * (-x).exp() + x.cos() / 2.0;
-    let exact = Exact::new(value, move |x| Point::<f64, 1>::new(slope(x[0])))
+    let exact = Exact::new(value, move |x| Point::<1>::new(slope(x[0])))
         .with_multiplier(move |x| if x[0] < 0.0 { -slope(x[0]) } else { 0.0 })
         .with_contact(|x| -x[0], Vec::new());
     Scene {
@@ -43,7 +43,7 @@ pub fn signorini_reaction_1d() -> Scene<1> {
 ///
 /// `u = x - x^2/2`: `u(1) = 1/2 > 0` and `u'(1) = 0`.
 pub fn signorini_open_1d() -> Scene<1> {
-    let exact = Exact::new(|x| x[0] - x[0] * x[0] / 2.0, |x| Point::<f64, 1>::new(1.0 - x[0]))
+    let exact = Exact::new(|x| x[0] - x[0] * x[0] / 2.0, |x| Point::<1>::new(1.0 - x[0]))
         .with_multiplier(|_| 0.0)
         .with_contact(|_| -1.0, Vec::new());
     supported(
@@ -59,7 +59,7 @@ pub fn signorini_open_1d() -> Scene<1> {
 ///
 /// `u = -x (1 - x)/2`: `u(1) = 0` and `sigma(1) = u'(1) = 1/2 > 0`.
 pub fn signorini_closed_1d() -> Scene<1> {
-    let exact = Exact::new(|x| -x[0] * (1.0 - x[0]) / 2.0, |x| Point::<f64, 1>::new(x[0] - 0.5))
+    let exact = Exact::new(|x| -x[0] * (1.0 - x[0]) / 2.0, |x| Point::<1>::new(x[0] - 0.5))
         .with_multiplier(|_| 0.5)
         .with_contact(|_| 1.0, Vec::new());
     supported(

@@ -24,7 +24,7 @@ pub fn parabola_1d() -> Scene<1> {
     ];
     let problem = Problem::new()
         .constant_source(-2.0)
-        .obstacle_below(|x: &Point<f64, 1>| 8.0 * x[0] * (1.0 - x[0]) - 1.0)
+        .obstacle_below(|x: &Point<1>| 8.0 * x[0] * (1.0 - x[0]) - 1.0)
         .obstacles_of_degree(2);
     let inside = |x: f64| 1.0 / 6.0 - (x - 0.5).abs();
     let summary = "a string under constant load over a parabola";
@@ -49,10 +49,10 @@ pub fn icelike_1d() -> Scene<1> {
         (0.9, [7.29, -15.2, 8.0]),
         (f64::INFINITY, [0.0, 1.0, -1.0]),
     ];
-    let near_end = |x: &Point<f64, 1>| (x[0] - 0.5).abs() - 0.3;
+    let near_end = |x: &Point<1>| (x[0] - 0.5).abs() - 0.3;
     let problem = Problem::new()
         .piecewise_source(move |x| if near_end(x) > 0.0 { -16.0 } else { 8.0 }, near_end)
-        .obstacle_below(|x: &Point<f64, 1>| x[0] * (1.0 - x[0]))
+        .obstacle_below(|x: &Point<1>| x[0] * (1.0 - x[0]))
         .obstacles_of_degree(2);
     let summary = "a string held down near its ends and lifted between, over a parabola";
     string("icelike-1d", summary, problem, &PARABOLAS, |x| (x - 0.5).abs() - 0.4, &[0.1, 0.9])
@@ -70,13 +70,13 @@ fn string(
     let coefficients = move |x: f64| {
         parabolas.iter().find(|(end, _)| x <= *end).map_or([0.0; 3], |&(_, parabola)| parabola)
     };
-    let value = move |x: &Point<f64, 1>| {
+    let value = move |x: &Point<1>| {
         let [a, b, c] = coefficients(x[0]);
         a + x[0] * (b + c * x[0])
     };
-    let gradient = move |x: &Point<f64, 1>| {
+    let gradient = move |x: &Point<1>| {
         let [_, b, c] = coefficients(x[0]);
-        Point::<f64, 1>::new(b + 2.0 * c * x[0])
+        Point::<1>::new(b + 2.0 * c * x[0])
     };
     let exact = Exact::new(value, gradient)
         .with_multiplier(move |x| if contact(x[0]) >= 0.0 { 18.0 } else { 0.0 })

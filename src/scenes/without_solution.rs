@@ -15,7 +15,7 @@ use crate::scheme::Regularity;
 /// The obstacle oscillates infinitely often towards the centre; the solution is known to have finite
 /// energy.
 pub fn spiral_2d() -> Scene<2> {
-    let obstacle = |x: &Point<f64, 2>| {
+    let obstacle = |x: &Point<2>| {
         let r = x.norm();
         if r < 1e-8 {
             return 3.6;
@@ -61,7 +61,7 @@ pub fn signorini_sine_2d() -> Scene<2> {
 /// `u` lies in every `W^{2,p}`, `p < infinity`, after H. Brezis, G. Stampacchia, *Bull. Soc. Math.
 /// France* 96 (1968). Energies are known for the loads 5, 10 and 20.
 pub fn torsion_2d(load: f64) -> Scene<2> {
-    let distance = |x: &Point<f64, 2>| x[0].min(1.0 - x[0]).min(x[1].min(1.0 - x[1]));
+    let distance = |x: &Point<2>| x[0].min(1.0 - x[0]).min(x[1].min(1.0 - x[1]));
     let problem = Problem::new().constant_source(load).obstacle_above(distance);
     let problem = known_at(
         load,
@@ -85,7 +85,7 @@ pub fn torsion_2d(load: f64) -> Scene<2> {
 pub fn pyramid_2d(load: f64) -> Scene<2> {
     let problem = Problem::new()
         .constant_source(load)
-        .obstacle_below(|x: &Point<f64, 2>| 0.5 - x[0].abs().max(x[1].abs()));
+        .obstacle_below(|x: &Point<2>| 0.5 - x[0].abs().max(x[1].abs()));
     let problem = known_at(load, problem, &[(-4.0, 0.645_43, 1e-5), (0.0, 0.262_696, 1e-6)]);
     Scene {
         name: "pyramid-2d".into(),

@@ -1,10 +1,9 @@
 //! Conforming elements.
 
-use super::{DirichletBy, ExpectedOrders, Scheme, Setting, energy_order, with_duality};
-use crate::element::{P1, P2};
-use crate::facet::NoFacets;
-use crate::mesh::Mesh;
-use crate::real::Real;
+use std::sync::Arc;
+
+use super::{ExpectedOrders, Scheme, Setting, energy_order, with_duality};
+use crate::element::{Element, P1, P2};
 
 /// Continuous piecewise linears, bounds at vertices, Dirichlet values pinned.
 ///
@@ -14,16 +13,12 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConformingP1;
 
-impl<T: Real, const D: usize> Scheme<T, D> for ConformingP1 {
-    type Element = P1;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
-
+impl<const D: usize> Scheme<D> for ConformingP1 {
     fn name(&self) -> &str {
         "p1"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P1)
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(energy_order(setting, 1), setting)
@@ -45,16 +40,12 @@ impl<T: Real, const D: usize> Scheme<T, D> for ConformingP1 {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConformingP2;
 
-impl<T: Real, const D: usize> Scheme<T, D> for ConformingP2 {
-    type Element = P2;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
-
+impl<const D: usize> Scheme<D> for ConformingP2 {
     fn name(&self) -> &str {
         "p2"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P2)
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(energy_order(setting, 2), setting)

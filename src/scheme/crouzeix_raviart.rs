@@ -1,10 +1,9 @@
 //! Non-conforming linear elements.
 
-use super::{DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, with_duality};
-use crate::element::CrouzeixRaviart;
-use crate::facet::NoFacets;
-use crate::mesh::Mesh;
-use crate::real::Real;
+use std::sync::Arc;
+
+use super::{ExpectedOrders, Scheme, Setting, broken_energy_order, with_duality};
+use crate::element::{CrouzeixRaviart, Element};
 
 /// Piecewise linears with continuous facet means, bounds on those means, Dirichlet means pinned.
 ///
@@ -13,16 +12,12 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NonconformingP1;
 
-impl<T: Real, const D: usize> Scheme<T, D> for NonconformingP1 {
-    type Element = CrouzeixRaviart;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
-
+impl<const D: usize> Scheme<D> for NonconformingP1 {
     fn name(&self) -> &str {
         "cr"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(CrouzeixRaviart)
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(broken_energy_order(setting, 1), setting)

@@ -1,13 +1,14 @@
 //! The methods whose penalty is made of lifts of jumps.
 
+use std::sync::Arc;
+
 use super::{
-    DirichletBy, ExpectedOrders, Scheme, SchemeOptions, Setting, broken_energy_order,
-    name_of_degree, with_duality,
+    ExpectedOrders, Scheme, SchemeOptions, Setting, broken_energy_order, name_of_degree,
+    with_duality,
 };
-use crate::element::{Broken, P1, ReferenceElement};
-use crate::facet::{FacetLifts, Lifted, Lifts};
+use crate::element::{Broken, Element, P1};
+use crate::facet::{FacetForm, FacetLifts, Lifts};
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// The second method of Bassi and Rebay: penalty by the lifts of single facets, on broken elements, by
 /// default of degree `k - 1` on elements of degree `k`.
@@ -16,60 +17,57 @@ use crate::real::Real;
 /// Turbomachinery (1997), 99-108.
 /// Orders: F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733 for obstacles and
 /// IMA J. Numer. Anal. 31 (2011), 1754-1772 for Signorini.
-#[derive(Clone, Copy, Debug)]
-pub struct Br2<E = P1> {
+#[derive(Clone, Debug)]
+pub struct Br2<const D: usize> {
     /// The factor of the penalty; where absent three halves of the number of facets of a cell,
     /// above which the form is coercive.
     pub eta: Option<f64>,
     /// The degree of the lifts.
     pub lifts: Lifts,
-    /// The element whose broken version carries the scheme.
-    pub element: E,
+    /// The element, which is broken.
+    pub element: Arc<dyn Element<D>>,
 }
 
-impl Default for Br2 {
+impl<const D: usize> Default for Br2<D> {
     fn default() -> Self {
-        Self { eta: None, lifts: Lifts::Reduced, element: P1 }
+        Self { eta: None, lifts: Lifts::Reduced, element: Arc::new(Broken(P1)) }
     }
 }
 
 /// The factor of the penalty over the number of facets of a cell.
 const MARGIN: f64 = 1.5;
 
-impl Br2 {
-    /// The scheme by name in a dimension: with what the options give.
-    pub(super) fn with_options(options: &SchemeOptions, dimension: usize) -> Self {
-        let eta = options.factor.map(|factor| factor * (dimension + 1) as f64);
-        Self { eta, lifts: options.lifts.unwrap_or_default(), element: P1 }
+impl<const D: usize> Br2<D> {
+    /// The scheme by name: with what the options give.
+    pub(super) fn with_options(options: &SchemeOptions) -> Self {
+        let eta = options.factor.map(|factor| factor * (D + 1) as f64);
+        Self { eta, lifts: options.lifts.unwrap_or_default(), ..Self::default() }
     }
-}
-
-impl<E> Br2<E> {
     /// The scheme on the broken version of another element: `Br2::default().on(P2)`.
     #[must_use]
-    pub fn on<F>(self, element: F) -> Br2<F> {
-        Br2 { eta: self.eta, lifts: self.lifts, element }
+    pub fn on(self, element: impl Element<D> + 'static) -> Self {
+        Self { element: Arc::new(Broken(element)), ..self }
     }
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Br2<E> {
-    type Element = Broken<E>;
-    type Facet = FacetLifts;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
-
+impl<const D: usize> Scheme<D> for Br2<D> {
     fn name(&self) -> &str {
-        name_of_degree!("br2", E::DEGREE)
+        name_of_degree!("br2", self.element.degree())
+    }
+    fn element(&self) -> Arc<dyn Element<D>> {
+        self.element.clone()
     }
     fn choices(&self) -> SchemeOptions {
         let factor = self.eta.map(|eta| eta / (D + 1) as f64).filter(|&factor| factor != MARGIN);
         SchemeOptions { factor, lifts: self.lifts.unless_default(), ..SchemeOptions::default() }
     }
-    fn facet(&self, _: &Mesh<T, D>) -> FacetLifts {
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
         let eta = self.eta.unwrap_or(MARGIN * (D + 1) as f64);
-        FacetLifts { eta, lift_degree: self.lifts.degree(E::BASIS_DEGREE), bounded: true }
+        let lift_degree = self.lifts.degree(self.element.basis_degree());
+        Box::new(FacetLifts { eta, lift_degree, with_all_lifts: false })
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(broken_energy_order(setting, E::DEGREE), setting)
+        with_duality(broken_energy_order(setting, self.element.degree()), setting)
     }
 }
 
@@ -81,55 +79,52 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Br2<E>
 /// Differential Equations 16 (2000), 365-378.
 /// Orders: F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733 for obstacles and
 /// IMA J. Numer. Anal. 31 (2011), 1754-1772 for Signorini.
-#[derive(Clone, Copy, Debug)]
-pub struct Bmmpr<E = P1> {
+#[derive(Clone, Debug)]
+pub struct Bmmpr<const D: usize> {
     /// The factor of the penalty; by default one.
     pub eta: f64,
     /// The degree of the lifts.
     pub lifts: Lifts,
-    /// The element whose broken version carries the scheme.
-    pub element: E,
+    /// The element, which is broken.
+    pub element: Arc<dyn Element<D>>,
 }
 
-impl Default for Bmmpr {
+impl<const D: usize> Default for Bmmpr<D> {
     fn default() -> Self {
-        Self { eta: 1.0, lifts: Lifts::Reduced, element: P1 }
+        Self { eta: 1.0, lifts: Lifts::Reduced, element: Arc::new(Broken(P1)) }
     }
 }
 
-impl Bmmpr {
+impl<const D: usize> Bmmpr<D> {
     /// The scheme by name: with what the options give.
     pub(super) fn with_options(options: &SchemeOptions) -> Self {
-        let eta = options.factor.unwrap_or(Self::default().eta);
-        Self { eta, lifts: options.lifts.unwrap_or_default(), element: P1 }
+        let default = Self::default();
+        let eta = options.factor.unwrap_or(default.eta);
+        Self { eta, lifts: options.lifts.unwrap_or_default(), ..default }
     }
-}
-
-impl<E> Bmmpr<E> {
     /// The scheme on the broken version of another element: `Bmmpr::default().on(P2)`.
     #[must_use]
-    pub fn on<F>(self, element: F) -> Bmmpr<F> {
-        Bmmpr { eta: self.eta, lifts: self.lifts, element }
+    pub fn on(self, element: impl Element<D> + 'static) -> Self {
+        Self { element: Arc::new(Broken(element)), ..self }
     }
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Bmmpr<E> {
-    type Element = Broken<E>;
-    type Facet = Lifted<FacetLifts>;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
-
+impl<const D: usize> Scheme<D> for Bmmpr<D> {
     fn name(&self) -> &str {
-        name_of_degree!("bmmpr", E::DEGREE)
+        name_of_degree!("bmmpr", self.element.degree())
+    }
+    fn element(&self) -> Arc<dyn Element<D>> {
+        self.element.clone()
     }
     fn choices(&self) -> SchemeOptions {
-        let factor = Some(self.eta).filter(|&eta| eta != Bmmpr::default().eta);
+        let factor = Some(self.eta).filter(|&eta| eta != Self::default().eta);
         SchemeOptions { factor, lifts: self.lifts.unless_default(), ..SchemeOptions::default() }
     }
-    fn facet(&self, _: &Mesh<T, D>) -> Lifted<FacetLifts> {
-        let lift_degree = self.lifts.degree(E::BASIS_DEGREE);
-        Lifted(FacetLifts { eta: self.eta, lift_degree, bounded: false })
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        let lift_degree = self.lifts.degree(self.element.basis_degree());
+        Box::new(FacetLifts { eta: self.eta, lift_degree, with_all_lifts: true })
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(broken_energy_order(setting, E::DEGREE), setting)
+        with_duality(broken_energy_order(setting, self.element.degree()), setting)
     }
 }

@@ -1,7 +1,6 @@
 //! Schemes: an element, a facet form and a way to impose Dirichlet data. Nothing else: where an
 //! inequality binds is for the [constraint set](crate::constraint).
 
-mod any_scheme;
 mod conforming;
 mod crouzeix_raviart;
 mod definition;
@@ -13,7 +12,6 @@ mod named_scheme;
 mod options;
 mod wopsip;
 
-pub use any_scheme::AnyScheme;
 pub use conforming::{ConformingP1, ConformingP2};
 pub use crouzeix_raviart::NonconformingP1;
 pub use definition::Scheme;
@@ -30,7 +28,6 @@ pub use crate::theory::{ExpectedOrders, Regularity, Setting};
 
 use crate::element::P2;
 use crate::instances::compiled;
-use crate::real::Real;
 use energy_order::{broken_energy_order, energy_order, with_duality};
 
 /// The name of a scheme on an element of this degree: the name itself for linears, with `-p2` for
@@ -68,10 +65,10 @@ macro_rules! schemes_by_name {
             }
         }
 
-        fn made<T: Real, const D: usize>(
+        fn made<const D: usize>(
             name: &str,
             $options: &SchemeOptions,
-        ) -> Option<Box<dyn AnyScheme<T, D>>> {
+        ) -> Option<Box<dyn Scheme<D>>> {
             match name {
                 $($name => Some(Box::new($scheme)),)*
                 _ => None,
@@ -99,7 +96,7 @@ schemes_by_name! { options:
         => Ldg::with_options(options, true);
     "br2" ["factor", "lifts"],
         "second method of Bassi and Rebay on broken linears, lifts of degree k-1"
-        => Br2::with_options(options, D);
+        => Br2::with_options(options);
     "bmmpr" ["factor", "lifts"],
         "method of Brezzi, Manzini, Marini, Pietra and Russo on broken linears, lifts of degree k-1"
         => Bmmpr::with_options(options);
@@ -117,7 +114,7 @@ schemes_by_name! { options:
     "ldg-switch-p2" ["sigma", "lifts"], "ldg-switch on broken quadratics"
         => Ldg::with_options(options, true).on(P2);
     "br2-p2" ["factor", "lifts"], "br2 on broken quadratics"
-        => Br2::with_options(options, D).on(P2);
+        => Br2::with_options(options).on(P2);
     "bmmpr-p2" ["factor", "lifts"], "bmmpr on broken quadratics"
         => Bmmpr::with_options(options).on(P2);
     "wopsip-p2" ["factor", "eta", "weight"], "wopsip on broken quadratics, moments of degree one: has digits in f64 to level 64 by default, to 8 with eta=1e8"
@@ -125,12 +122,11 @@ schemes_by_name! { options:
 }
 
 /// The scheme of this name.
-pub fn scheme_by_name<T: Real, const D: usize>(
+pub fn scheme_by_name<const D: usize>(
     name: &str,
     options: &SchemeOptions,
-) -> Option<Box<dyn AnyScheme<T, D>>> {
-    compiled!(
-        T, D: fn(&str, &SchemeOptions) -> Option<Box<dyn AnyScheme<T, D>>>
+) -> Option<Box<dyn Scheme<D>>> {
+    compiled!(const D: fn(&str, &SchemeOptions) -> Option<Box<dyn Scheme<D>>>
             = made
     )(name, options)
 }

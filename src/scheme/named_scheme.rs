@@ -4,10 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use super::{AnyScheme, SCHEMES, SchemeOptions, keys_of_scheme, scheme_by_name};
+use super::{SCHEMES, Scheme, SchemeOptions, keys_of_scheme, scheme_by_name};
 use crate::constraint::{CONSTRAINT_SETS, ConstraintSet, Nodes, constraint_set_by_name};
 use crate::input::excerpt;
-use crate::real::Real;
 
 /// A scheme as users write it, `NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]`: for instance
 /// `wopsip:facet-means@factor=10,weight=anisotropic`. The keys are the fields of [`SchemeOptions`];
@@ -122,7 +121,7 @@ impl FromStr for NamedScheme {
 impl fmt::Display for NamedScheme {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let set = self.constraint_set().unwrap_or_else(|| Arc::new(Nodes));
-        f.write_str(&self.make::<f64, 2>().label_with(&set, self.shown_choices()))
+        f.write_str(&self.make::<2>().label_with(&set, self.shown_choices()))
     }
 }
 
@@ -202,7 +201,7 @@ impl NamedScheme {
         self
     }
     /// The scheme.
-    pub fn make<T: Real, const D: usize>(&self) -> Box<dyn AnyScheme<T, D>> {
+    pub fn make<const D: usize>(&self) -> Box<dyn Scheme<D>> {
         match scheme_by_name(self.name, &self.options) {
             Some(scheme) => scheme,
             None => unreachable!("the name is one of the list"),
@@ -215,7 +214,7 @@ impl NamedScheme {
 
     /// The placement of this name, if the element has such values.
     fn placed(&self, text: &str, placement: &str) -> Result<&'static str, SchemeNameError> {
-        let scheme = self.make::<f64, 2>();
+        let scheme = self.make::<2>();
         let fits = |name: &str| {
             constraint_set_by_name(name).is_some_and(|set| scheme.constraint_on(&set).is_some())
         };

@@ -1,13 +1,14 @@
 //! The weakly over-penalised symmetric interior penalty method.
 
+use std::sync::Arc;
+
 use super::{
-    DirichletBy, ExpectedOrders, Scheme, SchemeOptions, Setting, broken_energy_order,
-    name_of_degree, with_duality,
+    ExpectedOrders, Scheme, SchemeOptions, Setting, broken_energy_order, name_of_degree,
+    with_duality,
 };
-use crate::element::{Broken, P1, ReferenceElement};
-use crate::facet::{OverPenalty, WeightRule};
+use crate::element::{Broken, Element, P1};
+use crate::facet::{FacetForm, OverPenalty, WeightRule};
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// How the factor of the over-penalty is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,24 +25,24 @@ pub enum Eta {
 /// Orders: Y. Zeng, J. Chen, F. Wang, Comput. Math. Appl. 69 (2015), energy norm, both inequalities,
 /// for linears; S. C. Brenner, L. Owens, L.-Y. Sung, J. Comput. Appl. Math. 236 (2012), 2883-2894 for
 /// equations in the plane with quadratics, for which nothing is proven under inequalities.
-#[derive(Clone, Copy, Debug)]
-pub struct Wopsip<E = P1> {
+#[derive(Clone, Debug)]
+pub struct Wopsip<const D: usize> {
     /// The factor.
     pub eta: Eta,
     /// How the factor becomes a weight.
     pub weight: WeightRule,
-    /// The element whose broken version carries the scheme.
-    pub element: E,
+    /// The element, which is broken.
+    pub element: Arc<dyn Element<D>>,
 }
 
-impl Default for Wopsip {
+impl<const D: usize> Default for Wopsip<D> {
     fn default() -> Self {
         let eta = Eta::Dimensionless(1.0);
-        Self { eta, weight: WeightRule::Isotropic, element: P1 }
+        Self { eta, weight: WeightRule::Isotropic, element: Arc::new(Broken(P1)) }
     }
 }
 
-impl Wopsip {
+impl<const D: usize> Wopsip<D> {
     /// The scheme by name: with what the options give.
     pub(super) fn with_options(options: &SchemeOptions) -> Self {
         let chosen = options.eta.map(Eta::Absolute).or(options.factor.map(Eta::Dimensionless));
@@ -52,49 +53,46 @@ impl Wopsip {
             ..default
         }
     }
-}
-
-impl<E> Wopsip<E> {
     /// The scheme on the broken version of another element: `Wopsip::default().on(P2)`.
     #[must_use]
-    pub fn on<F>(self, element: F) -> Wopsip<F> {
-        Wopsip { eta: self.eta, weight: self.weight, element }
+    pub fn on(self, element: impl Element<D> + 'static) -> Self {
+        Self { element: Arc::new(Broken(element)), ..self }
     }
 }
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Wopsip<E> {
-    type Element = Broken<E>;
-    type Facet = OverPenalty;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
-    const CONSISTENT: bool = false;
-
+impl<const D: usize> Scheme<D> for Wopsip<D> {
     fn name(&self) -> &str {
-        name_of_degree!("wopsip", E::DEGREE)
+        name_of_degree!("wopsip", self.element.degree())
+    }
+    fn element(&self) -> Arc<dyn Element<D>> {
+        self.element.clone()
+    }
+    fn is_consistent(&self) -> bool {
+        false
     }
     fn choices(&self) -> SchemeOptions {
         let weight = Some(self.weight).filter(|&weight| weight != WeightRule::Isotropic);
         let none = SchemeOptions { weight, ..SchemeOptions::default() };
         match self.eta {
-            eta if eta == Wopsip::default().eta => none,
+            eta if eta == Self::default().eta => none,
             Eta::Dimensionless(factor) => SchemeOptions { factor: Some(factor), ..none },
             Eta::Absolute(eta) => SchemeOptions { eta: Some(eta), ..none },
         }
     }
-    fn facet(&self, mesh: &Mesh<T, D>) -> OverPenalty {
+    fn form(&self, mesh: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        let degree = self.element.degree();
         let eta = match self.eta {
             Eta::Absolute(eta) => eta,
-            Eta::Dimensionless(factor) => {
-                factor * mesh.domain_diameter().powi(2 * E::DEGREE as i32)
-            }
+            Eta::Dimensionless(factor) => factor * mesh.domain_diameter().powi(2 * degree as i32),
         };
         let mesh_size = match self.weight {
             WeightRule::Isotropic => f64::NAN,
             WeightRule::Anisotropic => mesh.mesh_size(),
         };
-        OverPenalty { eta, degree: E::DEGREE, rule: self.weight, mesh_size }
+        Box::new(OverPenalty { eta, degree, rule: self.weight, mesh_size })
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        match E::DEGREE {
+        match self.element.degree() {
             2 if !setting.is_linear() || setting.dimension > 2 => ExpectedOrders::default(),
             degree => with_duality(broken_energy_order(setting, degree), setting),
         }

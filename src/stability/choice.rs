@@ -6,8 +6,7 @@ use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::real::Real;
-use crate::scheme::{AnyScheme, NamedScheme};
+use crate::scheme::{NamedScheme, Scheme};
 
 /// The schemes of the study, as users write them.
 pub(crate) const NAMES: [&str; 7] =
@@ -96,13 +95,13 @@ impl Choice {
     pub fn inequality<const D: usize>(
         &self,
         problem: &Problem<D>,
-        mesh: &Mesh<f64, D>,
+        mesh: &Mesh<D>,
     ) -> Result<Inequality<f64>, Error> {
         let problem = self.constrain(problem.clone());
-        self.make::<f64, D>().inequality(&problem, mesh, DataQuadrature::default())
+        self.make::<D>().inequality(&problem, mesh, DataQuadrature::default())
     }
     /// The scheme.
-    pub fn make<T: Real, const D: usize>(&self) -> Box<dyn AnyScheme<T, D>> {
+    pub fn make<const D: usize>(&self) -> Box<dyn Scheme<D>> {
         match self.penalty {
             Penalty::Unweighted => Box::new(UnweightedWopsip::default()),
             _ => self.named().make(),

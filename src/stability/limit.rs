@@ -58,7 +58,7 @@ fn compare(scene: &Scene<2>, choice: &Choice, level: usize, sink: Sink<'_>) -> R
 
 /// The distance of two broken linear functions in L2 over the norm of the second, both by values at
 /// the vertices of cells: `int_K v^2 = |K| / ((D+1)(D+2)) (sum v_i^2 + (sum v_i)^2)`.
-fn relative_distance<const D: usize>(mesh: &Mesh<f64, D>, a: &[f64], b: &[f64]) -> f64 {
+fn relative_distance<const D: usize>(mesh: &Mesh<D>, a: &[f64], b: &[f64]) -> f64 {
     let (mut above, mut below) = (0.0, 0.0);
     for c in 0..mesh.n_cells() {
         let volume = mesh.geometry(c).volume;

@@ -7,16 +7,16 @@ use crate::mesh::{BoundaryPart, BoxDomain, Mesh, TaggedFacet};
 use crate::real::Point;
 
 /// The unit square in `n` times `n ratio` rectangles, each cut in two.
-pub(crate) fn stretched(n: usize, ratio: usize) -> Result<Mesh<f64, 2>, Error> {
+pub(crate) fn stretched(n: usize, ratio: usize) -> Result<Mesh<2>, Error> {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     Ok(Mesh::kuhn_box(&square, [n, n * ratio])?)
 }
 
 /// A mesh with every vertex moved; boundary facets keep their parts.
 pub(crate) fn moved<const D: usize>(
-    mesh: &Mesh<f64, D>,
-    to: impl Fn(&Point<f64, D>) -> Point<f64, D>,
-) -> Result<Mesh<f64, D>, Error> {
+    mesh: &Mesh<D>,
+    to: impl Fn(&Point<D>) -> Point<D>,
+) -> Result<Mesh<D>, Error> {
     let tagged = |f: &crate::mesh::BoundaryFacet| {
         let mut vertices = [0; D];
         let around = mesh.facet_vertices(f.cell as usize, f.local as usize);
@@ -30,16 +30,13 @@ pub(crate) fn moved<const D: usize>(
 
 /// `(-1, 1) x (0, 1)` in `n` squares for each unit, graded to the origin by `t^power`; contact
 /// below.
-pub(crate) fn graded(n: usize, power: i32) -> Result<Mesh<f64, 2>, Error> {
+pub(crate) fn graded(n: usize, power: i32) -> Result<Mesh<2>, Error> {
     let mesh = Mesh::kuhn_box(&BoxDomain::above_contact(), [2 * n, n])?;
     moved(&mesh, |x| x.map(|t| t.signum() * t.abs().powi(power)))
 }
 
 /// A mesh of tetrahedra with Dirichlet data on the whole boundary.
-pub(crate) fn clamped(
-    vertices: Vec<Point<f64, 3>>,
-    cells: Vec<u32>,
-) -> Result<Mesh<f64, 3>, Error> {
+pub(crate) fn clamped(vertices: Vec<Point<3>>, cells: Vec<u32>) -> Result<Mesh<3>, Error> {
     let mut seen: HashMap<[u32; 3], usize> = HashMap::new();
     let facets = |cell: &[u32]| {
         let mut sorted = [cell[0], cell[1], cell[2], cell[3]];
@@ -67,7 +64,7 @@ pub(crate) fn clamped(
 /// corners that fall, above it those that rise: so the slivers fill the gap, and every sliver
 /// shares its four facets with tetrahedra above and below. All other tetrahedra stay as they were
 /// up to a shift of corners by half of that height.
-pub(crate) fn slivers(half: f64, n: usize, flatness: f64) -> Result<Mesh<f64, 3>, Error> {
+pub(crate) fn slivers(half: f64, n: usize, flatness: f64) -> Result<Mesh<3>, Error> {
     let (side, stride, middle) = (2.0 * half / n as f64, n + 1, n / 2);
     let number = |i: [usize; 3]| (i[0] + stride * (i[1] + stride * i[2])) as u32;
     let is_even = |i: [usize; 3]| i.iter().sum::<usize>().is_multiple_of(2);

@@ -61,7 +61,7 @@ pub struct Stability<'a> {
     effort: Effort,
     cases: Vec<String>,
     schemes: Vec<String>,
-    given: Vec<(String, Mesh<f64, 3>)>,
+    given: Vec<(String, Mesh<3>)>,
     directory: Option<PathBuf>,
     observer: Box<dyn Fn(StabilityProgress<'_>) + 'a>,
 }
@@ -105,7 +105,7 @@ impl<'a> Stability<'a> {
     }
     /// Adds a mesh of tetrahedra under a name.
     #[must_use]
-    pub fn mesh(mut self, name: &str, mesh: Mesh<f64, 3>) -> Self {
+    pub fn mesh(mut self, name: &str, mesh: Mesh<3>) -> Self {
         self.given.push((name.to_owned(), mesh));
         self
     }

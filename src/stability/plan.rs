@@ -40,7 +40,7 @@ pub(crate) struct Plan<'p> {
     pub(super) schemes: Vec<&'static str>,
     /// Schemes as users wrote them, compared besides.
     pub(super) further: Vec<Choice>,
-    pub(super) given: &'p [(String, Mesh<f64, 3>)],
+    pub(super) given: &'p [(String, Mesh<3>)],
     pub(super) jobs: Vec<Job<'p>>,
 }
 

@@ -44,7 +44,7 @@ impl RowBuilder {
         self.0.problem = problem.to_owned();
         self
     }
-    /// In which scalar.
+    /// In which precision it is solved.
     pub fn precision(mut self, name: &str) -> Self {
         self.0.precision = name.to_owned();
         self

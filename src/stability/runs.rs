@@ -5,12 +5,12 @@ use std::sync::Arc;
 use super::choice::Choice;
 use crate::algebra::{Bound, SparseMatrix};
 use crate::error::Error;
-use crate::inequality::{ActiveSet, InequalitySolver};
+use crate::inequality::{ActiveSet, InequalitySolver, in_precision};
 use crate::linear::{LinearMethod, is_positive_definite};
 use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::{Hierarchy, NestedIteration, Solved};
 use crate::problem::Problem;
-use crate::real::{Point, Real};
+use crate::real::{Point, Precision};
 use crate::scenes::Scene;
 use crate::scheme::Regularity;
 use crate::study::{Row, Study};
@@ -22,33 +22,44 @@ pub(crate) fn solver() -> ActiveSet {
 }
 
 /// The rows of a scheme on levels of a scene.
-pub(crate) fn rows<T: Real, const D: usize>(
+pub(crate) fn rows<const D: usize>(
+    scene: Scene<D>,
+    choice: &Choice,
+    levels: &[usize],
+) -> Result<Vec<Row>, Error> {
+    rows_in(Precision::Double, scene, choice, levels)
+}
+
+/// The rows of a scheme on levels of a scene, solved in a precision.
+pub(crate) fn rows_in<const D: usize>(
+    precision: Precision,
     mut scene: Scene<D>,
     choice: &Choice,
     levels: &[usize],
 ) -> Result<Vec<Row>, Error> {
     scene.problem = choice.constrain(scene.problem);
-    let study = Study::<T, D>::new(scene).boxed_scheme(choice.make()).solver(solver());
+    let study = Study::<D>::new(scene).boxed_scheme(choice.make());
+    let study = study.boxed_solver(in_precision(precision, solver()));
     Ok(study.levels(levels.iter().copied()).run()?.rows)
 }
 
 /// The row of a scheme on one level.
-pub(crate) fn row<T: Real, const D: usize>(
+pub(crate) fn row<const D: usize>(
     scene: Scene<D>,
     choice: &Choice,
     level: usize,
 ) -> Result<Row, Error> {
-    Ok(rows::<T, D>(scene, choice, &[level])?.swap_remove(0))
+    Ok(rows::<D>(scene, choice, &[level])?.swap_remove(0))
 }
 
 /// The row of a scheme on a mesh.
 pub(crate) fn row_on<const D: usize>(
     mut scene: Scene<D>,
-    mesh: Mesh<f64, D>,
+    mesh: Mesh<D>,
     choice: &Choice,
 ) -> Result<Row, Error> {
     scene.problem = choice.constrain(scene.problem);
-    let study = Study::<f64, D>::new(scene).on_mesh(mesh).boxed_scheme(choice.make());
+    let study = Study::<D>::new(scene).on_mesh(mesh).boxed_scheme(choice.make());
     Ok(study.solver(solver()).levels([0]).run()?.rows.swap_remove(0))
 }
 
@@ -56,10 +67,10 @@ pub(crate) fn row_on<const D: usize>(
 /// mesh of a hierarchy; started from conforming elements if asked for.
 pub(crate) fn solved<'a, const D: usize>(
     problem: &'a Problem<D>,
-    meshes: &'a Hierarchy<f64, D>,
+    meshes: &'a Hierarchy<D>,
     choice: &Choice,
     is_warm: bool,
-) -> Result<Solved<'a, f64, D>, Error> {
+) -> Result<Solved<'a, D>, Error> {
     solved_by(Arc::new(solver()), problem, meshes, choice, is_warm)
 }
 
@@ -67,10 +78,10 @@ pub(crate) fn solved<'a, const D: usize>(
 pub(crate) fn solved_by<'a, const D: usize>(
     solver: Arc<dyn InequalitySolver<f64>>,
     problem: &'a Problem<D>,
-    meshes: &'a Hierarchy<f64, D>,
+    meshes: &'a Hierarchy<D>,
     choice: &Choice,
     is_warm: bool,
-) -> Result<Solved<'a, f64, D>, Error> {
+) -> Result<Solved<'a, D>, Error> {
     let nested = NestedIteration::new(problem, meshes).shared_solver(solver);
     nested.cold_start(!is_warm).solve(&*choice.make())
 }
@@ -78,7 +89,7 @@ pub(crate) fn solved_by<'a, const D: usize>(
 /// What contact forces and the fluxes through facets with weakly imposed Dirichlet data leave of the load, less the
 /// reaction, over the sum of absolute loads. None without forces or without jump multipliers of the solver, which are
 /// the fluxes.
-pub(crate) fn imbalance<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> Option<f64> {
+pub(crate) fn imbalance<const D: usize>(solved: &Solved<'_, D>) -> Option<f64> {
     let (inequality, solution) = (solved.inequality(), solved.solution());
     let penalised = inequality.penalised.as_ref()?;
     let forces = solved.multiplier()?;
@@ -88,16 +99,16 @@ pub(crate) fn imbalance<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> O
     let mut left = -forces.iter().sum::<f64>();
     for i in 0..inequality.size() {
         // the stiffness of a function has the sum zero
-        left += penalised.stiffness(i, |j| solution.values[j].to_f64());
-        left -= inequality.load[i].to_f64();
+        left += penalised.stiffness(i, |j| solution.values[j]);
+        left -= inequality.load[i];
     }
     for (jump, multiplier) in solution.jump_multipliers.iter().enumerate() {
         if penalised.blocks_of_jump(jump).iter().any(Option::is_none) {
-            let weights = penalised.terms_of(jump).iter().map(|term| term.weight.to_f64());
-            left += weights.sum::<f64>() * multiplier.to_f64();
+            let weights = penalised.terms_of(jump).iter().map(|term| term.weight);
+            left += weights.sum::<f64>() * multiplier;
         }
     }
-    let size: f64 = inequality.load.iter().map(|load| load.to_f64().abs()).sum();
+    let size: f64 = inequality.load.iter().map(|load| load.abs()).sum();
     Some(left.abs() / size)
 }
 
@@ -105,7 +116,7 @@ pub(crate) fn imbalance<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> O
 /// scheme is not symmetric or the factorisation failed.
 pub(crate) fn definite<const D: usize>(
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
     choice: &Choice,
 ) -> Result<Option<f64>, Error> {
     let inequality = choice.inequality(problem, mesh)?;
@@ -122,7 +133,7 @@ pub(crate) fn definite<const D: usize>(
 /// The matrix of a scheme, restricted to its free unknowns.
 pub(crate) fn free_matrix<const D: usize>(
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
     choice: &Choice,
 ) -> Result<SparseMatrix<f64>, Error> {
     let inequality = choice.inequality(problem, mesh)?;
@@ -147,8 +158,8 @@ pub(crate) fn free_matrix<const D: usize>(
 /// `-Laplace u = f` in the unit box with `u` the product of `sin(pi x_k)`.
 pub(crate) fn sines<const D: usize>() -> Scene<D> {
     use std::f64::consts::PI;
-    let value = |x: &Point<f64, D>| x.iter().map(|x| (PI * x).sin()).product::<f64>();
-    let gradient = |x: &Point<f64, D>| {
+    let value = |x: &Point<D>| x.iter().map(|x| (PI * x).sin()).product::<f64>();
+    let gradient = |x: &Point<D>| {
         Point::from_fn(|k, _| {
             let factor = |(j, x): (usize, &f64)| {
                 if j == k { PI * (PI * x).cos() } else { (PI * x).sin() }

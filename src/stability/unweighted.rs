@@ -1,50 +1,49 @@
 //! An over-penalty without the coefficient, to show the effect of the harmonic mean.
 
-use crate::element::{Broken, P1};
-use crate::facet::{FacetForm, FacetView, OverPenalty, Trace};
+use std::sync::Arc;
+
+use crate::element::{Broken, Element, P1};
+use crate::facet::{FacetForm, FacetView, Trace};
 use crate::mesh::Mesh;
-use crate::real::Real;
-use crate::scheme::{DirichletBy, Scheme, Wopsip};
+use crate::scheme::{Scheme, Wopsip};
 
 /// WOPSIP with the penalty `eta / h_F^3` for every coefficient, for comparison with the default:
 /// the scheme fails for coefficients that are not of size one.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct UnweightedWopsip(pub Wopsip);
+#[derive(Clone, Debug, Default)]
+pub(crate) struct UnweightedWopsip<const D: usize>(pub Wopsip<D>);
 
 /// The form of [`UnweightedWopsip`].
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct UnweightedPenalty(OverPenalty);
+struct UnweightedPenalty<const D: usize>(Box<dyn FacetForm<D>>);
 
-impl<T: Real, const D: usize> FacetForm<T, D> for UnweightedPenalty {
+impl<const D: usize> FacetForm<D> for UnweightedPenalty<D> {
     fn uses_flux(&self) -> bool {
         false
     }
     fn moments(&self, degree: usize) -> usize {
-        FacetForm::<T, D>::moments(&self.0, degree)
+        self.0.moments(degree)
     }
-    #[inline(always)]
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         self.0.penalty(facet) / facet.coefficient()
     }
     fn is_uniform(&self) -> bool {
         true
     }
-    #[inline(always)]
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump
     }
 }
 
-impl<T: Real, const D: usize> Scheme<T, D> for UnweightedWopsip {
-    type Element = Broken<P1>;
-    type Facet = UnweightedPenalty;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
-    const CONSISTENT: bool = false;
-
+impl<const D: usize> Scheme<D> for UnweightedWopsip<D> {
     fn name(&self) -> &str {
         "wopsip"
     }
-    fn facet(&self, mesh: &Mesh<T, D>) -> UnweightedPenalty {
-        UnweightedPenalty(Scheme::<T, D>::facet(&self.0, mesh))
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(P1))
+    }
+    fn form(&self, mesh: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(UnweightedPenalty(self.0.form(mesh)))
+    }
+    fn is_consistent(&self) -> bool {
+        false
     }
 }

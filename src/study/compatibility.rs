@@ -5,9 +5,9 @@ use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, BoxDomain, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Datum, NamedData, Problem};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
+use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 
 /// Checks that a mesh is compatible with a scene. Returns the barycentre of a facet on which the
 /// exact solution of the scene breaks the contact condition, or none.
@@ -19,9 +19,9 @@ use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
 /// # Errors
 /// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part, or if the data of
 /// the scene are no data on the mesh: not finite, or without an admissible value.
-pub fn check_fit<T: Real, const D: usize>(
+pub fn check_fit<const D: usize>(
     scene: &Scene<D>,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
 ) -> Result<Option<String>, Error> {
     mesh.check_boundary_parts()?;
     check_contact(scene, mesh.has_part(BoundaryPart::Contact))?;
@@ -31,7 +31,7 @@ pub fn check_fit<T: Real, const D: usize>(
 
 /// Checks that the data of the scene are defined on the mesh, at vertices, on facets and at
 /// quadrature points.
-fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> Result<(), Error> {
+fn check_data<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Result<(), Error> {
     let (problem, quadrature) = (&scene.problem.clone().on(Nodes), DataQuadrature::default());
     let at_vertices = || {
         let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
@@ -56,8 +56,8 @@ fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> R
 ///
 /// # Errors
 /// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::Quadrature`].
-pub(super) fn check_scheme<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+pub(super) fn check_scheme<const D: usize>(
+    scheme: &dyn Scheme<D>,
     problem: Problem<D>,
     quadrature: DataQuadrature,
 ) -> Result<(), Error> {
@@ -74,7 +74,7 @@ pub(super) fn check_scheme<T: Real, const D: usize>(
         ..problem
     };
     let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<T, D>::kuhn_box(&cube, [1; D])?;
+    let mesh = Mesh::<D>::kuhn_box(&cube, [1; D])?;
     match scheme.discretise(&problem, &mesh, quadrature) {
         Err(
             why @ (Error::NothingToBound { .. }
@@ -138,16 +138,16 @@ fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), 
 }
 
 /// The first contact facet on which the exact solution breaks the contact condition.
-fn first_failure<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> Option<String> {
+fn first_failure<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Option<String> {
     let data = DataOnMesh::new(&scene.problem, mesh).ok()?;
     let exact = scene.problem.exact.as_ref()?;
-    let slack = 1e3 * T::EPSILON;
+    let slack = 1e3 * f64::EPSILON;
     for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
         let (cell, local) = (facet.cell as usize, facet.local as usize);
-        let x = point_f64(&mesh.facet_barycentre(cell, local));
-        let normal = point_f64(&mesh.geometry(cell).normal(local));
+        let x = mesh.facet_barycentre(cell, local);
+        let normal = mesh.geometry(cell).normal(local);
         let Some(gap) = data.gap.of(usize::from(facet.group)) else { continue };
-        let middle = point_f64(&mesh.barycentre(cell));
+        let middle = mesh.barycentre(cell);
         let alpha = data.coefficient.of(mesh.region(cell)).map_or(1.0, |a| a.at(&middle));
         let gradient = (exact.gradient)(&x);
         let opening = (exact.value)(&x) - gap.at(&x);

@@ -9,8 +9,8 @@ use crate::mesh::{BoundaryPart, BoxDomain, Edges, Mesh, describe_point, edge_ver
 use crate::parallel::cells;
 use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::facet_to_cell;
-use crate::real::{Point, Real};
-use crate::scheme::AnyScheme;
+use crate::real::Point;
+use crate::scheme::Scheme;
 
 /// Bounds cross if they do so by more than this share of the largest of them: less is rounding in the data.
 const RELATIVE_SLACK: f64 = 1e-9;
@@ -26,7 +26,7 @@ pub(super) struct Points {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crossing<const D: usize> {
     cell: usize,
-    x: Point<f64, D>,
+    x: Point<D>,
     lower: f64,
     upper: f64,
 }
@@ -66,8 +66,8 @@ impl<const D: usize> Seen<D> {
     }
 
     /// The worst place, if the bounds cross there by more than rounding of data of a size.
-    pub fn crossing<T: Real>(&self, size: f64) -> Option<Crossing<D>> {
-        let slack = RELATIVE_SLACK.max(16.0 * T::EPSILON) * size;
+    pub fn crossing(&self, size: f64) -> Option<Crossing<D>> {
+        let slack = RELATIVE_SLACK * size;
         self.worst.filter(|worst| worst.lower - worst.upper > slack)
     }
 
@@ -81,14 +81,14 @@ impl<const D: usize> Seen<D> {
 impl Points {
     /// Adds the points of a scheme, with the constraint set of a problem without data: its nodes, and the points of its
     /// rules for data. They are those on any mesh. A scheme that is made for none has none.
-    pub fn add<T: Real, const D: usize>(
+    pub fn add<const D: usize>(
         &mut self,
-        scheme: &dyn AnyScheme<T, D>,
+        scheme: &dyn Scheme<D>,
         without_data: &Problem<D>,
         quadrature: DataQuadrature,
     ) -> Result<(), Error> {
         let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let mesh = Mesh::<T, D>::kuhn_box(&cube, [1; D])?;
+        let mesh = Mesh::<D>::kuhn_box(&cube, [1; D])?;
         let Ok(of) = scheme.discretise(without_data, &mesh, quadrature) else { return Ok(()) };
         let nodes = of.space.nodes.iter().map(|node| node.centre(D));
         let points = nodes.chain(of.space.cell_rule.points.iter().copied());
@@ -108,10 +108,10 @@ impl Points {
     /// What is seen of lower and upper bounds on a mesh: obstacles at vertices, midpoints of edges and
     /// these points of cells, gaps at vertices, midpoints of edges and these points of contact facets. At vertices and
     /// on edges the bounds of all cells and contact facets around count together.
-    pub fn look<T: Real, const D: usize>(
+    pub fn look<const D: usize>(
         &self,
         problem: &Problem<D>,
-        mesh: &Mesh<T, D>,
+        mesh: &Mesh<D>,
     ) -> Result<Seen<D>, Error> {
         let data = DataOnMesh::new(problem, mesh)?;
         let has_lower = data.lower.is_given() || data.gap.is_given();
@@ -135,12 +135,12 @@ impl Points {
 }
 
 /// The data of a problem on a mesh.
-struct OnMesh<'m, 'd, T, const D: usize> {
+struct OnMesh<'m, 'd, const D: usize> {
     data: &'m DataOnMesh<'d, D>,
-    mesh: &'m Mesh<T, D>,
+    mesh: &'m Mesh<D>,
 }
 
-impl<T: Real, const D: usize> OnMesh<'_, '_, T, D> {
+impl<const D: usize> OnMesh<'_, '_, D> {
     /// Compares the obstacles of a cell.
     fn compare_in(&self, cell: usize, points: &[[f64; 4]], seen: &mut Seen<D>) {
         let region = self.mesh.region(cell);

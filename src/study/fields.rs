@@ -7,7 +7,6 @@ use crate::error::Error;
 use crate::files::replace;
 use crate::nested::Solved;
 use crate::paraview::{FieldScalar, write_pvd};
-use crate::real::Real;
 
 /// Where a study writes the fields of which levels, and with which scalar.
 #[derive(Clone, Debug, Default)]
@@ -41,13 +40,13 @@ impl FieldFiles {
     /// Writes the fields of a solution if its level is wanted: `SCENE-LABEL.vtu` for the finest of the
     /// levels; with all levels also `SCENE-LABEL-LEVEL.vtu` for the others and `SCENE-LABEL.pvd`, which
     /// lists the files that are there. Where there is a reference the error is the difference from it.
-    pub fn write<T: Real, const D: usize>(
+    pub fn write<const D: usize>(
         &self,
         (scene, label): (&str, &str),
         level: usize,
         levels: &[usize],
-        solved: &Solved<'_, T, D>,
-        reference: Option<&Solved<'_, T, D>>,
+        solved: &Solved<'_, D>,
+        reference: Option<&Solved<'_, D>>,
     ) -> Result<(), Error> {
         let path = |level: usize| self.path((scene, label), level, levels);
         let (Some(directory), Some(file)) = (&self.directory, path(level)) else { return Ok(()) };

@@ -27,7 +27,7 @@ const ROWS: &str = "report.jsonl";
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// # let directory = std::env::temp_dir().join(format!("unilateral-journal-{}", std::process::id()));
 /// let journal = Journal::create(&directory, Program::new("mine", "f64", 1, 1))?;
-/// let study = Study::<f64, 1>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([4, 8]);
+/// let study = Study::<1>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([4, 8]);
 /// study.journal(&journal).run()?;
 /// assert_eq!(Report::read(&directory)?.rows.len(), 2);
 /// # std::fs::remove_dir_all(&directory).unwrap();
@@ -195,8 +195,7 @@ impl Journal {
 
 /// A row as a line of JSON.
 fn line(row: &Row) -> String {
-    // A row is plain data with string keys: its serialisation cannot fail.
-    serde_json::to_string(row).unwrap_or_default() + "\n"
+    serde_json::to_string(row).expect("a row is plain data with string keys") + "\n"
 }
 
 impl Report {

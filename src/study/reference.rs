@@ -7,8 +7,7 @@ use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::mesh::Domain;
 use crate::nested::Solved;
-use crate::real::Real;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 use crate::study::row::Row;
 
 /// How many times as fine as every other level of a domain a reference is at least.
@@ -18,13 +17,13 @@ const FINER: usize = 4;
 const REFINEMENTS: usize = 2;
 
 /// The scheme and the level whose solution takes the place of the exact one.
-pub(super) struct Reference<'a, T: Real, const D: usize> {
-    pub scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+pub(super) struct Reference<'a, const D: usize> {
+    pub scheme: Arc<dyn Scheme<D> + 'a>,
     pub set: Option<Arc<dyn ConstraintSet>>,
     pub level: usize,
 }
 
-impl<T: Real, const D: usize> fmt::Debug for Reference<'_, T, D> {
+impl<const D: usize> fmt::Debug for Reference<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Reference")
             .field("scheme", &self.scheme.name())
@@ -33,7 +32,7 @@ impl<T: Real, const D: usize> fmt::Debug for Reference<'_, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Reference<'_, T, D> {
+impl<const D: usize> Reference<'_, D> {
     /// The name in rows, for the constraint set of a problem.
     pub fn name(&self, of_problem: &dyn ConstraintSet) -> String {
         let set = self.set.as_deref().unwrap_or(of_problem);
@@ -82,20 +81,20 @@ impl<T: Real, const D: usize> Reference<'_, T, D> {
 }
 
 /// A solution in place of the exact one with its name, or why there is none.
-pub(super) type FoundReference<'p, T, const D: usize> = Result<(Solved<'p, T, D>, String), String>;
+pub(super) type FoundReference<'p, const D: usize> = Result<(Solved<'p, D>, String), String>;
 
 /// Against what rows are measured.
 #[derive(Clone, Copy)]
-pub(super) struct Measured<'m, 'p, T: Real, const D: usize> {
+pub(super) struct Measured<'m, 'p, const D: usize> {
     /// Where the exact solution breaks the contact condition of the mesh.
     pub failure: Option<&'m str>,
     /// The reference, where one was asked for.
-    pub reference: Option<&'m FoundReference<'p, T, D>>,
+    pub reference: Option<&'m FoundReference<'p, D>>,
 }
 
-impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
+impl<const D: usize> Measured<'_, '_, D> {
     /// Fills in energy, bound and errors, and why there are none.
-    pub fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
+    pub fn measure(&self, row: &mut Row, solved: &Solved<'_, D>) -> Result<(), Error> {
         row.energy = solved.energy()?;
         row.set_penetration(solved.penetration()?);
         match (self.reference, self.failure) {

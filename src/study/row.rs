@@ -9,7 +9,6 @@ use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome, StageRun, explanation};
 use crate::measure::{ContactErrors, Errors, Penetration, Rounding};
 use crate::nested::{Solved, warnings_of_forces};
-use crate::real::Real;
 use crate::scheme::ExpectedOrders;
 
 /// Observed orders.
@@ -236,13 +235,14 @@ impl Row {
     }
 
     /// The row of a solve without errors, energy, expected orders and the names of constraint set and solver.
-    pub(super) fn of<T: Real, const D: usize>(
+    pub(super) fn of<const D: usize>(
         scene: &str,
         scheme: &str,
         level: usize,
-        solved: &Solved<'_, T, D>,
+        solved: &Solved<'_, D>,
     ) -> Self {
         let (mesh, solution) = (solved.mesh(), solved.solution());
+        let [cells, unknowns, nonzeros] = solved.sizes().map(|n| n as usize);
         let forces = solved.multiplier();
         let mut warnings = solved.warnings().to_vec();
         warnings.extend(warnings_of_forces(solved, forces.as_deref()));
@@ -253,14 +253,14 @@ impl Row {
             message: explanation.or(row.message),
             parameters: solved.discretisation().form().theory().parameters,
             linear: solution.linear_solver.to_owned(),
-            cells: mesh.n_cells(),
-            unknowns: Some(solution.values.len()),
-            nonzeros: Some(solved.inequality().matrix.nonzeros()),
+            cells,
+            unknowns: Some(unknowns),
+            nonzeros: Some(nonzeros),
             mesh_size: mesh.mesh_size(),
             objective: solved.objective(),
             active: solved.active(),
             contact_measure: solved.contact_measure(),
-            resultant: forces.map(|forces| forces.iter().sum()),
+            resultant: forces.map(|forces| solved.resultant_of(&forces)),
             resultants: solved.resultants(),
             iterations: Iterations {
                 outer: solved.outer(),
@@ -271,7 +271,11 @@ impl Row {
             },
             certificate: solved.certificate(),
             rounding: solved.rounding(),
-            seconds: Seconds::new(solved.mesh_seconds, solved.assemble_seconds, solve_seconds),
+            seconds: Seconds::new(
+                solved.mesh_seconds,
+                solved.system().assemble_seconds,
+                solve_seconds,
+            ),
             warnings,
             ..row
         }

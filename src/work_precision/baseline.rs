@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::report::WorkReport;
 use crate::error::Error;
-use crate::real::Real;
+use crate::real::Precision;
 
 /// Keys that identify a row.
 const KEYS: [&str; 7] =
@@ -58,7 +58,7 @@ impl fmt::Display for Changes {
 }
 
 /// Compares a report with an earlier one, given as the JSON it wrote. Errors differ if they do so
-/// by more than the square root of the scalar's rounding, relative to their size.
+/// by more than the square root of the rounding of their precision, relative to their size.
 ///
 /// # Errors
 /// [`Error::Parameter`] if the text is no report.
@@ -101,8 +101,8 @@ fn name(row: &Value) -> String {
 fn compare(before: &Value, now: &Value, changed: &mut Vec<String>) {
     let at = |row: &Value, path: &str| row.pointer(path).cloned().unwrap_or(Value::Null);
     let tolerance = match now["precision"].as_str() {
-        Some("f32") => <f32 as Real>::EPSILON.sqrt(),
-        _ => <f64 as Real>::EPSILON.sqrt(),
+        Some(name) => Precision::by_name(name).unwrap_or_default().epsilon().sqrt(),
+        None => f64::EPSILON.sqrt(),
     };
     let mut tell = |path: &str, (a, b): (Value, Value)| {
         let key = path.trim_start_matches('/').replace('/', ".");

@@ -6,7 +6,7 @@ use crate::measure::ErrorNorm;
 use crate::study::row::distinct;
 use crate::study::{Row, Seconds};
 
-/// A scheme on a scene with constraint set, linear solver and scalar: one curve of a plot.
+/// A scheme on a scene with constraint set, linear solver and precision: one curve of a plot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Variant {
     /// Name of the scene.
@@ -204,7 +204,7 @@ impl Variant {
     }
 
     /// The name of the variant among others of a report: the label of the scheme, and the linear solver,
-    /// the scalar and the meshes where they vary.
+    /// the precision and the meshes where they vary.
     pub fn name_among(&self, all: &[Variant]) -> String {
         let varies = |part: fn(&Variant) -> &str| all.iter().any(|v| part(v) != part(self));
         let mut label = self.label.clone();

@@ -1,4 +1,4 @@
-//! Work against precision: schemes, linear solvers, scalars and levels under one clock.
+//! Work against precision: schemes, linear solvers, precisions and levels under one clock.
 
 mod baseline;
 mod case;
@@ -12,8 +12,8 @@ mod tables;
 mod verdict;
 mod work_at_error;
 
+pub use crate::real::Precision;
 pub use baseline::{Changes, changes};
-pub use case::Precision;
 pub use measured::{Case, Failure, Measured, Phases, Variant};
 pub use report::WorkReport;
 pub use work_at_error::{Standing, WorkAtError};
@@ -30,7 +30,7 @@ use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::Adaptivity;
 use crate::problem::Problem;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, NamedScheme};
+use crate::scheme::{NamedScheme, Scheme};
 use case::Candidate;
 
 /// Progress of a study.
@@ -73,7 +73,7 @@ pub struct WorkPrecision<'a, const D: usize> {
     precisions: Vec<Precision>,
     levels: Vec<usize>,
     adaptive: Option<Adaptivity>,
-    mesh: Option<Mesh<f64, D>>,
+    mesh: Option<Mesh<D>>,
     /// The scheme and the level of the solution against which errors are.
     reference: Option<(Candidate<'a, D>, usize)>,
     rounds: usize,
@@ -130,7 +130,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     ///
     /// # Errors
     /// [`Error::Mesh`] where two data claim one boundary group.
-    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<f64, D>) -> Result<Self, Error> {
+    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<D>) -> Result<Self, Error> {
         let mesh = problem.bind_boundary(mesh)?;
         // the domain of a scene is not used where there is a mesh
         let scene = Scene::new(name, BoxDomain::centred(1.0), problem);
@@ -140,11 +140,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// [`Study::reference`](crate::study::Study::reference) does, for cases over `f64`. Every case is solved once
     /// more for its errors, outside the clock, also those above the limit of seconds.
     #[must_use]
-    pub fn reference(
-        mut self,
-        scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a,
-        level: usize,
-    ) -> Self {
+    pub fn reference(mut self, scheme: impl Scheme<D> + 'a, level: usize) -> Self {
         self.reference = Some((Candidate::new(scheme), level));
         self
     }
@@ -156,7 +152,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
     /// Adds a scheme.
     #[must_use]
-    pub fn scheme(mut self, scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a) -> Self {
+    pub fn scheme(mut self, scheme: impl Scheme<D> + 'a) -> Self {
         self.candidates.push(Candidate::new(scheme));
         self
     }
@@ -164,7 +160,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     #[must_use]
     pub fn scheme_on(
         mut self,
-        scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a,
+        scheme: impl Scheme<D> + 'a,
         set: impl ConstraintSet + 'static,
     ) -> Self {
         let set: Option<Arc<dyn ConstraintSet>> = Some(Arc::new(set));
@@ -183,7 +179,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.linear = linear.into_iter().collect();
         self
     }
-    /// Sets the scalars; `f64` otherwise.
+    /// Sets the precisions of solves; `f64` otherwise.
     #[must_use]
     pub fn precisions(mut self, precisions: impl IntoIterator<Item = Precision>) -> Self {
         self.precisions = precisions.into_iter().collect();
@@ -207,7 +203,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
     /// Runs on this mesh and refinements of it instead of the scene's own domain.
     #[must_use]
-    pub fn on_mesh(mut self, mesh: Mesh<f64, D>) -> Self {
+    pub fn on_mesh(mut self, mesh: Mesh<D>) -> Self {
         self.mesh = Some(mesh);
         self
     }

@@ -23,7 +23,7 @@ use crate::study::row::distinct;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct WorkReport {
-    /// The program; `precision` lists all scalars, `repeat` is the number of rounds.
+    /// The program; `precision` lists all precisions, `repeat` is the number of rounds.
     pub program: Program,
     /// Time and machine.
     pub provenance: Provenance,

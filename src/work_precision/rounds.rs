@@ -2,13 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use super::case::resident_memory_bytes;
+use super::case::{resident_memory_bytes, run_alone};
 use super::measured::{Failure, Measured};
 use super::report::WorkReport;
 use super::slots::Slot;
 use super::{WorkPrecision, WorkProgress};
 use crate::error::Error;
-use crate::real::Real;
+use crate::real::Precision;
 use crate::study::Row;
 use crate::study::row::distinct;
 
@@ -36,7 +36,7 @@ impl<const D: usize> WorkPrecision<'_, D> {
         // threads, pages and instructions are there when the clock starts
         let is_coarsest = |s: &&Slot<'_, D>| s.coarser.is_none() && !s.case.is_adaptive();
         for slot in slots.iter().filter(is_coarsest) {
-            drop(slot.study.run());
+            drop(run_alone(&slot.study));
         }
         let mut written = Instant::now();
         for round in 0..self.rounds {
@@ -88,7 +88,7 @@ impl<const D: usize> WorkPrecision<'_, D> {
             return;
         }
         let slot = &mut slots[k];
-        match slot.study.run() {
+        match run_alone(&slot.study) {
             Err(e) => {
                 slot.failure = Some(Failure::new(slot.case.clone(), &e.to_string()));
             }
@@ -122,7 +122,7 @@ impl<const D: usize> WorkPrecision<'_, D> {
             row.peak_memory_bytes = known.unwrap_or_else(|| memory(&slot.case));
         }
         let is_same = |other: &&Row| {
-            slot.case.variant.precision == f64::NAME
+            slot.case.variant.precision == Precision::Double.name()
                 && other.label == row.label
                 && other.level == row.level
         };

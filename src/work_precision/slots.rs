@@ -1,23 +1,19 @@
 //! The cases of a study of work against precision, each with its own study, checked before anything runs.
 
-use std::sync::Arc;
-
 use super::WorkPrecision;
-use super::case::{Candidate, OneStudy, Precision, in_single_precision};
+use super::case::Candidate;
 use super::measured::{ADAPTIVE, Case, Failure, Measured, UNIFORM, Variant};
-use crate::constraint::ConstraintSet;
 use crate::error::Error;
-use crate::inequality::ActiveSet;
+use crate::inequality::{ActiveSet, in_precision};
 use crate::linear::LinearMethod;
 use crate::nested::Adaptivity;
-use crate::real::Real;
-use crate::scheme::{AnyScheme, SchemeOptions};
+use crate::real::Precision;
 use crate::study::Study;
 
 /// A case, its study, and its results so far.
 pub(super) struct Slot<'s, const D: usize> {
     pub case: Case,
-    pub study: OneStudy<'s, D>,
+    pub study: Study<'s, D>,
     /// The case one level coarser, by its place in the list.
     pub coarser: Option<usize>,
     /// A row, or on adaptive meshes one for each step.
@@ -37,7 +33,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                     let adaptive =
                         self.adaptive.and_then(|of| Some((*self.levels.first()?, Some(of))));
                     for meshes in uniform.chain(adaptive) {
-                        let slot = self.slot(candidate, linear, precision, meshes)?;
+                        let slot = self.slot(candidate, linear, precision, meshes);
                         slot.study.check()?;
                         if slots.iter().any(|s| s.case == slot.case) {
                             return Err(Error::equal_schemes(slot.case.variant.label));
@@ -50,7 +46,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             }
         }
         if slots.is_empty() {
-            let needs = "a study needs a scheme, a linear solver, a scalar and a level";
+            let needs = "a study needs a scheme, a linear solver, a precision and a level";
             return Err(wrong("cases", "none".to_owned(), needs));
         }
         Ok(slots)
@@ -62,36 +58,9 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         linear: LinearMethod,
         precision: Precision,
         meshes: (usize, Option<Adaptivity>),
-    ) -> Result<Slot<'s, D>, Error> {
-        let set = (candidate.set.clone(), candidate.shown);
-        let (case, study) = match precision {
-            Precision::Double => {
-                let (case, mut study) =
-                    self.one_study(candidate.double.clone(), set, linear, meshes);
-                if let Some(mesh) = &self.mesh {
-                    study = study.on_mesh(mesh.clone());
-                }
-                (case, OneStudy::Double(study))
-            }
-            Precision::Single => {
-                let (case, mut study) =
-                    self.one_study(candidate.single.clone(), set, linear, meshes);
-                if let Some(mesh) = &self.mesh {
-                    study = study.on_mesh(in_single_precision(mesh)?);
-                }
-                (case, OneStudy::Single(study))
-            }
-        };
-        Ok(Slot { case, study, coarser: None, measured: Vec::new(), failure: None })
-    }
-
-    fn one_study<'s, T: Real>(
-        &'s self,
-        scheme: Arc<dyn AnyScheme<T, D> + 's>,
-        (set, shown): (Option<Arc<dyn ConstraintSet>>, Option<SchemeOptions>),
-        linear: LinearMethod,
-        (level, adaptivity): (usize, Option<Adaptivity>),
-    ) -> (Case, Study<'s, T, D>) {
+    ) -> Slot<'s, D> {
+        let Candidate { scheme, set, shown } = candidate.clone();
+        let (level, adaptivity) = meshes;
         let scene = (self.scene)();
         let name = LinearMethod::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
         let in_force = set.as_deref().unwrap_or(scene.problem.constraint_set());
@@ -102,38 +71,41 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             constraint: constraint.unwrap_or_else(|| in_force.name().to_owned()),
             label: scheme.label_with(in_force, shown),
             linear_asked: name.to_owned(),
-            precision: T::NAME.to_owned(),
+            precision: precision.name().to_owned(),
             meshes: if adaptivity.is_some() { ADAPTIVE } else { UNIFORM }.to_owned(),
         };
-        let mut study = Study::<T, D>::new(scene)
-            .solver(ActiveSet::default().linear(linear))
+        let mut study = Study::<D>::new(scene)
+            .boxed_solver(in_precision(precision, ActiveSet::default().linear(linear)))
             .shared_scheme(scheme, set, shown)
             .levels([level]);
+        if let Some(mesh) = &self.mesh {
+            study = study.on_mesh(mesh.clone());
+        }
         if let Some(adaptivity) = adaptivity {
             study = study.adaptive(adaptivity);
         }
         let level = if adaptivity.is_some() { 0 } else { level };
-        (Case { variant, level }, study)
+        let case = Case { variant, level };
+        Slot { case, study, coarser: None, measured: Vec::new(), failure: None }
     }
 
     /// The study that measures every scheme on every level against the reference, checked; none where no
     /// reference is asked for.
-    pub(super) fn study_against_reference(&self) -> Result<Option<Study<'_, f64, D>>, Error> {
+    pub(super) fn study_against_reference(&self) -> Result<Option<Study<'_, D>>, Error> {
         let Some((reference, level)) = &self.reference else { return Ok(None) };
-        let mut study = Study::<f64, D>::new((self.scene)()).levels(self.levels.iter().copied());
+        let mut study = Study::<D>::new((self.scene)()).levels(self.levels.iter().copied());
         if let Some(mesh) = &self.mesh {
             study = study.on_mesh(mesh.clone());
         }
         for candidate in &self.candidates {
-            let Candidate { double, set, shown, .. } = candidate;
-            study = study.shared_scheme(double.clone(), set.clone(), *shown);
+            let Candidate { scheme, set, shown } = candidate.clone();
+            study = study.shared_scheme(scheme, set, shown);
         }
         if self.precisions.contains(&Precision::Single) {
-            let allowed =
-                "a reference is computed over f64, and errors of f32 would be no like ones";
-            return Err(wrong("precision", f32::NAME.to_owned(), allowed));
+            let allowed = "against a reference every scheme is measured in f64: leave f32 out";
+            return Err(wrong("precision", Precision::Single.name().to_owned(), allowed));
         }
-        let (scheme, set) = (reference.double.clone(), reference.set.clone());
+        let (scheme, set) = (reference.scheme.clone(), reference.set.clone());
         let study = study.shared_reference(scheme, set, *level);
         study.check()?;
         Ok(Some(study))

@@ -14,16 +14,16 @@ use unilateral::scenes::Scene;
 /// The Laplace equation around a corner of 270 degrees, whose solution is like the power 2/3 of the distance.
 fn corner() -> Scene<2> {
     // the angle from the middle of the domain
-    let polar = |x: &Point<f64, 2>| (x.norm(), (-x[0] - x[1]).atan2(x[1] - x[0]));
-    let value = move |x: &Point<f64, 2>| {
+    let polar = |x: &Point<2>| (x.norm(), (-x[0] - x[1]).atan2(x[1] - x[0]));
+    let value = move |x: &Point<2>| {
         let (r, phi) = polar(x);
         r.powf(2.0 / 3.0) * (2.0 * phi / 3.0).cos()
     };
-    let gradient = move |x: &Point<f64, 2>| {
+    let gradient = move |x: &Point<2>| {
         let (r, phi) = polar(x);
         let (along, across) = ((2.0 * phi / 3.0).cos(), -(2.0 * phi / 3.0).sin());
         let radial = x / r;
-        (radial * along + Point::<f64, 2>::new(-radial[1], radial[0]) * across)
+        (radial * along + Point::<2>::new(-radial[1], radial[0]) * across)
             * (2.0 / 3.0 * r.powf(-1.0 / 3.0))
     };
     let problem = Problem::new().solved_by(Exact::new(value, gradient)).dirichlet(value);
@@ -43,11 +43,11 @@ struct Figures {
 
 fn steps<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<f64, D>,
+    scheme: &dyn Scheme<D>,
     adaptivity: Adaptivity,
 ) -> Vec<Figures> {
-    let meshes = AdaptiveMeshes::new(scene.domain.mesh::<f64>(4).unwrap());
-    let figures = |step: Result<AdaptiveStep<'_, f64, D>, Error>| {
+    let meshes = AdaptiveMeshes::new(scene.domain.mesh(4).unwrap());
+    let figures = |step: Result<AdaptiveStep<'_, D>, Error>| {
         let solved = step.unwrap().solved;
         let pair = solved.primal_dual_pair().unwrap();
         let of_pair = solved.discretisation().error_of_pair(&pair).unwrap();
@@ -75,7 +75,7 @@ fn slope(steps: &[Figures], figure: fn(&Figures) -> f64) -> f64 {
 /// bound from step to step, and it stays within three times the error.
 fn check_optimal<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<f64, D>,
+    scheme: &dyn Scheme<D>,
     adaptivity: Adaptivity,
     steeper: f64,
 ) {
@@ -92,7 +92,7 @@ fn check_optimal<const D: usize>(
     }
 }
 
-fn four_schemes<const D: usize>(mut f: impl FnMut(&dyn AnyScheme<f64, D>)) {
+fn four_schemes<const D: usize>(mut f: impl FnMut(&dyn Scheme<D>)) {
     f(&ConformingP1);
     f(&NonconformingP1);
     f(&Sipg::default());
@@ -108,7 +108,7 @@ fn rates_are_optimal_at_a_corner_and_in_contact() {
     });
     // the uniform slope is -1/3
     let uniform = |n: usize| {
-        let mesh = corner().domain.mesh::<f64>(n).unwrap();
+        let mesh = corner().domain.mesh(n).unwrap();
         solve(&corner().problem, &mesh, &ConformingP1).unwrap().bound().unwrap().total
     };
     let order = (uniform(16) / uniform(32)).log2();
@@ -126,7 +126,7 @@ fn rates_are_optimal_with_contact_beside_a_corner() {
 #[test]
 fn marked_cells_are_the_smallest_set_with_the_share() {
     let scene = scenes::radial::<2>(1.0);
-    let mesh = scene.domain.mesh::<f64>(8).unwrap();
+    let mesh = scene.domain.mesh(8).unwrap();
     let bound = solve(&scene.problem, &mesh, &ConformingP1).unwrap().bound().unwrap();
     let all: f64 = bound.cells.iter().sum();
     for theta in [0.1, 0.5, 0.9, 0.99] {
@@ -151,7 +151,7 @@ fn marked_cells_are_the_smallest_set_with_the_share() {
 fn prolongations_between_bisected_meshes_keep_continuous_functions() {
     fn check<const D: usize>() {
         let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let first = Mesh::<f64, D>::kuhn_box(&square, [2; D]).unwrap();
+        let first = Mesh::<D>::kuhn_box(&square, [2; D]).unwrap();
         let mut refined = BisectedMesh::new(first.clone());
         let mut parents = Vec::new();
         for _ in 0..5 {
@@ -192,7 +192,7 @@ fn prolongations_between_bisected_meshes_keep_continuous_functions() {
 fn refinement_ends_where_it_is_told_to() {
     let scene = scenes::radial::<2>(1.0);
     let run = |adaptivity: Adaptivity| {
-        let meshes = AdaptiveMeshes::new(scene.domain.mesh::<f64>(4).unwrap());
+        let meshes = AdaptiveMeshes::new(scene.domain.mesh(4).unwrap());
         let sipg = Sipg::default();
         let steps = adapt(&scene.problem, &meshes, &sipg, adaptivity).unwrap();
         let steps: Vec<_> = steps.map(|step| step.unwrap()).collect();
@@ -218,7 +218,7 @@ fn refinement_ends_where_it_is_told_to() {
     assert!(stop == Stop::Unknowns && unknowns <= 1000 && number > 1 && warnings == 0);
     assert_eq!(run(Adaptivity::default().steps(0)).0, Stop::Steps);
     // the goal is one of the bound on the discrete solution, and may be reached by equality
-    let mesh = scene.domain.mesh::<f64>(4).unwrap();
+    let mesh = scene.domain.mesh(4).unwrap();
     let first = solve(&scene.problem, &mesh, &Sipg::default()).unwrap().bound().unwrap();
     assert!(first.discrete != first.total, "{first:?}");
     for goal in [first.discrete, first.discrete.max(first.total)] {
@@ -233,10 +233,10 @@ fn refinement_ends_where_it_is_told_to() {
     assert_eq!((stop, number, found), (Stop::Steps, 1, unknowns));
     assert_eq!(run(Adaptivity::default().steps(1).unknowns(unknowns - 1)).0, Stop::Unknowns);
     // linear solutions are exact
-    let linear = |x: &Point<f64, 2>| 1.0 + x[0] - 2.0 * x[1];
+    let linear = |x: &Point<2>| 1.0 + x[0] - 2.0 * x[1];
     let problem = Problem::new().dirichlet(linear);
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let meshes = AdaptiveMeshes::new(Mesh::<f64, 2>::kuhn_box(&square, [1, 1]).unwrap());
+    let meshes = AdaptiveMeshes::new(Mesh::<2>::kuhn_box(&square, [1, 1]).unwrap());
     let mut steps = adapt(&problem, &meshes, &ConformingP1, Adaptivity::to_bound(1e-9)).unwrap();
     let first = steps.next().unwrap().unwrap();
     assert!(matches!(first.stop, Some(Stop::Exact | Stop::Goal)) && steps.next().is_none());
@@ -245,12 +245,12 @@ fn refinement_ends_where_it_is_told_to() {
 #[test]
 fn what_cannot_be_refined_is_refused() {
     let scene = scenes::radial::<2>(1.0);
-    let mesh = scene.domain.mesh::<f64>(4).unwrap();
+    let mesh = scene.domain.mesh(4).unwrap();
     let meshes = AdaptiveMeshes::new(mesh.clone());
-    let message = |scheme: &dyn AnyScheme<f64, 2>, adaptivity| {
+    let message = |scheme: &dyn Scheme<2>, adaptivity| {
         adapt(&scene.problem, &meshes, scheme, adaptivity).unwrap_err().to_string()
     };
-    for scheme in [&ConformingP3 as &dyn AnyScheme<f64, 2>, &Sipg::default().on(P3)] {
+    for scheme in [&ConformingP3 as &dyn Scheme<2>, &Sipg::default().on(P3)] {
         let message = message(scheme, Adaptivity::default());
         assert!(message.contains(scheme.name()) && message.contains("no flux"), "{message}");
     }
@@ -268,7 +268,7 @@ fn what_cannot_be_refined_is_refused() {
     let other = AdaptiveIteration::new(nested, &ConformingP1, Adaptivity::default()).unwrap_err();
     assert!(matches!(other, Error::Parameter { parameter: "meshes", .. }), "{other}");
     // bad data are an error of the step that meets them, the last one
-    let bad = scene.problem.clone().source(|x: &Point<f64, 2>| 1.0 / (x[0] - x[0]));
+    let bad = scene.problem.clone().source(|x: &Point<2>| 1.0 / (x[0] - x[0]));
     let mut steps = adapt(&bad, &meshes, &ConformingP1, Adaptivity::default()).unwrap();
     assert!(matches!(steps.next(), Some(Err(Error::DataNotFinite { .. }))));
     assert!(steps.next().is_none());
@@ -280,7 +280,7 @@ fn meshes_and_values_have_the_same_bits_for_any_number_of_threads() {
     let run = |threads: usize| {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let values = || {
-            let meshes = AdaptiveMeshes::new(scene.domain.mesh::<f64>(4).unwrap());
+            let meshes = AdaptiveMeshes::new(scene.domain.mesh(4).unwrap());
             let adaptivity = Adaptivity::default().unknowns(15_000);
             let sipg = Sipg::default();
             let steps = adapt(&scene.problem, &meshes, &sipg, adaptivity).unwrap();
@@ -299,7 +299,7 @@ fn preconditioners_work_on_adaptive_meshes_as_on_uniform_ones() {
     let iterative = || ActiveSet::default().linear(LinearMethod::Iterative);
     let scene = corner();
     four_schemes(|scheme| {
-        let meshes = AdaptiveMeshes::new(scene.domain.mesh::<f64>(4).unwrap());
+        let meshes = AdaptiveMeshes::new(scene.domain.mesh(4).unwrap());
         let nested = NestedIteration::new(&scene.problem, &meshes).solver(iterative());
         let adaptivity = Adaptivity::default().unknowns(30_000);
         let steps = AdaptiveIteration::new(nested, scheme, adaptivity).unwrap();
@@ -321,16 +321,16 @@ fn preconditioners_work_on_adaptive_meshes_as_on_uniform_ones() {
 }
 
 #[test]
-fn every_dimension_and_scalar_is_refined() {
-    fn check<T: Real, const D: usize>(scene: &Scene<D>, scheme: &dyn AnyScheme<T, D>) {
-        let meshes = AdaptiveMeshes::new(scene.domain.mesh::<T>(4).unwrap());
+fn every_dimension_is_refined() {
+    fn check<const D: usize>(scene: &Scene<D>, scheme: &dyn Scheme<D>) {
+        let meshes = AdaptiveMeshes::new(scene.domain.mesh(4).unwrap());
         let adaptivity = Adaptivity::default().steps(3);
         let steps = adapt(&scene.problem, &meshes, scheme, adaptivity).unwrap();
         let bounds: Vec<f64> =
             steps.map(|step| step.unwrap().solved.bound().unwrap().total).collect();
         assert!(bounds.len() == 4 && bounds[3] < 0.7 * bounds[0], "{D}: {bounds:?}");
     }
-    check::<f64, 1>(&scenes::radial(1.0), &Wopsip::default());
-    check::<f32, 2>(&scenes::radial(1.0), &ConformingP1);
-    check::<f64, 3>(&scenes::signorini_harmonic(), &NonconformingP1);
+    check::<1>(&scenes::radial(1.0), &Wopsip::default());
+    check::<2>(&scenes::radial(1.0), &ConformingP1);
+    check::<3>(&scenes::signorini_harmonic(), &NonconformingP1);
 }

@@ -1,5 +1,7 @@
 //! Elements made outside the crate: cubics, continuous and broken.
 
+use std::sync::Arc;
+
 use crate::runs::own_scene;
 use crate::support::checks::Checks;
 use unilateral::algebra::Contact;
@@ -12,7 +14,7 @@ use unilateral::prelude::*;
 
 /// Continuous cubics: values at the vertices, at the thirds of edges and at the barycentres of
 /// triangles.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct P3;
 
 const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [1, 2], [0, 3], [1, 3], [2, 3]];
@@ -51,34 +53,37 @@ fn at_node(dimension: usize, i: usize) -> f64 {
     }
 }
 
-impl<T: Real, const D: usize> ReferenceElement<T, D> for P3 {
-    const N: usize = (D + 1) * (D + 2) * (D + 3) / 6;
-    const DEGREE: usize = 3;
-    const LAYOUT: Layout = Layout {
-        vertex: 1,
-        edge: 2,
-        facet: if D == 3 { 1 } else { 0 },
-        cell: if D == 2 { 1 } else { 0 },
-    };
-
-    fn values(lambda: &[T], out: &mut [T]) {
-        for (i, value) in out.iter_mut().enumerate().take(<Self as ReferenceElement<T, D>>::N) {
-            let factor = |(v, m): (usize, f64)| T::lit(3.0) * lambda[v] - T::lit(m);
-            let [a, b, c] = factors(D, i).map(factor);
-            *value = a * b * c / T::lit(at_node(D, i));
+impl<const D: usize> Element<D> for P3 {
+    fn degree(&self) -> usize {
+        3
+    }
+    fn layout(&self) -> Layout {
+        Layout {
+            vertex: 1,
+            edge: 2,
+            facet: if D == 3 { 1 } else { 0 },
+            cell: if D == 2 { 1 } else { 0 },
         }
     }
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        for (i, row) in out.iter_mut().enumerate().take(<Self as ReferenceElement<T, D>>::N) {
+
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
+        for (i, value) in out.iter_mut().enumerate() {
+            let factor = |(v, m): (usize, f64)| 3.0 * lambda[v] - m;
+            let [a, b, c] = factors(D, i).map(factor);
+            *value = a * b * c / at_node(D, i);
+        }
+    }
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
+        for (i, row) in out.iter_mut().enumerate() {
             let of = factors(D, i);
-            let [a, b, c] = of.map(|(v, m)| T::lit(3.0) * lambda[v] - T::lit(m));
-            *row = [T::lit(0.0); 4];
+            let [a, b, c] = of.map(|(v, m)| 3.0 * lambda[v] - m);
+            *row = [0.0; 4];
             for ((v, _), others) in of.into_iter().zip([b * c, a * c, a * b]) {
-                row[v] += T::lit(3.0 / at_node(D, i)) * others;
+                row[v] += (3.0 / at_node(D, i)) * others;
             }
         }
     }
-    fn node(i: usize) -> Node {
+    fn node(&self, i: usize) -> Node {
         let edges = D * (D + 1) / 2;
         match i.checked_sub(D + 1) {
             None => Node::vertex(i),
@@ -95,22 +100,19 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P3 {
 
 pub struct ConformingP3;
 
-impl<T: Real, const D: usize> Scheme<T, D> for ConformingP3 {
-    type Element = P3;
-    type Facet = NoFacets;
-    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
+impl<const D: usize> Scheme<D> for ConformingP3 {
     fn name(&self) -> &str {
         "p3"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
-        NoFacets
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P3)
     }
 }
 
 /// Equations with the solution `exp(a . x)` on the unit box.
 fn equation<const D: usize>() -> scenes::Scene<D> {
-    let along = || Point::<f64, D>::from_fn(|k, _| [0.9, -0.6, 0.5][k]);
-    let value = move |x: &Point<f64, D>| along().dot(x).exp();
+    let along = || Point::<D>::from_fn(|k, _| [0.9, -0.6, 0.5][k]);
+    let value = move |x: &Point<D>| along().dot(x).exp();
     let problem = Problem::new()
         .exact(value, move |x| along() * value(x))
         .source(move |x| -along().norm_squared() * value(x));
@@ -119,8 +121,7 @@ fn equation<const D: usize>() -> scenes::Scene<D> {
 
 /// Orders of broken and continuous cubics on an equation: four in L2, three in H1.
 fn orders<const D: usize>(levels: [usize; 2]) {
-    let study =
-        Study::<f64, D>::new(equation()).scheme(Sipg::default().on(P3)).scheme(ConformingP3);
+    let study = Study::<D>::new(equation()).scheme(Sipg::default().on(P3)).scheme(ConformingP3);
     let rows = study.levels(levels).run().unwrap().rows;
     let mut checks = Checks::default();
     let finest: Vec<_> = rows.iter().filter(|row| row.level == levels[1]).collect();
@@ -141,24 +142,23 @@ fn cubics_have_orders_four_and_three() {
     orders::<3>([2, 4]);
 }
 
-fn kit<T: Real, const D: usize>() {
-    let report = check_scheme::<T, D, _>(&Sipg::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
+fn kit<const D: usize>() {
+    let report = check_scheme::<D>(&Sipg::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((report.scheme.as_str(), report.element.functions), ("sipg-p3", [4, 10, 20][D - 1]));
-    check_scheme::<T, D, _>(&ConformingP3).unwrap_or_else(|e| panic!("{e}"));
+    check_scheme::<D>(&ConformingP3).unwrap_or_else(|e| panic!("{e}"));
 }
 
 #[test]
 fn cubics_pass_the_kit() {
-    kit::<f64, 1>();
-    kit::<f64, 2>();
-    kit::<f64, 3>();
-    kit::<f32, 2>();
+    kit::<1>();
+    kit::<2>();
+    kit::<3>();
 }
 
 /// The penalty by lifts of single facets knows every degree.
 #[test]
 fn lifts_of_cubics_pass_the_kit() {
-    check_scheme::<f64, 2, _>(&Br2::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
+    check_scheme::<2>(&Br2::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
 }
 
 /// With a constant obstacle above zero load, bounds at nodes hold at the nodes, and multipliers and
@@ -166,7 +166,7 @@ fn lifts_of_cubics_pass_the_kit() {
 #[test]
 fn cubics_run_beside_linears_on_an_obstacle() {
     let scene = scenes::radial::<2>(1.0);
-    let study = Study::<f64, 2>::new(scene).scheme(ConformingP1).scheme(ConformingP3);
+    let study = Study::<2>::new(scene).scheme(ConformingP1).scheme(ConformingP3);
     let rows = study.scheme(Sipg::default().on(P3)).levels([16]).run().unwrap().rows;
     let linear = rows[0].error.h1.unwrap();
     for row in &rows[1..] {
@@ -181,7 +181,7 @@ fn multipliers_of_cubics_balance_the_load() {
     // a load that presses everything but a layer at the boundary onto the obstacle
     let problem = Problem::<2>::new().constant_source(-40.0).obstacle_below(|_| -0.1);
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [8, 8]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [8, 8]).unwrap();
     let space =
         Discretisation::new(&ConformingP3, &problem, &mesh, DataQuadrature::default()).unwrap();
     let inequality = space.inequality().unwrap();
@@ -191,7 +191,7 @@ fn multipliers_of_cubics_balance_the_load() {
     for (k, support) in inequality.supports.iter().enumerate() {
         // an unknown at a third of an edge counts the nearer end twice
         let vertices = support.vertices();
-        let sum = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum::<Point<f64, 2>>();
+        let sum = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum::<Point<2>>();
         let node = sum / vertices.len() as f64;
         assert!([1, 3].contains(&vertices.len()), "unknown {k} at {node}: {vertices:?}");
     }

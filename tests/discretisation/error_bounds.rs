@@ -1,5 +1,7 @@
 //! Guaranteed bounds on the error: the identity, effectivity, fluxes, perturbed pairs.
 
+use std::sync::Arc;
+
 use crate::elements::ConformingP3;
 use crate::runs::small_mesh;
 use crate::support::checks::Checks;
@@ -18,14 +20,14 @@ const SCHEMES: &str = "p1 cr sipg nipg iipg ldg br2 bmmpr wopsip wopsip:facet-me
 /// complementarity of each multiplier with the other function.
 fn right_side<const D: usize>(
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
     pair: &PrimalDualPair<D>,
 ) -> f64 {
     let exact = problem.exact.as_ref().unwrap();
     let density = exact.multiplier.as_ref().unwrap();
     let degree = if D < 3 { 13 } else { 7 };
     let rule = Rule::new(D, degree);
-    let source = |x: &Point<f64, D>| problem.source.as_ref().map_or(0.0, |f| f.at(x));
+    let source = |x: &Point<D>| problem.source.as_ref().map_or(0.0, |f| f.at(x));
     let mut sum = 0.0;
     for cell in 0..mesh.n_cells() {
         let geometry = mesh.geometry(cell);
@@ -33,7 +35,7 @@ fn right_side<const D: usize>(
         let flux: Vec<f64> = (0..=D).map(|facet| pair.flux.through(cell, facet)).collect();
         let mut points = Vec::new();
         for (point, weight) in rule.iter() {
-            let x: Point<f64, D> =
+            let x: Point<D> =
                 corners.iter().zip(point).map(|(&v, &b)| mesh.vertices()[v] * b).sum();
             points.push((x, point, weight * geometry.volume));
         }
@@ -41,9 +43,9 @@ fn right_side<const D: usize>(
         let multiplier = -flux.iter().sum::<f64>() / geometry.volume - load;
         for (x, point, weight) in &points {
             let mut v: f64 = corners.iter().zip(*point).map(|(&v, b)| b * pair.function[v]).sum();
-            let mut gradient: Point<f64, D> =
+            let mut gradient: Point<D> =
                 (0..=D).map(|k| *geometry.gradient(k) * pair.function[corners[k]]).sum();
-            let q: Point<f64, D> = (0..=D)
+            let q: Point<D> = (0..=D)
                 .map(|k| {
                     (x - mesh.vertices()[corners[k]]) * (flux[k] / (D as f64 * geometry.volume))
                 })
@@ -55,7 +57,7 @@ fn right_side<const D: usize>(
                 if sign * (psi.at(x) - v) > 0.0 {
                     v = psi.at(x);
                     gradient = Point::from_fn(|k, _| {
-                        let mut step = Point::<f64, D>::zeros();
+                        let mut step = Point::<D>::zeros();
                         step[k] = 1e-6;
                         (psi.at(&(x + step)) - psi.at(&(x - step))) / 2e-6
                     });
@@ -81,7 +83,7 @@ fn right_side<const D: usize>(
         let corners: Vec<usize> = mesh.facet_vertices(cell, local).map(|v| v as usize).collect();
         for (point, weight) in rule.iter() {
             let at = |k: usize| mesh.vertices()[corners[k]] * point[k];
-            let x: Point<f64, D> = (0..D).map(at).sum();
+            let x: Point<D> = (0..D).map(at).sum();
             let interpolated: f64 = (0..D).map(|k| pair.function[corners[k]] * point[k]).sum();
             let v = interpolated.max(gap.at(&x));
             let weight = weight * measure;
@@ -93,10 +95,7 @@ fn right_side<const D: usize>(
 }
 
 /// A scene with the placement of a scheme, and the scheme.
-pub fn placed<const D: usize>(
-    scene: &Scene<D>,
-    name: &str,
-) -> (Scene<D>, Box<dyn AnyScheme<f64, D>>) {
+pub fn placed<const D: usize>(scene: &Scene<D>, name: &str) -> (Scene<D>, Box<dyn Scheme<D>>) {
     let named: NamedScheme = name.parse().unwrap();
     let mut scene = scene.clone();
     scene.problem.constraint_set = named.constraint_set();
@@ -106,8 +105,8 @@ pub fn placed<const D: usize>(
 /// The pair of a scheme, its bound and the true error of the admissible function.
 pub fn bounded<const D: usize>(
     scene: &Scene<D>,
-    mesh: &Mesh<f64, D>,
-    scheme: &dyn AnyScheme<f64, D>,
+    mesh: &Mesh<D>,
+    scheme: &dyn Scheme<D>,
 ) -> (PrimalDualPair<D>, ErrorBound, f64) {
     let solved = solve(&scene.problem, mesh, scheme).unwrap();
     assert!(solved.converged(), "{} {}", scene.name, scheme.name());
@@ -117,7 +116,7 @@ pub fn bounded<const D: usize>(
 }
 
 /// The largest difference of the normal fluxes from the two sides of a facet at a vertex, over the largest.
-pub fn mismatch_of_sides<const D: usize>(mesh: &Mesh<f64, D>, flux: &Flux<D>) -> f64 {
+pub fn mismatch_of_sides<const D: usize>(mesh: &Mesh<D>, flux: &Flux<D>) -> f64 {
     let neighbours = Neighbours::new(mesh);
     let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
     for (cell, facet) in (0..mesh.n_cells()).flat_map(|c| (0..=D).map(move |facet| (c, facet))) {
@@ -137,7 +136,7 @@ pub fn mismatch_of_sides<const D: usize>(mesh: &Mesh<f64, D>, flux: &Flux<D>) ->
 
 /// On a mesh of a scene, every scheme: fluxes are single-valued and balance the load, the identity holds to a
 /// share, and the bound is one to three times the error.
-fn check<const D: usize>(scene: Scene<D>, mesh: &Mesh<f64, D>, schemes: &str, share: f64) {
+fn check<const D: usize>(scene: Scene<D>, mesh: &Mesh<D>, schemes: &str, share: f64) {
     let mut checks = Checks::default();
     for name in schemes.split_whitespace() {
         let (scene, scheme) = placed(&scene, name);
@@ -194,9 +193,9 @@ fn a_vertex_with_two_fans_has_balanced_fluxes() {
             }
         }
     }
-    let mesh = Mesh::<f64, 2>::new(vertices, cells, &boundary).unwrap();
+    let mesh = Mesh::<2>::new(vertices, cells, &boundary).unwrap();
     // loads of opposite signs: what one fan has too much the other one lacks
-    let problem = Problem::new().source(|x: &Point<f64, 2>| x[0].signum());
+    let problem = Problem::new().source(|x: &Point<2>| x[0].signum());
     let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
     let origin = mesh.vertices().iter().position(|x| x.norm() == 0.0).unwrap();
     assert!(solved.values()[origin].abs() < 1e-12, "by symmetry");
@@ -275,7 +274,7 @@ fn the_factor_of_the_over_penalty_does_not_matter() {
 }
 
 /// Whether each vertex is on the boundary.
-pub fn on_boundary<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<bool> {
+pub fn on_boundary<const D: usize>(mesh: &Mesh<D>) -> Vec<bool> {
     let mut on_boundary = vec![false; mesh.vertices().len()];
     for f in mesh.boundary() {
         let vertices = mesh.facet_vertices(f.cell as usize, f.local as usize);
@@ -304,7 +303,7 @@ pub fn change_flux<const D: usize>(
 }
 
 /// The bound that a pair gives, over the error of the function of the pair.
-pub fn ratio<const D: usize>(solved: &Solved<'_, f64, D>, pair: &PrimalDualPair<D>) -> f64 {
+pub fn ratio<const D: usize>(solved: &Solved<'_, D>, pair: &PrimalDualPair<D>) -> f64 {
     let bound = solved.discretisation().error_bound(pair, solved.values()).unwrap();
     bound.total / solved.discretisation().error_of_pair(pair).unwrap()
 }
@@ -320,7 +319,7 @@ fn random_pairs<const D: usize>(scene: &Scene<D>, n: usize, cases: usize, interf
         for x in &mut raw.vertices {
             x[0] = interface.filter(|at| (at - x[0]).abs() < 0.5 / n as f64).unwrap_or(x[0]);
         }
-        let mesh: Mesh<f64, D> = raw.mesh();
+        let mesh: Mesh<D> = raw.mesh();
         let (scene, scheme) = placed(scene, ["p1", "sipg", "cr"][case % 3]);
         let solved = solve(&scene.problem, &mesh, &*scheme).unwrap();
         let exact = solved.primal_dual_pair().unwrap();
@@ -360,17 +359,14 @@ fn any_admissible_function_and_any_flux_give_a_bound() {
 #[derive(Clone, Copy)]
 pub struct Incomplete(pub f64);
 
-impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
-    fn uses_flux(&self) -> bool {
-        true
-    }
+impl<const D: usize> FacetForm<D> for Incomplete {
     fn is_symmetric(&self) -> bool {
         false
     }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
-        T::lit(self.0) * facet.coefficient() / facet.diameter()
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
+        self.0 * facet.coefficient() / facet.diameter()
     }
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump - u.flux * v.jump
     }
 }
@@ -380,15 +376,15 @@ struct Iipg {
     sigma: f64,
 }
 
-impl<T: Real, const D: usize> Scheme<T, D> for Iipg {
-    type Element = Broken<P1>;
-    type Facet = Incomplete;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize> Scheme<D> for Iipg {
     fn name(&self) -> &str {
         "iipg"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> Incomplete {
-        Incomplete(self.sigma)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(P1))
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(Incomplete(self.sigma))
     }
 }
 
@@ -406,8 +402,8 @@ fn a_scheme_of_ones_own_has_its_bound() {
 #[test]
 fn what_is_proven_and_what_has_no_bound() {
     let scene = scenes::radial::<2>(1.0);
-    let mesh = scene.domain.mesh::<f64>(4).unwrap();
-    let unproven = |problem: &Problem<2>, scheme: &dyn AnyScheme<f64, 2>| {
+    let mesh = scene.domain.mesh(4).unwrap();
+    let unproven = |problem: &Problem<2>, scheme: &dyn Scheme<2>| {
         solve(problem, &mesh, scheme).unwrap().bound().map(|bound| bound.unproven)
     };
     let problem = Problem::new().constant_source(-2.0).obstacle_below(|x| -0.1 - 0.02 * x[0]);
@@ -420,7 +416,7 @@ fn what_is_proven_and_what_has_no_bound() {
     let all = [Unproven::Boundary, Unproven::Obstacle];
     assert_eq!(unproven(&stated, &Sipg::default()).unwrap(), all);
     assert!(matches!(unproven(&stated, &ConformingP3), Err(NoBound::Element)));
-    let meshes = AdaptiveMeshes::new(scene.domain.mesh::<f64>(4).unwrap());
+    let meshes = AdaptiveMeshes::new(scene.domain.mesh(4).unwrap());
     let refused = adapt(&stated, &meshes, &ConformingP3, Adaptivity::default()).err().unwrap();
     assert!(refused.to_string().contains("error bound of p3"), "{refused}");
     let negative = scene.problem.reaction(-1e-3);
@@ -433,7 +429,7 @@ fn a_scene_with_constant_data_has_a_guaranteed_bound() {
     for name in ["signorini-open-1d", "signorini-closed-1d"] {
         let scene = scenes::by_name(name).unwrap().make(&scenes::Parameters::default()).unwrap();
         let scenes::AnyScene::One(scene) = scene else { panic!("{name}") };
-        let study = Study::<f64, 1>::new(scene).scheme(ConformingP1).scheme(Sipg::default());
+        let study = Study::<1>::new(scene).scheme(ConformingP1).scheme(Sipg::default());
         for row in study.scheme(Wopsip::default()).levels([8]).run().unwrap().rows {
             assert_eq!(row.bound.guaranteed, Some(true), "{name} {}", row.label);
             let effectivity = row.bound.effectivity.unwrap();
@@ -457,7 +453,7 @@ fn dirichlet_data_that_disagree_are_not_guaranteed() {
             .dirichlet_on("left", 0.0)
             .dirichlet_on("right", 0.0)
             .dirichlet_on("top", 0.0);
-        let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+        let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
         let mesh = problem.bind_boundary(mesh).unwrap();
         solve(&problem, &mesh, &ConformingP1).unwrap().bound().unwrap().unproven
     };

@@ -15,7 +15,7 @@ fn multipliers_beside_dirichlet_facets_carry_no_flux() {
     for name in "p1 cr sipg ldg br2 wopsip wopsip:facet-means".split_whitespace() {
         let (scene, scheme) = placed(&scene, name);
         let of_level = |n: usize| {
-            let mesh = scene.domain.mesh::<f64>(n).unwrap();
+            let mesh = scene.domain.mesh(n).unwrap();
             let solved = solve(&scene.problem, &mesh, &*scheme).unwrap();
             solved.bound().unwrap().total
         };
@@ -70,7 +70,7 @@ fn copies_of_a_node_share_their_multipliers() {
     let scene = scenes::torsion_2d(5.0);
     let total = |name: &str| {
         let (scene, scheme) = placed(&scene, name);
-        let mesh = scene.domain.mesh::<f64>(16).unwrap();
+        let mesh = scene.domain.mesh(16).unwrap();
         solve(&scene.problem, &mesh, &*scheme).unwrap().bound().unwrap().total
     };
     let ratio = total("wopsip-p2") / total("sipg-p2");
@@ -92,8 +92,8 @@ fn quadratics_deep_in_contact() {
 }
 
 /// A strip in contact along its lower side, pulled down with very different forces.
-fn strip(gap: impl Fn(f64) -> f64 + Send + Sync + 'static) -> (Problem<2>, Mesh<f64, 2>) {
-    let box_ = BoxDomain::dirichlet(Point::zeros(), Point::<f64, 2>::new(6.0, 1.0));
+fn strip(gap: impl Fn(f64) -> f64 + Send + Sync + 'static) -> (Problem<2>, Mesh<2>) {
+    let box_ = BoxDomain::dirichlet(Point::zeros(), Point::<2>::new(6.0, 1.0));
     let box_ = box_.side(1, 0, BoundaryPart::Contact).side(1, 1, BoundaryPart::Neumann);
     let forces = [-1.0, -10.0, -0.72, 0.114, -0.03, 0.0];
     let problem = Problem::new()
@@ -128,7 +128,7 @@ fn forces_on_contact_facets_are_not_negative() {
     let bound = solved.bound().unwrap();
     assert!(bound.parts.contact >= 0.0, "{:?}", bound.parts);
     // a lower bound on the error of the function: norms of both solutions differ by it at most
-    let energy = |solved: &Solved<'_, f64, 2>| solved.energy().unwrap().unwrap();
+    let energy = |solved: &Solved<'_, 2>| solved.energy().unwrap().unwrap();
     let excess = energy(&solved) - energy(&reference);
     assert!(
         excess.is_finite() && 0.5 * (bound.total + bound.distance).powi(2) > excess,
@@ -149,7 +149,7 @@ fn the_force_of_a_vertex_is_where_its_gap_binds() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
         .side(0, 1, BoundaryPart::Contact)
         .side(1, 0, BoundaryPart::Contact);
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
     let total = |depth: f64, name: &str| {
         let named: NamedScheme = name.parse().unwrap();
         let problem = Problem::new()

@@ -15,7 +15,7 @@ const SCHEMES: &str = "p1 p2 cr sipg nipg iipg ldg br2 bmmpr wopsip wopsip:facet
     sipg:facet-means wopsip@eta=1e4 ldg-switch sipg-p2 nipg-p2 iipg-p2 ldg-p2 br2-p2 \
     bmmpr-p2 wopsip-p2";
 
-fn scheme_of<const D: usize>(name: &str) -> (NamedScheme, Box<dyn AnyScheme<f64, D>>) {
+fn scheme_of<const D: usize>(name: &str) -> (NamedScheme, Box<dyn Scheme<D>>) {
     let named: NamedScheme = name.parse().unwrap();
     let scheme = named.make();
     (named, scheme)
@@ -34,7 +34,7 @@ fn random_problem<const D: usize>(random: &mut Random) -> (Problem<D>, BoxDomain
     if between(0.0, 1.0) < 0.5 {
         problem = problem.reaction(10.0_f64.powf(between(-1.0, 3.0)));
     }
-    let plane = |a: f64, b: f64| move |x: &Point<f64, D>| a * x[0] + b * x[D - 1];
+    let plane = |a: f64, b: f64| move |x: &Point<D>| a * x[0] + b * x[D - 1];
     let (a, b, below) = (between(-0.1, 0.1), between(-0.1, 0.1), between(0.2, 0.4));
     if between(0.0, 1.0) < 0.7 {
         let slope = plane(a, b);
@@ -67,7 +67,7 @@ fn check_random_pairs<const D: usize>(
     let mut pairs = 0;
     for number in 0..problems {
         let (problem, domain) = random_problem::<D>(&mut Random(1000 * D as u64 + number));
-        let mesh = Mesh::<f64, D>::kuhn_box(&domain, [n; D]).unwrap();
+        let mesh = Mesh::<D>::kuhn_box(&domain, [n; D]).unwrap();
         let meshes = Hierarchy::refine(&mesh, refinements).unwrap();
         let of_reference = problem.clone();
         let mut nested = NestedIteration::new(&of_reference, &meshes);
@@ -119,9 +119,9 @@ fn bounds_of_a_thousand_random_pairs_are_never_below_the_error() {
 /// The bound from function, flux and discrete solution by its formula, for linears with constant load and coefficient
 /// and an obstacle that is zero.
 fn midpoint_bound(
-    (mesh, pair): (&Mesh<f64, 2>, &PrimalDualPair<2>),
+    (mesh, pair): (&Mesh<2>, &PrimalDualPair<2>),
     (alpha, load): (f64, f64),
-    gradient_of: &dyn Fn(usize) -> Point<f64, 2>,
+    gradient_of: &dyn Fn(usize) -> Point<2>,
 ) -> f64 {
     let rule = Rule::new(2, 2);
     let (mut mismatch, mut complementarity, mut distance) = (0.0, 0.0, 0.0);
@@ -131,13 +131,13 @@ fn midpoint_bound(
         let flux = [0, 1, 2].map(|facet| pair.flux.through(cell, facet));
         let multiplier = -flux.iter().sum::<f64>() / geometry.volume - load;
         let value = |k: usize| pair.function[corners[k] as usize];
-        let gradient: Point<f64, 2> = (0..3).map(|k| *geometry.gradient(k) * value(k)).sum();
+        let gradient: Point<2> = (0..3).map(|k| *geometry.gradient(k) * value(k)).sum();
         let discrete = gradient_of(cell);
         for (point, weight) in rule.iter() {
             let weight = weight * geometry.volume;
-            let x: Point<f64, 2> = (0..3).map(|k| vertex(k) * point[k]).sum();
+            let x: Point<2> = (0..3).map(|k| vertex(k) * point[k]).sum();
             let v: f64 = (0..3).map(|k| value(k) * point[k]).sum();
-            let q: Point<f64, 2> =
+            let q: Point<2> =
                 (0..3).map(|k| (x - vertex(k)) * (flux[k] / (2.0 * geometry.volume))).sum();
             mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
             complementarity += weight * multiplier.max(0.0) * v;
@@ -152,7 +152,7 @@ fn midpoint_bound(
 fn the_bound_is_that_of_the_midpoint() {
     let (alpha, load) = (3.0, -40.0);
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [8, 8]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [8, 8]).unwrap();
     let problem = Problem::new()
         .constant_source(load)
         .coefficient(move |_| alpha)
@@ -167,7 +167,7 @@ fn the_bound_is_that_of_the_midpoint() {
         // by the values of the discrete function at the barycentre and near it
         let gradient_of = |cell: usize| {
             let middle = mesh.barycentre(cell);
-            let value = |x: &Point<f64, 2>| solved.value_at(x).unwrap();
+            let value = |x: &Point<2>| solved.value_at(x).unwrap();
             Point::from_fn(|k, _| {
                 let mut beside = middle;
                 beside[k] += 0.01;
@@ -182,14 +182,14 @@ fn the_bound_is_that_of_the_midpoint() {
 }
 
 /// The bound of the functions that vanish, with a flux that vanishes.
-fn bound_of_zero<const D: usize>(problem: &Problem<D>, mesh: &Mesh<f64, D>) -> ErrorBound {
+fn bound_of_zero<const D: usize>(problem: &Problem<D>, mesh: &Mesh<D>) -> ErrorBound {
     bound_of_zero_by(&ConformingP1, problem, mesh)
 }
 
 fn bound_of_zero_by<const D: usize>(
-    scheme: &dyn AnyScheme<f64, D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
 ) -> ErrorBound {
     let quadrature = DataQuadrature::default().cell(20);
     let solved = NestedIteration::new(problem, mesh).quadrature(quadrature).solve(scheme).unwrap();
@@ -204,9 +204,9 @@ fn bound_of_zero_by<const D: usize>(
 #[test]
 fn oscillation_alone_is_the_error() {
     let side = |part| BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(0, 1, part);
-    let mesh = Mesh::<f64, 1>::kuhn_box(&side(BoundaryPart::Neumann), [4]).unwrap();
-    let wave = |x: &Point<f64, 1>| (4.0 * std::f64::consts::PI * x[0]).cos();
-    let alpha = |x: &Point<f64, 1>| if x[0] < 0.25 { 0.1 } else { 5.0 };
+    let mesh = Mesh::<1>::kuhn_box(&side(BoundaryPart::Neumann), [4]).unwrap();
+    let wave = |x: &Point<1>| (4.0 * std::f64::consts::PI * x[0]).cos();
+    let alpha = |x: &Point<1>| if x[0] < 0.25 { 0.1 } else { 5.0 };
     let problem = Problem::new().source(wave).coefficient(alpha);
     let bound = bound_of_zero(&problem, &mesh);
     let square = (0.25 / 0.1 + 0.75 / 5.0) / 2.0 / (4.0 * std::f64::consts::PI).powi(2);
@@ -219,8 +219,8 @@ fn oscillation_alone_is_the_error() {
 #[test]
 fn a_load_that_no_flux_balances_counts_with_the_least_coefficient() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [4]).unwrap();
-    let first: fn(&Point<f64, 1>) -> f64 = |x| if x[0] < 0.25 { 0.1 } else { 5.0 };
+    let mesh = Mesh::<1>::kuhn_box(&domain, [4]).unwrap();
+    let first: fn(&Point<1>) -> f64 = |x| if x[0] < 0.25 { 0.1 } else { 5.0 };
     // the constant of Friedrichs' inequality is 1 / pi
     let expected = 6.0 / std::f64::consts::PI / 0.1_f64.sqrt();
     for alpha in [first, |x| if x[0] > 0.75 { 0.1 } else { 5.0 }, |_| 0.1] {
@@ -242,10 +242,10 @@ fn a_load_that_no_flux_balances_counts_with_the_least_coefficient() {
 #[test]
 fn a_load_counts_by_its_mean_and_by_the_rest() {
     let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(2.0));
-    let mesh = Mesh::<f64, 1>::kuhn_box(&interval, [1]).unwrap();
-    let problem = Problem::new().source(|x: &Point<f64, 1>| x[0]);
+    let mesh = Mesh::<1>::kuhn_box(&interval, [1]).unwrap();
+    let problem = Problem::new().source(|x: &Point<1>| x[0]);
     let expected = 2.0 / std::f64::consts::PI * ((2.0_f64 / 3.0).sqrt() + 2.0_f64.sqrt());
-    for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 1>, &ConformingP2] {
+    for scheme in [&ConformingP1 as &dyn Scheme<1>, &ConformingP2] {
         let bound = bound_of_zero_by(scheme, &problem, &mesh);
         for found in [bound.total, bound.discrete] {
             assert!((found / expected - 1.0).abs() < 1e-12, "{}: {found}", scheme.name());
@@ -259,7 +259,7 @@ fn a_load_counts_by_its_mean_and_by_the_rest() {
 fn forces_of_quadratics_have_one_sign() {
     use std::f64::consts::PI;
     let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 1>::kuhn_box(&interval, [1]).unwrap();
+    let mesh = Mesh::<1>::kuhn_box(&interval, [1]).unwrap();
     let problem = || Problem::<1>::new().polynomial_data(1);
     let lower = problem().source(|x| 1.0 - 4.0 * x[0]).obstacle_below(|x| -x[0]);
     let upper = problem().source(|x| 4.0 * x[0] - 1.0).obstacle_above(|x| x[0]);
@@ -281,7 +281,7 @@ fn forces_of_quadratics_have_one_sign() {
 fn a_contact_force_counts_with_the_distance_from_the_gap() {
     let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let interval = interval.side(0, 1, BoundaryPart::Contact);
-    let mesh = Mesh::<f64, 1>::kuhn_box(&interval, [1]).unwrap();
+    let mesh = Mesh::<1>::kuhn_box(&interval, [1]).unwrap();
     let problem = Problem::new().signorini(|_| -1.0).coefficient(|_| 4.0);
     let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
     let mut pair = solved.primal_dual_pair().unwrap();
@@ -308,7 +308,7 @@ fn contact_forces_of_quadratics_have_one_sign() {
     use std::f64::consts::PI;
     let square =
         BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(1, 0, BoundaryPart::Contact);
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [1, 1]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [1, 1]).unwrap();
     let problem = Problem::new().signorini(|x| -x[0]).polynomial_data(1);
     let solved = solve(&problem, &mesh, &ConformingP2).unwrap();
     let mut pair = solved.primal_dual_pair().unwrap();
@@ -340,8 +340,8 @@ fn a_large_reaction_makes_oscillation_smaller() {
     let free = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
         .side(0, 0, BoundaryPart::Neumann)
         .side(0, 1, BoundaryPart::Neumann);
-    let mesh = Mesh::<f64, 1>::kuhn_box(&free, [4]).unwrap();
-    let wave = |x: &Point<f64, 1>| (4.0 * std::f64::consts::PI * x[0]).cos();
+    let mesh = Mesh::<1>::kuhn_box(&free, [4]).unwrap();
+    let wave = |x: &Point<1>| (4.0 * std::f64::consts::PI * x[0]).cos();
     let square = (4.0 * std::f64::consts::PI).powi(2);
     for reaction in [1.0, 100.0, 1e4] {
         let bound = bound_of_zero(&Problem::new().source(wave).reaction(reaction), &mesh);
@@ -360,7 +360,7 @@ fn a_neumann_datum_counts_by_the_trace_inequality() {
     use std::f64::consts::PI;
     let square =
         BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(1, 0, BoundaryPart::Neumann);
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [1, 1]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [1, 1]).unwrap();
     let problem = Problem::new().coefficient(|_| 4.0).neumann(|x, _| x[0] - 0.5);
     // one facet of length one, a cell of measure one half and of diameter the root of two
     let constant = (2.0 * (1.0 / (PI * PI) + 1.0 / PI) * 2.0).sqrt();
@@ -380,7 +380,7 @@ fn values_count_with_the_reaction() {
     let free = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
         .side(0, 0, BoundaryPart::Neumann)
         .side(0, 1, BoundaryPart::Neumann);
-    let mesh = Mesh::<f64, 1>::kuhn_box(&free, [4]).unwrap();
+    let mesh = Mesh::<1>::kuhn_box(&free, [4]).unwrap();
     let problem = Problem::new().constant_source(6.0).reaction(3.0);
     let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
     let mut pair = solved.primal_dual_pair().unwrap();
@@ -402,13 +402,13 @@ fn a_reaction_of_degree_two_counts_by_its_least_bernstein_coefficient() {
     let free = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
         .side(0, 0, BoundaryPart::Neumann)
         .side(0, 1, BoundaryPart::Neumann);
-    let mesh = Mesh::<f64, 1>::kuhn_box(&free, [1]).unwrap();
+    let mesh = Mesh::<1>::kuhn_box(&free, [1]).unwrap();
     let problem = |least: f64| {
-        let reaction = move |x: &Point<f64, 1>| 1600.0 * (x[0] - 0.25).powi(2) + 300.0 + least;
+        let reaction = move |x: &Point<1>| 1600.0 * (x[0] - 0.25).powi(2) + 300.0 + least;
         Problem::new().reaction(Datum::polynomial(2, reaction))
     };
     // a load without a mean, and a constant one: the reaction alone holds the interval
-    let wave = problem(100.0).source(|x: &Point<f64, 1>| (PI * x[0]).cos());
+    let wave = problem(100.0).source(|x: &Point<1>| (PI * x[0]).cos());
     let constant = problem(100.0).constant_source(6.0);
     for (problem, norm) in [(&wave, 0.5_f64.sqrt()), (&constant, 6.0)] {
         let total = bound_of_zero(problem, &mesh).total;
@@ -425,14 +425,13 @@ fn a_reaction_of_degree_two_counts_by_its_least_bernstein_coefficient() {
 #[test]
 fn the_admissible_function_follows_by_hand() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let function =
-        |problem: &Problem<1>, n: usize, scheme: &dyn AnyScheme<f64, 1>, values: &[f64]| {
-            let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [n]).unwrap();
-            let of = scheme.discretise(problem, &mesh, DataQuadrature::default()).unwrap();
-            let contact = vec![Contact::Inactive; values.len()];
-            let solution = Solution::new(values.to_vec(), contact, Outcome::Converged);
-            of.primal_dual_pair(&of.inequality().unwrap(), &solution).unwrap().function
-        };
+    let function = |problem: &Problem<1>, n: usize, scheme: &dyn Scheme<1>, values: &[f64]| {
+        let mesh = Mesh::<1>::kuhn_box(&domain, [n]).unwrap();
+        let of = scheme.discretise(problem, &mesh, DataQuadrature::default()).unwrap();
+        let contact = vec![Contact::Inactive; values.len()];
+        let solution = Solution::new(values.to_vec(), contact, Outcome::Converged);
+        of.primal_dual_pair(&of.inequality().unwrap(), &solution).unwrap().function
+    };
     let materials = Problem::new().coefficient(|x| if x[0] < 0.5 { 1.0 } else { 3.0 });
     let values = [0.0, 1.0, 2.0, 0.0];
     assert_eq!(function(&materials, 2, &Sipg::default(), &values), [0.0, 1.75, 0.0]);

@@ -21,11 +21,10 @@ fn free_interval() -> BoxDomain<1> {
 #[test]
 fn a_reaction_that_vanishes_at_a_vertex_gives_no_constant() {
     let mut checks = Checks::default();
-    let [coarse, fine] =
-        [1, 20_000].map(|n| Mesh::<f64, 1>::kuhn_box(&free_interval(), [n]).unwrap());
+    let [coarse, fine] = [1, 20_000].map(|n| Mesh::<1>::kuhn_box(&free_interval(), [n]).unwrap());
     for (factor, power) in [(1e6, 1), (1e12, 1), (1e6, 2), (1e9, 2), (1e12, 2)] {
-        let reaction = move |x: &Point<f64, 1>| factor * x[0].powi(power);
-        let rest = |x: &Point<f64, 1>| 6.0 * x[0] * x[0] - 6.0 * x[0] + 1.0;
+        let reaction = move |x: &Point<1>| factor * x[0].powi(power);
+        let rest = |x: &Point<1>| 6.0 * x[0] * x[0] - 6.0 * x[0] + 1.0;
         let problem = Problem::new()
             .source(move |x| reaction(x) + rest(x))
             .reaction(reaction)
@@ -43,10 +42,10 @@ fn a_reaction_that_vanishes_at_a_vertex_gives_no_constant() {
 #[test]
 fn a_reaction_that_is_negative_between_points_gives_no_norm() {
     for n in [1, 2] {
-        let mesh = Mesh::<f64, 1>::kuhn_box(&free_interval(), [n]).unwrap();
+        let mesh = Mesh::<1>::kuhn_box(&free_interval(), [n]).unwrap();
         let problem = Problem::new()
             .constant_source(1.0)
-            .reaction(|x: &Point<f64, 1>| x[0] - 0.02)
+            .reaction(|x: &Point<1>| x[0] - 0.02)
             .polynomial_data(1);
         let bound = solve(&problem, &mesh, &ConformingP1).unwrap().bound();
         assert!(matches!(bound, Err(unilateral::error_bound::NoBound::NegativeReaction)));
@@ -58,7 +57,7 @@ fn a_reaction_that_is_negative_between_points_gives_no_norm() {
 #[test]
 fn two_obstacles_of_degree_two_may_leave_no_room() {
     let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let width = |x: &Point<f64, 1>| 0.001313 + 15.967666 * (x[0] - 0.286928).powi(2);
+    let width = |x: &Point<1>| 0.001313 + 15.967666 * (x[0] - 0.286928).powi(2);
     let problem = Problem::new()
         .constant_source(3.974717)
         .obstacle_below(move |x| -width(x))
@@ -66,7 +65,7 @@ fn two_obstacles_of_degree_two_may_leave_no_room() {
         .polynomial_data(2);
     for name in ["p2", "sipg-p2"] {
         let unproven = |n: usize| {
-            let mesh = Mesh::<f64, 1>::kuhn_box(&interval, [n]).unwrap();
+            let mesh = Mesh::<1>::kuhn_box(&interval, [n]).unwrap();
             let scheme: NamedScheme = name.parse().unwrap();
             solve(&problem, &mesh, &*scheme.make()).unwrap().bound().unwrap().unproven
         };
@@ -79,7 +78,7 @@ fn two_obstacles_of_degree_two_may_leave_no_room() {
 #[test]
 fn an_obstacle_of_degree_two_is_exceeded_in_a_corner() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [3, 3]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [3, 3]).unwrap();
     let problem = Problem::new()
         .constant_source(-0.10764068)
         .obstacle_below(|x| -6.81321883 * (x[0] + 1.0 - x[1] - 0.290277879).powi(2))
@@ -103,7 +102,7 @@ fn open_contact_facets_have_a_bound() {
         for (n, name) in
             [2, 4, 8].into_iter().flat_map(|n| ["p1", "cr", "sipg", "p2"].map(|s| (n, s)))
         {
-            let mesh = Mesh::<f64, 2>::kuhn_box(&square, [n, n]).unwrap();
+            let mesh = Mesh::<2>::kuhn_box(&square, [n, n]).unwrap();
             let scheme: NamedScheme = name.parse().unwrap();
             let bound = solve(&problem, &mesh, &*scheme.make()).unwrap().bound();
             checks.that(bound.is_ok(), || format!("{name}, {n}, {gap}: {bound:?}"));
@@ -118,7 +117,7 @@ fn facet_rules_are_held_against_stated_degrees() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
         .side(1, 0, BoundaryPart::Contact)
         .side(0, 1, BoundaryPart::Neumann);
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
     let problem = Problem::new()
         .constant_source(-1.0)
         .neumann(|x, _| x[1] * x[1])
@@ -143,10 +142,10 @@ fn rules_follow_the_degrees_of_data() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
         .side(1, 0, BoundaryPart::Contact)
         .side(0, 1, BoundaryPart::Neumann);
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [2, 2]).unwrap();
-    let source = |x: &Point<f64, 2>| 40.0 * x[0].powi(12) - 20.0 * x[1].powi(11);
-    let flux = |x: &Point<f64, 2>, _: &Point<f64, 2>| 10.0 * x[1].powi(12);
-    let gap = |x: &Point<f64, 2>| -0.1 + 0.1 * x[0].powi(2);
+    let mesh = Mesh::<2>::kuhn_box(&square, [2, 2]).unwrap();
+    let source = |x: &Point<2>| 40.0 * x[0].powi(12) - 20.0 * x[1].powi(11);
+    let flux = |x: &Point<2>, _: &Point<2>| 10.0 * x[1].powi(12);
+    let gap = |x: &Point<2>| -0.1 + 0.1 * x[0].powi(2);
     let functions = Problem::new().source(source).neumann(flux).signorini(gap);
     let mut polynomials = functions.clone();
     polynomials.source = Some(Datum::polynomial(12, source));
@@ -172,10 +171,10 @@ fn rules_follow_the_degrees_of_data() {
 /// A reaction alone decides which rule the terms of cells need.
 #[test]
 fn rules_follow_the_degree_of_the_reaction() {
-    let mesh = Mesh::<f64, 1>::kuhn_box(&free_interval(), [2]).unwrap();
-    let reaction = |x: &Point<f64, 1>| 1.0 + 3.0 * x[0] * x[0];
+    let mesh = Mesh::<1>::kuhn_box(&free_interval(), [2]).unwrap();
+    let reaction = |x: &Point<1>| 1.0 + 3.0 * x[0] * x[0];
     let problem = |datum: Datum<1>| Problem::new().constant_source(-4.0).reaction(datum);
-    for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 1>, &ConformingP2] {
+    for scheme in [&ConformingP1 as &dyn Scheme<1>, &ConformingP2] {
         let [by_degree, by_rules] =
             [Datum::polynomial(2, reaction), reaction.into()].map(|datum| {
                 let (problem, quadrature) = (problem(datum), DataQuadrature::default().cell(26));
@@ -193,7 +192,7 @@ fn rules_follow_the_degree_of_the_reaction() {
 fn a_gap_of_degree_two_is_held_against_the_quadratic_on_facets() {
     let cube =
         BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(2, 0, BoundaryPart::Contact);
-    let mesh = Mesh::<f64, 3>::kuhn_box(&cube, [1; 3]).unwrap();
+    let mesh = Mesh::<3>::kuhn_box(&cube, [1; 3]).unwrap();
     for (depth, expected) in [(0.0, vec![Unproven::Obstacle]), (0.3, vec![])] {
         let problem = Problem::new()
             .constant_source(1.0)
@@ -211,15 +210,15 @@ fn every_datum_is_held_against_what_a_bound_needs() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
         .side(1, 0, BoundaryPart::Contact)
         .side(0, 1, BoundaryPart::Neumann);
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
-    let x = |x: &Point<f64, 2>| x[0];
+    let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
+    let x = |x: &Point<2>| x[0];
     let constant =
         || Problem::new().constant_source(-1.0).signorini(|_| -0.3).obstacles_of_degree(0);
     let unproven = |problem: &Problem<2>| -> [Vec<Unproven>; 2] {
-        [&ConformingP1 as &dyn AnyScheme<f64, 2>, &ConformingP2]
+        [&ConformingP1 as &dyn Scheme<2>, &ConformingP2]
             .map(|scheme| solve(problem, &mesh, scheme).unwrap().bound().unwrap().unproven)
     };
-    let square = |x: &Point<f64, 2>| x[0] * x[0];
+    let square = |x: &Point<2>| x[0] * x[0];
     for (label, problem, of_linears, of_quadratics) in [
         ("none", constant().polynomial_data(0), vec![], vec![]),
         (
@@ -237,7 +236,7 @@ fn every_datum_is_held_against_what_a_bound_needs() {
         ("reaction of degree two", constant().reaction(square).polynomial_data(2), vec![], vec![]),
         (
             "reaction of degree three",
-            constant().reaction(move |p: &Point<f64, 2>| x(p).powi(3)).polynomial_data(3),
+            constant().reaction(move |p: &Point<2>| x(p).powi(3)).polynomial_data(3),
             vec![Quadrature],
             vec![Quadrature],
         ),

@@ -16,7 +16,7 @@ const SCHEMES: &str = "p2 p2:midpoints sipg-p2 nipg-p2 iipg-p2 ldg-p2 br2-p2 bmm
 
 /// On a mesh of a scene, every scheme: fluxes are single-valued and balance the load, and the bound is one to
 /// three times the error.
-fn check<const D: usize>(scene: Scene<D>, mesh: &Mesh<f64, D>, schemes: &str) {
+fn check<const D: usize>(scene: Scene<D>, mesh: &Mesh<D>, schemes: &str) {
     let mut checks = Checks::default();
     for name in schemes.split_whitespace() {
         let (scene, scheme) = placed(&scene, name);
@@ -77,12 +77,12 @@ fn quadratics_with_a_reaction_and_two_obstacles() {
 
 /// An equation with a coefficient, a reaction and Neumann data on one side: `u = exp(x) cos(y)`.
 fn equation() -> Scene<2> {
-    let value = |x: &Point<f64, 2>| x[0].exp() * x[1].cos();
+    let value = |x: &Point<2>| x[0].exp() * x[1].cos();
     let gradient =
-        |x: &Point<f64, 2>| Point::<f64, 2>::new(x[0].exp() * x[1].cos(), -x[0].exp() * x[1].sin());
+        |x: &Point<2>| Point::<2>::new(x[0].exp() * x[1].cos(), -x[0].exp() * x[1].sin());
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let problem = Problem::new()
-        .coefficient(|x: &Point<f64, 2>| 1.0 + 0.5 * x[0])
+        .coefficient(|x: &Point<2>| 1.0 + 0.5 * x[0])
         .reaction(1.0)
         .source(move |x| 0.5 * value(x))
         .dirichlet(value)
@@ -116,7 +116,7 @@ fn orders_of_the_bound() {
 
 /// Random admissible functions and fluxes give bounds: ten for each scheme.
 fn random_pairs<const D: usize>(scene: &Scene<D>, level: usize, schemes: &str) {
-    let mesh = scene.domain.mesh::<f64>(level).unwrap();
+    let mesh = scene.domain.mesh(level).unwrap();
     let neighbours = Neighbours::new(&mesh);
     let (n, n_vertices) = (D + 1, mesh.vertices().len());
     let on_boundary = on_boundary(&mesh);
@@ -173,8 +173,8 @@ fn any_admissible_quadratic_and_any_flux_give_a_bound() {
 
 #[test]
 fn what_is_proven_for_quadratics() {
-    let mesh = scenes::radial::<2>(1.0).domain.mesh::<f64>(4).unwrap();
-    let unproven = |problem: &Problem<2>, scheme: &dyn AnyScheme<f64, 2>| {
+    let mesh = scenes::radial::<2>(1.0).domain.mesh(4).unwrap();
+    let unproven = |problem: &Problem<2>, scheme: &dyn Scheme<2>| {
         solve(problem, &mesh, scheme).unwrap().bound().unwrap().unproven
     };
     let problem = Problem::new()

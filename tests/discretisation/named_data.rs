@@ -5,13 +5,13 @@ use unilateral::error::Error;
 use unilateral::mesh::{BoundaryGroup, GroupedFacet, MeshError};
 use unilateral::prelude::*;
 
-fn boxed<const D: usize>(names: &[&str]) -> Vec<Box<dyn AnyScheme<f64, D>>> {
+fn boxed<const D: usize>(names: &[&str]) -> Vec<Box<dyn Scheme<D>>> {
     names.iter().map(|name| name.parse::<NamedScheme>().unwrap().make()).collect()
 }
 
 /// The box `(-1, 1)^D` in two regions, divided at zero along the first axis, and a third one that both
 /// intersect, above zero along the last one.
-fn divided<const D: usize>(n: usize) -> Mesh<f64, D> {
+fn divided<const D: usize>(n: usize) -> Mesh<D> {
     let mesh = Mesh::kuhn_box(&BoxDomain::<D>::centred(1.0), [n; D]).unwrap();
     let of = |c: usize| {
         let x = mesh.barycentre(c);
@@ -30,7 +30,7 @@ fn divided<const D: usize>(n: usize) -> Mesh<f64, D> {
 
 fn regions_are_inherited<const D: usize>() {
     let mut mesh = divided::<D>(2);
-    let volume = |mesh: &Mesh<f64, D>, region: usize| -> f64 {
+    let volume = |mesh: &Mesh<D>, region: usize| -> f64 {
         let cells = (0..mesh.n_cells()).filter(|&c| mesh.region(c) == region);
         cells.map(|c| mesh.geometry(c).volume).sum()
     };
@@ -62,13 +62,13 @@ fn regions_and_groups_are_inherited_by_refinement() {
 /// Data by name make the inequality that functions of space make.
 fn names_agree_with_functions<const D: usize>(n: usize) {
     let mesh = divided::<D>(n);
-    let is_right = |x: &Point<f64, D>| x[0] > 0.0;
-    let lower = |x: &Point<f64, D>| if x[0] > 0.0 { x[0] - 2.0 } else { -0.5 * x[0] - 2.0 };
-    let load = |x: &Point<f64, D>| x[0] * x[0];
+    let is_right = |x: &Point<D>| x[0] > 0.0;
+    let lower = |x: &Point<D>| if x[0] > 0.0 { x[0] - 2.0 } else { -0.5 * x[0] - 2.0 };
+    let load = |x: &Point<D>| x[0] * x[0];
     let plain = Problem::new()
         .coefficient(move |x| if is_right(x) { 100.0 } else { 1.0 })
-        .source(move |x: &Point<f64, D>| if is_right(x) { 2.0 } else { load(x) })
-        .reaction(move |x: &Point<f64, D>| if is_right(x) { 0.5 } else { 0.0 })
+        .source(move |x: &Point<D>| if is_right(x) { 2.0 } else { load(x) })
+        .reaction(move |x: &Point<D>| if is_right(x) { 0.5 } else { 0.0 })
         .dirichlet(|x| if x[0] < 0.5 { 1.0 } else { 0.25 })
         .obstacle_below(lower);
     let named = Problem::new()
@@ -76,8 +76,8 @@ fn names_agree_with_functions<const D: usize>(n: usize) {
         .source_in("right", 2.0)
         .source(load)
         .reaction_in("right", 0.5)
-        .obstacle_below_in("left", |x: &Point<f64, D>| -0.5 * x[0] - 2.0)
-        .obstacle_below_in("right", |x: &Point<f64, D>| x[0] - 2.0);
+        .obstacle_below_in("left", |x: &Point<D>| -0.5 * x[0] - 2.0)
+        .obstacle_below_in("right", |x: &Point<D>| x[0] - 2.0);
     // by sides in one dimension, where no side lies on both values
     let (plain, named) = match D {
         1 => (plain, named.dirichlet_on("left", 1.0).dirichlet_on("right", 0.25)),
@@ -163,7 +163,7 @@ fn of_the_obstacles_of_two_regions_the_higher_holds_where_they_meet() {
     }
 }
 
-fn refusal(problem: &Problem<2>, mesh: &Mesh<f64, 2>) -> Error {
+fn refusal(problem: &Problem<2>, mesh: &Mesh<2>) -> Error {
     Discretisation::new(&ConformingP1, problem, mesh, Default::default()).map(|_| ()).unwrap_err()
 }
 
@@ -189,7 +189,7 @@ fn wrong_names_are_refused() {
 fn a_problem_gives_the_boundary_its_parts() {
     let problem = Problem::new()
         .constant_source(-4.0)
-        .signorini_on("bottom", |x: &Point<f64, 2>| 0.1 * x[0] - 0.1)
+        .signorini_on("bottom", |x: &Point<2>| 0.1 * x[0] - 0.1)
         .neumann_on("left", |x, n| x[1] * n[0]);
     let mesh = problem.bind_boundary(divided::<2>(8)).unwrap();
     let part = |BoundaryGroup { names, part, .. }: &BoundaryGroup| (names[0].clone(), *part);
@@ -211,7 +211,7 @@ fn a_problem_gives_the_boundary_its_parts() {
         .constant_source(-4.0)
         .signorini(|x| 0.1 * x[0] - 0.1)
         .neumann(|x, n| x[1] * n[0]);
-    let same = Mesh::<f64, 2>::kuhn_box(&domain, [8, 8]).unwrap();
+    let same = Mesh::<2>::kuhn_box(&domain, [8, 8]).unwrap();
     for scheme in boxed::<2>(&["p1", "cr", "sipg", "wopsip", "p2"]) {
         let a = solve(&problem, &mesh, &*scheme).unwrap();
         let b = solve(&plain, &same, &*scheme).unwrap();
@@ -226,14 +226,14 @@ type NamedDatum = (
     &'static str,
     fn(Problem<2>, &str, f64) -> Problem<2>,
     fn(Problem<2>, f64) -> Problem<2>,
-    fn(&Discretisation<'_, f64, 2>) -> f64,
+    fn(&Discretisation<'_, 2>) -> f64,
 );
 
 /// The unit square, whose cells are all in the regions `one` and `two` and whose boundary facets are all in the groups
 /// `one` and `two`.
-fn named_twice() -> Mesh<f64, 2> {
+fn named_twice() -> Mesh<2> {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [2, 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [2, 2]).unwrap();
     let mut facets = Vec::new();
     for f in mesh.boundary() {
         let vertices: Vec<u32> =
@@ -252,11 +252,11 @@ fn named_twice() -> Mesh<f64, 2> {
 /// name.
 #[test]
 fn every_datum_by_name_has_the_documented_precedence() {
-    fn energy(of: &Discretisation<'_, f64, 2>, u: fn(&Point<f64, 2>) -> f64) -> f64 {
+    fn energy(of: &Discretisation<'_, 2>, u: fn(&Point<2>) -> f64) -> f64 {
         let values: Vec<f64> = of.mesh().vertices().iter().map(u).collect();
         of.energy(&values).unwrap()
     }
-    fn bound(of: &Discretisation<'_, f64, 2>, x: [f64; 2]) -> Bound<f64> {
+    fn bound(of: &Discretisation<'_, 2>, x: [f64; 2]) -> Bound<f64> {
         let vertex = of.mesh().vertices().iter().position(|y| *y == Point::from(x)).unwrap();
         of.bounds().unwrap()[vertex]
     }

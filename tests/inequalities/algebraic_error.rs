@@ -186,7 +186,7 @@ fn left_by<const D: usize>(
 ) -> Vec<Left> {
     let coarse_spaces = Mutex::new(CoarseSpaces::Unknown);
     let found = RefCell::new(Vec::new());
-    let measure = |label: &str, level: usize, solved: &Solved<'_, f64, D>| -> Result<(), Error> {
+    let measure = |label: &str, level: usize, solved: &Solved<'_, D>| -> Result<(), Error> {
         let (inequality, solution) = (solved.inequality(), solved.solution());
         let correction = correction(inequality, solution, &coarse_spaces);
         let discretisation = solved.discretisation();
@@ -214,9 +214,9 @@ fn left_by<const D: usize>(
         Ok(())
     };
     let set = constraint_set_by_name(placement).unwrap();
-    let scheme = scheme_by_name::<f64, D>(name, &SchemeOptions::default()).unwrap();
+    let scheme = scheme_by_name::<D>(name, &SchemeOptions::default()).unwrap();
     let solver = Keeping { settings: ActiveSet::default(), coarse_spaces: &coarse_spaces };
-    let study = Study::<f64, D>::new(scene).boxed_scheme_on(scheme, set).solver(solver);
+    let study = Study::<D>::new(scene).boxed_scheme_on(scheme, set).solver(solver);
     let study = study.levels(levels.iter().copied()).each_solution(measure);
     let _ = study.run();
     drop(study);

@@ -11,8 +11,8 @@ use unilateral::scenes::Scene;
 use unilateral::study::Row;
 
 /// The schemes with the placement of bounds each is known for.
-fn schemes(names: &[(&str, &str)]) -> Vec<Entry<f64, 2>> {
-    let mut schemes = all_schemes::<f64, 2>();
+fn schemes(names: &[(&str, &str)]) -> Vec<Entry<2>> {
+    let mut schemes = all_schemes::<2>();
     schemes.retain(|s| names.contains(&(s.name(), &s.constraint()[..])));
     assert_eq!(schemes.len(), names.len());
     schemes
@@ -100,7 +100,7 @@ fn contact_on_a_segment() {
     let levels = [16, 32, 64];
     for scene in [scenes::signorini_2d(), scenes::hertz_2d()] {
         let mut checks = Checks::default();
-        for of_scheme in rows(scene, all_schemes::<f64, 2>(), levels).chunks(levels.len()) {
+        for of_scheme in rows(scene, all_schemes::<2>(), levels).chunks(levels.len()) {
             check_sets(&mut checks, of_scheme, 1.0);
             check_multipliers(&mut checks, of_scheme, [1.4, 2.0], [0.95, 1.3]);
             for row in of_scheme {
@@ -117,7 +117,7 @@ fn contact_on_a_segment() {
 fn contact_in_other_dimensions() {
     fn check<const D: usize>(scene: Scene<D>, levels: &[usize], length: f64) {
         let mut checks = Checks::default();
-        check_sets(&mut checks, &rows(scene, all_schemes::<f64, D>(), levels.to_vec()), length);
+        check_sets(&mut checks, &rows(scene, all_schemes::<D>(), levels.to_vec()), length);
         checks.finish();
     }
     check(scenes::radial::<1>(1.0), &[16, 32, 64], 2.0);
@@ -142,7 +142,7 @@ fn nothing_without_an_exact_solution() {
 #[test]
 fn the_distance_of_free_boundaries_is_that_of_hausdorff() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [8]).unwrap();
+    let mesh = Mesh::<1>::kuhn_box(&domain, [8]).unwrap();
     // between 1/8 and 1/4: the first node in contact is the second one
     let load = 2.0 / 0.2_f64.powi(2);
     for (stated, expected) in [

@@ -193,7 +193,7 @@ impl<'a> Reference<'a> {
 fn of(scene: &Scene<2>, eta: &str, level: usize) -> Inequality<f64> {
     let name = if eta == "default" { "wopsip-p2".into() } else { format!("wopsip-p2@eta={eta}") };
     let scheme: NamedScheme = name.parse().unwrap();
-    let made = scheme.make::<f64, 2>();
+    let made = scheme.make::<2>();
     let mesh = scene.domain.mesh(level).unwrap();
     let space = made.discretise(&scene.problem, &mesh, DataQuadrature::default());
     space.unwrap().inequality().unwrap()

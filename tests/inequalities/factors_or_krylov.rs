@@ -34,9 +34,9 @@ fn margin(
 /// Solves by factors and by a Krylov method; states may differ only within ten bands. Returns the number of
 /// unknowns in contact.
 fn check<const D: usize>(scene: &Scene<D>, scheme: &str, level: usize) -> usize {
-    let mesh = scene.domain.mesh::<f64>(level).unwrap();
+    let mesh = scene.domain.mesh(level).unwrap();
     let what = format!("{} {scheme}", scene.name);
-    let scheme = scheme_by_name::<f64, D>(scheme, &SchemeOptions::default()).unwrap();
+    let scheme = scheme_by_name::<D>(scheme, &SchemeOptions::default()).unwrap();
     let q = scheme.inequality(&scene.problem, &mesh, DataQuadrature::default()).unwrap();
     let [a, b] = [LinearMethod::Direct, LinearMethod::Iterative]
         .map(|linear| ActiveSet::default().linear(linear).solve(&q));

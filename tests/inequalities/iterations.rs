@@ -15,7 +15,7 @@ use unilateral::study::Row;
 /// Outer iterations on the finest level, for schemes whose matrices are close to M-matrices.
 const FEW: usize = 10;
 
-fn p1_and_sipg<const D: usize>() -> Vec<Boxed<f64, D>> {
+fn p1_and_sipg<const D: usize>() -> Vec<Boxed<D>> {
     vec![Box::new(ConformingP1), Box::new(Sipg::default())]
 }
 
@@ -24,7 +24,7 @@ fn few_iterations<const D: usize>(scene: Scene<D>, levels: &[usize]) {
     assert!(scene.regularity.strictly_complementary);
     let mut checks = Checks::default();
     let finest = levels.iter().max().unwrap();
-    for row in &rows::<f64, D>(scene, p1_and_sipg(), levels.to_vec()) {
+    for row in &rows::<D>(scene, p1_and_sipg(), levels.to_vec()) {
         checks.certified(row, 1e-9);
         let outer = row.iterations.outer.unwrap();
         let holds = row.level < *finest || outer <= FEW;
@@ -72,9 +72,9 @@ fn strictly_complementary_scenes_need_few_iterations_in_other_dimensions() {
 fn few_iterations_on_one_mesh<const D: usize>(scene: impl Fn() -> Scene<D>, levels: [usize; 2]) {
     let mut checks = Checks::default();
     for level in levels {
-        let mesh = scene().domain.mesh::<f64>(level).unwrap();
+        let mesh = scene().domain.mesh(level).unwrap();
         assert!(mesh.vertices().len() > 10_000, "multigrid begins there");
-        let study = Study::<f64, D>::new(scene()).on_mesh(mesh).levels([0]).scheme(ConformingP1);
+        let study = Study::<D>::new(scene()).on_mesh(mesh).levels([0]).scheme(ConformingP1);
         let study = if level == levels[0] { study.scheme(Sipg::default()) } else { study };
         for row in &study.run().unwrap().rows {
             checks.certified(row, 1e-9);
@@ -100,7 +100,7 @@ fn one_mesh_needs_few_iterations() {
 fn converged_rows_are_certified() {
     let mut checks = Checks::default();
     for (scene, sides) in strict_scenes() {
-        for row in rows::<f64, 2>(scene, all_schemes(), [8, 16, 32].map(|n| n / sides)) {
+        for row in rows::<2>(scene, all_schemes(), [8, 16, 32].map(|n| n / sides)) {
             if row.converged() {
                 checks.certified(&row, 1e-9);
             } else {
@@ -121,8 +121,8 @@ fn typed_reason(checks: &mut Checks, row: &Row) {
 /// ragged, and active sets are hard to find. With bounds on facet means they are not.
 #[test]
 fn over_penalty_on_a_curved_obstacle() {
-    let vertices: Vec<Boxed<f64, 2>> = vec![Box::new(wopsip(10.0)), Box::new(Wopsip::default())];
-    let means: Vec<Entry<f64, 2>> = vec![
+    let vertices: Vec<Boxed<2>> = vec![Box::new(wopsip(10.0)), Box::new(Wopsip::default())];
+    let means: Vec<Entry<2>> = vec![
         entry(wopsip(1.0), FacetMeans),
         entry(wopsip(100.0), FacetMeans),
         entry(Wopsip::default(), FacetMeans),
@@ -159,8 +159,7 @@ fn interior_penalty_without_coercivity() {
         (10.0, Some("2.08e-1")),
         (1e3, Some("2.26e-1")),
     ] {
-        let row =
-            rows::<f64, 2>(scenes::radial(1.0), vec![entry(sipg(sigma), Nodes)], [16]).remove(0);
+        let row = rows::<2>(scenes::radial(1.0), vec![entry(sipg(sigma), Nodes)], [16]).remove(0);
         let what = format!("sigma = {sigma}");
         // the proven bound is 1/2 |dK|/|K| = (2 + sqrt 2)/h inside, twice that on the boundary,
         // where h_F is h on sides and sqrt 2 h on diagonals
@@ -185,7 +184,7 @@ fn interior_penalty_without_coercivity() {
 fn large_penalties() {
     let mut checks = Checks::default();
     for scene in [scenes::radial::<2>(1.0), scenes::signorini_2d()] {
-        let schemes: Vec<Entry<f64, 2>> = vec![
+        let schemes: Vec<Entry<2>> = vec![
             entry(ConformingP1, Nodes),
             entry(sipg(1e3), Nodes),
             entry(sipg(1e6), Nodes),
@@ -214,7 +213,7 @@ fn a_huge_penalty_is_solved_like_a_moderate_one() {
     let errors = [1e4, 1e10].map(|eta| {
         let eta = Eta::Absolute(eta);
         let scheme = Wopsip { eta, weight: WeightRule::Isotropic, ..Wopsip::default() };
-        let study = Study::<f64, 2>::new(scenes::signorini_2d()).scheme(scheme).levels([128]);
+        let study = Study::<2>::new(scenes::signorini_2d()).scheme(scheme).levels([128]);
         let row = study.run().unwrap().rows.remove(0);
         assert!(row.converged(), "{eta:?}");
         assert!(row.certificate.largest() < 1e-9, "{eta:?}: {:?}", row.certificate);
@@ -231,14 +230,13 @@ fn a_body_held_at_one_point_is_not_singular() {
     let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
     let domain = BoxDomain::new(Point::from([-1.0, 0.0]), Point::from([1.0, 1.0]), sides);
     let scene = || {
-        let problem = Problem::new()
-            .constant_source(-1.0)
-            .signorini(|x: &Point<f64, 2>| -1000.0 * x[0] * x[0]);
+        let problem =
+            Problem::new().constant_source(-1.0).signorini(|x: &Point<2>| -1000.0 * x[0] * x[0]);
         Scene::new("table-2d", domain.clone(), problem)
             .summary("a block on a peak")
             .regularity(Regularity::new(2.5))
     };
-    let report = Study::<f64, 2>::new(scene())
+    let report = Study::<2>::new(scene())
         .scheme(ConformingP1)
         .scheme(NonconformingP1)
         .scheme_on(Wopsip::default(), FacetMeans)
@@ -254,12 +252,12 @@ fn a_body_held_at_one_point_is_not_singular() {
 /// An obstacle that touches curved Dirichlet data: means are compared with means.
 #[test]
 fn a_curved_obstacle_may_touch_the_datum() {
-    let bump = |x: &Point<f64, 2>| x[0] * (1.0 - x[0]);
+    let bump = |x: &Point<2>| x[0] * (1.0 - x[0]);
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let problem = Problem::new().constant_source(-3.0).dirichlet(bump).obstacle_below(bump);
     let scene = Scene::new("bump-2d", domain, problem)
         .summary("a curved obstacle that touches the boundary")
         .regularity(Regularity::new(2.5));
-    let report = Study::<f64, 2>::new(scene).scheme(NonconformingP1).levels([4, 8]).run().unwrap();
+    let report = Study::<2>::new(scene).scheme(NonconformingP1).levels([4, 8]).run().unwrap();
     assert!(report.rows.iter().all(|row| row.converged()));
 }

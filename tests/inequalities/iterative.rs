@@ -15,11 +15,11 @@ fn with(linear: LinearMethod) -> ActiveSet {
 
 fn rows<const D: usize>(
     scene: Scene<D>,
-    scheme: impl AnyScheme<f64, D>,
+    scheme: impl Scheme<D>,
     levels: &[usize],
     linear: LinearMethod,
 ) -> Vec<Row> {
-    let study = Study::<f64, D>::new(scene).scheme(scheme).solver(with(linear));
+    let study = Study::<D>::new(scene).scheme(scheme).solver(with(linear));
     let rows = study.levels(levels.iter().copied()).run().unwrap().rows;
     for row in &rows {
         assert!(row.converged(), "{} on level {}", row.scheme, row.level);
@@ -40,11 +40,11 @@ fn rows<const D: usize>(
 /// Solves with both and compares; returns the inner iterations of every level.
 fn counts<const D: usize>(
     scene: fn(f64) -> Scene<D>,
-    scheme: impl AnyScheme<f64, D> + Copy,
+    scheme: impl Scheme<D> + Clone,
     levels: &[usize],
     linear: &str,
 ) -> Vec<usize> {
-    let found = rows(scene(1.0), scheme, levels, LinearMethod::Iterative);
+    let found = rows(scene(1.0), scheme.clone(), levels, LinearMethod::Iterative);
     let exact = rows(scene(1.0), scheme, levels, LinearMethod::Direct);
     for (row, exact) in found.iter().zip(&exact) {
         assert_eq!((&*row.linear, &*exact.linear), (linear, "direct"));
@@ -125,11 +125,11 @@ fn on_means(scale: f64) -> Scene<2> {
     scene
 }
 
-fn inequality<S: Scheme<f64, 2>>(scheme: &S, level: usize) -> Inequality<f64> {
+fn inequality<S: Scheme<2>>(scheme: &S, level: usize) -> Inequality<f64> {
     on(&scenes::radial(1.0), scheme, level)
 }
 
-fn on<S: Scheme<f64, 2>>(scene: &Scene<2>, scheme: &S, level: usize) -> Inequality<f64> {
+fn on<S: Scheme<2>>(scene: &Scene<2>, scheme: &S, level: usize) -> Inequality<f64> {
     let mesh = scene.domain.mesh(level).unwrap();
     let space =
         Discretisation::new(scheme, &scene.problem, &mesh, DataQuadrature::default()).unwrap();
@@ -186,6 +186,8 @@ fn grid(n: usize, shift: f64) -> Inequality<f64> {
         }
     }
     inequality.bounds.fill(Bound::Free);
+    // the matrix is no longer that of the form
+    inequality.is_definite = false;
     inequality
 }
 
@@ -208,7 +210,7 @@ fn what_cannot_be_solved_is_named() {
 
 #[test]
 fn the_bound_on_the_error_is_one() {
-    fn check<S: Scheme<f64, 2>>(scene: &Scene<2>, scheme: &S) {
+    fn check<S: Scheme<2>>(scene: &Scene<2>, scheme: &S) {
         let inequality = on(scene, scheme, 48);
         let exact = with(LinearMethod::Direct).solve(&inequality).values;
         let solution = with(LinearMethod::Iterative).solve(&inequality);
@@ -242,7 +244,7 @@ fn the_bound_on_the_error_is_one() {
 fn the_algebraic_error_is_a_small_part_of_the_error() {
     for set in [false, true] {
         let study = |linear| {
-            let study = Study::<f64, 2>::new(scenes::radial(1.0)).solver(with(linear));
+            let study = Study::<2>::new(scenes::radial(1.0)).solver(with(linear));
             let study = match set {
                 true => study.scheme_on(Wopsip::default(), FacetMeans),
                 false => study.scheme(Wopsip::default()),

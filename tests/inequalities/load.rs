@@ -3,17 +3,18 @@
 use unilateral::algebra::Inequality;
 use unilateral::assemble::DataQuadrature;
 use unilateral::inequality::{
-    ActiveSet, InequalitySolver, Outcome, SOLVERS, Solution, SolverOptions, certify, solver_by_name,
+    ActiveSet, InequalitySolver, Outcome, SOLVERS, Solution, certify, solver_by_name,
 };
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 
-fn square(n: usize) -> Mesh<f64, 2> {
+fn square(n: usize) -> Mesh<2> {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     Mesh::kuhn_box(&domain, [n, n]).unwrap()
 }
 
-fn assemble(scheme: &str, problem: &Problem<2>, mesh: &Mesh<f64, 2>) -> Inequality<f64> {
+fn assemble(scheme: &str, problem: &Problem<2>, mesh: &Mesh<2>) -> Inequality<f64> {
     let scheme: NamedScheme = scheme.parse().unwrap();
     let mut problem = problem.clone();
     problem.constraint_set = scheme.constraint_set().or(problem.constraint_set);
@@ -26,7 +27,8 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 
 /// All solvers of the library.
 fn solvers() -> Vec<Box<dyn InequalitySolver<f64>>> {
-    let by_name = |name| solver_by_name(name, &SolverOptions::default()).unwrap();
+    let by_name =
+        |name| solver_by_name(name, LinearMethod::default(), Precision::default()).unwrap();
     let mut solvers: Vec<_> = SOLVERS.iter().map(|(name, _)| by_name(name)).collect();
     for linear in [LinearMethod::Direct, LinearMethod::Iterative] {
         solvers.push(Box::new(ActiveSet::default().linear(linear)));
@@ -83,8 +85,7 @@ fn each_step_of_the_implicit_euler_method_hears_the_last_one() {
 #[test]
 fn beside_a_large_weight_dirichlet_data_leave_the_load_its_digits() {
     let mesh = square(8);
-    let (source, data) =
-        (|x: &Point<f64, 2>| 3.0 * x[0] - 1.0, |x: &Point<f64, 2>| 2.0 - x[0] * x[1]);
+    let (source, data) = (|x: &Point<2>| 3.0 * x[0] - 1.0, |x: &Point<2>| 2.0 - x[0] * x[1]);
     let both = Problem::new().source(source).dirichlet(data);
     let solve = |q: &Inequality<f64>| -> Solution<f64> {
         let solution = ActiveSet::default().solve(q);

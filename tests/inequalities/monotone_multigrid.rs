@@ -1,7 +1,9 @@
 //! The monotone multigrid method: counts that do not depend on strict complementarity nor on the
 //! mesh, and the solutions of the active set.
 
-use unilateral::inequality::{ActiveSet, InequalitySolver, MonotoneMultigrid, Stage};
+use unilateral::inequality::{
+    ActiveSet, InequalitySolver, MonotoneMultigrid, SinglePrecision, Stage,
+};
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
@@ -12,7 +14,7 @@ fn rows<const D: usize>(
     levels: &[usize],
     solver: impl InequalitySolver<f64> + 'static,
 ) -> Vec<Row> {
-    let study = Study::<f64, D>::new(scene).scheme(ConformingP1).solver(solver);
+    let study = Study::<D>::new(scene).scheme(ConformingP1).solver(solver);
     study.levels(levels.iter().copied()).run().unwrap().rows
 }
 
@@ -68,7 +70,7 @@ fn cycles_do_not_grow_on_fine_meshes() {
 
 /// The L-shaped membrane with a ring in contact without force, by schemes of which a sweep by unknowns sees all that a
 /// penalty couples.
-fn lshape() -> Study<'static, f64, 2> {
+fn lshape() -> Study<'static, 2> {
     Study::new(scenes::lshape_2d())
         .scheme(Sipg::default())
         .scheme_on(Wopsip::default(), FacetMeans)
@@ -78,7 +80,7 @@ fn lshape() -> Study<'static, f64, 2> {
 
 #[test]
 fn cycles_with_the_preconditioner_of_a_scheme_find_the_solution_of_factors() {
-    let run = |study: Study<'_, f64, 2>| study.levels([16, 32]).run().unwrap().rows;
+    let run = |study: Study<'_, 2>| study.levels([16, 32]).run().unwrap().rows;
     let found = run(lshape().solver(MonotoneMultigrid::default()));
     let exact = run(lshape().solver(ActiveSet::default().linear(LinearMethod::Direct)));
     for (row, exact) in found.iter().zip(&exact) {
@@ -94,11 +96,11 @@ fn cycles_with_the_preconditioner_of_a_scheme_find_the_solution_of_factors() {
 /// Changes of a cycle below rounding do not fall: the certificate and the bound on the error decide.
 #[test]
 fn cycles_in_single_precision_end_at_rounding() {
-    let study = Study::<f32, 2>::new(scenes::lshape_2d())
+    let study = Study::<2>::new(scenes::lshape_2d())
         .scheme(Sipg::default())
         .scheme_on(Wopsip::default(), FacetMeans)
         .scheme(ConformingP2);
-    let solver = MonotoneMultigrid::default();
+    let solver = SinglePrecision::new(MonotoneMultigrid::default());
     for row in study.levels([8, 32]).solver(solver).run().unwrap().rows {
         let what = format!("{} {}", row.label, row.level);
         assert!(row.converged(), "{what}: {:?}", row.status);
@@ -120,7 +122,7 @@ fn cycles(row: &Row) -> usize {
 
 #[test]
 fn stagnating_active_sets_lead_to_cycles() {
-    let study = Study::<f64, 2>::new(scenes::lshape_2d())
+    let study = Study::<2>::new(scenes::lshape_2d())
         .scheme(Sipg::default())
         .scheme_on(Wopsip::default(), FacetMeans);
     for row in study.levels([64]).run().unwrap().rows {

@@ -51,7 +51,7 @@ impl Preconditioner<f64> for JacobiOf {
 #[test]
 fn a_preconditioner_of_ones_own_runs_beside_the_built_in_ones() {
     let iterative = || ActiveSet::default().linear(LinearMethod::Iterative);
-    let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    let report = Study::<2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
         .scheme(Sipg::default())
         .solver(iterative())
@@ -164,7 +164,7 @@ fn iterations_are_applications_of_the_preconditioner() {
     for eta in [1.0, 1e10] {
         let counted = Counted::default();
         let solver = ActiveSet::default().linear(LinearMethod::Iterative);
-        let report = Study::<f64, 2>::new(scenes::signorini_2d())
+        let report = Study::<2>::new(scenes::signorini_2d())
             .scheme(Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() })
             .solver(solver.with_preconditioners(counted.clone()))
             .levels([16])

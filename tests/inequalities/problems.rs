@@ -1,7 +1,6 @@
 //! Small inequalities with known properties, and slow solvers that are easy to believe.
 
 use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix};
-use unilateral::real::Real;
 
 /// The minimal standard generator: a few lines, the same numbers everywhere.
 pub struct Random(u64);
@@ -24,29 +23,29 @@ impl Random {
 }
 
 /// A sparse matrix from dense rows.
-pub fn sparse<T: Real>(dense: &[Vec<f64>]) -> SparseMatrix<T> {
+pub fn sparse(dense: &[Vec<f64>]) -> SparseMatrix<f64> {
     let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
     for row in dense {
         for (j, &a) in row.iter().enumerate().filter(|(_, a)| **a != 0.0) {
             matrix.columns.push(j as u32);
-            matrix.values.push(T::lit(a));
+            matrix.values.push(a);
         }
         matrix.row_starts.push(matrix.columns.len() as u32);
     }
     matrix
 }
 
-pub fn inequality<T: Real>(
-    matrix: SparseMatrix<T>,
+pub fn inequality(
+    matrix: SparseMatrix<f64>,
     load: &[f64],
-    bounds: Vec<Bound<T>>,
-) -> Inequality<T> {
-    let load = load.iter().map(|&b| T::lit(b)).collect();
+    bounds: Vec<Bound<f64>>,
+) -> Inequality<f64> {
+    let load = load.to_vec();
     Inequality::new(matrix, true, load, bounds)
 }
 
 /// The five-point matrix of minus the Laplacian times `h^2` on `n x m` nodes.
-pub fn laplacian<T: Real>(n: usize, m: usize, diagonal: f64) -> SparseMatrix<T> {
+pub fn laplacian(n: usize, m: usize, diagonal: f64) -> SparseMatrix<f64> {
     let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
     for j in 0..m {
         for i in 0..n {
@@ -60,7 +59,7 @@ pub fn laplacian<T: Real>(n: usize, m: usize, diagonal: f64) -> SparseMatrix<T> 
             ];
             for column in neighbours.into_iter().flatten() {
                 matrix.columns.push(column as u32);
-                matrix.values.push(T::lit(if column == k { diagonal } else { -1.0 }));
+                matrix.values.push(if column == k { diagonal } else { -1.0 });
             }
             matrix.row_starts.push(matrix.columns.len() as u32);
         }
@@ -69,17 +68,13 @@ pub fn laplacian<T: Real>(n: usize, m: usize, diagonal: f64) -> SparseMatrix<T> 
 }
 
 /// A membrane on the unit square under load `-force`, `n x n` inner nodes, above an obstacle.
-pub fn membrane<T: Real>(
-    n: usize,
-    force: f64,
-    obstacle: impl Fn(f64, f64) -> f64,
-) -> Inequality<T> {
+pub fn membrane(n: usize, force: f64, obstacle: impl Fn(f64, f64) -> f64) -> Inequality<f64> {
     let h = 1.0 / (n + 1) as f64;
     let node = |k: usize| ((k % n + 1) as f64 * h, (k / n + 1) as f64 * h);
     let bounds = (0..n * n)
         .map(|k| {
             let (x, y) = node(k);
-            Bound::Lower(T::lit(obstacle(x, y)))
+            Bound::Lower(obstacle(x, y))
         })
         .collect();
     inequality(laplacian(n, n, 4.0), &vec![-force * h * h; n * n], bounds)
@@ -221,6 +216,6 @@ pub fn textbook_cycles(a: &[Vec<f64>], b: &[f64]) -> bool {
 }
 
 /// The largest difference.
-pub fn distance<T: Real>(u: &[T], v: &[f64]) -> f64 {
-    u.iter().zip(v).map(|(u, v)| (u.to_f64() - v).abs()).fold(0.0, f64::max)
+pub fn distance(u: &[f64], v: &[f64]) -> f64 {
+    u.iter().zip(v).map(|(u, v)| (u - v).abs()).fold(0.0, f64::max)
 }

@@ -10,7 +10,7 @@ fn boxes<const D: usize>(n: usize) -> Raw<D> {
     Raw::jittered(&held, n, 0.3, &mut random).shuffled(&mut random)
 }
 
-fn made<const D: usize>(raw: &Raw<D>) -> Result<Mesh<f64, D>, MeshError> {
+fn made<const D: usize>(raw: &Raw<D>) -> Result<Mesh<D>, MeshError> {
     Mesh::new(raw.vertices.clone(), raw.cells.clone(), &raw.boundary)
 }
 
@@ -28,7 +28,7 @@ fn both<const D: usize>(mut first: Raw<D>, second: &Raw<D>) -> Raw<D> {
     first
 }
 
-fn moved<const D: usize>(mut raw: Raw<D>, factor: f64, by: impl Into<Point<f64, D>>) -> Raw<D> {
+fn moved<const D: usize>(mut raw: Raw<D>, factor: f64, by: impl Into<Point<D>>) -> Raw<D> {
     let by = by.into();
     raw.vertices.iter_mut().for_each(|x| *x = *x * factor + by);
     raw
@@ -57,7 +57,7 @@ fn check_overlap<const D: usize>(raw: &Raw<D>) {
 fn a_vertex_beyond_its_star_folds_the_mesh() {
     fn check<const D: usize>() {
         let mut raw = boxes::<D>(3);
-        let inside = |x: &Point<f64, D>| (x - Point::repeat(1.0 / 3.0)).norm() < 0.2;
+        let inside = |x: &Point<D>| (x - Point::repeat(1.0 / 3.0)).norm() < 0.2;
         let vertex = raw.vertices.iter().position(inside).unwrap();
         raw.vertices[vertex] = Point::repeat(0.97);
         let error = made(&raw).unwrap_err();
@@ -79,12 +79,12 @@ fn a_vertex_beyond_its_star_folds_the_mesh() {
 #[test]
 fn two_cells_on_one_side_of_their_facet() {
     let mesh = |x: f64, order: [u32; 3]| {
-        let vertices = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.4], [x, 0.5]].map(Point::<f64, 2>::from);
+        let vertices = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.4], [x, 0.5]].map(Point::<2>::from);
         let part = BoundaryPart::Dirichlet;
         let boundary =
             [[0, 2], [1, 2], [0, 3], [1, 3]].map(|vertices| TaggedFacet { vertices, part });
         let cells = [&[0, 1, 2], &order[..]].concat();
-        Mesh::<f64, 2>::new(vertices.to_vec(), cells, &boundary)
+        Mesh::<2>::new(vertices.to_vec(), cells, &boundary)
     };
     for order in [[0, 1, 3], [3, 1, 0], [1, 3, 0]] {
         assert_eq!(mesh(-2.0, order).unwrap().n_cells(), 2);
@@ -104,12 +104,12 @@ fn components_that_overlap() {
         check_overlap(&both(boxes::<D>(4), &moved(boxes(2), 0.1, Point::repeat(0.44))));
         // side by side, without and with a common side
         for shift in [1.5, 1.0] {
-            let mut by = Point::<f64, D>::zeros();
+            let mut by = Point::<D>::zeros();
             by[0] = shift;
             let mesh = made(&both(boxes::<D>(3), &moved(boxes(4), 1.0, by))).unwrap();
             assert_eq!(
                 mesh.n_cells(),
-                boxes::<D>(3).mesh::<f64>().n_cells() + boxes::<D>(4).mesh::<f64>().n_cells()
+                boxes::<D>(3).mesh().n_cells() + boxes::<D>(4).mesh().n_cells()
             );
         }
     }

@@ -15,7 +15,7 @@ fn judge(folder: &Path, vector: &str, options: &[&str]) -> Output {
 }
 
 /// The values of a scheme on a scene.
-fn solution(scheme: &dyn AnyScheme<f64, 2>, level: usize) -> Vec<f64> {
+fn solution(scheme: &dyn Scheme<2>, level: usize) -> Vec<f64> {
     let scene = scenes::radial::<2>(1.0);
     let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
     solve(&scene.problem, &meshes, scheme).unwrap().values().to_vec()
@@ -25,7 +25,7 @@ fn solution(scheme: &dyn AnyScheme<f64, 2>, level: usize) -> Vec<f64> {
 fn a_vector_that_comes_back_has_the_row_of_the_run() {
     let scratch = Scratch::new("dump");
     let dump = scratch.path("dump");
-    let schemes: [(&str, &dyn AnyScheme<f64, 2>); 2] = [
+    let schemes: [(&str, &dyn Scheme<2>); 2] = [
         ("p1", &ConformingP1),
         ("wopsip@factor=10", &Wopsip { eta: Eta::Dimensionless(10.0), ..Wopsip::default() }),
     ];

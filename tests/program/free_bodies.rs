@@ -30,7 +30,7 @@ fn source(text: &str) -> String {
     format!("[source]\ndefault = \"{text}\"\n")
 }
 
-/// The rows of a problem file for all schemes on some levels, in one scalar.
+/// The rows of a problem file for all schemes on some levels.
 fn rows_of(name: &str, text: &str, options: &str) -> Vec<Value> {
     let scratch = Scratch::new(name);
     let mesh = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/problems");
@@ -71,8 +71,8 @@ fn room_between_two_bounds_under_a_balanced_load_leaves_many_solutions() {
     let square = format!("{SQUARE}{}{FAR_ABOVE}", source("x-0.5"));
     let string = format!("{}{FAR_ABOVE}", string(1.0));
     for (name, text, levels) in [("square", square, "0,1,2"), ("string", string, "1,2,8,17")] {
-        for scalar in ["f64", "f32"] {
-            let rows = rows_of(name, &text, &format!("--levels {levels} --precision {scalar}"));
+        for precision in ["f64", "f32"] {
+            let rows = rows_of(name, &text, &format!("--levels {levels} --precision {precision}"));
             all_are(name, &rows, "not-unique");
             for row in rows {
                 let message = row["message"].as_str().unwrap();
@@ -82,6 +82,20 @@ fn room_between_two_bounds_under_a_balanced_load_leaves_many_solutions() {
                 );
             }
         }
+    }
+}
+
+/// The kernel vectors are those of the matrix before it was rounded.
+#[test]
+fn bounds_alone_hold_bodies_in_single_precision() {
+    let membrane = format!("{NEUMANN}{}[obstacle]\nlower.default = 0\n", source("-1+x"));
+    let cube = "box = [[0, 0, 0], [1, 1, 1]]\n[boundary.default]\nkind = \"neumann\"\n\
+        [boundary.bottom]\nkind = \"contact\"\n[source]\ndefault = -1\n";
+    for (name, text, expected) in
+        [("single-plane", &membrane[..], 0.5), ("single-space", cube, 1.0)]
+    {
+        let rows = rows_of(name, text, "--levels 1,2,4 --precision f32");
+        all_have_resultant(name, &rows, (expected, 1e-4));
     }
 }
 

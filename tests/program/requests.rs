@@ -59,7 +59,6 @@ fn wrong_options_are_refused() {
         ("--scale -1", &["scale = -1", "positive and finite"]),
         ("--scale 1e300", &["scale = 1e300", "1e100"]),
         ("--scale 2 --scene ball-2d", &["--scale 2", "none of the scenes chosen", "radial-2d"]),
-        ("--scale 1e-30 --precision f32", &["precision = f32", "radial-2d", "scale"]),
         ("--contrast 3 --scene ball-2d", &["--contrast 3", "none of the scenes chosen"]),
         ("--load 3 --scene ball-2d", &["--load 3", "none of the scenes chosen"]),
         ("--levles 4", &["--levles", "--levels"]),

@@ -24,7 +24,7 @@ fn ball_obstacle_of_petsc() {
     let exact = scene.problem.exact.as_ref().unwrap();
     let mut checks = Checks::default();
     for (points, mean, max, active) in cases {
-        let mesh = scene.domain.mesh::<f64>(points - 1).unwrap();
+        let mesh = scene.domain.mesh(points - 1).unwrap();
         let inequality =
             Discretisation::new(&ConformingP1, &scene.problem, &mesh, DataQuadrature::default())
                 .unwrap()

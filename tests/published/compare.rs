@@ -14,7 +14,7 @@ use unilateral::scenes::Scene;
 pub type Table<'a> = &'a [(&'a str, &'a [(usize, &'a str)])];
 
 /// The scheme of a column.
-pub fn column<const D: usize>(name: &str) -> Boxed<f64, D> {
+pub fn column<const D: usize>(name: &str) -> Boxed<D> {
     match name {
         "p1" => Box::new(ConformingP1),
         "cr" => Box::new(NonconformingP1),

@@ -28,7 +28,7 @@ fn norms_on_halves(scene: &Scene<2>, level: usize) -> [f64; 2] {
     for (cell, values) in solved.fields.unwrap().u.chunks(3).enumerate() {
         let geometry = mesh.geometry(cell);
         let volume = geometry.volume / 2.0;
-        let slope = |s: Point<f64, 2>, k: usize| s + geometry.gradient(k) * values[k];
+        let slope = |s: Point<2>, k: usize| s + geometry.gradient(k) * values[k];
         let gradient = (0..3).fold(Point::zeros(), slope);
         for half in &HALVES {
             for (point, weight) in rule.iter() {

@@ -12,7 +12,7 @@ use unilateral::prelude::*;
 type Rows<'a> = &'a [(i32, [&'a str; 3])];
 
 /// A mesh of the interval `(-1, 1)`.
-fn mesh(power: i32) -> Mesh<f64, 1> {
+fn mesh(power: i32) -> Mesh<1> {
     let domain = scenes::signorini_reaction_1d().domain.bounding_box();
     Mesh::kuhn_box(&domain, [2 << power]).unwrap()
 }
@@ -79,7 +79,7 @@ fn smooth_load() {
 
 /// Integrals of `|x|^-0.499` times each hat function on a mesh of `(-1, 1)` that has a node at
 /// zero.
-fn rough_load(mesh: &Mesh<f64, 1>) -> Vec<f64> {
+fn rough_load(mesh: &Mesh<1>) -> Vec<f64> {
     let x: Vec<f64> = mesh.vertices().iter().map(|x| x[0]).collect();
     let mut load = vec![0.0; x.len()];
     for k in 0..x.len() - 1 {

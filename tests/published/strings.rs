@@ -30,7 +30,7 @@ fn nodal_errors(checks: &mut Checks, scene: &Scene<1>) -> Vec<f64> {
         .map(|j| {
             let cells = 1 << (j + 1);
             let h = 1.0 / f64::from(cells);
-            let mesh = Mesh::<f64, 1>::kuhn_box(&scene.domain.bounding_box(), [cells as usize]);
+            let mesh = Mesh::<1>::kuhn_box(&scene.domain.bounding_box(), [cells as usize]);
             let mesh = mesh.unwrap();
             let mut inequality =
                 Discretisation::new(&ConformingP1, problem, &mesh, Default::default())

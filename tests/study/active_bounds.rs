@@ -7,7 +7,7 @@ use unilateral::prelude::*;
 const SCHEMES: &str = "p1 p2 cr sipg wopsip wopsip:facet-means nipg ldg sipg-p2 wopsip-p2";
 
 /// A square that a load presses onto an obstacle at -0.1, with a contact side below.
-fn square(gap: f64, n: usize) -> (Problem<2>, Mesh<f64, 2>) {
+fn square(gap: f64, n: usize) -> (Problem<2>, Mesh<2>) {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let domain = domain.side(1, 0, BoundaryPart::Contact);
     let problem = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.1);
@@ -15,7 +15,7 @@ fn square(gap: f64, n: usize) -> (Problem<2>, Mesh<f64, 2>) {
 }
 
 /// The integrals of multiplier and pressure.
-fn integrals(fields: &Fields, mesh: &Mesh<f64, 2>) -> [f64; 2] {
+fn integrals(fields: &Fields, mesh: &Mesh<2>) -> [f64; 2] {
     let of_cell = |(cell, m): (usize, &f64)| m * mesh.geometry(cell).volume;
     let of_facet =
         |(&(cell, local), p): (&(usize, usize), &f64)| p * mesh.geometry(cell).facet_measure(local);
@@ -55,12 +55,12 @@ fn multipliers_belong_to_the_datum_of_the_bound() {
 /// higher one.
 #[test]
 fn a_vertex_of_two_groups_is_divided_by_their_facets() {
-    let corner = Point::<f64, 2>::new(1.0, 2.0);
+    let corner = Point::<2>::new(1.0, 2.0);
     let sides = [(0, 0, BoundaryPart::Contact), (1, 0, BoundaryPart::Contact)];
     let others = [(0, 1, BoundaryPart::Neumann), (1, 1, BoundaryPart::Neumann)];
     let domain = BoxDomain::dirichlet(Point::zeros(), corner);
     let domain = sides.iter().chain(&others).fold(domain, |d, &(k, s, part)| d.side(k, s, part));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [1, 1]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [1, 1]).unwrap();
     for (gap, share) in [(0.0, 1.0 / 3.0), (-0.2, 0.0)] {
         let problem = Problem::new().constant_source(-1.0);
         let problem = problem.signorini_on("left", 0.0).signorini_on("bottom", gap);
@@ -68,7 +68,7 @@ fn a_vertex_of_two_groups_is_divided_by_their_facets() {
         assert!(solved.converged(), "{}", solved.outcome());
         let multiplier = solved.multiplier().unwrap();
         let at = |x: f64, y: f64| {
-            let vertex = |p: &Point<f64, 2>| (p - Point::<f64, 2>::new(x, y)).norm() < 1e-12;
+            let vertex = |p: &Point<2>| (p - Point::<2>::new(x, y)).norm() < 1e-12;
             multiplier[mesh.vertices().iter().position(vertex).unwrap()]
         };
         let resultants = solved.resultants().unwrap();
@@ -84,9 +84,9 @@ fn a_vertex_of_two_groups_is_divided_by_their_facets() {
 #[test]
 fn penetration_is_that_between_the_nodes() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [1, 1]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [1, 1]).unwrap();
     let problem = Problem::new().constant_source(-1.0).obstacle_below(|x| -x[0] * x[0]);
-    let of = |scheme: &dyn AnyScheme<f64, 2>, u: &dyn Fn(f64) -> f64| {
+    let of = |scheme: &dyn Scheme<2>, u: &dyn Fn(f64) -> f64| {
         let space = scheme.discretise(&problem, &mesh, DataQuadrature::default()).unwrap();
         let xs = mesh.vertices().iter().map(|x| x[0]);
         let values: Vec<f64> = xs.map(u).collect();

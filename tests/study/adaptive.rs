@@ -6,7 +6,7 @@ use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::study::{Program, fill_orders};
 
-fn study<'a>(scene: Scene<2>) -> Study<'a, f64, 2> {
+fn study<'a>(scene: Scene<2>) -> Study<'a, 2> {
     Study::new(scene).scheme(ConformingP1).scheme(Wopsip::default())
 }
 
@@ -107,7 +107,7 @@ fn rows_are_in_the_journal_and_the_report_is_read_again() {
 
 #[test]
 fn what_an_adaptive_study_cannot_have_is_refused_before_work() {
-    let message = |study: Study<'_, f64, 2>| {
+    let message = |study: Study<'_, 2>| {
         let message = study.check().unwrap_err().to_string();
         assert_eq!(study.run().unwrap_err().to_string(), message);
         message
@@ -131,7 +131,7 @@ fn what_an_adaptive_study_cannot_have_is_refused_before_work() {
     let mesh = scenes::radial::<2>(1.0).domain.mesh(6).unwrap();
     let own = Problem::new().constant_source(-1.0).obstacle_below(|_| -0.05);
     assert!(mesh.has_part(BoundaryPart::Dirichlet));
-    let own = Study::<f64, 2>::of_problem("own", own, mesh).unwrap().scheme(Sipg::default());
+    let own = Study::<2>::of_problem("own", own, mesh).unwrap().scheme(Sipg::default());
     let rows = own.adaptive(adaptivity).run().unwrap().rows;
     assert!(rows[0].cells == 72 && rows[1].bound.total < rows[0].bound.total);
 }

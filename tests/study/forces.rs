@@ -1,6 +1,8 @@
-//! Contact forces under over-penalty: the same in both scalars and for every weight, or none.
+//! Contact forces under over-penalty: the same in both precisions and for every weight, or none.
 
+use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 use unilateral::scenes::{Scene, hertz_2d, signorini_2d, torsion_2d};
 use unilateral::study::Row;
 
@@ -12,8 +14,18 @@ const SCENES: [fn() -> Scene<2>; 5] = [
     || scenes::contrast::<2>(1e6),
 ];
 
-fn rows<T: Real>(scene: Scene<2>, scheme: Wopsip, on_means: bool, levels: &[usize]) -> Vec<Row> {
-    let study = Study::<T, 2>::new(scene).levels(levels.iter().copied());
+fn rows(scene: Scene<2>, scheme: Wopsip<2>, on_means: bool, levels: &[usize]) -> Vec<Row> {
+    rows_in(Precision::Double, scene, (scheme, on_means), levels)
+}
+
+fn rows_in(
+    precision: Precision,
+    scene: Scene<2>,
+    (scheme, on_means): (Wopsip<2>, bool),
+    levels: &[usize],
+) -> Vec<Row> {
+    let study = Study::<2>::new(scene).levels(levels.iter().copied());
+    let study = study.boxed_solver(in_precision(precision, ActiveSet::default()));
     let study = match on_means {
         true => study.scheme_on(scheme, FacetMeans),
         false => study.scheme(scheme),
@@ -43,8 +55,9 @@ fn is_left_out(row: &Row, what: &str) {
 fn single_precision(levels: &[usize]) {
     for scene in SCENES {
         for on_means in [false, true] {
-            let single = rows::<f32>(scene(), Wopsip::default(), on_means, levels);
-            let double = rows::<f64>(scene(), Wopsip::default(), on_means, levels);
+            let scheme = (Wopsip::default(), on_means);
+            let single = rows_in(Precision::Single, scene(), scheme, levels);
+            let double = rows(scene(), Wopsip::default(), on_means, levels);
             for (single, double) in single.iter().zip(&double) {
                 let what = format!("{} {} {}", single.scene, single.label, single.level);
                 if double.scene == "contrast-2d" {
@@ -83,7 +96,7 @@ fn forces_do_not_depend_on_a_large_weight() {
         for on_means in [false, true] {
             let of = |eta: f64| {
                 let scheme = Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() };
-                rows::<f64>(scene(), scheme, on_means, &[32]).remove(0)
+                rows(scene(), scheme, on_means, &[32]).remove(0)
             };
             let right = of(1e5);
             for eta in [1e9, 1e12, 1e14] {
@@ -101,7 +114,7 @@ fn forces_do_not_depend_on_a_large_weight() {
 /// boundary, with which the resultant would be the whole load, -5.
 #[test]
 fn the_flux_through_weakly_imposed_data_is_no_contact_force() {
-    let study = Study::<f64, 2>::new(torsion_2d(5.0)).levels([32]);
+    let study = Study::<2>::new(torsion_2d(5.0)).levels([32]);
     let study = study.scheme(ConformingP1).scheme(NonconformingP1).scheme(Sipg::default());
     let study = study.scheme(Wopsip::default()).scheme_on(Wopsip::default(), FacetMeans);
     let rows = study.run().unwrap().rows;

@@ -16,7 +16,7 @@ fn program() -> Program {
 }
 
 /// A study of six rows.
-fn study<'a>() -> Study<'a, f64, 2> {
+fn study<'a>() -> Study<'a, 2> {
     let study = Study::new(scenes::radial::<2>(1.0)).scheme(ConformingP1).scheme(Sipg::default());
     study.levels([4, 8, 16])
 }
@@ -170,14 +170,14 @@ fn rows_without_their_report_are_taken_up() {
 fn a_panic_in_a_datum_leaves_the_finished_rows() {
     let scratch = Scratch::new("journal-panic");
     let journal = Journal::create(&scratch.0, program()).unwrap();
-    let source = |x: &Point<f64, 2>| {
+    let source = |x: &Point<2>| {
         // a level-16 mesh evaluates the load nearer to the corner than a coarser one
         assert!(x.norm() > 0.01, "the load has no value at the corner");
         -1.0
     };
     let problem = Problem::new().source(source).obstacle_below(|_| -0.05);
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let study = Study::<f64, 2>::new(Scene::new("mine", domain, problem)).scheme(ConformingP1);
+    let study = Study::<2>::new(Scene::new("mine", domain, problem)).scheme(ConformingP1);
     let study = study.levels([4, 8, 64]).journal(&journal);
     assert!(catch_unwind(AssertUnwindSafe(|| study.run())).is_err());
     let report = Report::read(&scratch.0).unwrap();
@@ -189,10 +189,10 @@ fn a_panic_in_a_datum_leaves_the_finished_rows() {
 /// The rows before and after a level at which a datum has no value.
 #[test]
 fn a_run_that_fails_is_a_row_with_its_message() {
-    let source = |x: &Point<f64, 2>| if x.norm() > 0.01 { -1.0 } else { f64::NAN };
+    let source = |x: &Point<2>| if x.norm() > 0.01 { -1.0 } else { f64::NAN };
     let problem = Problem::new().source(source).obstacle_below(|_| -0.05);
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let study = Study::<f64, 2>::new(Scene::new("mine", domain, problem));
+    let study = Study::<2>::new(Scene::new("mine", domain, problem));
     let study = study.scheme(ConformingP1).scheme(Sipg::default()).levels([4, 64, 8]);
     let rows = study.run().unwrap().rows;
     for series in rows.chunks(3) {

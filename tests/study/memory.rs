@@ -7,7 +7,7 @@ use unilateral::prelude::*;
 use crate::scratch::Scratch;
 
 /// Level 200 has 4.8e7 tetrahedra, whose factors take more memory than machines have.
-fn study<'a>() -> Study<'a, f64, 3> {
+fn study<'a>() -> Study<'a, 3> {
     let direct = ActiveSet::default().linear(LinearMethod::Direct);
     Study::new(scenes::radial::<3>(1.0)).scheme(Sipg::default()).solver(direct)
 }

@@ -37,13 +37,13 @@ fn labels_leave_out_what_is_default() {
         assert_eq!(label(expected), expected, "a label is a way to write the scheme");
     }
     // a scheme that a program makes has the label that a user would write
-    let label = |scheme: &dyn AnyScheme<f64, 3>| scheme.label_on(&Nodes);
+    let label = |scheme: &dyn Scheme<3>| scheme.label_on(&Nodes);
     assert_eq!(
         label(&Sipg { penalty: PenaltyRule::Proven(0.05), ..Sipg::default() }),
         "sipg@factor=1.05"
     );
     assert_eq!(
-        label(&Br2 { eta: Some(6.0), lifts: Lifts::Full, element: P2 }),
+        label(&Br2 { eta: Some(6.0), lifts: Lifts::Full, ..Br2::default() }.on(P2)),
         "br2-p2@lifts=full"
     );
 }
@@ -127,9 +127,9 @@ fn choices_for_all_schemes_leave_those_alone_that_have_their_own() {
 #[test]
 fn factors_are_multiples_of_the_scale_of_the_scheme() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [2, 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [2, 2]).unwrap();
     let parameters =
-        |text: &str| text.parse::<NamedScheme>().unwrap().make::<f64, 2>().parameters(&mesh);
+        |text: &str| text.parse::<NamedScheme>().unwrap().make::<2>().parameters(&mesh);
     let rule = |text: &str| parameters(text).rule.unwrap();
     assert_eq!(rule("sipg@factor=1.05"), "proven bound times 1.05");
     assert_eq!(parameters("br2@factor=2").eta, Some(6.0));
@@ -142,7 +142,7 @@ fn factors_are_multiples_of_the_scale_of_the_scheme() {
 #[test]
 fn penalties_below_the_bound_are_told() {
     let run = |text: &str| {
-        let study = Study::<f64, 2>::new(scenes::radial(1.0)).named_scheme(&text.parse().unwrap());
+        let study = Study::<2>::new(scenes::radial(1.0)).named_scheme(&text.parse().unwrap());
         study.levels([4]).run().unwrap().rows.swap_remove(0)
     };
     assert!(run("sipg@factor=0.9").warnings.iter().any(|w| w.contains("bound")));
@@ -154,7 +154,7 @@ fn penalties_below_the_bound_are_told() {
 fn a_default_factor_stands_in_rows_beside_others() {
     let written = ["wopsip@factor=1", "wopsip@factor=100"];
     let schemes = NamedScheme::list(written).unwrap();
-    let study = Study::<f64, 2>::new(scenes::radial(1.0)).levels([4]);
+    let study = Study::<2>::new(scenes::radial(1.0)).levels([4]);
     let report = schemes.iter().fold(study, Study::named_scheme).run().unwrap();
     let labels: Vec<&str> = report.rows.iter().map(|row| &row.label[..]).collect();
     assert_eq!(labels, written);
@@ -165,7 +165,7 @@ fn one_scheme_stands_in_a_report_once_for_every_label() {
     let scratch = Scratch::new("labels");
     let written = "wopsip,wopsip@factor=10,wopsip:facet-means@factor=10";
     let schemes = NamedScheme::list(written.split(',')).unwrap();
-    let study = Study::<f64, 2>::new(scenes::radial(1.0)).levels([4, 8]).fields_to(&scratch.0);
+    let study = Study::<2>::new(scenes::radial(1.0)).levels([4, 8]).fields_to(&scratch.0);
     let report = schemes.iter().fold(study, Study::named_scheme).run().unwrap();
     let labels: Vec<&str> = report.rows.iter().step_by(2).map(|row| &row.label[..]).collect();
     assert_eq!(labels, written.split(',').collect::<Vec<_>>());

@@ -1,23 +1,34 @@
 //! Figures that are rounding errors have no orders.
 
-use unilateral::inequality::Outcome;
+use unilateral::inequality::{ActiveSet, Outcome, in_precision};
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 use unilateral::study::Row;
 
 /// Schemes whose spaces contain the linear functions, and solve them exactly.
 const EXACT: [&str; 8] = ["p1", "p2", "cr", "sipg", "nipg", "ldg", "br2", "sipg-p2"];
 
-fn rows<T: Real, const D: usize>(scene: Scene<D>, schemes: &[&str], levels: &[usize]) -> Vec<Row> {
-    let study = Study::<T, D>::new(scene).levels(levels.iter().copied());
-    let add = |study: Study<'static, T, D>, name: &&str| study.named_scheme(&name.parse().unwrap());
+fn rows<const D: usize>(scene: Scene<D>, schemes: &[&str], levels: &[usize]) -> Vec<Row> {
+    rows_in(Precision::Double, scene, schemes, levels)
+}
+
+fn rows_in<const D: usize>(
+    precision: Precision,
+    scene: Scene<D>,
+    schemes: &[&str],
+    levels: &[usize],
+) -> Vec<Row> {
+    let study = Study::<D>::new(scene).levels(levels.iter().copied());
+    let study = study.boxed_solver(in_precision(precision, ActiveSet::default()));
+    let add = |study: Study<'static, D>, name: &&str| study.named_scheme(&name.parse().unwrap());
     let rows = schemes.iter().fold(study, add).run().unwrap().rows;
     assert!(rows.iter().all(|row| row.status == Outcome::Converged));
     rows
 }
 
 fn linear<const D: usize>() -> Scene<D> {
-    let gradient: Point<f64, D> = Point::from_fn(|k, _| 2.0 - k as f64);
+    let gradient: Point<D> = Point::from_fn(|k, _| 2.0 - k as f64);
     let problem = Problem::new().exact(move |x| 1.0 + gradient.dot(x), move |_| gradient);
     Scene::new("linear", BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), problem)
 }
@@ -25,18 +36,18 @@ fn linear<const D: usize>() -> Scene<D> {
 /// Errors that differ by chance from level to level.
 #[test]
 fn a_function_of_the_space_has_no_orders() {
-    fn check<T: Real, const D: usize>(levels: &[usize]) {
-        for row in rows::<T, D>(linear(), &EXACT, levels) {
-            let what = format!("{} {D}D, {} {}: {row:?}", T::NAME, row.label, row.level);
+    fn check<const D: usize>(precision: Precision, levels: &[usize]) {
+        for row in rows_in::<D>(precision, linear(), &EXACT, levels) {
+            let what = format!("{precision:?} {D}D, {} {}: {row:?}", row.label, row.level);
             assert_eq!(row.order, Default::default(), "{what}");
             assert_eq!(row.bound.effectivity, None, "{what}");
         }
     }
-    check::<f64, 1>(&[16, 64, 256]);
-    check::<f64, 2>(&[4, 8, 16]);
-    check::<f64, 3>(&[2, 4]);
-    check::<f32, 1>(&[16, 64]);
-    check::<f32, 2>(&[4, 8, 16]);
+    check::<1>(Precision::Double, &[16, 64, 256]);
+    check::<2>(Precision::Double, &[4, 8, 16]);
+    check::<3>(Precision::Double, &[2, 4]);
+    check::<1>(Precision::Single, &[16, 64]);
+    check::<2>(Precision::Single, &[4, 8, 16]);
 }
 
 /// The membrane lies on its obstacle: values, energies and errors are zero but for rounding.
@@ -47,17 +58,18 @@ fn a_solution_that_vanishes_has_no_orders() {
     let square = BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
     let scene = Scene::new("zero", square, problem);
     let schemes = ["p1", "p2", "cr", "sipg", "sipg-p2", "wopsip", "wopsip-p2"];
-    for row in rows::<f64, 2>(scene, &schemes, &[4, 8, 16]) {
+    for row in rows::<2>(scene, &schemes, &[4, 8, 16]) {
         let of = row.order;
         assert_eq!([of.l2, of.h1, of.energy, of.max], [None; 4], "{}: {row:?}", row.label);
     }
 }
 
-/// What is no noise keeps its order, in both scalars.
+/// What is no noise keeps its order, in both precisions.
 #[test]
 fn errors_above_rounding_keep_their_orders() {
-    let double = rows::<f64, 1>(scenes::parabola_1d(), &["p1", "sipg", "wopsip"], &[64, 1024]);
-    let single = rows::<f32, 2>(scenes::radial(1.0), &["p1", "sipg", "wopsip"], &[16, 32]);
+    let double = rows::<1>(scenes::parabola_1d(), &["p1", "sipg", "wopsip"], &[64, 1024]);
+    let single =
+        rows_in::<2>(Precision::Single, scenes::radial(1.0), &["p1", "sipg", "wopsip"], &[16, 32]);
     for row in [double, single].concat().iter().skip(1).step_by(2) {
         let of = row.order;
         let all = [of.l2, of.h1, of.energy, of.bound, of.multiplier_l1];
@@ -70,7 +82,7 @@ fn errors_above_rounding_keep_their_orders() {
 fn noise_is_not_extrapolated() {
     let study = |problem| {
         let square = BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let study = Study::<f64, 2>::new(Scene::new("membrane", square, problem));
+        let study = Study::<2>::new(Scene::new("membrane", square, problem));
         let schemes = ["sipg", "wopsip-p2"].map(|name| name.parse().unwrap());
         let study = schemes.iter().fold(study, |study, scheme| study.named_scheme(scheme));
         study.levels([4, 8, 16]).run().unwrap()

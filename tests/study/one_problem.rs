@@ -1,19 +1,24 @@
 //! One problem solved by one call, and several solvers side by side.
 
+use std::sync::Arc;
+
 use std::path::Path;
 
 use super::scratch::Scratch;
 use unilateral::algebra::Start;
-use unilateral::facet::InteriorPenalty;
-use unilateral::inequality::{ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SOLVERS};
-use unilateral::inequality::{SolverOptions, solver_by_name};
+use unilateral::inequality::{
+    ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SOLVERS, SinglePrecision,
+    solver_by_name,
+};
+use unilateral::linear::LinearMethod;
 use unilateral::mesh::gmsh;
 use unilateral::prelude::*;
 use unilateral::problem::Exact;
+use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 
 /// A membrane above an obstacle that stops at a part of its boundary too.
-fn plate() -> (Mesh<f64, 2>, Problem<2>) {
+fn plate() -> (Mesh<2>, Problem<2>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/plate.msh");
     let problem = Problem::new()
         .constant_source(-2.0)
@@ -22,7 +27,7 @@ fn plate() -> (Mesh<f64, 2>, Problem<2>) {
     (gmsh::read(&path).unwrap().mesh, problem)
 }
 
-fn square(n: usize) -> Mesh<f64, 2> {
+fn square(n: usize) -> Mesh<2> {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     Mesh::kuhn_box(&domain, [n, n]).unwrap()
 }
@@ -33,12 +38,11 @@ fn one_call_and_a_study_give_the_same_bits() {
     let (_, of_study) = plate();
     // the domain of the scene is not used
     let scene = Scene::new("plate", BoxDomain::above_contact(), of_study);
-    let study = Study::<f64, 2>::new(scene).on_mesh(mesh.clone()).levels([0, 3]);
+    let study = Study::<2>::new(scene).on_mesh(mesh.clone()).levels([0, 3]);
     let study = study.scheme(ConformingP1).scheme(Sipg::default()).scheme(Wopsip::default());
     let rows = study.run().unwrap().rows;
     let meshes = Hierarchy::refine(&mesh, 3).unwrap();
-    let schemes: [&dyn AnyScheme<f64, 2>; 3] =
-        [&ConformingP1, &Sipg::default(), &Wopsip::default()];
+    let schemes: [&dyn Scheme<2>; 3] = [&ConformingP1, &Sipg::default(), &Wopsip::default()];
     for (scheme, rows) in schemes.iter().zip(rows.chunks(2)) {
         let flat = solve(&problem, &mesh, *scheme).unwrap();
         let nested = solve(&problem, &meshes, *scheme).unwrap();
@@ -58,7 +62,7 @@ fn a_large_mesh_without_coarser_ones_needs_few_active_sets() {
     let problem = Problem::new()
         .constant_source(-8.0)
         .obstacle_below(|x| -0.2 - 0.5 * (x - Point::from([0.4, 0.5])).norm_squared());
-    for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 2>, &Sipg::default()] {
+    for scheme in [&ConformingP1 as &dyn Scheme<2>, &Sipg::default()] {
         let u = solve(&problem, &mesh, scheme).unwrap();
         assert!(u.converged() && u.certificate().largest() < 1e-9, "{}", scheme.name());
         assert!(u.outer() <= Some(6), "{}: {:?} active sets", scheme.name(), u.outer());
@@ -71,11 +75,11 @@ fn a_large_mesh_without_coarser_ones_needs_few_active_sets() {
 
 #[test]
 fn values_at_points_are_those_of_the_function() {
-    let linear = |x: &Point<f64, 2>| 1.0 + 2.0 * x[0] - 3.0 * x[1];
-    let exact = || Exact::new(linear, |_: &Point<f64, 2>| Point::from([2.0, -3.0]));
+    let linear = |x: &Point<2>| 1.0 + 2.0 * x[0] - 3.0 * x[1];
+    let exact = || Exact::new(linear, |_: &Point<2>| Point::from([2.0, -3.0]));
     let problem = Problem::new().solved_by(exact());
     let mesh = square(5);
-    for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 2>, &ConformingP2, &Br2::default()] {
+    for scheme in [&ConformingP1 as &dyn Scheme<2>, &ConformingP2, &Br2::default()] {
         let u = solve(&problem, &mesh, scheme).unwrap();
         for x in [[0.0, 0.0], [1.0, 1.0], [0.37, 0.81], [0.6, 0.4]] {
             let x = Point::from(x);
@@ -95,7 +99,7 @@ fn values_at_points_are_those_of_the_function() {
 #[test]
 fn differences_on_nested_meshes_are_between_difference_and_sum_of_errors() {
     let scene = scenes::radial::<2>(1.0);
-    let meshes = Hierarchy::<f64, 2>::of_domain(&scene.domain, 16).unwrap();
+    let meshes = Hierarchy::<2>::of_domain(&scene.domain, 16).unwrap();
     let mut nested = NestedIteration::new(&scene.problem, &meshes);
     let coarse = nested.solve_on(0, &Sipg::default()).unwrap();
     let fine = nested.solve(&ConformingP2).unwrap();
@@ -112,7 +116,7 @@ fn differences_on_nested_meshes_are_between_difference_and_sum_of_errors() {
     }
     let itself = fine.difference(&fine).unwrap();
     assert!(itself.l2 < Some(1e-13) && itself.max < Some(1e-13), "{itself:?}");
-    let elsewhere = Hierarchy::<f64, 2>::of_domain(&scene.domain, 8).unwrap();
+    let elsewhere = Hierarchy::<2>::of_domain(&scene.domain, 8).unwrap();
     let other = solve(&scene.problem, &elsewhere, &ConformingP1).unwrap();
     assert!(matches!(fine.difference(&other), Err(Error::NotNested)));
     let message = nested.solve_on(3, &ConformingP1).unwrap_err().to_string();
@@ -144,8 +148,9 @@ fn the_solution_writes_itself() {
 
 #[test]
 fn solvers_stand_side_by_side() {
-    let study = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([8, 16]);
-    let named = |name: &str| solver_by_name::<f64>(name, &SolverOptions::default()).unwrap();
+    let study = Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([8, 16]);
+    let named =
+        |name: &str| solver_by_name(name, LinearMethod::default(), Precision::default()).unwrap();
     let both = SOLVERS.iter().fold(study, |study, s| study.boxed_solver(named(s.0)));
     let report = both.run().unwrap();
     let solvers: Vec<&str> = report.rows.iter().map(|r| &r.solver[..]).collect();
@@ -160,11 +165,11 @@ fn solvers_stand_side_by_side() {
     assert!((a - b).abs() < 1e-8 * a && (a - c).abs() < 1e-8 * a, "{a} {b} {c}");
     let text = report.to_string();
     assert!(text.contains("\nscheme solver ") && text.contains(two), "{text}");
-    assert!(solver_by_name::<f64>("magic", &SolverOptions::default()).is_none());
+    assert!(solver_by_name("magic", LinearMethod::default(), Precision::default()).is_none());
     for (name, _) in SOLVERS {
         assert_eq!(named(name).name(), *name);
     }
-    let only = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([8]);
+    let only = Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([8]);
     let rows = only.solver(MonotoneMultigrid::default()).run().unwrap().rows;
     assert_eq!((rows.len(), &rows[0].solver[..]), (1, two));
 }
@@ -175,27 +180,27 @@ struct Mine {
     tells: bool,
 }
 
-impl<T: Real, const D: usize> Scheme<T, D> for Mine {
-    type Element = Broken<P1>;
-    type Facet = InteriorPenalty;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize> Scheme<D> for Mine {
     fn name(&self) -> &str {
         match self.factor {
             1.0 if self.tells => "mine-1",
             _ => "mine",
         }
     }
-    fn facet(&self, mesh: &Mesh<T, D>) -> InteriorPenalty {
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(P1))
+    }
+    fn form(&self, mesh: &Mesh<D>) -> Box<dyn FacetForm<D>> {
         let penalty = PenaltyRule::Diameter(self.factor);
-        Scheme::<T, D>::facet(&Nipg { penalty, ..Nipg::default() }, mesh)
+        Nipg { penalty, ..Nipg::default() }.form(mesh)
     }
 }
 
 #[test]
 fn two_series_of_one_name_are_refused_before_anything_runs() {
-    let study = || Study::<f64, 2>::new(scenes::radial(1.0)).levels([4, 8]);
+    let study = || Study::<2>::new(scenes::radial(1.0)).levels([4, 8]);
     let mine = |factor, tells| Mine { factor, tells };
-    let refused = |study: Study<'_, f64, 2>, wanted: &str| {
+    let refused = |study: Study<'_, 2>, wanted: &str| {
         let is_refused = |error: Error| match error {
             Error::EqualNames { items, ref name, .. } => {
                 assert_eq!(format!("{items} {name}"), wanted);
@@ -220,16 +225,33 @@ fn two_series_of_one_name_are_refused_before_anything_runs() {
     }
 }
 
-/// Values are judged in the scalar of the mesh: what that cannot hold is refused.
 #[test]
-fn values_beyond_single_precision_are_refused() {
+fn a_study_has_one_precision() {
+    let study = Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([4]);
+    let single = SinglePrecision::new(MonotoneMultigrid::default());
+    let error = study.solver(ActiveSet::default()).solver(single).run().unwrap_err();
+    assert!(error.to_string().contains("one precision for all solvers"), "{error}");
+}
+
+/// What does not fit together is malformed in single precision too, and no panic.
+#[test]
+fn single_precision_says_what_is_malformed() {
+    let (mesh, problem) = plate();
+    let mut inequality = solve(&problem, &mesh, &ConformingP1).unwrap().inequality().clone();
+    inequality.load.pop();
+    let solution = SinglePrecision::new(ActiveSet::default()).solve(&inequality);
+    assert_eq!(solution.outcome, Outcome::Malformed);
+}
+
+#[test]
+fn values_that_are_not_finite_are_refused() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f32, 2>::kuhn_box(&domain, [2, 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [2, 2]).unwrap();
     let problem = Problem::new().constant_source(1.0);
     let nested = NestedIteration::new(&problem, &mesh);
     let judged = |value: f64| nested.judge_on(0, &ConformingP1, &[value; 9]).map(|s| s.outcome());
     assert_eq!(judged(0.0).unwrap(), Outcome::NotASolution);
-    for value in [1e39, -1e39, f64::NAN] {
+    for value in [f64::INFINITY, -f64::INFINITY, f64::NAN] {
         let error = judged(value).unwrap_err();
         assert!(matches!(error, Error::Parameter { parameter: "values", .. }), "{value}: {error}");
     }

@@ -20,9 +20,9 @@ const ACROSS: f64 = 204.0;
 /// The picture of a scheme on a scene, with the mesh and what was found.
 fn picture<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<f64, D>,
+    scheme: &dyn Scheme<D>,
     level: usize,
-) -> (Picture, Mesh<f64, D>, Fields) {
+) -> (Picture, Mesh<D>, Fields) {
     let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
     let solved = solve(&scene.problem, &meshes, scheme).unwrap();
     assert!(solved.converged());
@@ -31,20 +31,20 @@ fn picture<const D: usize>(
     (picture, solved.mesh().clone(), fields)
 }
 
-fn cube<const D: usize>(n: usize) -> Mesh<f64, D> {
+fn cube<const D: usize>(n: usize) -> Mesh<D> {
     let sides = [[BoundaryPart::Dirichlet; 2]; D];
     let domain = BoxDomain::new(Point::zeros(), Point::repeat(1.0), sides);
     Mesh::kuhn_box(&domain, [n; D]).unwrap()
 }
 
 /// A function with these values on the cells of a mesh.
-fn function<const D: usize>(mesh: &Mesh<f64, D>, value: impl Fn(usize) -> f64) -> Fields {
+fn function<const D: usize>(mesh: &Mesh<D>, value: impl Fn(usize) -> f64) -> Fields {
     let mut fields = Fields::default();
     fields.u = (0..mesh.cells().len()).map(value).collect();
     fields
 }
 
-fn volume<const D: usize>(mesh: &Mesh<f64, D>, cells: &[usize]) -> f64 {
+fn volume<const D: usize>(mesh: &Mesh<D>, cells: &[usize]) -> f64 {
     cells.iter().map(|&cell| mesh.geometry(cell).volume).sum()
 }
 
@@ -198,7 +198,7 @@ fn contact_in_space_is_seen_on_its_own_boundary() {
 fn density_and_midpoints_are_those_of_the_solution() {
     let scene = scenes::radial::<2>(1.0);
     let (_, mesh, fields) = picture(&scene, &ConformingP1, 16);
-    let inside = |x: &Point<f64, 2>| x.norm() < 0.6;
+    let inside = |x: &Point<2>| x.norm() < 0.6;
     let density =
         fields.discrete_contact.density.iter().zip(mesh.vertices()).filter(|(_, x)| inside(x));
     let density: Vec<f64> = density.map(|(d, _)| d.unwrap()).collect();
@@ -262,7 +262,7 @@ fn what_cannot_be_drawn_is_refused() {
     beyond.discrete_contact.cells = vec![8];
     assert!(message(&beyond, None).contains("this mesh of 8 cells"));
 
-    let no_level = Hierarchy::<f64, 2>::of_domain(&scenes::radial(1.0).domain, 0).map(drop);
+    let no_level = Hierarchy::<2>::of_domain(&scenes::radial(1.0).domain, 0).map(drop);
     assert!(no_level.unwrap_err().to_string().contains("at least one subdivision"));
 
     let (problem, mesh) = (Problem::<3>::new(), cube::<3>(1));

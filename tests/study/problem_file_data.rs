@@ -76,7 +76,7 @@ fn a_default_is_not_asked_in_named_regions() {
         panic!("in the plane")
     };
     // twice the energy of the first coordinate is the integral of the coefficient
-    let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let mesh = own.mesh().unwrap().unwrap().mesh;
     let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default()).unwrap();
     let slope: Vec<f64> = mesh.vertices().iter().map(|x| x[0]).collect();
     let stiff = |c: &usize| mesh.regions()[mesh.region(*c)].contains(&"inclusion".to_owned());
@@ -129,7 +129,7 @@ fn tables_of_a_file_become_the_data_of_their_name() {
         );
         std::fs::write(&path, text).unwrap();
         let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
-        let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+        let mesh = own.mesh().unwrap().unwrap().mesh;
         (own.problem, mesh)
     };
     let (with_coefficient, mesh) = problem("[coefficient]\ninclusion = 2\nmatrix = 3\n");
@@ -142,11 +142,11 @@ fn tables_of_a_file_become_the_data_of_their_name() {
     let neumann = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Neumann);
     let measure = |cell: u32, local: u8| mesh.geometry(cell as usize).facet_measure(local.into());
     let length: f64 = neumann.map(|f| measure(f.cell, f.local)).sum();
-    fn of<'a>(problem: &'a Problem<2>, mesh: &'a Mesh<f64, 2>) -> Discretisation<'a, f64, 2> {
+    fn of<'a>(problem: &'a Problem<2>, mesh: &'a Mesh<2>) -> Discretisation<'a, 2> {
         Discretisation::new(&ConformingP1, problem, mesh, Default::default()).unwrap()
     }
     // the quadratic and the linear part of the energy of a function, both twice
-    let parts = |problem: &Problem<2>, u: fn(&Point<f64, 2>) -> f64| {
+    let parts = |problem: &Problem<2>, u: fn(&Point<2>) -> f64| {
         let values: Vec<f64> = mesh.vertices().iter().map(u).collect();
         let opposite: Vec<f64> = values.iter().map(|u| -u).collect();
         let [one, other] = [values, opposite].map(|u| of(problem, &mesh).energy(&u).unwrap());

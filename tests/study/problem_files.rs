@@ -14,7 +14,7 @@ fn example(name: &str) -> AnyOwnProblem {
 /// Solves a problem on its mesh and one refinement of it with several schemes; the sums of the multipliers
 /// of each.
 fn solve_all<const D: usize>(own: &OwnProblem<D>) -> Vec<f64> {
-    let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let mesh = own.mesh().unwrap().unwrap().mesh;
     let meshes = Hierarchy::refine(&mesh, 1).unwrap();
     let mut forces = Vec::new();
     for name in ["p1", "cr", "sipg", "nipg", "wopsip", "wopsip:facet-means", "p2", "br2"] {
@@ -33,9 +33,9 @@ fn solve_all<const D: usize>(own: &OwnProblem<D>) -> Vec<f64> {
 fn the_plate_has_its_materials_on_every_level() {
     let AnyOwnProblem::Two(own) = example("plate.toml") else { panic!("a problem in the plane") };
     assert_eq!(own.name, "plate");
-    let mut mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let mut mesh = own.mesh().unwrap().unwrap().mesh;
     let stiff = mesh.regions().iter().position(|names| names == &["inclusion"]).unwrap();
-    let cells = |mesh: &Mesh<f64, 2>| -> Vec<bool> {
+    let cells = |mesh: &Mesh<2>| -> Vec<bool> {
         (0..mesh.n_cells()).map(|c| mesh.region(c) == stiff).collect()
     };
     let coarse = cells(&mesh);
@@ -62,7 +62,7 @@ fn the_plate_has_its_materials_on_every_level() {
 #[test]
 fn the_foot_carries_the_load_of_the_bracket() {
     let AnyOwnProblem::Three(own) = example("bracket.toml") else { panic!("a problem in space") };
-    let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let mesh = own.mesh().unwrap().unwrap().mesh;
     assert!(mesh.has_part(BoundaryPart::Contact) && !mesh.has_part(BoundaryPart::Dirichlet));
     // weight, and the traction on the head, whose mean over the head is -2
     let load = -(0.6 * 0.3 + 0.3 * 0.6 * 0.9) - 2.0 * 0.3 * 0.6;
@@ -76,7 +76,7 @@ fn the_membrane_touches_both_obstacles() {
     let AnyOwnProblem::Two(own) = example("membrane.toml") else {
         panic!("a problem in the plane")
     };
-    let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let mesh = own.mesh().unwrap().unwrap().mesh;
     let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
     let multiplier = solved.multiplier().unwrap();
     assert!(multiplier.iter().any(|&m| m > 0.0) && multiplier.iter().any(|&m| m < 0.0));
@@ -100,7 +100,7 @@ fn a_box_has_sides_and_an_exact_solution() {
     assert_eq!(own.name, "harmonic");
     let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
     assert_eq!(domain.sides[1], [BoundaryPart::Contact, BoundaryPart::Neumann]);
-    let mesh = Mesh::<f64, 2>::kuhn_box(domain, domain.counts(4)).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
     let solved = solve(&own.problem, &mesh, &ConformingP2).unwrap();
     assert!(
         solved.errors().unwrap().l2.unwrap() > 1e-3,
@@ -111,7 +111,7 @@ fn a_box_has_sides_and_an_exact_solution() {
     std::fs::write(&path, format!("{BOX}{sides}{flux}{exact}")).unwrap();
     let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("a problem in the plane") };
     let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
-    let mesh = Mesh::<f64, 2>::kuhn_box(domain, domain.counts(4)).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
     let solved = solve(&own.problem, &mesh, &ConformingP2).unwrap();
     assert!(solved.errors().unwrap().l2.unwrap() < 1e-12);
 }
@@ -148,7 +148,7 @@ fn bounds_on_constant_data_are_guaranteed() {
         std::fs::write(&path, format!("{BOX}{data}{}", sides(flux))).unwrap();
         let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
         let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
-        let mesh = Mesh::<f64, 2>::kuhn_box(domain, domain.counts(4)).unwrap();
+        let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
         let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
         assert!(solved.active() > Some(0));
         assert_eq!(solved.bound().unwrap().is_guaranteed(), is_guaranteed, "{flux}");
@@ -186,8 +186,8 @@ fn bounds_on_polynomial_data_are_guaranteed() {
         std::fs::write(&path, text).unwrap();
         let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
         let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
-        let mesh = Mesh::<f64, 2>::kuhn_box(domain, domain.counts(4)).unwrap();
-        [&ConformingP1 as &dyn AnyScheme<f64, 2>, &ConformingP2]
+        let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
+        [&ConformingP1 as &dyn Scheme<2>, &ConformingP2]
             .map(|scheme| solve(&own.problem, &mesh, scheme).unwrap().bound().unwrap().unproven)
     };
     for (datum, other, [of_linears, of_quadratics]) in [
@@ -243,7 +243,7 @@ fn stated_solutions_are_held_against_the_data() {
         let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
         let Geometry::Box(domain) = own.geometry else { panic!("a box") };
         let scene = scenes::Scene::new(own.name, domain, own.problem);
-        let study = Study::<f64, 2>::new(scene).scheme(ConformingP1).levels([8]);
+        let study = Study::<2>::new(scene).scheme(ConformingP1).levels([8]);
         study.run().unwrap().rows.remove(0).warnings
     };
     let doubt = "the stated solution does not solve this problem: not fulfilled: ";
@@ -272,7 +272,7 @@ fn a_source_that_jumps_says_where() {
     std::fs::write(&path, format!("box = [[0], [1]]\n{ends}{load}")).unwrap();
     let AnyOwnProblem::One(own) = read(&path).unwrap() else { panic!("a problem on an interval") };
     let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
-    let mesh = Mesh::<f64, 1>::kuhn_box(domain, [7]).unwrap();
+    let mesh = Mesh::<1>::kuhn_box(domain, [7]).unwrap();
     let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default()).unwrap();
     // hat functions sum to one: the integral of the load
     let total: f64 = of.load().unwrap().iter().sum();

@@ -10,7 +10,7 @@ use unilateral::study::Row;
 fn ratios<const D: usize>(scene: Scene<D>, levels: &[usize]) -> Vec<f64> {
     let finest = levels.iter().max().unwrap();
     let study = || {
-        let study = Study::<f64, D>::new(scene.clone()).levels(levels.iter().copied());
+        let study = Study::<D>::new(scene.clone()).levels(levels.iter().copied());
         study.scheme(ConformingP1).scheme(NonconformingP1).scheme(Wopsip::default())
     };
     let measured = study().reference(ConformingP2, 4 * finest).run().unwrap();
@@ -80,8 +80,7 @@ fn a_reference_stands_for_every_exact_solution() {
 #[test]
 fn multiplier_and_contact_set_are_measured_too() {
     let study = |reference: bool| {
-        let study =
-            Study::<f64, 2>::new(scenes::signorini_2d()).scheme(ConformingP1).levels([8, 16]);
+        let study = Study::<2>::new(scenes::signorini_2d()).scheme(ConformingP1).levels([8, 16]);
         let study = if reference { study.reference(ConformingP2, 64) } else { study };
         study.run().unwrap().rows
     };
@@ -92,9 +91,9 @@ fn multiplier_and_contact_set_are_measured_too() {
     }
     // cells, in the plane and in space, where the vertices of quadratics have no positive mean
     let plane = scenes::radial::<2>(1.0);
-    let plane = Study::<f64, 2>::new(plane).scheme(ConformingP1).scheme(ConformingP2);
+    let plane = Study::<2>::new(plane).scheme(ConformingP1).scheme(ConformingP2);
     let exact = plane.levels([8, 16]).run().unwrap().rows;
-    let plane = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([8, 16]);
+    let plane = Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([8, 16]);
     let found = plane.reference(ConformingP2, 64).run().unwrap().rows;
     for (row, exact) in found.iter().zip(&exact) {
         let [found, exact] = [row, exact].map(|r| r.contact.contact_area_error.unwrap());
@@ -110,7 +109,7 @@ fn multiplier_and_contact_set_are_measured_too() {
     }
     // nothing differs from itself
     let scene = scenes::radial::<2>(1.0);
-    let meshes = Hierarchy::<f64, 2>::of_domain(&scene.domain, 8).unwrap();
+    let meshes = Hierarchy::<2>::of_domain(&scene.domain, 8).unwrap();
     let solved = solve(&scene.problem, &meshes, &Sipg::default()).unwrap();
     let none = solved.contact_difference(&solved).unwrap();
     assert_eq!(none.contact_area_error, Some(0.0));
@@ -126,11 +125,11 @@ fn a_constant_multiplier_is_the_same_on_a_finer_mesh() {
         .fold(BoxDomain::<2>::centred(1.0), |domain, (axis, end)| {
             domain.side(axis, end, BoundaryPart::Neumann)
         });
-    let mesh = Mesh::<f64, 2>::kuhn_box(&free, [2, 3]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&free, [2, 3]).unwrap();
     let meshes = Hierarchy::refine(&mesh, 2).unwrap();
     let problem = Problem::new().constant_source(-3.0).obstacle_below(|_| 0.5);
     let mut nested = NestedIteration::new(&problem, &meshes);
-    for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 2>, &NonconformingP1, &Sipg::default()] {
+    for scheme in [&ConformingP1 as &dyn Scheme<2>, &NonconformingP1, &Sipg::default()] {
         let [coarse, _, fine] = [0, 1, 2].map(|k| nested.solve_on(k, scheme).unwrap());
         let found = coarse.contact_difference(&fine).unwrap();
         let name = scheme.name();
@@ -145,7 +144,7 @@ fn a_constant_multiplier_is_the_same_on_a_finer_mesh() {
 #[test]
 fn a_reference_that_is_too_coarse_or_not_nested_is_refused() {
     let study = |levels: &[usize], reference: usize| {
-        let study = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(ConformingP1);
+        let study = Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1);
         study.levels(levels.iter().copied()).reference(ConformingP2, reference).check()
     };
     assert!(study(&[8, 16], 64).is_ok());
@@ -158,14 +157,14 @@ fn a_reference_that_is_too_coarse_or_not_nested_is_refused() {
         assert!(matches!(error, Error::Parameter { parameter: "level of the reference", .. }));
         assert!(error.to_string().contains(words), "{error}");
     }
-    let disc = Study::<f64, 2>::new(scenes::disc_2d()).scheme(ConformingP1).levels([4]);
+    let disc = Study::<2>::new(scenes::disc_2d()).scheme(ConformingP1).levels([4]);
     let error = disc.reference(ConformingP2, 16).check().unwrap_err();
     assert!(error.to_string().contains("not nested"), "{error}");
 }
 
 #[test]
 fn a_problem_of_ones_own_needs_a_name_and_a_mesh() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [4, 4]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [4, 4]).unwrap();
     let problem = Problem::new()
         .constant_source(-4.0)
         .signorini_on("bottom", -0.1)
@@ -184,7 +183,7 @@ fn a_problem_of_ones_own_needs_a_name_and_a_mesh() {
         assert!(row.active > Some(0) && row.resultant > Some(0.0));
         assert!(row.level == 0 || (0.7..1.2).contains(&row.order.h1.unwrap()), "{:?}", row.order);
     }
-    let first = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [4, 4]).unwrap();
+    let first = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [4, 4]).unwrap();
     assert!(first.has_part(BoundaryPart::Dirichlet));
     let early = Study::of_problem("own", Problem::new(), first).unwrap().scheme(ConformingP1);
     let error = early.levels([0, 1]).reference(ConformingP2, 2).check().unwrap_err();

@@ -305,7 +305,7 @@ fn needs_chromium_to_photograph_the_page() {
     let scratch = Scratch::new("photograph");
     let scene = unilateral::scenes::signorini_2d();
     let schemes = unilateral::scheme::NamedScheme::list(["p1", "sipg", "wopsip"]).unwrap();
-    let study = unilateral::study::Study::<f64, 2>::new(scene).levels([4, 8, 16]);
+    let study = unilateral::study::Study::<2>::new(scene).levels([4, 8, 16]);
     let report = schemes.iter().fold(study, unilateral::study::Study::named_scheme).run().unwrap();
     report.write(&scratch.0).unwrap();
     let keep = std::env::var_os("UNILATERAL_KEEP").map_or(scratch.0.clone(), Into::into);

@@ -8,7 +8,7 @@ use unilateral::scenes::{Scene, torsion_2d};
 use unilateral::study::Row;
 
 /// Schemes of every kind: conforming, nonconforming, symmetric and not, lifted, over-penalised.
-fn schemes<const D: usize>() -> Vec<Box<dyn AnyScheme<f64, D>>> {
+fn schemes<const D: usize>() -> Vec<Box<dyn Scheme<D>>> {
     vec![
         Box::new(ConformingP1),
         Box::new(ConformingP2),
@@ -23,7 +23,7 @@ fn schemes<const D: usize>() -> Vec<Box<dyn AnyScheme<f64, D>>> {
 }
 
 fn rows<const D: usize>(scene: Scene<D>, levels: &[usize]) -> Vec<Row> {
-    let study = Study::<f64, D>::new(scene).levels(levels.iter().copied());
+    let study = Study::<D>::new(scene).levels(levels.iter().copied());
     let rows = schemes().into_iter().fold(study, Study::boxed_scheme).run().unwrap().rows;
     for row in &rows {
         assert!(row.converged(), "{} {} {}: {}", row.scene, row.label, row.level, row.status);
@@ -33,20 +33,20 @@ fn rows<const D: usize>(scene: Scene<D>, levels: &[usize]) -> Vec<Row> {
 
 /// The integral over a box by the midpoints of a fine grid.
 fn integral<const D: usize>(
-    (lower, upper): (Point<f64, D>, Point<f64, D>),
-    f: impl Fn(&Point<f64, D>) -> f64,
+    (lower, upper): (Point<D>, Point<D>),
+    f: impl Fn(&Point<D>) -> f64,
 ) -> f64 {
     let n: usize = [0, 100_000, 2000, 160][D];
     let step = (upper - lower) / n as f64;
     let mut sum = 0.0;
     for k in 0..n.pow(D as u32) {
-        let index = Point::<f64, D>::from_fn(|i, _| (k / n.pow(i as u32) % n) as f64 + 0.5);
+        let index = Point::<D>::from_fn(|i, _| (k / n.pow(i as u32) % n) as f64 + 0.5);
         sum += f(&(lower + index.component_mul(&step)));
     }
     sum * step.product()
 }
 
-fn bounding_box<const D: usize>(scene: &Scene<D>) -> (Point<f64, D>, Point<f64, D>) {
+fn bounding_box<const D: usize>(scene: &Scene<D>) -> (Point<D>, Point<D>) {
     let domain = scene.domain.bounding_box();
     (domain.lower, domain.upper)
 }
@@ -61,7 +61,7 @@ fn the_energy_of_every_scheme_tends_to_the_exact_one_with_twice_the_order_in_h1(
     });
     let levels = [16, 32, 64];
     let schemes = schemes().into_iter().filter(|s| s.layout().cell < 6);
-    let study = Study::<f64, 2>::new(scene).levels(levels);
+    let study = Study::<2>::new(scene).levels(levels);
     let rows = schemes.fold(study, Study::boxed_scheme).run().unwrap().rows;
     for series in rows.chunks(levels.len()) {
         let gap = |row: &Row| (row.energy.unwrap() - energy).abs();
@@ -78,7 +78,7 @@ fn the_energy_of_every_scheme_tends_to_the_exact_one_with_twice_the_order_in_h1(
 #[test]
 fn one_function_has_one_energy() {
     fn check<const D: usize>(cells: usize) {
-        let bent = |x: &Point<f64, D>| 1.0 + x.norm_squared();
+        let bent = |x: &Point<D>| 1.0 + x.norm_squared();
         let problem = Problem::new()
             .source(move |x| bent(x).sin())
             .coefficient(move |x| 2.0 + bent(x))
@@ -86,8 +86,8 @@ fn one_function_has_one_energy() {
             .neumann(move |x, n| x[0] * n[0] - 1.0);
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         let domain = domain.side(0, 1, BoundaryPart::Neumann);
-        let mesh = Mesh::<f64, D>::kuhn_box(&domain, [cells; D]).unwrap();
-        let space = |scheme: &dyn AnyScheme<f64, D>| {
+        let mesh = Mesh::<D>::kuhn_box(&domain, [cells; D]).unwrap();
+        let space = |scheme: &dyn Scheme<D>| {
             scheme.discretise(&problem, &mesh, DataQuadrature::default()).unwrap()
         };
         let conforming = space(&ConformingP1);
@@ -97,7 +97,7 @@ fn one_function_has_one_energy() {
         let objective = conforming.inequality().unwrap().objective(&u);
         assert!((energy / objective - 1.0).abs() < 1e-12, "{D}: {energy} and {objective}");
         let broken = conforming.vertex_values(&u);
-        for scheme in [&Sipg::default() as &dyn AnyScheme<f64, D>, &Wopsip::default()] {
+        for scheme in [&Sipg::default() as &dyn Scheme<D>, &Wopsip::default()] {
             let other = space(scheme).energy(&broken).unwrap();
             assert!((other / energy - 1.0).abs() < 1e-12, "{D}, {}: {other}", scheme.name());
         }
@@ -112,13 +112,13 @@ fn one_function_has_one_energy() {
 #[test]
 fn errors_in_the_energy_norm_contain_coefficient_and_reaction() {
     fn check<const D: usize>() {
-        let slope = |_: &Point<f64, D>| Point::from_fn(|k, _| f64::from(u8::from(k == 0)));
+        let slope = |_: &Point<D>| Point::from_fn(|k, _| f64::from(u8::from(k == 0)));
         let problem = Problem::new()
             .coefficient(|_| 4.0)
             .reaction(3.0)
-            .exact(|x: &Point<f64, D>| 1.0 + x[0], slope);
+            .exact(|x: &Point<D>| 1.0 + x[0], slope);
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let mesh = Mesh::<f64, D>::kuhn_box(&domain, [2; D]).unwrap();
+        let mesh = Mesh::<D>::kuhn_box(&domain, [2; D]).unwrap();
         for scheme in schemes() {
             let solved = solve(&problem, &mesh, &*scheme).unwrap();
             let errors = solved.discretisation().errors(&vec![0.0; solved.values().len()]).unwrap();
@@ -150,13 +150,13 @@ fn the_resultant_of_a_body_on_its_foot_is_the_load() {
         let sides = (0..D).flat_map(|axis| [(axis, 0), (axis, 1)]);
         let free = sides.fold(domain, |d, (axis, end)| d.side(axis, end, BoundaryPart::Neumann));
         let foot = free.clone().side(D - 1, 0, BoundaryPart::Contact);
-        let load = |x: &Point<f64, D>| -1.0 - x[0];
+        let load = |x: &Point<D>| -1.0 - x[0];
         let problem = || Problem::new().source(load).neumann(|_, n| -0.25 * n[D - 1].powi(2));
         // on the foot there is no Neumann datum
         let on_foot = problem().signorini(|x| 0.1 * x[0]);
         let on_obstacle = problem().obstacle_below(|x| -0.1 * x[0]);
         for (problem, domain, total) in [(on_foot, foot, 1.75), (on_obstacle, free, 2.0)] {
-            let mesh = Mesh::<f64, D>::kuhn_box(&domain, [level; D]).unwrap();
+            let mesh = Mesh::<D>::kuhn_box(&domain, [level; D]).unwrap();
             for scheme in schemes() {
                 let found = solve(&problem, &mesh, &*scheme).unwrap();
                 assert!(found.converged(), "{D} {total} {}: {}", scheme.name(), found.outcome());
@@ -174,7 +174,7 @@ fn the_resultant_of_a_body_on_its_foot_is_the_load() {
 /// The whole body rests on an obstacle: all of it is in contact.
 #[test]
 fn a_flat_obstacle_carries_everything() {
-    let domain = BoxDomain::dirichlet(Point::zeros(), Point::<f64, 2>::new(2.0, 1.0));
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::<2>::new(2.0, 1.0));
     let sides = [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter();
     let free = sides.fold(domain, |d, (axis, end)| d.side(axis, end, BoundaryPart::Neumann));
     let foot = free.clone().side(1, 0, BoundaryPart::Contact);
@@ -184,7 +184,7 @@ fn a_flat_obstacle_carries_everything() {
         (body(3.0).obstacle_above(|_| 0.5), &free, -6.0),
         (body(-3.0).signorini(|_| 0.5), &foot, 6.0),
     ] {
-        let mesh = Mesh::<f64, 2>::kuhn_box(domain, [8, 4]).unwrap();
+        let mesh = Mesh::<2>::kuhn_box(domain, [8, 4]).unwrap();
         for scheme in schemes() {
             let found = solve(&problem, &mesh, &*scheme).unwrap();
             let totals = [found.resultant(), found.contact_measure()].map(Option::unwrap);
@@ -212,7 +212,7 @@ fn a_constant_density_is_the_same_everywhere() {
     // an interval of cells that grow, in two regions
     let vertices = [0.0, 0.1, 0.3, 0.6, 1.0].map(|x| Point::from([x])).to_vec();
     let end = |vertex| TaggedFacet { vertices: [vertex], part: BoundaryPart::Neumann };
-    let line = Mesh::<f64, 1>::new(vertices, vec![0, 1, 1, 2, 2, 3, 3, 4], &[end(0), end(4)]);
+    let line = Mesh::<1>::new(vertices, vec![0, 1, 1, 2, 2, 3, 3, 4], &[end(0), end(4)]);
     let names = ["left", "right"].map(|name| vec![name.to_owned()]).to_vec();
     let line = line.unwrap().with_regions(names, vec![0, 0, 1, 1]).unwrap();
     for (load, problem) in [
@@ -220,7 +220,7 @@ fn a_constant_density_is_the_same_everywhere() {
         (3.0, Problem::new().obstacle_above_in("left", 0.5).obstacle_above_in("right", 0.5)),
     ] {
         let problem = problem.constant_source(load);
-        for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 1>, &Sipg::default()] {
+        for scheme in [&ConformingP1 as &dyn Scheme<1>, &Sipg::default()] {
             let solved = solve(&problem, &line, scheme).unwrap();
             near(&solved.fields().unwrap().multiplier, -load, scheme.name());
         }
@@ -231,10 +231,10 @@ fn a_constant_density_is_the_same_everywhere() {
         let sides = (0..D).flat_map(|axis| [(axis, 0), (axis, 1)]);
         let free = sides.fold(domain, |d, (axis, end)| d.side(axis, end, BoundaryPart::Neumann));
         let foot = free.side(D - 1, 0, BoundaryPart::Contact);
-        let pressed = |_: &Point<f64, D>, n: &Point<f64, D>| -3.0 * n[D - 1].max(0.0);
+        let pressed = |_: &Point<D>, n: &Point<D>| -3.0 * n[D - 1].max(0.0);
         let problem = Problem::new().neumann(pressed).signorini(|_| 0.5);
-        let mesh = Mesh::<f64, D>::kuhn_box(&foot, [2; D]).unwrap();
-        for scheme in [&ConformingP1 as &dyn AnyScheme<f64, D>, &Sipg::default()] {
+        let mesh = Mesh::<D>::kuhn_box(&foot, [2; D]).unwrap();
+        for scheme in [&ConformingP1 as &dyn Scheme<D>, &Sipg::default()] {
             let fields = solve(&problem, &mesh, scheme).unwrap().fields().unwrap();
             near(&fields.pressure, 3.0, scheme.name());
             assert!(fields.gap.iter().all(|gap| gap.abs() < 1e-9), "{:?}", fields.gap);
@@ -249,13 +249,13 @@ fn a_constant_density_is_the_same_everywhere() {
 #[test]
 fn contact_reaches_dirichlet_data_on_one_of_two_obstacles() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [4, 4]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [4, 4]).unwrap();
     for sign in [1.0, -1.0] {
         let problem = Problem::new()
             .constant_source(-sign)
             .obstacle_below(move |_| if sign > 0.0 { 0.0 } else { -5.0 })
             .obstacle_above(move |_| if sign > 0.0 { 5.0 } else { 0.0 });
-        for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 2>, &NonconformingP1] {
+        for scheme in [&ConformingP1 as &dyn Scheme<2>, &NonconformingP1] {
             let found = solve(&problem, &mesh, scheme).unwrap();
             let measure = found.contact_measure().unwrap();
             assert!((measure - 1.0).abs() < 1e-12, "{}: {measure}", scheme.name());
@@ -274,12 +274,12 @@ fn contact_measure_and_resultant_tend_to_the_exact_ones() {
         let scene = scenes::radial::<D>(1.0);
         let exact = scene.problem.exact.clone().unwrap();
         let (multiplier, set) = (exact.multiplier.unwrap(), exact.contact.unwrap());
-        let inside = |x: &Point<f64, D>| (set.indicator)(x) > 0.0;
-        let over_set = |f: &dyn Fn(&Point<f64, D>) -> f64| {
+        let inside = |x: &Point<D>| (set.indicator)(x) > 0.0;
+        let over_set = |f: &dyn Fn(&Point<D>) -> f64| {
             integral(bounding_box(&scene), |x| if inside(x) { f(x) } else { 0.0 })
         };
         let (force, measure) = (over_set(&|x| multiplier(x)), over_set(&|_| 1.0));
-        let study = Study::<f64, D>::new(scene).scheme_on(ConformingP2, Midpoints).levels(levels);
+        let study = Study::<D>::new(scene).scheme_on(ConformingP2, Midpoints).levels(levels);
         let rows = schemes().into_iter().fold(study, Study::boxed_scheme).run().unwrap().rows;
         for series in rows.chunks(2) {
             for row in series {
@@ -307,7 +307,7 @@ fn contact_measure_and_resultant_tend_to_the_exact_ones() {
 fn the_extrapolated_energy_is_the_reference() {
     let scene = torsion_2d(5.0);
     let reference = scene.problem.reference_energy.unwrap();
-    let study = Study::<f64, 2>::new(scene).scheme(ConformingP1).scheme(Sipg::default());
+    let study = Study::<2>::new(scene).scheme(ConformingP1).scheme(Sipg::default());
     let report = study.levels([16, 32, 64]).run().unwrap();
     assert_eq!(report.extrapolated().len(), 2);
     for (series, rows) in report.extrapolated().iter().zip(report.rows.chunks(3)) {
@@ -338,7 +338,7 @@ fn without_an_inequality_there_is_no_contact() {
 fn bounds_far_from_the_error_say_why() {
     let at_level = |scene: Scene<2>, scheme: &str, level: usize| {
         let scheme: NamedScheme = scheme.parse().unwrap();
-        let study = Study::<f64, 2>::new(scene).named_scheme(&scheme).levels([level]);
+        let study = Study::<2>::new(scene).named_scheme(&scheme).levels([level]);
         study.run().unwrap().rows.remove(0)
     };
     let of_scene = |scene: Scene<2>, scheme: &str| at_level(scene, scheme, 4);
@@ -361,8 +361,7 @@ fn bounds_far_from_the_error_say_why() {
     let row = of_scene(scenes::radial(1.0), "p1");
     assert!(!says(&row, "times the error"), "{:?}", row.warnings);
     // bound and error are equal but for rounding
-    let study =
-        Study::<f64, 1>::new(scenes::signorini_closed_1d()).scheme(ConformingP1).levels([4]);
+    let study = Study::<1>::new(scenes::signorini_closed_1d()).scheme(ConformingP1).levels([4]);
     let row = study.run().unwrap().rows.remove(0);
     assert!((row.bound.effectivity.unwrap() - 1.0).abs() < 1e-12, "{:?}", row.bound);
     assert!(!says(&row, "times the error"), "{:?}", row.warnings);
@@ -373,7 +372,7 @@ fn bounds_far_from_the_error_say_why() {
 fn each_effectivity_is_of_its_own_error() {
     use unilateral::error_bound::{BoundFigures, TrueErrors};
     let scene = scenes::contrast::<2>(1e6);
-    let mesh = scene.domain.mesh::<f64>(4).unwrap();
+    let mesh = scene.domain.mesh(4).unwrap();
     let bound = solve(&scene.problem, &mesh, &Sipg::default()).unwrap().bound().unwrap();
     assert!(bound.total != bound.discrete, "{bound:?}");
     let errors = TrueErrors { of_solution: Some(2.0), of_v: Some(4.0) };

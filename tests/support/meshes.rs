@@ -34,14 +34,14 @@ pub fn mixed_box<const D: usize>() -> BoxDomain<D> {
 
 /// The raw lists of a box mesh whose inner vertices are moved a little.
 pub struct Raw<const D: usize> {
-    pub vertices: Vec<Point<f64, D>>,
+    pub vertices: Vec<Point<D>>,
     pub cells: Vec<u32>,
     pub boundary: Vec<TaggedFacet<D>>,
 }
 
 impl<const D: usize> Raw<D> {
     pub fn jittered(domain: &BoxDomain<D>, n: usize, size: f64, random: &mut Random) -> Self {
-        let mesh = Mesh::<f64, D>::kuhn_box(domain, [n; D]).unwrap();
+        let mesh = Mesh::<D>::kuhn_box(domain, [n; D]).unwrap();
         let mut vertices = mesh.vertices().to_vec();
         for x in &mut vertices {
             for k in 0..D {
@@ -99,7 +99,7 @@ impl<const D: usize> Raw<D> {
             .collect();
         Self { vertices, cells, boundary }
     }
-    pub fn mesh<T: Real>(&self) -> Mesh<T, D> {
+    pub fn mesh(&self) -> Mesh<D> {
         Mesh::new(self.vertices.clone(), self.cells.clone(), &self.boundary).unwrap()
     }
 }

@@ -2,7 +2,9 @@
 
 use super::checks::Checks;
 use super::schemes::Entry;
+use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 use unilateral::study::Row;
 
@@ -12,15 +14,25 @@ pub fn label(row: &Row) -> String {
 }
 
 /// The rows of schemes on levels of a scene.
-pub fn rows<T: Real, const D: usize>(
+pub fn rows<const D: usize>(
     scene: Scene<D>,
-    schemes: Vec<impl Into<Entry<T, D>>>,
+    schemes: Vec<impl Into<Entry<D>>>,
     levels: impl IntoIterator<Item = usize>,
 ) -> Vec<Row> {
-    let study = Study::<'static, T, D>::new(scene).levels(levels);
-    let add = |study: Study<'static, T, D>, entry: Entry<T, D>| {
-        study.boxed_scheme_on(entry.scheme, entry.set)
-    };
+    rows_in(Precision::Double, scene, schemes, levels)
+}
+
+/// The rows of schemes on levels of a scene, solved in a precision.
+pub fn rows_in<const D: usize>(
+    precision: Precision,
+    scene: Scene<D>,
+    schemes: Vec<impl Into<Entry<D>>>,
+    levels: impl IntoIterator<Item = usize>,
+) -> Vec<Row> {
+    let study = Study::<'static, D>::new(scene).levels(levels);
+    let study = study.boxed_solver(in_precision(precision, ActiveSet::default()));
+    let add =
+        |study: Study<'static, D>, entry: Entry<D>| study.boxed_scheme_on(entry.scheme, entry.set);
     schemes.into_iter().map(Into::into).fold(study, add).run().unwrap().rows
 }
 

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use unilateral::prelude::*;
 
 /// A scheme with a constraint set.
-pub fn entry<T: Real, const D: usize>(
-    scheme: impl AnyScheme<T, D> + 'static,
+pub fn entry<const D: usize>(
+    scheme: impl Scheme<D> + 'static,
     set: impl ConstraintSet + 'static,
-) -> Entry<T, D> {
+) -> Entry<D> {
     Entry { scheme: Box::new(scheme), set: Arc::new(set) }
 }
 
-impl<T: Real, const D: usize> Entry<T, D> {
+impl<const D: usize> Entry<D> {
     /// The name of the constraint set on the scheme's element.
     pub fn constraint(&self) -> String {
         self.constraint_on(&self.set).unwrap()
@@ -20,7 +20,7 @@ impl<T: Real, const D: usize> Entry<T, D> {
 }
 
 /// The schemes that reproduce linear functions.
-pub fn consistent_schemes<T: Real, const D: usize>() -> Vec<Entry<T, D>> {
+pub fn consistent_schemes<const D: usize>() -> Vec<Entry<D>> {
     vec![
         entry(ConformingP1, Nodes),
         entry(NonconformingP1, Nodes),
@@ -30,7 +30,7 @@ pub fn consistent_schemes<T: Real, const D: usize>() -> Vec<Entry<T, D>> {
 }
 
 /// Every scheme, and the discontinuous ones with both sets of constraints, with default penalties.
-pub fn all_schemes<T: Real, const D: usize>() -> Vec<Entry<T, D>> {
+pub fn all_schemes<const D: usize>() -> Vec<Entry<D>> {
     let mut schemes = consistent_schemes();
     schemes.push(entry(Wopsip::default(), Nodes));
     schemes.push(entry(Wopsip::default(), FacetMeans));

@@ -5,22 +5,22 @@ use std::sync::Arc;
 use unilateral::prelude::*;
 
 /// A scheme chosen at run time.
-pub type Boxed<T, const D: usize> = Box<dyn AnyScheme<T, D>>;
+pub type Boxed<const D: usize> = Box<dyn Scheme<D>>;
 
 /// A scheme with its constraint set: an entry of a list.
-pub struct Entry<T, const D: usize> {
-    pub scheme: Boxed<T, D>,
+pub struct Entry<const D: usize> {
+    pub scheme: Boxed<D>,
     pub set: Arc<dyn ConstraintSet>,
 }
 
-impl<T, const D: usize> From<Boxed<T, D>> for Entry<T, D> {
-    fn from(scheme: Boxed<T, D>) -> Self {
+impl<const D: usize> From<Boxed<D>> for Entry<D> {
+    fn from(scheme: Boxed<D>) -> Self {
         Self { scheme, set: Arc::new(Nodes) }
     }
 }
 
-impl<T, const D: usize> Deref for Entry<T, D> {
-    type Target = dyn AnyScheme<T, D>;
+impl<const D: usize> Deref for Entry<D> {
+    type Target = dyn Scheme<D>;
 
     fn deref(&self) -> &Self::Target {
         &*self.scheme
@@ -28,11 +28,11 @@ impl<T, const D: usize> Deref for Entry<T, D> {
 }
 
 /// Interior penalty with `sigma / h_F`.
-pub fn sipg(sigma: f64) -> Sipg {
+pub fn sipg<const D: usize>(sigma: f64) -> Sipg<D> {
     Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() }
 }
 
 /// Over-penalty with `eta / h_F^3`.
-pub fn wopsip(eta: f64) -> Wopsip {
+pub fn wopsip<const D: usize>(eta: f64) -> Wopsip<D> {
     Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() }
 }

@@ -22,7 +22,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    pub fn of<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> Self {
+    pub fn of<const D: usize>(solved: &Solved<'_, D>) -> Self {
         Self {
             outcome: solved.outcome(),
             certificate: solved.certificate(),
@@ -35,9 +35,9 @@ impl Figures {
 /// A scheme's solution on a level with the rules of those tables.
 pub fn solve_as_tables<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<f64, D>,
+    scheme: &dyn Scheme<D>,
     level: usize,
-) -> (Mesh<f64, D>, Figures) {
+) -> (Mesh<D>, Figures) {
     solve_by_rule(scene, scheme, level, DEGREE_OF_TABLES)
 }
 
@@ -46,10 +46,10 @@ pub fn solve_as_tables<const D: usize>(
 /// cells that are cut gain is tested by itself.
 pub fn solve_by_rule<const D: usize>(
     scene: &Scene<D>,
-    scheme: &dyn AnyScheme<f64, D>,
+    scheme: &dyn Scheme<D>,
     level: usize,
     degree: usize,
-) -> (Mesh<f64, D>, Figures) {
+) -> (Mesh<D>, Figures) {
     let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
     let quadrature = DataQuadrature::default().cell(degree).facet(degree);
     let mut problem = scene.problem.clone();
@@ -66,7 +66,7 @@ pub fn solve_by_rule<const D: usize>(
 /// a cell the last digits of a table are those of its rule.
 pub fn norms_by_rule<const D: usize>(
     scene: &Scene<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
     u: &[f64],
     degree: usize,
 ) -> [f64; 2] {
@@ -75,7 +75,7 @@ pub fn norms_by_rule<const D: usize>(
     let [mut l2, mut h1] = [0.0; 2];
     for (cell, values) in u.chunks(D + 1).enumerate() {
         let geometry = mesh.geometry(cell);
-        let sum = |s: Point<f64, D>, k: usize| s + geometry.gradient(k) * values[k];
+        let sum = |s: Point<D>, k: usize| s + geometry.gradient(k) * values[k];
         let gradient = (0..=D).fold(Point::zeros(), sum);
         for (point, weight) in rule.iter() {
             let point: Vec<f64> = (0..=D).map(|k| point[D - k]).collect();

@@ -13,11 +13,11 @@ use crate::arrays::{map_entries, tabulate};
 use crate::mesh::Mesh;
 use crate::problem::Field;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule, facet_to_cell};
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// What is called with a point of a rule on a cut cell: in barycentric coordinates, in space, and with
 /// its weight.
-pub(crate) type Visit<'v, const D: usize> = &'v mut dyn FnMut(&[f64; 4], &Point<f64, D>, f64);
+pub(crate) type Visit<'v, const D: usize> = &'v mut dyn FnMut(&[f64; 4], &Point<D>, f64);
 
 /// A part of a simplex, by barycentric coordinates in it.
 #[derive(Clone, Copy, Debug)]
@@ -75,20 +75,15 @@ impl CutRule {
     }
 
     /// Whether the zero set of a function cuts a cell, as far as [`CutRule::visit_if_cut`] sees.
-    pub fn cuts<T: Real, const D: usize>(
-        &self,
-        mesh: &Mesh<T, D>,
-        cell: usize,
-        level: &Field<D>,
-    ) -> bool {
+    pub fn cuts<const D: usize>(&self, mesh: &Mesh<D>, cell: usize, level: &Field<D>) -> bool {
         self.is_cut(&self.whole(), &mesh.corners(cell), level)
     }
 
     /// Visits the points of the rule on a cell if it is cut, and tells whether it is: in barycentric
     /// coordinates, in space, and with their weights.
-    pub fn visit_if_cut<T: Real, const D: usize>(
+    pub fn visit_if_cut<const D: usize>(
         &self,
-        mesh: &Mesh<T, D>,
+        mesh: &Mesh<D>,
         cell: usize,
         level: &Field<D>,
         visit: Visit<'_, D>,
@@ -107,7 +102,7 @@ impl CutRule {
     /// weights, whose sum is one. No point lies on the zero set but for rounding.
     pub fn visit<const D: usize>(
         &self,
-        corners: &[Point<f64, D>; 4],
+        corners: &[Point<D>; 4],
         level: &Field<D>,
         visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
@@ -118,7 +113,7 @@ impl CutRule {
     /// tell; `None` if its zero set cuts the simplex.
     pub fn sign_of_uncut<const D: usize>(
         &self,
-        corners: &[Point<f64, D>; 4],
+        corners: &[Point<D>; 4],
         level: &Field<D>,
     ) -> Option<bool> {
         let is_cut = self.is_cut(&self.whole(), corners, level);
@@ -143,7 +138,7 @@ impl CutRule {
     fn visit_part<const D: usize>(
         &self,
         part: &Part,
-        corners: &[Point<f64, D>; 4],
+        corners: &[Point<D>; 4],
         level: &Field<D>,
         visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
@@ -166,7 +161,7 @@ impl CutRule {
     fn is_cut<const D: usize>(
         &self,
         part: &Part,
-        corners: &[Point<f64, D>; 4],
+        corners: &[Point<D>; 4],
         level: &Field<D>,
     ) -> bool {
         let is_positive = |b: &[f64; 4]| level(&in_space(b, corners)) > 0.0;
@@ -187,7 +182,7 @@ impl CutRule {
     fn is_nearly_linear<const D: usize>(
         &self,
         part: &Part,
-        corners: &[Point<f64, D>; 4],
+        corners: &[Point<D>; 4],
         level: &Field<D>,
     ) -> bool {
         let own = &part.corners[..=self.dimension];
@@ -206,7 +201,7 @@ impl CutRule {
     }
 
     /// The two halves on both sides of the middle of the longest edge.
-    fn halves<const D: usize>(&self, part: &Part, corners: &[Point<f64, D>; 4]) -> [Part; 2] {
+    fn halves<const D: usize>(&self, part: &Part, corners: &[Point<D>; 4]) -> [Part; 2] {
         let points = part.corners.map(|c| in_space(&c, corners));
         let mut longest = (0, 0, -1.0);
         for i in 0..=self.dimension {
@@ -233,7 +228,7 @@ impl CutRule {
         &self,
         part: &Part,
         signs: [i8; 4],
-        corners: &[Point<f64, D>; 4],
+        corners: &[Point<D>; 4],
         level: &Field<D>,
         visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
@@ -276,7 +271,7 @@ impl CutRule {
         &self,
         part: &Part,
         apex: usize,
-        corners: &[Point<f64, D>; 4],
+        corners: &[Point<D>; 4],
         level: &Field<D>,
         visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
@@ -359,7 +354,7 @@ fn zero_between(function: impl Fn(f64) -> f64) -> Option<f64> {
 /// dimension have coordinate zero.
 pub(crate) fn in_space<const D: usize>(
     barycentric: &[f64; 4],
-    corners: &[Point<f64, D>; 4],
-) -> Point<f64, D> {
+    corners: &[Point<D>; 4],
+) -> Point<D> {
     corners.iter().zip(barycentric).fold(Point::zeros(), |x, (corner, &b)| x + corner * b)
 }

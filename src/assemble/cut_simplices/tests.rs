@@ -3,18 +3,14 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// The unit simplex.
-fn corners<const D: usize>() -> [Point<f64, D>; 4] {
-    let mut corners = [Point::<f64, D>::zeros(); 4];
+fn corners<const D: usize>() -> [Point<D>; 4] {
+    let mut corners = [Point::<D>::zeros(); 4];
     (0..D).for_each(|k| corners[k + 1][k] = 1.0);
     corners
 }
 
 /// The mean over the unit simplex of a function where the level is positive, zero elsewhere.
-fn mean<const D: usize>(
-    degree: usize,
-    level: &Field<D>,
-    value: impl Fn(&Point<f64, D>) -> f64,
-) -> f64 {
+fn mean<const D: usize>(degree: usize, level: &Field<D>, value: impl Fn(&Point<D>) -> f64) -> f64 {
     let [mut all, mut within] = [0.0; 2];
     CutRule::new(D, degree).visit(&corners(), level, &mut |point, weight| {
         let x = in_space(point, &corners());
@@ -28,7 +24,7 @@ fn mean<const D: usize>(
 #[test]
 fn a_sphere_is_resolved() {
     fn share<const D: usize>() -> f64 {
-        mean::<D>(5, &(Arc::new(|x: &Point<f64, D>| 0.5 - x.norm()) as Field<D>), |_| 1.0)
+        mean::<D>(5, &(Arc::new(|x: &Point<D>| 0.5 - x.norm()) as Field<D>), |_| 1.0)
     }
     assert!((share::<1>() - 0.5).abs() < 1e-15);
     assert!((share::<2>() - PI / 8.0).abs() < 5e-4, "{:e}", share::<2>() - PI / 8.0);
@@ -40,7 +36,7 @@ fn polynomials_between_planes_are_exact() {
     fn check<const D: usize>() {
         let level: Field<D> =
             Arc::new(|x| (0..D).map(|k| (k + 1) as f64 * x[k]).sum::<f64>() - 0.6);
-        let cube = |x: &Point<f64, D>| level(x).powi(3);
+        let cube = |x: &Point<D>| level(x).powi(3);
         let volume = mean::<D>(3, &level, cube);
         // the function less its negative part, which is -0.6 at the origin and fills the simplex
         // around it: the mean of a cube of a barycentric coordinate is 3! D! / (3 + D)!

@@ -7,20 +7,18 @@ use crate::assemble::space::contradictions::Contradictions;
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::parallel::once;
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// The inequality: matrix, load, bounds, supports.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
-    pub fn inequality(&self) -> Result<Inequality<T>, Error> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>) -> Result<Inequality<T>, Error>
+    pub fn inequality(&self) -> Result<Inequality<f64>, Error> {
+        compiled!(const D: fn(&Discretisation<'_, D>) -> Result<Inequality<f64>, Error>
                 = |of| of.assemble()
         )(self)
     }
-    fn assemble(&self) -> Result<Inequality<T>, Error> {
+    fn assemble(&self) -> Result<Inequality<f64>, Error> {
         let is_penalised = self.owns_rows() && penalised::applies(self.form());
         let free = self.space.free_bodies()?;
         // the load of a penalised matrix has no Dirichlet data
@@ -37,7 +35,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         // the loops that fill the matrix return no error: a reaction term that is not finite is
         // detected here
         if let Some(reaction) = &self.space.reaction
-            && !matrix.values.iter().all(|v| v.to_f64().is_finite())
+            && !matrix.values.iter().all(|v| v.is_finite())
         {
             reaction.check(self.mesh())?;
         }
@@ -53,7 +51,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             dirichlet_energy,
             kernel: Vec::new(),
             bodies: Vec::new(),
-            is_definite: false,
+            is_definite: self.is_coercive() && self.penalty_below_bound().is_none(),
             distribution: None,
         };
         self.space.set_kernel(&mut inequality, self.form.couples(), free);
@@ -67,14 +65,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Errors
     /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: see
-    /// [`check_bounds`](crate::distributed::check_bounds). [`Error::DataNotFinite`].
-    pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error>
+    /// [`check_bounds`](crate::processes::check_bounds). [`Error::DataNotFinite`].
+    pub fn bounds(&self) -> Result<Vec<Bound<f64>>, Error> {
+        compiled!(const D: fn(&Discretisation<'_, D>) -> Result<Vec<Bound<f64>>, Error>
                 = |of| of.checked_bounds()
         )(self)
     }
-    fn checked_bounds(&self) -> Result<Vec<Bound<T>>, Error> {
+    fn checked_bounds(&self) -> Result<Vec<Bound<f64>>, Error> {
         let (bounds, found) = self.space.bounds()?;
         if self.mesh().is_part() {
             once(&self.contradictions, || Contradictions::new(&bounds, found, self.mesh()));
@@ -90,8 +87,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub(crate) fn contradictions(&self) -> Result<&Contradictions<D>, Error> {
-        compiled!(
-            T, D: for<'d> fn(&'d Discretisation<'_, T, D>) -> Result<&'d Contradictions<D>, Error>
+        compiled!(const D: for<'d> fn(&'d Discretisation<'_, D>) -> Result<&'d Contradictions<D>, Error>
                 = |of| of.find_contradictions()
         )(self)
     }
@@ -107,9 +103,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    pub fn load(&self) -> Result<Vec<T>, Error> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<T>, Error>
+    pub fn load(&self) -> Result<Vec<f64>, Error> {
+        compiled!(const D: fn(&Discretisation<'_, D>) -> Result<Vec<f64>, Error>
                 = |of| of.space.load(of.form(), &|| &of.prepared().0)
         )(self)
     }

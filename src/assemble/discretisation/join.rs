@@ -1,74 +1,40 @@
 //! Element, facet form, problem and mesh made into a discretisation, if they fit.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::Discretisation;
-use crate::assemble::chosen_element::ChosenElement;
 use crate::assemble::data_quadrature::DataQuadrature;
 use crate::assemble::local::MAX_FLUX_MOMENTS;
 use crate::assemble::shared_rows::SharedRows;
-use crate::assemble::space::{AnyElement, Space};
-use crate::element::ReferenceElement;
+use crate::assemble::space::Space;
+use crate::element::{Element, MAX_BASIS};
 use crate::error::Error;
 use crate::facet::{DirichletBy, FacetForm};
-use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::real::Real;
 
-impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
+impl<'a, const D: usize> Discretisation<'a, D> {
     /// Joins an element and a facet form with a problem and a mesh; builds facets only if they are
     /// needed.
     ///
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
-    /// [`Error::Parameter`] for a penalty factor that makes no penalty.
-    pub(crate) fn of<E: ReferenceElement<T, D>>(
-        form: Box<dyn FacetForm<T, D>>,
-        dirichlet: DirichletBy,
+    /// [`Error::Parameter`] for a penalty factor that makes no penalty, and for a matrix with too many entries.
+    pub(crate) fn of(
+        (element, form, dirichlet): (Arc<dyn Element<D>>, Box<dyn FacetForm<D>>, DirichletBy),
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
+        check_fit(&*element, &*form)?;
+        check_size(mesh.n_cells(), &*element, &*form)?;
         let pins = matches!(dirichlet, DirichletBy::Pinning);
-        let element = ChosenElement::of::<E>(problem.constraint_set());
-        let parts = Parts { element, form, pins };
-        compiled!(
-            T, D: for<'p> fn(
-                Parts<T, D>,
-                &'p Problem<D>,
-                &'p Mesh<T, D>,
-                DataQuadrature,
-            ) -> Result<Discretisation<'p, T, D>, Error>
-                = |parts, problem, mesh, quadrature| parts.join(problem, mesh, quadrature)
-        )(parts, problem, mesh, quadrature)
-    }
-}
-
-/// What a scheme brings to a discretisation.
-struct Parts<T: Real, const D: usize> {
-    element: ChosenElement<T, D>,
-    form: Box<dyn FacetForm<T, D>>,
-    /// Whether Dirichlet data are pinned.
-    pins: bool,
-}
-
-impl<T: Real, const D: usize> Parts<T, D> {
-    fn join<'a>(
-        self,
-        problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
-        quadrature: DataQuadrature,
-    ) -> Result<Discretisation<'a, T, D>, Error> {
-        let Self { element: ChosenElement { element, loops, offered }, form, pins } = self;
-        check_form::<T, D>(&element, &*form)?;
-        let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, offered)?;
+        let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins)?;
         space.check_penalty_factor(&*form)?;
-        let shared_rows = SharedRows::new(loops);
         Ok(Discretisation {
             space,
             form,
-            shared_rows,
+            shared_rows: SharedRows::default(),
             prepared: OnceLock::new(),
             contradictions: OnceLock::new(),
         })
@@ -80,19 +46,22 @@ fn polynomials(variables: usize, degree: usize) -> usize {
     (1..=variables).fold(1, |count, k| count * (degree + k) / k)
 }
 
-/// Refuses forms that the loops over owned rows have no tables for.
-fn check_form<T: Real, const D: usize>(
-    element: &AnyElement,
-    form: &dyn FacetForm<T, D>,
+/// Refuses elements and forms that the loops over cells have no tables for.
+fn check_fit<const D: usize>(
+    element: &dyn Element<D>,
+    form: &dyn FacetForm<D>,
 ) -> Result<(), Error> {
     let refuse = |requested, allowed| Err(Error::UnsupportedForm { requested, allowed });
-    let owns_rows = form.couples() && element.layout.is_broken();
-    if form.is_lifted() && !(owns_rows && element.basis_degree <= 2) {
+    if element.per_cell() > MAX_BASIS {
+        return refuse("matrices of cells", "elements with at most 20 unknowns in a cell");
+    }
+    let owns_rows = form.couples() && element.layout().is_broken();
+    if form.is_lifted() && !(owns_rows && element.basis_degree() <= 2) {
         return refuse("lifts of jumps", "broken elements of degree one and two");
     }
     if owns_rows
         && form.uses_flux()
-        && polynomials(D - 1, element.basis_degree - 1) > MAX_FLUX_MOMENTS
+        && polynomials(D - 1, element.basis_degree() - 1) > MAX_FLUX_MOMENTS
     {
         return refuse(
             "fluxes",
@@ -100,4 +69,50 @@ fn check_form<T: Real, const D: usize>(
         );
     }
     Ok(())
+}
+
+/// Refuses a matrix whose entries 32-bit numbers may not count, before anything is allocated: each cell has at most the
+/// products of its unknowns with those of the cells that the form couples to it.
+fn check_size<const D: usize>(
+    n_cells: usize,
+    element: &dyn Element<D>,
+    form: &dyn FacetForm<D>,
+) -> Result<(), Error> {
+    let coupled = match form.couples() && element.layout().is_broken() {
+        true if form.is_lifted() => 1 + (D + 1) * (D + 1),
+        true => D + 2,
+        false => 1,
+    };
+    let entries = n_cells as u128 * (element.per_cell().pow(2) * coupled) as u128;
+    let limit = u128::from(u32::MAX);
+    if entries <= limit {
+        return Ok(());
+    }
+    Err(Error::Parameter {
+        parameter: "entries of the matrix",
+        value: entries.to_string(),
+        allowed: format!("at most {limit}; choose a coarser mesh or a lower degree"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{Broken, P2};
+    use crate::facet::{InteriorPenalty, NoFacets, PenaltyRule, Symmetry};
+
+    #[test]
+    fn matrices_that_32_bit_numbers_do_not_count_are_refused_before_they_are_made() {
+        let rule = PenaltyRule::Proven(0.5);
+        let form = InteriorPenalty { symmetry: Symmetry::Symmetric, rule, degree: 2 };
+        let broken: &dyn Element<3> = &Broken(P2);
+        // ten unknowns in each of five cells
+        assert!(check_size(8_500_000, broken, &form).is_ok());
+        let error = check_size(8_600_000, broken, &form).unwrap_err().to_string();
+        assert!(
+            error.starts_with("entries of the matrix = 4300000000: at most 4294967295"),
+            "{error}"
+        );
+        assert!(check_size::<3>(8_600_000, &P2, &NoFacets).is_ok());
+    }
 }

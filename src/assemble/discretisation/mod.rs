@@ -24,23 +24,22 @@ use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::parallel::once;
 use crate::problem::Problem;
-use crate::real::Real;
 
 /// A scheme applied to a problem on a mesh.
 ///
 /// The type names no scheme: element and facet form are held without their types, so that what it
-/// does is compiled once for each scalar and dimension.
-pub struct Discretisation<'a, T: Real, const D: usize> {
-    pub(crate) space: Space<'a, T, D>,
-    form: Box<dyn FacetForm<T, D>>,
-    shared_rows: SharedRows<T, D>,
+/// does is compiled once for each dimension.
+pub struct Discretisation<'a, const D: usize> {
+    pub(crate) space: Space<'a, D>,
+    form: Box<dyn FacetForm<D>>,
+    shared_rows: SharedRows,
     /// What facet forms need of cells and facets, computed when first needed.
-    prepared: OnceLock<(Metrics<T>, FacetCoefficients<T>)>,
+    prepared: OnceLock<(Metrics, FacetCoefficients)>,
     /// On a part what its bounds, once found, leave to be judged with the data of all parts.
     contradictions: OnceLock<Contradictions<D>>,
 }
 
-impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
+impl<'a, const D: usize> Discretisation<'a, D> {
     /// Number of unknowns, Dirichlet ones included.
     pub fn unknowns(&self) -> usize {
         self.space.dofs.size()
@@ -50,11 +49,11 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         self.space.degree
     }
     /// The facet form in force.
-    pub fn form(&self) -> &dyn FacetForm<T, D> {
+    pub fn form(&self) -> &dyn FacetForm<D> {
         &*self.form
     }
     /// The mesh.
-    pub fn mesh(&self) -> &'a Mesh<T, D> {
+    pub fn mesh(&self) -> &'a Mesh<D> {
         self.space.mesh
     }
     /// The problem.
@@ -66,13 +65,12 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         self.form.couples() && self.space.broken
     }
     /// The pattern of the matrix, with values zero.
-    pub fn pattern(&self) -> SparseMatrix<T> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>) -> SparseMatrix<T>
+    pub fn pattern(&self) -> SparseMatrix<f64> {
+        compiled!(const D: fn(&Discretisation<'_, D>) -> SparseMatrix<f64>
                 = |of| of.make_pattern()
         )(self)
     }
-    fn make_pattern(&self) -> SparseMatrix<T> {
+    fn make_pattern(&self) -> SparseMatrix<f64> {
         if self.owns_rows() {
             owned_rows::pattern(&self.space, self.form())
         } else {
@@ -83,13 +81,12 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     ///
     /// # Panics
     /// If it has another.
-    pub fn fill(&self, matrix: &mut SparseMatrix<T>) {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &mut SparseMatrix<T>)
+    pub fn fill(&self, matrix: &mut SparseMatrix<f64>) {
+        compiled!(const D: fn(&Discretisation<'_, D>, &mut SparseMatrix<f64>)
                 = |of, matrix| of.fill_values(matrix)
         )(self, matrix)
     }
-    fn fill_values(&self, matrix: &mut SparseMatrix<T>) {
+    fn fill_values(&self, matrix: &mut SparseMatrix<f64>) {
         if self.owns_rows() {
             let (metrics, weights) = self.prepared();
             owned_rows::fill(&self.space, self.form(), metrics, weights, matrix);
@@ -104,7 +101,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         self.space.load_by_cell.take();
     }
     /// What facet forms need of cells and facets. Loops over cells ask for it before they begin.
-    pub(super) fn prepared(&self) -> &(Metrics<T>, FacetCoefficients<T>) {
+    pub(super) fn prepared(&self) -> &(Metrics, FacetCoefficients) {
         once(&self.prepared, || {
             let metrics = Metrics::of(self.space.mesh);
             let weights = FacetCoefficients::of(&self.space, self.form(), &metrics);
@@ -112,15 +109,14 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         })
     }
     /// The matrix from nothing.
-    pub fn matrix(&self) -> SparseMatrix<T> {
+    pub fn matrix(&self) -> SparseMatrix<f64> {
         let mut matrix = self.pattern();
         self.fill(&mut matrix);
         matrix
     }
     /// The support of each unknown.
     pub fn supports(&self) -> Vec<Support> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>) -> Vec<Support>
+        compiled!(const D: fn(&Discretisation<'_, D>) -> Vec<Support>
                 = |of| of.space.supports()
         )(self)
     }
@@ -128,9 +124,8 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
-    pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Vec<f64>
+    pub fn vertex_values(&self, u: &[f64]) -> Vec<f64> {
+        compiled!(const D: fn(&Discretisation<'_, D>, &[f64]) -> Vec<f64>
                 = |of, u| of.space.vertex_values(u)
         )(self, u)
     }
@@ -138,8 +133,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// one with the smallest quotient of penalty and bound; none if no penalty lies below its bound
     /// or the form has no such bound.
     pub fn penalty_below_bound(&self) -> Option<PenaltyBelowBound> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>) -> Option<PenaltyBelowBound>
+        compiled!(const D: fn(&Discretisation<'_, D>) -> Option<PenaltyBelowBound>
                 = |of| of.space.penalty_below_bound(of.form())
         )(self)
     }
@@ -158,14 +152,13 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// [owner of each cell](crate::mesh::Part::owners).
     ///
     /// Of an unknown of own cells this is the owner on the whole mesh, if the part has as many layers as the
-    /// scheme [needs](crate::scheme::AnyScheme#method.layers). The others are none of the part's own either
+    /// scheme [needs](crate::scheme::Scheme#method.layers). The others are none of the part's own either
     /// way.
     ///
     /// # Panics
     /// If there are fewer owners than cells.
     pub fn owners(&self, of_cells: &[u32]) -> Vec<u32> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &[u32]) -> Vec<u32>
+        compiled!(const D: fn(&Discretisation<'_, D>, &[u32]) -> Vec<u32>
                 = |of, of_cells| of.owners_of_unknowns(of_cells)
         )(self, of_cells)
     }
@@ -180,7 +173,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> std::fmt::Debug for Discretisation<'_, T, D> {
+impl<const D: usize> std::fmt::Debug for Discretisation<'_, D> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Discretisation")
             .field("unknowns", &self.unknowns())

@@ -13,24 +13,20 @@ use crate::assemble::space::Space;
 use crate::assemble::space::metric::Metrics;
 use crate::facet::{FacetForm, FacetKind};
 use crate::mesh::{BoundaryPart, Neighbour};
-use crate::real::Real;
 
 /// Whether the unknowns are facet means of linear functions and the form acts on means of jumps only, without higher
 /// moments, fluxes and lifts.
-pub(super) fn is_applicable<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
-    form: &dyn FacetForm<T, D>,
-) -> bool {
+pub(super) fn is_applicable<const D: usize>(space: &Space<'_, D>, form: &dyn FacetForm<D>) -> bool {
     // the basis function that has mean one on a facet, and mean zero on the others, is `1 - D lambda` with the
     // barycentric coordinate `lambda` of the vertex opposite to the facet
     !form.is_lifted()
         && !form.uses_flux()
-        && space.gradient_factor() == Some(T::lit(-(D as f64)))
+        && space.gradient_factor() == Some(-(D as f64))
         && form.moments(space.basis_degree) == 0
 }
 
 /// The pattern, with values zero.
-pub(super) fn pattern<T: Real, const D: usize>(space: &Space<'_, T, D>) -> SparseMatrix<T> {
+pub(super) fn pattern<const D: usize>(space: &Space<'_, D>) -> SparseMatrix<f64> {
     let neighbours = space.coupled_neighbours();
     let is_interior =
         move |cell, local| matches!(neighbours.across(cell, local), Neighbour::Cell { .. });
@@ -51,18 +47,18 @@ pub(super) fn pattern<T: Real, const D: usize>(space: &Space<'_, T, D>) -> Spars
 }
 
 /// The values of a matrix with the pattern of [`pattern`].
-pub(super) fn fill<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
-    form: &dyn FacetForm<T, D>,
-    metrics: &Metrics<T>,
-    weights: &FacetCoefficients<T>,
-    matrix: &mut SparseMatrix<T>,
+pub(super) fn fill<const D: usize>(
+    space: &Space<'_, D>,
+    form: &dyn FacetForm<D>,
+    metrics: &Metrics,
+    weights: &FacetCoefficients,
+    matrix: &mut SparseMatrix<f64>,
 ) {
     let neighbours = space.coupled_neighbours();
-    let moment_weight = T::lit(form.moment_weight(0));
+    let moment_weight = form.moment_weight(0);
     for_each_cell(&matrix.row_starts, D + 1, &mut matrix.values, |cell, mut rows| {
         let metric = metrics.at::<D>(cell);
-        let scale = space.alpha(cell) * T::lit((D * D) as f64);
+        let scale = space.alpha(cell) * ((D * D) as f64);
         let mut own = metric.products.map(|row| row.map(|product| scale * product));
         if let Some(reaction) = &space.reaction {
             let mut products = zero_local();

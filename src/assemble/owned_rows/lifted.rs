@@ -23,28 +23,27 @@ use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
-use crate::real::Real;
 
 /// Most moments a lift is made of: quadratics on a triangle.
 pub(crate) const MAX_MOMENTS: usize = 6;
 
-type Moments<T> = [[T; MAX_MOMENTS]; MAX_BASIS];
-type Product<T> = [[T; MAX_MOMENTS]; MAX_MOMENTS];
+type Moments = [[f64; MAX_MOMENTS]; MAX_BASIS];
+type Product = [[f64; MAX_MOMENTS]; MAX_MOMENTS];
 
 /// Lifts on the reference cell.
-pub(crate) struct LiftTable<T> {
+pub(crate) struct LiftTable {
     /// Moments of the basis, of degree up to that of lifts.
-    pub facets: FacetTable<T>,
+    pub facets: FacetTable,
     /// Number of moments on a facet.
     moments: usize,
     /// For two facets, the products of the lifts of their moments, per measures and volume.
-    products: [[Product<T>; 4]; 4],
+    products: [[Product; 4]; 4],
 }
 
-impl<T: Real> LiftTable<T> {
+impl LiftTable {
     /// The lifts of this degree of a space of degree one or two.
-    pub fn new<const D: usize>(space: &Space<'_, T, D>, degree: usize) -> Self {
-        let mut products = [[[[T::lit(0.0); MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
+    pub fn new<const D: usize>(space: &Space<'_, D>, degree: usize) -> Self {
+        let mut products = [[[[0.0; MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
         let tests: Vec<Vec<Vec<f64>>> = (0..D + 1).map(|l| tests(D, degree, l)).collect();
         for l in 0..=D {
             for k in 0..=D {
@@ -52,7 +51,7 @@ impl<T: Real> LiftTable<T> {
                     for (n, b) in tests[k].iter().enumerate() {
                         // tests are against an orthonormal basis of the cell
                         let product = a.iter().zip(b).map(|(a, b)| a * b).sum();
-                        products[l][k][m][n] = T::lit(product);
+                        products[l][k][m][n] = product;
                     }
                 }
             }
@@ -77,36 +76,35 @@ fn tests(dimension: usize, degree: usize, local: usize) -> Vec<Vec<f64>> {
 }
 
 /// Moments of a weight times a function with these moments.
-fn weigh<T: Real>(products: &Product<T>, moments: &[T; MAX_MOMENTS]) -> [T; MAX_MOMENTS] {
-    let sum = |row: &[T; MAX_MOMENTS]| {
-        row.iter().zip(moments).fold(T::lit(0.0), |sum, (&p, &m)| sum + p * m)
-    };
+fn weigh(products: &Product, moments: &[f64; MAX_MOMENTS]) -> [f64; MAX_MOMENTS] {
+    let sum =
+        |row: &[f64; MAX_MOMENTS]| row.iter().zip(moments).fold(0.0, |sum, (&p, &m)| sum + p * m);
     std::array::from_fn(|k| sum(&products[k]))
 }
 
 /// The lifts of a discretisation.
-pub(crate) struct Lifting<'s, 'a, T: Real, const D: usize> {
-    pub space: &'s Space<'a, T, D>,
-    pub form: &'s dyn FacetForm<T, D>,
-    pub metrics: &'s Metrics<T>,
-    pub table: &'s LiftTable<T>,
+pub(crate) struct Lifting<'s, 'a, const D: usize> {
+    pub space: &'s Space<'a, D>,
+    pub form: &'s dyn FacetForm<D>,
+    pub metrics: &'s Metrics,
+    pub table: &'s LiftTable,
 }
 
 /// A facet of a centre whose jump is lifted.
-struct JumpFacet<T> {
+struct JumpFacet {
     local: usize,
     /// The cell across and the facet's number in it; none on the boundary.
     across: Option<(usize, usize)>,
     /// The weight of the centre's normal derivative in the flux; one where the coefficient varies in one
     /// of the cells.
-    flux_weight: T,
+    flux_weight: f64,
     /// There, the products of moments with that weight at the points of the facet.
-    products: Option<Product<T>>,
+    products: Option<Product>,
 }
 
-impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
+impl<const D: usize> Lifting<'_, '_, D> {
     /// Adds the products to the rows of a cell.
-    pub fn add(&self, neighbours: &Neighbours, cell: usize, coupled: &Coupled, rows: &mut [T]) {
+    pub fn add(&self, neighbours: &Neighbours, cell: usize, coupled: &Coupled, rows: &mut [f64]) {
         self.add_centre(neighbours, cell, None, coupled, rows);
         for local in 0..=D {
             if let Neighbour::Cell { cell: other, local: other_local } =
@@ -126,18 +124,18 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         centre: usize,
         shared: Option<(usize, usize)>,
         coupled: &Coupled,
-        rows: &mut [T],
+        rows: &mut [f64],
     ) {
         let metric = self.metrics.at::<D>(centre);
-        let facets_with_jumps: [Option<JumpFacet<T>>; 4] = std::array::from_fn(|l| {
+        let facets_with_jumps: [Option<JumpFacet>; 4] = std::array::from_fn(|l| {
             if l <= D { self.jump_facet(neighbours, centre, &metric, l) } else { None }
         });
         let n = self.space.per_cell();
         let row = rows.len() / n;
         for test in facets_with_jumps.iter().flatten() {
             let (sign, local) = match shared {
-                None => (T::lit(1.0), test.local),
-                Some((there, here)) if there == test.local => (T::lit(-1.0), here),
+                None => (1.0, test.local),
+                Some((there, here)) if there == test.local => (-1.0, here),
                 Some(_) => continue,
             };
             let tested = self.moments(local, test);
@@ -146,11 +144,11 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 let weighted = self.weighted(&tested, test.local, trial.local, scale);
                 let columns = self.moments(trial.local, trial);
                 let start = coupled.position(centre) * n;
-                self.add_block(&weighted, &columns, T::lit(1.0), start, row, rows);
+                self.add_block(&weighted, &columns, 1.0, start, row, rows);
                 if let Some((other, other_local)) = trial.across {
                     let columns = self.moments(other_local, trial);
                     let start = coupled.position(other) * n;
-                    self.add_block(&weighted, &columns, T::lit(-1.0), start, row, rows);
+                    self.add_block(&weighted, &columns, -1.0, start, row, rows);
                 }
             }
         }
@@ -160,12 +158,12 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
     fn scale(
         &self,
         centre: usize,
-        metric: &CellMetric<T, D>,
-        test: &JumpFacet<T>,
-        trial: &JumpFacet<T>,
-    ) -> T {
+        metric: &CellMetric<D>,
+        test: &JumpFacet,
+        trial: &JumpFacet,
+    ) -> f64 {
         let product = metric.products[test.local][trial.local];
-        T::lit((D * D) as f64) * test.flux_weight * trial.flux_weight * product
+        ((D * D) as f64) * test.flux_weight * trial.flux_weight * product
             / self.space.extreme_coefficients((centre, test.local))[1]
     }
 
@@ -174,9 +172,9 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         &self,
         neighbours: &Neighbours,
         centre: usize,
-        metric: &CellMetric<T, D>,
+        metric: &CellMetric<D>,
         local: usize,
-    ) -> Option<JumpFacet<T>> {
+    ) -> Option<JumpFacet> {
         let mesh = self.space.mesh;
         let me = self.space.side(centre, local, metric);
         match neighbours.across(centre, local) {
@@ -189,13 +187,13 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 let facet = view(mesh, here, Some(there));
                 let average_weight = self.form.average_weight(&facet);
                 let flux_weight = flux_weight(&facet, average_weight, is_here);
-                let own = if is_here { average_weight } else { T::lit(1.0) - average_weight };
+                let own = if is_here { average_weight } else { 1.0 - average_weight };
                 let across = Some((cell, other_local));
                 Some(self.with_products((centre, local), across, flux_weight, own))
             }
             Neighbour::Boundary(BoundaryPart::Dirichlet) => {
                 let weight = me.coefficient;
-                Some(self.with_products((centre, local), None, weight, T::lit(1.0)))
+                Some(self.with_products((centre, local), None, weight, 1.0))
             }
             Neighbour::Boundary(_) | Neighbour::Cut => None,
         }
@@ -206,23 +204,23 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         &self,
         (centre, local): Place,
         across: Option<Place>,
-        flux_weight: T,
-        own_weight: T,
-    ) -> JumpFacet<T> {
+        flux_weight: f64,
+        own_weight: f64,
+    ) -> JumpFacet {
         if !self.space.varies_at((centre, local), across) {
             return JumpFacet { local, across, flux_weight, products: None };
         }
         let product = |k, l| self.space.flux_product((centre, local), across, own_weight, (k, l));
-        let or_zero = |k, l| product(k, l).unwrap_or_else(|| T::lit(0.0));
+        let or_zero = |k, l| product(k, l).unwrap_or(0.0);
         let products = std::array::from_fn(|k| std::array::from_fn(|l| or_zero(k, l)));
-        JumpFacet { local, across, flux_weight: T::lit(1.0), products: Some(products) }
+        JumpFacet { local, across, flux_weight: 1.0, products: Some(products) }
     }
 
     /// The moments on facet `local` of a cell, which is this facet of a centre, of what is lifted.
-    fn moments(&self, local: usize, facet: &JumpFacet<T>) -> Moments<T> {
-        let mut moments = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
+    fn moments(&self, local: usize, facet: &JumpFacet) -> Moments {
+        let mut moments = [[0.0; MAX_MOMENTS]; MAX_BASIS];
         for (m, basis) in self.table.facets.on(local).iter().enumerate() {
-            let basis: &BasisAt<T> = basis;
+            let basis: &BasisAt = basis;
             for i in 0..self.space.per_cell() {
                 moments[i][m] = basis.values[i];
             }
@@ -234,9 +232,9 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
     }
 
     /// The moments of test functions times the products with the moments of another facet.
-    fn weighted(&self, tested: &Moments<T>, test: usize, trial: usize, scale: T) -> Moments<T> {
+    fn weighted(&self, tested: &Moments, test: usize, trial: usize, scale: f64) -> Moments {
         let products = &self.table.products[test][trial];
-        let mut weighted = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
+        let mut weighted = [[0.0; MAX_MOMENTS]; MAX_BASIS];
         for i in 0..self.space.per_cell() {
             for n in 0..self.table.moments {
                 for m in 0..self.table.moments {
@@ -249,12 +247,12 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
 
     fn add_block(
         &self,
-        tests: &Moments<T>,
-        trials: &Moments<T>,
-        sign: T,
+        tests: &Moments,
+        trials: &Moments,
+        sign: f64,
         start: usize,
         row: usize,
-        rows: &mut [T],
+        rows: &mut [f64],
     ) {
         let n = self.space.per_cell();
         for i in 0..n {
@@ -274,7 +272,7 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         neighbours: &Neighbours,
         centre: usize,
         (datum_local, moments): &(usize, Vec<f64>),
-        load: &mut [T],
+        load: &mut [f64],
     ) {
         let metric = self.metrics.at::<D>(centre);
         let Some(datum) = self.jump_facet(neighbours, centre, &metric, *datum_local) else {
@@ -284,7 +282,7 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         for local in 0..=D {
             let Some(test) = self.jump_facet(neighbours, centre, &metric, local) else { continue };
             let scale = self.scale(centre, &metric, &test, &datum);
-            let mut add = |cell: usize, local: usize, sign: T| {
+            let mut add = |cell: usize, local: usize, sign: f64| {
                 let tested = self.moments(local, &test);
                 let weighted = self.weighted(&tested, test.local, *datum_local, scale);
                 let n = self.space.per_cell();
@@ -295,9 +293,9 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                     }
                 }
             };
-            add(centre, local, T::lit(1.0));
+            add(centre, local, 1.0);
             if let Some((other, other_local)) = test.across {
-                add(other, other_local, T::lit(-1.0));
+                add(other, other_local, -1.0);
             }
         }
     }
@@ -309,15 +307,15 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         &self,
         neighbours: &Neighbours,
         centre: usize,
-        jumps: &[[T; MAX_MOMENTS]; 4],
+        jumps: &[[f64; MAX_MOMENTS]; 4],
         kept: usize,
     ) -> [[f64; 3]; 4] {
         let metric = self.metrics.at::<D>(centre);
-        let facets: [Option<JumpFacet<T>>; 4] = std::array::from_fn(|local| match local <= D {
+        let facets: [Option<JumpFacet>; 4] = std::array::from_fn(|local| match local <= D {
             true => self.jump_facet(neighbours, centre, &metric, local),
             false => None,
         });
-        let weighted = |facet: &JumpFacet<T>, moments: &[T; MAX_MOMENTS]| match &facet.products {
+        let weighted = |facet: &JumpFacet, moments: &[f64; MAX_MOMENTS]| match &facet.products {
             Some(products) => weigh(products, moments),
             None => *moments,
         };
@@ -328,12 +326,12 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 let products = &self.table.products[test.local][trial.local];
                 let scale = self.scale(centre, &metric, test, trial);
                 for (k, sum) in sums[test.local].iter_mut().enumerate().take(kept) {
-                    let mut moment = [T::lit(0.0); MAX_MOMENTS];
-                    moment[k] = T::lit(1.0);
+                    let mut moment = [0.0; MAX_MOMENTS];
+                    moment[k] = 1.0;
                     let tested = weighted(test, &moment);
                     for (row, &tested) in products.iter().zip(&tested) {
                         for (&product, &jump) in row.iter().zip(&jump) {
-                            *sum += (scale * tested * product * jump).to_f64();
+                            *sum += scale * tested * product * jump;
                         }
                     }
                 }
@@ -350,13 +348,13 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         centre: usize,
         (first, first_moments): &(usize, Vec<f64>),
         (second, second_moments): &(usize, Vec<f64>),
-    ) -> T {
+    ) -> f64 {
         let metric = self.metrics.at::<D>(centre);
         let facet = |local| self.jump_facet(neighbours, centre, &metric, local);
-        let (Some(a), Some(b)) = (facet(*first), facet(*second)) else { return T::lit(0.0) };
+        let (Some(a), Some(b)) = (facet(*first), facet(*second)) else { return 0.0 };
         let scale = self.scale(centre, &metric, &a, &b);
         let (a, b) = (lifted_moments(&a, first_moments), lifted_moments(&b, second_moments));
-        let mut sum = T::lit(0.0);
+        let mut sum = 0.0;
         for (products, &a) in self.table.products[*first][*second].iter().zip(&a) {
             for (&product, &b) in products.iter().zip(&b) {
                 sum += scale * a * product * b;
@@ -367,8 +365,8 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
 }
 
 /// The moments of a Dirichlet datum of which lifts are made, weighted where the coefficient varies.
-fn lifted_moments<T: Real>(facet: &JumpFacet<T>, moments: &[f64]) -> [T; MAX_MOMENTS] {
-    let mut lifted = [T::lit(0.0); MAX_MOMENTS];
-    lifted.iter_mut().zip(moments).for_each(|(to, &from)| *to = T::lit(from));
+fn lifted_moments(facet: &JumpFacet, moments: &[f64]) -> [f64; MAX_MOMENTS] {
+    let mut lifted = [0.0; MAX_MOMENTS];
+    lifted.iter_mut().zip(moments).for_each(|(to, &from)| *to = from);
     facet.products.as_ref().map_or(lifted, |products| weigh(products, &lifted))
 }

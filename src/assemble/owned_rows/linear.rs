@@ -14,36 +14,35 @@ use crate::assemble::facet_coefficients::FacetWeight;
 use crate::assemble::space::metric::CellMetric;
 use crate::facet::FacetKind;
 use crate::mesh::{BoundaryPart, Neighbour};
-use crate::real::Real;
 
 /// Constants of the reference cell, of which dimension `D` uses the first `D + 1` facets.
-struct Reference<T, const N: usize> {
+struct Reference<const N: usize> {
     /// Gradients of basis functions are those of barycentric coordinates times this.
-    gradient: T,
+    gradient: f64,
     /// By facet: products of jumps.
-    own: [[[T; N]; N]; 4],
+    own: [[[f64; N]; N]; 4],
     /// By facet and by the number that the cell across has for it.
-    across: [[[[T; N]; N]; 4]; 4],
+    across: [[[[f64; N]; N]; 4]; 4],
     /// By facet: means of the basis functions.
-    means: [[T; N]; 4],
+    means: [[f64; N]; 4],
 }
 
 /// One facet of a cell: what multiplies products of jumps, and for each test function what multiplies
 /// fluxes and means of trial functions.
-struct OnFacet<T, const N: usize> {
-    jump_jump: T,
-    by_flux: [T; N],
-    by_jump: [T; N],
+struct OnFacet<const N: usize> {
+    jump_jump: f64,
+    by_flux: [f64; N],
+    by_jump: [f64; N],
 }
 
-impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
+impl<const D: usize> Filling<'_, '_, D> {
     /// Whether [`Filling::fill_linear`] gives all that the form has.
     pub(crate) fn is_linear(&self) -> bool {
         self.gradient.is_some() && self.jumps.weights.len() == 1 && self.flux_moments.len() < 2
     }
 
     /// The rows of all cells, for elements of `N = D + 1` functions.
-    pub(crate) fn fill_linear<const N: usize>(&self, row_starts: &[u32], values: &mut [T]) {
+    pub(crate) fn fill_linear<const N: usize>(&self, row_starts: &[u32], values: &mut [f64]) {
         if self.flux_moments.is_empty() {
             self.fill_by_moments::<N, false>(row_starts, values);
         } else {
@@ -55,23 +54,23 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     fn fill_by_moments<const N: usize, const FLUX: bool>(
         &self,
         row_starts: &[u32],
-        values: &mut [T],
+        values: &mut [f64],
     ) {
         let reference = self.reference::<N>();
         for_each_cell(row_starts, N, values, |cell, entries| {
             if self.lifted {
-                entries.fill(T::lit(0.0));
+                entries.fill(0.0);
             }
             let rows = Rows::new(N, entries, self.positions(cell));
             self.write_linear::<N, FLUX>(&reference, cell, rows);
         });
     }
 
-    fn reference<const N: usize>(&self) -> Reference<T, N> {
-        let of = |m: &[[T; _]; _]| tabulate(|i| tabulate(|j| m[i][j]));
+    fn reference<const N: usize>(&self) -> Reference<N> {
+        let of = |m: &[[f64; _]; _]| tabulate(|i| tabulate(|j| m[i][j]));
         let facet = |local: usize| local.min(D);
         Reference {
-            gradient: self.gradient.unwrap_or_else(|| T::lit(1.0)),
+            gradient: self.gradient.unwrap_or(1.0),
             own: tabulate(|l| of(&self.jumps.own(facet(l))[0])),
             across: tabulate(|l| tabulate(|m| of(&self.jumps.across(facet(l), facet(m))[0]))),
             means: tabulate(|l| tabulate(|i| self.facets.on(facet(l))[0].values[i])),
@@ -82,14 +81,14 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     #[inline(always)]
     fn write_linear<const N: usize, const FLUX: bool>(
         &self,
-        reference: &Reference<T, N>,
+        reference: &Reference<N>,
         cell: usize,
-        mut rows: Rows<'_, T>,
+        mut rows: Rows<'_>,
     ) {
         let metric = self.metrics.at::<D>(cell);
         let gradient = reference.gradient;
         let scale = self.space.alpha(cell) * gradient * gradient;
-        let mut own = [[T::lit(0.0); N]; N];
+        let mut own = [[0.0; N]; N];
         for i in 0..N {
             for j in 0..N {
                 own[i][j] = scale * metric.products[i][j];
@@ -106,10 +105,10 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                         self.add_linear::<N, FLUX>(reference, &metric, local, &weight, &mut own);
                     let products = &reference.across[local][other_local & 3];
                     let means = &reference.means[other_local & 3];
-                    let mut flux = [T::lit(0.0); N];
+                    let mut flux = [0.0; N];
                     if FLUX {
                         count::normal_derivatives(N);
-                        let scale = T::lit(D as f64) * gradient * weight.other_flux_weight;
+                        let scale = (D as f64) * gradient * weight.other_flux_weight;
                         let row = self.metrics.products_of::<D>(other, other_local);
                         flux = std::array::from_fn(|i| scale * row[i]);
                     }
@@ -142,19 +141,19 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     #[inline(always)]
     fn add_linear<const N: usize, const FLUX: bool>(
         &self,
-        reference: &Reference<T, N>,
-        metric: &CellMetric<T, D>,
+        reference: &Reference<N>,
+        metric: &CellMetric<D>,
         local: usize,
-        weight: &FacetWeight<'_, T>,
-        own: &mut [[T; N]; N],
-    ) -> OnFacet<T, N> {
+        weight: &FacetWeight<'_>,
+        own: &mut [[f64; N]; N],
+    ) -> OnFacet<N> {
         count::facets(1);
         let form = weight.coefficients;
         let measure = metric.measures[local];
         let penalty = weight.penalty * self.jumps.weights[0];
         let jump_jump = measure * form.jump_jump.at(penalty);
         let products = &reference.own[local];
-        let zero = [T::lit(0.0); N];
+        let zero = [0.0; N];
         let mut facet = OnFacet { jump_jump, by_flux: zero, by_jump: zero };
         if !FLUX {
             for i in 0..N {
@@ -166,8 +165,8 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         }
         count::normal_derivatives(N);
         let means = &reference.means[local];
-        let scale = T::lit(-(D as f64)) * reference.gradient * weight.own_flux_weight;
-        let flux: [T; N] = std::array::from_fn(|i| scale * metric.products[local][i]);
+        let scale = (-(D as f64)) * reference.gradient * weight.own_flux_weight;
+        let flux: [f64; N] = std::array::from_fn(|i| scale * metric.products[local][i]);
         let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
         let flux_flux = form.flux_flux.at(penalty) / measure;
         facet.by_flux = std::array::from_fn(|i| jump_flux * means[i] + flux_flux * flux[i]);

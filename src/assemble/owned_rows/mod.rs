@@ -27,7 +27,6 @@ use crate::algebra::SparseMatrix;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
 use crate::mesh::{Neighbour, Neighbours};
-use crate::real::Real;
 use lifted::{LiftTable, Lifting};
 use rows_by_cell::for_each_cell;
 
@@ -90,15 +89,16 @@ impl Coupled {
     /// The place of a coupled cell among them.
     #[inline(always)]
     pub fn position(&self, cell: usize) -> usize {
-        self.cells[..self.n].iter().position(|&c| c == cell as u32).unwrap_or(0)
+        let found = self.cells[..self.n].iter().position(|&c| c == cell as u32);
+        found.expect("the cell behind a facet is coupled")
     }
 }
 
 /// The pattern, with values zero.
-pub(crate) fn pattern<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
-    form: &dyn FacetForm<T, D>,
-) -> SparseMatrix<T> {
+pub(crate) fn pattern<const D: usize>(
+    space: &Space<'_, D>,
+    form: &dyn FacetForm<D>,
+) -> SparseMatrix<f64> {
     if facet_means::is_applicable(space, form) {
         return facet_means::pattern(space);
     }
@@ -121,34 +121,34 @@ pub(crate) fn pattern<T: Real, const D: usize>(
 }
 
 /// All that the loop over cells reads.
-struct Filling<'s, 'a, T: Real, const D: usize> {
-    space: &'s Space<'a, T, D>,
+struct Filling<'s, 'a, const D: usize> {
+    space: &'s Space<'a, D>,
     neighbours: &'s Neighbours,
-    metrics: &'s Metrics<T>,
-    weights: &'s FacetCoefficients<T>,
-    stiffness: StiffnessTable<T>,
-    facets: FacetTable<T>,
-    jumps: JumpProducts<T>,
+    metrics: &'s Metrics,
+    weights: &'s FacetCoefficients,
+    stiffness: StiffnessTable,
+    facets: FacetTable,
+    jumps: JumpProducts,
     /// By what the penalty is multiplied for each moment that has a flux.
-    flux_moments: Vec<T>,
+    flux_moments: Vec<f64>,
     /// If the gradient of basis function `i` is `c` times that of barycentric coordinate `i`: `c`.
-    gradient: Option<T>,
+    gradient: Option<f64>,
     lifted: bool,
 }
 
 /// The values, on a known pattern.
-pub(crate) fn fill<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
-    form: &dyn FacetForm<T, D>,
-    metrics: &Metrics<T>,
-    weights: &FacetCoefficients<T>,
-    matrix: &mut SparseMatrix<T>,
+pub(crate) fn fill<const D: usize>(
+    space: &Space<'_, D>,
+    form: &dyn FacetForm<D>,
+    metrics: &Metrics,
+    weights: &FacetCoefficients,
+    matrix: &mut SparseMatrix<f64>,
 ) {
     if facet_means::is_applicable(space, form) {
         return facet_means::fill(space, form, metrics, weights, matrix);
     }
     let facets = space.facet_table(form.moments(space.basis_degree));
-    let of_degree = |k| T::lit(form.moment_weight(k));
+    let of_degree = |k| form.moment_weight(k);
     let has_flux = |k: &&usize| form.uses_flux() && **k < space.basis_degree;
     let filling = Filling {
         space,
@@ -202,11 +202,11 @@ pub(crate) fn fill<T: Real, const D: usize>(
 }
 
 /// What adds to the rows of a cell.
-type AddToCell<'w, T> = &'w (dyn Fn(usize, &Coupled, &mut [T]) + Sync);
+type AddToCell<'w> = &'w (dyn Fn(usize, &Coupled, &mut [f64]) + Sync);
 
-impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
+impl<const D: usize> Filling<'_, '_, D> {
     /// Calls a function with each cell and its rows.
-    fn add_to_cells(&self, row_starts: &[u32], values: &mut [T], add: AddToCell<'_, T>) {
+    fn add_to_cells(&self, row_starts: &[u32], values: &mut [f64], add: AddToCell<'_>) {
         for_each_cell(row_starts, self.space.per_cell(), values, |cell, rows| {
             add(cell, &Coupled::of::<D>(self.neighbours, cell, self.lifted), rows);
         });

@@ -12,39 +12,38 @@ use crate::assemble::space::tables::Derivatives;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetKind;
 use crate::mesh::{BoundaryPart, Neighbour};
-use crate::real::Real;
 
 /// A dense block of the rows of a cell, of which small elements use the upper left corner.
-type Block<T, const N: usize> = [[T; N]; N];
+type Block<const N: usize> = [[f64; N]; N];
 
 /// Moments on a facet, of `N` functions each.
-type Moments<T, const N: usize, const M: usize> = [[T; N]; M];
+type Moments<const N: usize, const M: usize> = [[f64; N]; M];
 
 /// The `n` rows of a cell.
-pub(crate) struct Rows<'r, T> {
+pub(crate) struct Rows<'r> {
     n: usize,
     /// Entries of each.
     length: usize,
-    entries: &'r mut [T],
+    entries: &'r mut [f64],
     /// The place among the coupled cells of those across each facet, and of the cell itself.
     pub across: [usize; 4],
     pub own: usize,
 }
 
-impl<'r, T: Real> Rows<'r, T> {
+impl<'r> Rows<'r> {
     #[inline(always)]
-    pub fn new(n: usize, entries: &'r mut [T], (across, own): ([usize; 4], usize)) -> Self {
+    pub fn new(n: usize, entries: &'r mut [f64], (across, own): ([usize; 4], usize)) -> Self {
         Self { n, length: entries.len() / n, entries, across, own }
     }
     /// Row `i` of the block of the coupled cell at a place, for a cell of `N` functions.
     #[inline(always)]
-    pub fn block<const N: usize>(&mut self, place: usize, i: usize) -> &mut [T] {
+    pub fn block<const N: usize>(&mut self, place: usize, i: usize) -> &mut [f64] {
         let start = i * self.length + place * N;
         &mut self.entries[start..start + N]
     }
     /// Writes row `i` of the block of the coupled cell at a place, as much of it as there is.
     #[inline(always)]
-    fn write<const N: usize>(&mut self, place: usize, i: usize, row: &[T; N]) {
+    fn write<const N: usize>(&mut self, place: usize, i: usize, row: &[f64; N]) {
         if self.n == N {
             self.block::<N>(place, i).copy_from_slice(row);
         } else if i < self.n {
@@ -56,38 +55,38 @@ impl<'r, T: Real> Rows<'r, T> {
 
 /// The cell whose rows are made, seen from one of its facets.
 #[derive(Clone, Copy)]
-struct Own<'f, T, const D: usize> {
+struct Own<'f, const D: usize> {
     cell: usize,
     local: usize,
-    metric: &'f CellMetric<T, D>,
+    metric: &'f CellMetric<D>,
 }
 
 /// One facet of a cell, as it enters the rows of that cell: normals point out of it.
 ///
 /// Jumps and fluxes both flip their sign with the direction of the normal, so their products do not.
-struct OnFacet<'f, T, const D: usize, const N: usize, const M: usize> {
-    me: Own<'f, T, D>,
-    weight: FacetWeight<'f, T>,
+struct OnFacet<'f, const D: usize, const N: usize, const M: usize> {
+    me: Own<'f, D>,
+    weight: FacetWeight<'f>,
     /// What multiplies the products of jumps of the first class.
-    jump_jump: T,
+    jump_jump: f64,
     /// By moment what multiplies fluxes of trial functions, for each test function.
-    by_flux: Moments<T, N, M>,
+    by_flux: Moments<N, M>,
     /// By moment what multiplies jumps of trial functions besides, for each test function.
-    by_jump: Moments<T, N, M>,
+    by_jump: Moments<N, M>,
 }
 
-impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
+impl<const D: usize> Filling<'_, '_, D> {
     /// The rows of all cells, for elements of `N` functions, or of fewer for the largest `N`, with at
     /// most `M` moments of fluxes on a facet.
     pub(crate) fn fill<const N: usize, const M: usize>(
         &self,
         row_starts: &[u32],
-        values: &mut [T],
+        values: &mut [f64],
     ) {
         let n = if N == MAX_BASIS { self.space.per_cell() } else { N };
         for_each_cell(row_starts, n, values, |cell, entries| {
             if self.lifted {
-                entries.fill(T::lit(0.0));
+                entries.fill(0.0);
             }
             let rows = Rows::new(n, entries, self.positions(cell));
             self.write_cell::<N, M>(cell, rows);
@@ -108,7 +107,12 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         }
         if self.lifted {
             let coupled = Coupled::of::<D>(self.neighbours, cell, true);
-            return (cells.map(|other| coupled.position(other as usize)), coupled.position(cell));
+            // behind a facet of the boundary is no cell, and its entry is not read
+            let across = cells.map(|other| match other {
+                u32::MAX => usize::MAX,
+                other => coupled.position(other as usize),
+            });
+            return (across, coupled.position(cell));
         }
         // ranks by comparison of all pairs, without branches
         let me = cell as u32;
@@ -120,10 +124,10 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
 
     /// Writes the rows of a cell: its stiffness and the form on its facets.
     #[inline(always)]
-    fn write_cell<const N: usize, const M: usize>(&self, cell: usize, mut rows: Rows<'_, T>) {
+    fn write_cell<const N: usize, const M: usize>(&self, cell: usize, mut rows: Rows<'_>) {
         let metric = self.metrics.at(cell);
         let coefficient = self.space.alpha(cell);
-        let mut own: Block<T, N> = match self.space.varying_in(cell) {
+        let mut own: Block<N> = match self.space.varying_in(cell) {
             None => block(|i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j)),
             Some((varying, values)) => block(|i, j| varying.stiffness::<D>(values, &metric, i, j)),
         };
@@ -154,16 +158,16 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     #[inline(always)]
     fn add_facet<'f, const N: usize, const M: usize>(
         &'f self,
-        me: Own<'f, T, D>,
+        me: Own<'f, D>,
         there: Option<Place>,
-        weight: FacetWeight<'f, T>,
-        own: &mut Block<T, N>,
-    ) -> OnFacet<'f, T, D, N, M> {
+        weight: FacetWeight<'f>,
+        own: &mut Block<N>,
+    ) -> OnFacet<'f, D, N, M> {
         count::facets(1);
         let form = weight.coefficients;
         let measure = me.metric.measures[me.local];
         let jump_jump = self.jump_scale(&me, &weight, self.jumps.weights[0]);
-        let zero = [[T::lit(0.0); N]; M];
+        let zero = [[0.0; N]; M];
         let mut facet = OnFacet { me, weight, jump_jump, by_flux: zero, by_jump: zero };
         let mut flux = zero;
         let moments = self.facets.on(me.local);
@@ -176,7 +180,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             let own_weight = weight.own_flux_weight;
             flux[k] = match self.space.flux_derivatives((me.cell, me.local), there, own_weight, k) {
                 None => self.flux::<N>(&mine.derivatives, products, own_weight),
-                Some(weighted) => self.flux::<N>(&weighted, products, T::lit(1.0)),
+                Some(weighted) => self.flux::<N>(&weighted, products, 1.0),
             };
             facet.by_flux[k] =
                 std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[k][i]);
@@ -184,7 +188,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         }
         let products = self.jumps.own(me.local);
         for i in 0..N {
-            let mut row: [T; N] = std::array::from_fn(|j| jump_jump * products[0][i][j]);
+            let mut row: [f64; N] = std::array::from_fn(|j| jump_jump * products[0][i][j]);
             for class in 1..products.len() {
                 let scale = self.jump_scale(&me, &weight, self.jumps.weights[class]);
                 for j in 0..N {
@@ -210,13 +214,13 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     #[inline(always)]
     fn write_across<const N: usize, const M: usize>(
         &self,
-        facet: &OnFacet<'_, T, D, N, M>,
+        facet: &OnFacet<'_, D, N, M>,
         there: Place,
-        rows: &mut Rows<'_, T>,
+        rows: &mut Rows<'_>,
     ) {
         let Own { cell, local, .. } = facet.me;
         let (other, other_local) = there;
-        let mut flux = [[T::lit(0.0); N]; M];
+        let mut flux = [[0.0; N]; M];
         let moments = self.facets.on(other_local);
         if self.n_fluxes::<M>() > 0 {
             let of_theirs = self.metrics.products_of::<D>(other, other_local);
@@ -225,13 +229,13 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                 let weighted = self.space.flux_derivatives(there, Some((cell, local)), weight, k);
                 flux[k] = match weighted {
                     None => self.flux::<N>(&moments[k].derivatives, &of_theirs, -weight),
-                    Some(weighted) => self.flux::<N>(&weighted, &of_theirs, T::lit(-1.0)),
+                    Some(weighted) => self.flux::<N>(&weighted, &of_theirs, -1.0),
                 };
             }
         }
         let products = self.jumps.across(local, other_local);
         for i in 0..N {
-            let mut row: [T; N] = std::array::from_fn(|j| -facet.jump_jump * products[0][i][j]);
+            let mut row: [f64; N] = std::array::from_fn(|j| -facet.jump_jump * products[0][i][j]);
             for class in 1..products.len() {
                 let scale = self.jump_scale(&facet.me, &facet.weight, self.jumps.weights[class]);
                 for j in 0..N {
@@ -257,7 +261,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
 
     /// What multiplies the products of jumps of a class.
     #[inline(always)]
-    fn jump_scale(&self, me: &Own<'_, T, D>, weight: &FacetWeight<'_, T>, class: T) -> T {
+    fn jump_scale(&self, me: &Own<'_, D>, weight: &FacetWeight<'_>, class: f64) -> f64 {
         me.metric.measures[me.local] * weight.coefficients.jump_jump.at(weight.penalty * class)
     }
 
@@ -267,12 +271,12 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     #[inline(always)]
     fn flux<const N: usize>(
         &self,
-        derivatives: &Derivatives<T>,
-        products: &[T; 4],
-        factor: T,
-    ) -> [T; N] {
+        derivatives: &Derivatives,
+        products: &[f64; 4],
+        factor: f64,
+    ) -> [f64; N] {
         count::normal_derivatives(N);
-        let scale = T::lit(-(D as f64)) * factor;
+        let scale = (-(D as f64)) * factor;
         std::array::from_fn(|i| {
             let sum = |sum, k: usize| sum + derivatives[i][k] * products[k];
             scale * (1..=D).fold(derivatives[i][0] * products[0], sum)
@@ -281,6 +285,6 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
 }
 
 #[inline(always)]
-fn block<T, const N: usize>(entry: impl Fn(usize, usize) -> T) -> Block<T, N> {
+fn block<const N: usize>(entry: impl Fn(usize, usize) -> f64) -> Block<N> {
     std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }

@@ -6,16 +6,15 @@ use std::ops::Range;
 use crate::algebra::SparseMatrix;
 use crate::memory::in_large_pages;
 use crate::parallel::cells;
-use crate::real::Real;
 
 /// The pattern, with values zero, of `n` rows for each cell, from the lengths of the rows of a cell and a function that
 /// writes the columns of these rows.
-pub(super) fn pattern<T: Real, L: Iterator<Item = usize>>(
+pub(super) fn pattern<L: Iterator<Item = usize>>(
     n_cells: usize,
     n: usize,
     lengths: impl Fn(usize) -> L,
     write_columns: impl Fn(usize, &mut [u32]) + Sync,
-) -> SparseMatrix<T> {
+) -> SparseMatrix<f64> {
     let mut row_starts = in_large_pages(Vec::with_capacity(n * n_cells + 1));
     row_starts.push(0_u32);
     let mut end = 0;
@@ -27,7 +26,7 @@ pub(super) fn pattern<T: Real, L: Iterator<Item = usize>>(
     }
     let mut columns = in_large_pages(vec![0_u32; end as usize]);
     for_each_cell(&row_starts, n, &mut columns, write_columns);
-    let values = in_large_pages(vec![T::lit(0.0); end as usize]);
+    let values = in_large_pages(vec![0.0; end as usize]);
     SparseMatrix { row_starts, columns, values }
 }
 

@@ -1,15 +1,13 @@
 //! The matrix of one cell, as a list.
 
-use std::marker::PhantomData;
-
+use super::unknowns::CellUnknowns;
 use crate::assemble::local::{Local, zero_local};
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, shape};
-use crate::element::{MAX_BASIS, ReferenceElement};
-use crate::real::Real;
+use crate::element::MAX_BASIS;
 
 /// The upper triangle of a cell's matrix, by rows; a power of two holds the largest.
-type Triangle<T> = [T; TRIANGLE];
+type Triangle = [f64; TRIANGLE];
 const TRIANGLE: usize = 256;
 const _: () = assert!(MAX_BASIS * (MAX_BASIS + 1) / 2 <= TRIANGLE);
 
@@ -17,45 +15,42 @@ const _: () = assert!(MAX_BASIS * (MAX_BASIS + 1) / 2 <= TRIANGLE);
 const PAIRS: usize = 6;
 
 /// Matrices of cells, one after the other.
-pub(crate) trait CellMatrix<T> {
+pub(crate) trait CellMatrix {
     /// Computes that of a cell.
     fn of_cell(&mut self, cell: usize);
     /// An entry of it.
-    fn entry(&self, i: usize, j: usize) -> T;
-}
-
-/// Whether basis functions are linear and as many as the vertices of a cell.
-pub(crate) const fn is_linear<T: Real, E: ReferenceElement<T, D>, const D: usize>() -> bool {
-    E::BASIS_DEGREE == 1 && E::N == D + 1
+    fn entry(&self, i: usize, j: usize) -> f64;
 }
 
 /// What cells contribute, tabulated.
-pub(crate) struct CellMatrices<'s, 'a, T: Real, const D: usize> {
-    space: &'s Space<'a, T, D>,
+pub(crate) struct CellMatrices<'s, 'a, const D: usize> {
+    space: &'s Space<'a, D>,
     /// For each pair `k < l` of barycentric coordinates what their product of gradients adds.
-    pairs: [Triangle<T>; PAIRS],
+    pairs: [Triangle; PAIRS],
     /// For entry `(i, j)`, at `N i + j`, where it is in the triangle.
     places: [u8; MAX_BASIS * MAX_BASIS],
     /// If basis function `i` is `c` times barycentric coordinate `i` but for a constant: `c^2`.
-    square: Option<T>,
+    square: Option<f64>,
 }
 
-impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
-    pub fn new<E: ReferenceElement<T, D>>(space: &'s Space<'a, T, D>) -> Self {
-        let zero = T::lit(0.0);
+impl<'s, 'a, const D: usize> CellMatrices<'s, 'a, D> {
+    pub fn new(space: &'s Space<'a, D>) -> Self {
+        let zero = 0.0;
+        let n = space.per_cell();
         let table = space.stiffness_table();
         let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
-        let mut square = is_linear::<T, E, D>().then(|| table.entry::<D>(&unit(0, 1), 0, 1));
+        let is_linear = space.basis_degree == 1 && n == D + 1;
+        let mut square = is_linear.then(|| table.entry::<D>(&unit(0, 1), 0, 1));
         let mut pairs = [[zero; TRIANGLE]; PAIRS];
         let mut places = [0; MAX_BASIS * MAX_BASIS];
         for (pair, (k, l)) in pairs_of::<D>().enumerate() {
             let mut place = 0;
-            for i in 0..E::N {
-                for j in i..E::N {
+            for i in 0..n {
+                for j in i..n {
                     let entry = table.entry::<D>(&unit(k, l), i, j);
                     pairs[pair][place] = entry;
-                    places[i * E::N + j] = place as u8;
-                    places[j * E::N + i] = place as u8;
+                    places[i * n + j] = place as u8;
+                    places[j * n + i] = place as u8;
                     place += 1;
                     let alone = if (i, j) == (k, l) { square } else { Some(zero) };
                     if i != j && Some(entry) != alone {
@@ -68,13 +63,13 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
     }
 
     /// The square by which products of gradients make the whole matrix, if they do.
-    pub fn only_gradients(&self) -> Option<T> {
+    pub fn only_gradients(&self) -> Option<f64> {
         self.square.filter(|_| self.space.reaction.is_none())
     }
 
     /// Writes the stiffness of a cell in which the coefficient varies.
     #[inline(never)]
-    fn write_varying(&self, cell: usize, out: &mut Triangle<T>) {
+    fn write_varying(&self, cell: usize, out: &mut Triangle) {
         let Some((varying, values)) = self.space.varying_in(cell) else { return };
         let metric = self.space.metric(cell);
         let n = self.space.per_cell();
@@ -86,21 +81,16 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
 
     /// Writes the matrix of a cell.
     #[inline(always)]
-    fn write<E: ReferenceElement<T, D>>(
-        &self,
-        cell: usize,
-        out: &mut Triangle<T>,
-        local: &mut Local<T>,
-    ) {
+    fn write(&self, n: usize, cell: usize, out: &mut Triangle, local: &mut Local) {
         let (volume, shape) = shape(self.space.mesh, cell, self.space.alpha(cell));
-        let mut products = [T::lit(0.0); PAIRS];
+        let mut products = [0.0; PAIRS];
         for (product, (k, l)) in products.iter_mut().zip(pairs_of::<D>()) {
             *product = shape[k][l];
         }
-        if const { E::BASIS_DEGREE > 1 } && self.space.varying_in(cell).is_some() {
+        if self.space.varying_in(cell).is_some() {
             self.write_varying(cell, out);
         } else {
-            for place in 0..E::N * (E::N + 1) / 2 {
+            for place in 0..n * (n + 1) / 2 {
                 let mut sum = products[0] * self.pairs[0][place];
                 for pair in 1..D * (D + 1) / 2 {
                     sum += products[pair] * self.pairs[pair][place];
@@ -109,11 +99,11 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
             }
         }
         if let Some(reaction) = &self.space.reaction {
-            local[..E::N].iter_mut().for_each(|row| row[..E::N].fill(T::lit(0.0)));
+            local[..n].iter_mut().for_each(|row| row[..n].fill(0.0));
             reaction.add(self.space.mesh, cell, volume, local);
             let mut place = 0;
-            for i in 0..E::N {
-                for j in i..E::N {
+            for i in 0..n {
+                for j in i..n {
                     out[place] += local[i][j];
                     place += 1;
                 }
@@ -129,63 +119,61 @@ fn pairs_of<const D: usize>() -> impl Iterator<Item = (usize, usize)> {
 }
 
 /// Matrices that are products of gradients times a square: they stay in registers.
-pub(crate) struct Gradients<'c, 's, 'a, T: Real, const D: usize> {
-    cells: &'c CellMatrices<'s, 'a, T, D>,
-    square: T,
-    products: [[T; 4]; 4],
+pub(crate) struct Gradients<'c, 's, 'a, const D: usize> {
+    cells: &'c CellMatrices<'s, 'a, D>,
+    square: f64,
+    products: [[f64; 4]; 4],
 }
 
-impl<'c, 's, 'a, T: Real, const D: usize> Gradients<'c, 's, 'a, T, D> {
-    pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>, square: T) -> Self {
-        Self { cells, square, products: [[T::lit(0.0); 4]; 4] }
+impl<'c, 's, 'a, const D: usize> Gradients<'c, 's, 'a, D> {
+    pub fn new(cells: &'c CellMatrices<'s, 'a, D>, square: f64) -> Self {
+        Self { cells, square, products: [[0.0; 4]; 4] }
     }
 }
 
-impl<T: Real, const D: usize> CellMatrix<T> for Gradients<'_, '_, '_, T, D> {
+impl<const D: usize> CellMatrix for Gradients<'_, '_, '_, D> {
     #[inline(always)]
     fn of_cell(&mut self, cell: usize) {
         let space = self.cells.space;
         self.products = shape(space.mesh, cell, self.square * space.alpha(cell)).1;
     }
     #[inline(always)]
-    fn entry(&self, i: usize, j: usize) -> T {
+    fn entry(&self, i: usize, j: usize) -> f64 {
         self.products[i][j]
     }
 }
 
 /// Matrices of any kind.
-pub(crate) struct General<'c, 's, 'a, E, T: Real, const D: usize> {
-    cells: &'c CellMatrices<'s, 'a, T, D>,
-    triangle: Triangle<T>,
+pub(crate) struct General<'c, 's, 'a, const D: usize, const N: usize> {
+    cells: &'c CellMatrices<'s, 'a, D>,
+    unknowns: &'c CellUnknowns<D, N>,
+    triangle: Triangle,
     /// Workspace: the reaction term of a cell.
-    local: Local<T>,
-    element: PhantomData<E>,
+    local: Local,
 }
 
-impl<'c, 's, 'a, E, T: Real, const D: usize> General<'c, 's, 'a, E, T, D> {
-    pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>) -> Self {
-        let triangle = [T::lit(0.0); TRIANGLE];
-        Self { cells, triangle, local: zero_local(), element: PhantomData }
+impl<'c, 's, 'a, const D: usize, const N: usize> General<'c, 's, 'a, D, N> {
+    pub fn new(cells: &'c CellMatrices<'s, 'a, D>, unknowns: &'c CellUnknowns<D, N>) -> Self {
+        Self { cells, unknowns, triangle: [0.0; TRIANGLE], local: zero_local() }
     }
 }
 
-impl<E: ReferenceElement<T, D>, T: Real, const D: usize> CellMatrix<T>
-    for General<'_, '_, '_, E, T, D>
-{
+impl<const D: usize, const N: usize> CellMatrix for General<'_, '_, '_, D, N> {
     #[inline(always)]
     fn of_cell(&mut self, cell: usize) {
-        self.cells.write::<E>(cell, &mut self.triangle, &mut self.local);
+        self.cells.write(self.unknowns.count(), cell, &mut self.triangle, &mut self.local);
     }
     #[inline(always)]
-    fn entry(&self, i: usize, j: usize) -> T {
-        self.triangle[self.cells.places[i * E::N + j] as usize % TRIANGLE]
+    fn entry(&self, i: usize, j: usize) -> f64 {
+        let entry = i * self.unknowns.count() + j;
+        self.triangle[self.cells.places[entry] as usize % TRIANGLE]
     }
 }
 
 /// Products of gradients of which only those of one pair are not zero.
-fn unit<T: Real>(k: usize, l: usize) -> [[T; 4]; 4] {
-    let mut products = [[T::lit(0.0); 4]; 4];
-    products[k][l] = T::lit(1.0);
-    products[l][k] = T::lit(1.0);
+fn unit(k: usize, l: usize) -> [[f64; 4]; 4] {
+    let mut products = [[0.0; 4]; 4];
+    products[k][l] = 1.0;
+    products[l][k] = 1.0;
     products
 }

@@ -5,48 +5,65 @@ use std::sync::atomic::Ordering;
 
 use crate::parallel::for_each_item;
 
-use super::cells::{CellMatrices, CellMatrix, General, Gradients, is_linear};
+use super::cells::{CellMatrices, CellMatrix, General, Gradients};
 use super::partition::{Location, Rows, partition};
 use super::pattern::{EntryPositions, LONGEST};
+use super::unknowns::{ANY, CellUnknowns};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
-use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
-use crate::element::ReferenceElement;
-use crate::real::Real;
+use crate::assemble::space::dofs::{Dofs, KINDS};
 
 /// The rows of one kind in a subset, and their values.
-struct Target<'v, T> {
+struct Target<'v> {
     rows: Range<u32>,
     /// Where the first of them starts.
     base: usize,
-    values: &'v mut [T],
+    values: &'v mut [f64],
     /// How many of the values are no longer those from before.
     cleared: usize,
 }
 
 /// The values, on a known pattern.
-pub(crate) fn fill<T: Real, const D: usize, E: ReferenceElement<T, D>>(
-    space: &Space<'_, T, D>,
+pub(crate) fn fill<const D: usize>(
+    space: &Space<'_, D>,
     positions: &EntryPositions,
-    matrix: &mut SparseMatrix<T>,
+    matrix: &mut SparseMatrix<f64>,
+) {
+    // constant conditions: loops for another dimension are not even instantiated
+    match CellUnknowns::<D>::constant_count(&space.dofs) {
+        2 if const { D == 1 } => fill_with::<D, 2>(space, positions, matrix),
+        3 if const { D < 3 } => fill_with::<D, 3>(space, positions, matrix),
+        4 if const { D == 3 } => fill_with::<D, 4>(space, positions, matrix),
+        6 if const { D == 2 } => fill_with::<D, 6>(space, positions, matrix),
+        10 if const { D == 3 } => fill_with::<D, 10>(space, positions, matrix),
+        _ => fill_with::<D, ANY>(space, positions, matrix),
+    }
+}
+
+/// As [`fill`], for cells of `N` unknowns.
+fn fill_with<const D: usize, const N: usize>(
+    space: &Space<'_, D>,
+    positions: &EntryPositions,
+    matrix: &mut SparseMatrix<f64>,
 ) {
     let dofs = &space.dofs;
     let SparseMatrix { row_starts, columns, values } = matrix;
     let same = row_starts.len() == dofs.size() + 1 && values.len() == positions.nonzeros;
     assert!(same, "the matrix has the pattern of another discretisation");
-    let cells = CellMatrices::new::<E>(space);
-    let filling = Filling { dofs, row_starts, columns, positions, cells };
+    let cells = CellMatrices::new(space);
+    let unknowns = CellUnknowns::<D, N>::new(dofs);
+    let filling = Filling { dofs, row_starts, columns, positions, cells, unknowns };
     let subsets = partition(dofs);
     let targets = targets(&subsets, row_starts, values);
-    for_each_item(targets, &|k, targets| filling.fill_subset::<E>(&subsets[k], targets));
+    for_each_item(targets, &|k, targets| filling.fill_subset(&subsets[k], targets));
 }
 
 /// Divides the values among the subsets: each subset has the values of its rows.
-fn targets<'v, T>(
+fn targets<'v>(
     subsets: &[Rows],
     row_starts: &[u32],
-    values: &'v mut [T],
-) -> Vec<[Target<'v, T>; KINDS]> {
+    values: &'v mut [f64],
+) -> Vec<[Target<'v>; KINDS]> {
     let mut rest = values;
     let mut by_kind = [const { Vec::new() }; KINDS];
     for (kind, targets) in by_kind.iter_mut().enumerate() {
@@ -66,7 +83,7 @@ fn targets<'v, T>(
         .collect()
 }
 
-impl<T: Real> Target<'_, T> {
+impl Target<'_> {
     /// Sets the values before a row to zero just before entries are added to them: they are then in
     /// the cache.
     #[inline(always)]
@@ -75,7 +92,7 @@ impl<T: Real> Target<'_, T> {
         if row > self.rows.start {
             let end = row_starts[row as usize] as usize - self.base;
             if end > self.cleared {
-                self.values[self.cleared..end].fill(T::lit(0.0));
+                self.values[self.cleared..end].fill(0.0);
                 self.cleared = end;
             }
         }
@@ -83,35 +100,32 @@ impl<T: Real> Target<'_, T> {
 }
 
 /// All that the loop over cells reads.
-struct Filling<'f, 's, 'a, T: Real, const D: usize> {
+struct Filling<'f, 's, 'a, const D: usize, const N: usize> {
     dofs: &'f Dofs<'a>,
     row_starts: &'f [u32],
     columns: &'f [u32],
     positions: &'f EntryPositions,
-    cells: CellMatrices<'s, 'a, T, D>,
+    cells: CellMatrices<'s, 'a, D>,
+    unknowns: CellUnknowns<D, N>,
 }
 
-impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
+impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
     /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
     #[inline(never)]
-    fn fill_subset<E: ReferenceElement<T, D>>(
-        &self,
-        rows: &Rows,
-        mut targets: [Target<'_, T>; KINDS],
-    ) {
+    fn fill_subset(&self, rows: &Rows, mut targets: [Target<'_>; KINDS]) {
         for (cells, location, hull) in self.positions.blocks.of(rows) {
             for (target, hull) in targets.iter_mut().zip(hull) {
                 target.clear_before(hull.end, self.row_starts);
             }
             match self.cells.only_gradients() {
                 // for other elements the loop over products of gradients is not even instantiated
-                Some(square) if const { is_linear::<T, E, D>() } => {
+                Some(square) if const { N == D + 1 } => {
                     let matrices = Gradients::new(&self.cells, square);
-                    self.block::<E, _>(cells, location, &mut targets, matrices);
+                    self.block(cells, location, &mut targets, matrices);
                 }
                 _ => {
-                    let matrices = General::<E, T, D>::new(&self.cells);
-                    self.block::<E, _>(cells, location, &mut targets, matrices);
+                    let matrices = General::new(&self.cells, &self.unknowns);
+                    self.block(cells, location, &mut targets, matrices);
                 }
             }
         }
@@ -121,49 +135,52 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
     }
 
     #[inline(always)]
-    fn block<E: ReferenceElement<T, D>, M: CellMatrix<T>>(
+    fn block<M: CellMatrix>(
         &self,
         cells: Range<usize>,
         location: Location,
-        targets: &mut [Target<'_, T>; KINDS],
+        targets: &mut [Target<'_>; KINDS],
         matrices: M,
     ) {
         if location == Location::Inside {
-            self.add::<E, M, true>(cells, targets, matrices);
+            self.add::<M, true>(cells, targets, matrices);
         } else {
-            self.add::<E, M, false>(cells, targets, matrices);
+            self.add::<M, false>(cells, targets, matrices);
         }
     }
 
     /// Adds the matrices of the cells of a block to those of their rows that the targets have.
     #[inline(always)]
-    fn add<E: ReferenceElement<T, D>, M: CellMatrix<T>, const INSIDE: bool>(
+    fn add<M: CellMatrix, const INSIDE: bool>(
         &self,
         cells: Range<usize>,
-        targets: &mut [Target<'_, T>; KINDS],
+        targets: &mut [Target<'_>; KINDS],
         mut matrix: M,
     ) {
         let mut numbers = Vec::new();
-        let square = E::N * E::N;
+        // a copy stays in registers, whatever is written to the values
+        let of_cell = self.unknowns;
+        let n = of_cell.count();
+        let square = n * n;
         let positions = &self.positions.in_rows[cells.start * square..cells.end * square];
         let unknowns = self.dofs.of_cells(cells.clone(), &mut numbers);
-        let each = unknowns.chunks_exact(E::N).zip(positions.chunks_exact(square)).zip(cells);
+        let each = unknowns.chunks_exact(n).zip(positions.chunks_exact(square)).zip(cells);
         for ((unknowns, positions), cell) in each {
-            let has = |i: usize| targets[kind_of(E::LAYOUT, D, i)].rows.contains(&unknowns[i]);
-            if !INSIDE && !(0..E::N).any(has) {
+            let has = |i: usize| targets[of_cell.kind(i)].rows.contains(&unknowns[i]);
+            if !INSIDE && !(0..n).any(has) {
                 continue;
             }
             matrix.of_cell(cell);
-            for i in 0..E::N {
-                let target = &mut targets[kind_of(E::LAYOUT, D, i)];
+            for i in 0..n {
+                let target = &mut targets[of_cell.kind(i)];
                 if INSIDE || target.rows.contains(&unknowns[i]) {
                     let row = unknowns[i] as usize;
                     let start = self.row_starts[row] as usize - target.base;
                     let end = self.row_starts[row + 1] as usize - target.base;
                     let out = &mut target.values[start..end];
                     if out.len() <= LONGEST {
-                        for j in 0..E::N {
-                            let position = positions[i * E::N + j].load(Ordering::Relaxed);
+                        for j in 0..n {
+                            let position = positions[i * n + j].load(Ordering::Relaxed);
                             out[position as usize] += matrix.entry(i, j);
                         }
                     } else {
@@ -179,15 +196,9 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
 /// Adds to a row too long for the positions noted, by searching its columns.
 #[cold]
 #[inline(never)]
-fn add_by_search<T: Real>(
-    out: &mut [T],
-    columns: &[u32],
-    unknowns: &[u32],
-    entry: &dyn Fn(usize) -> T,
-) {
+fn add_by_search(out: &mut [f64], columns: &[u32], unknowns: &[u32], entry: &dyn Fn(usize) -> f64) {
     for (j, unknown) in unknowns.iter().enumerate() {
-        if let Ok(at) = columns.binary_search(unknown) {
-            out[at] += entry(j);
-        }
+        let at = columns.binary_search(unknown).expect("the pattern has the entries of its cells");
+        out[at] += entry(j);
     }
 }

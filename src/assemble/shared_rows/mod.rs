@@ -4,78 +4,54 @@
 //! when the pattern was made: see [`pattern`](pattern::pattern) and [`fill`](fill::fill). With one, which
 //! is rare here, rows gather from the matrices of [`patches`].
 
-mod cell_loops;
 mod cells;
-// without the table, unit tests compile the loops of the elements that they use
-#[cfg(not(test))]
-mod compiled;
 mod fill;
 pub(crate) mod partition;
 mod patches;
 pub(crate) mod pattern;
+mod unknowns;
 
 use std::sync::OnceLock;
 
 use super::space::Space;
 use crate::algebra::SparseMatrix;
-use crate::element::ReferenceElement;
 use crate::facet::FacetForm;
 use crate::parallel::once;
-use crate::real::Real;
-pub(crate) use cell_loops::CellLoops;
 pub(crate) use pattern::EntryPositions;
 
-/// The loops of an element; none for elements that share no unknowns.
-pub(crate) fn loops_of<T: Real, const D: usize, E: ReferenceElement<T, D>>()
--> Option<CellLoops<T, D>> {
-    if const { E::LAYOUT.is_broken() } {
-        return None;
-    }
-    #[cfg(not(test))]
-    if const { E::COMPILED } {
-        return Some(compiled::loops::<T, D, E>());
-    }
-    Some(CellLoops::instance::<E>())
-}
-
-/// Shared rows of a space, with the positions of their entries once the pattern is computed.
-pub(crate) struct SharedRows<T: Real, const D: usize> {
-    loops: Option<CellLoops<T, D>>,
+/// Shared rows, with the positions of their entries once the pattern is computed.
+#[derive(Default)]
+pub(crate) struct SharedRows {
     positions: OnceLock<EntryPositions>,
 }
 
-impl<T: Real, const D: usize> SharedRows<T, D> {
-    /// Rows whose pattern is not known yet.
-    pub fn new(loops: Option<CellLoops<T, D>>) -> Self {
-        Self { loops, positions: OnceLock::new() }
-    }
-
+impl SharedRows {
     /// The pattern, with values zero.
-    pub fn pattern(&self, space: &Space<'_, T, D>, form: &dyn FacetForm<T, D>) -> SparseMatrix<T> {
-        match &self.loops {
-            Some(loops) if !form.couples() => {
-                let (matrix, positions) = (loops.pattern)(&space.dofs);
-                // a space has one pattern: another thread that was first has set the same positions
-                let _ = self.positions.set(positions);
-                matrix
-            }
-            _ => patches::pattern(space, form),
+    pub fn pattern<const D: usize>(
+        &self,
+        space: &Space<'_, D>,
+        form: &dyn FacetForm<D>,
+    ) -> SparseMatrix<f64> {
+        if form.couples() {
+            return patches::pattern(space, form);
         }
+        let (matrix, positions) = pattern::pattern::<D>(&space.dofs);
+        // a space has one pattern: another thread that was first has set the same positions
+        let _ = self.positions.set(positions);
+        matrix
     }
 
     /// The values, on a known pattern.
-    pub fn fill(
+    pub fn fill<const D: usize>(
         &self,
-        space: &Space<'_, T, D>,
-        form: &dyn FacetForm<T, D>,
-        matrix: &mut SparseMatrix<T>,
+        space: &Space<'_, D>,
+        form: &dyn FacetForm<D>,
+        matrix: &mut SparseMatrix<f64>,
     ) {
-        match &self.loops {
-            Some(loops) if !form.couples() => {
-                let positions = once(&self.positions, || (loops.pattern)(&space.dofs).1);
-                (loops.fill)(space, positions, matrix);
-            }
-            _ => patches::fill(space, form, matrix),
+        if form.couples() {
+            return patches::fill(space, form, matrix);
         }
+        let positions = once(&self.positions, || pattern::pattern::<D>(&space.dofs).1);
+        fill::fill(space, positions, matrix);
     }
 }

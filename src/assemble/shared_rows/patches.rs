@@ -17,12 +17,11 @@ use crate::element::MAX_BASIS;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryPart, Facets};
 use crate::parallel::cells;
-use crate::real::Real;
 
 /// The patches of a discretisation and the unknowns of each.
-struct Patches<'s, 'a, T: Real, const D: usize> {
-    space: &'s Space<'a, T, D>,
-    form: &'s dyn FacetForm<T, D>,
+struct Patches<'s, 'a, const D: usize> {
+    space: &'s Space<'a, D>,
+    form: &'s dyn FacetForm<D>,
     facets: Option<Facets>,
     /// Number of facets that carry the form.
     coupled: usize,
@@ -30,8 +29,8 @@ struct Patches<'s, 'a, T: Real, const D: usize> {
     n: usize,
 }
 
-impl<'s, 'a, T: Real, const D: usize> Patches<'s, 'a, T, D> {
-    fn new(space: &'s Space<'a, T, D>, form: &'s dyn FacetForm<T, D>) -> Self {
+impl<'s, 'a, const D: usize> Patches<'s, 'a, D> {
+    fn new(space: &'s Space<'a, D>, form: &'s dyn FacetForm<D>) -> Self {
         let facets = space
             .neighbours
             .as_ref()
@@ -99,10 +98,10 @@ impl<'s, 'a, T: Real, const D: usize> Patches<'s, 'a, T, D> {
 }
 
 /// The pattern, with values zero.
-pub(crate) fn pattern<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
-    form: &dyn FacetForm<T, D>,
-) -> SparseMatrix<T> {
+pub(crate) fn pattern<const D: usize>(
+    space: &Space<'_, D>,
+    form: &dyn FacetForm<D>,
+) -> SparseMatrix<f64> {
     let patches = Patches::new(space, form);
     let (starts, places) = patches.incidence();
     let size = space.dofs.size();
@@ -135,22 +134,22 @@ pub(crate) fn pattern<T: Real, const D: usize>(
             end
         }));
     }
-    let values = vec![T::lit(0.0); columns.len()];
+    let values = vec![0.0; columns.len()];
     SparseMatrix { row_starts, columns, values }
 }
 
 /// The values, on a known pattern.
-pub(crate) fn fill<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
-    form: &dyn FacetForm<T, D>,
-    matrix: &mut SparseMatrix<T>,
+pub(crate) fn fill<const D: usize>(
+    space: &Space<'_, D>,
+    form: &dyn FacetForm<D>,
+    matrix: &mut SparseMatrix<f64>,
 ) {
     let patches = Patches::new(space, form);
     let locals = local_matrices(&patches);
     let (starts, places) = patches.incidence();
     let SparseMatrix { row_starts, columns, values } = matrix;
-    let gather = |rows: Range<usize>, chunk: &mut [T]| {
-        chunk.fill(T::lit(0.0));
+    let gather = |rows: Range<usize>, chunk: &mut [f64]| {
+        chunk.fill(0.0);
         let offset = row_starts[rows.start] as usize;
         for i in rows {
             let range = row_starts[i] as usize..row_starts[i + 1] as usize;
@@ -162,9 +161,8 @@ pub(crate) fn fill<T: Real, const D: usize>(
                 let start = patches.start(patch) + k as usize * n;
                 for (j, &entry) in locals[start..start + n].iter().enumerate() {
                     let column = patches.unknown(patch, j);
-                    if let Some(at) = row_columns.iter().position(|&c| c == column) {
-                        row[at] += entry;
-                    }
+                    let at = row_columns.iter().position(|&c| c == column);
+                    row[at.expect("the pattern has the entries of its patches")] += entry;
                 }
             }
         }
@@ -174,12 +172,12 @@ pub(crate) fn fill<T: Real, const D: usize>(
     let Ok(()) = cells::for_each(row_starts.len() - 1, &end, values, &gather);
 }
 
-fn local_matrices<T: Real, const D: usize>(patches: &Patches<'_, '_, T, D>) -> Vec<T> {
+fn local_matrices<const D: usize>(patches: &Patches<'_, '_, D>) -> Vec<f64> {
     let (n, space) = (patches.n, patches.space);
     let stiffness = space.stiffness_table();
-    let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
+    let mut locals = vec![0.0; patches.start(patches.len())];
     let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
-    let of_cells = |range: Range<usize>, entries: &mut [T]| {
+    let of_cells = |range: Range<usize>, entries: &mut [f64]| {
         for (cell, out) in range.zip(entries.chunks_exact_mut(n * n)) {
             let metric = space.metric(cell);
             let mut local = zero_local();
@@ -205,7 +203,7 @@ fn local_matrices<T: Real, const D: usize>(patches: &Patches<'_, '_, T, D>) -> V
     let Ok(()) = cells::for_each(patches.n_cells(), &|c| c * n * n, cells, &of_cells);
     if let Some(all) = &patches.facets {
         let table = space.facet_table(patches.form.moments(space.basis_degree));
-        let of_facets = |range: Range<usize>, entries: &mut [T]| {
+        let of_facets = |range: Range<usize>, entries: &mut [f64]| {
             for (facet, out) in range.zip(entries.chunks_exact_mut(4 * n * n)) {
                 facet_matrix(patches, all, &table, facet, out);
             }
@@ -219,12 +217,12 @@ fn local_matrices<T: Real, const D: usize>(patches: &Patches<'_, '_, T, D>) -> V
 
 /// The form on one facet, for the unknowns of here and then there; on the boundary those of there
 /// stay zero.
-fn facet_matrix<T: Real, const D: usize>(
-    patches: &Patches<'_, '_, T, D>,
+fn facet_matrix<const D: usize>(
+    patches: &Patches<'_, '_, D>,
     facets: &Facets,
-    table: &FacetTable<T>,
+    table: &FacetTable,
     facet: usize,
-    out: &mut [T],
+    out: &mut [f64],
 ) {
     count::facets(1);
     let (n, space, form) = (patches.n, patches.space, patches.form);
@@ -238,17 +236,17 @@ fn facet_matrix<T: Real, const D: usize>(
     let average_weight = form.average_weight(&view);
     let moments = table.on(i).iter().zip(table.on(j)).zip(&table.degrees).enumerate();
     for (k, ((b_here, b_there), &degree)) in moments {
-        let mut all = [Trace { jump: T::lit(0.0), flux: T::lit(0.0) }; 2 * MAX_BASIS];
+        let mut all = [Trace { jump: 0.0, flux: 0.0 }; 2 * MAX_BASIS];
         let weighted = space.flux_derivatives(own, other, average_weight, k);
         let basis = (b_here, weighted.as_ref());
         all[..n].copy_from_slice(&traces(form, &view, &side_here, true, basis, n)[..n]);
         if interior {
-            let weight = T::lit(1.0) - average_weight;
+            let weight = 1.0 - average_weight;
             let weighted = space.flux_derivatives((there, j), Some(own), weight, k);
             let basis = (b_there, weighted.as_ref());
             all[n..2 * n].copy_from_slice(&traces(form, &view, &side_there, false, basis, n)[..n]);
         }
-        let penalty = penalty * T::lit(form.moment_weight(degree));
+        let penalty = penalty * form.moment_weight(degree);
         let size = if interior { 2 * n } else { n };
         for v in 0..size {
             for u in 0..size {

@@ -6,12 +6,11 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use crate::parallel::{for_each_item, map_indices};
 
 use super::partition::{Blocks, Rows, partition};
+use super::unknowns::{ANY, CellUnknowns};
 use crate::algebra::SparseMatrix;
 use crate::arrays::map_entries;
-use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
-use crate::element::ReferenceElement;
+use crate::assemble::space::dofs::{Dofs, KINDS};
 use crate::memory::in_large_pages;
-use crate::real::Real;
 
 /// Where each cell adds its matrix: made with the pattern, kept for every filling of it.
 pub(crate) struct EntryPositions {
@@ -41,19 +40,33 @@ struct PatternOfRows {
 }
 
 /// The pattern, with values zero, and the positions at which cells add to it.
-pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
+pub(crate) fn pattern<const D: usize>(dofs: &Dofs<'_>) -> (SparseMatrix<f64>, EntryPositions) {
+    // constant conditions: loops for another dimension are not even instantiated
+    match CellUnknowns::<D>::constant_count(dofs) {
+        2 if const { D == 1 } => pattern_with::<D, 2>(dofs),
+        3 if const { D < 3 } => pattern_with::<D, 3>(dofs),
+        4 if const { D == 3 } => pattern_with::<D, 4>(dofs),
+        6 if const { D == 2 } => pattern_with::<D, 6>(dofs),
+        10 if const { D == 3 } => pattern_with::<D, 10>(dofs),
+        _ => pattern_with::<D, ANY>(dofs),
+    }
+}
+
+/// As [`pattern`], for cells of `N` unknowns.
+fn pattern_with<const D: usize, const N: usize>(
     dofs: &Dofs<'_>,
-) -> (SparseMatrix<T>, EntryPositions) {
-    let blocks = Blocks::new(dofs, |i| kind_of(E::LAYOUT, D, i));
-    let in_rows = zeros(dofs.n_cells() * E::N * E::N);
-    let builder = PatternBuilder { dofs, blocks: &blocks, in_rows: &in_rows };
+) -> (SparseMatrix<f64>, EntryPositions) {
+    let of_cell = CellUnknowns::<D, N>::new(dofs);
+    let blocks = Blocks::new(dofs, |i| of_cell.kind(i));
+    let in_rows = zeros(dofs.n_cells() * of_cell.count() * of_cell.count());
+    let builder = PatternBuilder { dofs, of_cell, blocks: &blocks, in_rows: &in_rows };
     let subsets = partition(dofs);
-    let build = |k: usize| builder.rows::<T, E, D>(&subsets[k]);
+    let build = |k: usize| builder.rows(&subsets[k]);
     let mut made: Vec<PatternOfSubset> = map_indices(subsets.len(), &build);
     let row_starts = row_starts(dofs.size(), &made);
     let columns = columns_of(&row_starts, &mut made);
     let nonzeros = columns.len();
-    let values = in_large_pages(vec![T::lit(0.0); nonzeros]);
+    let values = in_large_pages(vec![0.0; nonzeros]);
     let matrix = SparseMatrix { row_starts, columns, values };
     (matrix, EntryPositions { in_rows, blocks, nonzeros })
 }
@@ -111,30 +124,28 @@ fn join(row_starts: &[u32], made: &[PatternOfSubset]) -> Vec<u32> {
 }
 
 /// Builds the pattern of the rows of a subset.
-struct PatternBuilder<'m> {
+struct PatternBuilder<'m, const D: usize, const N: usize> {
     dofs: &'m Dofs<'m>,
+    of_cell: CellUnknowns<D, N>,
     blocks: &'m Blocks,
     in_rows: &'m [AtomicU8],
 }
 
-impl PatternBuilder<'_> {
+impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
     /// The rows of a subset, in parts, so that scratch memory is small and used again.
     ///
     /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
     #[inline(never)]
-    fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(
-        &self,
-        subset: &Rows,
-    ) -> PatternOfSubset {
+    fn rows(&self, subset: &Rows) -> PatternOfSubset {
         let mut stars = Stars::default();
         let mut row = Row { seen: in_large_pages(vec![0; self.dofs.size()]), ..Row::default() };
         let mut made = self.room_for(subset);
         for part in self.blocks.parts_of(subset) {
-            self.find_stars::<T, E, D>(&part, &mut stars);
+            self.find_stars(&part, &mut stars);
             let mut k = 0;
             for (rows, made) in part.iter().zip(&mut made) {
                 for _ in rows.clone() {
-                    self.row::<T, E, D>(stars.of_row(k), &mut row, made);
+                    self.row(stars.of_row(k), &mut row, made);
                     k += 1;
                 }
             }
@@ -155,11 +166,7 @@ impl PatternBuilder<'_> {
 
     /// Finds the star of each row of a part: a counting sort.
     #[inline(always)]
-    fn find_stars<T: Real, E: ReferenceElement<T, D>, const D: usize>(
-        &self,
-        part: &Rows,
-        stars: &mut Stars,
-    ) {
+    fn find_stars(&self, part: &Rows, stars: &mut Stars) {
         let mut n_rows = 0;
         let offsets = map_entries(part.each_ref(), |rows| {
             n_rows += rows.len();
@@ -170,13 +177,13 @@ impl PatternBuilder<'_> {
         // their own entries
         starts.clear();
         starts.resize(n_rows + 2, 0);
-        self.visit::<T, E, D>(part, &offsets, |row, _| starts[row + 2] += 1);
+        self.visit(part, &offsets, |row, _| starts[row + 2] += 1);
         for row in 0..n_rows {
             starts[row + 2] += starts[row + 1];
         }
         slots.clear();
         slots.resize(starts[n_rows + 1] as usize, 0);
-        self.visit::<T, E, D>(part, &offsets, |row, slot| {
+        self.visit(part, &offsets, |row, slot| {
             let at = &mut starts[row + 1];
             slots[*at as usize] = slot as u32;
             *at += 1;
@@ -186,22 +193,18 @@ impl PatternBuilder<'_> {
     /// Calls a function with each row of a part and each cell that has it: the cell times `N` plus
     /// the number of the unknown in it.
     #[inline(always)]
-    fn visit<T: Real, E: ReferenceElement<T, D>, const D: usize>(
-        &self,
-        part: &Rows,
-        offsets: &[usize; KINDS],
-        mut visit: impl FnMut(usize, usize),
-    ) {
+    fn visit(&self, part: &Rows, offsets: &[usize; KINDS], mut visit: impl FnMut(usize, usize)) {
+        let n = self.of_cell.count();
         let mut numbers = Vec::new();
         for (cells, ..) in self.blocks.of(part) {
             let first = cells.start;
             let unknowns = self.dofs.of_cells(cells, &mut numbers);
-            for (c, unknowns) in unknowns.chunks_exact(E::N).enumerate() {
-                for i in 0..E::N {
-                    let kind = kind_of(E::LAYOUT, D, i);
+            for (c, unknowns) in unknowns.chunks_exact(n).enumerate() {
+                for i in 0..n {
+                    let kind = self.of_cell.kind(i);
                     let row = unknowns[i].wrapping_sub(part[kind].start);
                     if (row as usize) < part[kind].len() {
-                        visit(offsets[kind] + row as usize, (first + c) * E::N + i);
+                        visit(offsets[kind] + row as usize, (first + c) * n + i);
                     }
                 }
             }
@@ -210,20 +213,16 @@ impl PatternBuilder<'_> {
 
     /// Makes a row from its star, and the positions of the star's cells in it.
     #[inline(always)]
-    fn row<T: Real, E: ReferenceElement<T, D>, const D: usize>(
-        &self,
-        star: &[u32],
-        row: &mut Row,
-        made: &mut PatternOfRows,
-    ) {
-        row.make_room(star.len() * E::N);
+    fn row(&self, star: &[u32], row: &mut Row, made: &mut PatternOfRows) {
+        let per_cell = self.of_cell.count();
+        row.make_room(star.len() * per_cell);
         let Row { seen, columns, numbers, ranks, base } = row;
         let table = self.dofs.table();
         let mut n = 0_u32;
-        for (&slot, numbers) in star.iter().zip(numbers.chunks_exact_mut(E::N)) {
-            let first = slot as usize / E::N * E::N;
-            let unknowns = table.map(|t| &t[first..first + E::N]);
-            for j in 0..E::N {
+        for (&slot, numbers) in star.iter().zip(numbers.chunks_exact_mut(per_cell)) {
+            let first = slot as usize / per_cell * per_cell;
+            let unknowns = table.map(|t| &t[first..first + per_cell]);
+            for j in 0..per_cell {
                 let column = unknowns.map_or((first + j) as u32, |u| u[j]);
                 let seen = &mut seen[column as usize];
                 let is_new = *seen <= *base;
@@ -244,8 +243,8 @@ impl PatternBuilder<'_> {
             out[rank as usize] = column;
         }
         made.lengths.push(n as u32);
-        for (&slot, numbers) in star.iter().zip(numbers.chunks_exact(E::N)) {
-            let positions = &self.in_rows[slot as usize * E::N..][..E::N];
+        for (&slot, numbers) in star.iter().zip(numbers.chunks_exact(per_cell)) {
+            let positions = &self.in_rows[slot as usize * per_cell..][..per_cell];
             for (position, &number) in positions.iter().zip(numbers) {
                 position.store(ranks[number as usize] as u8, Ordering::Relaxed);
             }

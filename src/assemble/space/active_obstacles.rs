@@ -12,7 +12,6 @@ use crate::constraint::BoundBy;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
 use crate::problem::DatumRef;
-use crate::real::Real;
 
 /// A datum gives a bound if they differ by at most this many units of rounding.
 const ROUNDINGS: f64 = 16.0;
@@ -41,12 +40,12 @@ impl ActiveObstacles {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Where obstacles give the active bounds. Where obstacle and gap are equal it is the obstacle; of equal obstacles
     /// of two regions both do.
     pub(crate) fn active_obstacles(
         &self,
-        bounds: &[Bound<T>],
+        bounds: &[Bound<f64>],
         contact: &[Contact],
     ) -> ActiveObstacles {
         let has_obstacle = self.problem.has_obstacle();
@@ -104,11 +103,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         terms: &[Terms],
         cell: usize,
         (i, by): (usize, BoundBy),
-        bound: Bound<T>,
+        bound: Bound<f64>,
         state: Option<Contact>,
     ) -> bool {
         let region = self.mesh.region(cell);
-        let gives = |psi: Option<DatumRef<'_, D>>, bound: Option<T>| {
+        let gives = |psi: Option<DatumRef<'_, D>>, bound: Option<f64>| {
             let Some((psi, bound)) = psi.zip(bound) else { return false };
             let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), "obstacle", psi);
             value.is_ok_and(|value| is_bound(value, bound))
@@ -135,7 +134,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         (cell, group): (usize, usize),
         (i, by): (usize, BoundBy),
         terms: &[Terms],
-        bound: Bound<T>,
+        bound: Bound<f64>,
     ) -> bool {
         let Some((gap, bound)) = self.data.gap.of(group).zip(bound.lower()) else { return false };
         let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), "gap", gap);
@@ -144,7 +143,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 }
 
 /// Whether a value gives a bound, which was rounded once.
-fn is_bound<T: Real>(value: f64, bound: T) -> bool {
-    let bound = bound.to_f64();
-    (T::lit(value).to_f64() - bound).abs() <= ROUNDINGS * T::EPSILON * bound.abs()
+fn is_bound(value: f64, bound: f64) -> bool {
+    (value - bound).abs() <= ROUNDINGS * f64::EPSILON * bound.abs()
 }

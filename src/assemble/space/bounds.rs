@@ -14,7 +14,7 @@ use crate::mesh::BoundaryPart;
 use crate::parallel::vectors::collect;
 use crate::parallel::{cells, lock};
 use crate::problem::DatumRef;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// Sorts facets by the ranks of their groups; not generic, so that the sorting code is compiled once.
 fn sort_by_rank(facets: &mut [((usize, usize), usize)], ranks: &[usize]) {
@@ -22,12 +22,12 @@ fn sort_by_rank(facets: &mut [((usize, usize), usize)], ranks: &[usize]) {
 }
 
 /// The bounds of all unknowns, and the lower ones above upper ones.
-type ComparedBounds<T, const D: usize> = (Vec<Bound<T>>, Vec<Contradiction<D>>);
+type ComparedBounds<const D: usize> = (Vec<Bound<f64>>, Vec<Contradiction<D>>);
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The bounds of all unknowns, see `Discretisation::bounds`, and those of which a lower one exceeds an upper
     /// one.
-    pub fn bounds(&self) -> Result<ComparedBounds<T, D>, Error> {
+    pub fn bounds(&self) -> Result<ComparedBounds<D>, Error> {
         let mut bounds = collect(self.dofs.size(), |_| Bound::Free);
         let mut found = Vec::new();
         if self.problem.has_obstacle() {
@@ -44,7 +44,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     fn bound_by_obstacles(
         &self,
-        bounds: &mut [Bound<T>],
+        bounds: &mut [Bound<f64>],
         found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
         let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
@@ -53,22 +53,23 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             // no other cell has the unknowns of a cell
             let n = self.per_cell();
             let found_by_all = Mutex::new(Vec::new());
-            let bound_chunk = |cells: Range<usize>, bounds: &mut [Bound<T>]| -> Result<(), Error> {
-                let mut found = Vec::new();
-                for (cell, bounds) in cells.zip(bounds.chunks_exact_mut(n)) {
-                    for &node in &bounded {
-                        self.restrict_by_obstacles(
-                            &terms,
-                            cell,
-                            node,
-                            &mut bounds[node.0],
-                            &mut found,
-                        )?;
+            let bound_chunk =
+                |cells: Range<usize>, bounds: &mut [Bound<f64>]| -> Result<(), Error> {
+                    let mut found = Vec::new();
+                    for (cell, bounds) in cells.zip(bounds.chunks_exact_mut(n)) {
+                        for &node in &bounded {
+                            self.restrict_by_obstacles(
+                                &terms,
+                                cell,
+                                node,
+                                &mut bounds[node.0],
+                                &mut found,
+                            )?;
+                        }
                     }
-                }
-                lock(&found_by_all).append(&mut found);
-                Ok(())
-            };
+                    lock(&found_by_all).append(&mut found);
+                    Ok(())
+                };
             cells::for_each(self.mesh.n_cells(), &|cell| cell * n, bounds, &bound_chunk)?;
             found.append(&mut lock(&found_by_all));
             // the order of chunks depends on the threads
@@ -94,7 +95,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         terms: &[Terms],
         cell: usize,
         (i, by): (usize, BoundBy),
-        bound: &mut Bound<T>,
+        bound: &mut Bound<f64>,
         found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
         count::bounds(1);
@@ -103,8 +104,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let value = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
             psi.map(value).transpose()
         };
-        let both = |old: Option<T>, new: Option<f64>, choose: fn(f64, f64) -> f64| {
-            let old = old.map(Real::to_f64);
+        let both = |old: Option<f64>, new: Option<f64>, choose: fn(f64, f64) -> f64| {
             new.map(|new| old.map_or(new, |old| choose(old, new))).or(old)
         };
         let lower = both(bound.lower(), at(self.data.lower.of(region))?, f64::max);
@@ -116,7 +116,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     fn bound_by_contact(
         &self,
-        bounds: &mut [Bound<T>],
+        bounds: &mut [Bound<f64>],
         found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
@@ -126,7 +126,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             // a function that jumps along the boundary, down to the Dirichlet data, has no finite energy
             for (k, v) in self.mesh.facet_vertices(cell, local).enumerate() {
                 let Some(dirichlet) = given[v as usize] else { continue };
-                let x = point_f64(&self.mesh.vertices()[v as usize]);
+                let x = self.mesh.vertices()[v as usize];
                 let datum = data::finite(self.dirichlet_at(dirichlet, &x), "dirichlet", &x, cell)?;
                 // the node at the vertex, where the element has one, else one of the facet
                 let node = self.nodes_on(local).take(k + 1).last();
@@ -140,8 +140,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let value = self.bound(by, &terms[i], (cell, node), "gap", gap)?;
                 let unknown = self.dofs.of(cell, i);
                 let old = bounds[unknown];
-                let lower = old.lower().map_or(value, |l| l.to_f64().max(value));
-                let upper = old.upper().map(Real::to_f64);
+                let lower = old.lower().map_or(value, |l| l.max(value));
+                let upper = old.upper();
                 let x = self.node_point(cell, node);
                 let node = BoundedNode { unknown, cell, x };
                 bounds[unknown] = between(Some(lower), upper, node, found);
@@ -168,7 +168,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
     }
 
-    fn pin(&self, bounds: &mut [Bound<T>], found: &mut Vec<Contradiction<D>>) -> Result<(), Error> {
+    fn pin(
+        &self,
+        bounds: &mut [Bound<f64>],
+        found: &mut Vec<Contradiction<D>>,
+    ) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let zero = !self.problem.has_dirichlet_data();
         let (lowers, uppers) = (&self.data.lower, &self.data.upper);
@@ -177,7 +181,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         sort_by_rank(&mut facets, &self.data.dirichlet_rank);
         for ((cell, local), group) in facets {
             let region = self.mesh.region(cell);
-            let datum = |x: &Point<f64, D>| self.dirichlet_at(group, x);
+            let datum = |x: &Point<D>| self.dirichlet_at(group, x);
             for i in self.nodes_on(local) {
                 let unknown = self.dofs.of(cell, i);
                 if let Bound::Fixed(_) = bounds[unknown] {
@@ -197,7 +201,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     let of = ([DIRICHLET, "upper obstacle"], Some(group));
                     node.compare(of, [value, at("obstacle", &|x| psi.at(x))?], found);
                 }
-                bounds[unknown] = Bound::Fixed(T::lit(value));
+                bounds[unknown] = Bound::Fixed(value);
             }
         }
         Ok(())
@@ -223,22 +227,22 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 }
 
 /// A function of space.
-type Datum<'f, const D: usize> = &'f dyn Fn(&Point<f64, D>) -> f64;
+type Datum<'f, const D: usize> = &'f dyn Fn(&Point<D>) -> f64;
 
 /// The bound between two values, of which each may be absent.
-fn between<T: Real, const D: usize>(
+fn between<const D: usize>(
     lower: Option<f64>,
     upper: Option<f64>,
     node: BoundedNode<D>,
     found: &mut Vec<Contradiction<D>>,
-) -> Bound<T> {
+) -> Bound<f64> {
     match (lower, upper) {
         (None, None) => Bound::Free,
-        (Some(l), None) => Bound::Lower(T::lit(l)),
-        (None, Some(u)) => Bound::Upper(T::lit(u)),
+        (Some(l), None) => Bound::Lower(l),
+        (None, Some(u)) => Bound::Upper(u),
         (Some(l), Some(u)) => {
             node.compare((["lower bound", "upper bound"], None), [l, u], found);
-            Bound::Both(T::lit(l), T::lit(l.max(u)))
+            Bound::Both(l, l.max(u))
         }
     }
 }

@@ -14,12 +14,12 @@ use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable, Derivatives};
 use crate::arrays::map_entries;
 use crate::assemble::local::StiffnessTable;
-use crate::element::MAX_BASIS;
+use crate::element::{Element, MAX_BASIS};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::DataByGroup;
 use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule, facet_to_cell};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A cell and the number of a facet in it.
 pub(crate) type Place = (usize, usize);
@@ -42,56 +42,56 @@ const CONSTANT: u32 = u32::MAX;
 
 /// The values of a coefficient in the cells in which it varies, and the reference cell at the points of
 /// the rules.
-pub(crate) struct VaryingCoefficient<T> {
+pub(crate) struct VaryingCoefficient {
     /// By cell, where its values start.
     starts: Vec<u32>,
     /// For each cell in which the coefficient varies the values at the points of the rule in the cell,
     /// then facet by facet at those of the rule on facets.
-    values: Vec<T>,
+    values: Vec<f64>,
     /// By point of the rule in the cell, the stiffness of the reference element with its weight.
-    stiffness: Vec<StiffnessTable<T>>,
+    stiffness: Vec<StiffnessTable>,
     /// The weights of the rule on facets.
-    facet_weights: Vec<T>,
+    facet_weights: Vec<f64>,
     /// By moment and point of the facet, the polynomial, up to the degree of the basis functions.
-    polynomials: Vec<T>,
+    polynomials: Vec<f64>,
     /// The number of moments that have a flux: those below that degree.
     flux_moments: usize,
     /// By facet, moment and point of the facet, the derivatives of the basis times polynomial and weight.
-    derivatives: Vec<Derivatives<T>>,
+    derivatives: Vec<Derivatives>,
 }
 
-impl<T: Real> VaryingCoefficient<T> {
+impl VaryingCoefficient {
     /// Samples a coefficient; none if it varies in no cell. `constants` are the values at the
     /// barycentres.
     ///
     /// # Errors
-    /// [`Error::CoefficientNotPositive`], [`Error::Parameter`] for a value that the scalar cannot hold.
+    /// [`Error::CoefficientNotPositive`], [`Error::Parameter`] for a value whose square is no floating-point number.
     pub fn new<const D: usize>(
         alpha: &DataByGroup<'_, D>,
-        mesh: &Mesh<T, D>,
-        constants: &[T],
-        basis_degree: usize,
-        basis: fn(&[f64; 4]) -> BasisAt<f64>,
+        mesh: &Mesh<D>,
+        constants: &[f64],
+        element: &dyn Element<D>,
     ) -> Result<Option<Self>, Error> {
+        let basis_degree = element.basis_degree();
         // the same whatever the order of vertices
         let rule = |dimension| FullySymmetric.rule(dimension, 2 * basis_degree);
         let (cell_rule, facet_rule) = (rule(D)?, rule(D - 1)?);
         let points = sampled_points(D, &cell_rule, &facet_rule);
         let mut starts = vec![CONSTANT; mesh.n_cells()];
-        let mut values: Vec<T> = Vec::new();
+        let mut values: Vec<f64> = Vec::new();
         for (cell, start) in starts.iter_mut().enumerate() {
-            let corners = mesh.cell(cell).iter().map(|&v| point_f64(&mesh.vertices()[v as usize]));
-            let corners: [Point<f64, D>; 4] = padded(corners);
+            let corners = mesh.cell(cell).iter().map(|&v| mesh.vertices()[v as usize]);
+            let corners: [Point<D>; 4] = padded(corners);
             let first = values.len();
             for point in &points {
                 let x = corners.iter().zip(point).map(|(corner, &b)| corner * b).sum();
                 values.push(coefficient_at(alpha, mesh.region(cell), &x, cell)?);
             }
-            let constant = constants[cell].to_f64();
-            let is_same = |v: &T| (v.to_f64() / constant - 1.0).abs() <= ROUNDINGS * T::EPSILON;
-            let samples = values[first..].iter().map(|v| v.to_f64());
+            let constant = constants[cell];
+            let is_same = |v: &f64| (v / constant - 1.0).abs() <= ROUNDINGS * f64::EPSILON;
+            let samples = values[first..].iter();
             let (least, largest) =
-                samples.fold((constant, constant), |(low, high), v| (low.min(v), high.max(v)));
+                samples.fold((constant, constant), |(low, high), &v| (low.min(v), high.max(v)));
             if largest > LARGEST_RATIO * least || values[first..].iter().all(is_same) {
                 values.truncate(first);
             } else {
@@ -103,7 +103,7 @@ impl<T: Real> VaryingCoefficient<T> {
         }
         let at_point = |(&point, &weight)| {
             let rule = Rule { points: vec![point], weights: vec![weight] };
-            StiffnessTable::new(D, &CellTable::new(rule, basis))
+            StiffnessTable::new(D, &CellTable::new(rule, element))
         };
         let polynomials = OrthonormalPolynomials::new(D - 1, basis_degree);
         let moments = 0..polynomials.len();
@@ -113,9 +113,9 @@ impl<T: Real> VaryingCoefficient<T> {
             for k in 0..flux_moments {
                 for (point, weight) in facet_rule.iter() {
                     let scale = weight * polynomials.value(k, point);
-                    let basis = basis(&facet_to_cell(point, local));
+                    let basis = BasisAt::new(element, &facet_to_cell(point, local));
                     derivatives.push(map_entries(basis.derivatives, |row| {
-                        map_entries(row, |d| T::lit(scale * d))
+                        map_entries(row, |d| scale * d)
                     }));
                 }
             }
@@ -123,14 +123,14 @@ impl<T: Real> VaryingCoefficient<T> {
         let mut at_points = Vec::with_capacity(polynomials.len() * facet_rule.points.len());
         for k in 0..polynomials.len() {
             for point in &facet_rule.points {
-                at_points.push(T::lit(polynomials.value(k, point)));
+                at_points.push(polynomials.value(k, point));
             }
         }
         Ok(Some(Self {
             starts,
             values,
             stiffness: cell_rule.points.iter().zip(&cell_rule.weights).map(at_point).collect(),
-            facet_weights: facet_rule.weights.iter().map(|&w| T::lit(w)).collect(),
+            facet_weights: facet_rule.weights.to_vec(),
             polynomials: at_points,
             flux_moments,
             derivatives,
@@ -140,26 +140,25 @@ impl<T: Real> VaryingCoefficient<T> {
     /// The values in a cell in which the coefficient varies: at the points of the rule in the cell, and
     /// after them on its facets.
     #[inline(always)]
-    fn of_cell(&self, cell: usize) -> Option<&[T]> {
+    fn of_cell(&self, cell: usize) -> Option<&[f64]> {
         let start = self.starts[cell];
         (start != CONSTANT).then(|| &self.values[start as usize..])
     }
     /// The values at the points of the rule in a cell, if the coefficient varies there.
     #[inline(always)]
-    pub fn in_cell(&self, cell: usize) -> Option<&[T]> {
+    pub fn in_cell(&self, cell: usize) -> Option<&[f64]> {
         self.of_cell(cell).map(|values| &values[..self.stiffness.len()])
     }
     /// The values on a facet from its cell, if the coefficient varies in the cell.
     #[inline(always)]
-    pub fn on_facet(&self, (cell, local): Place) -> Option<&[T]> {
+    pub fn on_facet(&self, (cell, local): Place) -> Option<&[f64]> {
         let n = self.facet_weights.len();
         self.of_cell(cell).map(|values| &values[self.stiffness.len() + local * n..][..n])
     }
     /// The largest value on a facet and the least in its cell, at the points of the rules, if the
     /// coefficient varies in the cell.
-    pub fn extremes(&self, place: Place) -> Option<[T; 2]> {
-        let largest =
-            self.on_facet(place)?.iter().fold(T::lit(0.0), |a, &b| if b > a { b } else { a });
+    pub fn extremes(&self, place: Place) -> Option<[f64; 2]> {
+        let largest = self.on_facet(place)?.iter().fold(0.0, |a, &b| if b > a { b } else { a });
         let values = self.in_cell(place.0)?;
         let least = values.iter().fold(values[0], |a, &b| if b < a { b } else { a });
         Some([largest, least])
@@ -167,14 +166,13 @@ impl<T: Real> VaryingCoefficient<T> {
     /// Entry `(i, j)` of `(alpha grad phi_j, grad phi_i)` over a cell with these values.
     pub fn stiffness<const D: usize>(
         &self,
-        values: &[T],
-        metric: &CellMetric<T, D>,
+        values: &[f64],
+        metric: &CellMetric<D>,
         i: usize,
         j: usize,
-    ) -> T {
+    ) -> f64 {
         let points = self.stiffness.iter().zip(values);
-        points
-            .fold(T::lit(0.0), |sum, (table, &alpha)| sum + alpha * table.entry::<D>(metric, i, j))
+        points.fold(0.0, |sum, (table, &alpha)| sum + alpha * table.entry::<D>(metric, i, j))
     }
     /// Moment `k` on facet `local` of the derivatives of the basis, with a weight at each point. Moments
     /// of the degree of the basis functions and above are left out of fluxes.
@@ -182,10 +180,10 @@ impl<T: Real> VaryingCoefficient<T> {
         &self,
         local: usize,
         k: usize,
-        weight: impl Fn(usize) -> T,
-    ) -> Derivatives<T> {
+        weight: impl Fn(usize) -> f64,
+    ) -> Derivatives {
         let n = self.facet_weights.len();
-        let mut sum = [[T::lit(0.0); 4]; MAX_BASIS];
+        let mut sum = [[0.0; 4]; MAX_BASIS];
         if k < self.flux_moments {
             let start = (local * self.flux_moments + k) * n;
             for (q, table) in self.derivatives[start..start + n].iter().enumerate() {
@@ -201,11 +199,11 @@ impl<T: Real> VaryingCoefficient<T> {
     }
     /// Moment `k` of a weight times moment `l`, by the points of a facet. Moments with and without a flux
     /// are not mixed: the lift of a jump tested with gradients is then its flux.
-    pub fn weighted_product(&self, k: usize, l: usize, weight: impl Fn(usize) -> T) -> T {
+    pub fn weighted_product(&self, k: usize, l: usize, weight: impl Fn(usize) -> f64) -> f64 {
         let n = self.facet_weights.len();
         let is_beyond = k.max(l) >= self.polynomials.len() / n;
         if is_beyond || (k < self.flux_moments) != (l < self.flux_moments) {
-            return T::lit(0.0);
+            return 0.0;
         }
         let term = |q: usize| {
             self.facet_weights[q]
@@ -213,7 +211,7 @@ impl<T: Real> VaryingCoefficient<T> {
                 * self.polynomials[k * n + q]
                 * self.polynomials[l * n + q]
         };
-        (0..n).fold(T::lit(0.0), |sum, q| sum + term(q))
+        (0..n).fold(0.0, |sum, q| sum + term(q))
     }
 }
 
@@ -234,7 +232,7 @@ fn sampled_points(dimension: usize, cell_rule: &Rule, facet_rule: &Rule) -> Vec<
 }
 
 /// The points, with zeros after them.
-fn padded<const D: usize>(points: impl Iterator<Item = Point<f64, D>>) -> [Point<f64, D>; 4] {
+fn padded<const D: usize>(points: impl Iterator<Item = Point<D>>) -> [Point<D>; 4] {
     let mut all = [Point::zeros(); 4];
     all.iter_mut().zip(points).for_each(|(to, from)| *to = from);
     all

@@ -4,7 +4,7 @@ use crate::algebra::Bound;
 use crate::error::Error;
 use crate::input::excerpt;
 use crate::mesh::{BoundaryGroup, Mesh, describe_point};
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// What a value is that a boundary group imposes.
 pub(crate) const DIRICHLET: &str = "Dirichlet value";
@@ -44,7 +44,7 @@ pub(crate) struct BoundedNode<const D: usize> {
     pub unknown: usize,
     /// The cell by which the node is visited.
     pub cell: usize,
-    pub x: Point<f64, D>,
+    pub x: Point<D>,
 }
 
 impl<const D: usize> BoundedNode<D> {
@@ -62,10 +62,10 @@ impl<const D: usize> BoundedNode<D> {
 }
 
 impl<const D: usize> Contradictions<D> {
-    pub(in crate::assemble) fn new<T: Real>(
-        bounds: &[Bound<T>],
+    pub(in crate::assemble) fn new(
+        bounds: &[Bound<f64>],
         found: Vec<Contradiction<D>>,
-        mesh: &Mesh<T, D>,
+        mesh: &Mesh<D>,
     ) -> Self {
         let name = |group: &BoundaryGroup| group.names.first().map(excerpt).unwrap_or_default();
         let groups = mesh.boundary_groups().iter().filter(|_| !found.is_empty());
@@ -74,7 +74,7 @@ impl<const D: usize> Contradictions<D> {
         for contradiction in &found {
             size = size.max(contradiction.lower.abs()).max(contradiction.upper.abs());
         }
-        Self { found, groups, size, relative_slack: RELATIVE_SLACK.max(16.0 * T::EPSILON) }
+        Self { found, groups, size, relative_slack: RELATIVE_SLACK }
     }
     /// The largest absolute value of a bound.
     pub fn size(&self) -> f64 {
@@ -105,7 +105,7 @@ impl<const D: usize> Contradictions<D> {
 }
 
 /// The largest absolute value of bounds.
-fn size_of<T: Real>(bounds: &[Bound<T>]) -> f64 {
+fn size_of(bounds: &[Bound<f64>]) -> f64 {
     let mut size = 0.0_f64;
     for bound in bounds {
         let [one, other] = match *bound {
@@ -113,7 +113,7 @@ fn size_of<T: Real>(bounds: &[Bound<T>]) -> f64 {
             Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => [a, a],
             Bound::Both(a, b) => [a, b],
         };
-        size = size.max(one.to_f64().abs()).max(other.to_f64().abs());
+        size = size.max(one.abs()).max(other.abs());
     }
     size
 }

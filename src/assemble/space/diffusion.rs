@@ -3,17 +3,17 @@
 use super::Space;
 use super::coefficient::{Place, VaryingCoefficient};
 use super::tables::Derivatives;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The diffusion coefficient at the barycentre of a cell.
     #[inline(always)]
-    pub fn alpha(&self, cell: usize) -> T {
-        self.coefficients.as_ref().map_or_else(|| T::lit(1.0), |a| a[cell])
+    pub fn alpha(&self, cell: usize) -> f64 {
+        self.coefficients.as_ref().map_or_else(|| 1.0, |a| a[cell])
     }
     /// The coefficient and its values in a cell, if it varies there and the element sees it.
     #[inline(always)]
-    pub fn varying_in(&self, cell: usize) -> Option<(&VaryingCoefficient<T>, &[T])> {
+    pub fn varying_in(&self, cell: usize) -> Option<(&VaryingCoefficient, &[f64])> {
         let varying = self.varying.as_ref()?;
         varying.in_cell(cell).map(|values| (varying, values))
     }
@@ -22,16 +22,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         self.varying.is_some()
     }
     /// The coefficient at a point of a cell.
-    pub fn alpha_at(&self, cell: usize, x: &Point<f64, D>) -> f64 {
+    pub fn alpha_at(&self, cell: usize, x: &Point<D>) -> f64 {
         match self.data.coefficient.of(self.mesh.region(cell)) {
             Some(alpha) if self.varying_in(cell).is_some() => alpha.at(x),
-            _ => self.alpha(cell).to_f64(),
+            _ => self.alpha(cell),
         }
     }
     /// The largest value of the coefficient on a facet from its cell, and the least in the cell, at the
     /// points that the element sees.
     #[inline(always)]
-    pub fn extreme_coefficients(&self, (cell, local): Place) -> [T; 2] {
+    pub fn extreme_coefficients(&self, (cell, local): Place) -> [f64; 2] {
         let extremes = self.varying.as_ref().and_then(|varying| varying.extremes((cell, local)));
         extremes.unwrap_or([self.alpha(cell); 2])
     }
@@ -48,8 +48,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         own: Place,
         other: Option<Place>,
-        own_weight: T,
-    ) -> Option<(&VaryingCoefficient<T>, impl Fn(usize) -> T)> {
+        own_weight: f64,
+    ) -> Option<(&VaryingCoefficient, impl Fn(usize) -> f64)> {
         let varying = self.varying.as_ref().filter(|_| self.varies_at(own, other))?;
         let at = move |place: Place, q: usize| match varying.on_facet(place) {
             Some(values) => values[q],
@@ -59,7 +59,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let a = at(own, q);
             let Some(other) = other else { return a };
             let b = at(other, q);
-            own_weight * a * b / (own_weight * b + (T::lit(1.0) - own_weight) * a)
+            own_weight * a * b / (own_weight * b + (1.0 - own_weight) * a)
         };
         Some((varying, weight))
     }
@@ -70,9 +70,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         own: Place,
         other: Option<Place>,
-        own_weight: T,
+        own_weight: f64,
         k: usize,
-    ) -> Option<Derivatives<T>> {
+    ) -> Option<Derivatives> {
         let (varying, weight) = self.flux_weights(own, other, own_weight)?;
         Some(varying.weighted_derivatives(own.1, k, weight))
     }
@@ -82,9 +82,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         own: Place,
         other: Option<Place>,
-        own_weight: T,
+        own_weight: f64,
         (k, l): (usize, usize),
-    ) -> Option<T> {
+    ) -> Option<f64> {
         let (varying, weight) = self.flux_weights(own, other, own_weight)?;
         Some(varying.weighted_product(k, l, weight))
     }

@@ -8,10 +8,11 @@ use crate::parallel::vectors::for_each_chunk_of_groups;
 use crate::element::Layout;
 use crate::memory::in_large_pages;
 use crate::mesh::{Edges, Facets, Mesh, Neighbours};
-use crate::real::Real;
 
 /// Unknowns by cell: consecutive for broken spaces, a table for others.
 pub(crate) struct Dofs<'a> {
+    /// Who owns the unknowns.
+    layout: Layout,
     table: Option<Cow<'a, [u32]>>,
     per_cell: usize,
     n_cells: usize,
@@ -23,12 +24,11 @@ pub(crate) struct Dofs<'a> {
 pub(crate) const KINDS: usize = 4;
 
 /// Which kind owns unknown `i` of a cell.
-#[inline(always)]
-pub(crate) const fn kind_of(layout: Layout, dimension: usize, i: usize) -> usize {
+fn kind_of(layout: Layout, dimension: usize, i: usize) -> usize {
     let vertices = Layout { edge: 0, facet: 0, cell: 0, ..layout }.per_cell(dimension);
     let edges = Layout { facet: 0, cell: 0, ..layout }.per_cell(dimension);
     let facets = Layout { cell: 0, ..layout }.per_cell(dimension);
-    (i >= vertices) as usize + (i >= edges) as usize + (i >= facets) as usize
+    usize::from(i >= vertices) + usize::from(i >= edges) + usize::from(i >= facets)
 }
 
 /// Vertices, edges, facets or cells that own unknowns.
@@ -43,13 +43,13 @@ struct Owners<'a> {
 
 impl<'a> Dofs<'a> {
     /// The numbering of a layout; facets that own unknowns are told by `neighbours`.
-    pub fn new<T: Real, const D: usize>(
+    pub fn new<const D: usize>(
         layout: Layout,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         neighbours: Option<&Neighbours>,
     ) -> Self {
         let (per_cell, n_cells) = (layout.per_cell(D), mesh.n_cells());
-        let mut dofs = Self { table: None, per_cell, n_cells, kinds: Default::default() };
+        let mut dofs = Self { layout, table: None, per_cell, n_cells, kinds: Default::default() };
         if layout.is_broken() {
             dofs.kinds = ranges([0, 0, 0, per_cell * n_cells]);
             return dofs;
@@ -98,6 +98,10 @@ impl<'a> Dofs<'a> {
     /// The unknowns of each kind of owner.
     pub(crate) fn kinds(&self) -> &[Range<u32>; KINDS] {
         &self.kinds
+    }
+    /// Which kind owns unknown `i` of a cell of this dimension.
+    pub(crate) fn kind(&self, dimension: usize, i: usize) -> usize {
+        kind_of(self.layout, dimension, i)
     }
     /// The unknowns of all cells where they are not simply consecutive.
     pub(crate) fn table(&self) -> Option<&[u32]> {

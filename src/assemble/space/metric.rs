@@ -7,48 +7,47 @@ use crate::facet::Side;
 use crate::memory::in_large_pages;
 use crate::mesh::Mesh;
 use crate::parallel::cells;
-use crate::real::Real;
 
 /// Products of gradients of a cell's barycentric coordinates, and its measures: all that enters the
 /// matrix, since only scalar products of normals and gradients do.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CellMetric<T, const D: usize> {
+pub(crate) struct CellMetric<const D: usize> {
     /// Its volume.
-    pub volume: T,
+    pub volume: f64,
     /// Measures of its facets.
-    pub measures: [T; 4],
+    pub measures: [f64; 4],
     /// `int grad lambda_i . grad lambda_j` over the cell.
-    pub products: [[T; 4]; 4],
+    pub products: [[f64; 4]; 4],
 }
 
-impl<T: Real, const D: usize> CellMetric<T, D> {
+impl<const D: usize> CellMetric<D> {
     /// Numbers kept of a cell: volume, facet measures, products above the diagonal.
     const KEPT: usize = 1 + (D + 1) + D * (D + 1) / 2;
 
     /// The metric of one cell.
     #[inline(always)]
-    pub fn of(mesh: &Mesh<T, D>, cell: usize) -> Self {
-        let (volume, products) = shape(mesh, cell, T::lit(1.0));
-        let mut measures = [T::lit(0.0); 4];
+    pub fn of(mesh: &Mesh<D>, cell: usize) -> Self {
+        let (volume, products) = shape(mesh, cell, 1.0);
+        let mut measures = [0.0; 4];
         for i in 1..=D {
             // |F| = D |K| |grad lambda|
             let square = volume * products[i][i];
-            measures[i] = T::lit(D as f64) * nalgebra::ComplexField::sqrt(square);
+            measures[i] = (D as f64) * nalgebra::ComplexField::sqrt(square);
         }
         // the first product is a sum of the others, in which thin cells lose all digits
         measures[0] = first_facet(mesh, cell);
         if D == 1 {
-            measures[1] = T::lit(1.0);
+            measures[1] = 1.0;
         }
         Self { volume, measures, products }
     }
     #[inline(always)]
-    fn zero(volume: T) -> Self {
-        Self { volume, measures: [T::lit(0.0); 4], products: [[T::lit(0.0); 4]; 4] }
+    fn zero(volume: f64) -> Self {
+        Self { volume, measures: [0.0; 4], products: [[0.0; 4]; 4] }
     }
     /// Sets an entry above the diagonal, with what follows for the others: rows sum to zero.
     #[inline(always)]
-    fn set(&mut self, i: usize, j: usize, product: T) {
+    fn set(&mut self, i: usize, j: usize, product: f64) {
         self.products[i][j] = product;
         self.products[j][i] = product;
         self.products[i][i] -= product;
@@ -56,11 +55,11 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
     }
     /// The measure of the whole boundary.
     #[inline(always)]
-    pub fn surface(&self) -> T {
-        (0..D + 1).fold(T::lit(0.0), |s, i| s + self.measures[i])
+    pub fn surface(&self) -> f64 {
+        (0..D + 1).fold(0.0, |s, i| s + self.measures[i])
     }
     #[inline(always)]
-    fn write(&self, out: &mut [T]) {
+    fn write(&self, out: &mut [f64]) {
         out[0] = self.volume;
         out[1..D + 2].copy_from_slice(&self.measures[..=D]);
         let mut k = D + 2;
@@ -72,7 +71,7 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
         }
     }
     #[inline(always)]
-    fn read(kept: &[T]) -> Self {
+    fn read(kept: &[f64]) -> Self {
         let mut metric = Self::zero(kept[0]);
         metric.measures[..=D].copy_from_slice(&kept[1..D + 2]);
         let mut k = D + 2;
@@ -90,12 +89,12 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
 /// through memory: with `n_k` the gradients times the determinant `d` of the edges the products are
 /// `scale n_i . n_j / (D! |d|)`.
 #[inline(always)]
-pub(crate) fn shape<T: Real, const D: usize>(
-    mesh: &Mesh<T, D>,
+pub(crate) fn shape<const D: usize>(
+    mesh: &Mesh<D>,
     cell: usize,
-    scale: T,
-) -> (T, [[T; 4]; 4]) {
-    let zero = T::lit(0.0);
+    scale: f64,
+) -> (f64, [[f64; 4]; 4]) {
+    let zero = 0.0;
     let corners = mesh.cell(cell);
     let mut edges = [[zero; 3]; 3];
     let origin = &mesh.vertices()[corners[0] as usize];
@@ -107,19 +106,19 @@ pub(crate) fn shape<T: Real, const D: usize>(
     }
     let [a, b, c] = edges;
     let normals = match D {
-        1 => [[T::lit(1.0), zero, zero], [zero; 3], [zero; 3]],
+        1 => [[1.0, zero, zero], [zero; 3], [zero; 3]],
         2 => [[b[1], -b[0], zero], [-a[1], a[0], zero], [zero; 3]],
         _ => [cross(b, c), cross(c, a), cross(a, b)],
     };
-    let determinant = dot::<T, D>(a, normals[0]);
+    let determinant = dot::<D>(a, normals[0]);
     let size = if determinant < zero { -determinant } else { determinant };
-    let scale = if size == zero { zero } else { scale / (size * T::lit(FACTORIAL[D])) };
+    let scale = if size == zero { zero } else { scale / (size * FACTORIAL[D]) };
     let mut products = [[zero; 4]; 4];
     for i in 1..=D {
         // rows sum to zero
         for j in 1..=D {
             products[i][j] = if i <= j {
-                scale * dot::<T, D>(normals[i - 1], normals[j - 1])
+                scale * dot::<D>(normals[i - 1], normals[j - 1])
             } else {
                 products[j][i]
             };
@@ -131,7 +130,7 @@ pub(crate) fn shape<T: Real, const D: usize>(
         products[0][i] = sum;
         products[0][0] -= sum;
     }
-    (size / T::lit(FACTORIAL[D]), products)
+    (size / FACTORIAL[D], products)
 }
 
 /// For each number zeros at its own place and ones at the others.
@@ -162,47 +161,47 @@ const PAIR: [[[usize; 4]; 4]; 4] = {
 
 /// The measure of the facet opposite the first vertex of a cell.
 #[inline(always)]
-fn first_facet<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> T {
+fn first_facet<const D: usize>(mesh: &Mesh<D>, cell: usize) -> f64 {
     let corners = mesh.cell(cell);
     let edge = |k: usize| {
-        let mut edge = [T::lit(0.0); 3];
+        let mut edge = [0.0; 3];
         let ends = map_entries([corners[1], corners[k.min(D)]], |v| &mesh.vertices()[v as usize]);
         for axis in 0..D {
             edge[axis] = ends[1][axis] - ends[0][axis];
         }
         edge
     };
-    let length = |a: [T; 3]| nalgebra::ComplexField::sqrt(dot::<T, 3>(a, a));
+    let length = |a: [f64; 3]| nalgebra::ComplexField::sqrt(dot::<3>(a, a));
     match D {
-        1 => T::lit(1.0),
+        1 => 1.0,
         2 => length(edge(2)),
-        _ => T::lit(0.5) * length(cross(edge(2), edge(3))),
+        _ => 0.5 * length(cross(edge(2), edge(3))),
     }
 }
 
 const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
 
 #[inline(always)]
-fn dot<T: Real, const D: usize>(a: [T; 3], b: [T; 3]) -> T {
+fn dot<const D: usize>(a: [f64; 3], b: [f64; 3]) -> f64 {
     (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
 }
 
 #[inline(always)]
-fn cross<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The metrics of all cells, computed once: each is read by the cell and by its neighbours.
-pub(crate) struct Metrics<T> {
-    kept: Vec<T>,
+pub(crate) struct Metrics {
+    kept: Vec<f64>,
 }
 
-impl<T: Real> Metrics<T> {
+impl Metrics {
     /// The metrics of a mesh, in parallel.
-    pub fn of<const D: usize>(mesh: &Mesh<T, D>) -> Self {
-        let n = CellMetric::<T, D>::KEPT;
-        let mut kept = in_large_pages(vec![T::lit(0.0); n * mesh.n_cells()]);
-        let fill = |cells: std::ops::Range<usize>, chunk: &mut [T]| {
+    pub fn of<const D: usize>(mesh: &Mesh<D>) -> Self {
+        let n = CellMetric::<D>::KEPT;
+        let mut kept = in_large_pages(vec![0.0; n * mesh.n_cells()]);
+        let fill = |cells: std::ops::Range<usize>, chunk: &mut [f64]| {
             for (cell, out) in cells.zip(chunk.chunks_exact_mut(n)) {
                 CellMetric::of(mesh, cell).write(out);
             }
@@ -213,8 +212,8 @@ impl<T: Real> Metrics<T> {
     }
     /// The metric of a cell.
     #[inline(always)]
-    pub fn at<const D: usize>(&self, cell: usize) -> CellMetric<T, D> {
-        let n = CellMetric::<T, D>::KEPT;
+    pub fn at<const D: usize>(&self, cell: usize) -> CellMetric<D> {
+        let n = CellMetric::<D>::KEPT;
         CellMetric::read(&self.kept[cell * n..(cell + 1) * n])
     }
     /// The measure of facet `local` of a cell, and the cell as the facet sees it, with the largest
@@ -223,29 +222,29 @@ impl<T: Real> Metrics<T> {
     pub fn side<const D: usize>(
         &self,
         (cell, local): (usize, usize),
-        [coefficient, least_coefficient]: [T; 2],
-    ) -> (T, Side<T>) {
-        let kept = &self.kept[cell * CellMetric::<T, D>::KEPT..][..D + 2];
+        [coefficient, least_coefficient]: [f64; 2],
+    ) -> (f64, Side) {
+        let kept = &self.kept[cell * CellMetric::<D>::KEPT..][..D + 2];
         let (volume, measure) = (kept[0], kept[1 + local]);
-        let surface = kept[1..].iter().fold(T::lit(0.0), |sum, &measure| sum + measure);
-        let height = T::lit(D as f64) * volume / measure;
+        let surface = kept[1..].iter().fold(0.0, |sum, &measure| sum + measure);
+        let height = (D as f64) * volume / measure;
         (measure, Side { coefficient, least_coefficient, volume, surface, height })
     }
     /// The products of the gradient opposite facet `local` of a cell with all of its gradients.
     #[inline(always)]
-    pub fn products_of<const D: usize>(&self, cell: usize, local: usize) -> [T; 4] {
-        let n = CellMetric::<T, D>::KEPT;
+    pub fn products_of<const D: usize>(&self, cell: usize, local: usize) -> [f64; 4] {
+        let n = CellMetric::<D>::KEPT;
         let kept = &self.kept[cell * n + D + 2..(cell + 1) * n];
         // by products with zeros and ones: facets come in no order that branches could foresee
         let (supports, others) = (&PAIR[D][local & 3], &OTHERS[local & 3]);
-        let mut row = [T::lit(0.0); 4];
-        let mut sum = T::lit(0.0);
+        let mut row = [0.0; 4];
+        let mut sum = 0.0;
         for k in 0..=D {
-            row[k] = T::lit(others[k]) * kept[supports[k]];
+            row[k] = others[k] * kept[supports[k]];
             sum -= row[k];
         }
         for k in 0..=D {
-            row[k] += (T::lit(1.0) - T::lit(others[k])) * sum;
+            row[k] += (1.0 - others[k]) * sum;
         }
         row
     }
@@ -260,11 +259,11 @@ mod tests {
     #[test]
     fn the_shortest_facet_of_a_thin_cell_keeps_its_digits() {
         for short in [1e-3, 1e-6, 1e-9] {
-            let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, short]].map(Point::<f64, 2>::from);
+            let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, short]].map(Point::<2>::from);
             let sides = [[0, 1], [0, 2], [1, 2]]
                 .map(|vertices| TaggedFacet { vertices, part: BoundaryPart::Dirichlet });
             let mesh = Mesh::new(vertices.to_vec(), vec![0, 1, 2], &sides).expect("one cell");
-            let metric: CellMetric<f64, 2> = CellMetric::of(&mesh, 0);
+            let metric: CellMetric<2> = CellMetric::of(&mesh, 0);
             let exact = [short, (1.0 + short * short).sqrt(), 1.0];
             for (measure, exact) in metric.measures.iter().zip(exact) {
                 assert!((measure / exact - 1.0).abs() < 4.0 * f64::EPSILON, "{short}");

@@ -1,12 +1,10 @@
 //! The discrete space on a mesh: all that does not depend on the facet form.
 //!
-//! Nothing here is generic in scheme or element, so that all is compiled once for each scalar and
-//! dimension: the element enters as an [`AnyElement`].
+//! Nothing here is generic in scheme or element, so that all is compiled once for each dimension.
 //!
 //! | file | content |
 //! |---|---|
 //! | `mod` | the space: rules, unknowns, nodes, points of cells and facets |
-//! | `any_element` | an element without its type |
 //! | `tables` | basis functions and their derivatives at the points of a rule, moments on facets |
 //! | `metric` | the geometry of cells as forms need it |
 //! | `dofs` | the numbers of the unknowns of a cell |
@@ -19,7 +17,6 @@
 //! | `supports`, `node_vertices` | the supports of basis functions, by the vertices that stand for a node |
 
 pub(crate) mod active_obstacles;
-mod any_element;
 mod bounds;
 mod coefficient;
 pub(crate) mod contradictions;
@@ -32,18 +29,17 @@ pub(crate) mod reaction_term;
 mod supports;
 pub(crate) mod tables;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
-use crate::constraint::BoundBy;
-use crate::element::{Entity, MAX_BASIS, Node};
+use crate::constraint::{BoundBy, in_basis_of, offered};
+use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours};
 use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
-use crate::real::{Point, Real, point_f64};
-pub(crate) use any_element::AnyElement;
+use crate::real::Point;
 use coefficient::VaryingCoefficient;
 pub(crate) use coefficient::{INWARD, Place};
 use dofs::Dofs;
@@ -56,9 +52,9 @@ use tables::{BasisAt, CellTable, FacetTable};
 pub(crate) type Terms = Vec<([f64; 4], f64)>;
 
 /// A finite element space with the problem posed on it.
-pub(crate) struct Space<'a, T: Real, const D: usize> {
+pub(crate) struct Space<'a, const D: usize> {
     pub problem: &'a Problem<D>,
-    pub mesh: &'a Mesh<T, D>,
+    pub mesh: &'a Mesh<D>,
     /// The data of the problem, by region and boundary group.
     pub data: DataOnMesh<'a, D>,
     /// The rule for data on cells.
@@ -67,13 +63,13 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     pub cell_degree: usize,
     /// The rule for data on facets.
     pub facet_rule: Rule,
-    pub reaction: Option<ReactionTerm<'a, T, D>>,
+    pub reaction: Option<ReactionTerm<'a, D>>,
     pub neighbours: Option<Neighbours>,
     pub dofs: Dofs<'a>,
     /// The coefficient at the barycentre of each cell.
-    coefficients: Option<Vec<T>>,
+    coefficients: Option<Vec<f64>>,
     /// The coefficient in the cells in which it varies, for elements of degree two and more.
-    varying: Option<VaryingCoefficient<T>>,
+    varying: Option<VaryingCoefficient>,
     /// What each of a cell's unknowns is the value of.
     pub nodes: Vec<Node>,
     /// The vertices that stand for each of a cell's nodes.
@@ -91,24 +87,26 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     /// By what a Signorini condition binds each of a cell's unknowns, if it does and the node lies on
     /// a contact facet.
     on_contact: Vec<Option<BoundBy>>,
-    basis: fn(&[f64; 4]) -> BasisAt<f64>,
+    element: Arc<dyn Element<D>>,
     /// Integrals of the load by cell, once computed.
-    pub load_by_cell: OnceLock<Vec<T>>,
+    pub load_by_cell: OnceLock<Vec<f64>>,
 }
 
-impl<'a, T: Real, const D: usize> Space<'a, T, D> {
-    /// The space of an element; facets are built only if asked for or numbered.
+impl<'a, const D: usize> Space<'a, D> {
+    /// The space of an element, in the basis that the problem's constraint set needs; facets are built
+    /// only if asked for or numbered.
     pub fn new(
-        element: AnyElement,
+        own: Arc<dyn Element<D>>,
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
         with_facets: bool,
         pins: bool,
-        offered: fn(contact: bool) -> Vec<String>,
     ) -> Result<Self, Error> {
-        let AnyElement { degree, basis_degree, layout, nodes, basis } = element;
         let set = problem.constraint_set();
+        let element = in_basis_of(set, own.clone());
+        let (degree, basis_degree) = (element.degree(), element.basis_degree());
+        let (layout, nodes) = (element.layout(), element.nodes());
         let data = DataOnMesh::new(problem, mesh)?;
         let neighbours = (with_facets || layout.facet > 0).then(|| {
             count::facet_topologies(1);
@@ -126,13 +124,13 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
                 let is_constant = data.reaction.all().all(|datum| datum.constant().is_some());
                 let degree = if is_constant { products } else { products.max(cell_degree) };
                 let rule = rule(quadrature.reaction, D, degree)?;
-                Some(ReactionTerm::new(data.reaction.clone(), rule, degree, basis, nodes.len()))
+                Some(ReactionTerm::new(data.reaction.clone(), rule, degree, element.clone()))
             }
         };
         let coefficients = data::coefficients(&data.coefficient, mesh)?;
         let varying = match &coefficients {
             Some(constants) if basis_degree > 1 => {
-                VaryingCoefficient::new(&data.coefficient, mesh, constants, basis_degree, basis)?
+                VaryingCoefficient::new(&data.coefficient, mesh, constants, &*element)?
             }
             _ => None,
         };
@@ -156,18 +154,19 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             basis_degree,
             broken: layout.is_broken(),
             pins,
-            basis,
+            element,
             load_by_cell: OnceLock::new(),
         };
-        space.check_constraint_set(offered)?;
+        space.check_constraint_set(&own)?;
         Ok(space)
     }
 
-    /// Refuses an inequality that would bind nothing at all.
-    fn check_constraint_set(&self, offered: fn(contact: bool) -> Vec<String>) -> Result<(), Error> {
+    /// Refuses an inequality that would bind nothing at all, and names the sets that the element of the
+    /// scheme offers.
+    fn check_constraint_set(&self, own: &Arc<dyn Element<D>>) -> Result<(), Error> {
         let refuse = |condition, contact| {
             let constraint = self.problem.constraint_set().name_on(&self.nodes).to_owned();
-            let allowed = match &offered(contact)[..] {
+            let allowed = match &offered(own, contact)[..] {
                 [] => "another element: this one has no nodes on facets".to_owned(),
                 names => names.join(" or "),
             };
@@ -197,28 +196,28 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         &self,
         cell: usize,
         local: usize,
-        metric: &'g CellMetric<T, D>,
-    ) -> CellSide<'g, T, D> {
+        metric: &'g CellMetric<D>,
+    ) -> CellSide<'g, D> {
         let [coefficient, least_coefficient] = self.extreme_coefficients((cell, local));
         CellSide { cell, local, metric, coefficient, least_coefficient }
     }
     /// The basis at a point of the cell.
-    pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt<f64> {
-        (self.basis)(point)
+    pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt {
+        BasisAt::new(&*self.element, point)
     }
     /// The factor `c` if the gradient of each basis function `i` is `c` times that of barycentric
     /// coordinate `i`, so that products of gradients make the whole stiffness.
-    pub fn gradient_factor(&self) -> Option<T> {
+    pub fn gradient_factor(&self) -> Option<f64> {
         let derivatives = self.basis_at(&[1.0 / (D + 1) as f64; 4]).derivatives;
         let factor = derivatives[0][0];
         let is_one = |i: usize, k: usize| derivatives[i][k] == if i == k { factor } else { 0.0 };
         let all = self.basis_degree == 1
             && self.per_cell() == D + 1
             && (0..=D).all(|i| (0..=D).all(|k| is_one(i, k)));
-        all.then(|| T::lit(factor))
+        all.then_some(factor)
     }
     /// The stiffness of the reference element.
-    pub fn stiffness_table(&self) -> StiffnessTable<T> {
+    pub fn stiffness_table(&self) -> StiffnessTable {
         StiffnessTable::new(
             D,
             &self.cell_table(Rule::new(D, 2 * self.basis_degree.saturating_sub(1))),
@@ -229,18 +228,18 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         !self.broken && self.nodes.iter().cloned().eq((0..=D).map(Node::vertex))
     }
     /// Moments of the basis on facets, up to a degree.
-    pub fn facet_table(&self, degree: usize) -> FacetTable<T> {
-        FacetTable::new(D, self.basis_degree, self.basis, degree)
+    pub fn facet_table(&self, degree: usize) -> FacetTable {
+        FacetTable::new(&*self.element, degree)
     }
     /// The basis at the points of a cell rule.
-    pub fn cell_table(&self, rule: Rule) -> CellTable<f64> {
-        CellTable::new(rule, self.basis)
+    pub fn cell_table(&self, rule: Rule) -> CellTable {
+        CellTable::new(rule, &*self.element)
     }
     /// The unknowns of a cell in `f64`.
-    pub fn local_values(&self, cell: usize, u: &[T]) -> [f64; MAX_BASIS] {
+    pub fn local_values(&self, cell: usize, u: &[f64]) -> [f64; MAX_BASIS] {
         let mut local = [0.0; MAX_BASIS];
         for (i, value) in local.iter_mut().enumerate().take(self.per_cell()) {
-            *value = u[self.dofs.of(cell, i)].to_f64();
+            *value = u[self.dofs.of(cell, i)];
         }
         local
     }
@@ -255,25 +254,25 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         self.mesh.boundary().iter().filter(of_part).map(facet)
     }
     /// The Dirichlet value at a point of a boundary group.
-    pub fn dirichlet_at(&self, group: usize, x: &Point<f64, D>) -> f64 {
+    pub fn dirichlet_at(&self, group: usize, x: &Point<D>) -> f64 {
         self.data.dirichlet.of(group).map_or(0.0, |u| u.at(x))
     }
     /// The metric of a cell, computed.
-    pub fn metric(&self, cell: usize) -> CellMetric<T, D> {
+    pub fn metric(&self, cell: usize) -> CellMetric<D> {
         CellMetric::of(self.mesh, cell)
     }
     /// The measure of a facet.
     pub fn facet_measure(&self, (cell, local): Place) -> f64 {
-        self.mesh.geometry(cell).facet_measure(local).to_f64()
+        self.mesh.geometry(cell).facet_measure(local)
     }
     /// A point of a facet in space.
-    pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<f64, D> {
-        let inserted = facet_to_cell(point, local).map(T::lit);
-        point_f64(&self.mesh.point(cell, &inserted[..=D]))
+    pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<D> {
+        let inserted = facet_to_cell(point, local);
+        self.mesh.point(cell, &inserted[..=D])
     }
     /// A point of a cell in space.
-    pub fn cell_point(&self, point: &[f64; 4], cell: usize) -> Point<f64, D> {
-        point_f64(&self.mesh.point(cell, &point.map(T::lit)[..=D]))
+    pub fn cell_point(&self, point: &[f64; 4], cell: usize) -> Point<D> {
+        self.mesh.point(cell, &point[..=D])
     }
     /// The basis functions whose nodes lie on facet `local`.
     pub fn nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
@@ -288,10 +287,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         self.nodes_on(local).filter_map(|i| Some((i, self.on_contact[i]?)))
     }
     /// The point that stands for a node.
-    pub fn node_point(&self, cell: usize, node: &Node) -> Point<f64, D> {
+    pub fn node_point(&self, cell: usize, node: &Node) -> Point<D> {
         match node.entity() {
-            Entity::Facet(k) if node.is_mean() => point_f64(&self.mesh.facet_barycentre(cell, k)),
-            Entity::Cell if node.is_mean() => point_f64(&self.mesh.barycentre(cell)),
+            Entity::Facet(k) if node.is_mean() => self.mesh.facet_barycentre(cell, k),
+            Entity::Cell if node.is_mean() => self.mesh.barycentre(cell),
             _ => self.cell_point(&node.centre(D), cell),
         }
     }
@@ -300,8 +299,8 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         self.nodes.iter().map(|node| node.terms(facet_rule, cell_rule)).collect()
     }
     /// A discrete function at the vertices of each cell, `D + 1` values for each.
-    pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
-        let corners: Vec<BasisAt<f64>> = (0..=D)
+    pub fn vertex_values(&self, u: &[f64]) -> Vec<f64> {
+        let corners: Vec<BasisAt> = (0..=D)
             .map(|k| {
                 let mut point = [0.0; 4];
                 point[k] = 1.0;

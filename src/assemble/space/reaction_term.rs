@@ -1,47 +1,49 @@
 //! The reaction term in the matrix of a cell.
 
 use super::data::finite;
+use std::sync::Arc;
+
 use super::tables::{BasisAt, CellTable};
 use crate::assemble::count;
 use crate::assemble::cut_simplices::{CutRule, Visit};
 use crate::assemble::local::Local;
+use crate::element::Element;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::{DataByGroup, DatumRef};
 use crate::quadrature::Rule;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// The reaction term, with the rule that integrates it.
-pub(crate) struct ReactionTerm<'a, T, const D: usize> {
+pub(crate) struct ReactionTerm<'a, const D: usize> {
     data: DataByGroup<'a, D>,
-    table: CellTable<T>,
+    table: CellTable,
     /// Where a datum has a level: the rule on cells that its zero set cuts.
     cut: Option<CutRule>,
-    basis: fn(&[f64; 4]) -> BasisAt<f64>,
+    element: Arc<dyn Element<D>>,
     n: usize,
 }
 
-impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
-    /// The term of data with `n` basis functions at the points of a rule. A rule at vertices alone,
+impl<'a, const D: usize> ReactionTerm<'a, D> {
+    /// The term of data with the basis of an element at the points of a rule. A rule at vertices alone,
     /// which lumps the term, is used on cells that are cut too.
     pub fn new(
         data: DataByGroup<'a, D>,
         rule: Rule,
         degree: usize,
-        basis: fn(&[f64; 4]) -> BasisAt<f64>,
-        n: usize,
+        element: Arc<dyn Element<D>>,
     ) -> Self {
         let is_lumped = rule.points.iter().all(|point| point.contains(&1.0));
         let has_level = data.any(&|datum| datum.level().is_some());
         let cut = (has_level && !is_lumped).then(|| CutRule::new(D, degree));
-        Self { data, table: CellTable::new(rule, basis).rounded(), cut, basis, n }
+        Self { data, table: CellTable::new(rule, &*element), cut, n: element.per_cell(), element }
     }
     /// Adds `(c phi_j, phi_i)` over a cell.
-    pub fn add(&self, mesh: &Mesh<T, D>, cell: usize, volume: T, out: &mut Local<T>) {
+    pub fn add(&self, mesh: &Mesh<D>, cell: usize, volume: f64, out: &mut Local) {
         let Some(datum) = self.data.of(mesh.region(cell)) else { return };
-        let mut add = |c: f64, weight: T, basis: &BasisAt<T>| {
+        let mut add = |c: f64, weight: f64, basis: &BasisAt| {
             count::reaction(1);
-            let scale = T::lit(c) * volume * weight;
+            let scale = c * volume * weight;
             for i in 0..self.n {
                 for j in 0..self.n {
                     out[i][j] += scale * basis.values[i] * basis.values[j];
@@ -49,18 +51,18 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
             }
         };
         if self.visit_cut(datum, mesh, cell, &mut |point, x, weight| {
-            add(datum.at(x), T::lit(weight), &(self.basis)(point).rounded());
+            add(datum.at(x), weight, &BasisAt::new(&*self.element, point));
         }) {
             return;
         }
         let table = &self.table;
         for ((point, basis), &weight) in table.points.iter().zip(&table.basis).zip(&table.weights) {
-            let at = || datum.at(&point_f64(&mesh.point(cell, &point[..=D])));
+            let at = || datum.at(&(mesh.point(cell, &point[..=D])));
             add(datum.constant().unwrap_or_else(at), weight, basis);
         }
     }
     /// Whether the data are not negative at the points of the rule.
-    pub fn is_nonnegative(&self, mesh: &Mesh<T, D>) -> bool {
+    pub fn is_nonnegative(&self, mesh: &Mesh<D>) -> bool {
         if self.data.every(&|datum| datum.constant().is_some_and(|c| c >= 0.0)) {
             return true;
         }
@@ -71,7 +73,7 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
         is_nonnegative
     }
     /// Finds the point at which a datum is not finite.
-    pub fn check(&self, mesh: &Mesh<T, D>) -> Result<(), Error> {
+    pub fn check(&self, mesh: &Mesh<D>) -> Result<(), Error> {
         for cell in 0..mesh.n_cells() {
             let mut outcome = Ok(0.0);
             self.visit_values(mesh, cell, &mut |c, x| {
@@ -84,16 +86,11 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
         Ok(())
     }
     /// Visits the values of the datum at the points of the rule on a cell.
-    fn visit_values(
-        &self,
-        mesh: &Mesh<T, D>,
-        cell: usize,
-        visit: &mut dyn FnMut(f64, &Point<f64, D>),
-    ) {
+    fn visit_values(&self, mesh: &Mesh<D>, cell: usize, visit: &mut dyn FnMut(f64, &Point<D>)) {
         let Some(datum) = self.data.of(mesh.region(cell)) else { return };
         if !self.visit_cut(datum, mesh, cell, &mut |_, x, _| visit(datum.at(x), x)) {
             for point in &self.table.points {
-                let x = point_f64(&mesh.point(cell, &point[..=D]));
+                let x = mesh.point(cell, &point[..=D]);
                 visit(datum.at(&x), &x);
             }
         }
@@ -103,7 +100,7 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
     fn visit_cut(
         &self,
         datum: DatumRef<'_, D>,
-        mesh: &Mesh<T, D>,
+        mesh: &Mesh<D>,
         cell: usize,
         visit: Visit<'_, D>,
     ) -> bool {

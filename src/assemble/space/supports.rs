@@ -5,9 +5,8 @@ use crate::algebra::Support;
 use crate::element::Entity;
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::collect;
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The support of each unknown.
     pub fn supports(&self) -> Vec<Support> {
         let n = self.dofs.size();

@@ -9,9 +9,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 use unilateral::exchange::read_vector;
+use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::gmsh::GmshFile;
 use unilateral::problem_file::{self, AnyOwnProblem};
-use unilateral::real::Real;
+use unilateral::real::Precision;
 use unilateral::scenes::{self, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Report, Row, RowKey, file_name};
@@ -19,7 +21,7 @@ use unilateral::study::{Program, Report, Row, RowKey, file_name};
 use crate::compare;
 use crate::mesh_file::MeshFile;
 use crate::posed::Posed;
-use crate::shared::{Request, cannot_write, each_once, fingerprint, print, read, write};
+use crate::shared::{Request, cannot_write, each_once, print, read, write};
 
 /// Judges a vector that another program found for an inequality of `compare --dump`
 #[derive(Args, Debug)]
@@ -75,21 +77,18 @@ pub fn run(options: &Options) -> Request<bool> {
     let path = options.directory.join(REQUEST);
     let request: Value = serde_json::from_slice(&read(&path)?)
         .map_err(|e| format!("cannot read {}: {e}", path.display()))?;
-    match request["precision"].as_str() {
-        Some("f32") => judge::<f32>(options, &path, &request),
-        _ => judge::<f64>(options, &path, &request),
-    }
+    judge(options, &path, &request)
 }
 
-fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bool> {
+fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
     let wrong = |key: &str| format!("{}: {key} is {}", path.display(), request[key]);
     let text = |key: &str| request[key].as_str().ok_or_else(|| wrong(key));
     let scheme = text("label")?.parse::<NamedScheme>();
     let scheme = scheme.map_err(|e| format!("{}: {e}", path.display()))?;
     let level = request["level"].as_u64().ok_or_else(|| wrong("level"))? as usize;
-    let is_unchanged = |place: usize, file: &Path, bytes: &[u8]| {
+    let is_unchanged = |place: usize, file: &Path, fingerprint: String| {
         let file = file.display();
-        match request["contents"][place] == fingerprint(bytes) {
+        match request["contents"][place] == fingerprint {
             true => Ok(()),
             false => Err(format!(
                 "{file} (or its mesh) is not what it was when {} was written: dump the inequality again",
@@ -101,16 +100,15 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
     let mut mesh = None;
     if let Some(file) = request["mesh"].as_str() {
         let file = found_beside(&options.directory, file);
-        let bytes = read(&file)?;
-        is_unchanged(0, &file, &bytes)?;
         let parts = request["boundary"].as_object().into_iter().flatten();
         let part = |(name, part): (&String, &Value)| {
             Some((name.clone(), BoundaryPart::from_name(part.as_str()?)?))
         };
-        mesh = Some((
-            MeshFile { path: Some(file), boundary: parts.filter_map(part).collect() },
-            bytes,
-        ));
+        let options =
+            MeshFile { path: Some(file.clone()), boundary: parts.filter_map(part).collect() };
+        let contents = options.read()?.expect("a file with a path has contents");
+        is_unchanged(0, &file, contents.fingerprint())?;
+        mesh = Some((options, contents));
     }
     let reference = match &request["reference"] {
         Value::Null => None,
@@ -122,17 +120,22 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
     };
     let coarsest = request["coarsest"].as_u64().map_or(level, |coarsest| coarsest as usize);
     let levels = [level, if reference.is_some() { coarsest } else { level }];
-    let of = (&scheme, levels, reference.as_ref());
+    let precision = match &request["precision"] {
+        Value::Null => Precision::default(),
+        name => name.as_str().and_then(Precision::by_name).ok_or_else(|| wrong("precision"))?,
+    };
+    let of = (&scheme, levels, reference.as_ref(), precision);
     let row = match request["problem"].as_str() {
         Some(path) => {
             let path = found_beside(&options.directory, path);
-            is_unchanged(0, &path, &read(&path)?)?;
             let own = problem_file::read(&path).map_err(|e| e.to_string())?;
-            is_unchanged(1, &path, own.mesh_bytes().unwrap_or_default())?;
+            for (place, (_, fingerprint)) in own.fingerprints().into_iter().enumerate() {
+                is_unchanged(place, &path, fingerprint)?;
+            }
             match own {
-                AnyOwnProblem::One(own) => row::<T, 1>(own.into(), of, mesh, &values),
-                AnyOwnProblem::Two(own) => row::<T, 2>(own.into(), of, mesh, &values),
-                AnyOwnProblem::Three(own) => row::<T, 3>(own.into(), of, mesh, &values),
+                AnyOwnProblem::One(own) => row::<1>(own.into(), of, mesh, &values),
+                AnyOwnProblem::Two(own) => row::<2>(own.into(), of, mesh, &values),
+                AnyOwnProblem::Three(own) => row::<3>(own.into(), of, mesh, &values),
             }
         }
         None => {
@@ -143,14 +146,14 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
                 .with_contrast(number("contrast", entry.accepts.contrast))
                 .with_load(number("load", entry.accepts.load));
             match entry.make(&parameters).map_err(|e| e.to_string())? {
-                AnyScene::One(scene) => row::<T, 1>(scene.into(), of, mesh, &values),
-                AnyScene::Two(scene) => row::<T, 2>(scene.into(), of, mesh, &values),
-                AnyScene::Three(scene) => row::<T, 3>(scene.into(), of, mesh, &values),
+                AnyScene::One(scene) => row::<1>(scene.into(), of, mesh, &values),
+                AnyScene::Two(scene) => row::<2>(scene.into(), of, mesh, &values),
+                AnyScene::Three(scene) => row::<3>(scene.into(), of, mesh, &values),
             }
         }
     }?;
     let is_within = row.converged();
-    let program = Program::new("judge", T::NAME, rayon::current_num_threads(), 1);
+    let program = Program::new("judge", precision.name(), rayon::current_num_threads(), 1);
     let report = Report::new(program, vec![row]);
     if options.json {
         print(&report.to_json())?;
@@ -177,16 +180,20 @@ fn found_beside(folder: &Path, file: &str) -> PathBuf {
     places.into_iter().find(|place| place.exists()).unwrap_or(file)
 }
 
-fn row<T: Real, const D: usize>(
+/// What is judged: the scheme, its level and the coarsest one, the reference, and the precision of the values.
+type Judged<'a> = (&'a NamedScheme, [usize; 2], Option<&'a (NamedScheme, usize)>, Precision);
+
+fn row<const D: usize>(
     posed: Posed<D>,
-    (scheme, levels, reference): (&NamedScheme, [usize; 2], Option<&(NamedScheme, usize)>),
-    mesh: Option<(MeshFile, Vec<u8>)>,
+    (scheme, levels, reference, precision): Judged<'_>,
+    mesh: Option<(MeshFile, GmshFile)>,
     values: &[f64],
 ) -> Request<Row> {
-    let study = posed.study::<T>(&|_| {})?;
-    let mut study = study.named_scheme(scheme).levels(each_once(&levels));
-    if let Some((file, bytes)) = mesh {
-        study = study.on_mesh(file.parse(&bytes, &|_| {})?);
+    let study = posed.study(&|_| {})?;
+    let solver = in_precision(precision, ActiveSet::default());
+    let mut study = study.named_scheme(scheme).boxed_solver(solver).levels(each_once(&levels));
+    if let Some((options, file)) = mesh {
+        study = study.on_mesh(options.mesh(&file, &|_| {})?);
     }
     if let Some((scheme, level)) = reference {
         study = study.named_reference(scheme, *level);

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use unilateral::input::{excerpt, excerpts};
-use unilateral::mesh::gmsh::{self, GmshWarning};
+use unilateral::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile, GmshWarning};
 use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
-use unilateral::real::Real;
 
-use crate::shared::{Request, read};
+use crate::shared::Request;
 
 /// The options of a mesh in place of built-in ones.
 #[derive(Args, Clone, Debug, Default)]
@@ -22,25 +21,31 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// The mesh, where there is a file; warnings of the file go to `warn`.
-    pub fn read<T: Real, const D: usize>(
-        &self,
-        warn: &dyn Fn(String),
-    ) -> Request<Option<Mesh<T, D>>> {
-        let bytes = self.path.as_deref().map(read).transpose()?;
-        bytes.map(|bytes| self.parse(&bytes, warn)).transpose()
+    /// The contents of the file, where there is one.
+    pub fn read(&self) -> Request<Option<GmshFile>> {
+        let read = |path: &PathBuf| GmshFile::read(path).map_err(|e| cannot_mesh(path, &e));
+        self.path.as_ref().map(read).transpose()
     }
 
-    /// The mesh of the contents of the file.
-    pub fn parse<T: Real, const D: usize>(
-        &self,
-        bytes: &[u8],
-        warn: &dyn Fn(String),
-    ) -> Request<Mesh<T, D>> {
-        let path = self.path.as_deref().unwrap_or(Path::new(""));
-        let read = gmsh::parse::<T, D>(bytes).map_err(|e| format!("{}: {e}", path.display()))?;
+    /// The mesh, where there is a file; warnings of the file go to `warn`.
+    pub fn read_mesh<const D: usize>(&self, warn: &dyn Fn(String)) -> Request<Option<Mesh<D>>> {
+        self.read()?.map(|file| self.mesh(&file, warn)).transpose()
+    }
+
+    /// The mesh of the contents of the file; warnings go to `warn`.
+    pub fn mesh<const D: usize>(&self, file: &GmshFile, warn: &dyn Fn(String)) -> Request<Mesh<D>> {
+        let path = self.path.as_deref().expect("a file that has been read has a path");
+        let read = file.mesh::<D>().map_err(|e| cannot_mesh(path, &e))?;
         warn_of(&read.warnings, path, warn);
         with_parts(read.mesh, path, &self.boundary)
+    }
+}
+
+/// The message for a file that is no mesh, with its path once.
+pub fn cannot_mesh(path: &Path, error: &GmshError) -> String {
+    match error.kind {
+        GmshErrorKind::Unreadable => error.to_string(),
+        _ => format!("{}: {error}", path.display()),
     }
 }
 
@@ -52,11 +57,11 @@ pub fn warn_of(warnings: &[GmshWarning], path: &Path, warn: &dyn Fn(String)) {
 }
 
 /// A mesh of a file whose boundary groups have these parts besides those that they name.
-pub fn with_parts<T: Real, const D: usize>(
-    mesh: Mesh<T, D>,
+pub fn with_parts<const D: usize>(
+    mesh: Mesh<D>,
     path: &Path,
     boundary: &[(String, BoundaryPart)],
-) -> Request<Mesh<T, D>> {
+) -> Request<Mesh<D>> {
     let file = path.display();
     let groups: Vec<&str> =
         mesh.boundary_groups().iter().flat_map(|g| &g.names).map(String::as_str).collect();

@@ -14,7 +14,6 @@ use std::path::PathBuf;
 use clap::Args;
 use unilateral::input::excerpt;
 use unilateral::prelude::{Report, Study};
-use unilateral::real::Real;
 use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{ObservedOrders, Program, Row, orders_summary, orders_table};
@@ -88,7 +87,7 @@ fn make(options: &Options, schemes: &[NamedScheme]) -> Result<(), Box<dyn Error>
 
 /// The observed orders of these rows.
 fn observed(rows: &[Row]) -> Vec<ObservedOrders> {
-    let program = Program::new("orders", f64::NAME, rayon::current_num_threads(), 1);
+    let program = Program::new("orders", "f64", rayon::current_num_threads(), 1);
     Report::new(program, rows.to_vec()).observed_orders()
 }
 
@@ -120,7 +119,7 @@ fn study<const D: usize>(
         _ => &[2, 4, 6, 8],
     };
     let levels = levels.iter().map(|level| if quick { level / 2 } else { *level });
-    let study = Study::<f64, D>::new(scene).levels(levels);
+    let study = Study::<D>::new(scene).levels(levels);
     let study = schemes.iter().fold(study, |study, scheme| study.named_scheme(scheme));
     study.check_memory()?;
     Ok(study.run()?.rows)

@@ -77,8 +77,8 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
 /// Draws one level, and writes the fields of the series.
 fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Failure> {
     let warn = |warning: String| warn(&warning);
-    let mesh = options.mesh.read(&warn)?;
-    let study = |warn: &dyn Fn(String)| -> Request<Study<'_, f64, D>> {
+    let mesh = options.mesh.read_mesh(&warn)?;
+    let study = |warn: &dyn Fn(String)| -> Request<Study<'_, D>> {
         let study = posed.clone().study(warn)?.named_scheme(&options.scheme);
         let study = match options.adaptive {
             Some(adaptivity) => study.adaptive(adaptivity),
@@ -140,7 +140,7 @@ fn draw_one<const D: usize>(
     options: &Options,
     title: &str,
     stem: &str,
-    solved: &Solved<'_, f64, D>,
+    solved: &Solved<'_, D>,
     slice: Option<Slice>,
 ) -> Result<Vec<PathBuf>, Error> {
     let Some(fields) = fields_with_bound(solved) else { return Ok(Vec::new()) };

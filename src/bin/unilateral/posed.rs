@@ -1,7 +1,6 @@
 //! What a command solves: a scene of the catalogue, or a problem of a file.
 
 use unilateral::problem_file::{Geometry, OwnProblem};
-use unilateral::real::Real;
 use unilateral::scenes::Scene;
 use unilateral::study::Study;
 
@@ -47,12 +46,12 @@ impl<const D: usize> Posed<D> {
         matches!(self, Self::Own(OwnProblem { geometry: Geometry::File { .. }, .. }))
     }
     /// A study of the problem, without schemes. Warnings of the mesh file go to `warn`.
-    pub fn study<'a, T: Real>(self, warn: &dyn Fn(String)) -> Request<Study<'a, T, D>> {
+    pub fn study<'a>(self, warn: &dyn Fn(String)) -> Request<Study<'a, D>> {
         let own = match self {
             Self::Scene(scene) => return Ok(Study::new(scene)),
             Self::Own(own) => own,
         };
-        let read = own.mesh::<T>().map_err(|e| e.to_string())?;
+        let read = own.mesh().map_err(|e| e.to_string())?;
         match (own.geometry, read) {
             (Geometry::File { path, .. }, Some(read)) => {
                 warn_of(&read.warnings, &path, warn);
@@ -70,7 +69,7 @@ impl<const D: usize> Posed<D> {
             Self::Scene(scene) => return Ok(WorkPrecision::new(move || scene.clone())),
             Self::Own(own) => own,
         };
-        let read = own.mesh::<f64>().map_err(|e| e.to_string())?;
+        let read = own.mesh().map_err(|e| e.to_string())?;
         match (own.geometry, read) {
             (Geometry::File { path, .. }, Some(read)) => {
                 warn_of(&read.warnings, &path, warn);

@@ -9,7 +9,6 @@ use indicatif::{ProgressBar, ProgressStyle};
 use unilateral::input::{beginning, excerpt, read_file};
 use unilateral::measure::Fields;
 use unilateral::nested::Solved;
-use unilateral::real::Real;
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
@@ -185,16 +184,8 @@ pub fn reference(text: &str) -> Request<(NamedScheme, usize)> {
     Ok((scheme.parse().map_err(|e: unilateral::scheme::SchemeNameError| e.to_string())?, level))
 }
 
-/// The length and a hash of the contents of a file.
-pub fn fingerprint(bytes: &[u8]) -> String {
-    // the hash of Fowler, Noll and Vo, which has the same value on every machine
-    let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
-    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325, step);
-    format!("{} bytes {hash:016x}", bytes.len())
-}
-
 /// The fields of a solution, with the share of each cell in the error bound where there is one; none without an iterate.
-pub fn fields_with_bound<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> Option<Fields> {
+pub fn fields_with_bound<const D: usize>(solved: &Solved<'_, D>) -> Option<Fields> {
     let mut fields = solved.fields()?;
     fields.bound = solved.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
     Some(fields)

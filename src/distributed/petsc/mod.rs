@@ -18,8 +18,8 @@ mod shim;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::error::ExchangeError;
 use super::process::Process;
+use crate::processes::ExchangeError;
 use engine::Petsc;
 use mpi_exchange::MpiExchange;
 use shim::{check, ul_abort, ul_end, ul_rank, ul_size, ul_start};

@@ -4,8 +4,8 @@ use std::ffi::c_int;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::shim::{check, ul_counts, ul_exchange, ul_largest, ul_sum};
-use crate::distributed::error::ExchangeError;
-use crate::distributed::exchange::Exchange;
+use crate::processes::Exchange;
+use crate::processes::ExchangeError;
 
 /// The exchange over MPI.
 #[derive(Debug)]

@@ -7,7 +7,7 @@ use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
 use crate::quadrature::Rule;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// The degree of products of two fluxes.
 const DEGREE: usize = 4;
@@ -113,7 +113,7 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The cells with these numbers.
     pub(super) fn cells_with_products<'f>(
         &self,
@@ -141,9 +141,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         (rule, products): (&Rule, &mut [f64]),
     ) -> CellOfQuadratics {
         let n = (D + 1) * (D + 1);
-        let volume = self.mesh.geometry(number).volume.to_f64();
+        let volume = self.mesh.geometry(number).volume;
         let per_volume = 1.0 / (D as f64 * volume);
-        let alpha = self.alpha(number).to_f64();
+        let alpha = self.alpha(number);
         let admissible = self.admissible_in(function, number);
         let corners = self.mesh.corners(number);
         let mut gaps = [[0.0; 4]; 2];
@@ -157,7 +157,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let distance = admissible.bounds[k].map_or(0.0, |psi| sign * (value - psi.at(&x)));
                 (0..D + 1).for_each(|j| gaps[k][j] += weight * point[j] * distance);
             }
-            let mut fluxes = [Point::<f64, D>::zeros(); 16];
+            let mut fluxes = [Point::<D>::zeros(); 16];
             for (facet, corner) in corners.iter().enumerate().take(D + 1) {
                 let along = (x - corner) * per_volume;
                 (0..D + 1).for_each(|j| fluxes[Flux::<D>::place(facet, j)] = along * point[j]);

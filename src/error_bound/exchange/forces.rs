@@ -19,7 +19,6 @@ use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::vertices_of;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::facet_to_cell;
-use crate::real::Real;
 
 /// Visits of each pair of vertices of each facet.
 const SWEEPS: usize = 4;
@@ -128,7 +127,7 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Changes the contact forces of quadratics along facets, as far as that makes the bound smaller.
     pub(in crate::error_bound) fn exchange_forces(
         &self,
@@ -154,7 +153,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let distance = (admissible.at(&point, &x).0 - gap.at(&x)).max(0.0);
                 gaps.iter_mut().zip(&point).for_each(|(gap, b)| *gap += weight * distance * b);
             }
-            let alpha = self.alpha(place.0).to_f64();
+            let alpha = self.alpha(place.0);
             let measure = self.facet_measure(place);
             let square = (measure * alpha * (D * (D + 1)) as f64).recip();
             Some(ContactFacet {

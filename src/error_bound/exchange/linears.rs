@@ -12,7 +12,7 @@ use crate::measure::Counts;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbours};
 use crate::quadrature::Rule;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// Most visits of each facet. The matrix of the least-squares problem is the mass matrix of fluxes, whose condition
 /// does not grow with the number of cells.
@@ -26,13 +26,13 @@ struct CellOfLinears<const D: usize> {
     /// The number of the cell.
     number: usize,
     /// The values at the centre of the fluxes that leave through one facet each.
-    at_centre: [Point<f64, D>; 4],
+    at_centre: [Point<D>; 4],
     /// The mean of the square of such a flux less its value at the centre.
     variance: f64,
     /// The volume over the coefficient.
     weight: f64,
     /// The flux at the centre less the gradient of the function times the coefficient.
-    difference: Point<f64, D>,
+    difference: Point<D>,
     /// The sum of the fluxes through the facets.
     sum: f64,
     /// The mean distances of the function from the lower and the upper obstacle; if they are given.
@@ -73,7 +73,7 @@ impl<const D: usize> CellOfLinears<D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the part that its
     /// flux balances, by volume around a vertex and half on the two sides of a facet, if the cell's obstacle gives the
     /// active bound. The multipliers of inactive
@@ -99,8 +99,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         multipliers.iter_mut().filter(is_rounding).for_each(|m| *m = 0.0);
         let by_volume = self.is_conforming_linear();
         let n_cells = self.mesh.n_cells();
-        let part =
-            |cell: usize| if by_volume { self.mesh.geometry(cell).volume.to_f64() } else { 1.0 };
+        let part = |cell: usize| if by_volume { self.mesh.geometry(cell).volume } else { 1.0 };
         let mut parts = vec![0.0; multipliers.len()];
         let pressing = |cell: usize| {
             let acting = (0..n).filter(move |&i| obstacles.act_in(cell, i));
@@ -161,11 +160,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         multiplier: f64,
         rule: &Rule,
     ) -> CellOfLinears<D> {
-        let volume = self.mesh.geometry(number).volume.to_f64();
-        let alpha = self.alpha(number).to_f64();
+        let volume = self.mesh.geometry(number).volume;
+        let alpha = self.alpha(number);
         let admissible = self.admissible_in(function, number);
         let corners = self.mesh.corners(number);
-        let centre: Point<f64, D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
+        let centre: Point<D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
         let squares: f64 = corners[..=D].iter().map(|x| (centre - x).norm_squared()).sum();
         let per_volume = 1.0 / (D as f64 * volume);
         let mut at_centre = [Point::zeros(); 4];
@@ -173,7 +172,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let gap = |k: usize| {
             let bound = admissible.bounds[k]?;
             let distance =
-                |value: f64, x: &Point<f64, D>| ([1.0, -1.0][k] * (value - bound.at(x))).max(0.0);
+                |value: f64, x: &Point<D>| ([1.0, -1.0][k] * (value - bound.at(x))).max(0.0);
             if bound.constant().is_some() {
                 let at_corners = (0..D + 1).map(|k| distance(admissible.values[k], &corners[k]));
                 return Some(at_corners.sum::<f64>() / (D + 1) as f64);

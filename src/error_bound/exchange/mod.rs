@@ -24,7 +24,6 @@ use crate::assemble::space::{Place, Space};
 use crate::measure::Counts;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
-use crate::real::Real;
 
 /// Multipliers below this share of the largest one are rounding.
 const ROUNDING: f64 = 1e-10;
@@ -98,7 +97,7 @@ fn decrease([slope, curvature]: [f64; 2], at: f64) -> f64 {
     -(2.0 * slope + curvature * at) * at
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The cells of an exchange, those with a multiplier and their neighbours, as far as these count, and its steps, cell
     /// by cell; with those inside cells if asked for.
     fn cells_of_exchange(

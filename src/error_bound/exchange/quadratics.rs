@@ -14,7 +14,6 @@ use crate::error_bound::flux::Flux;
 use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
 use crate::mesh::Neighbours;
-use crate::real::Real;
 
 /// Most visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
 const SWEEPS: usize = 8;
@@ -108,7 +107,7 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Exchanges multipliers for flux of quadratics.
     pub(in crate::error_bound) fn exchange_quadratics(
         &self,
@@ -151,7 +150,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn linear_multipliers(&self, loads: &CellLoads) -> Vec<[f64; 4]> {
         let (n, d) = (self.per_cell(), D as f64);
         let of_cell = |cell: usize| {
-            let volume = self.mesh.geometry(cell).volume.to_f64();
+            let volume = self.mesh.geometry(cell).volume;
             let (values, given) = (&loads.values[cell * n..], &loads.given[cell * n..]);
             let mut means = [0.0; 4];
             for (i, functional) in loads.functionals.iter().enumerate() {

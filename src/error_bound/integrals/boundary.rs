@@ -9,7 +9,6 @@ use crate::error_bound::quadratics::vertices_of;
 use crate::error_bound::{NoBound, PrimalDualPair};
 use crate::mesh::BoundaryPart;
 use crate::quadrature::{Rule, facet_to_cell};
-use crate::real::Real;
 
 /// A negative contact force below this share of the largest one is rounding.
 const FORCE_ROUNDING: f64 = 1e-8;
@@ -65,14 +64,14 @@ pub(in crate::error_bound) struct BoundaryTerms {
     pub(super) contact: Vec<f64>,
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The constant of the trace inequality on a facet: for `w` with mean zero in a cell the divergence theorem for
     /// `w^2 (x - a_F)` and the inequality of Payne and Weinberger give
     /// `|w|_F^2 <= |F| / |K| (1/pi^2 + 2/(pi D)) h_K^2 |grad w|_K^2`.
     pub(in crate::error_bound) fn constant_of_trace(&self, place: Place) -> f64 {
-        let volume = self.mesh.geometry(place.0).volume.to_f64();
+        let volume = self.mesh.geometry(place.0).volume;
         let square = self.facet_measure(place) / volume * (1.0 / (PI * PI) + 2.0 / (PI * D as f64));
-        square.sqrt() * self.mesh.cell_diameter(place.0).to_f64()
+        square.sqrt() * self.mesh.cell_diameter(place.0)
     }
 
     /// The rule for the square of Neumann data less the flux, and for contact forces times distances from the gap:

@@ -2,7 +2,7 @@
 
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// The flux in a cell: `q = sum_j lambda_j (s_j x - o_j) / (D |K|)` with one term, without `lambda_j`, where
 /// the density is constant on facets.
@@ -12,7 +12,7 @@ pub(super) struct CellFlux<const D: usize> {
     /// `sum_F c_Fj`.
     pub sums: [f64; 4],
     /// `sum_F c_Fj a_F`.
-    pub origins: [Point<f64, D>; 4],
+    pub origins: [Point<D>; 4],
     /// `1 / (D |K|)`.
     pub per_volume: f64,
     /// `D |K| div q`: at the vertices; constant for one term.
@@ -25,7 +25,7 @@ impl<const D: usize> CellFlux<D> {
         if self.n == 1 { &[1.0] } else { &point[..=D] }
     }
     /// The value at a point, by barycentric coordinates and in space.
-    pub fn at(&self, point: &[f64; 4], x: &Point<f64, D>) -> Point<f64, D> {
+    pub fn at(&self, point: &[f64; 4], x: &Point<D>) -> Point<D> {
         if self.n == 1 {
             return (x * self.sums[0] - self.origins[0]) * self.per_volume;
         }
@@ -38,11 +38,11 @@ impl<const D: usize> CellFlux<D> {
     /// The mean of the square of the norm of a constant less the flux with one term, by the corners of the cell.
     pub fn mean_square_of_difference(
         &self,
-        gradient: Point<f64, D>,
-        corners: impl Iterator<Item = Point<f64, D>> + Clone,
+        gradient: Point<D>,
+        corners: impl Iterator<Item = Point<D>> + Clone,
     ) -> f64 {
         let d = D as f64;
-        let middle = corners.clone().sum::<Point<f64, D>>() / (d + 1.0);
+        let middle = corners.clone().sum::<Point<D>>() / (d + 1.0);
         let squares: f64 = corners.map(|x| (x - middle).norm_squared()).sum();
         let slope = self.sums[0] * self.per_volume;
         let at_middle = (middle * self.sums[0] - self.origins[0]) * self.per_volume;
@@ -97,7 +97,7 @@ pub(in crate::error_bound) fn share_of_one_sign(mean: f64, values: &[f64]) -> f6
     if deepest > mean.abs() { mean.abs() / deepest } else { 1.0 }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The flux of a pair in a cell.
     pub(super) fn flux_in(
         &self,
@@ -108,9 +108,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let numbers = pair.flux.of_cell(cell);
         let n = if pair.flux.degree() > 0 { D + 1 } else { 1 };
         let per_volume = 1.0 / (D as f64 * volume);
-        let (mut sums, mut origins) = ([0.0; 4], [Point::<f64, D>::zeros(); 4]);
+        let (mut sums, mut origins) = ([0.0; 4], [Point::<D>::zeros(); 4]);
         for (&v, numbers) in self.mesh.cell(cell).iter().zip(numbers.chunks_exact(n)) {
-            let opposite = point_f64(&self.mesh.vertices()[v as usize]);
+            let opposite = self.mesh.vertices()[v as usize];
             for (k, number) in numbers.iter().enumerate() {
                 sums[k] += number;
                 origins[k] += opposite * *number;

@@ -39,7 +39,7 @@ use crate::element::MAX_BASIS;
 use crate::measure::Admissible;
 use crate::mesh::edge_vertices;
 use crate::problem::{DatumRef, Field};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// What one cell adds to the bound.
 #[derive(Clone, Copy, Debug, Default)]
@@ -82,7 +82,7 @@ struct CellInputs<'a, const D: usize> {
     /// The values of the discrete function at the unknowns of the cell.
     values: [f64; MAX_BASIS],
     /// The gradient of the discrete function, where it is linear.
-    slope: Option<Point<f64, D>>,
+    slope: Option<Point<D>>,
     coefficient: Option<DatumRef<'a, D>>,
     reaction: Option<DatumRef<'a, D>>,
     source: Option<DatumRef<'a, D>>,
@@ -91,7 +91,7 @@ struct CellInputs<'a, const D: usize> {
 
 impl<const D: usize> CellInputs<'_, D> {
     /// The gradient of the discrete function at a point.
-    fn gradient_of(&self, basis: &BasisAt<f64>) -> Point<f64, D> {
+    fn gradient_of(&self, basis: &BasisAt) -> Point<D> {
         let mut gradient = Point::zeros();
         for k in 0..=D {
             let derivatives = basis.derivatives.iter();
@@ -140,7 +140,7 @@ fn with_share(squares: [f64; 2], share: f64, others: [f64; 2]) -> f64 {
     squares.iter().zip(others).map(|(square, other)| (square.sqrt() + share * other).powi(2)).sum()
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The admissible function in a cell.
     pub(super) fn admissible_in(&self, pair: &PrimalDualPair<D>, cell: usize) -> Admissible<'_, D> {
         let (geometry, region) = (self.mesh.geometry(cell), self.mesh.region(cell));
@@ -148,10 +148,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut gradient = Point::zeros();
         for (k, &v) in self.mesh.cell(cell).iter().enumerate() {
             values[k] = pair.function[v as usize];
-            gradients[k] = point_f64(geometry.gradient(k));
+            gradients[k] = *geometry.gradient(k);
             gradient += gradients[k] * (values[k] - values[0]);
         }
-        let diameter = self.mesh.cell_diameter(cell).to_f64();
+        let diameter = self.mesh.cell_diameter(cell);
         let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
         let excess = (pair.degree > 1).then(|| {
             let midpoints = &pair.function[self.mesh.vertices().len()..];
@@ -171,9 +171,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn visit_points(
         &self,
         cell: usize,
-        table: &CellTable<f64>,
+        table: &CellTable,
         cut: Option<(&CutRule, &Field<D>)>,
-        mut visit: impl FnMut(&[f64; 4], &Point<f64, D>, f64, &BasisAt<f64>),
+        mut visit: impl FnMut(&[f64; 4], &Point<D>, f64, &BasisAt),
     ) {
         let is_cut = cut.is_some_and(|(rule, level)| {
             rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
@@ -195,7 +195,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         function: &Admissible<'_, D>,
         cell: usize,
-        table: &CellTable<f64>,
+        table: &CellTable,
     ) -> Option<[f64; 2]> {
         let mut gaps = [0.0; 2];
         if function.bounds.iter().all(Option::is_none) {
@@ -222,7 +222,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         cell: usize,
         data: &CellInputs<'_, D>,
-        table: &CellTable<f64>,
+        table: &CellTable,
     ) -> Option<CellIntegrals> {
         let constant_of =
             |datum: Option<DatumRef<'_, D>>, absent| datum.map_or(Some(absent), |d| d.constant());
@@ -231,8 +231,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let slope = data.slope.filter(|_| data.reaction.is_none())?;
         let distances = self.gaps_of_linear(&data.admissible, cell, table)?;
         let gradient = data.admissible.gradient;
-        let corners =
-            self.mesh.cell(cell).iter().map(|&v| point_f64(&self.mesh.vertices()[v as usize]));
+        let corners = self.mesh.cell(cell).iter().map(|&v| self.mesh.vertices()[v as usize]);
         let mean_square = |constant| data.flux.mean_square_of_difference(constant, corners.clone());
         let [lower, upper] = distances.map(|mean| data.volume * mean);
         Some(CellIntegrals {
@@ -252,7 +251,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         cell: usize,
         data: &CellInputs<'_, D>,
-        table: &CellTable<f64>,
+        table: &CellTable,
         cut: Option<&CutRule>,
     ) -> CellIntegrals {
         let [least_reaction, reaction_from_below] =
@@ -300,9 +299,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn cell_terms(
         &self,
         pair: &PrimalDualPair<D>,
-        u: &[T],
+        u: &[f64],
         cell: usize,
-        (table, cut): (&CellTable<f64>, Option<&CutRule>),
+        (table, cut): (&CellTable, Option<&CutRule>),
         boundary: &BoundaryTerms,
     ) -> CellTerms {
         let data = self.cell_inputs(pair, u, cell, table);
@@ -373,11 +372,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn cell_inputs(
         &self,
         pair: &PrimalDualPair<D>,
-        u: &[T],
+        u: &[f64],
         cell: usize,
-        table: &CellTable<f64>,
+        table: &CellTable,
     ) -> CellInputs<'_, D> {
-        let volume = self.mesh.geometry(cell).volume.to_f64();
+        let volume = self.mesh.geometry(cell).volume;
         let region = self.mesh.region(cell);
         let [coefficient, reaction, source] =
             map_entries([&self.data.coefficient, &self.data.reaction, &self.data.source], |data| {

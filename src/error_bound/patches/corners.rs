@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use crate::assemble::space::Space;
 use crate::memory::in_large_pages;
-use crate::real::Real;
 
 /// A cell, with the number of a vertex in it.
 #[derive(Clone, Copy)]
@@ -41,7 +40,7 @@ impl Corners {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The corners of all vertices.
     pub(super) fn corners(&self) -> Corners {
         let n_vertices = self.mesh.vertices().len();

@@ -7,7 +7,6 @@ use super::linear::LinearCells;
 use super::parts::Parts;
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
-use crate::real::{Real, point_f64};
 
 /// A cell of a fan, between two facets at its vertex.
 #[derive(Clone, Copy)]
@@ -17,7 +16,7 @@ pub(super) struct CellOfFan {
     sides: [u8; 2],
 }
 
-impl<T: Real, const D: usize> LinearCells<'_, '_, T, D> {
+impl<const D: usize> LinearCells<'_, '_, D> {
     /// Sets the parts of those of these vertices whose cells form one fan, and returns the others.
     pub(super) fn set_fans(&self, vertices: &[u32], parts: &Parts) -> Vec<u32> {
         let others = cells::map(vertices.len(), &|range: Range<usize>| {
@@ -65,10 +64,10 @@ impl<T: Real, const D: usize> LinearCells<'_, '_, T, D> {
         for (k, of) in fan.iter().enumerate() {
             let second = self.load(of.corner, pressure) - first;
             let cell = of.corner.cell();
-            let point = |local: usize| point_f64(&mesh.vertices()[mesh.cell(cell)[local] as usize]);
+            let point = |local: usize| mesh.vertices()[mesh.cell(cell)[local] as usize];
             let [a, b] = of.sides.map(|side| point(usize::from(side)));
             let (along, middle) = (b - a, (point(of.corner.own()) + a + b) / 3.0);
-            let weight = 1.0 / (self.space.alpha(cell).to_f64() * self.volume(cell));
+            let weight = 1.0 / (self.space.alpha(cell) * self.volume(cell));
             stiffness += weight * along.norm_squared();
             force -= weight * along.dot(&((middle - a) * first + (middle - b) * second));
             if let Some(next) = fan.get(k + 1) {
@@ -108,7 +107,8 @@ impl<T: Real, const D: usize> LinearCells<'_, '_, T, D> {
     fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
         let mesh = self.space.mesh;
         let number_in = |cell: usize| {
-            mesh.cell(cell).iter().position(|&v| v as usize == vertex).unwrap_or(0) as u8
+            let found = mesh.cell(cell).iter().position(|&v| v as usize == vertex);
+            found.expect("the cells of a fan have its vertex") as u8
         };
         let (cell, count) = self.one_cell[vertex];
         let own = number_in(cell as usize);

@@ -12,11 +12,11 @@ use crate::error_bound::contact_forces::NodeForce;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbours};
 use crate::parallel::cells;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// The cells of a conforming linear function.
-pub(super) struct LinearCells<'s, 'a, T: Real, const D: usize> {
-    pub space: &'s Space<'a, T, D>,
+pub(super) struct LinearCells<'s, 'a, const D: usize> {
+    pub space: &'s Space<'a, D>,
     pub neighbours: &'s Neighbours,
     /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and for each of its vertices the load
     /// that the flux of the vertex balances, without multipliers of obstacles.
@@ -34,15 +34,15 @@ const fn known_of_cell(dimension: usize) -> usize {
     2 * dimension + 3
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The cells of a conforming linear function.
     pub(super) fn linear_cells<'s>(
         &'s self,
-        u: &[T],
+        u: &[f64],
         (residual, obstacles): (&[f64], &'s ActiveObstacles),
         forces: &[NodeForce],
         neighbours: &'s Neighbours,
-    ) -> Result<LinearCells<'s, 's, T, D>, NoBound> {
+    ) -> Result<LinearCells<'s, 's, D>, NoBound> {
         let load = self.load_by_cell()?;
         let n_cells = self.mesh.n_cells();
         let stride = known_of_cell(D);
@@ -51,12 +51,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             for (cell, data) in cells.zip(out.chunks_exact_mut(stride)) {
                 let metric = self.metric(cell);
                 let values = self.local_values(cell, u);
-                let alpha = self.alpha(cell).to_f64();
+                let alpha = self.alpha(cell);
                 let residual = self.cell_residual(cell, &metric, u, &load);
-                data[0] = metric.volume.to_f64();
+                data[0] = metric.volume;
                 for i in 0..=D {
-                    let product =
-                        |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
+                    let product = |j: usize| metric.products[i][j] * (values[j] - values[0]);
                     let stiffness = alpha * (1..=D).map(product).sum::<f64>();
                     // |F| n = -D |K| grad lambda
                     data[1 + i] = -(D as f64) * stiffness;
@@ -86,7 +85,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> LinearCells<'_, '_, T, D> {
+impl<const D: usize> LinearCells<'_, '_, D> {
     /// Divides multipliers by the volumes of the cells that carry them, and finds a cell of each vertex of the plane.
     fn divide_multipliers(&mut self) {
         let mut carried = vec![0.0; self.pressures.len()];
@@ -126,7 +125,7 @@ impl<T: Real, const D: usize> LinearCells<'_, '_, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, T, D> {
+impl<const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, D> {
     const DEGREE: usize = 0;
 
     fn normals(&self, cell: usize, numbers: &mut [f64]) {
@@ -144,11 +143,11 @@ impl<T: Real, const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, T, D> {
     fn problem(&self, corner: Corner) -> CellProblem<3> {
         let (cell, d) = (corner.cell(), D as f64);
         let points = self.space.mesh.corners(cell);
-        let middle = points[..=D].iter().sum::<Point<f64, D>>() / (d + 1.0);
+        let middle = points[..=D].iter().sum::<Point<D>>() / (d + 1.0);
         let from_middle = points.map(|p| p - middle);
         let squares: f64 = from_middle[..=D].iter().map(|p| p.norm_squared()).sum();
         let variance = squares / ((d + 1.0) * (d + 2.0));
-        let alpha = self.space.alpha(cell).to_f64();
+        let alpha = self.space.alpha(cell);
         let scale = 1.0 / (d * d * self.volume(cell) * alpha);
         let mut products = [[0.0; 3]; 3];
         for (row, a) in products.iter_mut().zip(corner.facets::<D>()) {

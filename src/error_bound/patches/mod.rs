@@ -57,17 +57,16 @@ use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::{BoundaryPart, Neighbours};
 use crate::parallel::cells;
-use crate::real::Real;
 
 /// Number of cells whose parts are kept at a time. The parts of a tetrahedron are twelve numbers, the flux is four.
 const CELLS_AT_A_TIME: usize = 1 << 17;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The flux of a conforming linear function, without that of Neumann data and contact, which are balanced all the
     /// same.
     pub(super) fn flux_of_linears(
         &self,
-        u: &[T],
+        u: &[f64],
         of_solver: (&[f64], &ActiveObstacles),
         forces: &[NodeForce],
         neighbours: &Neighbours,
@@ -81,7 +80,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// inside cells. Divides the multipliers of shared unknowns among their cells in `loads`.
     pub(super) fn flux_of_quadratics(
         &self,
-        (u, function): (&[T], &PrimalDualPair<D>),
+        (u, function): (&[f64], &PrimalDualPair<D>),
         neighbours: &Neighbours,
         loads: &mut CellLoads,
     ) -> Flux<D> {
@@ -93,7 +92,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn flux_of_patches<C: PatchCells<D, N>, const N: usize>(
         &self,
         of: &C,
-        fans: Option<&LinearCells<'_, '_, T, D>>,
+        fans: Option<&LinearCells<'_, '_, D>>,
         neighbours: &Neighbours,
         length: usize,
     ) -> Flux<D> {

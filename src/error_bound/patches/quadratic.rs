@@ -26,7 +26,7 @@ use crate::error_bound::shared_multipliers::SharedNodes;
 use crate::measure::Admissible;
 use crate::mesh::{Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// What is known of a cell before its patches are.
 #[derive(Clone, Default)]
@@ -42,8 +42,8 @@ struct KnownOfCell {
 }
 
 /// The cells of a conforming quadratic function.
-pub(super) struct QuadraticCells<'s, 'a, T: Real, const D: usize> {
-    space: &'s Space<'a, T, D>,
+pub(super) struct QuadraticCells<'s, 'a, const D: usize> {
+    space: &'s Space<'a, D>,
     cells: Vec<KnownOfCell>,
     /// The products of Neumann data and contact forces, by facet; sorted.
     given: Vec<&'s (Place, Products)>,
@@ -61,16 +61,16 @@ fn on_facet<const D: usize>(densities: &[f64; 4], facet: usize) -> [f64; 3] {
     numbers
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The cells of a conforming quadratic function. Divides the multipliers of shared unknowns among their cells in
     /// `loads`.
     pub(super) fn quadratic_cells<'s>(
         &'s self,
-        (u, function): (&[T], &PrimalDualPair<D>),
+        (u, function): (&[f64], &PrimalDualPair<D>),
         neighbours: &Neighbours,
         loads: &'s mut CellLoads,
-    ) -> QuadraticCells<'s, 's, T, D> {
-        let corners: Vec<BasisAt<f64>> =
+    ) -> QuadraticCells<'s, 's, D> {
+        let corners: Vec<BasisAt> =
             (0..D + 1).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
         let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
         let data = cells::map(n_cells, &|cells: Range<usize>| {
@@ -154,8 +154,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn known_of_cell(
         &self,
         cell: usize,
-        (u, function): (&[T], &PrimalDualPair<D>),
-        (corners, table): (&[BasisAt<f64>], &StiffnessTable<T>),
+        (u, function): (&[f64], &PrimalDualPair<D>),
+        (corners, table): (&[BasisAt], &StiffnessTable),
     ) -> KnownOfCell {
         let n = self.per_cell();
         let metric = self.metric(cell);
@@ -176,7 +176,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             data.difference[k][..D].copy_from_slice(difference.as_slice());
             let coefficient = match varying {
-                None => alpha.to_f64(),
+                None => alpha,
                 Some(_) => {
                     let inward = |b: f64| b + (1.0 / (D + 1) as f64 - b) * INWARD;
                     let point = Node::vertex(k).centre(D).map(inward);
@@ -186,7 +186,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             for facet in vertices_of::<D>(k) {
                 // |F| n = -D |K| grad lambda
                 let products = metric.products[facet].iter().zip(&slopes);
-                let sum: f64 = products.map(|(p, slope)| p.to_f64() * slope).sum();
+                let sum: f64 = products.map(|(p, slope)| p * slope).sum();
                 data.normal[facet][k] = -(D as f64) * coefficient * sum;
             }
         }
@@ -196,14 +196,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     None => alpha * table.entry::<D>(&metric, i, j),
                     Some((varying, values)) => varying.stiffness::<D>(values, &metric, i, j),
                 };
-                *term += entry.to_f64() * value;
+                *term += entry * value;
             }
         }
         data
     }
 }
 
-impl<T: Real, const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, T, D> {
+impl<const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, D> {
     const DEGREE: usize = 1;
 
     fn normals(&self, cell: usize, numbers: &mut [f64]) {
@@ -230,15 +230,15 @@ impl<T: Real, const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, T, D> 
     fn problem(&self, corner: Corner) -> CellProblem<9> {
         let (mesh, cell, d) = (self.space.mesh, corner.cell(), D as f64);
         let points = mesh.corners(cell);
-        let volume = mesh.geometry(cell).volume.to_f64();
-        let alpha = self.space.alpha(cell).to_f64();
+        let volume = mesh.geometry(cell).volume;
+        let alpha = self.space.alpha(cell);
         let scale = 1.0 / (alpha * volume * d * d * (d + 1.0) * (d + 2.0));
         let known = &self.cells[cell];
         let tested = &known.divergence[corner.own()];
         let of_divergence = divergence_products(&points, tested);
         let targets = target_products::<D>(corner.own(), &known.difference);
         // of each number its vertex, and the vector from the vertex opposite its facet to it
-        let mut numbers = [(0, Point::<f64, D>::zeros()); 9];
+        let mut numbers = [(0, Point::<D>::zeros()); 9];
         let all = corner.facets::<D>().flat_map(|f| vertices_of::<D>(f).map(move |j| (f, j)));
         for (number, (facet, j)) in numbers.iter_mut().zip(all) {
             *number = (j, points[j] - points[facet]);
@@ -256,12 +256,9 @@ impl<T: Real, const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, T, D> 
 
 /// The products of `sum_j r_j lambda_j phi_j` in a cell with `lambda_k` times a vector, for each vertex `k`; `tested`
 /// is the divergence tested with the barycentric coordinates.
-fn divergence_products<const D: usize>(
-    points: &[Point<f64, D>; 4],
-    tested: &[f64; 4],
-) -> [Point<f64, D>; 4] {
+fn divergence_products<const D: usize>(points: &[Point<D>; 4], tested: &[f64; 4]) -> [Point<D>; 4] {
     let d = D as f64;
-    let sum: Point<f64, D> = points[..=D].iter().sum();
+    let sum: Point<D> = points[..=D].iter().sum();
     let total: f64 = tested[..=D].iter().sum();
     tabulate(|k| {
         let mut product = Point::zeros();
@@ -276,7 +273,7 @@ fn divergence_products<const D: usize>(
 
 /// The products of what the part of vertex `own` aims at, its hat function times the difference of gradients, with
 /// `lambda_j` times a vector, for each vertex `j` of a cell.
-fn target_products<const D: usize>(own: usize, differences: &[[f64; 3]; 4]) -> [Point<f64, D>; 4] {
+fn target_products<const D: usize>(own: usize, differences: &[[f64; 3]; 4]) -> [Point<D>; 4] {
     let d = D as f64;
     tabulate(|j| {
         let mut target = Point::zeros();

@@ -8,7 +8,7 @@ use crate::real::Point;
 use crate::scheme::{ConformingP1, ConformingP2};
 
 /// Boxes with sides of different lengths; one side is not of the Dirichlet part.
-fn mesh<const D: usize>(n: usize) -> Mesh<f64, D> {
+fn mesh<const D: usize>(n: usize) -> Mesh<D> {
     let far = Point::from_fn(|k, _| [1.0, 0.7, 1.9][k]);
     let domain = BoxDomain::dirichlet(Point::zeros(), far).side(1, 0, BoundaryPart::Neumann);
     Mesh::kuhn_box(&domain, [n; D]).unwrap()
@@ -58,7 +58,7 @@ fn numbers_along_a_fan_are_those_of_least_squares() {
 
 /// The parts of a few cells at a time, and of all cells, have the same bits; so do cells whose neighbours have
 /// numbers far apart, which are one range.
-fn check_ranges<const D: usize>(flux_of: impl Fn(&Mesh<f64, D>, usize) -> (Flux<D>, [usize; 3])) {
+fn check_ranges<const D: usize>(flux_of: impl Fn(&Mesh<D>, usize) -> (Flux<D>, [usize; 3])) {
     let mesh = mesh::<D>(5);
     let n_cells = mesh.n_cells();
     let (whole, n_ranges) = flux_of(&mesh, n_cells);
@@ -70,7 +70,7 @@ fn check_ranges<const D: usize>(flux_of: impl Fn(&Mesh<f64, D>, usize) -> (Flux<
 
 fn ranges<const D: usize>() {
     let problem = Problem::new().constant_source(1.5);
-    let n_ranges = |space: &Space<'_, f64, D>| {
+    let n_ranges = |space: &Space<'_, D>| {
         let n_cells = space.mesh.n_cells();
         [n_cells, n_cells / 2 + 1, 1].map(|length| space.ranges_with_vertices(length).len())
     };

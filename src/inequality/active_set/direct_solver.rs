@@ -5,8 +5,9 @@ use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use crate::algebra::{Inequality, PenalisedMatrix};
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
-use crate::linear::direct::{CondensedFactors, StaticCondensation};
-use crate::linear::direct::{EliminationOrder, FactorError, Factors};
+use crate::linear::direct::{
+    CondensedFactors, FactorError, Factors, OrderedMatrix, StaticCondensation,
+};
 use crate::real::Real;
 
 /// Number of solutions for one active set, each with the residual in `f64` of the one before. Every step of the active
@@ -34,9 +35,8 @@ pub(crate) struct DirectSolver<'a, T> {
     factors: Option<InactiveFactors<T>>,
     /// The static condensation of the penalised matrix, if the matrix is penalised.
     condensation: Option<StaticCondensation<'a, T>>,
-    /// The elimination order of a symmetric assembled matrix, which is the same for all active sets; `None` before the
-    /// first factorisation.
-    elimination_order: Option<EliminationOrder>,
+    /// The assembled matrix, with one order of elimination for all active sets if it is symmetric.
+    assembled: OrderedMatrix<'a, T>,
 }
 
 /// The factors of a matrix on the inactive unknowns.
@@ -64,13 +64,8 @@ impl<'a, T: Real> DirectSolver<'a, T> {
     pub fn new(inequality: &'a Inequality<T>) -> Self {
         let penalised = inequality.penalised.as_ref();
         let condensation = penalised.map(|p| StaticCondensation::new(p, &inequality.matrix));
-        Self {
-            inequality,
-            inactive: Vec::new(),
-            factors: None,
-            condensation,
-            elimination_order: None,
-        }
+        let assembled = OrderedMatrix::new(&inequality.matrix, inequality.free_unknowns());
+        Self { inequality, inactive: Vec::new(), factors: None, condensation, assembled }
     }
 
     /// The static condensation; `None` if the matrix is not penalised.
@@ -79,17 +74,11 @@ impl<'a, T: Real> DirectSolver<'a, T> {
     }
 
     /// Factors the submatrix `A_II` of the assembled matrix on the inactive unknowns `I`.
-    fn factor(&mut self) -> Result<Factors<T>, FactorError> {
-        let Inequality { matrix, symmetric, .. } = self.inequality;
-        if !*symmetric {
-            return Factors::new(matrix, false, &self.inactive);
+    fn factor(&self) -> Result<Factors<T>, FactorError> {
+        match self.inequality.symmetric {
+            true => self.assembled.factor(&self.inactive, &[]),
+            false => Factors::new(&self.inequality.matrix, false, &self.inactive),
         }
-        let order = match self.elimination_order.take() {
-            Some(order) => order,
-            None => EliminationOrder::new(matrix, &self.inequality.free_unknowns())?,
-        };
-        let order = self.elimination_order.insert(order);
-        Factors::in_order(matrix, &self.inactive, order, &[])
     }
 
     /// Corrects the values [`SOLUTIONS`] times; then computes the residual.

@@ -69,10 +69,9 @@ impl<T: Real> Iterate<'_, T> {
         let diagonal = |i: usize| self.diagonal[i];
         let Scales { max_norm, energy_norm } = Scales::of(
             self.inequality,
-            &self.values,
-            &self.residual,
-            &self.jump_multipliers,
+            (&self.values, &self.residual, &self.jump_multipliers),
             &diagonal,
+            T::PRECISION,
         );
         let mut evaluation = Evaluation { max_norm, energy_norm, ..Evaluation::default() };
         let bound_tolerance = ROUNDING_BAND * T::EPSILON * max_norm;

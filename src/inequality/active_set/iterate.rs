@@ -207,9 +207,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         } else {
             (self.best.values, self.best.states, self.best.jump_multipliers)
         };
-        Solution::new(values, contact, outcome)
-            .iterations(self.outer, self.linear)
-            .jump_multipliers(jump_multipliers)
+        Solution::new(values, contact, outcome).jump_multipliers(jump_multipliers)
     }
 
     /// The largest of the numbers of the values' certificate ([`Certificate`]).

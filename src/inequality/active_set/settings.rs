@@ -10,8 +10,7 @@ use crate::linear::LinearMethod;
 /// whose multiplier has the wrong sign becomes inactive, an inactive unknown that violates a bound
 /// becomes active. For M-matrices the method ends in the solution after finitely many steps. For other
 /// matrices it may cycle or stagnate: other methods follow, described with the documentation of solvers, and in the end
-/// an interior point method, which provides a new start. If none of them finds a solution, the outcome is
-/// [`Outcome::Cycling`](super::super::Outcome::Cycling).
+/// an interior point method, which provides a new start. If none of them finds a solution, the outcome says why.
 ///
 /// No difference within rounding changes a state, because ties would otherwise cycle. There are two tolerances, both
 /// proportional to sixteen times machine epsilon:
@@ -29,15 +28,16 @@ use crate::linear::LinearMethod;
 /// for broken quadratics in the plane and in space: unknowns whose gap or multiplier is below that tolerance may have
 /// another state than with factors.
 ///
-/// A cold start begins with the solution without inequalities, or, if the matrix is singular on the free unknowns
-/// because only the bounds prevent a rigid motion (the kernel of the inequality is known), with every bound active.
+/// A cold start begins with the solution without inequalities. On a body that bounds alone hold (the kernel of the
+/// inequality is known) a start without an active unknown makes all bounds of that body active.
 ///
 /// The solve begins with the check that the matrix, or its symmetric part, has no negative direction on the unknowns that
 /// are not fixed, unless this is known ([`Inequality::is_definite`](crate::algebra::Inequality::is_definite)).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ActiveSet {
-    /// Largest number of linear systems with a new active set, those of the interior point method included.
+    /// Largest number of linear systems with a new active set, those of the interior point method included;
+    /// cycles of monotone multigrid do not count.
     pub max_outer: usize,
     /// The method for the linear systems.
     pub linear: LinearMethod,

@@ -78,7 +78,7 @@ fn solve_with<T: Real>(
             &InitialGuess<T>,
             &dyn PreconditionerFamily<T>,
         ) -> Solution<T>
-            = |settings, inequality, guess, family| solve_with_kernel(inequality, |inequality| {
+            = |settings, inequality, guess, family| solve_with_kernel(inequality, guess, |inequality| {
                 solve(settings, inequality, guess, family)
             })
     )(settings, inequality, guess, family)

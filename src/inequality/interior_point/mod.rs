@@ -68,7 +68,7 @@ impl<T: Real> InequalitySolver<T> for InteriorPoint {
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
         compiled!(
             T: fn(&Inequality<T>, &InitialGuess<T>) -> Solution<T>
-                = |inequality, guess| solve_with_kernel(inequality, |inequality| {
+                = |inequality, guess| solve_with_kernel(inequality, guess, |inequality| {
                     checked_run(inequality, guess)
                 })
         )(inequality, guess)
@@ -79,7 +79,6 @@ fn checked_run<T: Real>(inequality: &Inequality<T>, guess: &InitialGuess<T>) -> 
     if inequality.distribution.is_some() {
         return ActiveSet::default().solve_from(inequality, guess);
     }
-    guess.steps.set(0);
     if let Err(outcome) = check(inequality) {
         return Solution::without_iterate(inequality, outcome);
     }

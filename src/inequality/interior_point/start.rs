@@ -44,7 +44,7 @@ impl<'h, 'a, T: Real> InteriorIterate<'h, 'a, T> {
         Ok(iterate)
     }
 
-    /// The admissible value nearest to zero, or to `x`.
+    /// The admissible value nearest to `x`.
     fn nearest(bound: &Bound<T>, x: f64) -> f64 {
         bound.nearest(T::lit(x)).to_f64()
     }

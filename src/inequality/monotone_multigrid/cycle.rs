@@ -179,7 +179,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         };
         let residual = &self.full_residual;
         self.energy_norm =
-            Scales::of(inequality, &self.values, residual, &[], &diagonal).energy_norm;
+            Scales::of(inequality, (&self.values, residual, &[]), &diagonal, T::PRECISION)
+                .energy_norm;
         let (bounds, values) = (&inequality.bounds, &self.values);
         for_each_chunk(&mut self.eliminated, |range, eliminated| {
             for (i, eliminated) in range.zip(eliminated) {

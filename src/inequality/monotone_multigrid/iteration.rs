@@ -19,6 +19,10 @@ use crate::linear::{
 use crate::parallel::vectors::{collect, dot, zeros};
 use crate::real::Real;
 
+/// Tolerance on the energy norm of the change of a cycle divided by the energy norm of the iterate; the tolerance of the
+/// initial guess or four times machine epsilon if one of these is larger.
+const TOLERANCE: f64 = 1e-10;
+
 /// The factor by which the tolerance is reduced if the bound on the algebraic error is too large.
 const REDUCTION: f64 = 0.1;
 
@@ -49,7 +53,7 @@ impl<T: Real> MultigridIterate<'_, T> {
         self.diagonal = self.inequality.matrix.diagonal();
         let least = guess.energy_tolerance.unwrap_or(0.0).max(4.0 * T::EPSILON);
         // `None` where a reduced tolerance would lie below rounding: only stagnating cycles are examined then
-        let mut tolerance = Some(settings.tolerance.max(least));
+        let mut tolerance = Some(TOLERANCE.max(least));
         let limit =
             if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
         let (mut least_change, mut stagnant_cycles) = (f64::INFINITY, 0);
@@ -113,7 +117,8 @@ impl<T: Real> MultigridIterate<'_, T> {
         }
         let mut residual = vec![0.0; values.len()];
         inequality.residual_f64(values, &mut residual);
-        let energy_norm = Scales::of(inequality, values, &residual, &[], &of).energy_norm;
+        let energy_norm =
+            Scales::of(inequality, (values, &residual, &[]), &of, T::PRECISION).energy_norm;
         let (residual, diagonal) = (&residual[..], &diagonal[..]);
         let values = AdmissibleValues { inequality, values, residual, diagonal, energy_norm };
         algebraic_bound(&values, f64::INFINITY, |_, unbalanced| {

@@ -34,10 +34,9 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
         compiled!(
             T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
-                = |method, inequality, guess| solve_with_kernel(inequality, |inequality| {
-                    guess.steps.set(0);
-                    method.run_cycles(inequality, guess)
-                })
+                = |method, inequality, guess| {
+                    solve_with_kernel(inequality, guess, |inequality| method.run_cycles(inequality, guess))
+                }
         )(self, inequality, guess)
     }
 

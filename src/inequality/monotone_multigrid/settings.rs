@@ -22,17 +22,13 @@ pub struct MonotoneMultigrid {
     /// Largest number of cycles.
     pub max_cycles: usize,
     /// Number of consecutive cycles that may leave the change of a cycle above half of its least value; the method ends
-    /// at the next such cycle. Changes that ten cycles do not halve need more than three hundred cycles to the default
-    /// tolerance.
+    /// at the next such cycle.
     pub stagnation_cycles: usize,
-    /// Tolerance on the energy norm of the change of a cycle divided by the energy norm of the iterate; four times
-    /// machine epsilon if that is larger.
-    pub tolerance: f64,
 }
 
 impl Default for MonotoneMultigrid {
     fn default() -> Self {
-        Self { max_cycles: 200, stagnation_cycles: 200, tolerance: 1e-10 }
+        Self { max_cycles: 200, stagnation_cycles: 200 }
     }
 }
 
@@ -48,12 +44,6 @@ impl MonotoneMultigrid {
     #[must_use]
     pub fn stagnation_cycles(mut self, stagnation_cycles: usize) -> Self {
         self.stagnation_cycles = stagnation_cycles;
-        self
-    }
-    /// Sets the tolerance on the relative energy norm of the change of a cycle.
-    #[must_use]
-    pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
         self
     }
 }

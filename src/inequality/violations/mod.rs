@@ -2,6 +2,7 @@
 
 mod local_violation;
 
+use super::Solution;
 use super::certificate::{Certificate, positive_diagonal, residual};
 use super::contact_forces::BalancedNodes;
 use super::scales::{Scales, Sums};
@@ -10,35 +11,35 @@ use crate::algebra::{Distribution, Inequality, PenalisedMatrix};
 use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::parallel::vectors::{collect, map_chunks};
-use crate::real::{Real, maximum};
+use crate::real::{Precision, Real, maximum};
 use local_violation::{LocalViolation, touched_bound};
 
 /// The certificate of `u` as a solution of the inequality.
 #[must_use]
 pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
-    certify_with_jump_multipliers(inequality, u, &[])
+    compiled!(
+        T: fn(&Inequality<T>, (&[T], &[T]), Precision) -> Certificate
+            = certificate_of
+    )(inequality, (u, &[]), T::PRECISION)
 }
 
-/// The certificate of `u` together with jump multipliers: see [`Violations::of`].
-#[must_use]
-pub fn certify_with_jump_multipliers<T: Real>(
-    inequality: &Inequality<T>,
-    u: &[T],
-    jump_multipliers: &[T],
+/// The certificate of a solution, with its jump multipliers ([`Violations::of`]), in its precision.
+pub(crate) fn certify_solution(
+    inequality: &Inequality<f64>,
+    solution: &Solution<f64>,
 ) -> Certificate {
-    compiled!(
-        T: fn(&Inequality<T>, &[T], &[T]) -> Certificate
-            = certificate_of
-    )(inequality, u, jump_multipliers)
+    let Solution { values, jump_multipliers, precision, .. } = solution;
+    certificate_of(inequality, (values, jump_multipliers), *precision)
+        .with_algebraic_bound(solution.algebraic_bound)
 }
 
 fn certificate_of<T: Real>(
     inequality: &Inequality<T>,
-    u: &[T],
-    jump_multipliers: &[T],
+    (u, jump_multipliers): (&[T], &[T]),
+    precision: Precision,
 ) -> Certificate {
     match data_are_in_range(inequality, inequality.is_well_formed()) {
-        true => certify_with_rounding(inequality, u, jump_multipliers).0,
+        true => certify_in(precision, inequality, (u, jump_multipliers)).0,
         false => Certificate::INVALID,
     }
 }
@@ -50,9 +51,18 @@ pub(crate) fn certify_with_rounding<T: Real>(
     u: &[T],
     jump_multipliers: &[T],
 ) -> (Certificate, f64) {
+    certify_in(T::PRECISION, inequality, (u, jump_multipliers))
+}
+
+/// As [`certify_with_rounding`], of values that were computed in a precision.
+fn certify_in<T: Real>(
+    precision: Precision,
+    inequality: &Inequality<T>,
+    values: (&[T], &[T]),
+) -> (Certificate, f64) {
     let has_all_copies = inequality.distribution().is_none();
     let owns = |i: usize| inequality.owns(i);
-    let own = Violations::at(inequality, u, jump_multipliers, &owns, has_all_copies);
+    let own = Violations::at(inequality, values, &owns, (precision, has_all_copies));
     match inequality.distribution() {
         Some(distribution) => own.over_parts(distribution),
         None => own,
@@ -70,7 +80,7 @@ pub(crate) fn certify_with_rounding<T: Real>(
 ///
 /// let problem = Problem::new().source(|_| -8.0).obstacle_below(|x| -0.3 - x[0] * x[0]);
 /// let line = BoxDomain::dirichlet(Point::from([-1.0]), Point::from([1.0]));
-/// let mesh = Mesh::<f64, 1>::kuhn_box(&line, [8])?;
+/// let mesh = Mesh::<1>::kuhn_box(&line, [8])?;
 /// let solved = solve(&problem, &mesh, &ConformingP1)?;
 /// let (inequality, u) = (solved.inequality(), solved.values());
 /// let [left, right] =
@@ -115,7 +125,7 @@ impl Violations {
         compiled!(
             T: fn(&Inequality<T>, &[T], &[T], &(dyn Fn(usize) -> bool + Sync)) -> Violations
                 = |inequality, u, multipliers, owns| {
-                    Violations::at(inequality, u, multipliers, &|i| owns(i), false)
+                    Violations::at(inequality, (u, multipliers), &|i| owns(i), (T::PRECISION, false))
                 }
         )(inequality, u, jump_multipliers, owns)
     }
@@ -124,10 +134,9 @@ impl Violations {
     /// parts of a mesh do not have, if `has_all_copies`.
     pub(super) fn at<T: Real>(
         inequality: &Inequality<T>,
-        u: &[T],
-        jump_multipliers: &[T],
+        (u, jump_multipliers): (&[T], &[T]),
         owns: &(impl Fn(usize) -> bool + Sync),
-        has_all_copies: bool,
+        (precision, has_all_copies): (Precision, bool),
     ) -> Self {
         let n = inequality.size();
         let mut sums = Self {
@@ -136,7 +145,7 @@ impl Violations {
             jump_residual: 0.0,
             squares: [0.0; 3],
             diagonal_sum: 0.0,
-            epsilon: T::EPSILON,
+            epsilon: precision.epsilon(),
         };
         if !inequality.is_well_formed() || u.len() != n {
             return Self { jump_residual: f64::INFINITY, ..sums };
@@ -333,7 +342,7 @@ mod tests {
             let mut numbers = [0.0; 4];
             numbers[which] = f64::NAN;
             assert!(Certificate::new(numbers).largest().is_nan(), "violation {which}");
-            assert!(!Certificate::new(numbers).is_within_limits::<f64>());
+            assert!(!Certificate::new(numbers).is_within_limits(Precision::Double));
         }
         let not_a_number = f64::NAN;
         let (problem, values) = problem(1.0);

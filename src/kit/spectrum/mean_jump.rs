@@ -2,12 +2,11 @@
 
 use crate::algebra::SparseMatrix;
 use crate::mesh::{BoundaryPart, Facets, Mesh, Neighbours};
-use crate::real::Real;
 
 /// The change of variables that takes facet means of a broken space apart into their mean and
 /// their jump: a sparse matrix `E` with at most two entries in each row.
 ///
-/// The broken space is that of [`Broken<CrouzeixRaviart>`](crate::element::Broken), whose unknowns
+/// The broken space is that of [`Broken(CrouzeixRaviart)`](crate::element::Broken), whose unknowns
 /// are the facet means `c` of each cell. On an interior facet `mean = (c_here + c_there) / 2` and
 /// `jump = c_here - c_there`; a Dirichlet facet has a jump only and a Neumann or contact facet a
 /// mean only, both equal to `c`. Means come first: those of interior facets, then Neumann, then
@@ -41,7 +40,7 @@ impl Row {
 
 impl MeanJump {
     /// The change of variables on a mesh.
-    pub fn new<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
+    pub fn new<const D: usize>(mesh: &Mesh<D>) -> Self {
         let facets = Facets::new(mesh, &Neighbours::new(mesh));
         let [dirichlet, neumann, contact] =
             [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact]
@@ -78,21 +77,20 @@ impl MeanJump {
     ///
     /// # Panics
     /// If `y` is shorter than [`MeanJump::size`].
-    pub fn expand<T: Real>(&self, y: &[T]) -> Vec<T> {
-        let value = |row: &Row| {
-            row.entries().fold(T::lit(0.0), |s, (j, weight)| s + T::lit(weight) * y[j as usize])
-        };
+    pub fn expand(&self, y: &[f64]) -> Vec<f64> {
+        let value =
+            |row: &Row| row.entries().fold(0.0, |s, (j, weight)| s + weight * y[j as usize]);
         self.rows.iter().map(value).collect()
     }
     /// `E^T r`: a load on facet means of each cell as one on means and jumps.
     ///
     /// # Panics
     /// If `r` is shorter than [`MeanJump::size`].
-    pub fn gather<T: Real>(&self, r: &[T]) -> Vec<T> {
-        let mut out = vec![T::lit(0.0); self.size()];
+    pub fn gather(&self, r: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.size()];
         for (row, &r) in self.rows.iter().zip(r) {
             for (j, weight) in row.entries() {
-                out[j as usize] += T::lit(weight) * r;
+                out[j as usize] += weight * r;
             }
         }
         out
@@ -101,15 +99,15 @@ impl MeanJump {
     ///
     /// # Panics
     /// If the matrix has another size than [`MeanJump::size`].
-    pub fn transform<T: Real>(&self, matrix: &SparseMatrix<T>) -> SparseMatrix<T> {
+    pub fn transform(&self, matrix: &SparseMatrix<f64>) -> SparseMatrix<f64> {
         assert_eq!(matrix.size(), self.size(), "a matrix of this mesh's broken linears");
-        let mut rows: Vec<Vec<(u32, T)>> = vec![Vec::new(); self.size()];
+        let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.size()];
         for (i, left) in self.rows.iter().enumerate() {
             let (columns, values) = matrix.row(i);
             for (&j, &a) in columns.iter().zip(values) {
                 for (row, w) in left.entries() {
                     for (column, x) in self.rows[j as usize].entries() {
-                        rows[row as usize].push((column, T::lit(w * x) * a));
+                        rows[row as usize].push((column, (w * x) * a));
                     }
                 }
             }
@@ -119,7 +117,7 @@ impl MeanJump {
             row.sort_by_key(|&(column, _)| column);
             for equal in row.chunk_by(|a, b| a.0 == b.0) {
                 out.columns.push(equal[0].0);
-                out.values.push(equal.iter().fold(T::lit(0.0), |s, &(_, a)| s + a));
+                out.values.push(equal.iter().fold(0.0, |s, &(_, a)| s + a));
             }
             out.row_starts.push(out.columns.len() as u32);
         }
@@ -127,7 +125,7 @@ impl MeanJump {
     }
     /// The block diagonal of a matrix in means and jumps: all of it among means, its diagonal
     /// among jumps.
-    pub fn block_diagonal<T: Real>(&self, transformed: &SparseMatrix<T>) -> SparseMatrix<T> {
+    pub fn block_diagonal(&self, transformed: &SparseMatrix<f64>) -> SparseMatrix<f64> {
         let mut out = SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
         for i in 0..transformed.size() {
             let (columns, values) = transformed.row(i);

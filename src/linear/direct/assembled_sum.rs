@@ -1,40 +1,12 @@
-//! Factors of the assembled matrix `A = K + M^T S M`, and the jump multipliers of their solutions.
+//! Solutions by factors of the assembled matrix `A = K + M^T S M`, and their jump multipliers.
 //!
 //! Rounding in `A` is a relative error of size `eps cond(A)` in a solution. The caller corrects values and jump
 //! multipliers by the residuals of `K u + M^T p = r` and `M u - S^-1 p = t`, in which no weight is added to a stiffness:
 //! where `eps cond(A)` is below one tenth or so, the corrections have all digits in the end.
 
-use std::sync::OnceLock;
-
-use super::elimination_order::EliminationOrder;
-use super::error::FactorError;
 use super::factors::Factors;
-use crate::algebra::{JumpTerm, PenalisedMatrix, SparseMatrix};
-use crate::parallel::once;
+use crate::algebra::{JumpTerm, PenalisedMatrix};
 use crate::real::Real;
-
-/// The factors of `A + D` on the free unknowns; `shift` is the diagonal of `D`, or empty for zero. The first call sets
-/// the order of elimination of all unknowns.
-///
-/// # Errors
-/// See [`FactorError`].
-pub(super) fn factor_assembled<T: Real>(
-    matrix: &SparseMatrix<T>,
-    order: &OnceLock<EliminationOrder>,
-    is_free: &[bool],
-    shift: &[f64],
-) -> Result<Factors<T>, FactorError> {
-    let free: Vec<u32> = (0..matrix.size() as u32).filter(|&i| is_free[i as usize]).collect();
-    let order = match order.get() {
-        Some(order) => order,
-        None => {
-            let all: Vec<u32> = (0..matrix.size() as u32).collect();
-            let new = EliminationOrder::new(matrix, &all)?;
-            once(order, || new)
-        }
-    };
-    Factors::in_order(matrix, &free, order, shift)
-}
 
 /// Solves `K u + M^T p = r` on the free unknowns and `M u - S^-1 p = t` by the factors of `A`:
 /// `A u = r + M^T S t`, `p = S (M u - t)`. Replaces `r` by `u`, which is zero on fixed unknowns, and `t` by `p`. Returns

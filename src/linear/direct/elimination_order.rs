@@ -1,80 +1,105 @@
-//! An order of elimination that serves a matrix and its submatrices.
+//! A matrix whose submatrices are factored in one order of elimination.
+
+use std::sync::OnceLock;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::amd;
 
 use super::error::{FactorError, out_of_memory};
+use super::factors::Factors;
 use super::symbolic_factor::transpose_view;
 use crate::algebra::{NO_INDEX, SparseMatrix, Submatrix};
+use crate::parallel::once;
 use crate::real::Real;
 
-/// An order of elimination for the unknowns of a symmetric matrix, and by restriction for each subset
-/// of them: approximate minimum degree (P. R. Amestoy, T. A. Davis, I. S. Duff, SIAM J. Matrix Anal.
-/// Appl. 17 (1996), 886-905). An active set method computes it once for all active sets.
-#[derive(Clone, Debug)]
-pub(crate) struct EliminationOrder {
+/// A symmetric matrix with an order of elimination, whose restriction serves each set of free unknowns: approximate
+/// minimum degree (P. R. Amestoy, T. A. Davis, I. S. Duff, SIAM J. Matrix Anal. Appl. 17 (1996), 886-905). An active set
+/// method computes it once for all active sets.
+pub(crate) struct OrderedMatrix<'a, T> {
+    matrix: &'a SparseMatrix<T>,
+    /// The unknowns for which the order is computed, ascending.
     unknowns: Vec<u32>,
+    /// These unknowns in the order of elimination, from the first factorisation on.
+    order: OnceLock<Vec<u32>>,
 }
 
-impl EliminationOrder {
-    /// The order for the unknowns `free` (ascending) of a matrix. Only the lower triangle is read.
-    ///
-    /// # Errors
-    /// [`FactorError::OutOfMemory`].
-    ///
-    /// # Panics
-    /// If `free` contains a row that the matrix does not have.
-    pub fn new<T: Real>(matrix: &SparseMatrix<T>, free: &[u32]) -> Result<Self, FactorError> {
-        let lower = Submatrix::lower_triangle(matrix, free);
-        let pattern = transpose_view(&lower);
-        let n = free.len();
-        let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);
-        let scratch = amd::order_scratch::<u32>(n, lower.columns.len());
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        let (stack, control) = (MemStack::new(&mut memory), amd::Control::default());
-        amd::order(&mut order, &mut inverse, pattern.symbolic(), control, stack)
-            .map_err(out_of_memory)?;
-        Ok(Self { unknowns: order.into_iter().map(|k| free[k as usize]).collect() })
+impl<'a, T: Real> OrderedMatrix<'a, T> {
+    /// The matrix with the order for some of its unknowns, ascending; free unknowns besides these come last. Only the
+    /// lower triangle is read.
+    pub fn new(matrix: &'a SparseMatrix<T>, unknowns: Vec<u32>) -> Self {
+        Self { matrix, unknowns, order: OnceLock::new() }
     }
 
-    /// The restriction of the order to the unknowns `free` of a matrix with `size` rows: positions in
-    /// `free` in the order of elimination. Unknowns of `free` that are not in the order come last.
+    /// The Cholesky factor of `A + D` on the unknowns `free` (ascending). `shift` is the nonnegative diagonal of `D`, or
+    /// empty for zero.
     ///
-    /// # Panics
-    /// If `free` contains an unknown that is not less than `size`.
-    pub fn restricted_to(&self, free: &[u32], size: usize) -> Vec<u32> {
-        let mut positions = vec![NO_INDEX; size];
-        free.iter().enumerate().for_each(|(k, &i)| positions[i as usize] = k as u32);
-        let take = |&i: &u32| positions.get_mut(i as usize).map(|k| std::mem::replace(k, NO_INDEX));
-        let all = self.unknowns.iter().chain(free).filter_map(take);
-        all.filter(|&k| k != NO_INDEX).collect()
+    /// # Errors
+    /// See [`FactorError`].
+    pub fn factor(&self, free: &[u32], shift: &[f64]) -> Result<Factors<T>, FactorError> {
+        let order = match self.order.get() {
+            Some(order) => order,
+            None => {
+                let new = minimum_degree(self.matrix, &self.unknowns)?;
+                once(&self.order, || new)
+            }
+        };
+        Factors::in_order(self.matrix, free, restricted(order, free, self.matrix.size()), shift)
     }
+}
+
+/// The unknowns `free` (ascending) of a matrix in the order of approximate minimum degree.
+///
+/// # Errors
+/// [`FactorError::OutOfMemory`].
+fn minimum_degree<T: Real>(
+    matrix: &SparseMatrix<T>,
+    free: &[u32],
+) -> Result<Vec<u32>, FactorError> {
+    let lower = Submatrix::lower_triangle(matrix, free);
+    let pattern = transpose_view(&lower);
+    let n = free.len();
+    let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);
+    let scratch = amd::order_scratch::<u32>(n, lower.columns.len());
+    let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
+    let (stack, control) = (MemStack::new(&mut memory), amd::Control::default());
+    amd::order(&mut order, &mut inverse, pattern.symbolic(), control, stack)
+        .map_err(out_of_memory)?;
+    Ok(order.into_iter().map(|k| free[k as usize]).collect())
+}
+
+/// The restriction of an order of unknowns to the unknowns `free` of a matrix with `size` rows: positions in `free` in
+/// the order of elimination. Unknowns of `free` that are not in the order come last.
+fn restricted(order: &[u32], free: &[u32], size: usize) -> Vec<u32> {
+    let mut positions = vec![NO_INDEX; size];
+    free.iter().enumerate().for_each(|(k, &i)| positions[i as usize] = k as u32);
+    let take = |&i: &u32| std::mem::replace(&mut positions[i as usize], NO_INDEX);
+    order.iter().chain(free).map(take).filter(|&k| k != NO_INDEX).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linear::direct::Factors;
 
     /// Whatever an order knows of other unknowns, its restriction has each free one once, those that it does not know
     /// last; and the factors are those of the same matrix.
     #[test]
     fn the_restriction_of_an_order_is_a_permutation() {
         let matrix = SparseMatrix::<f64>::second_differences(9);
-        let order = EliminationOrder::new(&matrix, &[1, 2, 3, 5, 7]).unwrap();
+        let order = minimum_degree(&matrix, &[1, 2, 3, 5, 7]).unwrap();
         let free = [0, 2, 3, 7, 8];
-        let positions = order.restricted_to(&free, 9);
+        let positions = restricted(&order, &free, 9);
         let mut sorted = positions.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, [0, 1, 2, 3, 4]);
         assert_eq!(positions[3..], [0, 4]);
         let right = [1.0, -2.0, 3.0, 5.0, 0.5];
         let (mut x, mut y) = (right, right);
-        Factors::in_order(&matrix, &free, &order, &[]).unwrap().solve_in_place(&mut x, 1);
+        let ordered = OrderedMatrix::new(&matrix, vec![1, 2, 3, 5, 7]);
+        ordered.factor(&free, &[]).unwrap().solve_in_place(&mut x, 1);
         Factors::new(&matrix, true, &free).unwrap().solve_in_place(&mut y, 1);
         for (x, y) in x.iter().zip(&y) {
             assert!((x - y).abs() <= 1e-14, "{x} {y}");
         }
-        assert!(order.restricted_to(&[], 9).is_empty());
+        assert!(restricted(&order, &[], 9).is_empty());
     }
 }

@@ -11,7 +11,6 @@ use faer::sparse::linalg::lu::{
 };
 use faer::{Conj, MatMut, Par, Side};
 
-use super::elimination_order::EliminationOrder;
 use super::error::{FactorError, out_of_memory};
 use super::symbolic_factor::{SymbolicFactor, transpose_view};
 use crate::algebra::{SparseMatrix, Submatrix};
@@ -76,20 +75,20 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    /// The Cholesky factor of the rows and columns `free` (ascending) of `A + D`, `A` a symmetric matrix, in the
-    /// restriction of an order of elimination to `free`. Unknowns of `free` that are not in the order come
-    /// last. `shift` is the nonnegative diagonal of `D`, or empty for zero.
+    /// The Cholesky factor of the rows and columns `free` (ascending) of `A + D`, `A` a symmetric matrix. `order` is a
+    /// permutation of the positions in `free`, the order of elimination. `shift` is the nonnegative diagonal of `D`, or
+    /// empty for zero.
     ///
     /// # Errors
     /// See [`FactorError`].
     pub(crate) fn in_order(
         matrix: &SparseMatrix<T>,
         free: &[u32],
-        order: &EliminationOrder,
+        order: Vec<u32>,
         shift: &[f64],
     ) -> Result<Self, FactorError> {
         compiled!(
-            T: fn(&SparseMatrix<T>, &[u32], &EliminationOrder, &[f64]) -> Result<Factors<T>, FactorError>
+            T: fn(&SparseMatrix<T>, &[u32], Vec<u32>, &[f64]) -> Result<Factors<T>, FactorError>
                 = Factors::factor_in_order
         )(matrix, free, order, shift)
     }
@@ -97,12 +96,11 @@ impl<T: Real> Factors<T> {
     fn factor_in_order(
         matrix: &SparseMatrix<T>,
         free: &[u32],
-        order: &EliminationOrder,
+        order: Vec<u32>,
         shift: &[f64],
     ) -> Result<Self, FactorError> {
         let mut lower = Submatrix::lower_triangle(matrix, free);
         add_to_diagonal(&mut lower, free, shift)?;
-        let order = order.restricted_to(free, matrix.size());
         let symbolic = SymbolicFactor::new(&lower, Some(order))?;
         Self::cholesky(&mut lower, &symbolic)
     }

@@ -1,8 +1,8 @@
 //! Direct solvers of linear systems.
 //!
 //! `factors`: Cholesky and LU factors of a submatrix; `symbolic_factor`: the symbolic part of Cholesky;
-//! `elimination_order`: an order of elimination for submatrices. `static_condensation`, `block_inverse`: factors of
-//! `K + M^T S M`; `condensed_solution`: solutions by them; `assembled_sum`: both for quadratics.
+//! `elimination_order`: one order of elimination for all submatrices. `static_condensation`, `block_inverse`: factors of
+//! `K + M^T S M`; `condensed_solution`: solutions by them; `assembled_sum`: solutions for quadratics.
 
 mod assembled_sum;
 mod block_inverse;
@@ -13,7 +13,7 @@ mod factors;
 mod static_condensation;
 mod symbolic_factor;
 
-pub(crate) use elimination_order::EliminationOrder;
+pub(crate) use elimination_order::OrderedMatrix;
 pub use error::FactorError;
 pub(crate) use factors::add_to_diagonal;
 pub use factors::{Factors, is_positive_definite};

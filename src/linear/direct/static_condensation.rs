@@ -28,8 +28,7 @@
 
 use std::sync::OnceLock;
 
-use super::assembled_sum::factor_assembled;
-use super::elimination_order::EliminationOrder;
+use super::elimination_order::OrderedMatrix;
 use super::error::FactorError;
 use super::factors::Factors;
 use super::symbolic_factor::SymbolicFactor;
@@ -69,8 +68,8 @@ enum ReducedMatrix<'a, T> {
     /// The Schur complement on facet means: its lower triangle, all values zero, and after the first factorisation the
     /// pattern of its factor.
     FacetMeans { pattern: SparseMatrix<T>, symbolic: OnceLock<SymbolicFactor> },
-    /// The assembled matrix and, after the first factorisation, the order of elimination of its unknowns.
-    Assembled { matrix: &'a SparseMatrix<T>, order: OnceLock<EliminationOrder> },
+    /// The assembled matrix.
+    Assembled(OrderedMatrix<'a, T>),
 }
 
 /// The factors of a matrix `K + M^T S M`.
@@ -117,7 +116,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             }
             n_means += u32::from(is_shared);
         }
-        let reduced = ReducedMatrix::Assembled { matrix: assembled, order: OnceLock::new() };
+        let all = (0..penalised.size() as u32).collect();
+        let reduced = ReducedMatrix::Assembled(OrderedMatrix::new(assembled, all));
         let mut condensation = Self { penalised, starts, sides, reduced };
         let mut basis = Vec::new();
         let has_independent_means = (0..n_blocks).all(|block| {
@@ -219,8 +219,10 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
                 let schur_complement = Factors::cholesky(&mut lower, symbolic)?;
                 Ok(CondensedFactors::FacetMeans { inverses, schur_complement })
             }
-            ReducedMatrix::Assembled { matrix, order } => {
-                factor_assembled(matrix, order, is_free, shift).map(CondensedFactors::Assembled)
+            ReducedMatrix::Assembled(matrix) => {
+                let n = self.penalised.size() as u32;
+                let free: Vec<u32> = (0..n).filter(|&i| is_free[i as usize]).collect();
+                matrix.factor(&free, shift).map(CondensedFactors::Assembled)
             }
         }
     }

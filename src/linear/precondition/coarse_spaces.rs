@@ -4,9 +4,8 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::coarse_level::{CoarseLevel, P1Level};
-use crate::algebra::{
-    Bound, Inequality, RectangularMatrix, SparseMatrix, Support, galerkin_product,
-};
+use super::prolongation::rows_of_means;
+use crate::algebra::{Bound, Inequality, SparseMatrix, Support, galerkin_product};
 use crate::real::Real;
 
 /// Spaces of conforming linear functions for multigrid.
@@ -66,7 +65,7 @@ impl<T: Real> CoarseSpaces<T> {
 /// The conforming linear functions on the mesh of another finite element, with the Galerkin matrix
 /// `P^T A P`: the prolongation `P` sets an unknown of the element to the mean of the values at the vertices of its
 /// support. Fixed are the vertices in the supports of fixed unknowns, and those whose diagonal entry
-/// is not positive. `None` if no support has a vertex.
+/// is not positive. `None` if a support has no vertex.
 fn p1_level<T: Real>(
     matrix: &SparseMatrix<T>,
     supports: &[Support],
@@ -74,17 +73,10 @@ fn p1_level<T: Real>(
 ) -> Option<P1Level<T>> {
     let last = supports.iter().flat_map(|p| p.vertices()).max()?;
     let n = *last as usize + 1;
-    let mut rows = RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+    let rows = rows_of_means(supports.iter().map(Support::vertices), n)?;
     let mut fixed_vertices = vec![false; n];
-    for (support, &fixed) in supports.iter().zip(fixed) {
-        let vertices = support.vertices();
-        let weight = T::lit(1.0 / vertices.len().max(1) as f64);
-        rows.columns.extend(vertices);
-        rows.values.extend(vertices.iter().map(|_| weight));
-        rows.starts.push(rows.columns.len() as u32);
-        if fixed {
-            vertices.iter().for_each(|&v| fixed_vertices[v as usize] = true);
-        }
+    for (support, _) in supports.iter().zip(fixed).filter(|(_, fixed)| **fixed) {
+        support.vertices().iter().for_each(|&v| fixed_vertices[v as usize] = true);
     }
     let form = galerkin_product(matrix, &rows, n);
     for (v, fixed) in fixed_vertices.iter_mut().enumerate() {

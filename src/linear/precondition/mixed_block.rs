@@ -29,93 +29,30 @@ pub(crate) trait BlockSolver<T>: Send + Sync {
     fn solve(&mut self, vector: &mut [T]);
 }
 
-/// Factors of a block: in single precision until a block has no Cholesky factor in single precision, in the scalar `T`
-/// for this block and all later ones.
-///
-/// A preconditioner need not be exact, and numeric factors with half the bytes take little more than half the time. The
-/// smallest eigenvalues of a block are of the size of the stiffness, the largest ones of the size of the penalty: if
-/// the ratio of the penalty to the stiffness exceeds the reciprocal of the machine epsilon of `f32`, pivots have no
-/// correct digit in single precision.
-pub(super) struct BlockFactors<T> {
-    factors: PreparedFactors<T>,
-    /// Whether all blocks so far had factors in single precision.
-    is_single: bool,
-}
+/// Factors of a block; `None` for a block without functions.
+pub(super) struct BlockFactors<T>(Option<Factors<T>>);
 
-/// The factors of the present block.
-enum PreparedFactors<T> {
-    /// No factors: the block has no functions.
-    Empty,
-    /// Factors of the block divided by `scale`, and workspace for a right-hand side.
-    Single { factors: Factors<f32>, scale: f64, vector: Vec<f32> },
-    /// Factors of the block in the scalar `T`.
-    Full(Factors<T>),
-}
-
-impl<T: Real> BlockFactors<T> {
+impl<T> BlockFactors<T> {
     /// No factors, before the first block.
     pub fn new() -> Self {
-        Self { factors: PreparedFactors::Empty, is_single: true }
+        Self(None)
     }
-
-    /// The factors of a block in single precision.
-    ///
-    /// # Errors
-    /// See [`FactorError`].
-    fn factor_single(
-        block: &SparseMatrix<T>,
-        functions: &[u32],
-    ) -> Result<PreparedFactors<T>, FactorError> {
-        let scale = largest(&block.values);
-        let single = SparseMatrix {
-            row_starts: block.row_starts.clone(),
-            columns: block.columns.clone(),
-            values: block.values.iter().map(|a| (a.to_f64() / scale) as f32).collect(),
-        };
-        let factors = Factors::new(&single, true, functions)?;
-        Ok(PreparedFactors::Single { factors, scale, vector: vec![0.0; functions.len()] })
-    }
-}
-
-/// The largest absolute value of some numbers; one if all are zero.
-fn largest<T: Real>(values: &[T]) -> f64 {
-    let largest = values.iter().fold(0.0, |m: f64, a| m.max(a.to_f64().abs()));
-    if largest > 0.0 { largest } else { 1.0 }
 }
 
 impl<T: Real> BlockSolver<T> for BlockFactors<T> {
     fn factor(&mut self, block: &SparseMatrix<T>, _: &[u32]) -> Result<(), FactorError> {
         // the memory of the old factors is released before the new ones are computed
-        self.factors = PreparedFactors::Empty;
-        if block.size() == 0 {
-            return Ok(());
-        }
+        self.0 = None;
         let functions: Vec<u32> = (0..block.size() as u32).collect();
-        if self.is_single {
-            match Self::factor_single(block, &functions) {
-                Err(FactorError::NotPositive | FactorError::Singular) => self.is_single = false,
-                factors => {
-                    self.factors = factors?;
-                    return Ok(());
-                }
-            }
+        if !functions.is_empty() {
+            self.0 = Some(Factors::new(block, true, &functions)?);
         }
-        self.factors = PreparedFactors::Full(Factors::new(block, true, &functions)?);
         Ok(())
     }
 
     fn solve(&mut self, x: &mut [T]) {
-        match &mut self.factors {
-            PreparedFactors::Empty => {}
-            PreparedFactors::Full(factors) => factors.solve_in_place(x, 1),
-            PreparedFactors::Single { factors, scale, vector } => {
-                // the quotient of a number that is not finite is not finite
-                let unit = largest(x);
-                vector.iter_mut().zip(&*x).for_each(|(s, x)| *s = (x.to_f64() / unit) as f32);
-                factors.solve_in_place(vector, 1);
-                let unit = unit / *scale;
-                x.iter_mut().zip(&*vector).for_each(|(x, &s)| *x = T::lit(f64::from(s) * unit));
-            }
+        if let Some(factors) = &self.0 {
+            factors.solve_in_place(x, 1);
         }
     }
 }
@@ -185,57 +122,5 @@ impl<T: Real> MixedBlock<'_, T> {
         for (&s, &mean) in self.sides.iter().zip(side_means) {
             means[s as usize] += mean;
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The tridiagonal matrix of a row of `n` points: a spring of stiffness one at each point, and springs of stiffness
-    /// `penalty` between neighbours.
-    fn springs(n: u32, penalty: f64) -> SparseMatrix<f64> {
-        let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
-        for i in 0..n {
-            let neighbours = (i.saturating_sub(1)..=(i + 1).min(n - 1)).filter(|&j| j != i);
-            let diagonal = 1.0 + penalty * neighbours.clone().count() as f64;
-            for j in i.saturating_sub(1)..=(i + 1).min(n - 1) {
-                matrix.columns.push(j);
-                matrix.values.push(if i == j { diagonal } else { -penalty });
-            }
-            matrix.row_starts.push(matrix.columns.len() as u32);
-        }
-        matrix
-    }
-
-    /// The largest error of a solution with values of size 1e30, relative to the largest value.
-    fn error(factors: &mut BlockFactors<f64>, matrix: &SparseMatrix<f64>) -> f64 {
-        let n = matrix.size();
-        let expected: Vec<f64> = (0..n).map(|i| 1e30 * (1.0 + (i % 3) as f64)).collect();
-        let mut x: Vec<f64> = matrix.residual(&vec![0.0; n], &expected);
-        factors.solve(&mut x);
-        x.iter().zip(&expected).map(|(x, e)| (x + e).abs() / 3e30).fold(0.0, f64::max)
-    }
-
-    #[test]
-    fn factors_are_single_unless_pivots_have_no_digit_in_single_precision() {
-        let mut factors = BlockFactors::new();
-        // entries beyond the range of single precision
-        for (penalty, unit, is_single, limit) in [
-            (10.0, 1e60, true, 1e-5),
-            (1e3, 1e-60, true, 1e-2),
-            (1e9, 1.0, false, 1e-5),
-            (10.0, 1.0, false, 1e-12),
-        ] {
-            let mut matrix = springs(50, penalty);
-            matrix.values.iter_mut().for_each(|a| *a *= unit);
-            factors.factor(&matrix, &[]).unwrap();
-            assert_eq!(factors.is_single, is_single, "{penalty}");
-            let error = error(&mut factors, &matrix);
-            assert!(error < limit, "{penalty}: {error}");
-        }
-        let empty = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
-        factors.factor(&empty, &[]).unwrap();
-        factors.solve(&mut []);
     }
 }

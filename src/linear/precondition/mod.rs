@@ -14,6 +14,7 @@ mod coarse_spaces;
 mod crouzeix_raviart_space;
 mod facet_mean_form;
 mod gauss_seidel;
+mod in_precision;
 mod mean_jump_splitting;
 mod mixed_block;
 mod multigrid;

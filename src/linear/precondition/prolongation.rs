@@ -1,8 +1,8 @@
 //! Prolongations from coarse to fine functions, and their transposes.
 
-use crate::algebra::{NO_INDEX, RectangularMatrix, Support, sort_by_column};
+use crate::algebra::{RectangularMatrix, Support, sort_by_column};
 use crate::memory::in_large_pages;
-use crate::parallel::vectors::{collect, for_each_chunk, zeros};
+use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
 
 /// A prolongation `P`: a sparse matrix whose columns are the coarse basis functions in the fine basis.
@@ -21,11 +21,26 @@ enum Entries<T> {
     /// mesh. A coarse unknown has one child of weight one, its entry of `own`. Its children of weight 1/2 are the
     /// midpoints in `children` from its entry of `starts` up to the next entry.
     Midpoints { parents: Vec<[u32; 2]>, starts: Vec<u32>, children: Vec<u32>, own: Vec<u32> },
-    /// Each fine unknown has the value at one coarse unknown, its entry of `parents`. The children of a coarse unknown
-    /// are those in `children` from its entry of `starts` up to the next entry.
-    Injection { parents: Vec<u32>, starts: Vec<u32>, children: Vec<u32> },
     /// General weights: `P` by rows (`fine`), and its transpose by rows (`coarse`).
     Weights { fine: RectangularMatrix<T>, coarse: RectangularMatrix<T> },
+}
+
+impl Prolongation<f64> {
+    /// The prolongation with every weight rounded once.
+    pub(super) fn in_precision<T: Real>(&self) -> Prolongation<T> {
+        let entries = match &self.entries {
+            Entries::Midpoints { parents, starts, children, own } => Entries::Midpoints {
+                parents: parents.clone(),
+                starts: starts.clone(),
+                children: children.clone(),
+                own: own.clone(),
+            },
+            Entries::Weights { fine, coarse } => {
+                Entries::Weights { fine: fine.in_precision(), coarse: coarse.in_precision() }
+            }
+        };
+        Prolongation { entries, n_coarse: self.n_coarse }
+    }
 }
 
 impl<T: Real> Prolongation<T> {
@@ -45,23 +60,6 @@ impl<T: Real> Prolongation<T> {
         let pairs = midpoints.flat_map(|(i, &[a, b])| [(i, a), (i, b)]);
         let (starts, children) = children(pairs, n_coarse);
         Self { entries: Entries::Midpoints { parents, starts, children, own }, n_coarse }
-    }
-
-    /// The prolongation of conforming linear functions to unknowns that are values at one vertex each; `None` if a
-    /// support has more vertices, or one that is not less than `n_vertices`.
-    fn injection(supports: &[Support], n_vertices: usize) -> Option<Self> {
-        let parents = collect(supports.len(), |i| match supports[i].vertices() {
-            [vertex] if (*vertex as usize) < n_vertices => *vertex,
-            _ => NO_INDEX,
-        });
-        if parents.contains(&NO_INDEX) {
-            return None;
-        }
-        let (starts, children) = children((0..).zip(parents.iter().copied()), n_vertices);
-        Some(Self {
-            entries: Entries::Injection { parents, starts, children },
-            n_coarse: n_vertices,
-        })
     }
 
     /// The prolongation of conforming linear functions to a mesh that results from bisections. The first `n_coarse`
@@ -103,10 +101,8 @@ impl<T: Real> Prolongation<T> {
     /// is the mean of the values at the vertices of its support; `None` if a support is empty or has a
     /// vertex that is not less than `n_vertices`.
     pub(crate) fn to_element(supports: &[Support], n_vertices: usize) -> Option<Self> {
-        Self::injection(supports, n_vertices).or_else(|| {
-            let rows = rows_of_means(supports.iter().map(Support::vertices), n_vertices)?;
-            Some(Self::from_weights(rows, n_vertices))
-        })
+        let rows = rows_of_means(supports.iter().map(Support::vertices), n_vertices)?;
+        Some(Self::from_weights(rows, n_vertices))
     }
 
     /// The prolongation after a renumbering of the unknowns: `fine[i]` and `coarse[j]` are the new numbers of the fine
@@ -141,7 +137,6 @@ impl<T: Real> Prolongation<T> {
     pub fn n_fine(&self) -> usize {
         match &self.entries {
             Entries::Midpoints { parents, .. } => parents.len(),
-            Entries::Injection { parents, .. } => parents.len(),
             Entries::Weights { fine, .. } => fine.n_rows(),
         }
     }
@@ -156,12 +151,6 @@ impl<T: Real> Prolongation<T> {
                     let add = |s, &i: &u32| s + fine_residual[i as usize];
                     let sum = midpoints.iter().fold(S::lit(0.0), add);
                     *out = fine_residual[own[j] as usize] + half * sum;
-                }
-            }
-            Entries::Injection { starts, children, .. } => {
-                for (j, out) in range.zip(out) {
-                    let children = &children[starts[j] as usize..starts[j + 1] as usize];
-                    *out = children.iter().fold(S::lit(0.0), |s, &i| s + fine_residual[i as usize]);
                 }
             }
             Entries::Weights { coarse, .. } => {
@@ -187,14 +176,6 @@ impl<T: Real> Prolongation<T> {
                 for ((&[a, b], &mask), x) in rows.zip(out) {
                     if mask != zero {
                         *x += half * (coarse_values[a as usize] + coarse_values[b as usize]);
-                    }
-                }
-            }
-            Entries::Injection { parents, .. } => {
-                let rows = parents[range.clone()].iter().zip(&mask[range]);
-                for ((&parent, &mask), x) in rows.zip(out) {
-                    if mask != zero {
-                        *x += coarse_values[parent as usize];
                     }
                 }
             }
@@ -253,11 +234,6 @@ impl<T: Real> Prolongation<T> {
                     call(i as usize, T::lit(0.5));
                 }
             }
-            Entries::Injection { starts, children, .. } => {
-                for &i in &children[starts[j] as usize..starts[j + 1] as usize] {
-                    call(i as usize, T::lit(1.0));
-                }
-            }
             Entries::Weights { coarse, .. } => {
                 let (columns, weights) = coarse.row(j);
                 columns.iter().zip(weights).for_each(|(&i, &w)| call(i as usize, w));
@@ -275,7 +251,6 @@ impl<T: Real> Prolongation<T> {
                     call(parent, T::lit(0.5));
                 }
             }
-            Entries::Injection { parents, .. } => call(parents[i], T::lit(1.0)),
             Entries::Weights { fine, .. } => {
                 let (columns, weights) = fine.row(i);
                 columns.iter().zip(weights).for_each(|(&j, &w)| call(j, w));
@@ -333,31 +308,23 @@ pub(crate) fn rows_of_means<'v, T: Real>(
 mod tests {
     use super::*;
 
-    /// Values at one vertex each: the prolongation without weights does what the one with weights does.
+    /// Values at one vertex each, and a mean over two vertices.
     #[test]
-    fn an_injection_is_a_prolongation_with_weights_of_one() {
-        let vertices = [3, 1, 0, 3, 3, 1];
-        let supports: Vec<Support> =
-            vertices.iter().map(|&v| Support::new(Some(0), &[v])).collect();
-        let injection = Prolongation::<f64>::to_element(&supports, 4).unwrap();
-        assert!(matches!(injection.entries, Entries::Injection { .. }));
-        let rows = rows_of_means(supports.iter().map(Support::vertices), 4).unwrap();
-        let weights = Prolongation::from_weights(rows, 4);
-        let fine = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
-        let both = [&injection, &weights].map(|prolongation| {
-            assert_eq!((prolongation.n_fine(), prolongation.n_coarse()), (6, 4));
-            let mut coarse = [0.0; 4];
-            prolongation.restrict(&fine, &mut coarse);
-            let mut values = [1.0; 6];
-            let mask = [1.0, 0.0, 1.0, 1.0, 1.0, 1.0];
-            prolongation.add_prolongation(&coarse, &mask, &mut values);
-            let mut fixed = [false; 4];
-            prolongation.fix_covered(&[true, true, false, true, true, false], &mut fixed);
-            (coarse, values, fixed)
-        });
-        assert_eq!(both[0], both[1]);
-        assert_eq!(both[0].0, [4.0, 34.0, 0.0, 25.0]);
-        assert_eq!(both[0].2, [false, false, true, true]);
+    fn unknowns_of_an_element_are_means_over_the_vertices_of_their_supports() {
+        let vertices: [&[u32]; 6] = [&[3], &[1], &[0], &[3], &[3], &[0, 1]];
+        let supports: Vec<Support> = vertices.map(|v| Support::new(Some(0), v)).to_vec();
+        let prolongation = Prolongation::<f64>::to_element(&supports, 4).unwrap();
+        assert_eq!((prolongation.n_fine(), prolongation.n_coarse()), (6, 4));
+        let mut coarse = [0.0; 4];
+        prolongation.restrict(&[1.0, 2.0, 4.0, 8.0, 16.0, 32.0], &mut coarse);
+        assert_eq!(coarse, [20.0, 18.0, 0.0, 25.0]);
+        let mut values = [1.0; 6];
+        let mask = [1.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+        prolongation.add_prolongation(&coarse, &mask, &mut values);
+        assert_eq!(values, [26.0, 1.0, 21.0, 26.0, 26.0, 20.0]);
+        let mut fixed = [false; 4];
+        prolongation.fix_covered(&[true, true, false, true, true, true], &mut fixed);
+        assert_eq!(fixed, [false, true, true, true]);
         assert!(Prolongation::<f64>::to_element(&supports, 3).is_none());
     }
 }

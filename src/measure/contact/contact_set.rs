@@ -5,15 +5,14 @@ use super::entity::ContactEntity;
 use crate::algebra::Inequality;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The contact set and density of a solution, with the definitions of
     /// `Discretisation::contact_errors`.
     pub(crate) fn discrete_contact(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> DiscreteContact {
         let mut contact = DiscreteContact::default();
         if !self.problem.is_constrained() {

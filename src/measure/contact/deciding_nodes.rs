@@ -3,7 +3,6 @@
 use super::entity::ContactEntity;
 use crate::assemble::space::Space;
 use crate::quadrature::{Rule, facet_to_cell};
-use crate::real::Real;
 
 /// A mean of a basis function counts as positive above this.
 const POSITIVE: f64 = 1e-9;
@@ -22,7 +21,7 @@ impl DecidingNodes {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// Of the nodes that the constraint set binds those whose basis functions have a positive mean over the
     /// entity, or all if there is none.
     ///

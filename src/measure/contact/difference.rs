@@ -8,24 +8,22 @@ use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::measure::errors::ContactErrors;
 use crate::mesh::Refinement;
-use crate::real::{Real, point_f64};
 
 /// A solution with its space and inequality.
-type DiscreteSolution<'s, 'a, T, const D: usize> =
-    (&'s Discretisation<'a, T, D>, &'s Inequality<T>, &'s Solution<T>);
+type DiscreteSolution<'s, 'a, const D: usize> =
+    (&'s Discretisation<'a, D>, &'s Inequality<f64>, &'s Solution<f64>);
 
 /// Distances of multiplier and contact set of a solution from those of another one, on the mesh that
 /// these refinements make of its own, coarsest first. The definitions are those of
 /// [`Discretisation::contact_errors`]. The measure of the symmetric difference is that of the cells (or contact
 /// facets) of the finer mesh. The multiplier of the finer solution is tested with the hat functions of the coarser
 /// mesh, exactly.
-pub(crate) fn contact_difference<T: Real, const D: usize>(
-    solved: DiscreteSolution<'_, '_, T, D>,
-    reference: DiscreteSolution<'_, '_, T, D>,
+pub(crate) fn contact_difference<const D: usize>(
+    solved: DiscreteSolution<'_, '_, D>,
+    reference: DiscreteSolution<'_, '_, D>,
     refinements: &[&Refinement],
 ) -> ContactErrors {
-    compiled!(
-        T, D: fn(DiscreteSolution<'_, '_, T, D>, DiscreteSolution<'_, '_, T, D>, &[&Refinement]) -> ContactErrors
+    compiled!(const D: fn(DiscreteSolution<'_, '_, D>, DiscreteSolution<'_, '_, D>, &[&Refinement]) -> ContactErrors
             = |solved, reference, refinements| {
                 let own = (&solved.0.space, solved.1, solved.2);
                 difference(own, (&reference.0.space, reference.1, reference.2), refinements)
@@ -34,11 +32,11 @@ pub(crate) fn contact_difference<T: Real, const D: usize>(
 }
 
 /// A solution with its inequality and what the assembler knows of its space.
-type OnSpace<'s, 'a, T, const D: usize> = (&'s Space<'a, T, D>, &'s Inequality<T>, &'s Solution<T>);
+type OnSpace<'s, 'a, const D: usize> = (&'s Space<'a, D>, &'s Inequality<f64>, &'s Solution<f64>);
 
-fn difference<T: Real, const D: usize>(
-    (space, inequality, solution): OnSpace<'_, '_, T, D>,
-    (fine, fine_inequality, fine_solution): OnSpace<'_, '_, T, D>,
+fn difference<const D: usize>(
+    (space, inequality, solution): OnSpace<'_, '_, D>,
+    (fine, fine_inequality, fine_solution): OnSpace<'_, '_, D>,
     refinements: &[&Refinement],
 ) -> ContactErrors {
     let mut errors = ContactErrors::default();
@@ -75,23 +73,23 @@ fn difference<T: Real, const D: usize>(
 }
 
 /// The position of the entity that contains an entity of a refinement.
-fn ancestor<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
+fn ancestor<const D: usize>(
+    space: &Space<'_, D>,
     entities: &[ContactEntity],
-    (fine, entity): (&Space<'_, T, D>, ContactEntity),
+    (fine, entity): (&Space<'_, D>, ContactEntity),
     refinements: usize,
 ) -> Option<usize> {
     let cell = entity.cell >> (D * refinements);
     let first = entities.partition_point(|e| e.cell < cell);
     let of_cell = || (first..entities.len()).take_while(|&k| entities[k].cell == cell);
     let Some(local) = entity.facet else { return of_cell().next() };
-    let x = point_f64(&fine.mesh.facet_barycentre(entity.cell, local));
+    let x = fine.mesh.facet_barycentre(entity.cell, local);
     let geometry = space.mesh.geometry(cell);
     // the barycentric coordinate of a facet vanishes on it
     let coordinate = |k: &usize| {
-        let facet = entities[*k].facet.unwrap_or(0);
-        let on_facet = point_f64(&space.mesh.facet_barycentre(cell, facet));
-        point_f64(geometry.gradient(facet)).dot(&(x - on_facet)).abs()
+        let facet = entities[*k].facet.expect("all entities are facets, or all are cells");
+        let on_facet = space.mesh.facet_barycentre(cell, facet);
+        geometry.gradient(facet).dot(&(x - on_facet)).abs()
     };
     of_cell().min_by(|a, b| coordinate(a).total_cmp(&coordinate(b)))
 }

@@ -8,7 +8,7 @@ use crate::assemble::space::{Space, data};
 use crate::error::Error;
 use crate::parallel::cells;
 use crate::problem::Exact;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// Degree of the rule on a simplex, or on the parts into which the free boundary cuts it.
 const DEGREE: usize = 5;
@@ -23,7 +23,7 @@ pub(super) struct ExactContact {
     pub shares: [f64; 2],
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The exact multiplier and contact set on some entities, at the same points: a list for each chunk of entities,
     /// because one list of all entities would be a copy.
     ///
@@ -55,9 +55,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let corners = self.corner_points(entity);
         let mut found = ExactContact::default();
         let mut not_finite = None;
-        let mut add = |hats: &[f64; 4],
-                       weight: f64,
-                       is_in_contact: &dyn Fn(&Point<f64, D>) -> bool| {
+        let mut add = |hats: &[f64; 4], weight: f64, is_in_contact: &dyn Fn(&Point<D>) -> bool| {
             let x = in_space(hats, &corners);
             let is_in_contact = is_in_contact(&x);
             found.shares[usize::from(is_in_contact)] += weight;
@@ -76,7 +74,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             Some(set) => match rule.sign_of_uncut(&corners, &set.indicator) {
                 Some(is_in_contact) => add_whole(is_in_contact),
                 None => {
-                    let is_in_contact = |x: &Point<f64, D>| (set.indicator)(x) > 0.0;
+                    let is_in_contact = |x: &Point<D>| (set.indicator)(x) > 0.0;
                     rule.visit(&corners, &set.indicator, &mut |hats, weight| {
                         add(hats, weight, &is_in_contact);
                     });

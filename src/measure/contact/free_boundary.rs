@@ -8,13 +8,13 @@ use super::point_grid::PointGrid;
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::Space;
 use crate::problem::ContactSet;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A facet of the discrete free boundary is sampled by the points whose barycentric coordinates are
 /// multiples of one over this.
 const SAMPLES: usize = 4;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The Hausdorff distance of the two free boundaries within the mesh; none if either is empty.
     pub(super) fn free_boundary_distance(
         &self,
@@ -35,7 +35,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         entities: &[ContactEntity],
         touching: &[bool],
-    ) -> Vec<Point<f64, D>> {
+    ) -> Vec<Point<D>> {
         let Some(dimension) = entities.first().map(|c| c.dimension::<D>()) else {
             return Vec::new();
         };
@@ -66,7 +66,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for pair in facets.windows(2).filter(|p| p[0].0 == p[1].0 && p[0].1 != p[1].1) {
             let mut corners = [Point::zeros(); 4];
             for (corner, &v) in corners.iter_mut().zip(&pair[0].0[..dimension]) {
-                *corner = point_f64(&self.mesh.vertices()[v as usize]);
+                *corner = self.mesh.vertices()[v as usize];
             }
             points.extend(lattice.iter().map(|barycentric| in_space(barycentric, &corners)));
         }
@@ -75,7 +75,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// The points of the exact free boundary that lie on some entity: a mesh from a file need not
     /// cover the domain of the scene.
-    fn within_mesh(&self, set: &ContactSet<D>, entities: &[ContactEntity]) -> Vec<Point<f64, D>> {
+    fn within_mesh(&self, set: &ContactSet<D>, entities: &[ContactEntity]) -> Vec<Point<D>> {
         let points = &set.free_boundary;
         let grid = PointGrid::new(points);
         let on_entity = |entity: &ContactEntity, found: &mut Vec<usize>| {
@@ -104,15 +104,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Whether a point lies on an entity.
-    fn covers(&self, entity: ContactEntity, x: &Point<f64, D>) -> bool {
+    fn covers(&self, entity: ContactEntity, x: &Point<D>) -> bool {
         let geometry = self.mesh.geometry(entity.cell);
         let cell = self.mesh.cell(entity.cell);
         (0..D + 1).all(|k| {
             // coordinate k vanishes at any other corner of the cell
-            let zero = point_f64(&self.mesh.vertices()[cell[usize::from(k == 0)] as usize]);
-            let coordinate = point_f64(geometry.gradient(k)).dot(&(x - zero));
-            let slack = SLACK.max(16.0 * T::EPSILON);
-            coordinate >= -slack && (entity.facet != Some(k) || coordinate <= slack)
+            let zero = self.mesh.vertices()[cell[usize::from(k == 0)] as usize];
+            let coordinate = geometry.gradient(k).dot(&(x - zero));
+            coordinate >= -SLACK && (entity.facet != Some(k) || coordinate <= SLACK)
         })
     }
 }
@@ -121,15 +120,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 const SLACK: f64 = 1e-9;
 
 /// Generic over the dimension alone, so that the sorting code is not compiled for every caller.
-fn sort_by_first_coordinate<const D: usize>(points: &mut [Point<f64, D>]) {
+fn sort_by_first_coordinate<const D: usize>(points: &mut [Point<D>]) {
     points.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
 }
 
 /// The largest distance of a point of the first set from the second.
-fn one_sided<const D: usize>(from: &[Point<f64, D>], to: &[Point<f64, D>]) -> f64 {
+fn one_sided<const D: usize>(from: &[Point<D>], to: &[Point<D>]) -> f64 {
     let mut to = to.to_vec();
     sort_by_first_coordinate(&mut to);
-    let nearest = |x: &Point<f64, D>| {
+    let nearest = |x: &Point<D>| {
         // on both sides only as far as the first coordinate alone does not exceed the distance known
         let (before, after) = to.split_at(to.partition_point(|y| y[0] < x[0]));
         let mut least = f64::INFINITY;

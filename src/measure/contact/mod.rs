@@ -30,14 +30,14 @@ use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 use entity::ContactEntity;
 use exact_contact::ExactContact;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
 const TOUCHING: f64 = 1e-9;
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// Distances of multiplier and contact set of a solution from the exact ones; none where these
     /// are not known, or where an obstacle and a contact boundary bind at once.
     ///
@@ -73,14 +73,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// If the solution has fewer values than there are unknowns.
     pub fn contact_errors(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Result<ContactErrors, Error> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
-                &Inequality<T>,
-                &Solution<T>,
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
+                &Inequality<f64>,
+                &Solution<f64>,
             ) -> Result<ContactErrors, Error>
                 = |of, inequality, solution| of.space.contact_errors(inequality, solution)
         )(self, inequality, solution)
@@ -94,8 +93,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// If the solution has fewer values than there are unknowns.
     pub fn contact_measure(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Option<f64> {
         self.contact_measure_of(inequality, solution, &|_| true)
     }
@@ -103,15 +102,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// The measure of the contact set on the cells for which `counts` is true, or on their facets.
     pub(crate) fn contact_measure_of(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
         counts: &dyn Fn(usize) -> bool,
     ) -> Option<f64> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
-                &Inequality<T>,
-                &Solution<T>,
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
+                &Inequality<f64>,
+                &Solution<f64>,
                 &dyn Fn(usize) -> bool,
             ) -> Option<f64>
                 = |of, inequality, solution, counts| {
@@ -132,7 +130,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Panics
     /// If the solution has fewer values than there are unknowns.
-    pub fn resultant(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Option<f64> {
+    pub fn resultant(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Option<f64> {
         self.multipliers(inequality, solution).map(|multipliers| multipliers.iter().sum())
     }
 
@@ -142,19 +140,19 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// If the solution has fewer values than there are unknowns.
     pub fn multipliers(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Option<Vec<f64>> {
         let multipliers = || self.space.nodal_multipliers(inequality, solution);
         self.space.problem.is_constrained().then(multipliers).flatten()
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     fn contact_errors(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Result<ContactErrors, Error> {
         let Some(exact) = &self.problem.exact else { return Ok(ContactErrors::default()) };
         // with both an obstacle and a contact boundary there are two multipliers of different kind
@@ -187,8 +185,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     fn contact_measure(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
         counts: &dyn Fn(usize) -> bool,
     ) -> Option<f64> {
         let mut entities = self.problem.is_constrained().then(|| self.entities())?;
@@ -229,16 +227,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn measure_of(&self, entity: ContactEntity) -> f64 {
         let geometry = self.mesh.geometry(entity.cell);
         match entity.facet {
-            None => geometry.volume.to_f64(),
-            Some(local) => geometry.facet_measure(local).to_f64(),
+            None => geometry.volume,
+            Some(local) => geometry.facet_measure(local),
         }
     }
 
     /// Corners of an entity in space; one point more than its dimension of them are used.
-    fn corner_points(&self, entity: ContactEntity) -> [Point<f64, D>; 4] {
+    fn corner_points(&self, entity: ContactEntity) -> [Point<D>; 4] {
         let mut points = [Point::zeros(); 4];
         for (point, k) in points.iter_mut().zip(entity.corners::<D>()) {
-            *point = point_f64(&self.mesh.vertices()[self.mesh.cell(entity.cell)[k] as usize]);
+            *point = self.mesh.vertices()[self.mesh.cell(entity.cell)[k] as usize];
         }
         points
     }
@@ -247,8 +245,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn in_contact(
         &self,
         entities: &[ContactEntity],
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Vec<bool> {
         // the supports where some unknown is in contact: vertices, and others sorted by their vertices
         let touches = |&k: &usize| solution.contact[k] != Contact::Inactive;
@@ -264,11 +262,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         supports.sort_unstable();
         supports.dedup();
         let given = self.dirichlet_groups();
-        let mut largest = [solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max)];
+        let mut largest = [solution.values.iter().map(|u| u.abs()).fold(0.0, f64::max)];
         if let Some(distribution) = inequality.distribution() {
             distribution.largest(&mut largest);
         }
-        let slack = largest[0] * TOUCHING.max(64.0 * T::EPSILON);
+        let slack = largest[0] * TOUCHING.max(64.0 * solution.precision.epsilon());
         let support_touches = |entity: ContactEntity, unknown: usize| {
             let support = inequality.supports[unknown].vertices();
             let groups = support.iter().map(|&v| given[v as usize]);
@@ -303,8 +301,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         support: &[u32],
         slack: f64,
     ) -> bool {
-        let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
-        let x = support.iter().map(corner).sum::<Point<f64, D>>() / support.len() as f64;
+        let corner = |&v: &u32| self.mesh.vertices()[v as usize];
+        let x = support.iter().map(corner).sum::<Point<D>>() / support.len() as f64;
         let region = self.mesh.region(entity.cell);
         let contact = entity.facet.and_then(|local| self.mesh.boundary_group(entity.cell, local));
         let gap = contact.and_then(|group| self.data.gap.of(group));

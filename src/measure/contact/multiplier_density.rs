@@ -5,17 +5,16 @@ use super::exact_contact::ExactContact;
 use crate::algebra::Inequality;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// The errors of the density in L1 and lumped L2 against the exact multiplier on these entities, which
     /// [`Space::exact_contact`] has tested with hat functions; none if all vertices lie on the Dirichlet part.
     pub(super) fn multiplier_errors(
         &self,
         entities: &[ContactEntity],
         exact: &[Vec<ExactContact>],
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Option<[f64; 2]> {
         let weights = self.hat_integrals(entities);
         let mut multipliers = self.vertex_multipliers(inequality, solution)?;
@@ -37,8 +36,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// where rounding leaves no digit.
     pub(crate) fn vertex_multipliers(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Option<Vec<f64>> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
         let of_unknowns = self.nodal_multipliers(inequality, solution)?;

@@ -1,6 +1,6 @@
 //! Multipliers divided among the data that give the active bounds, and among the cells and facets on which these act.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::entity::{ContactEntity, Place};
 use crate::algebra::{Bound, Contact, Inequality};
@@ -10,7 +10,6 @@ use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::BoundaryPart;
-use crate::real::Real;
 
 /// What of the multiplier of an unknown acts on one of several cells or contact facets.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +29,7 @@ pub(crate) struct Multipliers {
 /// Which unknowns and which cells count: all, or those of a part of a mesh.
 type Own<'c> = [&'c dyn Fn(usize) -> bool; 2];
 
-impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+impl<const D: usize> Discretisation<'_, D> {
     /// The resultant of each obstacle (`lower`, `upper`) and of each contact group by its name; their sum is that of
     /// all ([`Discretisation::resultant`]). The multiplier of an unknown belongs to the datum that gives its active
     /// bound: where obstacle and gap are equal to the obstacle, where gaps of several groups are, to each by the
@@ -40,29 +39,23 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// If the solution has fewer values than there are unknowns.
     pub fn resultants(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Option<BTreeMap<String, f64>> {
         self.resultants_of(inequality, solution, [&|_| true, &|_| true])
-    }
-
-    /// The names of the resultants, each once, in their order.
-    pub(crate) fn names_of_resultants(&self) -> BTreeSet<String> {
-        self.space.names_of_resultants().into_iter().collect()
     }
 
     /// The resultants of the unknowns and, for contact groups, of the facets of cells that count.
     pub(crate) fn resultants_of(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
         own: Own<'_>,
     ) -> Option<BTreeMap<String, f64>> {
-        compiled!(
-            T, D: fn(
-                &Discretisation<'_, T, D>,
-                &Inequality<T>,
-                &Solution<T>,
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
+                &Inequality<f64>,
+                &Solution<f64>,
                 Own<'_>,
             ) -> Option<BTreeMap<String, f64>>
                 = |of, inequality, solution, own| of.space.resultants(inequality, solution, own)
@@ -70,11 +63,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     fn resultants(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
         [of_unknowns, of_cells]: Own<'_>,
     ) -> Option<BTreeMap<String, f64>> {
         if !self.problem.is_constrained() {
@@ -132,8 +125,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The multipliers of a solution, none where rounding leaves no digit; all parts of a mesh call it.
     pub(crate) fn multipliers(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Option<Multipliers> {
         let by_unknown = self.nodal_multipliers(inequality, solution)?;
         let obstacles = self.active_obstacles(&inequality.bounds, &solution.contact);
@@ -144,7 +137,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// obstacle gives the bound.
     fn parts_of_obstacles(&self, of: &Multipliers) -> Vec<Part> {
         let n_cells = self.mesh.n_cells();
-        let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
+        let volume = |cell: usize| self.mesh.geometry(cell).volume;
         let acting = |cell: usize| {
             let unknowns = (0..self.per_cell()).map(move |i| (i, self.dofs.of(cell, i)));
             let presses = |unknown: usize| of.by_unknown[unknown] != 0.0;
@@ -169,7 +162,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// The parts of the multipliers of gaps on all contact facets: by measure among the facets whose gap gives the
     /// bound.
-    fn parts_of_gaps(&self, bounds: &[Bound<T>], of: &Multipliers) -> Vec<Part> {
+    fn parts_of_gaps(&self, bounds: &[Bound<f64>], of: &Multipliers) -> Vec<Part> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let mut parts = Vec::new();
         // of each unknown whether a gap gives the bound, and the measure of its facets with the best answer
@@ -206,7 +199,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The density of the multipliers of obstacles in each cell, by regions where obstacles have names.
     pub(crate) fn densities_of_obstacles(
         &self,
-        inequality: &Inequality<T>,
+        inequality: &Inequality<f64>,
         of: &Multipliers,
     ) -> Vec<f64> {
         let by_region = self.data.lower.has_names() || self.data.upper.has_names();
@@ -218,7 +211,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The density of the multipliers of gaps on each contact facet, by groups.
     pub(crate) fn densities_of_gaps(
         &self,
-        inequality: &Inequality<T>,
+        inequality: &Inequality<f64>,
         of: &Multipliers,
     ) -> Vec<f64> {
         let facets = self.grouped_facets_of(BoundaryPart::Contact);
@@ -234,7 +227,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         places: &[(Place, usize)],
         parts: &[Part],
-        inequality: &Inequality<T>,
+        inequality: &Inequality<f64>,
     ) -> Vec<f64> {
         let mut groups: Vec<usize> = places.iter().map(|(_, group)| *group).collect();
         groups.sort_unstable();

@@ -5,17 +5,16 @@ use crate::assemble::space::Space;
 use crate::inequality::{ContactForces, Solution};
 use crate::mesh::BoundaryPart;
 use crate::parallel::vectors::collect;
-use crate::real::Real;
 
-impl<T: Real, const D: usize> Space<'_, T, D> {
+impl<const D: usize> Space<'_, D> {
     /// By unknown the force of its active bound, positive where a lower bound pushes upward. It is zero without
     /// contact, and at nodes on facets with weakly imposed Dirichlet data: there the entry of `A u - b` contains the
     /// flux through the boundary. None where rounding leaves no digit. On a part of a mesh ghosts have the forces of
     /// their owners, and all parts call it.
     pub(crate) fn nodal_multipliers(
         &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
     ) -> Option<Vec<f64>> {
         let forces = ContactForces::of(inequality, solution);
         let on_data = self.on_weak_data(&inequality.supports);

@@ -4,18 +4,18 @@ use crate::real::Point;
 
 /// Points in the boxes of a grid, at most about as many boxes as points, for the search of points within a box.
 pub(super) struct PointGrid<const D: usize> {
-    low: Point<f64, D>,
+    low: Point<D>,
     /// Number of boxes per unit of length along each axis; zero where all points have one coordinate.
-    density: Point<f64, D>,
+    density: Point<D>,
     counts: [usize; D],
     /// The points of box `k` are those from `starts[k]` to `starts[k + 1]`.
     starts: Vec<usize>,
     /// The points by box, with their numbers.
-    points: Vec<(usize, Point<f64, D>)>,
+    points: Vec<(usize, Point<D>)>,
 }
 
 impl<const D: usize> PointGrid<D> {
-    pub fn new(points: &[Point<f64, D>]) -> Self {
+    pub fn new(points: &[Point<D>]) -> Self {
         let first = points.first().copied().unwrap_or_else(Point::zeros);
         let fold = |f: fn(f64, f64) -> f64| points.iter().fold(first, |x, y| x.zip_map(y, f));
         let (low, high) = (fold(f64::min), fold(f64::max));
@@ -32,7 +32,7 @@ impl<const D: usize> PointGrid<D> {
             if length > 0.0 { counts[axis] as f64 / length } else { 0.0 }
         });
         let mut grid = Self { low, density, counts, starts: Vec::new(), points: Vec::new() };
-        let box_of = |x: &Point<f64, D>| grid.number(&grid.position(x));
+        let box_of = |x: &Point<D>| grid.number(&grid.position(x));
         let mut sorted: Vec<_> = points.iter().copied().enumerate().collect();
         sorted.sort_by_key(|(_, x)| box_of(x));
         let n_boxes: usize = counts.iter().product();
@@ -45,9 +45,9 @@ impl<const D: usize> PointGrid<D> {
     /// Calls `visit` with the points within a box and with their numbers.
     pub fn visit_within(
         &self,
-        low: &Point<f64, D>,
-        high: &Point<f64, D>,
-        visit: &mut dyn FnMut(usize, &Point<f64, D>),
+        low: &Point<D>,
+        high: &Point<D>,
+        visit: &mut dyn FnMut(usize, &Point<D>),
     ) {
         let (first, last) = (self.position(low), self.position(high));
         let mut position = first;
@@ -65,7 +65,7 @@ impl<const D: usize> PointGrid<D> {
     }
 
     /// The position of the box of a point, or of the box next to a point outside the grid.
-    fn position(&self, x: &Point<f64, D>) -> [usize; D] {
+    fn position(&self, x: &Point<D>) -> [usize; D] {
         // a negative number is cast to zero
         let along = |axis: usize| ((x[axis] - self.low[axis]) * self.density[axis]) as usize;
         std::array::from_fn(|axis| along(axis).min(self.counts[axis] - 1))
@@ -82,11 +82,10 @@ mod tests {
     use proptest::prelude::*;
 
     fn check<const D: usize>(points: &[[f64; 3]], low: [f64; 3], length: f64) {
-        let points: Vec<Point<f64, D>> =
-            points.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
-        let low = Point::<f64, D>::from_fn(|k, _| low[k]);
+        let points: Vec<Point<D>> = points.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
+        let low = Point::<D>::from_fn(|k, _| low[k]);
         let high = low + Point::repeat(length);
-        let within = |x: &Point<f64, D>| (0..D).all(|k| low[k] <= x[k] && x[k] <= high[k]);
+        let within = |x: &Point<D>| (0..D).all(|k| low[k] <= x[k] && x[k] <= high[k]);
         let expected: Vec<usize> = (0..points.len()).filter(|&k| within(&points[k])).collect();
         let mut found = Vec::new();
         PointGrid::new(&points).visit_within(&low, &high, &mut |k, x| {

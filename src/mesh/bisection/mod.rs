@@ -12,7 +12,7 @@ use super::simplicial::Mesh;
 use super::validate::check_size;
 use crate::arrays::map_entries;
 use crate::instances::compiled;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 use midpoints::Midpoints;
 use ordered_cell::OrderedCell;
 
@@ -30,7 +30,7 @@ use ordered_cell::OrderedCell;
 /// use unilateral::prelude::*;
 ///
 /// let square = BoxDomain::dirichlet(Point::from([0.0, 0.0]), Point::from([1.0, 1.0]));
-/// let mut refined = BisectedMesh::new(Mesh::<f64, 2>::kuhn_box(&square, [4, 4])?);
+/// let mut refined = BisectedMesh::new(Mesh::<2>::kuhn_box(&square, [4, 4])?);
 /// for _ in 0..10 {
 ///     // towards a corner
 ///     let mesh = refined.mesh();
@@ -41,8 +41,8 @@ use ordered_cell::OrderedCell;
 /// # Ok::<(), unilateral::mesh::MeshError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct BisectedMesh<T, const D: usize> {
-    mesh: Mesh<T, D>,
+pub struct BisectedMesh<const D: usize> {
+    mesh: Mesh<D>,
     cells: Vec<OrderedCell>,
 }
 
@@ -61,15 +61,15 @@ pub struct Bisection {
     pub parents: Vec<[u32; 2]>,
 }
 
-impl<T: Real, const D: usize> BisectedMesh<T, D> {
+impl<const D: usize> BisectedMesh<D> {
     /// An initial mesh. Of edges of equal length the one whose vertices have higher numbers counts as
     /// longer.
-    pub fn new(mesh: Mesh<T, D>) -> Self {
-        compiled!(T, D: fn(Mesh<T, D>) -> BisectedMesh<T, D> = BisectedMesh::initial)(mesh)
+    pub fn new(mesh: Mesh<D>) -> Self {
+        compiled!(const D: fn(Mesh<D>) -> BisectedMesh<D> = BisectedMesh::initial)(mesh)
     }
-    fn initial(mesh: Mesh<T, D>) -> Self {
+    fn initial(mesh: Mesh<D>) -> Self {
         let length = |[a, b]: [u32; 2]| {
-            let [x, y] = map_entries([a, b], |v| point_f64(&mesh.vertices[v as usize]));
+            let [x, y] = map_entries([a, b], |v| mesh.vertices[v as usize]);
             (x - y).norm_squared()
         };
         let is_longer = |one: [u32; 2], other: [u32; 2]| {
@@ -80,11 +80,11 @@ impl<T: Real, const D: usize> BisectedMesh<T, D> {
         Self { mesh, cells }
     }
     /// The mesh.
-    pub fn mesh(&self) -> &Mesh<T, D> {
+    pub fn mesh(&self) -> &Mesh<D> {
         &self.mesh
     }
     /// The mesh, without the edges at which its cells are divided next.
-    pub fn into_mesh(self) -> Mesh<T, D> {
+    pub fn into_mesh(self) -> Mesh<D> {
         self.mesh
     }
 
@@ -98,11 +98,10 @@ impl<T: Real, const D: usize> BisectedMesh<T, D> {
     /// [`MeshError::Parameter`] for a marked cell that does not exist, [`MeshError::TooLarge`], and
     /// [`MeshError::TooSmallToBisect`] for a cell at the size of rounding.
     pub fn bisect(&self, marked: &[usize]) -> Result<(Self, Bisection), MeshError> {
-        compiled!(
-            T, D: fn(
-                &BisectedMesh<T, D>,
+        compiled!(const D: fn(
+                &BisectedMesh<D>,
                 &[usize],
-            ) -> Result<(BisectedMesh<T, D>, Bisection), MeshError>
+            ) -> Result<(BisectedMesh<D>, Bisection), MeshError>
                 = BisectedMesh::bisect_marked
         )(self, marked)
     }
@@ -153,14 +152,14 @@ const INTERIOR: u32 = u32::MAX;
 const VOLUME_CHANGE: f64 = 1e-2;
 
 /// A mesh that is being refined.
-struct Division<T, const D: usize> {
-    vertices: Vec<Point<T, D>>,
+struct Division<const D: usize> {
+    vertices: Vec<Point<D>>,
     midpoints: Midpoints,
     leaves: Vec<Leaf>,
 }
 
-impl<T: Real, const D: usize> Division<T, D> {
-    fn new(BisectedMesh { mesh, cells }: &BisectedMesh<T, D>) -> Self {
+impl<const D: usize> Division<D> {
+    fn new(BisectedMesh { mesh, cells }: &BisectedMesh<D>) -> Self {
         let leaf = |(ancestor, &cell)| Leaf { cell, facets: [INTERIOR; 4], ancestor };
         let mut leaves: Vec<Leaf> = (0..).zip(cells).map(leaf).collect();
         for (k, f) in (0..).zip(&mesh.boundary) {
@@ -181,7 +180,7 @@ impl<T: Real, const D: usize> Division<T, D> {
         let [a, b, ..] = cell.vertices;
         let midpoint = self.midpoints.get(a, b).unwrap_or_else(|| {
             let sum = self.vertices[a as usize] + self.vertices[b as usize];
-            self.vertices.push(sum * T::lit(0.5));
+            self.vertices.push(sum * 0.5);
             self.midpoints.add(a, b)
         });
         self.check_halves(&cell, midpoint, ancestor)?;
@@ -208,7 +207,7 @@ impl<T: Real, const D: usize> Division<T, D> {
         midpoint: u32,
         ancestor: u32,
     ) -> Result<(), MeshError> {
-        let vertex = |v: u32| point_f64(&self.vertices[v as usize]);
+        let vertex = |v: u32| self.vertices[v as usize];
         let whole = CellGeometry::new(|k| vertex(cell.vertices[k]));
         let is_half = |k: usize| {
             let mut vertices = cell.vertices;
@@ -221,7 +220,7 @@ impl<T: Real, const D: usize> Division<T, D> {
             return Ok(());
         }
         let at = describe_point(&vertex(midpoint));
-        Err(MeshError::TooSmallToBisect { cell: ancestor as usize, at, scalar: T::NAME })
+        Err(MeshError::TooSmallToBisect { cell: ancestor as usize, at })
     }
 
     /// Divides leaves until none has a vertex in the middle of an edge.
@@ -247,7 +246,7 @@ impl<T: Real, const D: usize> Division<T, D> {
     }
 
     /// The refined mesh of a mesh.
-    fn finish(mut self, old: &Mesh<T, D>) -> (BisectedMesh<T, D>, Bisection) {
+    fn finish(mut self, old: &Mesh<D>) -> (BisectedMesh<D>, Bisection) {
         Leaf::sort(&mut self.leaves);
         let mut cells = Vec::with_capacity(self.leaves.len() * (D + 1));
         let mut boundary = Vec::with_capacity(old.boundary.len());

@@ -9,7 +9,7 @@ use crate::mesh::error::MeshError;
 use crate::mesh::groups::Groups;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::check_size;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// The names of the sides `x_k = lower_k` and `x_k = upper_k`, axis after axis: the boundary groups of the
 /// meshes of a box.
@@ -22,9 +22,9 @@ pub(crate) const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "
 #[non_exhaustive]
 pub struct BoxDomain<const D: usize> {
     /// Lowest corner.
-    pub lower: Point<f64, D>,
+    pub lower: Point<D>,
     /// Highest corner.
-    pub upper: Point<f64, D>,
+    pub upper: Point<D>,
     /// Part of the sides `x_k = lower_k` and `x_k = upper_k`, for each axis `k`.
     pub sides: [[BoundaryPart; 2]; D],
 }
@@ -32,11 +32,11 @@ pub struct BoxDomain<const D: usize> {
 impl<const D: usize> BoxDomain<D> {
     /// The box between two corners, with the part of the sides `x_k = lower_k` and `x_k = upper_k`
     /// for each axis `k`.
-    pub fn new(lower: Point<f64, D>, upper: Point<f64, D>, sides: [[BoundaryPart; 2]; D]) -> Self {
+    pub fn new(lower: Point<D>, upper: Point<D>, sides: [[BoundaryPart; 2]; D]) -> Self {
         Self { lower, upper, sides }
     }
     /// The box with Dirichlet data on every side.
-    pub fn dirichlet(lower: Point<f64, D>, upper: Point<f64, D>) -> Self {
+    pub fn dirichlet(lower: Point<D>, upper: Point<D>) -> Self {
         Self::new(lower, upper, [[BoundaryPart::Dirichlet; 2]; D])
     }
     /// The cube `(-half, half)^D` with Dirichlet data on every side.
@@ -86,15 +86,14 @@ impl<const D: usize> BoxDomain<D> {
     }
 }
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// A box cut into `counts[k]` small boxes along axis `k`, each cut into `D!` simplices around
     /// its diagonal from the lowest to the highest corner (Kuhn).
     ///
     /// # Errors
     /// [`MeshError::Parameter`] for a count of zero or a box without volume, [`MeshError::TooLarge`].
     pub fn kuhn_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
-        compiled!(
-            T, D: fn(&BoxDomain<D>, [usize; D]) -> Result<Mesh<T, D>, MeshError>
+        compiled!(const D: fn(&BoxDomain<D>, [usize; D]) -> Result<Mesh<D>, MeshError>
                 = Mesh::cut_box
         )(domain, counts)
     }
@@ -134,7 +133,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             domain.lower[k] * (1.0 - t) + domain.upper[k] * t
         };
         let vertices = (0..n_vertices)
-            .map(|v| Point::from_fn(|k, _| T::lit(coordinate(k, v / strides[k] % (counts[k] + 1)))))
+            .map(|v| Point::from_fn(|k, _| coordinate(k, v / strides[k] % (counts[k] + 1))))
             .collect();
         let (cells, boundary) = cells_and_boundary(domain, counts, strides, &paths);
         let is_supported = boundary.iter().any(|f| f.part == BoundaryPart::Dirichlet);

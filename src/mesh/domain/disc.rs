@@ -11,9 +11,9 @@ use crate::mesh::refine::Refinement;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::TaggedFacet;
 use crate::mesh::validate::check_size;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// The disc of this radius around the origin: a centre, and rings `k = 1..=n` of `6k` vertices
     /// each at equal angles. All the boundary is Dirichlet; its vertices lie on the circle.
     ///
@@ -24,7 +24,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// [`MeshError::Parameter`] for `n = 0`, a radius that is not positive and finite and a dimension
     /// other than two; [`MeshError::TooLarge`].
     pub fn disc(radius: f64, n: usize) -> Result<Self, MeshError> {
-        compiled!(T, D: fn(f64, usize) -> Result<Mesh<T, D>, MeshError> = Mesh::cut_disc)(radius, n)
+        compiled!(const D: fn(f64, usize) -> Result<Mesh<D>, MeshError> = Mesh::cut_disc)(radius, n)
     }
     fn cut_disc(radius: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("disc", radius, n)?;
@@ -64,11 +64,11 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// [`MeshError::TooLarge`].
     pub(crate) fn refine_disc(&self) -> Result<(Self, Refinement), MeshError> {
         let (mut fine, refinement) = self.refine()?;
-        let hexagon: Vec<_> = self.vertices.iter().map(|x| to_hexagon(&point_f64(x))).collect();
+        let hexagon: Vec<_> = self.vertices.iter().map(to_hexagon).collect();
         for (x, &[a, b]) in fine.vertices.iter_mut().zip(&refinement.parents) {
             if a != b {
                 let middle = (hexagon[a as usize] + hexagon[b as usize]) / 2.0;
-                *x = to_disc(&middle).map(T::lit);
+                *x = to_disc(&middle);
             }
         }
         fine.whole = fine.whole.map(Extent::moved);
@@ -100,7 +100,7 @@ pub(crate) fn check_shape<const D: usize>(
     Ok(())
 }
 
-fn polar<const D: usize>(r: f64, angle: f64) -> Point<f64, D> {
+fn polar<const D: usize>(r: f64, angle: f64) -> Point<D> {
     Point::from_fn(|k, _| r * if k == 0 { angle.cos() } else { angle.sin() })
 }
 
@@ -112,7 +112,7 @@ fn sector(angle: f64) -> (f64, f64) {
 }
 
 /// The inverse of [`to_disc`].
-fn to_hexagon<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
+fn to_hexagon<const D: usize>(x: &Point<D>) -> Point<D> {
     let r = x.norm();
     let (k, t) = sector(x[1].atan2(x[0]));
     polar::<D>(r * (1.0 - t), k * FRAC_PI_3) + polar::<D>(r * t, (k + 1.0) * FRAC_PI_3)
@@ -120,10 +120,10 @@ fn to_hexagon<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
 
 /// The map from the regular hexagon to the disc: each side of the concentric hexagon through `x`
 /// becomes an arc, and lengths along the side become angles.
-fn to_disc<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
+fn to_disc<const D: usize>(x: &Point<D>) -> Point<D> {
     let (k, _) = sector(x[1].atan2(x[0]));
     // coordinates along the two rays that bound the sector
-    let (a, b): (Point<f64, D>, Point<f64, D>) =
+    let (a, b): (Point<D>, Point<D>) =
         (polar(1.0, k * FRAC_PI_3), polar(1.0, (k + 1.0) * FRAC_PI_3));
     let area = a[0] * b[1] - a[1] * b[0];
     let along_a = (x[0] * b[1] - x[1] * b[0]) / area;

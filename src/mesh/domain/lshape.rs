@@ -7,9 +7,9 @@ use crate::mesh::boundary::BoundaryPart;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::TaggedFacet;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// The square `(-half, half)^2` without its quadrant `x >= 0`, `y <= 0`, its shortest sides cut
     /// into `n`, each small square into two triangles along the diagonal from its lowest to its
     /// highest corner. The re-entrant corner is a vertex. All the boundary is Dirichlet.
@@ -18,8 +18,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// [`MeshError::Parameter`] for `n = 0`, a length that is not positive and finite and a dimension
     /// other than two; [`MeshError::TooLarge`].
     pub fn l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
-        compiled!(
-            T, D: fn(f64, usize) -> Result<Mesh<T, D>, MeshError>
+        compiled!(const D: fn(f64, usize) -> Result<Mesh<D>, MeshError>
                 = Mesh::cut_l_shape
         )(half, n)
     }

@@ -15,7 +15,7 @@ use super::refine::Refinement;
 use super::simplicial::Mesh;
 use crate::arrays::tabulate;
 use crate::instances::compiled;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// A built-in domain. All the boundary of an L-shape and of a disc is Dirichlet.
 #[derive(Clone, Debug)]
@@ -59,7 +59,7 @@ impl<const D: usize> Domain<D> {
         }
     }
     /// A lower bound of the distance from a point along any axis to the boundary; negative outside.
-    pub fn depth(&self, x: &Point<f64, D>) -> f64 {
+    pub fn depth(&self, x: &Point<D>) -> f64 {
         let in_box = |b: &BoxDomain<D>| (x - b.lower).min().min((b.upper - x).min());
         match self {
             Domain::Box(domain) => in_box(domain),
@@ -102,7 +102,7 @@ impl<const D: usize> Domain<D> {
     /// # Errors
     /// [`MeshError::Parameter`] for a level of zero, for a domain without volume and for one that does
     /// not exist in this dimension; [`MeshError::TooLarge`] if there would be too many cells.
-    pub fn mesh<T: Real>(&self, level: usize) -> Result<Mesh<T, D>, MeshError> {
+    pub fn mesh(&self, level: usize) -> Result<Mesh<D>, MeshError> {
         match *self {
             Domain::Box(ref domain) => Mesh::kuhn_box(domain, domain.counts(level)),
             Domain::LShape { half } => Mesh::l_shape(half, level),
@@ -114,19 +114,12 @@ impl<const D: usize> Domain<D> {
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] if there would be too many cells.
-    pub fn refine<T: Real>(
-        &self,
-        mesh: &Mesh<T, D>,
-    ) -> Result<(Mesh<T, D>, Refinement), MeshError> {
-        compiled!(
-            T, D: fn(&Domain<D>, &Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError>
+    pub fn refine(&self, mesh: &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError> {
+        compiled!(const D: fn(&Domain<D>, &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError>
                 = Domain::refine_mesh
         )(self, mesh)
     }
-    fn refine_mesh<T: Real>(
-        &self,
-        mesh: &Mesh<T, D>,
-    ) -> Result<(Mesh<T, D>, Refinement), MeshError> {
+    fn refine_mesh(&self, mesh: &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError> {
         Ok(match self {
             Domain::Disc { .. } => mesh.refine_disc()?,
             _ => mesh.refine()?,
@@ -137,25 +130,24 @@ impl<const D: usize> Domain<D> {
     ///
     /// # Errors
     /// Those of [`Part::refine`].
-    pub fn refine_part<T: Real>(
+    pub fn refine_part(
         &self,
-        part: &Part<T, D>,
+        part: &Part<D>,
         layers: Layers,
-    ) -> Result<(Part<T, D>, Refinement), MeshError> {
-        compiled!(
-            T, D: fn(
+    ) -> Result<(Part<D>, Refinement), MeshError> {
+        compiled!(const D: fn(
                 &Domain<D>,
-                &Part<T, D>,
+                &Part<D>,
                 Layers,
-            ) -> Result<(Part<T, D>, Refinement), MeshError>
+            ) -> Result<(Part<D>, Refinement), MeshError>
                 = Domain::refine_and_peel
         )(self, part, layers)
     }
-    fn refine_and_peel<T: Real>(
+    fn refine_and_peel(
         &self,
-        part: &Part<T, D>,
+        part: &Part<D>,
         layers: Layers,
-    ) -> Result<(Part<T, D>, Refinement), MeshError> {
+    ) -> Result<(Part<D>, Refinement), MeshError> {
         part.check_refinement(layers)?;
         Ok(part.peel(self.refine_mesh(&part.mesh)?, layers))
     }

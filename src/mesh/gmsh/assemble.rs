@@ -1,24 +1,24 @@
 //! The mesh of a file, from its contents.
 
 use super::contents::{Contents, Membership, Simplices};
-use super::element_types::Shape;
-use super::error::{GmshError, GmshWarning};
+use super::element_types::SIMPLICES;
+use super::error::{GmshError, GmshErrorKind, GmshWarning};
 use super::node_index::NodeIndex;
-use crate::arrays::{map_entries, tabulate};
+use crate::arrays::tabulate;
 use crate::input::excerpt;
 use crate::mesh::error::MeshError;
 use crate::mesh::overlap::lie_on_others;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::GroupedFacet;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A mesh read from a file, and the warnings of the reader.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct GmshMesh<T, const D: usize> {
+pub struct GmshMesh<const D: usize> {
     /// The mesh, with its cells along a Hilbert curve and its vertices in the order in which cells name them
     /// first: whatever the order of the file, what is near in space is near in memory.
-    pub mesh: Mesh<T, D>,
+    pub mesh: Mesh<D>,
     /// The tag in the file of each vertex of the mesh.
     pub node_tags: Vec<u64>,
     /// The tag in the file of each cell of the mesh.
@@ -28,10 +28,7 @@ pub struct GmshMesh<T, const D: usize> {
 }
 
 /// A mesh of dimension `D` from the contents of a file.
-pub(super) fn assemble<T: Real, const D: usize>(
-    contents: &Contents,
-) -> Result<GmshMesh<T, D>, GmshError> {
-    check_dimension(contents, D)?;
+pub(super) fn assemble<const D: usize>(contents: &Contents) -> Result<GmshMesh<D>, GmshError> {
     let index = NodeIndex::new(contents)?;
     let cells = cells_of::<D>(contents, &index)?;
     check_flat::<D>(contents, &cells.vertices)?;
@@ -43,7 +40,7 @@ pub(super) fn assemble<T: Real, const D: usize>(
     let mesh = Mesh::with_groups(vertices, corners, &boundary.facets, &boundary.names);
     let mesh = mesh
         .and_then(|mesh| mesh.with_regions(regions, of_cells))
-        .map_err(|source| in_file(source, contents, D, (&elements, &boundary.elements)))?;
+        .map_err(|error| in_file::<D>(error, contents, (&elements, &boundary.elements)))?;
     let (mesh, order, numbers) = mesh.along_curve();
     // vertices are the nodes that a cell uses
     let used = contents.nodes.tags.iter().zip(is_used).filter(|(_, is_used)| *is_used);
@@ -56,25 +53,29 @@ pub(super) fn assemble<T: Real, const D: usize>(
 }
 
 /// The error of a mesh by the elements and nodes of the file, given the elements of cells and of facets.
-fn in_file(
-    source: MeshError,
+fn in_file<const D: usize>(
+    error: MeshError,
     contents: &Contents,
-    dimension: usize,
     (cells, facets): (&[usize], &[usize]),
 ) -> GmshError {
-    let cells = source
-        .cells()
-        .into_iter()
-        .filter_map(|cell| contents.element(dimension, *cells.get(cell)?));
-    let facet =
-        source.tagged_facet().and_then(|tag| contents.element(dimension - 1, *facets.get(tag)?));
-    let nodes =
-        vertices_of(&source).iter().filter_map(|&v| contents.nodes.tags.get(v).copied()).collect();
-    GmshError::Mesh { elements: cells.chain(facet).collect(), nodes, source }
+    let element = |dimension: usize, index: usize| {
+        let simplices = &contents.simplices[dimension];
+        let position = contents.position(simplices.offsets[index]);
+        format!("element {} ({position})", simplices.tags[index])
+    };
+    let of_cells = error.cells().into_iter().map(|cell| element(D, cells[cell]));
+    let of_facet = error.tagged_facet().map(|tag| element(D - 1, facets[tag]));
+    let mut names: Vec<String> = of_cells.chain(of_facet).collect();
+    let nodes: Vec<String> =
+        vertices_of(&error).iter().map(|&v| contents.nodes.tags[v].to_string()).collect();
+    if !nodes.is_empty() {
+        names.push(format!("nodes {}", nodes.join(", ")));
+    }
+    GmshError::of_mesh(error, &names)
 }
 
-fn check_dimension(contents: &Contents, asked: usize) -> Result<(), GmshError> {
-    let found = contents.dimension()?;
+/// An error if the mesh has another dimension than asked for.
+pub(super) fn check_dimension(found: usize, asked: usize) -> Result<(), GmshError> {
     if found == asked {
         return Ok(());
     }
@@ -83,25 +84,10 @@ fn check_dimension(contents: &Contents, asked: usize) -> Result<(), GmshError> {
     } else {
         "ask for the dimension it has, or remove the larger elements"
     };
-    Err(GmshError::WrongDimension { asked, found, advice })
-}
-
-/// The name of a physical group; its number if it has none.
-fn group_name(contents: &Contents, dimension: usize, tag: i64) -> String {
-    contents.groups.get(&(dimension, tag)).cloned().unwrap_or_else(|| tag.to_string())
-}
-
-/// The names of all groups of a run of elements.
-fn names_of(contents: &Contents, dimension: usize, membership: Membership) -> Vec<String> {
-    let name = |&tag: &i64| group_name(contents, dimension, tag);
-    match membership {
-        Membership::Entity(entity) => contents
-            .entities
-            .get(&(dimension, entity))
-            .map_or(Vec::new(), |tags| tags.iter().map(name).collect()),
-        Membership::Group(0) => Vec::new(),
-        Membership::Group(tag) => vec![name(&tag)],
-    }
+    let message = format!(
+        "the mesh has dimension {found} (its largest elements), but dimension {asked} was asked for; {advice}"
+    );
+    Err(GmshError::new(GmshErrorKind::WrongDimension, message))
 }
 
 /// The cells of a file.
@@ -123,7 +109,7 @@ impl Cells {
         if known.is_none() {
             self.regions.push(names);
         }
-        u16::try_from(number).map_err(|_| GmshError::TooManyGroups { limit: u16::MAX.into() })
+        u16::try_from(number).map_err(|_| GmshError::too_many_groups())
     }
 }
 
@@ -138,7 +124,7 @@ fn cells_of<const D: usize>(contents: &Contents, index: &NodeIndex) -> Result<Ce
     };
     let first = first_listings::<D>(simplices);
     for (run, membership) in simplices.runs() {
-        let names = names_of(contents, D, membership);
+        let names = contents.names_of(D, membership);
         let region = cells.region(names.clone())?;
         for element in run {
             if let Some(cell) =
@@ -153,10 +139,9 @@ fn cells_of<const D: usize>(contents: &Contents, index: &NodeIndex) -> Result<Ce
                 }
             }
             for &node in &simplices.corners[element * (D + 1)..(element + 1) * (D + 1)] {
-                let vertex = index.find(node);
-                cells
-                    .vertices
-                    .push(vertex.ok_or_else(|| unknown_node(contents, D, element, node))?);
+                let vertex =
+                    index.find(node).ok_or_else(|| unknown_node(contents, D, element, node))?;
+                cells.vertices.push(vertex);
             }
             cells.elements.push(element);
             cells.of_cells.push(region);
@@ -190,8 +175,11 @@ fn first_listings<const D: usize>(simplices: &Simplices) -> Vec<usize> {
 
 fn unknown_node(contents: &Contents, dimension: usize, element: usize, node: u64) -> GmshError {
     let simplices = &contents.simplices[dimension];
-    let position = contents.position_of(simplices.marks[element]);
-    GmshError::UnknownNode { position, element: simplices.tags[element], node }
+    let message = format!(
+        "element {} names node {node}, which section $Nodes does not have; save the mesh again",
+        simplices.tags[element]
+    );
+    contents.error(simplices.offsets[element], GmshErrorKind::UnknownNode, message)
 }
 
 /// The boundary facets that are in a group, the index of the element of each, and the names of the groups.
@@ -209,13 +197,13 @@ fn grouped_facets<const D: usize>(
     let (mut facets, mut elements, mut names) = (Vec::new(), Vec::new(), Vec::<String>::new());
     for (run, membership) in simplices.runs() {
         let mut groups = Vec::new();
-        for name in names_of(contents, D - 1, membership) {
-            let number = names.iter().position(|known| *known == name).unwrap_or(names.len());
-            if number == names.len() {
+        for name in contents.names_of(D - 1, membership) {
+            let known = names.iter().position(|known| *known == name);
+            let number = known.unwrap_or(names.len());
+            if known.is_none() {
                 names.push(name);
             }
-            let group = u16::try_from(number);
-            groups.push(group.map_err(|_| GmshError::TooManyGroups { limit: u16::MAX.into() })?);
+            groups.push(u16::try_from(number).map_err(|_| GmshError::too_many_groups())?);
         }
         for element in run.filter(|_| !groups.is_empty()) {
             let mut vertices = [0; D];
@@ -232,42 +220,40 @@ fn grouped_facets<const D: usize>(
     if facets.is_empty() {
         let (elements, entity) =
             [("point", "Point"), ("line", "Curve"), ("triangle", "Surface")][D - 1];
-        return Err(GmshError::NoPhysicalGroups { elements, entity });
+        let message = format!(
+            "no {elements} of the file is in a physical group, so the boundary conditions are unknown; name the boundary parts in Gmsh, e.g. `Physical {entity}(\"dirichlet\") = {{1, 2}};`, with the names dirichlet, neumann and contact or with others, for which the problem says what holds there; put the domain in a group too, and save without `Mesh.SaveAll`"
+        );
+        return Err(GmshError::new(GmshErrorKind::NoPhysicalGroups, message));
     }
     Ok(GroupedFacets { facets, elements, names })
 }
 
 /// An error unless a mesh of lines lies in a line along x, a mesh of triangles in a plane of constant z.
 fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), GmshError> {
-    let points = &contents.nodes.points;
-    let Some(&first) = cells.first() else {
-        return Ok(());
-    };
-    let reference = points[first as usize];
+    let nodes = &contents.nodes;
+    let points = &nodes.points;
+    let reference = points[cells[0] as usize];
     if points.iter().all(|point| point[D..] == reference[D..]) {
         return Ok(());
     }
     let extent = cells.iter().fold(0.0, |largest: f64, &v| {
         (0..D).fold(largest, |largest, k| largest.max((points[v as usize][k] - reference[k]).abs()))
     });
-    for axis in D..3 {
+    let within = if D == 1 { "a line of constant y and z" } else { "a plane of constant z" };
+    for k in D..3 {
         // Rounding errors of the geometry, relative to the extent of the mesh and to its offset.
-        let tolerance = (1e-9 * extent).max(1e-14 * reference[axis].abs());
-        for &v in cells {
-            let value = points[v as usize][axis];
+        let tolerance = (1e-9 * extent).max(1e-14 * reference[k].abs());
+        for v in cells.iter().map(|&v| v as usize) {
+            let value = points[v][k];
             // The comparison is false for an infinite difference, which is refused.
-            if (value - reference[axis]).abs() <= tolerance {
+            if (value - reference[k]).abs() <= tolerance {
                 continue;
             }
-            return Err(GmshError::NotFlat {
-                position: contents.position_of(contents.nodes.marks[v as usize]),
-                node: contents.nodes.tags[v as usize],
-                axis: ['x', 'y', 'z'][axis],
-                value,
-                constant: reference[axis],
-                dimension: D,
-                within: if D == 1 { "a line of constant y and z" } else { "a plane of constant z" },
-            });
+            let (node, axis, constant) = (nodes.tags[v], ['x', 'y', 'z'][k], reference[k]);
+            let message = format!(
+                "node {node} has {axis} = {value}, another node {axis} = {constant}; a mesh of dimension {D} must lie in {within}, turn it there or mesh the solid it bounds"
+            );
+            return Err(contents.error(nodes.offsets[v], GmshErrorKind::NotFlat, message));
         }
     }
     Ok(())
@@ -289,23 +275,18 @@ fn vertices_of(error: &MeshError) -> Vec<usize> {
     }
 }
 
-fn warnings<T: Real, const D: usize>(contents: &Contents, mesh: &Mesh<T, D>) -> Vec<GmshWarning> {
-    let name =
-        map_entries([Shape::Point, Shape::Line, Shape::Triangle, Shape::Tetrahedron], Shape::name);
+fn warnings<const D: usize>(contents: &Contents, mesh: &Mesh<D>) -> Vec<GmshWarning> {
     let straightened = |d: usize| {
         let curved = contents.simplices[d].curved.iter();
-        curved.map(move |(&order, &count)| GmshWarning::Straightened {
-            name: name[d],
-            order,
-            count,
-        })
+        let name = SIMPLICES[d];
+        curved.map(move |(&order, &count)| GmshWarning::Straightened { name, order, count })
     };
     let mut warnings: Vec<GmshWarning> = straightened(D).chain(straightened(D - 1)).collect();
     let facets = mesh.boundary().iter().map(|f| {
         let mut vertices = mesh.facet_vertices(f.cell as usize, usize::from(f.local));
         tabulate(|_| vertices.next().expect("a facet has as many vertices as dimensions"))
     });
-    let points: Vec<Point<f64, D>> = mesh.vertices().iter().map(point_f64).collect();
+    let points: Vec<Point<D>> = mesh.vertices().to_vec();
     let coincident = lie_on_others(&points, &facets.collect::<Vec<[u32; D]>>());
     let count = coincident.iter().filter(|lies| **lies).count();
     warnings.extend((count > 0).then_some(GmshWarning::Coincident { count }));

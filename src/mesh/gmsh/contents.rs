@@ -1,8 +1,6 @@
-//! The contents of a file before they are assembled to a mesh.
+//! The contents of a file before a mesh is made of them.
 
-use super::element_types::{Shape, TypeProperties};
-use super::error::GmshError;
-use super::position::{ElementPosition, FilePosition};
+use super::error::{FilePosition, GmshError, GmshErrorKind};
 use super::source::Source;
 use std::collections::{BTreeMap, HashMap};
 
@@ -16,52 +14,50 @@ pub(super) enum Membership {
 }
 
 /// The nodes, in the order of the file.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Nodes {
     pub(super) tags: Vec<u64>,
     pub(super) points: Vec<[f64; 3]>,
-    /// Numbers of the positions, see [`Contents::position_of`].
-    pub(super) marks: Vec<usize>,
+    /// Their offsets in bytes.
+    pub(super) offsets: Vec<usize>,
 }
 
 impl Nodes {
     pub(super) fn reserve(&mut self, nodes: usize) {
         self.tags.reserve(nodes);
         self.points.reserve(nodes);
-        self.marks.reserve(nodes);
+        self.offsets.reserve(nodes);
     }
     /// Appends a node, whose coordinates must be finite.
     pub(super) fn push(
         &mut self,
         source: &Source,
-        mark: usize,
+        offset: usize,
         node: u64,
         point: [f64; 3],
     ) -> Result<(), GmshError> {
-        if let Some(axis) = point.iter().position(|x| !x.is_finite()) {
-            let position = source.position_of(mark);
-            return Err(GmshError::NotFinite {
-                position,
-                node,
-                axis: ['x', 'y', 'z'][axis],
-                value: point[axis],
-            });
+        if let Some(k) = point.iter().position(|x| !x.is_finite()) {
+            let (axis, value) = (['x', 'y', 'z'][k], point[k]);
+            let message = format!(
+                "coordinate {axis} of node {node} is {value}; coordinates must be finite, correct the geometry and mesh again"
+            );
+            return Err(source.error_at(offset, GmshErrorKind::NotFinite, message));
         }
         self.tags.push(node);
         self.points.push(point);
-        self.marks.push(mark);
+        self.offsets.push(offset);
         Ok(())
     }
 }
 
 /// The simplices of one dimension, in the order of the file.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Simplices {
     /// Tags of the corners, one more than the dimension for each.
     pub(super) corners: Vec<u64>,
     pub(super) tags: Vec<u64>,
-    /// Numbers of the positions, see [`Contents::position_of`].
-    pub(super) marks: Vec<usize>,
+    /// Their offsets in bytes.
+    pub(super) offsets: Vec<usize>,
     /// Runs of elements with the same groups: the first element of each, and its groups.
     pub(super) memberships: Vec<(usize, Membership)>,
     /// Numbers of elements of higher order, by order.
@@ -71,11 +67,11 @@ pub(super) struct Simplices {
 impl Simplices {
     pub(super) fn reserve(&mut self, elements: usize, corners_each: usize) {
         self.tags.reserve(elements);
-        self.marks.reserve(elements);
+        self.offsets.reserve(elements);
         self.corners.reserve(elements * corners_each);
     }
     /// Appends an element whose corners are appended to `corners` before.
-    pub(super) fn push(&mut self, mark: usize, element: u64, order: u8, membership: Membership) {
+    pub(super) fn push(&mut self, offset: usize, element: u64, order: u8, membership: Membership) {
         if self.memberships.last().is_none_or(|&(_, last)| last != membership) {
             self.memberships.push((self.tags.len(), membership));
         }
@@ -83,7 +79,7 @@ impl Simplices {
             *self.curved.entry(order).or_insert(0) += 1;
         }
         self.tags.push(element);
-        self.marks.push(mark);
+        self.offsets.push(offset);
     }
     /// Runs of consecutive elements with the same groups.
     pub(super) fn runs(&self) -> impl Iterator<Item = (std::ops::Range<usize>, Membership)> + '_ {
@@ -97,9 +93,12 @@ impl Simplices {
 }
 
 /// The contents of a file.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
-    /// Whether positions are bytes, otherwise lines.
-    pub(super) binary: bool,
+    /// The bytes of the file.
+    pub(super) bytes: Vec<u8>,
+    /// Whether the file is binary.
+    pub(super) is_binary: bool,
     /// The names of the physical groups, by dimension and tag.
     pub(super) groups: BTreeMap<(usize, i64), String>,
     /// The groups of the entities, by dimension and tag of the entity.
@@ -112,51 +111,32 @@ pub(super) struct Contents {
 }
 
 impl Contents {
-    pub(super) fn new() -> Self {
-        Contents {
-            binary: false,
-            groups: BTreeMap::new(),
-            entities: HashMap::new(),
-            nodes: Nodes::default(),
-            simplices: Default::default(),
-            is_periodic: false,
-        }
-    }
     /// The largest dimension of an element that is not a point.
-    pub(super) fn dimension(&self) -> Result<usize, GmshError> {
-        (1..=3).rev().find(|&d| !self.simplices[d].tags.is_empty()).ok_or(GmshError::NoCells)
+    pub(super) fn dimension(&self) -> Option<usize> {
+        (1..=3).rev().find(|&d| !self.simplices[d].tags.is_empty())
     }
-    pub(super) fn position_of(&self, mark: usize) -> FilePosition {
-        if self.binary { FilePosition::Byte(mark) } else { FilePosition::Line(mark) }
+    /// The position of a byte.
+    pub(super) fn position(&self, offset: usize) -> FilePosition {
+        FilePosition::of(offset, &self.bytes, self.is_binary)
     }
-    /// An element by its position in the list of its dimension.
-    pub(super) fn element(&self, dimension: usize, index: usize) -> Option<ElementPosition> {
-        let simplices = &self.simplices[dimension];
-        let position = self.position_of(*simplices.marks.get(index)?);
-        Some(ElementPosition { element: *simplices.tags.get(index)?, position })
+    /// An error at a byte.
+    pub(super) fn error(&self, offset: usize, kind: GmshErrorKind, message: String) -> GmshError {
+        GmshError::new(kind, message).at(self.position(offset))
     }
-}
-
-/// The properties of an element type, of simplices or not.
-pub(super) fn type_properties(
-    source: &Source,
-    element_type: i64,
-) -> Result<TypeProperties, GmshError> {
-    TypeProperties::from_type(element_type)
-        .ok_or_else(|| GmshError::UnknownElementType { position: source.position(), element_type })
-}
-
-/// The dimension of a simplex; an error that names the element for anything else.
-pub(super) fn simplex_dimension(
-    source: &Source,
-    shape: Shape,
-    element_type: i64,
-    element: u64,
-) -> Result<usize, GmshError> {
-    shape.simplex_dimension().ok_or_else(|| GmshError::NotSimplicial {
-        position: source.position(),
-        element,
-        element_type,
-        name: shape.name(),
-    })
+    /// The names of all groups of an element; the number of a group without a name.
+    pub(super) fn names_of(&self, dimension: usize, membership: Membership) -> Vec<String> {
+        let tags = match &membership {
+            Membership::Entity(entity) => {
+                self.entities.get(&(dimension, *entity)).map(Vec::as_slice)
+            }
+            Membership::Group(0) => None,
+            Membership::Group(tag) => Some(std::slice::from_ref(tag)),
+        };
+        let name = |&tag: &i64| match self.groups.get(&(dimension, tag)) {
+            Some(name) => name.clone(),
+            None => tag.to_string(),
+        };
+        // an entity that the file does not list is in no group
+        tags.into_iter().flatten().map(name).collect()
+    }
 }

@@ -1,48 +1,72 @@
 //! The table of element types.
 
+use super::error::{GmshError, GmshErrorKind};
+use super::source::Source;
+
 /// The shape of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
-    Point,
-    Line,
-    Triangle,
-    Tetrahedron,
-    Quadrilateral,
-    Hexahedron,
-    Prism,
-    Pyramid,
+    /// A simplex of this dimension: its corners are one more.
+    Simplex(usize),
+    /// Another shape, in words.
+    Other(&'static str),
 }
+use Shape::{Other, Simplex};
+
+/// The simplices in words, by dimension.
+pub(super) const SIMPLICES: [&str; 4] = ["point", "line", "triangle", "tetrahedron"];
 
 impl Shape {
-    /// The dimension, of a simplex only: its corners are one more.
-    pub(super) fn simplex_dimension(self) -> Option<usize> {
-        match self {
-            Shape::Point => Some(0),
-            Shape::Line => Some(1),
-            Shape::Triangle => Some(2),
-            Shape::Tetrahedron => Some(3),
-            _ => None,
-        }
-    }
     /// The shape in words.
     pub(super) fn name(self) -> &'static str {
         match self {
-            Shape::Point => "point",
-            Shape::Line => "line",
-            Shape::Triangle => "triangle",
-            Shape::Tetrahedron => "tetrahedron",
-            Shape::Quadrilateral => "quadrilateral",
-            Shape::Hexahedron => "hexahedron",
-            Shape::Prism => "prism",
-            Shape::Pyramid => "pyramid",
+            Simplex(dimension) => SIMPLICES[dimension],
+            Other(name) => name,
         }
     }
 }
 
+/// Which nodes of its order an element has.
+#[derive(Clone, Copy)]
+enum Nodes {
+    /// All of them.
+    All,
+    /// Those on edges, of tetrahedra also none inside the faces.
+    OnEdges,
+}
+use Nodes::{All, OnEdges};
+
+/// Ranges of types, first and last included: their shape, the order of the first, to which each following type adds
+/// one, and their nodes. Orders six to ten have ranges of their own.
+const SIMPLICIAL: [(i64, i64, usize, u8, Nodes); 22] = [
+    (15, 15, 0, 1, All),
+    (1, 1, 1, 1, All),
+    (8, 8, 1, 2, All),
+    (26, 28, 1, 3, All),
+    (62, 66, 1, 6, All),
+    (2, 2, 2, 1, All),
+    (9, 9, 2, 2, All),
+    (21, 21, 2, 3, All),
+    (23, 23, 2, 4, All),
+    (25, 25, 2, 5, All),
+    (42, 46, 2, 6, All),
+    (20, 20, 2, 3, OnEdges),
+    (22, 22, 2, 4, OnEdges),
+    (24, 24, 2, 5, OnEdges),
+    (52, 56, 2, 6, OnEdges),
+    (4, 4, 3, 1, All),
+    (11, 11, 3, 2, All),
+    (29, 31, 3, 3, All),
+    (71, 75, 3, 6, All),
+    (137, 137, 3, 3, OnEdges),
+    (32, 33, 3, 4, OnEdges),
+    (79, 83, 3, 6, OnEdges),
+];
+
 /// The properties of an element type. The corners of an element are its first nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct TypeProperties {
-    /// The shape.
+pub(super) struct ElementType {
+    pub(super) number: i64,
     pub(super) shape: Shape,
     /// Polynomial order of the map from the reference element; 1 for every type that is not a simplex.
     pub(super) order: u8,
@@ -50,69 +74,64 @@ pub(super) struct TypeProperties {
     pub(super) nodes: usize,
 }
 
-impl TypeProperties {
-    /// The properties of an element type; none for a type without a fixed number of nodes.
-    pub(super) fn from_type(element_type: i64) -> Option<Self> {
-        // Orders six to ten have numbers in separate ranges.
-        let order = |first: i64, order: i64| (element_type - first + order) as u8;
-        Some(match element_type {
-            15 => TypeProperties { shape: Shape::Point, order: 1, nodes: 1 },
-            1 => line(1),
-            8 => line(2),
-            26..=28 => line(order(26, 3)),
-            62..=66 => line(order(62, 6)),
-            2 => triangle(1),
-            9 => triangle(2),
-            21 => triangle(3),
-            23 => triangle(4),
-            25 => triangle(5),
-            42..=46 => triangle(order(42, 6)),
-            20 => triangle_edges(3),
-            22 => triangle_edges(4),
-            24 => triangle_edges(5),
-            52..=56 => triangle_edges(order(52, 6)),
-            4 => tetrahedron(1),
-            11 => tetrahedron(2),
-            29..=31 => tetrahedron(order(29, 3)),
-            71..=75 => tetrahedron(order(71, 6)),
-            137 => tetrahedron_edges(3),
-            32..=33 => tetrahedron_edges(order(32, 4)),
-            79..=83 => tetrahedron_edges(order(79, 6)),
-            3 | 10 | 16 | 36..=41 | 47..=51 | 57..=61 => other(Shape::Quadrilateral),
-            5 | 12 | 17 | 92..=105 => other(Shape::Hexahedron),
-            6 | 13 | 18 | 90 | 91 | 106..=117 => other(Shape::Prism),
-            7 | 14 | 19 | 118..=131 => other(Shape::Pyramid),
+impl ElementType {
+    /// The type with this number; none for a type without a fixed number of nodes.
+    pub(super) fn new(number: i64) -> Option<Self> {
+        for (first, last, dimension, order_of_first, nodes) in SIMPLICIAL {
+            if (first..=last).contains(&number) {
+                let order = order_of_first + (number - first) as u8;
+                let nodes = nodes.of_simplex(dimension, usize::from(order));
+                return Some(Self { number, shape: Simplex(dimension), order, nodes });
+            }
+        }
+        let name = match number {
+            3 | 10 | 16 | 36..=41 | 47..=51 | 57..=61 => "quadrilateral",
+            5 | 12 | 17 | 92..=105 => "hexahedron",
+            6 | 13 | 18 | 90 | 91 | 106..=117 => "prism",
+            7 | 14 | 19 | 118..=131 => "pyramid",
             _ => return None,
-        })
+        };
+        Some(Self { number, shape: Other(name), order: 1, nodes: 0 })
     }
 }
 
-fn line(order: u8) -> TypeProperties {
-    TypeProperties { shape: Shape::Line, order, nodes: usize::from(order) + 1 }
+/// Reads the number of an element type.
+pub(super) fn element_type(source: &mut Source) -> Result<ElementType, GmshError> {
+    let number = source.integer("the type of an element")?;
+    ElementType::new(number).ok_or_else(|| {
+        let message = format!(
+            "elements of type {number} are not known; lines, triangles and tetrahedra are read"
+        );
+        source.error(GmshErrorKind::UnknownElementType, message)
+    })
 }
 
-fn triangle(order: u8) -> TypeProperties {
-    let k = usize::from(order);
-    TypeProperties { shape: Shape::Triangle, order, nodes: (k + 1) * (k + 2) / 2 }
+/// The dimension of an element; an error that names it if it is not a simplex.
+pub(super) fn simplex_dimension(
+    source: &Source,
+    of_type: &ElementType,
+    element: u64,
+) -> Result<usize, GmshError> {
+    match of_type.shape {
+        Simplex(dimension) => Ok(dimension),
+        Other(name) => {
+            let message = format!(
+                "element {element} is a {name} (type {}); only simplices are read, triangulate: mesh again without `Recombine`, `Mesh.RecombineAll` and `Mesh.SubdivisionAlgorithm`",
+                of_type.number
+            );
+            Err(source.error(GmshErrorKind::NotSimplicial, message))
+        }
+    }
 }
 
-/// Triangles without inner nodes.
-fn triangle_edges(order: u8) -> TypeProperties {
-    TypeProperties { shape: Shape::Triangle, order, nodes: 3 * usize::from(order) }
-}
-
-fn tetrahedron(order: u8) -> TypeProperties {
-    let k = usize::from(order);
-    TypeProperties { shape: Shape::Tetrahedron, order, nodes: (k + 1) * (k + 2) * (k + 3) / 6 }
-}
-
-/// Tetrahedra without nodes inside the tetrahedron and its faces.
-fn tetrahedron_edges(order: u8) -> TypeProperties {
-    TypeProperties { shape: Shape::Tetrahedron, order, nodes: 6 * usize::from(order) - 2 }
-}
-
-fn other(shape: Shape) -> TypeProperties {
-    TypeProperties { shape, order: 1, nodes: 0 }
+impl Nodes {
+    /// Their number, of a simplex of this dimension and order.
+    fn of_simplex(self, dimension: usize, order: usize) -> usize {
+        match self {
+            All => (1..=dimension).fold(1, |nodes, k| nodes * (order + k) / k),
+            OnEdges => dimension + 1 + dimension * (dimension + 1) / 2 * (order - 1),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -153,13 +172,13 @@ mod tests {
         ];
         for (element_type, nodes) in table {
             assert_eq!(
-                TypeProperties::from_type(element_type).map(|k| k.nodes),
+                ElementType::new(element_type).map(|k| k.nodes),
                 Some(nodes),
                 "type {element_type}"
             );
         }
         for element_type in [-1, 0, 34, 35, 67, 84, 140, 1 << 40] {
-            assert_eq!(TypeProperties::from_type(element_type), None, "type {element_type}");
+            assert_eq!(ElementType::new(element_type), None, "type {element_type}");
         }
     }
 }

@@ -28,7 +28,7 @@
 //! # Example
 //!
 //! ```
-//! use unilateral::mesh::gmsh;
+//! use unilateral::mesh::gmsh::{GmshError, GmshFile};
 //!
 //! let file = br#"$MeshFormat
 //! 2.2 0 8
@@ -52,64 +52,95 @@
 //! 4 1 2 2 1 2 3
 //! $EndElements
 //! "#;
-//! assert_eq!(gmsh::dimension(file)?, 1);
-//! let read = gmsh::parse::<f64, 1>(file)?;
+//! let file = GmshFile::parse(*file)?;
+//! assert_eq!(file.dimension(), 1);
+//! let read = file.mesh::<1>()?;
 //! assert_eq!(read.mesh.n_cells(), 2);
 //! assert!(read.warnings.is_empty());
-//! # Ok::<(), gmsh::GmshError>(())
+//! # Ok::<(), GmshError>(())
 //! ```
 
 mod assemble;
-mod binary;
 mod contents;
 mod element_types;
 mod error;
 mod node_index;
-mod position;
 mod sections;
 mod source;
-mod text;
 mod version_four;
 mod version_two;
 mod write;
 
 pub use assemble::GmshMesh;
-pub use error::{GmshError, GmshWarning};
-pub use position::{ElementPosition, FilePosition};
+pub use error::{FilePosition, GmshError, GmshErrorKind, GmshWarning};
 pub use write::{to_text, write};
 
-use crate::input::read_file;
+use crate::input;
 use crate::instances::compiled;
-use crate::real::Real;
-use sections::{Wanted, read_contents};
+use contents::Contents;
 use std::path::Path;
+
+/// A file that has been read, for the mesh of its dimension.
+#[derive(Clone)]
+pub struct GmshFile {
+    contents: Contents,
+    dimension: usize,
+}
+
+impl GmshFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Those of [`GmshFile::parse`]; [`GmshErrorKind::Unreadable`].
+    pub fn read(path: &Path) -> Result<Self, GmshError> {
+        let bytes = input::read_file(path).map_err(|error| {
+            let message = format!("cannot read {}: {error}", path.display());
+            GmshError::new(GmshErrorKind::Unreadable, message).caused_by(error)
+        })?;
+        Self::parse(bytes)
+    }
+    /// Reads the bytes of a file.
+    ///
+    /// # Errors
+    /// Errors of the format; [`GmshErrorKind::NoCells`] if the file has only points.
+    pub fn parse(bytes: impl Into<Vec<u8>>) -> Result<Self, GmshError> {
+        let contents = sections::read_contents(bytes.into())?;
+        let dimension = contents.dimension().ok_or_else(|| {
+            let message = "the file has no lines, triangles or tetrahedra; mesh before saving, and put the domain in a physical group: Gmsh saves only elements of groups once there is one";
+            GmshError::new(GmshErrorKind::NoCells, message)
+        })?;
+        Ok(Self { contents, dimension })
+    }
+    /// The dimension of the mesh: the largest one of an element.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+    /// The [`fingerprint`](input::fingerprint) of the file.
+    pub fn fingerprint(&self) -> String {
+        input::fingerprint(&self.contents.bytes)
+    }
+    /// The mesh, of dimension `D`.
+    ///
+    /// # Errors
+    /// [`GmshErrorKind::WrongDimension`], and errors of nodes, elements and groups that do not make a mesh.
+    pub fn mesh<const D: usize>(&self) -> Result<GmshMesh<D>, GmshError> {
+        assemble::check_dimension(self.dimension, D)?;
+        compiled!(const D: fn(&Contents) -> Result<GmshMesh<D>, GmshError> = assemble::assemble)(
+            &self.contents,
+        )
+    }
+}
+
+impl std::fmt::Debug for GmshFile {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GmshFile").field("dimension", &self.dimension).finish_non_exhaustive()
+    }
+}
 
 /// Reads a mesh of dimension `D` from a file.
 ///
 /// # Errors
-/// Every [`GmshError`].
-pub fn read<T: Real, const D: usize>(path: &Path) -> Result<GmshMesh<T, D>, GmshError> {
-    let bytes =
-        read_file(path).map_err(|source| GmshError::Unreadable { path: path.into(), source })?;
-    parse(&bytes)
-}
-
-/// Reads a mesh of dimension `D` from the bytes of a file.
-///
-/// # Errors
-/// Every [`GmshError`] but [`GmshError::Unreadable`].
-pub fn parse<T: Real, const D: usize>(bytes: &[u8]) -> Result<GmshMesh<T, D>, GmshError> {
-    compiled!(T, D: fn(&[u8]) -> Result<GmshMesh<T, D>, GmshError> = read_bytes)(bytes)
-}
-
-fn read_bytes<T: Real, const D: usize>(bytes: &[u8]) -> Result<GmshMesh<T, D>, GmshError> {
-    assemble::assemble(&read_contents(bytes, Wanted::Everything)?)
-}
-
-/// The largest dimension of an element of a file, from its bytes: the `D` of [`parse`].
-///
-/// # Errors
-/// Errors of the header and of the elements of the file; [`GmshError::NoCells`] if it has only points.
-pub fn dimension(bytes: &[u8]) -> Result<usize, GmshError> {
-    read_contents(bytes, Wanted::Elements)?.dimension()
+/// Those of [`GmshFile::read`] and [`GmshFile::mesh`].
+pub fn read<const D: usize>(path: &Path) -> Result<GmshMesh<D>, GmshError> {
+    GmshFile::read(path)?.mesh()
 }

@@ -1,7 +1,7 @@
 //! The map from the tags of nodes to their numbers in the order of the file.
 
 use super::contents::Contents;
-use super::error::GmshError;
+use super::error::{GmshError, GmshErrorKind};
 use crate::mesh::error::MeshError;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -19,18 +19,24 @@ const ABSENT: u32 = u32::MAX;
 impl NodeIndex {
     /// The index of all nodes of a file, whose tags must be distinct.
     pub(super) fn new(contents: &Contents) -> Result<Self, GmshError> {
-        let tags = &contents.nodes.tags;
+        let nodes = &contents.nodes;
+        let tags = &nodes.tags;
         let count = tags.len();
         if count >= ABSENT as usize {
-            let source =
-                MeshError::TooLarge { what: "vertices", count, limit: ABSENT as usize - 1 };
-            return Err(GmshError::Mesh { source, elements: Vec::new(), nodes: Vec::new() });
+            let limit = ABSENT as usize - 1;
+            return Err(GmshError::of_mesh(
+                MeshError::TooLarge { what: "vertices", count, limit },
+                &[],
+            ));
         }
         let largest = tags.iter().copied().max().unwrap_or(0);
-        let repeated = |first: u32, second: u32| GmshError::RepeatedNode {
-            position: contents.position_of(contents.nodes.marks[second as usize]),
-            first: contents.position_of(contents.nodes.marks[first as usize]),
-            node: tags[second as usize],
+        let repeated = |first: u32, second: u32| {
+            let message = format!(
+                "node {} is given a second time (first: {}); tags of nodes must be distinct, renumber the mesh in Gmsh",
+                tags[second as usize],
+                contents.position(nodes.offsets[first as usize])
+            );
+            contents.error(nodes.offsets[second as usize], GmshErrorKind::RepeatedNode, message)
         };
         if largest <= 4 * count as u64 + 1024 {
             let mut table = vec![ABSENT; largest as usize + 1];

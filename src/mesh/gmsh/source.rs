@@ -1,9 +1,9 @@
-//! Numbers of a file, text or binary.
+//! Words and numbers of a file, text or binary.
 //!
-//! Text is read record by record, one per line, so that a missing number is reported on its own line.
+//! Text is read record by record, one per line, so that a missing number is reported on its own line. What is read
+//! is known by its offset in bytes; lines are counted when an error is made.
 
-use super::error::GmshError;
-use super::position::FilePosition;
+use super::error::{FilePosition, GmshError, GmshErrorKind};
 use crate::input::excerpt;
 
 /// The encoding of numbers.
@@ -16,16 +16,14 @@ pub(super) enum Encoding {
 
 /// The bytes of a file, and how far they are read.
 pub(super) struct Source<'a> {
-    pub(super) bytes: &'a [u8],
+    bytes: &'a [u8],
     /// The next byte to read.
-    pub(super) at: usize,
-    /// The line it is on, counted from one.
-    pub(super) line: usize,
+    at: usize,
     /// The first byte of the word or number read last.
-    pub(super) last: usize,
+    last: usize,
     /// The encoding of the numbers of the sections.
     pub(super) encoding: Encoding,
-    /// The section that is being read.
+    /// The section that is being read, or `after` and the one before.
     pub(super) section: String,
 }
 
@@ -33,122 +31,197 @@ impl<'a> Source<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         // Editors put a byte order mark in front of text.
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Source { bytes, at, line: 1, last: at, encoding: Encoding::Text, section: String::new() }
+        Source { bytes, at, last: at, encoding: Encoding::Text, section: String::new() }
     }
     pub(super) fn is_binary(&self) -> bool {
         self.encoding != Encoding::Text
     }
-    /// The present position as a number, of which [`Source::position_of`] makes a position.
-    pub(super) fn mark(&self) -> usize {
-        if self.is_binary() { self.at } else { self.line }
+    /// The offset of the next byte to read.
+    pub(super) fn offset(&self) -> usize {
+        self.at
     }
-    /// The position with this number: a line of a text file, a byte of a binary one.
-    pub(super) fn position_of(&self, mark: usize) -> FilePosition {
-        if self.is_binary() { FilePosition::Byte(mark) } else { FilePosition::Line(mark) }
+    fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
     }
-    /// The position of the word or number read last.
-    pub(super) fn position(&self) -> FilePosition {
-        self.position_of(if self.is_binary() { self.last } else { self.line })
-    }
-    /// Number of bytes not yet read.
-    pub(super) fn remaining(&self) -> usize {
-        self.bytes.len() - self.at
-    }
-    pub(super) fn peek(&self) -> Option<u8> {
+    fn peek(&self) -> Option<u8> {
         self.bytes.get(self.at).copied()
     }
-
-    /// The name of the section that is being read, for messages.
-    pub(super) fn section_name(&self) -> String {
-        excerpt(&self.section)
+    pub(super) fn is_at_end(&self) -> bool {
+        self.at == self.bytes.len()
     }
 
-    // Errors at the present position.
+    // Errors.
 
-    pub(super) fn truncated(&self) -> GmshError {
-        let position =
-            self.position_of(if self.is_binary() { self.bytes.len() } else { self.line });
-        GmshError::Truncated { position, section: self.section_name() }
+    /// An error at the word or number read last.
+    pub(super) fn error(&self, kind: GmshErrorKind, message: impl Into<String>) -> GmshError {
+        self.error_at(self.last, kind, message)
     }
-    pub(super) fn unexpected(
+    pub(super) fn error_at(
         &self,
-        expected: impl Into<String>,
-        found: impl Into<String>,
+        offset: usize,
+        kind: GmshErrorKind,
+        message: impl Into<String>,
     ) -> GmshError {
-        GmshError::Unexpected {
-            position: self.position(),
-            section: self.section_name(),
-            expected: expected.into(),
-            found: found.into(),
+        let position = FilePosition::of(offset, self.bytes, self.is_binary());
+        GmshError::new(kind, message).at(position)
+    }
+    /// Which section is being read, for messages.
+    fn in_section(&self) -> String {
+        match self.section.strip_prefix("after ") {
+            Some(section) => format!("after section {}", excerpt(section)),
+            None => format!("in section {}", excerpt(&self.section)),
         }
+    }
+    pub(super) fn truncated(&self) -> GmshError {
+        let message =
+            format!("the file ends {}; it is incomplete, save or copy it again", self.in_section());
+        self.error_at(self.bytes.len(), GmshErrorKind::Truncated, message)
+    }
+    /// An error about something else than what is expected.
+    fn differs(&self, kind: GmshErrorKind, expected: &str, found: &str) -> GmshError {
+        let section = self.in_section();
+        let message = format!(
+            "expected {expected} {section}, found {found}; correct the line or save the mesh again"
+        );
+        self.error(kind, message)
+    }
+    pub(super) fn unexpected(&self, expected: &str, found: impl std::fmt::Display) -> GmshError {
+        self.differs(GmshErrorKind::Unexpected, expected, &found.to_string())
+    }
+    pub(super) fn unexpected_word(&self, expected: &str, word: &[u8]) -> GmshError {
+        self.unexpected(expected, format!("`{}`", excerpt(word)))
+    }
+    pub(super) fn not_a_number(&self, expected: &str, word: &[u8]) -> GmshError {
+        self.differs(GmshErrorKind::NotANumber, expected, &format!("`{}`", excerpt(word)))
     }
     pub(super) fn miscounted(
         &self,
-        what: &'static str,
+        what: &str,
         announced: u64,
-        found: impl Into<String>,
+        found: impl std::fmt::Display,
     ) -> GmshError {
-        let (position, section) = (self.position(), self.section_name());
-        GmshError::Count { position, section, what, announced, found: found.into() }
+        let message = format!(
+            "{announced} {what} are announced {}, {found} found; the file is damaged, save or copy it again",
+            self.in_section()
+        );
+        self.error(GmshErrorKind::Count, message)
     }
 
+    // Words.
+
+    /// Skips blanks and ends of lines.
+    pub(super) fn skip_blank_lines(&mut self) {
+        let blank = self.rest().iter().take_while(|byte| byte.is_ascii_whitespace());
+        self.at += blank.count();
+        self.last = self.at;
+    }
+    /// The next word of the line; empty at the end of the line.
+    pub(super) fn word(&mut self) -> &'a [u8] {
+        while self.peek().is_some_and(|byte| byte != b'\n' && byte.is_ascii_whitespace()) {
+            self.at += 1;
+        }
+        self.last = self.at;
+        let rest = self.rest();
+        let length = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
+        self.at += length;
+        &rest[..length]
+    }
+    /// The rest of the line, without its end; the next byte to read is the first of the next line.
+    pub(super) fn rest_of_line(&mut self) -> &'a [u8] {
+        let rest = self.rest();
+        let length = rest.iter().position(|&byte| byte == b'\n');
+        self.at += length.map_or(rest.len(), |n| n + 1);
+        &rest[..length.unwrap_or(rest.len())]
+    }
+    /// An error if the line of text has more words.
+    pub(super) fn end_line(&mut self) -> Result<(), GmshError> {
+        match self.word() {
+            [] => Ok(()),
+            word => Err(self.unexpected_word("the end of the line", word)),
+        }
+    }
+
+    // Numbers.
+
+    /// A number that is text also in binary files.
+    #[inline]
+    pub(super) fn text<V>(
+        &mut self,
+        expected: &str,
+        parse: impl Fn(&[u8]) -> Option<V>,
+    ) -> Result<V, GmshError> {
+        match self.word() {
+            [] if self.is_at_end() => Err(self.truncated()),
+            [] => Err(self.unexpected(expected, "the end of the line")),
+            word => parse(word).ok_or_else(|| self.not_a_number(expected, word)),
+        }
+    }
+    /// A number in the encoding of the file: the functions make it of a word, and of bytes in little and big endian.
+    #[inline(always)]
+    fn number<V, const N: usize>(
+        &mut self,
+        expected: &str,
+        parse: impl Fn(&[u8]) -> Option<V>,
+        [little, big]: [fn([u8; N]) -> V; 2],
+    ) -> Result<V, GmshError> {
+        match self.encoding {
+            Encoding::Text => self.text(expected, parse),
+            Encoding::LittleEndian => self.bytes().map(little),
+            Encoding::BigEndian => self.bytes().map(big),
+        }
+    }
+    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], GmshError> {
+        let chunk = *self.rest().first_chunk::<N>().ok_or_else(|| self.truncated())?;
+        self.last = self.at;
+        self.at += N;
+        Ok(chunk)
+    }
     /// An unsigned number of eight bytes: a count, or a tag of a node or element in MSH 4.1.
     #[inline]
-    pub(super) fn count(&mut self, expected: &'static str) -> Result<u64, GmshError> {
-        match self.encoding {
-            Encoding::Text => self.text_count(expected),
-            Encoding::LittleEndian => Ok(u64::from_le_bytes(self.bytes()?)),
-            Encoding::BigEndian => Ok(u64::from_be_bytes(self.bytes()?)),
-        }
+    pub(super) fn count(&mut self, expected: &str) -> Result<u64, GmshError> {
+        self.number(expected, unsigned, [u64::from_le_bytes, u64::from_be_bytes])
     }
     /// An integer of four bytes.
     #[inline]
-    pub(super) fn integer(&mut self, expected: &'static str) -> Result<i64, GmshError> {
-        if self.is_binary() { self.binary_integer() } else { self.text_integer(expected) }
+    pub(super) fn integer(&mut self, expected: &str) -> Result<i64, GmshError> {
+        let of_bytes: [fn([u8; 4]) -> i64; 2] =
+            [|b| i32::from_le_bytes(b).into(), |b| i32::from_be_bytes(b).into()];
+        self.number(expected, integer, of_bytes)
     }
     /// An integer of four bytes that has no sign: a tag of a node or element in MSH 2.2.
     #[inline]
-    pub(super) fn unsigned(&mut self, expected: &'static str) -> Result<u64, GmshError> {
-        if !self.is_binary() {
-            return self.text_count(expected);
-        }
-        let value = self.binary_integer()?;
-        u64::try_from(value).map_err(|_| self.unexpected(expected, value.to_string()))
+    pub(super) fn unsigned(&mut self, expected: &str) -> Result<u64, GmshError> {
+        let value = self.integer(expected)?;
+        u64::try_from(value).map_err(|_| self.unexpected(expected, value))
     }
     /// A real number of eight bytes.
     #[inline]
-    pub(super) fn real(&mut self, expected: &'static str) -> Result<f64, GmshError> {
-        match self.encoding {
-            Encoding::Text => self.text_real(expected),
-            Encoding::LittleEndian => Ok(f64::from_le_bytes(self.bytes()?)),
-            Encoding::BigEndian => Ok(f64::from_be_bytes(self.bytes()?)),
-        }
+    pub(super) fn real(&mut self, expected: &str) -> Result<f64, GmshError> {
+        let parse = |word: &[u8]| std::str::from_utf8(word).ok()?.parse().ok();
+        self.number(expected, parse, [f64::from_le_bytes, f64::from_be_bytes])
     }
     /// Skips `count` numbers, each of `size` bytes in a binary file.
     pub(super) fn skip(
         &mut self,
         count: u64,
         size: usize,
-        expected: &'static str,
+        expected: &str,
     ) -> Result<(), GmshError> {
-        if self.is_binary() {
-            return self.skip_bytes(count, size);
+        if !self.is_binary() {
+            return (0..count).try_for_each(|_| self.text(expected, |_| Some(())));
         }
-        for _ in 0..count {
-            self.number_word(expected)?;
-        }
+        let length = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
+        let length = length.filter(|&length| length <= self.rest().len());
+        self.at += length.ok_or_else(|| self.truncated())?;
         Ok(())
     }
-    /// Moves to the first number of a section; binary numbers begin after the line of its name.
-    pub(super) fn begin_numbers(&mut self) {
-        if !self.is_binary() {
-            self.skip_blank_lines();
-        }
-    }
+
+    // Records.
+
     /// Moves to the line of the next record of text; `found` of `announced` records are read.
     pub(super) fn begin_record(
         &mut self,
-        what: &'static str,
+        what: &str,
         announced: u64,
         found: u64,
     ) -> Result<(), GmshError> {
@@ -158,7 +231,7 @@ impl<'a> Source<'a> {
         self.skip_blank_lines();
         match self.peek() {
             None => Err(self.truncated()),
-            Some(b'$') => Err(self.miscounted(what, announced, found.to_string())),
+            Some(b'$') => Err(self.miscounted(what, announced, found)),
             Some(_) => Ok(()),
         }
     }
@@ -170,24 +243,23 @@ impl<'a> Source<'a> {
     /// memory is reserved: a wrong count where the section has an end, a truncated file otherwise.
     pub(super) fn check_room(
         &self,
-        what: &'static str,
+        what: &str,
         announced: u64,
         size: usize,
     ) -> Result<(), GmshError> {
-        if !self.is_binary() || announced <= (self.remaining() / size.max(1)) as u64 {
+        if !self.is_binary() || announced <= (self.rest().len() / size) as u64 {
             return Ok(());
         }
-        let rest = &self.bytes[self.at..];
-        match find(rest, self.section_end().as_bytes()) {
+        Err(match find(self.rest(), self.section_end().as_bytes()) {
             Some(length) => {
-                Err(self.miscounted(what, announced, format!("at most {}", length / size.max(1))))
+                self.miscounted(what, announced, format_args!("at most {}", length / size))
             }
-            None => Err(self.truncated()),
-        }
+            None => self.truncated(),
+        })
     }
     /// Number of records to reserve memory for, at most as many as the rest of the file holds.
     pub(super) fn capacity(&self, announced: u64, text_bytes: usize) -> usize {
-        let most = self.remaining() / text_bytes.max(1);
+        let most = self.rest().len() / text_bytes;
         usize::try_from(announced).map_or(most, |announced| announced.min(most))
     }
 
@@ -197,51 +269,21 @@ impl<'a> Source<'a> {
         format!("$End{}", self.section.trim_start_matches('$'))
     }
     /// Reads the end of a section after the announced records.
-    pub(super) fn end_section(
-        &mut self,
-        what: &'static str,
-        announced: u64,
-    ) -> Result<(), GmshError> {
+    pub(super) fn end_section(&mut self, what: &str, announced: u64) -> Result<(), GmshError> {
         self.skip_blank_lines();
         let end = self.section_end();
-        let start = self.mark();
-        let word = self.word();
-        if word == end.as_bytes() {
-            return self.end_line();
+        match self.word() {
+            word if word == end.as_bytes() => self.end_line(),
+            [] => Err(self.truncated()),
+            word @ [b'$', ..] => Err(self.unexpected_word(&format!("`{}`", excerpt(&end)), word)),
+            _ => Err(self.miscounted(what, announced, "more")),
         }
-        let position = self.position_of(start);
-        if word.is_empty() {
-            return Err(self.truncated());
-        }
-        if word[0] != b'$' {
-            let section = self.section_name();
-            return Err(GmshError::Count {
-                position,
-                section,
-                what,
-                announced,
-                found: "more".into(),
-            });
-        }
-        let found = format!("`{}`", excerpt(word));
-        Err(GmshError::Unexpected {
-            position,
-            section: self.section_name(),
-            expected: format!("`{}`", excerpt(&end)),
-            found,
-        })
     }
     /// Skips a section, up to the end of its last line.
     pub(super) fn skip_section(&mut self) -> Result<(), GmshError> {
         let end = self.section_end();
         loop {
-            let Some(length) = find(&self.bytes[self.at..], end.as_bytes()) else {
-                self.line += self.bytes[self.at..].iter().filter(|&&byte| byte == b'\n').count();
-                self.at = self.bytes.len();
-                return Err(self.truncated());
-            };
-            let skipped = &self.bytes[self.at..self.at + length];
-            self.line += skipped.iter().filter(|&&byte| byte == b'\n').count();
+            let length = find(self.rest(), end.as_bytes()).ok_or_else(|| self.truncated())?;
             self.at += length + end.len();
             // $EndNode is a prefix of $EndNodeData.
             if self.peek().is_none_or(|byte| byte.is_ascii_whitespace()) {
@@ -249,6 +291,42 @@ impl<'a> Source<'a> {
             }
         }
     }
+    /// Reads the byte order mark of a binary file.
+    pub(super) fn read_byte_order(&mut self) -> Result<(), GmshError> {
+        self.encoding = match self.bytes()? {
+            [1, 0, 0, 0] => Encoding::LittleEndian,
+            [0, 0, 0, 1] => Encoding::BigEndian,
+            found => {
+                let message = format!(
+                    "the byte order mark of a binary file must be the integer 1, found bytes {found:?}; the file is damaged (was it copied as text?), save or copy it again"
+                );
+                let position = FilePosition::Byte(self.last);
+                return Err(GmshError::new(GmshErrorKind::ByteOrder, message).at(position));
+            }
+        };
+        Ok(())
+    }
+}
+
+/// A number without sign, of its digits.
+pub(super) fn unsigned(word: &[u8]) -> Option<u64> {
+    if word.is_empty() {
+        return None;
+    }
+    word.iter().try_fold(0u64, |value, &byte| {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        value.checked_mul(10)?.checked_add(u64::from(digit))
+    })
+}
+
+/// An integer, of its sign and digits.
+pub(super) fn integer(word: &[u8]) -> Option<i64> {
+    let digits = word.strip_prefix(b"-");
+    let value = i64::try_from(unsigned(digits.unwrap_or(word))?).ok()?;
+    Some(if digits.is_some() { -value } else { value })
 }
 
 /// The index of the first occurrence of a pattern.

@@ -1,12 +1,15 @@
 //! The sections of MSH 4.1, in which nodes and elements form blocks, one for each entity.
 
-use super::contents::{Contents, Membership, simplex_dimension, type_properties};
+use super::contents::{Contents, Membership};
+use super::element_types::{element_type, simplex_dimension};
 use super::error::GmshError;
 use super::source::Source;
 
 /// Reads which physical groups the entities belong to; the rest of `$Entities` is geometry.
 pub(super) fn read_entities(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
-    source.begin_numbers();
+    if !source.is_binary() {
+        source.skip_blank_lines();
+    }
     let mut announced = [0; 4];
     for (count, expected) in announced.iter_mut().zip([
         "the number of points",
@@ -50,7 +53,9 @@ pub(super) fn read_entities(source: &mut Source, contents: &mut Contents) -> Res
 
 /// The four numbers at the beginning of `$Nodes` and `$Elements`: of blocks, and of records in all.
 fn read_counts(source: &mut Source) -> Result<(u64, u64), GmshError> {
-    source.begin_numbers();
+    if !source.is_binary() {
+        source.skip_blank_lines();
+    }
     let blocks = source.count("the number of blocks")?;
     let records = source.count("the number of records in all blocks")?;
     source.skip(2, 8, "the smallest and the largest tag")?;
@@ -72,9 +77,7 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
             0 => 0,
             1 => dimension as u64,
             other => {
-                return Err(
-                    source.unexpected("0 or 1 for parametric coordinates", other.to_string())
-                );
+                return Err(source.unexpected("0 or 1 for parametric coordinates", other));
             }
         };
         let count = source.count("the number of nodes of a block")?;
@@ -82,7 +85,7 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
         source.check_room("nodes of a block", count, 32 + 8 * parametric as usize)?;
         total = total.saturating_add(count);
         if total > announced {
-            return Err(source.miscounted("nodes", announced, format!("{total} or more")));
+            return Err(source.miscounted("nodes", announced, format_args!("{total} or more")));
         }
         let mut tags = Vec::with_capacity(source.capacity(count, 2));
         for found in 0..count {
@@ -92,7 +95,7 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
         source.end_record()?;
         for (node, found) in tags.into_iter().zip(0..) {
             source.begin_record("nodes of a block", count, found)?;
-            let mark = source.mark();
+            let offset = source.offset();
             let point = [
                 source.real("coordinate x")?,
                 source.real("coordinate y")?,
@@ -100,11 +103,11 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
             ];
             source.skip(parametric, 8, "a parametric coordinate")?;
             source.end_record()?;
-            contents.nodes.push(source, mark, node, point)?;
+            contents.nodes.push(source, offset, node, point)?;
         }
     }
     if total != announced {
-        return Err(source.miscounted("nodes", announced, total.to_string()));
+        return Err(source.miscounted("nodes", announced, total));
     }
     source.end_section("nodes", announced)
 }
@@ -118,24 +121,24 @@ pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Res
         source.begin_record("blocks of elements", blocks, block)?;
         let dimension = entity_dimension(source)?;
         let entity = source.integer("the tag of an entity")?;
-        let element_type = source.integer("the type of elements")?;
-        let properties = type_properties(source, element_type)?;
+        let of_type = element_type(source)?;
         let count = source.count("the number of elements of a block")?;
         source.end_record()?;
         total = total.saturating_add(count);
         if total > announced {
-            return Err(source.miscounted("elements", announced, format!("{total} or more")));
+            return Err(source.miscounted("elements", announced, format_args!("{total} or more")));
         }
-        source.check_room("elements of a block", count, 8 + 8 * properties.nodes)?;
+        source.check_room("elements of a block", count, 8 + 8 * of_type.nodes)?;
         for found in 0..count {
             source.begin_record("elements of a block", count, found)?;
-            let mark = source.mark();
+            let offset = source.offset();
             let element = source.count("the tag of an element")?;
-            let simplex = simplex_dimension(source, properties.shape, element_type, element)?;
+            let simplex = simplex_dimension(source, &of_type, element)?;
             if simplex != dimension {
+                let expected = format!("elements of dimension {dimension}");
                 let found =
-                    format!("elements of type {element_type}, a {}", properties.shape.name());
-                return Err(source.unexpected(format!("elements of dimension {dimension}"), found));
+                    format_args!("elements of type {}, a {}", of_type.number, of_type.shape.name());
+                return Err(source.unexpected(&expected, found));
             }
             let simplices = &mut contents.simplices[simplex];
             if found == 0 {
@@ -144,13 +147,13 @@ pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Res
             for _ in 0..=simplex {
                 simplices.corners.push(source.count("the tag of a node")?);
             }
-            source.skip((properties.nodes - simplex - 1) as u64, 8, "the tag of a node")?;
+            source.skip((of_type.nodes - simplex - 1) as u64, 8, "the tag of a node")?;
             source.end_record()?;
-            simplices.push(mark, element, properties.order, Membership::Entity(entity));
+            simplices.push(offset, element, of_type.order, Membership::Entity(entity));
         }
     }
     if total != announced {
-        return Err(source.miscounted("elements", announced, total.to_string()));
+        return Err(source.miscounted("elements", announced, total));
     }
     source.end_section("elements", announced)
 }
@@ -159,6 +162,6 @@ pub(super) fn entity_dimension(source: &mut Source) -> Result<usize, GmshError> 
     let expected = "the dimension of an entity, 0 to 3";
     match source.integer(expected)? {
         dimension @ 0..=3 => Ok(dimension as usize),
-        other => Err(source.unexpected(expected, other.to_string())),
+        other => Err(source.unexpected(expected, other)),
     }
 }

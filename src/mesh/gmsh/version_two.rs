@@ -1,15 +1,15 @@
 //! The sections of MSH 2.2, in which the tags of an element stand before its nodes.
 
-use super::contents::{Contents, Membership, simplex_dimension, type_properties};
-use super::element_types::TypeProperties;
+use super::contents::{Contents, Membership};
+use super::element_types::{ElementType, element_type, simplex_dimension};
 use super::error::GmshError;
-use super::source::Source;
+use super::source::{Source, unsigned};
 use super::version_four::entity_dimension;
 
 /// The number of records of a section: text in every file, on a line of its own.
 fn read_count(source: &mut Source, expected: &'static str) -> Result<u64, GmshError> {
     source.skip_blank_lines();
-    let count = source.text_count(expected)?;
+    let count = source.text(expected, unsigned)?;
     source.end_line()?;
     source.rest_of_line();
     Ok(count)
@@ -26,7 +26,7 @@ pub(super) fn read_nodes(
     contents.nodes.reserve(source.capacity(announced, 8));
     for found in 0..announced {
         source.begin_record("nodes", announced, found)?;
-        let mark = source.mark();
+        let offset = source.offset();
         let node = source.unsigned("the tag of a node")?;
         let point = [
             source.real("coordinate x")?,
@@ -41,7 +41,7 @@ pub(super) fn read_nodes(
             source.skip(coordinates, 8, "a parametric coordinate")?;
         }
         source.end_record()?;
-        contents.nodes.push(source, mark, node, point)?;
+        contents.nodes.push(source, offset, node, point)?;
     }
     source.end_section("nodes", announced)
 }
@@ -57,16 +57,11 @@ pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Res
             found += read_same_type(source, contents, announced, found)?;
             continue;
         }
-        let mark = source.mark();
+        let offset = source.offset();
         let element = source.unsigned("the tag of an element")?;
-        let element_type = source.integer("the type of an element")?;
-        let properties = type_properties(source, element_type)?;
+        let of_type = element_type(source)?;
         let tags = source.unsigned("the number of tags of an element")?;
-        read_element(
-            source,
-            contents,
-            &ElementHeader { mark, element, element_type, properties, tags },
-        )?;
+        read_element(source, contents, (&of_type, tags), (offset, element))?;
         found += 1;
     }
     source.end_section("elements", announced)
@@ -79,62 +74,41 @@ fn read_same_type(
     announced: u64,
     found: u64,
 ) -> Result<u64, GmshError> {
-    let element_type = source.integer("the type of elements")?;
-    let properties = type_properties(source, element_type)?;
+    let of_type = element_type(source)?;
     let following = source.unsigned("the number of elements of one type")?;
     if following > announced - found {
-        return Err(source.miscounted(
-            "elements",
-            announced,
-            format!("{} or more", found + following),
-        ));
+        let found = format_args!("{} or more", found + following);
+        return Err(source.miscounted("elements", announced, found));
     }
     let tags = source.unsigned("the number of tags of an element")?;
-    source.check_room(
-        "elements of one type",
-        following,
-        4 + 4 * (tags as usize + properties.nodes),
-    )?;
+    let size = 4 + 4 * (tags as usize + of_type.nodes);
+    source.check_room("elements of one type", following, size)?;
     for _ in 0..following {
-        let mark = source.mark();
+        let offset = source.offset();
         let element = source.unsigned("the tag of an element")?;
-        read_element(
-            source,
-            contents,
-            &ElementHeader { mark, element, element_type, properties, tags },
-        )?;
+        read_element(source, contents, (&of_type, tags), (offset, element))?;
     }
     Ok(following)
 }
 
-/// The numbers before the tags and nodes of an element.
-struct ElementHeader {
-    mark: usize,
-    element: u64,
-    element_type: i64,
-    properties: TypeProperties,
-    tags: u64,
-}
-
-/// The tags and nodes of an element.
+/// Reads the tags and nodes of an element, whose offset and tag are known.
 fn read_element(
     source: &mut Source,
     contents: &mut Contents,
-    header: &ElementHeader,
+    (of_type, tags): (&ElementType, u64),
+    (offset, element): (usize, u64),
 ) -> Result<(), GmshError> {
     // The first tag is the physical group, zero for none; the others tell the entity and the
     // partitions.
-    let group =
-        if header.tags > 0 { source.integer("the tag of a physical group")?.abs() } else { 0 };
-    source.skip(header.tags.saturating_sub(1), 4, "a tag of an element")?;
-    let ElementHeader { properties, element_type, element, .. } = *header;
-    let dimension = simplex_dimension(source, properties.shape, element_type, element)?;
+    let group = if tags > 0 { source.integer("the tag of a physical group")?.abs() } else { 0 };
+    source.skip(tags.saturating_sub(1), 4, "a tag of an element")?;
+    let dimension = simplex_dimension(source, of_type, element)?;
     let simplices = &mut contents.simplices[dimension];
     for _ in 0..=dimension {
         simplices.corners.push(source.unsigned("the tag of a node")?);
     }
-    source.skip((properties.nodes - dimension - 1) as u64, 4, "the tag of a node")?;
+    source.skip((of_type.nodes - dimension - 1) as u64, 4, "the tag of a node")?;
     source.end_record()?;
-    simplices.push(header.mark, element, properties.order, Membership::Group(group));
+    simplices.push(offset, element, of_type.order, Membership::Group(group));
     Ok(())
 }

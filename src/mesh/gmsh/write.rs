@@ -3,10 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::error::GmshError;
+use super::error::{GmshError, GmshErrorKind};
 use crate::instances::compiled;
 use crate::mesh::simplicial::Mesh;
-use crate::real::{Real, point_f64};
 
 /// Element types of points, lines, triangles and tetrahedra.
 const ELEMENT_TYPES: [u8; 4] = [15, 1, 2, 4];
@@ -18,25 +17,27 @@ struct Entity<'m> {
     elements: Vec<Vec<u32>>,
 }
 
-/// A mesh as the text of a Gmsh file. What [`parse`](super::parse) reads from it has the vertices of the mesh,
+/// A mesh as the text of a Gmsh file. What a [`GmshFile`](super::GmshFile) reads from it has the vertices of the mesh,
 /// bit by bit, its cells, and the names of regions and boundary groups, in the order of every mesh that is read;
 /// the tag of a node is the number of its vertex from one on. The file keeps the part of a boundary group whose name is that of a part; the part of any other group is left to a
 /// problem.
 #[must_use]
-pub fn to_text<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> String {
-    compiled!(T, D: fn(&Mesh<T, D>) -> String = text_of)(mesh)
+pub fn to_text<const D: usize>(mesh: &Mesh<D>) -> String {
+    compiled!(const D: fn(&Mesh<D>) -> String = text_of)(mesh)
 }
 
 /// Writes a mesh to a file, as [`to_text`] makes it.
 ///
 /// # Errors
-/// [`GmshError::Unwritable`].
-pub fn write<T: Real, const D: usize>(mesh: &Mesh<T, D>, path: &Path) -> Result<(), GmshError> {
-    std::fs::write(path, to_text(mesh))
-        .map_err(|source| GmshError::Unwritable { path: path.into(), source })
+/// [`GmshErrorKind::Unwritable`].
+pub fn write<const D: usize>(mesh: &Mesh<D>, path: &Path) -> Result<(), GmshError> {
+    std::fs::write(path, to_text(mesh)).map_err(|error| {
+        let message = format!("cannot write {}: {error}", path.display());
+        GmshError::new(GmshErrorKind::Unwritable, message).caused_by(error)
+    })
 }
 
-fn text_of<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> String {
+fn text_of<const D: usize>(mesh: &Mesh<D>) -> String {
     let mut regions: Vec<Entity<'_>> =
         mesh.regions().iter().map(|names| Entity { names, elements: Vec::new() }).collect();
     for cell in 0..mesh.n_cells() {
@@ -125,8 +126,8 @@ fn write_entities(
             }
             let _ = write!(text, " {}", entity.names.len());
             for name in entity.names {
-                let tag = names.iter().position(|known| known == name).map_or(0, |k| k + 1);
-                let _ = write!(text, " {tag}");
+                let known = names.iter().position(|known| known == name);
+                let _ = write!(text, " {}", 1 + known.expect("every name has been written"));
             }
             text.push_str(if *dimension == 0 { "\n" } else { " 0\n" });
         }
@@ -135,8 +136,8 @@ fn write_entities(
 }
 
 /// A vertex, missing coordinates zero.
-fn coordinates<T: Real, const D: usize>(mesh: &Mesh<T, D>, vertex: u32) -> [f64; 3] {
-    let x = point_f64(&mesh.vertices()[vertex as usize]);
+fn coordinates<const D: usize>(mesh: &Mesh<D>, vertex: u32) -> [f64; 3] {
+    let x = mesh.vertices()[vertex as usize];
     [0, 1, 2].map(|k| if k < D { x[k] } else { 0.0 })
 }
 

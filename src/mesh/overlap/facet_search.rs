@@ -13,8 +13,8 @@ type Place<const D: usize> = (i32, [i64; D]);
 /// Facets by place: each is listed for the boxes that it touches of the grid whose boxes are as large as it is,
 /// which are few, whatever the sizes of the others.
 pub(crate) struct FacetSearch<const D: usize> {
-    corners: Vec<[Point<f64, D>; D]>,
-    lower: Point<f64, D>,
+    corners: Vec<[Point<D>; D]>,
+    lower: Point<D>,
     /// A point lies in a facet if it is nearer to it than this, and its barycentric coordinates are above
     /// minus the share.
     near: f64,
@@ -25,8 +25,8 @@ pub(crate) struct FacetSearch<const D: usize> {
 
 impl<const D: usize> FacetSearch<D> {
     /// The facets with these corners; points are in a facet up to a share of the extent of all.
-    pub fn new(corners: Vec<[Point<f64, D>; D]>, share: f64) -> Self {
-        let extreme = |of: fn(f64, f64) -> f64, all: &[[Point<f64, D>; D]]| {
+    pub fn new(corners: Vec<[Point<D>; D]>, share: f64) -> Self {
+        let extreme = |of: fn(f64, f64) -> f64, all: &[[Point<D>; D]]| {
             let points = all.iter().flatten().copied();
             points.reduce(|a, x| a.zip_map(&x, of)).unwrap_or_else(Point::zeros)
         };
@@ -50,12 +50,12 @@ impl<const D: usize> FacetSearch<D> {
     }
 
     /// The box of a point in the grid of a size.
-    fn place(&self, x: &Point<f64, D>, size: i32) -> [i64; D] {
+    fn place(&self, x: &Point<D>, size: i32) -> [i64; D] {
         tabulate(|k| ((x[k] - self.lower[k]) / f64::from(size).exp2()).floor() as i64)
     }
 
     /// The facets that a point lies in.
-    pub fn containing(&self, x: &Point<f64, D>) -> impl Iterator<Item = usize> {
+    pub fn containing(&self, x: &Point<D>) -> impl Iterator<Item = usize> {
         self.sizes.iter().flat_map(move |&size| {
             let key = (size, self.place(x, size));
             let start = self.places.partition_point(|(place, _)| *place < key);
@@ -64,7 +64,7 @@ impl<const D: usize> FacetSearch<D> {
         })
     }
 
-    fn is_in(&self, facet: usize, x: &Point<f64, D>) -> bool {
+    fn is_in(&self, facet: usize, x: &Point<D>) -> bool {
         let corners = &self.corners[facet];
         let edges = [1, 2].map(|k| if k < D { corners[k] - corners[0] } else { Point::zeros() });
         let from = x - corners[0];
@@ -82,13 +82,13 @@ impl<const D: usize> FacetSearch<D> {
 
 /// For each facet whether its barycentre lies on another one.
 pub(in crate::mesh) fn lie_on_others<const D: usize>(
-    vertices: &[Point<f64, D>],
+    vertices: &[Point<D>],
     facets: &[[u32; D]],
 ) -> Vec<bool> {
     let corners = facets.iter().map(|facet| tabulate(|k| vertices[facet[k] as usize]));
     let search = FacetSearch::new(corners.collect(), COINCIDENT);
     let lies_on_other = |facet: usize| {
-        let middle = search.corners[facet].iter().sum::<Point<f64, D>>() / D as f64;
+        let middle = search.corners[facet].iter().sum::<Point<D>>() / D as f64;
         search.containing(&middle).any(|other| other != facet)
     };
     (0..facets.len()).map(lies_on_other).collect()

@@ -58,18 +58,18 @@ const INSIDE: f64 = 1e-6;
 /// Along a line the number of cells over a point changes at boundary facets only, by one. An overlap
 /// that no line meets, or only in a width of a millionth of a cell, is not found.
 pub(super) fn check_overlaps<const D: usize>(
-    vertices: &[Point<f64, D>],
+    vertices: &[Point<D>],
     cells: &[u32],
     boundary: &[BoundaryFacet],
 ) -> Result<(), MeshError> {
     let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
     let geometry = |c: usize| CellGeometry::new(|k| vertices[cell(c)[k] as usize]);
-    let corners = |f: &BoundaryFacet| -> [Point<f64, D>; D] {
+    let corners = |f: &BoundaryFacet| -> [Point<D>; D] {
         let (cell, local) = (cell(f.cell as usize), f.local as usize);
         tabulate(|k| sheared(&vertices[cell[k + usize::from(k >= local)] as usize]))
     };
     let facets: Vec<_> = boundary.iter().map(corners).collect();
-    let direction = Point::<f64, D>::from_fn(|k, _| DIRECTION[k]);
+    let direction = Point::<D>::from_fn(|k, _| DIRECTION[k]);
     let lines = if D > 1 { LINES.max(PAIRS / facets.len().max(1)) } else { 1 };
     let lines = lines.min(facets.len());
     for line in 0..lines {
@@ -111,7 +111,7 @@ pub(super) fn check_overlaps<const D: usize>(
 
 /// The point under the shear that turns the direction of the lines onto the first axis: along a line
 /// the other coordinates are constant.
-fn sheared<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
+fn sheared<const D: usize>(x: &Point<D>) -> Point<D> {
     Point::from_fn(|k, _| if k == 0 { x[0] } else { x[k] - DIRECTION[k] * x[0] })
 }
 
@@ -119,7 +119,7 @@ fn sheared<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
 /// which two facets tell on which side of their common edge the line passes are the same to the last
 /// bit.
 #[inline(always)]
-fn crossing<const D: usize>(corners: &[Point<f64, D>; D], start: &Point<f64, D>) -> Option<f64> {
+fn crossing<const D: usize>(corners: &[Point<D>; D], start: &Point<D>) -> Option<f64> {
     let across = |k: usize, axis: usize| corners[k][axis % D] - start[axis % D];
     let weights = match D {
         1 => [1.0, 0.0, 0.0],

@@ -11,9 +11,9 @@ use crate::real::Point;
 pub struct Extent<const D: usize> {
     /// Lower end of the smallest box that contains the mesh; not a number on a part of a disc that was refined,
     /// until [`Mesh::with_extent`](crate::mesh::Mesh::with_extent) states it.
-    pub lower: Point<f64, D>,
+    pub lower: Point<D>,
     /// Its upper end.
-    pub upper: Point<f64, D>,
+    pub upper: Point<D>,
     /// The largest cell diameter; not a number on a part that was refined, as before.
     pub mesh_size: f64,
 }

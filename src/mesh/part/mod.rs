@@ -13,7 +13,6 @@ use crate::mesh::boundary::BoundaryFacet;
 use crate::mesh::error::MeshError;
 use crate::mesh::facets::Neighbours;
 use crate::mesh::simplicial::Mesh;
-use crate::real::Real;
 
 /// What neighbouring cells share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,14 +60,14 @@ impl fmt::Display for Layers {
 /// whole, its diameter and its mesh size, are those of the whole mesh ([`Extent`]). Cells and vertices keep
 /// their order, regions and boundary facets their names, so that a scheme has on the part, for the unknowns of
 /// own cells, the matrix, load and bounds that it has on the whole mesh, bit for bit, if there are as many
-/// layers as [it needs](crate::scheme::AnyScheme#method.layers).
+/// layers as [it needs](crate::scheme::Scheme#method.layers).
 ///
 /// ```
 /// use unilateral::mesh::Layers;
 /// use unilateral::prelude::*;
 ///
 /// let square = BoxDomain::dirichlet(Point::from([0.0, 0.0]), Point::from([1.0, 1.0]));
-/// let whole = Mesh::<f64, 2>::kuhn_box(&square, [8, 8])?;
+/// let whole = Mesh::<2>::kuhn_box(&square, [8, 8])?;
 /// let owners = whole.partition(2)?;
 /// let part = whole.part(&owners, 0, Layers::across_facets(1))?;
 /// assert_eq!(part.owners.iter().filter(|&&owner| owner == 0).count(), 64);
@@ -78,11 +77,11 @@ impl fmt::Display for Layers {
 /// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Part<T, const D: usize> {
+pub struct Part<const D: usize> {
     /// The number of the part.
     pub number: u32,
     /// The mesh of the part.
-    pub mesh: Mesh<T, D>,
+    pub mesh: Mesh<D>,
     /// The number of the part that owns each cell.
     pub owners: Vec<u32>,
     /// The number of each cell in the whole mesh, ascending.
@@ -91,7 +90,7 @@ pub struct Part<T, const D: usize> {
     pub layers: Layers,
 }
 
-impl<T, const D: usize> Part<T, D> {
+impl<const D: usize> Part<D> {
     /// Whether the part owns a cell.
     pub fn owns(&self, cell: usize) -> bool {
         self.owners[cell] == self.number
@@ -100,7 +99,7 @@ impl<T, const D: usize> Part<T, D> {
 
 impl<const D: usize> Extent<D> {
     /// The extent of the cells that a mesh has, be it a part or not.
-    pub fn of<T: Real>(mesh: &Mesh<T, D>) -> Self {
+    pub fn of(mesh: &Mesh<D>) -> Self {
         let [lower, upper] = mesh.own_box();
         Self { lower, upper, mesh_size: mesh.largest_cell_diameter() }
     }
@@ -111,29 +110,18 @@ fn numbers_of_taken(is_taken: &[bool]) -> Vec<u32> {
     (0..).zip(is_taken).filter(|(_, taken)| **taken).map(|(cell, _)| cell).collect()
 }
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// A part of the mesh, given the number of the part that owns each cell: the cells of one part, and layers
     /// of others.
     ///
     /// # Errors
     /// [`MeshError::Parameter`] unless there is one owner for each cell and the part owns a cell.
-    pub fn part(
-        &self,
-        owners: &[u32],
-        number: u32,
-        layers: Layers,
-    ) -> Result<Part<T, D>, MeshError> {
-        compiled!(
-            T, D: fn(&Mesh<T, D>, &[u32], u32, Layers) -> Result<Part<T, D>, MeshError>
+    pub fn part(&self, owners: &[u32], number: u32, layers: Layers) -> Result<Part<D>, MeshError> {
+        compiled!(const D: fn(&Mesh<D>, &[u32], u32, Layers) -> Result<Part<D>, MeshError>
                 = Mesh::take_part
         )(self, owners, number, layers)
     }
-    fn take_part(
-        &self,
-        owners: &[u32],
-        number: u32,
-        layers: Layers,
-    ) -> Result<Part<T, D>, MeshError> {
+    fn take_part(&self, owners: &[u32], number: u32, layers: Layers) -> Result<Part<D>, MeshError> {
         if owners.len() != self.n_cells() {
             return Err(MeshError::Parameter {
                 parameter: "numbers of parts of cells",

@@ -6,9 +6,8 @@ use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
-use crate::real::{Real, point_f64};
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+impl<const D: usize> Mesh<D> {
     /// The number of the part of each cell, for a number of parts with equally many cells, up to one: by
     /// recursive bisection of the barycentres across the longer side of the box around them. It depends on
     /// nothing but the mesh, so that processes that have the same mesh find the same parts.
@@ -16,8 +15,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// [`MeshError::Parameter`] for no parts, and for more parts than cells.
     pub fn partition(&self, parts: usize) -> Result<Vec<u32>, MeshError> {
-        compiled!(
-            T, D: fn(&Mesh<T, D>, usize) -> Result<Vec<u32>, MeshError> = Mesh::bisect_recursively
+        compiled!(const D: fn(&Mesh<D>, usize) -> Result<Vec<u32>, MeshError> = Mesh::bisect_recursively
         )(self, parts)
     }
     fn bisect_recursively(&self, parts: usize) -> Result<Vec<u32>, MeshError> {
@@ -30,7 +28,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             });
         }
         let barycentre = |cell: usize| {
-            let x = point_f64(&self.barycentre(cell));
+            let x = self.barycentre(cell);
             tabulate(|k| x[k])
         };
         let barycentres: Vec<[f64; D]> = (0..n_cells).map(barycentre).collect();

@@ -6,7 +6,6 @@ use crate::mesh::error::MeshError;
 use crate::mesh::part::extent::Extent;
 use crate::mesh::refine::Refinement;
 use crate::mesh::simplicial::Mesh;
-use crate::real::Real;
 
 /// Numbers of cells in the whole mesh are below this one, so that numbers of the unknowns of cells have 64 bits.
 const CELL_LIMIT: u64 = 1 << 56;
@@ -30,7 +29,7 @@ impl Layers {
     }
 }
 
-impl<T: Real, const D: usize> Part<T, D> {
+impl<const D: usize> Part<D> {
     /// The part of the refined mesh with the children of own cells and layers of others, and the parents of its
     /// vertices in this part. It is what [`Mesh::part`] takes of the refined whole: child `k` of the cell
     /// with the number `c` has the number `c 2^D + k`, owner and boundary are inherited.
@@ -42,7 +41,7 @@ impl<T: Real, const D: usize> Part<T, D> {
     /// use unilateral::prelude::*;
     ///
     /// let square = BoxDomain::dirichlet(Point::from([0.0, 0.0]), Point::from([1.0, 1.0]));
-    /// let whole = Mesh::<f64, 2>::kuhn_box(&square, [8, 8])?;
+    /// let whole = Mesh::<2>::kuhn_box(&square, [8, 8])?;
     /// let layers = Layers::across_vertices(1);
     /// let part = whole.part(&whole.partition(2)?, 0, layers)?;
     /// let (fine, refinement) = part.refine(layers)?;
@@ -58,8 +57,7 @@ impl<T: Real, const D: usize> Part<T, D> {
     /// many across vertices in one and two dimensions, and across facets where it has layers across vertices.
     /// [`MeshError::TooLarge`].
     pub fn refine(&self, layers: Layers) -> Result<(Self, Refinement), MeshError> {
-        compiled!(
-            T, D: fn(&Part<T, D>, Layers) -> Result<(Part<T, D>, Refinement), MeshError>
+        compiled!(const D: fn(&Part<D>, Layers) -> Result<(Part<D>, Refinement), MeshError>
                 = |part, layers| part.refine_with_layers(layers)
         )(self, layers)
     }
@@ -98,7 +96,7 @@ impl<T: Real, const D: usize> Part<T, D> {
     /// The children of own cells and layers of others, of the refinement of the mesh of this part.
     pub(in crate::mesh) fn peel(
         &self,
-        (mesh, refinement): (Mesh<T, D>, Refinement),
+        (mesh, refinement): (Mesh<D>, Refinement),
         layers: Layers,
     ) -> (Self, Refinement) {
         let is_own = |cell: usize| self.owns(cell >> D);

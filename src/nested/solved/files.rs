@@ -1,21 +1,23 @@
 //! Files of a result for ParaView.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::Solved;
 use crate::error::{Error, write_error};
 use crate::instances::compiled;
+use crate::measure::Fields;
+use crate::mesh::{Layers, Part};
 use crate::paraview::VtuFile;
 use crate::problem::DataOnMesh;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
 /// Adds to a file of fields.
 type Complete<'c, const D: usize> = &'c dyn for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>;
 
-impl<T: Real, const D: usize> Solved<'_, T, D> {
+impl<const D: usize> Solved<'_, D> {
     /// The value of this solution at a point of a cell of a coarser mesh of the same hierarchy, which is at
     /// this position; the cell of this mesh is found through the cells between.
-    fn value_within(&self, position: usize, cell: usize, x: &Point<f64, D>) -> f64 {
+    fn value_within(&self, position: usize, cell: usize, x: &Point<D>) -> f64 {
         let Some((hierarchy, own)) = self.hierarchy else { return f64::NAN };
         let child = |parent: usize, position: usize| {
             let least = |child: usize| {
@@ -26,7 +28,7 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
             children.max_by(|&a, &b| least(a).total_cmp(&least(b))).unwrap_or(parent)
         };
         let cell = (position + 1..=own).fold(cell, child);
-        self.discretisation.value_in(self.values(), cell, x)
+        self.discretisation().value_in(self.values(), cell, x)
     }
     /// Writes a `.vtu` file, and its folder if there is none, with 32-bit numbers: see
     /// [`Self::write_vtu_with`].
@@ -36,7 +38,7 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     pub fn write_vtu(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         self.write_vtu_with(path, |file| file)
     }
-    /// Writes a `.vtu` file to which `complete` adds fields or sets the scalar, and its folder if there is
+    /// Writes a `.vtu` file to which `complete` adds fields or sets their number of bits, and its folder if there is
     /// none.
     ///
     /// The solution `u` is written in its degree; above two it is interpolated in degree two. Point data:
@@ -64,47 +66,72 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     pub(crate) fn write_vtu_against(
         &self,
         path: &Path,
-        reference: Option<&Solved<'_, T, D>>,
+        reference: Option<&Solved<'_, D>>,
         complete: impl for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>,
     ) -> Result<(), Error> {
-        compiled!(
-            T, D: for<'s, 'x, 'p, 'r, 'y, 'c> fn(
-                &'s Solved<'x, T, D>,
+        compiled!(const D: for<'s, 'x, 'p, 'r, 'y, 'c> fn(
+                &'s Solved<'x, D>,
                 &'p Path,
-                Option<&'r Solved<'y, T, D>>,
+                Option<&'r Solved<'y, D>>,
                 Complete<'c, D>,
             ) -> Result<(), Error>
                 = |solved, path, reference, complete| {
-                    solved.write_fields(path, reference, complete)
+                    solved.write_fields(path, reference, complete, None)
                 }
         )(self, path, reference, &complete)
+    }
+    /// Writes the fields on own cells of all parts as `STEM.N.vtu`, `N` the number of the part, and, the first process,
+    /// the list of all parts as `STEM.pvtu`: see [`Self::write_vtu_with`]. All parts call it.
+    ///
+    /// # Errors
+    /// [`Error::Write`] without an iterate and on a whole mesh; [`Error::Processes`] in all parts if one cannot write
+    /// its file.
+    pub fn write_vtu_of_parts(
+        &self,
+        directory: &Path,
+        stem: &str,
+        complete: impl for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>,
+    ) -> Result<(), Error> {
+        let list = directory.join(format!("{stem}.pvtu"));
+        let Some(over_parts) = self.system.over_parts() else {
+            return Err(write_error(&list, "the mesh is not in parts".to_owned()));
+        };
+        let piece = |number: usize| directory.join(format!("{stem}.{number}.vtu"));
+        let pieces: Vec<PathBuf> = (0..over_parts.exchange.parts()).map(piece).collect();
+        let number = over_parts.number as usize;
+        let list = (number == 0).then_some((&*list, &pieces[..]));
+        self.system.agreed(self.write_fields(&pieces[number], None, &complete, list))
     }
     fn write_fields(
         &self,
         path: &Path,
-        reference: Option<&Solved<'_, T, D>>,
+        reference: Option<&Solved<'_, D>>,
         complete: Complete<'_, D>,
+        list: Option<(&Path, &[PathBuf])>,
     ) -> Result<(), Error> {
+        // all parts exchange multipliers and bounds
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };
-        let problem = self.discretisation.problem();
-        let u = fields.values_by_cell(D);
-        // facets in contact are listed in the order of the contact boundary
-        let mut touching = fields.discrete_contact.facets.iter().peekable();
-        let state = |place| if touching.next_if_eq(&place).is_some() { 1.0 } else { 0.0 };
-        let in_contact: Vec<f64> = fields.contact_boundary.iter().map(state).collect();
-        let (mesh, data) = (self.mesh(), DataOnMesh::new(problem, self.mesh())?);
         let shares = self.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
-        let mut file = VtuFile::new(mesh, &u);
+        let mut fields = WrittenFields::new(fields, shares, D);
+        let own = self.part().map(|part| {
+            fields = fields.on_own_cells(part);
+            part.mesh.part(&part.owners, part.number, Layers::across_facets(0))
+        });
+        let own = own.transpose()?;
+        let mesh = own.as_ref().map_or(self.mesh(), |own| &own.mesh);
+        let problem = self.discretisation().problem();
+        let data = DataOnMesh::new(problem, mesh)?;
+        let mut file = VtuFile::new(mesh, &fields.u);
         let bounds = [&data.lower, &data.upper].into_iter().filter(|bound| bound.is_given());
         for (name, bound) in ["obstacle", "upper_obstacle"].into_iter().zip(bounds) {
             file = file.function_in_cells(name, |cell, x| {
                 bound.of(mesh.region(cell)).map_or(f64::NAN, |bound| bound.at(x))
             });
         }
-        if !shares.is_empty() {
-            file = file.on_cells("bound", &shares);
+        if !fields.bound.is_empty() {
+            file = file.on_cells("bound", &fields.bound);
         }
         match (reference.filter(|r| r.has_iterate).zip(self.hierarchy), &problem.exact) {
             (Some((reference, (_, own))), _) => {
@@ -119,13 +146,72 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
             file = file.on_cells("contact", &fields.contact);
         }
         if problem.has_gap() {
-            let facets = &fields.contact_boundary;
-            file = file.on_facets("pressure", facets, &fields.pressure);
-            file = file.on_facets("gap", facets, &fields.gap);
+            file = file.on_facets("pressure", &fields.facets, &fields.pressure);
+            file = file.on_facets("gap", &fields.facets, &fields.gap);
             if !problem.has_obstacle() {
-                file = file.on_facets("contact", facets, &in_contact);
+                file = file.on_facets("contact", &fields.facets, &fields.in_contact);
             }
         }
-        complete(file).write(path)
+        let file = complete(file);
+        file.write(path)?;
+        list.map_or(Ok(()), |(list, pieces)| file.write_list(list, pieces))
+    }
+}
+
+/// Fields as a file has them: values of the solution by cell, numbers by cell, and numbers by contact facet.
+#[derive(Default)]
+struct WrittenFields {
+    u: Vec<f64>,
+    bound: Vec<f64>,
+    multiplier: Vec<f64>,
+    contact: Vec<f64>,
+    facets: Vec<(usize, usize)>,
+    pressure: Vec<f64>,
+    gap: Vec<f64>,
+    /// One on facets in contact as a whole.
+    in_contact: Vec<f64>,
+}
+
+impl WrittenFields {
+    fn new(fields: Fields, bound: Vec<f64>, dimension: usize) -> Self {
+        // facets in contact are listed in the order of the contact boundary
+        let mut touching = fields.discrete_contact.facets.iter().peekable();
+        let state = |place| if touching.next_if_eq(&place).is_some() { 1.0 } else { 0.0 };
+        let in_contact = fields.contact_boundary.iter().map(state).collect();
+        let u = fields.values_by_cell(dimension);
+        let Fields { multiplier, contact, contact_boundary: facets, pressure, gap, .. } = fields;
+        Self { u, bound, multiplier, contact, facets, pressure, gap, in_contact }
+    }
+
+    /// The fields on the mesh of own cells of a part, which has these in their order.
+    fn on_own_cells<const D: usize>(&self, part: &Part<D>) -> Self {
+        let n_cells = part.owners.len();
+        let own: Vec<usize> = (0..n_cells).filter(|&cell| part.owns(cell)).collect();
+        let of_cells = |values: &[f64]| -> Vec<f64> {
+            let cells = own.iter().filter(|_| !values.is_empty());
+            let per_cell = values.len() / n_cells;
+            cells
+                .flat_map(|&cell| &values[cell * per_cell..(cell + 1) * per_cell])
+                .copied()
+                .collect()
+        };
+        let is_own = |&k: &usize| part.owns(self.facets[k].0);
+        let places: Vec<usize> = (0..self.facets.len()).filter(is_own).collect();
+        let of_facets =
+            |values: &[f64]| -> Vec<f64> { places.iter().map(|&k| values[k]).collect() };
+        let number = |&k: &usize| {
+            let (cell, local) = self.facets[k];
+            (own.partition_point(|&other| other < cell), local)
+        };
+        Self {
+            u: of_cells(&self.u),
+            bound: of_cells(&self.bound),
+            multiplier: of_cells(&self.multiplier),
+            contact: of_cells(&self.contact),
+            facets: places.iter().map(number).collect(),
+            pressure: of_facets(&self.pressure),
+            gap: of_facets(&self.gap),
+            in_contact: of_facets(&self.in_contact),
+        }
     }
 }

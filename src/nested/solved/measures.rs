@@ -5,16 +5,16 @@ use std::time::Instant;
 use super::Solved;
 use crate::error::Error;
 use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair, TrueErrors};
-use crate::measure::{ContactErrors, Errors, Penetration, Rounding, contact_difference};
+use crate::measure::{ContactErrors, Errors, Rounding, contact_difference};
 use crate::parallel::once;
 use crate::problem::Exact;
-use crate::real::{Point, Real};
+use crate::real::Point;
 
-impl<T: Real, const D: usize> Solved<'_, T, D> {
+impl<const D: usize> Solved<'_, D> {
     /// The value at a point, in the first cell that contains the point; none outside the mesh. The
     /// search takes a time proportional to the number of cells.
-    pub fn value_at(&self, point: &Point<f64, D>) -> Option<f64> {
-        self.discretisation.value_at(self.values(), point)
+    pub fn value_at(&self, point: &Point<D>) -> Option<f64> {
+        self.discretisation().value_at(self.values(), point)
     }
     /// Errors against the exact solution of the problem; none if the problem has no exact solution
     /// or there is no iterate.
@@ -22,9 +22,9 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub fn errors(&self) -> Result<Errors, Error> {
-        match self.has_iterate {
-            true => self.discretisation.errors(self.values()),
-            false => Ok(Errors::default()),
+        match &self.discretisation().problem().exact {
+            Some(exact) => self.errors_against(exact),
+            None => Ok(Errors::default()),
         }
     }
     /// Errors against a function with its gradient; none without an iterate.
@@ -32,10 +32,12 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub fn errors_against(&self, exact: &Exact<D>) -> Result<Errors, Error> {
-        match self.has_iterate {
-            true => self.discretisation.errors_against(exact, self.values()),
-            false => Ok(Errors::default()),
+        if !self.has_iterate {
+            return Ok(Errors::default());
         }
+        let counts = |cell| self.system.owns(cell);
+        let own = self.discretisation().squared_errors(exact, self.values(), &counts);
+        Ok(self.system.merged(own)?.norms())
     }
     /// Norms of the difference from another solution on the same mesh or on another mesh of the same
     /// hierarchy, computed on the finer mesh: L2 norm, broken H1 seminorm and the maximum over the
@@ -45,9 +47,10 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// cells as the polynomial that it is.
     ///
     /// # Errors
-    /// [`Error::NotNested`] if the two meshes do not belong to one hierarchy.
+    /// [`Error::NotNested`] if the two meshes do not belong to one hierarchy, and on parts of a mesh.
     pub fn difference(&self, other: &Self) -> Result<Errors, Error> {
         let refinements = match (self.hierarchy, other.hierarchy) {
+            _ if self.part().is_some() => return Err(Error::NotNested),
             _ if std::ptr::eq(self.mesh(), other.mesh()) => 0,
             (Some((one, a)), Some((two, b))) if std::ptr::eq(one, two) => a as isize - b as isize,
             _ => return Err(Error::NotNested),
@@ -56,63 +59,61 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
         if !(fine.has_iterate && coarse.has_iterate) {
             return Ok(Errors::default());
         }
-        let coarse = (&coarse.discretisation, coarse.values(), refinements.unsigned_abs());
-        fine.discretisation.difference(fine.values(), coarse)
+        let coarse = (coarse.discretisation(), coarse.values(), refinements.unsigned_abs());
+        fine.discretisation().difference(fine.values(), coarse)
     }
     /// Distances of multiplier and contact set from those of a solution on a finer mesh of the same
     /// hierarchy, or on the same mesh; the distance of free boundaries is not computed. None without two
     /// iterates.
     ///
     /// # Errors
-    /// [`Error::NotNested`] if the mesh of `reference` is not a refinement of this one.
+    /// [`Error::NotNested`] if the mesh of `reference` is not a refinement of this one, and on parts of a mesh.
     pub fn contact_difference(&self, reference: &Self) -> Result<ContactErrors, Error> {
         let refinements: Vec<_> = match (self.hierarchy, reference.hierarchy) {
+            _ if self.part().is_some() => return Err(Error::NotNested),
             _ if std::ptr::eq(self.mesh(), reference.mesh()) => Vec::new(),
             (Some((one, a)), Some((two, b))) if std::ptr::eq(one, two) && a <= b => {
-                (a + 1..=b).filter_map(|k| one.refinement(k)).map(|(by, _)| by).collect()
+                (a + 1..=b).filter_map(|k| one.refinement(k)).collect()
             }
             _ => return Err(Error::NotNested),
         };
         if !(self.has_iterate && reference.has_iterate) {
             return Ok(ContactErrors::default());
         }
-        let own = (&self.discretisation, &self.inequality, &self.solution);
-        let fine = (&reference.discretisation, &reference.inequality, &reference.solution);
+        let own = (self.discretisation(), self.inequality(), &self.solution);
+        let fine = (reference.discretisation(), reference.inequality(), &reference.solution);
         Ok(contact_difference(own, fine, &refinements))
     }
-    /// Distances of multiplier and contact set from the exact ones; none without an iterate.
+    /// Distances of multiplier and contact set from the exact ones; none without an iterate, and on parts of a mesh.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub fn contact_errors(&self) -> Result<ContactErrors, Error> {
-        match self.has_iterate {
-            true => self.discretisation.contact_errors(&self.inequality, &self.solution),
+        match self.has_iterate && self.part().is_none() {
+            true => self.discretisation().contact_errors(self.inequality(), &self.solution),
             false => Ok(ContactErrors::default()),
         }
     }
-    /// How far the solution lies beyond obstacles and gaps, between its nodes too: see
-    /// [`penetration`](crate::assemble::Discretisation::penetration). None without an inequality or an iterate.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
-    pub fn penetration(&self) -> Result<Option<Penetration>, Error> {
-        match self.has_iterate {
-            true => self.discretisation.penetration(self.values()),
-            false => Ok(None),
-        }
-    }
     /// An admissible function and an equilibrated flux: see
-    /// [`primal_dual_pair`](crate::assemble::Discretisation::primal_dual_pair).
+    /// [`primal_dual_pair`](crate::assemble::Discretisation::primal_dual_pair). On a part of a mesh they are right on own
+    /// cells alone, and those of linear functions.
     ///
     /// # Errors
     /// [`NoBound`].
     pub fn primal_dual_pair(&self) -> Result<PrimalDualPair<D>, NoBound> {
+        let (of, inequality) = (self.discretisation(), self.inequality());
         match self.has_iterate {
-            true => self.discretisation.primal_dual_pair(&self.inequality, &self.solution),
+            true if self.part().is_none() => of.primal_dual_pair(inequality, &self.solution),
+            true => {
+                let counts = |cell| self.system.owns(cell);
+                self.system.agreed_bound(of.pair_on_part(inequality, &self.solution, &counts))
+            }
             false => Err(NoBound::NoIterate),
         }
     }
-    /// A bound on the error from solution and data alone: see [`crate::error_bound`]. It is computed once.
+    /// A bound on the error from solution and data alone: see [`crate::error_bound`]. It is computed once. Over the
+    /// parts of a mesh it has the shares of own cells; multipliers are exchanged for flux inside parts alone, so that it
+    /// depends on these a little.
     ///
     /// # Errors
     /// [`NoBound`].
@@ -125,7 +126,15 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
         }
         let clock = Instant::now();
         let pair = self.primal_dual_pair()?;
-        let bound = self.discretisation.error_bound(&pair, self.values())?;
+        let (of, u) = (self.discretisation(), self.values());
+        let bound = match self.inequality().distribution() {
+            None => of.error_bound(&pair, u)?,
+            Some(distribution) => {
+                let own = of.part_of_bound(&pair, u, &|cell| self.system.owns(cell));
+                let own = self.system.agreed_bound(own)?;
+                self.system.agreed_bound(own.over_parts(distribution))?
+            }
+        };
         Ok(once(&self.bound, || (pair, bound, clock.elapsed().as_secs_f64())))
     }
     /// Seconds of the bound; none if it is not known, or not yet.
@@ -135,8 +144,8 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// The figures of the bound, with the error of the solution where it is known and, if asked for, that of `v` where
     /// the exact solution is.
     pub(crate) fn bound_figures(&self, of_solution: Option<f64>, with_v: bool) -> BoundFigures {
-        let pair = self.pair_and_bound().ok().filter(|_| with_v);
-        let of_v = pair.and_then(|(pair, ..)| self.discretisation.error_of_pair(pair));
+        let pair = self.pair_and_bound().ok().map(|(pair, ..)| pair).filter(|_| with_v);
+        let of_v = pair.and_then(|pair| self.errors_beside(None, Some(pair)).ok()?.1);
         self.figures(TrueErrors { of_solution, of_v })
     }
     /// The errors against the exact solution, and the figures of the bound with its effectivity.
@@ -146,11 +155,26 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     pub(crate) fn errors_and_bound_figures(&self) -> Result<(Errors, BoundFigures), Error> {
         let pair = self.pair_and_bound().ok().map(|(pair, ..)| pair);
         let (errors, of_v) = match self.has_iterate {
-            true => self.discretisation.errors_and_error_of_pair(Some(self.values()), pair)?,
+            true => self.errors_beside(Some(self.values()), pair)?,
             false => (Errors::default(), None),
         };
         let of_solution = errors.broken_energy;
         Ok((errors, self.figures(TrueErrors { of_solution, of_v })))
+    }
+    /// The errors of values against the exact solution, and the error of the function of a pair; none without these.
+    fn errors_beside(
+        &self,
+        u: Option<&[f64]>,
+        pair: Option<&PrimalDualPair<D>>,
+    ) -> Result<(Errors, Option<f64>), Error> {
+        if self.discretisation().problem().exact.is_none() {
+            return Ok(Default::default());
+        }
+        let counts = |cell| self.system.owns(cell);
+        let own = self.discretisation().squared_errors_beside(u, pair, &counts);
+        let squares = self.system.merged(own)?;
+        let errors = if u.is_some() { squares.norms() } else { Errors::default() };
+        Ok((errors, pair.map(|_| squares.of_function())))
     }
     /// The figures of the bound.
     fn figures(&self, errors: TrueErrors) -> BoundFigures {
@@ -159,7 +183,8 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     }
     /// Rounding errors in the figures of the solution; none without an iterate.
     pub fn rounding(&self) -> Option<Rounding> {
-        let of = (self.mesh().n_cells(), self.has_iterate.then(|| self.energy_norm())?);
-        self.discretisation.rounding(&self.inequality, self.values(), of)
+        let [cells, ..] = self.has_iterate.then(|| self.sizes())?;
+        let of = (cells as usize, self.energy_norm());
+        self.discretisation().rounding(self.inequality(), &self.solution, of)
     }
 }

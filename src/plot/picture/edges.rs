@@ -62,7 +62,7 @@ mod tests {
     #[test]
     fn sections_on_the_boundary_of_a_mesh_meet_at_its_vertices() {
         let cube = BoxDomain::<3>::dirichlet(Point::repeat(0.1), Point::repeat(0.7));
-        let mesh = Mesh::<f64, 3>::kuhn_box(&cube, [3; 3]).unwrap();
+        let mesh = Mesh::<3>::kuhn_box(&cube, [3; 3]).unwrap();
         let fields = Fields::default();
         for at in [0.1, 0.7] {
             let view = View::new(&mesh, &fields, Some(Slice { axis: 2, at }));

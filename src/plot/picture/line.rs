@@ -14,12 +14,12 @@ const PARTS: usize = 6;
 /// The data of the panels.
 pub(crate) struct Line<'a, const D: usize> {
     problem: &'a Problem<D>,
-    mesh: &'a Mesh<f64, D>,
+    mesh: &'a Mesh<D>,
     fields: &'a Fields,
 }
 
 impl<'a, const D: usize> Line<'a, D> {
-    pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<f64, D>, fields: &'a Fields) -> Self {
+    pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<D>, fields: &'a Fields) -> Self {
         Line { problem, mesh, fields }
     }
 

@@ -31,7 +31,6 @@ use crate::instances::compiled;
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
 use crate::problem::Problem;
-use crate::real::Real;
 use line::Line;
 use panel::Panel;
 use plane::{Plane, default_slice};
@@ -65,7 +64,7 @@ struct PictureLayout<'a> {
 /// use unilateral::plot::Picture;
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// let scene = scenes::radial::<2>(1.0);
-/// let meshes = Hierarchy::<f64, 2>::of_domain(&scene.domain, 8)?;
+/// let meshes = Hierarchy::<2>::of_domain(&scene.domain, 8)?;
 /// let solved = solve(&scene.problem, &meshes, &Wopsip::default())?;
 /// if let Some(fields) = solved.fields() {
 ///     let picture = Picture::of("wopsip", &scene.problem, solved.mesh(), &fields, None)?;
@@ -90,10 +89,10 @@ impl Picture {
     /// # Errors
     /// [`Error::Parameter`] if the fields are not those of the mesh, and for a slice that is not
     /// through a mesh in space.
-    pub fn of<T: Real, const D: usize>(
+    pub fn of<const D: usize>(
         title: &str,
         problem: &Problem<D>,
-        mesh: &Mesh<T, D>,
+        mesh: &Mesh<D>,
         fields: &Fields,
         slice: Option<Slice>,
     ) -> Result<Self, Error> {
@@ -101,22 +100,19 @@ impl Picture {
             const D: fn(
                 &str,
                 &Problem<D>,
-                &Mesh<f64, D>,
+                &Mesh<D>,
                 &Fields,
                 Option<Slice>,
-                f64,
             ) -> Result<Picture, Error>
                 = Picture::painted::<D>
-        )(title, problem, &mesh.in_double(), fields, slice, T::EPSILON)
+        )(title, problem, mesh, fields, slice)
     }
-    /// The picture of a function whose values have this relative rounding.
     fn painted<const D: usize>(
         title: &str,
         problem: &Problem<D>,
-        mesh: &Mesh<f64, D>,
+        mesh: &Mesh<D>,
         fields: &Fields,
         slice: Option<Slice>,
-        epsilon: f64,
     ) -> Result<Self, Error> {
         check_fields(mesh, fields)?;
         if let Some(slice) = slice.filter(|s| D != 3 || s.axis > 2 || !s.at.is_finite()) {
@@ -133,7 +129,7 @@ impl Picture {
             return Ok(Picture { title, panels, measure, contact_measure: line.contact_length() });
         }
         let slice = (D == 3).then(|| slice.unwrap_or_else(|| default_slice(problem, mesh)));
-        let plane = Plane::new(problem, mesh, fields, slice, epsilon);
+        let plane = Plane::new(problem, mesh, fields, slice);
         if let (Some(slice), true) = (slice, plane.sections.is_empty()) {
             return Err(wrong_slice(slice, "the plane misses the mesh"));
         }
@@ -223,7 +219,7 @@ impl Picture {
 }
 
 /// Refuses fields that would be read beyond their ends.
-fn check_fields<const D: usize>(mesh: &Mesh<f64, D>, fields: &Fields) -> Result<(), Error> {
+fn check_fields<const D: usize>(mesh: &Mesh<D>, fields: &Fields) -> Result<(), Error> {
     let n = mesh.n_cells();
     let found = &fields.discrete_contact;
     let fits = fields.u.len() == n * (D + 1)

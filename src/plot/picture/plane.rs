@@ -32,17 +32,14 @@ pub(crate) struct Plane<'a, const D: usize> {
     touches: Vec<bool>,
     low: PlanePoint,
     high: PlanePoint,
-    /// The relative rounding of values.
-    epsilon: f64,
 }
 
 impl<'a, const D: usize> Plane<'a, D> {
     pub fn new(
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<f64, D>,
+        mesh: &'a Mesh<D>,
         fields: &'a Fields,
         slice: Option<Slice>,
-        epsilon: f64,
     ) -> Self {
         let view = View::new(mesh, fields, slice);
         let sections = view.sections();
@@ -59,7 +56,7 @@ impl<'a, const D: usize> Plane<'a, D> {
             }
         }
         let edges = edges(&sections);
-        Plane { problem, edges, view, sections, touches, low, high, epsilon }
+        Plane { problem, edges, view, sections, touches, low, high }
     }
 
     /// All panels that are not empty.
@@ -201,7 +198,7 @@ impl<'a, const D: usize> Plane<'a, D> {
         let title = if D == 3 { "jumps along the slice" } else { "jumps across facets" };
         let mut map = self.map(title);
         let largest = self.view.fields.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-        let floor = ROUNDINGS * self.epsilon * largest;
+        let floor = ROUNDINGS * f64::EPSILON * largest;
         let jumps: Vec<(f64, [PlanePoint; 2])> =
             self.edges.iter().filter_map(|e| Some((mean_jump(&self.view, e)?, e.ends))).collect();
         map.scale = Scale::logarithmic("|mean jump|", jumps.iter().map(|j| j.0), floor);
@@ -361,7 +358,7 @@ fn shade(map: &mut Map, name: &str, triangles: &[[(PlanePoint, f64); 3]], with_l
 
 /// The default slice: along the contact boundary if that is a coordinate
 /// plane, otherwise through the middle across the last coordinate.
-pub(crate) fn default_slice<const D: usize>(problem: &Problem<D>, mesh: &Mesh<f64, D>) -> Slice {
+pub(crate) fn default_slice<const D: usize>(problem: &Problem<D>, mesh: &Mesh<D>) -> Slice {
     let corners = || {
         let contact = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact);
         let vertices = contact.flat_map(|f| mesh.facet_vertices(f.cell as usize, f.local.into()));

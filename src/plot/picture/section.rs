@@ -38,7 +38,7 @@ const FLAT: f64 = 1e-14;
 
 /// A view of the mesh: the coordinates shown to the right and upwards, and the plane of the slice.
 pub(crate) struct View<'a, const D: usize> {
-    pub mesh: &'a Mesh<f64, D>,
+    pub mesh: &'a Mesh<D>,
     pub fields: &'a Fields,
     pub axes: [usize; 2],
     slice: Option<Slice>,
@@ -49,7 +49,7 @@ pub(crate) struct View<'a, const D: usize> {
 
 impl<'a, const D: usize> View<'a, D> {
     /// A mesh in the plane as it is, one in space cut by a plane.
-    pub fn new(mesh: &'a Mesh<f64, D>, fields: &'a Fields, slice: Option<Slice>) -> Self {
+    pub fn new(mesh: &'a Mesh<D>, fields: &'a Fields, slice: Option<Slice>) -> Self {
         let slice = slice.filter(|_| D == 3);
         let axes = match slice.map(|s| s.axis) {
             Some(0) => [1, 2],
@@ -64,16 +64,16 @@ impl<'a, const D: usize> View<'a, D> {
     }
 
     /// A corner of a cell in space.
-    pub fn vertex(&self, cell: usize, k: usize) -> Point<f64, D> {
+    pub fn vertex(&self, cell: usize, k: usize) -> Point<D> {
         self.mesh.vertices()[self.mesh.cell(cell)[k] as usize]
     }
 
     /// A point of a cell in space.
-    pub fn point(&self, cell: usize, barycentric: &[f64; 4]) -> Point<f64, D> {
+    pub fn point(&self, cell: usize, barycentric: &[f64; 4]) -> Point<D> {
         (0..D + 1).fold(Point::zeros(), |x, k| x + self.vertex(cell, k) * barycentric[k])
     }
 
-    fn plane_point(&self, x: &Point<f64, D>) -> PlanePoint {
+    fn plane_point(&self, x: &Point<D>) -> PlanePoint {
         // minus zero is the same place as zero
         self.axes.map(|k| x[k] + 0.0)
     }
@@ -94,10 +94,10 @@ impl<'a, const D: usize> View<'a, D> {
 
     /// The section of a simplex in a cell, given by barycentric coordinates of its corners.
     fn section(&self, cell: usize, simplex: &[[f64; 4]]) -> Option<Section> {
-        let points: Vec<Point<f64, D>> = simplex.iter().map(|b| self.point(cell, b)).collect();
+        let points: Vec<Point<D>> = simplex.iter().map(|b| self.point(cell, b)).collect();
         let corners = match self.slice {
             None => {
-                let corner = |(b, x): (&[f64; 4], &Point<f64, D>)| Corner {
+                let corner = |(b, x): (&[f64; 4], &Point<D>)| Corner {
                     at: self.plane_point(x),
                     barycentric: *b,
                 };
@@ -110,7 +110,7 @@ impl<'a, const D: usize> View<'a, D> {
     }
 
     /// Where the plane crosses the edges of a simplex, in order around the section.
-    fn cut(&self, slice: Slice, simplex: &[[f64; 4]], points: &[Point<f64, D>]) -> Vec<Corner> {
+    fn cut(&self, slice: Slice, simplex: &[[f64; 4]], points: &[Point<D>]) -> Vec<Corner> {
         let height = |k: usize| points[k][slice.axis] - slice.at;
         let is_above =
             |k: &usize| if self.on_is_below { height(*k) > 0.0 } else { height(*k) >= 0.0 };
@@ -143,7 +143,7 @@ impl<'a, const D: usize> View<'a, D> {
         let whole = unit_corners::<D>();
         let corners: Vec<[f64; 4]> =
             whole.iter().enumerate().filter(|(k, _)| *k != local).map(|(_, b)| *b).collect();
-        let points: Vec<Point<f64, D>> = corners.iter().map(|b| self.point(cell, b)).collect();
+        let points: Vec<Point<D>> = corners.iter().map(|b| self.point(cell, b)).collect();
         let ends: Vec<PlanePoint> = match self.slice {
             None => points.iter().map(|x| self.plane_point(x)).collect(),
             Some(slice) => self.cut(slice, &corners, &points).iter().map(|c| c.at).collect(),

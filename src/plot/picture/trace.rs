@@ -15,11 +15,11 @@ const STRAIGHT: f64 = 1e-9;
 
 /// A part of a facet of the contact boundary.
 pub(crate) struct Sample<const D: usize> {
-    pub ends: [Point<f64, D>; 2],
+    pub ends: [Point<D>; 2],
 }
 
 /// The facets of the contact boundary: cell, number in it, vertices.
-fn facets<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<(usize, usize, Vec<u32>)> {
+fn facets<const D: usize>(mesh: &Mesh<D>) -> Vec<(usize, usize, Vec<u32>)> {
     let contact = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact);
     contact
         .map(|f| {
@@ -30,7 +30,7 @@ fn facets<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<(usize, usize, Vec<u32>)> 
 }
 
 /// The contact boundary in short parts.
-pub(crate) fn samples<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<Sample<D>> {
+pub(crate) fn samples<const D: usize>(mesh: &Mesh<D>) -> Vec<Sample<D>> {
     let mut samples = Vec::new();
     for (_, _, vertices) in facets(mesh) {
         let [a, b] = map_entries([0, 1], |k| mesh.vertices()[vertices[k] as usize]);
@@ -43,7 +43,7 @@ pub(crate) fn samples<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<Sample<D>> {
 /// The multiplier along a straight contact boundary; none on another.
 pub(crate) fn graph<const D: usize>(
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
     fields: &Fields,
 ) -> Option<Graph> {
     let facets = facets(mesh);

@@ -4,7 +4,7 @@ use crate::input::{excerpt, excerpts};
 use crate::mesh::BoundaryPart;
 use crate::mesh::{Mesh, describe_point};
 use crate::problem::{BoundaryFlux, Problem};
-use crate::problem_file::error::{ProblemFileError, ProblemFileFault};
+use crate::problem_file::error::{ProblemFileError, ProblemFileErrorKind};
 use crate::problem_file::table::{Formula, Source};
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
@@ -91,7 +91,7 @@ type Done = Result<(), ProblemFileError>;
 
 impl<const D: usize> Checks<'_, '_, D> {
     /// Holds names and values against a mesh.
-    pub fn run(&self, mesh: &Mesh<f64, D>) -> Done {
+    pub fn run(&self, mesh: &Mesh<D>) -> Done {
         let groups: Vec<&[String]> = mesh.boundary_groups().iter().map(|g| &g.names[..]).collect();
         let regions: Vec<&[String]> = mesh.regions().iter().map(|names| &names[..]).collect();
         for entry in self.entries {
@@ -105,17 +105,23 @@ impl<const D: usize> Checks<'_, '_, D> {
                 let known = if known.is_empty() { "none".to_owned() } else { known };
                 let is_inside = entry.is_boundary && mesh.groups_inside().contains(name);
                 let name = excerpt(name);
-                let fault = match is_inside {
-                    true => ProblemFileFault::GroupInside { name, known },
-                    false => ProblemFileFault::UnknownGroup { kind, name, known },
+                let message = match is_inside {
+                    true => format!(
+                        "`{name}` lies inside the domain, between two cells: data are given on the boundary only, where the mesh has {known}"
+                    ),
+                    false => format!("the mesh has no {kind} `{name}`; it has {known}"),
                 };
-                return Err(self.source.error(entry.offset, fault));
+                let kind = ProblemFileErrorKind::UnknownGroup;
+                return Err(self.source.error(entry.offset, kind, message));
             }
         }
         for names in groups {
             if !names.iter().any(|name| self.parts.iter().any(|(known, _)| known == name)) {
-                let name = names.first().map(excerpt).unwrap_or_default();
-                return Err(self.source.error(0, ProblemFileFault::MissingBoundary { name }));
+                let name = excerpt(names.first().expect("a boundary group has a name"));
+                let message = format!(
+                    "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann or contact, or [boundary.default] for groups without one, if its kind is that of the name"
+                );
+                return Err(self.source.error(0, ProblemFileErrorKind::MissingBoundary, message));
             }
         }
         self.entries.iter().try_for_each(|entry| self.check_values(entry, mesh))?;
@@ -124,7 +130,7 @@ impl<const D: usize> Checks<'_, '_, D> {
 
     /// Holds the gradient of the exact solution against one-sided difference quotients of its value at the
     /// barycentres of cells, so that a kink there is no fault.
-    fn check_gradient(&self, mesh: &Mesh<f64, D>) -> Done {
+    fn check_gradient(&self, mesh: &Mesh<D>) -> Done {
         let Some(exact) = &self.problem.exact else { return Ok(()) };
         for cell in 0..mesh.n_cells() {
             let x = mesh.barycentre(cell);
@@ -142,32 +148,34 @@ impl<const D: usize> Checks<'_, '_, D> {
                 let (one, other) = (quotient(-step), quotient(step));
                 let (least, most) = (one.min(other) - tolerance, one.max(other) + tolerance);
                 if gradient[k] < least || gradient[k] > most {
-                    let fault = ProblemFileFault::Gradient {
-                        component: k + 1,
-                        value: gradient[k],
-                        quotient: 0.5 * (one + other),
-                        at: describe_point(&x),
-                    };
-                    return Err(self.source.error(self.gradient_offset, fault));
+                    let message = format!(
+                        "component {} of exact.gradient is {} at {}, but difference quotients of exact.value are {}",
+                        k + 1,
+                        gradient[k],
+                        describe_point(&x),
+                        0.5 * (one + other)
+                    );
+                    let kind = ProblemFileErrorKind::Gradient;
+                    return Err(self.source.error(self.gradient_offset, kind, message));
                 }
             }
         }
         Ok(())
     }
 
-    fn check_values(&self, entry: &Entry<D>, mesh: &Mesh<f64, D>) -> Done {
-        let check = |x: &Point<f64, D>, normal: &Point<f64, D>| {
+    fn check_values(&self, entry: &Entry<D>, mesh: &Mesh<D>) -> Done {
+        let check = |x: &Point<D>, normal: &Point<D>| {
             let value = entry.value.at(x, normal);
             if entry.allowed.holds(value) {
                 return Ok(());
             }
-            let fault = ProblemFileFault::Value {
-                datum: entry.datum.clone(),
-                value,
-                at: describe_point(x),
-                allowed: entry.allowed.describe(),
-            };
-            Err(self.source.error(entry.offset, fault))
+            let message = format!(
+                "{} is {value} at {}: it must be {}",
+                entry.datum,
+                describe_point(x),
+                entry.allowed.describe()
+            );
+            Err(self.source.error(entry.offset, ProblemFileErrorKind::Value, message))
         };
         let is_meant = |names: &[String]| match &entry.group {
             Some(name) => names.contains(name),

@@ -4,13 +4,13 @@ mod check;
 
 use toml::de::DeTable;
 
-use super::error::{ProblemFileError, ProblemFileFault};
+use super::error::{ProblemFileError, ProblemFileErrorKind};
 use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
 use crate::arrays::tabulate;
 use crate::error::Error;
-use crate::input::beginning;
-use crate::mesh::{BoundaryFacet, BoundaryPart, BoxDomain, Mesh, SIDES, gmsh};
+use crate::input::{beginning, fingerprint};
+use crate::mesh::{BoundaryFacet, BoundaryPart, BoxDomain, Mesh, SIDES};
 use crate::problem::{Datum, Problem};
 use crate::real::Point;
 use check::{Allowed, Checks, Entry};
@@ -78,11 +78,9 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                 None => (self.source.formula(&group, value, variables)?, None),
                 Some(parts) => {
                     self.source.allow(parts, &["value", "level"])?;
-                    let part = |key: &'static str, purpose: &'static str| {
-                        let missing = ProblemFileFault::Missing { key, purpose };
-                        let found = parts.get(key);
-                        let found =
-                            found.ok_or_else(|| self.source.error(value.span().start, missing))?;
+                    let part = |key: &str, purpose: &str| {
+                        let missing = || self.source.missing(value.span().start, key, purpose);
+                        let found = parts.get(key).ok_or_else(missing)?;
                         Ok((self.source.formula(key, found, variables)?, found.span().start))
                     };
                     let level = part("level", "an expression that vanishes where the datum jumps")?;
@@ -148,8 +146,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let table = self.source.table(group, value)?;
         let kinds = "\"dirichlet\", \"neumann\" or \"contact\"";
         let Some(kind) = table.get("kind") else {
-            let missing = ProblemFileFault::Missing { key: "kind", purpose: kinds };
-            return Err(self.source.error(offset, missing));
+            return Err(self.source.missing(offset, "kind", kinds));
         };
         let part = BoundaryPart::from_name(self.source.string("kind", kind)?)
             .ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?;
@@ -172,8 +169,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             Some(value) => self.source.formula(name, value, &variables)?,
             None if self.has_exact && part != BoundaryPart::Contact => {
                 let purpose = "the exact solution does not stand for data that are left out";
-                let missing = ProblemFileFault::Missing { key: name, purpose };
-                return Err(self.source.error(offset, missing));
+                return Err(self.source.missing(offset, name, purpose));
             }
             None => Formula::Number(0.0),
         };
@@ -231,7 +227,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     }
 
     /// Gives gaps that depend on the normal those of the facets of their groups.
-    fn put_normals(&mut self, mesh: &Mesh<f64, D>) {
+    fn put_normals(&mut self, mesh: &Mesh<D>) {
         for ((group, datum), formula) in self.problem.named.gap.iter_mut().zip(&self.gaps) {
             let groups = mesh.boundary_groups();
             let is_meant = |f: &&BoundaryFacet| groups[usize::from(f.group)].names.contains(group);
@@ -250,8 +246,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let table = source.table("exact", value)?;
         source.allow(table, &["value", "gradient"])?;
         let needed = |key, purpose| {
-            let missing = ProblemFileFault::Missing { key, purpose };
-            table.get(key).ok_or_else(|| source.error(value.span().start, missing))
+            table.get(key).ok_or_else(|| source.missing(value.span().start, key, purpose))
         };
         let (solution, gradient) = (
             needed("value", "the exact solution")?,
@@ -339,16 +334,15 @@ pub(super) fn problem<'t, const D: usize>(
         }
     }
     let geometry = match place {
-        Place::File { path, bytes, offset, .. } => {
-            let read = gmsh::parse::<f64, D>(bytes);
-            let read = read.map_err(|e| source.mesh_error(*offset, path, e))?;
+        Place::File { path, file, offset } => {
+            let read = file.mesh::<D>().map_err(|e| source.mesh_error(*offset, path, e))?;
             let groups = read.mesh.boundary_groups().iter().map(|group| group.names.clone());
             builder.complete(&groups.collect::<Vec<_>>());
-            Geometry::File { path: path.clone(), bytes: bytes.clone(), read: Box::new(read) }
+            let fingerprint = file.fingerprint();
+            Geometry::File { path: path.clone(), fingerprint, read: Box::new(read) }
         }
         Place::Box { corners } => {
-            let [lower, upper] =
-                [0, 1].map(|k| Point::<f64, D>::from_fn(|axis, _| corners[k][axis]));
+            let [lower, upper] = [0, 1].map(|k| Point::<D>::from_fn(|axis, _| corners[k][axis]));
             builder
                 .complete(&SIDES[..2 * D].iter().map(|&s| vec![s.to_owned()]).collect::<Vec<_>>());
             let mut domain = BoxDomain::dirichlet(lower, upper);
@@ -360,11 +354,10 @@ pub(super) fn problem<'t, const D: usize>(
             Geometry::Box(domain)
         }
     };
-    let mut own = OwnProblem { name, problem: builder.problem.clone(), geometry };
-    let failed = |error: Error| ProblemFileError::Problem {
-        path: source.path.into(),
-        source: Box::new(error),
-    };
+    let fingerprint = fingerprint(source.text.as_bytes());
+    let mut own = OwnProblem { name, fingerprint, problem: builder.problem.clone(), geometry };
+    let failed =
+        |error: Error| ProblemFileError::of_file(source.path, ProblemFileErrorKind::Problem, error);
     let mesh = own.sample_mesh().map_err(failed)?;
     builder.put_normals(&mesh);
     own.problem.clone_from(&builder.problem);

@@ -80,7 +80,7 @@ impl Expression {
         self.0.has_variables(first)
     }
     /// The value at a point of the boundary with this outward normal.
-    pub fn on_boundary<const D: usize>(&self, x: &Point<f64, D>, normal: &Point<f64, D>) -> f64 {
+    pub fn on_boundary<const D: usize>(&self, x: &Point<D>, normal: &Point<D>) -> f64 {
         let mut variables = [0.0; 6];
         variables[..D].copy_from_slice(x.as_slice());
         variables[D..2 * D].copy_from_slice(normal.as_slice());

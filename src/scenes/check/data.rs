@@ -9,7 +9,7 @@ use crate::scenes::scene::Scene;
 /// Data finite, coefficient and reaction of the right sign, bounds in order, gap present.
 pub(super) fn check<const D: usize>(
     scene: &Scene<D>,
-    inside: &[Point<f64, D>],
+    inside: &[Point<D>],
     samples: usize,
 ) -> Result<(), Violation> {
     let domain = &scene.domain;
@@ -37,7 +37,7 @@ pub(super) fn check<const D: usize>(
 fn finite<const D: usize>(
     scene: &Scene<D>,
     datum: &'static str,
-    x: &Point<f64, D>,
+    x: &Point<D>,
     value: f64,
 ) -> Result<(), Violation> {
     if value.is_finite() {
@@ -46,7 +46,7 @@ fn finite<const D: usize>(
     Err(Violation::new(&scene.name, Condition::Finite(datum), x, value, 0.0))
 }
 
-fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), Violation> {
+fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<D>) -> Result<(), Violation> {
     let problem = &scene.problem;
     for (name, datum) in [
         ("coefficient", &problem.coefficient),
@@ -77,7 +77,7 @@ fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), V
     in_order(scene, x, lower, upper)
 }
 
-fn check_dirichlet<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), Violation> {
+fn check_dirichlet<const D: usize>(scene: &Scene<D>, x: &Point<D>) -> Result<(), Violation> {
     let datum = scene.problem.dirichlet_at(x);
     finite(scene, "dirichlet", x, datum)?;
     let (lower, upper) = bounds(scene, x);
@@ -85,7 +85,7 @@ fn check_dirichlet<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Resul
     in_order(scene, x, datum, upper)
 }
 
-fn bounds<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> (f64, f64) {
+fn bounds<const D: usize>(scene: &Scene<D>, x: &Point<D>) -> (f64, f64) {
     let lower = scene.problem.lower.as_ref().map_or(f64::NEG_INFINITY, |psi| psi.at(x));
     let upper = scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi.at(x));
     (lower, upper)
@@ -94,7 +94,7 @@ fn bounds<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> (f64, f64) {
 /// `a <= b` up to rounding of the larger.
 fn in_order<const D: usize>(
     scene: &Scene<D>,
-    x: &Point<f64, D>,
+    x: &Point<D>,
     a: f64,
     b: f64,
 ) -> Result<(), Violation> {

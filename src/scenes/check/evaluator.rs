@@ -52,11 +52,11 @@ impl<'a, const D: usize> Evaluator<'a, D> {
         name: &'a str,
         (problem, exact): (&'a Problem<D>, &'a Exact<D>),
         length: f64,
-        points: &[Point<f64, D>],
+        points: &[Point<D>],
     ) -> Self {
         let scales = Scales { length, value: 0.0, slope: 0.0, flux: 0.0, force: 0.0 };
         let mut evaluator = Self { name, problem, exact, scales };
-        let largest = |size: &dyn Fn(&Point<f64, D>) -> f64| {
+        let largest = |size: &dyn Fn(&Point<D>) -> f64| {
             points.iter().map(|x| size(x).abs()).fold(0.0, f64::max)
         };
         let coefficient = largest(&|x| evaluator.coefficient(x));
@@ -69,38 +69,38 @@ impl<'a, const D: usize> Evaluator<'a, D> {
         evaluator.scales = Scales { length, value, slope, flux, force };
         evaluator
     }
-    pub fn value(&self, x: &Point<f64, D>) -> f64 {
+    pub fn value(&self, x: &Point<D>) -> f64 {
         (self.exact.value)(x)
     }
-    pub fn gradient(&self, x: &Point<f64, D>) -> Point<f64, D> {
+    pub fn gradient(&self, x: &Point<D>) -> Point<D> {
         (self.exact.gradient)(x)
     }
-    pub fn coefficient(&self, x: &Point<f64, D>) -> f64 {
+    pub fn coefficient(&self, x: &Point<D>) -> f64 {
         self.problem.coefficient.as_ref().map_or(1.0, |alpha| alpha.at(x))
     }
     /// `alpha grad u`.
-    pub fn flux(&self, x: &Point<f64, D>) -> Point<f64, D> {
+    pub fn flux(&self, x: &Point<D>) -> Point<D> {
         self.gradient(x) * self.coefficient(x)
     }
-    pub fn source(&self, x: &Point<f64, D>) -> f64 {
+    pub fn source(&self, x: &Point<D>) -> f64 {
         self.problem.source.as_ref().map_or(0.0, |f| f.at(x))
     }
-    pub fn reaction(&self, x: &Point<f64, D>) -> f64 {
+    pub fn reaction(&self, x: &Point<D>) -> f64 {
         self.problem.reaction.as_ref().map_or(0.0, |c| c.at(x))
     }
     /// `u - psi_lower`, infinite without obstacle.
-    pub fn above_lower(&self, x: &Point<f64, D>) -> f64 {
+    pub fn above_lower(&self, x: &Point<D>) -> f64 {
         self.problem.lower.as_ref().map_or(f64::INFINITY, |psi| self.value(x) - psi.at(x))
     }
     /// `psi_upper - u`, infinite without obstacle.
-    pub fn below_upper(&self, x: &Point<f64, D>) -> f64 {
+    pub fn below_upper(&self, x: &Point<D>) -> f64 {
         self.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi.at(x) - self.value(x))
     }
     /// A violation unless `by <= allowed`; a violation if `by` is not a number.
     pub fn require(
         &self,
         condition: Condition,
-        at: &Point<f64, D>,
+        at: &Point<D>,
         by: f64,
         allowed: f64,
     ) -> Result<(), Violation> {

@@ -20,7 +20,7 @@ const KINK: f64 = 1e-3;
 pub(super) fn check<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     domain: &Domain<D>,
-    points: &[Point<f64, D>],
+    points: &[Point<D>],
 ) -> Result<(), Violation> {
     for pair in points.windows(2).filter(|pair| sees(domain, &pair[0], &pair[1])) {
         check_value(evaluator, pair[0], pair[1])?;
@@ -32,8 +32,8 @@ pub(super) fn check<const D: usize>(
 /// Bisects towards the half in which the difference of values deviates more from the gradient.
 fn check_value<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    a: Point<f64, D>,
-    b: Point<f64, D>,
+    a: Point<D>,
+    b: Point<D>,
 ) -> Result<(), Violation> {
     let (a, b) = bisect(evaluator.scales.length, a, b, |a, b| {
         let mean = (evaluator.gradient(a) + evaluator.gradient(b)) / 2.0;
@@ -52,8 +52,8 @@ fn check_value<const D: usize>(
 /// of the gradient is tested, which is normal to the interface since the value is continuous.
 fn check_flux<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    a: Point<f64, D>,
-    b: Point<f64, D>,
+    a: Point<D>,
+    b: Point<D>,
 ) -> Result<(), Violation> {
     let (a, b) = bisect(evaluator.scales.length, a, b, |a, b| {
         (evaluator.flux(b) - evaluator.flux(a)).norm()
@@ -77,10 +77,10 @@ fn check_flux<const D: usize>(
 
 fn bisect<const D: usize>(
     length: f64,
-    mut a: Point<f64, D>,
-    mut b: Point<f64, D>,
-    change: impl Fn(&Point<f64, D>, &Point<f64, D>) -> f64,
-) -> (Point<f64, D>, Point<f64, D>) {
+    mut a: Point<D>,
+    mut b: Point<D>,
+    change: impl Fn(&Point<D>, &Point<D>) -> f64,
+) -> (Point<D>, Point<D>) {
     while (b - a).norm() > SHORT * length {
         let middle = (a + b) / 2.0;
         if change(&a, &middle) >= change(&middle, &b) { b = middle } else { a = middle }

@@ -17,8 +17,8 @@ const REACH: f64 = 2e-3;
 /// The stated gradient is the derivative of the value.
 pub(super) fn check_gradient<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    points: &[Point<f64, D>],
-    depth: &dyn Fn(&Point<f64, D>) -> f64,
+    points: &[Point<D>],
+    depth: &dyn Fn(&Point<D>) -> f64,
 ) -> Result<(), Violation> {
     let slope = evaluator.scales.slope;
     let mut skipped = Skipped::default();
@@ -42,7 +42,7 @@ pub(super) fn check_gradient<const D: usize>(
 /// `psi_lower <= u <= psi_upper`.
 pub(super) fn check_obstacles<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    points: &[Point<f64, D>],
+    points: &[Point<D>],
 ) -> Result<(), Violation> {
     let allowed = TOUCHING * evaluator.scales.value;
     for x in points {
@@ -56,8 +56,8 @@ pub(super) fn check_obstacles<const D: usize>(
 /// active its sign is free.
 pub(super) fn check_multiplier<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    points: &[Point<f64, D>],
-    depth: &dyn Fn(&Point<f64, D>) -> f64,
+    points: &[Point<D>],
+    depth: &dyn Fn(&Point<D>) -> f64,
 ) -> Result<(), Violation> {
     let mut skipped = Skipped::default();
     for x in points {
@@ -71,7 +71,7 @@ pub(super) fn check_multiplier<const D: usize>(
 /// Checks the multiplier at a point of this distance from the boundary. Returns whether it is known there.
 pub(super) fn check_multiplier_at<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    x: &Point<f64, D>,
+    x: &Point<D>,
     depth: f64,
 ) -> Result<bool, Violation> {
     let touching = TOUCHING * evaluator.scales.value;
@@ -92,7 +92,7 @@ pub(super) fn check_multiplier_at<const D: usize>(
 /// `-div(alpha grad u) + c u - f`; none where differences of the flux do not settle.
 fn multiplier<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    x: &Point<f64, D>,
+    x: &Point<D>,
     depth: f64,
 ) -> Option<f64> {
     let tolerance = SETTLED * evaluator.scales.force;
@@ -105,7 +105,7 @@ fn multiplier<const D: usize>(
     Some(-divergence + evaluator.reaction(x) * evaluator.value(x) - evaluator.source(x))
 }
 
-fn shifted<const D: usize>(x: &Point<f64, D>, axis: usize, by: f64) -> Point<f64, D> {
+fn shifted<const D: usize>(x: &Point<D>, axis: usize, by: f64) -> Point<D> {
     let mut x = *x;
     x[axis] += by;
     x
@@ -124,7 +124,7 @@ struct Skipped {
 }
 
 impl Skipped {
-    fn note<const D: usize>(&mut self, x: &Point<f64, D>) {
+    fn note<const D: usize>(&mut self, x: &Point<D>) {
         self.count += 1;
         self.last = x.iter().copied().collect();
     }

@@ -56,7 +56,7 @@ pub fn check_scene<const D: usize>(scene: &Scene<D>, samples: usize) -> Result<(
     let domain = &scene.domain;
     let data = (&scene.problem, exact);
     let evaluator = Evaluator::new(&scene.name, data, domain.length(), &inside);
-    let depth = |x: &Point<f64, D>| domain.depth(x);
+    let depth = |x: &Point<D>| domain.depth(x);
     interior::check_gradient(&evaluator, &inside, &depth)?;
     interfaces::check(&evaluator, domain, &inside)?;
     interior::check_obstacles(&evaluator, &inside)?;

@@ -7,7 +7,7 @@ use super::samples::BoundaryPoint;
 use super::violation::Violation;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// Most cells, and most facets of the boundary, at whose barycentres conditions are tested.
 const MOST: usize = 200;
@@ -20,21 +20,21 @@ const ROUNDED: f64 = 1e-6;
 ///
 /// # Errors
 /// The first [`Violation`] found.
-pub(crate) fn check_exact_on<T: Real, const D: usize>(
+pub(crate) fn check_exact_on<const D: usize>(
     name: &str,
     problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
 ) -> Result<(), Violation> {
     let Some(exact) = &problem.exact else { return Ok(()) };
     let cells: Vec<usize> = sampled(mesh.n_cells()).collect();
     let in_regions: Vec<Problem<D>> =
         mesh.regions().iter().map(|names| problem.in_group(names, &[])).collect();
-    let middle = |&cell: &usize| point_f64(&mesh.barycentre(cell));
-    let length = mesh.domain_diameter().to_f64();
+    let middle = |&cell: &usize| mesh.barycentre(cell);
+    let length = mesh.domain_diameter();
     let mut scales = Scales::NONE;
     for (region, problem) in in_regions.iter().enumerate() {
         let of_region = cells.iter().filter(|&&cell| mesh.region(cell) == region);
-        let points: Vec<Point<f64, D>> = of_region.map(middle).collect();
+        let points: Vec<Point<D>> = of_region.map(middle).collect();
         scales = scales.max(Evaluator::new(name, (problem, exact), length, &points).scales);
     }
     for cell in &cells {
@@ -43,8 +43,8 @@ pub(crate) fn check_exact_on<T: Real, const D: usize>(
         let (geometry, x) = (mesh.geometry(*cell), middle(cell));
         check_obstacles(&evaluator, &[x])?;
         // the barycentre has from each facet a share of the height over it
-        let volume = geometry.volume.to_f64();
-        let largest = (0..D + 1).map(|k| geometry.facet_measure(k).to_f64()).fold(0.0, f64::max);
+        let volume = geometry.volume;
+        let largest = (0..D + 1).map(|k| geometry.facet_measure(k)).fold(0.0, f64::max);
         let depth = D as f64 * volume / largest / (D + 1) as f64;
         check_multiplier_at(&evaluator, &x, depth)?;
     }
@@ -54,8 +54,8 @@ pub(crate) fn check_exact_on<T: Real, const D: usize>(
         let group = &mesh.boundary_groups()[usize::from(facet.group)].names;
         let problem = &problem.in_group(&mesh.regions()[mesh.region(cell)], group);
         let evaluator = Evaluator { name, problem, exact, scales };
-        let x = point_f64(&mesh.facet_barycentre(cell, local));
-        let normal = point_f64(&mesh.geometry(cell).normal(local));
+        let x = mesh.facet_barycentre(cell, local);
+        let normal = mesh.geometry(cell).normal(local);
         boundary::check_at(&evaluator, &BoundaryPoint { x, normal, part: facet.part }, ROUNDED)?;
     }
     Ok(())

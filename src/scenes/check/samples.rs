@@ -8,7 +8,7 @@ use crate::real::Point;
 ///
 /// In one dimension this is the golden ratio; `1, theta_1, ..., theta_D` are independent over the
 /// rationals, so the points fill the box evenly and never sit on mesh lines.
-fn in_box<const D: usize>(domain: BoxDomain<D>) -> impl Iterator<Item = Point<f64, D>> {
+fn in_box<const D: usize>(domain: BoxDomain<D>) -> impl Iterator<Item = Point<D>> {
     // The map contracts by a factor of at most 1/(D + 1) at its fixed point.
     let phi = (0..60).fold(2.0_f64, |phi, _| (1.0 + phi).powf(1.0 / (D as f64 + 1.0)));
     (1_u32..).map(move |n| {
@@ -21,16 +21,14 @@ fn in_box<const D: usize>(domain: BoxDomain<D>) -> impl Iterator<Item = Point<f6
 }
 
 /// The first quasi-random points that lie inside a domain.
-pub(super) fn inside<const D: usize>(domain: &Domain<D>, samples: usize) -> Vec<Point<f64, D>> {
+pub(super) fn inside<const D: usize>(domain: &Domain<D>, samples: usize) -> Vec<Point<D>> {
     in_box(domain.bounding_box()).filter(|x| domain.depth(x) > 0.0).take(samples).collect()
 }
 
 /// Vertices of a uniform lattice of the box around a domain, those inside it and on its boundary,
 /// and the origin if it is among them: points of symmetry and of dyadic fractions, where meshes put
 /// vertices and scenes their tips.
-pub(super) fn lattice<const D: usize>(
-    domain: &Domain<D>,
-) -> impl Iterator<Item = Point<f64, D>> + '_ {
+pub(super) fn lattice<const D: usize>(domain: &Domain<D>) -> impl Iterator<Item = Point<D>> + '_ {
     let per_axis: usize = if D < 3 { 16 } else { 8 };
     let bounds = domain.bounding_box();
     (0..(per_axis + 1).pow(D as u32))
@@ -49,20 +47,20 @@ pub(super) fn lattice<const D: usize>(
 /// A point of the boundary.
 pub(super) struct BoundaryPoint<const D: usize> {
     /// The point.
-    pub x: Point<f64, D>,
+    pub x: Point<D>,
     /// The outward unit normal there.
-    pub normal: Point<f64, D>,
+    pub normal: Point<D>,
     /// The part of the boundary.
     pub part: BoundaryPart,
 }
 
 impl<const D: usize> BoundaryPoint<D> {
-    fn dirichlet(x: Point<f64, D>, normal: Point<f64, D>) -> Self {
+    fn dirichlet(x: Point<D>, normal: Point<D>) -> Self {
         Self { x, normal, part: BoundaryPart::Dirichlet }
     }
     /// Points that differ from this one by rounding: a few units in the last place inside and outside,
     /// and with `-0.0` in place of `0.0`.
-    pub fn rounded(&self, length: f64) -> [Point<f64, D>; 3] {
+    pub fn rounded(&self, length: f64) -> [Point<D>; 3] {
         let level = self.x.dot(&self.normal).abs();
         let shift = self.normal * (4.0 * f64::EPSILON * length.max(level));
         let negated =
@@ -107,7 +105,7 @@ fn on_sides<const D: usize>(
 
 /// A point on the sides that meet in the corner at the origin of the domain without the quadrant
 /// `x >= 0`, `y <= 0`.
-fn beside_quadrant<const D: usize>(x: Point<f64, D>) -> BoundaryPoint<D> {
+fn beside_quadrant<const D: usize>(x: Point<D>) -> BoundaryPoint<D> {
     let on = |along: usize, at: f64, across: usize, normal: f64| {
         let axis =
             |axis: usize, size: f64| Point::from_fn(|k, _| if k == axis { size } else { 0.0 });
@@ -117,11 +115,7 @@ fn beside_quadrant<const D: usize>(x: Point<f64, D>) -> BoundaryPoint<D> {
 }
 
 /// A sufficient condition for the segment between two points of a domain to lie in it.
-pub(super) fn sees<const D: usize>(
-    domain: &Domain<D>,
-    a: &Point<f64, D>,
-    b: &Point<f64, D>,
-) -> bool {
+pub(super) fn sees<const D: usize>(domain: &Domain<D>, a: &Point<D>, b: &Point<D>) -> bool {
     match domain {
         // both halves of the L-shape are convex
         Domain::LShape { .. } => a[0].max(b[0]) < 0.0 || a[1 % D].min(b[1 % D]) > 0.0,

@@ -13,7 +13,7 @@ const ZERO: f64 = 1e-9;
 /// solution is known up to `allowed`.
 pub(super) fn check_inside<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    x: &Point<f64, D>,
+    x: &Point<D>,
     multiplier: f64,
     allowed: f64,
 ) -> Result<(), Violation> {
@@ -33,7 +33,7 @@ pub(super) fn check_inside<const D: usize>(
 /// Conditions on multiplier and contact set at a point of the contact part.
 pub(super) fn check_on_boundary<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    x: &Point<f64, D>,
+    x: &Point<D>,
     above: f64,
     outflow: f64,
 ) -> Result<(), Violation> {
@@ -44,7 +44,7 @@ pub(super) fn check_on_boundary<const D: usize>(
 
 fn check_multiplier<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    x: &Point<f64, D>,
+    x: &Point<D>,
     found: f64,
     allowed: f64,
 ) -> Result<(), Violation> {
@@ -59,7 +59,7 @@ fn check_multiplier<const D: usize>(
 /// Inside the contact set a bound is active; outside the gap is positive and the multiplier vanishes.
 fn check_contact<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    x: &Point<f64, D>,
+    x: &Point<D>,
     gap: f64,
     multiplier: f64,
     allowed: f64,
@@ -84,7 +84,7 @@ fn check_contact<const D: usize>(
 /// The indicator vanishes on the stated free boundary.
 pub(super) fn check_free_boundary<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    points: &[Point<f64, D>],
+    points: &[Point<D>],
 ) -> Result<(), Violation> {
     let Some(contact) = &evaluator.exact.contact else { return Ok(()) };
     let largest = points.iter().map(|x| (contact.indicator)(x).abs()).fold(0.0, f64::max);

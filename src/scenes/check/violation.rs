@@ -109,7 +109,7 @@ impl Violation {
     pub(super) fn new<const D: usize>(
         scene: &str,
         condition: Condition,
-        at: &Point<f64, D>,
+        at: &Point<D>,
         by: f64,
         allowed: f64,
     ) -> Self {

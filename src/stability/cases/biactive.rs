@@ -48,7 +48,7 @@ fn orders<const D: usize>(
     levels: &[usize],
     sink: Sink<'_>,
 ) -> Result<(), Error> {
-    let rows = rows::<f64, D>(make(), choice, levels)?;
+    let rows = rows::<D>(make(), choice, levels)?;
     let name = make().name;
     type Norm = (&'static str, f64, fn(&Row) -> Option<f64>);
     let norms: [Norm; 2] = [("L2", 1.8, |r| r.error.l2), ("H1", 0.9, |r| r.error.h1)];
@@ -106,10 +106,10 @@ fn distances(choice: &Choice, level: usize, sink: Sink<'_>) -> Result<(), Error>
         RowBuilder::new("free-boundary", choice).on(name).level(level).quantity("distance over h")
     };
     let name = scene.name.clone();
-    let found = row::<f64, 2>(scene, choice, level)?;
+    let found = row::<2>(scene, choice, level)?;
     let distance = |row: &Row| row.contact.free_boundary_distance.map(|d| d / size);
     sink(claim(&name).at_most(2.0).detail(figures(&found)).measured(of(&found, distance)));
-    let found = row::<f64, 2>(scenes::biactive_half_2d(), choice, level)?;
+    let found = row::<2>(scenes::biactive_half_2d(), choice, level)?;
     let why = "gap and multiplier vanish together: the contact set is no datum";
     sink(claim(&found.scene).not_applicable(why));
     Ok(())

@@ -29,7 +29,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
 
 fn inertia(choice: &Choice, level: usize) -> Result<crate::stability::StabilityRow, Error> {
     let scene = sines::<2>();
-    let mesh = scene.domain.mesh::<f64>(level)?;
+    let mesh = scene.domain.mesh(level)?;
     let matrix = free_matrix(&scene.problem, &mesh, choice)?;
     let negative = negative_pivots(&matrix);
     let is_weak = matches!(choice.penalty, Penalty::Sigma(sigma) if sigma < THRESHOLD);
@@ -53,10 +53,10 @@ fn inertia(choice: &Choice, level: usize) -> Result<crate::stability::StabilityR
 
 fn factor(choice: &Choice, sigma: f64, level: usize, sink: Sink<'_>) -> Result<(), Error> {
     sink(inertia(choice, level)?);
-    let found = row::<f64, 2>(scenes::radial::<2>(1.0), choice, 2 * level)?;
+    let found = row::<2>(scenes::radial::<2>(1.0), choice, 2 * level)?;
     // on Dirichlet facets |dK|/|K| with |dK| = (2 + root 2) h and |K| = h^2 / 2
     let proven = 2.0 * (2.0 + 2.0_f64.sqrt());
-    let means = row::<f64, 2>(scenes::radial::<2>(1.0), &Choice::default("cr"), 2 * level)?;
+    let means = row::<2>(scenes::radial::<2>(1.0), &Choice::default("cr"), 2 * level)?;
     sink(
         RowBuilder::new("error-of-interior-penalty", choice)
             .on(&found.scene)

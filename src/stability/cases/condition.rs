@@ -46,7 +46,7 @@ fn condition(matrix: &SparseMatrix<f64>, b: &dyn PositiveDefinite) -> Option<f64
 /// The matrix as it is, and in means and jumps with its diagonal as preconditioner.
 fn both(choice: &Choice, level: usize) -> Result<[Option<f64>; 2], Error> {
     let scene = sines::<2>();
-    let mesh: Mesh<f64, 2> = scene.domain.mesh(level)?;
+    let mesh: Mesh<2> = scene.domain.mesh(level)?;
     let matrix = free_matrix(&scene.problem, &mesh, choice)?;
     let plain = condition(&matrix, &Diagonal::identity(matrix.size()));
     let means = Choice::new("wopsip:facet-means", choice.penalty);

@@ -39,7 +39,7 @@ fn sweep(
     levels: &[usize],
     sink: Sink<'_>,
 ) -> Result<(), Error> {
-    let found = rows::<f64, 2>(make(), choice, levels)?;
+    let found = rows::<2>(make(), choice, levels)?;
     let errors: Vec<(usize, f64)> =
         found.iter().filter_map(|r| Some((r.level, of(r, |r| r.error.h1)?))).collect();
     let order = (errors.len() == levels.len()).then(|| fitted_order(&errors)).flatten();
@@ -109,12 +109,12 @@ fn largest_on_contact(
 /// A mesh that reaches beyond the domain on the left: the corner of the domain, where Dirichlet and
 /// contact part meet, lies inside a contact facet.
 fn junction(choice: &Choice, sink: Sink<'_>) -> Result<(), Error> {
-    let lower = Point::<f64, 2>::new(-1.1, 0.0);
+    let lower = Point::<2>::new(-1.1, 0.0);
     let domain = BoxDomain { lower, ..BoxDomain::above_contact() };
-    let mesh: Mesh<f64, 2> = Mesh::kuhn_box(&domain, [20, 10])?;
+    let mesh: Mesh<2> = Mesh::kuhn_box(&domain, [20, 10])?;
     let mut scene = scenes::signorini_2d();
     scene.problem = choice.constrain(scene.problem);
-    let study = Study::<f64, 2>::new(scene).on_mesh(mesh);
+    let study = Study::<2>::new(scene).on_mesh(mesh);
     let study = study.boxed_scheme(choice.make()).solver(solver());
     let (told, how) = match study.levels([0]).run() {
         Err(why) => (true, why.to_string()),

@@ -41,7 +41,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
 
 /// The energy norm of the exact solution.
 fn norm(scene: &Scene<2>, level: usize) -> Result<Option<f64>, Error> {
-    let mesh = scene.domain.mesh::<f64>(level)?;
+    let mesh = scene.domain.mesh(level)?;
     let quadrature = DataQuadrature::default();
     let space = Discretisation::new(&ConformingP1, &scene.problem, &mesh, quadrature)?;
     Ok(space.errors(&vec![0.0; space.unknowns()])?.energy)
@@ -51,7 +51,7 @@ fn aligned(choice: &Choice, level: usize, exponents: &[i32], sink: Sink<'_>) -> 
     let relative = |contrast: f64| -> Result<(Row, [Option<f64>; 2]), Error> {
         let scene = scenes::signorini_layers_2d(contrast);
         let norm = norm(&scene, level)?;
-        let row = row::<f64, 2>(scene, choice, level)?;
+        let row = row::<2>(scene, choice, level)?;
         let error = quotient(of(&row, |r| r.error.energy), norm);
         let broken = quotient(of(&row, |r| r.error.broken_energy), norm);
         Ok((row, [error, broken]))
@@ -90,9 +90,9 @@ fn aligned(choice: &Choice, level: usize, exponents: &[i32], sink: Sink<'_>) -> 
 
 fn across(choice: &Choice, level: usize, sink: Sink<'_>) -> Result<(), Error> {
     for contrast in [1e-6, 1e6] {
-        let ours = row::<f64, 2>(scenes::contrast::<2>(contrast), choice, level)?;
+        let ours = row::<2>(scenes::contrast::<2>(contrast), choice, level)?;
         let p1 = Choice::default("p1");
-        let theirs = row::<f64, 2>(scenes::contrast::<2>(contrast), &p1, level)?;
+        let theirs = row::<2>(scenes::contrast::<2>(contrast), &p1, level)?;
         let error = |r: &Row| r.error.h1;
         sink(
             RowBuilder::new("interface-across-flux", choice)
@@ -110,7 +110,7 @@ fn across(choice: &Choice, level: usize, sink: Sink<'_>) -> Result<(), Error> {
 
 fn inside_cells(choice: &Choice, levels: &[usize], sink: Sink<'_>) -> Result<(), Error> {
     let contrast = 1e6;
-    let rows = rows::<f64, 2>(scenes::contrast_disc_2d(contrast), choice, levels)?;
+    let rows = rows::<2>(scenes::contrast_disc_2d(contrast), choice, levels)?;
     let errors: Vec<(usize, f64)> =
         rows.iter().filter_map(|r| Some((r.level, of(r, |r| r.error.h1)?))).collect();
     sink(

@@ -7,7 +7,8 @@ use crate::error::Error;
 use crate::inequality::{InequalitySolver, InteriorPoint, Outcome, Solution};
 use crate::mesh::Mesh;
 use crate::nested::Hierarchy;
-use crate::real::{Point, Real};
+use crate::real::Point;
+use crate::real::Precision;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, Penalty};
@@ -52,7 +53,7 @@ fn sweep(
     levels.iter().try_for_each(|&level| single(touched, choice, level, sink))?;
     let scene = touched.0();
     let name = scene.name.clone();
-    let found = rows::<f64, 2>(scene, choice, fitted)?;
+    let found = rows::<2>(scene, choice, fitted)?;
     let errors: Vec<(usize, f64)> =
         found.iter().filter_map(|r| Some((r.level, of(r, |r| r.contact.multiplier_l1)?))).collect();
     let order = (errors.len() == fitted.len()).then(|| fitted_order(&errors)).flatten();
@@ -74,10 +75,10 @@ fn single(
     sink: Sink<'_>,
 ) -> Result<(), Error> {
     let scene = make();
-    let mesh = scene.domain.mesh::<f64>(level)?;
+    let mesh = scene.domain.mesh(level)?;
     let size = scene.domain.length() / level as f64;
     let claim = |name| RowBuilder::new(name, choice).on(&scene.name).level(level).at("h", size);
-    let found = row::<f64, 2>(make(), choice, level)?;
+    let found = row::<2>(make(), choice, level)?;
     sink(
         claim("certificate")
             .quantity("largest violation of the conditions")
@@ -107,7 +108,7 @@ fn single(
         let problem = choice.constrain(scene.problem.clone());
         let solved = solved_by(solver, &problem, &meshes, choice, true)?;
         let largest = solved.certificate().largest();
-        let is_wrong = largest.is_nan() || largest > f64::CERTIFICATE_LIMIT;
+        let is_wrong = largest.is_nan() || largest > Precision::Double.certificate_limit();
         silent += usize::from(solved.converged() && is_wrong);
         outcomes.push(format!("{} after {}", solved.outcome(), solved.outer().unwrap_or(0)));
         if k == 0 {
@@ -134,7 +135,7 @@ fn single(
 /// Among the bounded unknowns with nodes within a radius, the share in contact.
 fn share_inside(
     scene: &Scene<2>,
-    mesh: &Mesh<f64, 2>,
+    mesh: &Mesh<2>,
     choice: &Choice,
     radius: f64,
 ) -> Result<Option<f64>, Error> {
@@ -146,7 +147,7 @@ fn share_inside(
     let (mut inside, mut touching) = (0_u32, 0_u32);
     for (k, support) in inequality.supports.iter().enumerate() {
         let vertices = support.vertices();
-        let sum: Point<f64, 2> = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum();
+        let sum: Point<2> = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum();
         if inequality.bounds[k].is_inequality() && (sum / vertices.len() as f64).norm() < radius {
             inside += 1;
             touching += u32::from(solution.contact[k] != Contact::Inactive);

@@ -77,7 +77,7 @@ fn fit<const D: usize>(
     sink: Sink<'_>,
 ) -> Result<(), Error> {
     let name = scene.name.clone();
-    let rows = rows::<f64, D>(scene, choice, levels)?;
+    let rows = rows::<D>(scene, choice, levels)?;
     for (norm, least, error) in norms {
         let errors: Vec<(usize, f64)> =
             rows.iter().filter_map(|r| Some((r.level, of(r, error)?))).collect();
@@ -105,8 +105,8 @@ fn interior_penalty(choice: &Choice, levels: &[usize], sink: Sink<'_>) -> Result
 
 fn in_space(choice: &Choice, levels: &[usize], sink: Sink<'_>) -> Result<(), Error> {
     for &level in levels {
-        let ours = row::<f64, 3>(scenes::radial::<3>(1.0), choice, level)?;
-        let p1 = row::<f64, 3>(scenes::radial::<3>(1.0), &Choice::default("p1"), level)?;
+        let ours = row::<3>(scenes::radial::<3>(1.0), choice, level)?;
+        let p1 = row::<3>(scenes::radial::<3>(1.0), &Choice::default("p1"), level)?;
         sink(
             RowBuilder::new("boxes-in-space", choice)
                 .on(&ours.scene)

@@ -276,7 +276,7 @@ impl Report {
     /// ```
     /// use unilateral::prelude::*;
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let study = Study::<f64, 2>::new(scenes::signorini_2d()).scheme(ConformingP1);
+    /// let study = Study::<2>::new(scenes::signorini_2d()).scheme(ConformingP1);
     /// study.levels([2, 4, 8, 16]).run()?.assert_orders(0.1)?;
     /// # Ok(())
     /// # }

@@ -5,7 +5,6 @@ use crate::error::Error;
 use crate::mesh::{Domain, Mesh};
 use crate::nested::{AdaptiveIteration, AdaptiveMeshes, AdaptiveStep, Adaptivity};
 use crate::nested::{NestedIteration, Phase};
-use crate::real::Real;
 use crate::scheme::ExpectedOrders;
 use crate::study::memory::memory_of_process;
 use crate::study::reference::Measured;
@@ -15,7 +14,7 @@ use crate::study::row::{Row, Seconds};
 /// Subdivisions of the shortest side of a domain in the first mesh where no level is set.
 const FIRST_LEVEL: usize = 4;
 
-impl<T: Real, const D: usize> Study<'_, T, D> {
+impl<const D: usize> Study<'_, D> {
     /// Runs every scheme on meshes that follow its error bound, in place of levels. The level of a row is the
     /// number of refinements. [`Study::levels`] may set the level of the first mesh; else that is the mesh
     /// given, or four subdivisions of the shortest side.
@@ -25,7 +24,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// ```
     /// use unilateral::prelude::*;
     /// # fn main() -> Result<(), unilateral::error::Error> {
-    /// let report = Study::<f64, 2>::new(scenes::lshape_2d())
+    /// let report = Study::<2>::new(scenes::lshape_2d())
     ///     .scheme(ConformingP1)
     ///     .adaptive(Adaptivity::default().steps(3))
     ///     .run()?;
@@ -45,7 +44,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         let default = if self.mesh.is_some() { 0 } else { FIRST_LEVEL };
         self.levels.first().copied().unwrap_or(default)
     }
-    fn first_mesh(&self) -> Result<Mesh<T, D>, Error> {
+    fn first_mesh(&self) -> Result<Mesh<D>, Error> {
         let hierarchy = self.coarsest().build(self.first_level())?;
         Ok(hierarchy.finest().clone())
     }
@@ -145,11 +144,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
 }
 
 /// The row of a step: the times of all steps so far, and no order that theory promises for uniform meshes.
-fn adaptive_row<T: Real, const D: usize>(
-    row: Row,
-    step: &AdaptiveStep<'_, T, D>,
-    theta: f64,
-) -> Row {
+fn adaptive_row<const D: usize>(row: Row, step: &AdaptiveStep<'_, D>, theta: f64) -> Row {
     let seconds = Seconds {
         assemble: step.assemble_seconds,
         solve: step.solve_seconds,

@@ -4,22 +4,21 @@ use super::{Study, with_set};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::real::Real;
 use crate::study::crossing::{Crossing, Points};
 
-impl<T: Real, const D: usize> Study<'_, T, D> {
+impl<const D: usize> Study<'_, D> {
     /// Where lower bounds exceed upper ones on these meshes, at the points of all schemes.
     pub(super) fn find_crossing<'m>(
         &self,
-        meshes: impl IntoIterator<Item = &'m Mesh<T, D>>,
+        meshes: impl IntoIterator<Item = &'m Mesh<D>>,
     ) -> Result<Option<Crossing<D>>, Error>
     where
-        T: 'm,
+        f64: 'm,
     {
         let Some(points) = self.points_of_bounds()? else { return Ok(None) };
         for mesh in meshes {
             let seen = points.look(&self.scene.problem, mesh)?;
-            let found = seen.crossing::<T>(seen.size());
+            let found = seen.crossing(seen.size());
             if found.is_some() {
                 return Ok(found);
             }

@@ -4,19 +4,17 @@ use super::Study;
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::nested::NestedIteration;
-use crate::real::Real;
 use crate::study::reference::Measured;
 use crate::study::row::{Iterations, Row};
 
-impl<T: Real, const D: usize> Study<'_, T, D> {
+impl<const D: usize> Study<'_, D> {
     /// The row of the first scheme on the first level for values of its unknowns that another program
     /// found: their certificate, errors and totals. Solver and linear solver of the row are `none`.
     ///
     /// # Errors
     /// Those of [`Study::run`], and [`Error::Parameter`] for another number of values than of unknowns.
     pub fn judge(&self, values: &[f64]) -> Result<Row, Error> {
-        compiled!(
-            T, D: fn(&Study<'_, T, D>, &[f64]) -> Result<Row, Error>
+        compiled!(const D: fn(&Study<'_, D>, &[f64]) -> Result<Row, Error>
                 = |study, values| study.judge_values(values)
         )(self, values)
     }

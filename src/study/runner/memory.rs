@@ -5,21 +5,19 @@ use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::instances::compiled;
 use crate::problem::Problem;
-use crate::real::Real;
-use crate::scheme::AnyScheme;
+use crate::scheme::Scheme;
 use crate::study::memory::{
     MemoryEstimate, estimate, estimate_without_factors, memory_of_process, peak_memory_bytes,
     unknowns_about,
 };
 use crate::study::row::Row;
 
-impl<T: Real, const D: usize> Study<'_, T, D> {
+impl<const D: usize> Study<'_, D> {
     /// An estimate of the memory of the largest run, with factors if the solver computes them from
     /// the start; none for a study without schemes or levels. The largest run of adaptive refinement has as many
     /// unknowns as are allowed, and at least those of its first mesh.
     pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
-        compiled!(
-            T, D: fn(&Study<'_, T, D>) -> Option<MemoryEstimate>
+        compiled!(const D: fn(&Study<'_, D>) -> Option<MemoryEstimate>
                 = |study| study.estimate_memory()
         )(self)
     }
@@ -28,7 +26,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
             Some(_) => self.first_level(),
             None => self.levels.iter().copied().max()?,
         };
-        let run = |scheme: &dyn AnyScheme<T, D>, level: usize| {
+        let run = |scheme: &dyn Scheme<D>, level: usize| {
             let most = self
                 .adaptive
                 .map_or(0.0, |of| of.unknowns as f64 / unknowns_about(D, scheme.layout(), 1.0));
@@ -41,15 +39,15 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     }
 
     /// Bytes that the process needs for a scheme on so many cells.
-    fn memory_of(&self, scheme: &dyn AnyScheme<T, D>, cells: f64) -> f64 {
+    fn memory_of(&self, scheme: &dyn Scheme<D>, cells: f64) -> f64 {
         let layout = scheme.layout();
         let unknowns = unknowns_about(D, layout, cells) as usize;
         let solvers = self.solvers();
         match D > 1 && solvers.iter().all(|s| s.uses_coarse_spaces(unknowns)) {
-            true => estimate_without_factors(D, layout, cells, size_of::<T>()),
+            true => estimate_without_factors(D, layout, cells, self.precision()),
             false => {
                 let obstacle = self.scene.problem.has_obstacle();
-                estimate(D, layout, cells, obstacle, size_of::<T>())
+                estimate(D, layout, cells, obstacle)
             }
         }
     }
@@ -77,7 +75,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// Checks that a scheme on a level fits into so many bytes.
     pub(super) fn check_level(
         &self,
-        scheme: &dyn AnyScheme<T, D>,
+        scheme: &dyn Scheme<D>,
         level: usize,
         available: Option<u64>,
     ) -> Result<(), Error> {
@@ -88,7 +86,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// Checks that a scheme on the next mesh of adaptive refinement fits into the memory.
     pub(super) fn check_step(
         &self,
-        scheme: &dyn AnyScheme<T, D>,
+        scheme: &dyn Scheme<D>,
         (step, cells): (usize, usize),
     ) -> Result<(), Error> {
         let run = || format!("scheme {}, step {step} with {cells} cells", scheme.name());
@@ -98,7 +96,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// The row of a run that does not fit into the memory, on so many cells.
     pub(super) fn row_without_memory(
         &self,
-        (entry, problem): (&Entry<'_, T, D>, &Problem<D>),
+        (entry, problem): (&Entry<'_, D>, &Problem<D>),
         (level, cells): (usize, f64),
         solver: &str,
         error: Error,

@@ -23,9 +23,9 @@ use crate::instances::compiled;
 use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::{Adaptivity, Coarsest, Hierarchy, NestedIteration, Phase, Solved};
 use crate::problem::Problem;
-use crate::real::Real;
+use crate::real::Precision;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, SchemeOptions};
+use crate::scheme::{Scheme, SchemeOptions};
 use crate::study::compatibility::{check_domain, check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
@@ -57,7 +57,7 @@ pub enum Progress<'a> {
 /// ```
 /// use unilateral::prelude::*;
 /// # fn main() -> Result<(), unilateral::error::Error> {
-/// let report = Study::<f64, 2>::new(scenes::radial(1.0))
+/// let report = Study::<2>::new(scenes::radial(1.0))
 ///     .scheme(ConformingP1)
 ///     .scheme(Wopsip::default())
 ///     .levels([4, 8])
@@ -66,18 +66,18 @@ pub enum Progress<'a> {
 /// # Ok(())
 /// # }
 /// ```
-pub struct Study<'a, T: Real, const D: usize> {
+pub struct Study<'a, const D: usize> {
     scene: Scene<D>,
-    entries: Vec<Entry<'a, T, D>>,
+    entries: Vec<Entry<'a, D>>,
     levels: Vec<usize>,
     adaptive: Option<Adaptivity>,
-    mesh: Option<Mesh<T, D>>,
+    mesh: Option<Mesh<D>>,
     /// The result of [`check_fit`] for the given mesh, once known.
     fit: OnceCell<Option<String>>,
     /// Why a stated solution does not solve the problem, or none, as the first row found it.
     not_exact: OnceCell<Option<String>>,
-    reference: Option<Reference<'a, T, D>>,
-    solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
+    reference: Option<Reference<'a, D>>,
+    solvers: Vec<Arc<dyn InequalitySolver<f64> + 'a>>,
     quadrature: DataQuadrature,
     repeat: usize,
     #[cfg(feature = "report")]
@@ -86,24 +86,24 @@ pub struct Study<'a, T: Real, const D: usize> {
     fields: FieldFiles,
     #[cfg(feature = "report")]
     inequalities: Option<PathBuf>,
-    each_solution: Option<EachSolution<'a, T, D>>,
+    each_solution: Option<EachSolution<'a, D>>,
     steps: StepCounter,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
 /// A function that receives a solution with its label (of several solvers `LABEL-SOLVER`) and its level.
-type EachSolution<'a, T, const D: usize> =
-    Box<dyn Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a>;
+type EachSolution<'a, const D: usize> =
+    Box<dyn Fn(&str, usize, &Solved<'_, D>) -> Result<(), Error> + 'a>;
 
 /// A scheme, with its constraint set if that is not the problem's.
-struct Entry<'a, T: Real, const D: usize> {
-    scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+struct Entry<'a, const D: usize> {
+    scheme: Arc<dyn Scheme<D> + 'a>,
     set: Option<Arc<dyn ConstraintSet>>,
     /// The choices in its label, if those that are default are among them.
     shown: Option<SchemeOptions>,
 }
 
-impl<T: Real, const D: usize> Entry<'_, T, D> {
+impl<const D: usize> Entry<'_, D> {
     /// The label of its rows.
     fn label(&self, problem: &Problem<D>) -> String {
         self.scheme.label_with(problem.constraint_set(), self.shown)
@@ -124,7 +124,7 @@ fn with_set<const D: usize>(
     problem
 }
 
-impl<T: Real, const D: usize> fmt::Debug for Study<'_, T, D> {
+impl<const D: usize> fmt::Debug for Study<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let schemes: Vec<&str> = self.entries.iter().map(|e| e.scheme.name()).collect();
         f.debug_struct("Study")
@@ -137,7 +137,7 @@ impl<T: Real, const D: usize> fmt::Debug for Study<'_, T, D> {
     }
 }
 
-impl<'a, T: Real, const D: usize> Study<'a, T, D> {
+impl<'a, const D: usize> Study<'a, D> {
     /// A study of a scene, without schemes or levels yet.
     #[must_use]
     pub fn new(scene: Scene<D>) -> Self {
@@ -169,7 +169,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     ///
     /// # Errors
     /// [`Error::Mesh`] where two data claim one boundary group.
-    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<T, D>) -> Result<Self, Error> {
+    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<D>) -> Result<Self, Error> {
         let mesh = problem.bind_boundary(mesh)?;
         // the domain of a scene is not used where there is a mesh
         let domain = BoxDomain::centred(1.0);
@@ -182,8 +182,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero, [`Error::EqualNames`],
     /// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
-        compiled!(
-            T, D: fn(&Study<'_, T, D>) -> Result<(), Error>
+        compiled!(const D: fn(&Study<'_, D>) -> Result<(), Error>
                 = |study| study.where_exact_fails().map(|_| ())
         )(self)
     }
@@ -201,6 +200,13 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let of_entries = self.entries.iter().zip(&problems);
         let labels = of_entries.map(|(entry, p)| entry.label(p));
         check_names(labels, self.solvers().iter().map(|solver| solver.name()))?;
+        if self.solvers().iter().any(|solver| solver.precision() != self.precision()) {
+            return Err(Error::Parameter {
+                parameter: "precision",
+                value: "f64 and f32".to_owned(),
+                allowed: "one precision for all solvers of a study".to_owned(),
+            });
+        }
         self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
         for (entry, problem) in self.entries.iter().zip(problems) {
             check_scheme(&*entry.scheme, problem, self.quadrature)?;
@@ -231,8 +237,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// error: its row has the outcome and the message, also where data are not finite on a mesh, or leave
     /// no room for a solution.
     pub fn run(&self) -> Result<Report, Error> {
-        compiled!(
-            T, D: fn(&Study<'_, T, D>) -> Result<Report, Error>
+        compiled!(const D: fn(&Study<'_, D>) -> Result<Report, Error>
                 = |study| study.run_all()
         )(self)
     }
@@ -254,7 +259,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let find_reference = || self.find_reference(&reference_problem, &hierarchies);
         let reference = crossing.is_none().then(find_reference).flatten();
         let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
-        let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
+        let mut by_solver: Vec<Vec<NestedIteration<'_, D>>> = self
             .solvers()
             .iter()
             .map(|solver| hierarchies.iter().map(|h| self.nested(h, solver)).collect())
@@ -265,7 +270,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             for (nested, solver) in by_solver.iter_mut().zip(self.solvers()) {
                 let label = entry.label(problem);
                 for &level in &self.levels {
-                    let (kept, is_whole) = kept.next().unwrap_or_default();
+                    let (kept, is_whole) = kept.next().expect("one entry for each row");
                     if let Some(row) = kept.clone() {
                         (self.observer)(Progress::Kept(&row));
                         rows.push(row);
@@ -295,7 +300,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// The report of all rows.
     fn report(&self, mut rows: Vec<Row>) -> Report {
         fill_orders(&mut rows);
-        let program = || Program::new("study", T::NAME, rayon::current_num_threads(), self.repeat);
+        let program = || {
+            Program::new(
+                "study",
+                self.precision().name(),
+                rayon::current_num_threads(),
+                self.repeat,
+            )
+        };
         #[cfg(feature = "report")]
         let program = || self.journal.map_or_else(program, |journal| journal.program().clone());
         Report::new(program(), rows)
@@ -360,13 +372,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
 
     /// The meshes of all levels on which some scheme fits into the available bytes; the meshes of a reference are in the
     /// same hierarchy as these levels.
-    fn hierarchies(&self, available: Option<u64>) -> Result<Vec<Hierarchy<T, D>>, Error> {
+    fn hierarchies(&self, available: Option<u64>) -> Result<Vec<Hierarchy<D>>, Error> {
         match &self.reference {
             None => {
                 let mut levels = self.levels.clone();
                 levels.retain(|&level| {
-                    let fits =
-                        |of: &Entry<'_, T, D>| self.check_level(&*of.scheme, level, available);
+                    let fits = |of: &Entry<'_, D>| self.check_level(&*of.scheme, level, available);
                     self.entries.iter().any(|entry| fits(entry).is_ok())
                 });
                 self.coarsest().build_all(&levels)
@@ -379,7 +390,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
 
     /// From which the meshes of all levels are refined.
-    fn coarsest(&self) -> Coarsest<'_, T, D> {
+    fn coarsest(&self) -> Coarsest<'_, D> {
         match &self.mesh {
             Some(mesh) => Coarsest::Mesh(mesh),
             None => Coarsest::Domain(&self.scene.domain),
@@ -387,26 +398,31 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
 
     /// The solvers; the active set method if there is none.
-    fn solvers(&self) -> Vec<Arc<dyn InequalitySolver<T> + 'a>> {
+    fn solvers(&self) -> Vec<Arc<dyn InequalitySolver<f64> + 'a>> {
         match &self.solvers[..] {
             [] => vec![Arc::new(ActiveSet::default())],
             some => some.to_vec(),
         }
     }
 
+    /// The precision of all solvers.
+    fn precision(&self) -> Precision {
+        self.solvers()[0].precision()
+    }
+
     /// The problem of the scene on nested meshes.
     fn nested<'s>(
         &'s self,
-        hierarchy: &'s Hierarchy<T, D>,
-        solver: &Arc<dyn InequalitySolver<T> + 's>,
-    ) -> NestedIteration<'s, T, D> {
+        hierarchy: &'s Hierarchy<D>,
+        solver: &Arc<dyn InequalitySolver<f64> + 's>,
+    ) -> NestedIteration<'s, D> {
         self.with_settings(NestedIteration::new(&self.scene.problem, hierarchy), solver)
     }
     fn with_settings<'s>(
         &'s self,
-        nested: NestedIteration<'s, T, D>,
-        solver: &Arc<dyn InequalitySolver<T> + 's>,
-    ) -> NestedIteration<'s, T, D> {
+        nested: NestedIteration<'s, D>,
+        solver: &Arc<dyn InequalitySolver<f64> + 's>,
+    ) -> NestedIteration<'s, D> {
         nested
             .shared_solver(solver.clone())
             .quadrature(self.quadrature)

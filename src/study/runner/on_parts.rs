@@ -1,29 +1,24 @@
 //! A study over the parts of a mesh, one in each process.
 
 use std::path::Path;
+use std::rc::Rc;
 
 use super::{Entry, Progress, Study};
-use crate::distributed::{
-    Differences, DistributedIteration, DistributedSolved, ExchangeError, PartHierarchy, Process,
-    agree,
-};
+use crate::distributed::{Differences, Process, SolverOnParts};
 use crate::error::{Error, write_error};
-use crate::error_bound::BoundFigures;
 use crate::inequality::Outcome;
-use crate::measure::Errors;
-use crate::mesh::{Layers, Part};
-use crate::nested::{Hierarchy, descending, no_digits_of_forces};
+use crate::mesh::{Layers, Mesh};
+use crate::nested::{Coarsest, Hierarchy, NestedIteration, Solved};
 use crate::problem::Problem;
-use crate::scheme::ExpectedOrders;
+use crate::processes::{ExchangeError, agree};
+use crate::real::Precision;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
 use crate::study::memory::peak_memory_bytes;
 use crate::study::part_figures::{PartFigures, PartSeconds};
+use crate::study::reference::Measured;
 use crate::study::report::Report;
-use crate::study::row::{Iterations, Row, Seconds};
-
-/// Fewest cells of the coarsest mesh for each part.
-const CELLS_OF_PART: f64 = 16.0;
+use crate::study::row::{Row, Seconds};
 
 /// What a study over the parts of a mesh does besides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,13 +29,7 @@ pub struct PartChecks {
     pub by_engine: bool,
 }
 
-/// The meshes of some levels with their positions in the parts of nested meshes.
-struct PartsOfLevels<const D: usize> {
-    levels: Vec<usize>,
-    hierarchy: PartHierarchy<D>,
-}
-
-impl<const D: usize> Study<'_, f64, D> {
+impl<const D: usize> Study<'_, D> {
     /// Runs every scheme on every level over the parts of a mesh, of which this process has one. All processes
     /// run the same study, the first with journal and observer; all get the report.
     ///
@@ -53,49 +42,38 @@ impl<const D: usize> Study<'_, f64, D> {
         self.check_parts()?;
         let problems = self.problems();
         let hierarchies = self.hierarchies_on_parts(process)?;
-        let problem = &self.scene.problem;
-        let mut nested: Vec<DistributedIteration<'_, D>> = Vec::new();
-        for of in &hierarchies {
-            let of_levels = DistributedIteration::new(problem, &of.hierarchy, process.clone());
-            nested.push(of_levels.quadrature(self.quadrature).by_engine(checks.by_engine));
-        }
+        let solver = Rc::new(SolverOnParts::new(process.clone()).by_engine(checks.by_engine));
+        let on_parts = |hierarchy| {
+            let nested = NestedIteration::new(&self.scene.problem, hierarchy);
+            nested.quadrature(self.quadrature).system_solver(solver.clone())
+        };
+        let mut nested: Vec<NestedIteration<'_, D>> = hierarchies.iter().map(on_parts).collect();
         let admissible = self.check_crossing_on_parts(&hierarchies, process)?;
         let mut rows = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&problems) {
             let label = entry.label(problem);
             for &level in &self.levels {
                 (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                let found = hierarchies.iter().zip(&mut nested).find_map(|(of, nested)| {
-                    Some((of.levels.iter().position(|&l| l == level)?, nested))
-                });
-                let Some((position, nested)) = found else {
+                let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
+                let Some((position, nested)) = on_level.next() else {
                     unreachable!("a hierarchy has the level")
                 };
                 nested.replace_constraint_set(problem);
-                if let Err(error) = &admissible {
-                    let (of, place) = ((entry, problem), (level, nested.part(position)));
-                    let row = self.row_of_failure(of, place, error, (process, checks));
-                    self.finish_on_parts(row, &mut rows, process)?;
-                    continue;
-                }
-                let solved = nested.solve_on(position, &*entry.scheme);
-                let measured = solved.as_ref().map_err(Clone::clone).and_then(|solved| {
-                    let verify = checks.verify;
-                    self.row_on_parts((entry, problem), level, solved, (process, verify))
-                });
-                let part = nested.part(position);
-                let mut row = measured.unwrap_or_else(|error| {
-                    self.row_of_failure((entry, problem), (level, part), &error, (process, checks))
-                });
-                row.solver = if checks.by_engine { "engine" } else { "active-set" }.to_owned();
-                if let Some(at) = &failure {
-                    (row.error, row.against) = (Errors::default(), None);
-                    (row.bound.effectivity, row.bound.effectivity_of_v) = (None, None);
-                    row.expected_order = ExpectedOrders::default();
-                    row.warnings.push(format!(
-                        "the exact solution breaks the contact condition of this mesh at {at}: no errors"
-                    ));
-                }
+                let solved = match &admissible {
+                    Ok(()) => nested.solve_on(position, &*entry.scheme),
+                    Err(error) => Err(error.clone().into()),
+                };
+                let of = (entry, problem);
+                let place = (level, nested.mesh(position));
+                let failed =
+                    |error: &Error| self.row_of_failure(of, place, error, (process, checks));
+                let mut row = match &solved {
+                    Err(error) => failed(error),
+                    Ok(solved) => self
+                        .row_on_parts(of, level, solved, failure.as_deref(), (process, checks))
+                        .unwrap_or_else(|error| failed(&error)),
+                };
+                row.solver = nested.solver_name().to_owned();
                 self.finish_on_parts(row, &mut rows, process)?;
                 #[cfg(feature = "report")]
                 if let Ok(solved) = &solved {
@@ -109,16 +87,16 @@ impl<const D: usize> Study<'_, f64, D> {
     /// The error of all parts if lower bounds exceed upper ones on a part of the finest meshes.
     fn check_crossing_on_parts(
         &self,
-        hierarchies: &[PartsOfLevels<D>],
+        hierarchies: &[Hierarchy<D>],
         process: &Process,
     ) -> Result<Result<(), ExchangeError>, Error> {
         let Some(points) = self.points_of_bounds()? else { return Ok(Ok(())) };
-        let look_at = |of: &PartsOfLevels<D>| {
-            let part = of.hierarchy.part(of.levels.len() - 1);
+        let look_at = |hierarchy: &Hierarchy<D>| {
+            let Some(part) = hierarchy.part(hierarchy.n_meshes() - 1) else { return Ok(()) };
             let own = points.look(&self.scene.problem, &part.mesh);
             let seen = agree(own, &*process.exchange)?;
             let size = process.exchange.largest(&[seen.size()])?[0];
-            let own = seen.crossing::<f64>(size);
+            let own = seen.crossing(size);
             let own = own.map_or(Ok(()), |found| Err(found.error().in_whole_mesh(&part.cells)));
             agree(own, &*process.exchange).map_err(|error| match error {
                 ExchangeError::Failed { part, message, .. } => {
@@ -131,29 +109,25 @@ impl<const D: usize> Study<'_, f64, D> {
     }
 
     /// The parts of the fewest hierarchies that have all levels.
-    fn hierarchies_on_parts(&self, process: &Process) -> Result<Vec<PartsOfLevels<D>>, Error> {
-        let mut hierarchies: Vec<PartsOfLevels<D>> = Vec::new();
-        for level in descending(&self.levels) {
-            if !hierarchies.iter().any(|of| of.levels.contains(&level)) {
-                hierarchies.push(self.parts_of(level, process)?);
-            }
-        }
-        Ok(hierarchies)
+    fn hierarchies_on_parts(&self, process: &Process) -> Result<Vec<Hierarchy<D>>, Error> {
+        let layers = |mesh: &Mesh<D>| {
+            let layers = self.entries.iter().map(|entry| entry.scheme.layers(mesh).count).max();
+            Layers::across_vertices(layers.unwrap_or(1).max(1))
+        };
+        let process = (process.number, &process.exchange);
+        Coarsest::all_by(&self.levels, |level| self.coarsest().build_parts(level, layers, process))
     }
 
     /// The row of a run that failed, in all parts.
     fn row_of_failure(
         &self,
-        (entry, problem): (&Entry<'_, f64, D>, &Problem<D>),
-        (level, part): (usize, &Part<f64, D>),
-        error: &ExchangeError,
+        (entry, problem): (&Entry<'_, D>, &Problem<D>),
+        (level, mesh): (usize, &Mesh<D>),
+        error: &Error,
         (process, checks): (&Process, PartChecks),
     ) -> Row {
         // without a fault of the data the engine has failed
-        let outcome = match error {
-            ExchangeError::Failed { outcome: Some(outcome), .. } => *outcome,
-            _ => Outcome::Singular,
-        };
+        let outcome = ExchangeError::outcome_of(error).unwrap_or(Outcome::Singular);
         let ranks = PartFigures {
             count: process.count(),
             engine: process.engine.name(),
@@ -164,7 +138,7 @@ impl<const D: usize> Study<'_, f64, D> {
         let row = Row {
             ranks: Some(ranks),
             message: Some(error.to_string()),
-            mesh_size: part.mesh.mesh_size(),
+            mesh_size: mesh.mesh_size(),
             ..Row::new(&self.scene.name, D, entry.scheme.name(), level, outcome)
         };
         self.named(entry, problem, row, None)
@@ -192,7 +166,10 @@ impl<const D: usize> Study<'_, f64, D> {
 
     /// Refuses what parts of a mesh do not have.
     fn check_parts(&self) -> Result<(), Error> {
-        let others = self.solvers.iter().any(|solver| solver.name() != "active-set");
+        let others = self
+            .solvers
+            .iter()
+            .any(|solver| solver.name() != "active-set" || solver.precision() != Precision::Double);
         let asked = [
             ("solver", others),
             ("adaptive meshes", self.adaptive.is_some()),
@@ -203,179 +180,103 @@ impl<const D: usize> Study<'_, f64, D> {
             Some((parameter, _)) => Err(Error::Parameter {
                 parameter,
                 value: "over several processes".to_owned(),
-                allowed: "the active set method on uniform meshes, with errors against the exact solution"
+                allowed: "the active set method in `f64` on uniform meshes, with errors against the exact solution"
                     .to_owned(),
             }),
         }
     }
 
-    /// The parts of the nested meshes that end with a level.
-    fn parts_of(&self, level: usize, process: &Process) -> Result<PartsOfLevels<D>, Error> {
-        let coarsest = self.coarsest();
-        coarsest.check(level)?;
-        let mut levels = coarsest.levels_to(level);
-        let least = CELLS_OF_PART * process.count() as f64;
-        while levels.len() > 1 && coarsest.cells(levels[0]) < least {
-            levels.remove(0);
-        }
-        let first = coarsest.build(levels[0])?;
-        let mesh = Hierarchy::finest(&first);
-        let layers = self.entries.iter().map(|entry| entry.scheme.layers(mesh).count).max();
-        let layers = Layers::across_vertices(layers.unwrap_or(1).max(1));
-        let domain = self.mesh.is_none().then_some(&self.scene.domain);
-        let refinements = levels.len() - 1;
-        PartHierarchy::new(mesh, domain, (refinements, layers), process)
-            .map(|hierarchy| PartsOfLevels { levels, hierarchy })
-            .map_err(|error| Error::Parameter {
-                parameter: "level",
-                value: level.to_string(),
-                allowed: error.to_string(),
-            })
-    }
-
     /// The row of a solution.
     fn row_on_parts(
         &self,
-        (entry, problem): (&Entry<'_, f64, D>, &Problem<D>),
+        (entry, problem): (&Entry<'_, D>, &Problem<D>),
         level: usize,
-        solved: &DistributedSolved<'_, D>,
-        (process, verify): (&Process, bool),
-    ) -> Result<Row, ExchangeError> {
-        let solution = solved.solution();
-        let [cells, unknowns, nonzeros] = solved.sizes();
-        let has_iterate = solved.has_iterate();
-        let (error, bound, in_bound) = match has_iterate {
-            true => solved.errors_and_bound()?,
-            false => (Errors::default(), BoundFigures::default(), 0.0),
-        };
-        let energy = if has_iterate { Some(solved.energy()?) } else { None };
-        let resultant = if has_iterate { solved.resultant() } else { None };
-        let penetration = if has_iterate { solved.penetration()? } else { None };
-        let mut parts = self.part_figures(solved, unknowns, process)?;
-        if verify {
-            let whole = self.coarsest().build(level).map_err(|error| ExchangeError::Failed {
-                part: process.number,
-                message: error.to_string(),
-                outcome: None,
-            })?;
-            let scheme = &*entry.scheme;
-            parts.differences = Some(solved.verify(scheme, whole.finest(), self.quadrature)?);
+        solved: &Solved<'_, D>,
+        failure: Option<&str>,
+        (process, checks): (&Process, PartChecks),
+    ) -> Result<Row, Error> {
+        let mut parts = part_figures(solved, process)?;
+        if checks.verify {
+            let whole = self.coarsest().build(level);
+            let whole = agree(whole, &*process.exchange)?;
+            let (scheme, whole) = (&*entry.scheme, whole.finest());
+            parts.differences =
+                Some(Differences::from_whole(solved, scheme, whole, self.quadrature)?);
         }
-        let in_bound = process.exchange.largest(&[in_bound])?[0];
-        let mut warnings = warnings(solved);
-        if has_iterate && problem.is_constrained() && resultant.is_none() {
-            warnings.push(no_digits_of_forces("f64"));
-        }
-        let against = (has_iterate && problem.exact.is_some()).then_some("exact");
-        warnings.extend(bound.remark(against).filter(|_| solved.converged()));
+        let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
+        let mut row = self.named(entry, problem, row, failure);
+        Measured { failure, reference: None }.measure(&mut row, solved)?;
         let PartSeconds { mesh, assemble, number, start, solve } = parts.seconds;
-        let mut row = Row {
-            parameters: solved.discretisation().form().theory().parameters,
-            linear: solution.linear_solver.to_owned(),
-            cells: cells as usize,
-            unknowns: Some(unknowns as usize),
-            nonzeros: Some(nonzeros as usize),
-            mesh_size: solved.part().mesh.mesh_size(),
-            against: against.map(str::to_owned),
-            error,
-            rounding: if has_iterate { solved.rounding() } else { None },
-            objective: if has_iterate { solved.objective() } else { None },
-            energy,
-            active: if has_iterate { Some(solved.active() as usize) } else { None },
-            contact_measure: if has_iterate { solved.contact_measure() } else { None },
-            resultant,
-            resultants: if has_iterate { solved.resultants() } else { None },
-            iterations: Iterations {
-                outer: has_iterate.then_some(solution.outer),
-                linear: solution.linear,
-                levels: 0,
-                start_cycles: 0,
-                stages: solution.stages.clone(),
-            },
-            certificate: solved.certificate(),
-            seconds: Seconds {
-                bound: has_iterate.then_some(in_bound),
-                ..Seconds::new(mesh[1], assemble[1] + number[1], start[1] + solve[1])
-            },
-            bound,
-            peak_memory_bytes: parts.peak_memory_bytes.map(|[_, most]| most),
-            warnings,
-            ranks: Some(parts),
-            ..Row::new(&self.scene.name, D, entry.scheme.name(), level, solved.outcome())
+        let in_bound = process.exchange.largest(&[row.seconds.bound.unwrap_or(0.0)])?[0];
+        row.seconds = Seconds {
+            bound: row.seconds.bound.map(|_| in_bound),
+            ..Seconds::new(mesh[1], assemble[1] + number[1], start[1] + solve[1])
         };
-        row.set_penetration(penetration);
-        Ok(self.named(entry, problem, row, None))
+        row.peak_memory_bytes = parts.peak_memory_bytes.map(|[_, most]| most);
+        row.ranks = Some(parts);
+        Ok(row)
     }
 
     /// Writes the fields of the finest level, if fields are wanted and there is an iterate.
     #[cfg(feature = "report")]
     fn write_on_parts(
         &self,
-        entry: &Entry<'_, f64, D>,
+        entry: &Entry<'_, D>,
         problem: &Problem<D>,
         level: usize,
-        solved: &DistributedSolved<'_, D>,
+        solved: &Solved<'_, D>,
     ) -> Result<(), Error> {
         match &self.fields.directory {
             Some(directory) if self.levels.iter().max() == Some(&level) && solved.has_iterate() => {
                 let label = entry.label(problem);
                 let stem = file_name(&format!("{}-{label}", self.scene.name));
-                let list = directory.join(format!("{stem}.pvtu"));
-                solved
-                    .write_vtu(directory, &stem, self.fields.scalar)
-                    .map_err(|why| write_error(&list, why.to_string()))
+                let scalar = self.fields.scalar;
+                solved.write_vtu_of_parts(directory, &stem, |file| file.scalar(scalar))
             }
             _ => Ok(()),
         }
     }
-
-    /// The figures of all parts.
-    fn part_figures(
-        &self,
-        solved: &DistributedSolved<'_, D>,
-        unknowns: u64,
-        process: &Process,
-    ) -> Result<PartFigures, ExchangeError> {
-        let [own, ghosts] = solved.own_unknowns().map(|n| n as f64);
-        let memory = peak_memory_bytes().map_or(f64::NAN, |bytes| bytes as f64);
-        let iterations = solved.solution().linear as f64;
-        let own_numbers = [
-            solved.mesh_seconds,
-            solved.assemble_seconds,
-            solved.numbering_seconds,
-            solved.start_seconds,
-            solved.solve_seconds,
-            memory,
-        ];
-        let most = process.exchange.largest(&own_numbers)?;
-        let least = process.exchange.largest(&own_numbers.map(|x| -x))?;
-        let range = |k: usize| [-least[k], most[k]];
-        let of_solve = [own, solved.sent_bytes() as f64];
-        let largest = process.exchange.largest(&of_solve)?;
-        let ghosts = process.exchange.sum(&[ghosts])?[0];
-        let count = process.count();
-        Ok(PartFigures {
-            count,
-            engine: process.engine.name(),
-            ghosts: ghosts / unknowns as f64,
-            imbalance: largest[0] * count as f64 / unknowns as f64,
-            seconds: PartSeconds {
-                mesh: range(0),
-                assemble: range(1),
-                number: range(2),
-                start: range(3),
-                solve: range(4),
-            },
-            bytes_per_iteration: (iterations > 0.0).then(|| largest[1] / iterations),
-            peak_memory_bytes: (!most[5].is_nan()).then(|| range(5).map(|x| x as u64)),
-            differences: None,
-        })
-    }
 }
 
-/// What a user should know of a solution.
-fn warnings<const D: usize>(solved: &DistributedSolved<'_, D>) -> Vec<String> {
-    let is_unproven = !solved.inequality().is_definite;
-    let text = "no theory says that the matrix is positive definite: a penalty is below its proven bound, or a reaction is negative";
-    is_unproven.then(|| text.to_owned()).into_iter().collect()
+/// The figures of all parts.
+fn part_figures<const D: usize>(
+    solved: &Solved<'_, D>,
+    process: &Process,
+) -> Result<PartFigures, ExchangeError> {
+    let inequality = solved.inequality();
+    let own = (0..inequality.size()).filter(|&i| inequality.owns(i)).count();
+    let ghosts = (inequality.size() - own) as f64;
+    let [_, unknowns, _] = solved.sizes();
+    let memory = peak_memory_bytes().map_or(f64::NAN, |bytes| bytes as f64);
+    let iterations = solved.solution().linear as f64;
+    let own_numbers = [
+        solved.mesh_seconds,
+        solved.system().assemble_seconds,
+        solved.system().numbering_seconds,
+        solved.start_seconds,
+        solved.solve_seconds,
+        memory,
+    ];
+    let most = process.exchange.largest(&own_numbers)?;
+    let least = process.exchange.largest(&own_numbers.map(|x| -x))?;
+    let range = |k: usize| [-least[k], most[k]];
+    let largest = process.exchange.largest(&[own as f64, solved.sent_bytes as f64])?;
+    let ghosts = process.exchange.sum(&[ghosts])?[0];
+    let count = process.count();
+    Ok(PartFigures {
+        count,
+        engine: process.engine.name(),
+        ghosts: ghosts / unknowns as f64,
+        imbalance: largest[0] * count as f64 / unknowns as f64,
+        seconds: PartSeconds {
+            mesh: range(0),
+            assemble: range(1),
+            number: range(2),
+            start: range(3),
+            solve: range(4),
+        },
+        bytes_per_iteration: (iterations > 0.0).then(|| largest[1] / iterations),
+        peak_memory_bytes: (!most[5].is_nan()).then(|| range(5).map(|x| x as u64)),
+        differences: None,
+    })
 }

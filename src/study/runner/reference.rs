@@ -1,12 +1,15 @@
 //! The fine solution against which rows are measured.
 
+use std::sync::Arc;
+
 use super::{Progress, Study, with_set};
+use crate::inequality::ActiveSet;
 use crate::nested::{Hierarchy, NestedIteration};
 use crate::problem::Problem;
-use crate::real::Real;
+use crate::real::Precision;
 use crate::study::reference::{FoundReference, Reference};
 
-impl<T: Real, const D: usize> Study<'_, T, D> {
+impl<const D: usize> Study<'_, D> {
     /// The problem with the constraint set of the reference.
     pub(super) fn reference_problem(&self) -> Option<Problem<D>> {
         let reference = self.reference.as_ref()?;
@@ -17,8 +20,8 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     pub(super) fn find_reference<'h>(
         &'h self,
         problem: &'h Option<Problem<D>>,
-        hierarchies: &'h [Hierarchy<T, D>],
-    ) -> Option<FoundReference<'h, T, D>> {
+        hierarchies: &'h [Hierarchy<D>],
+    ) -> Option<FoundReference<'h, D>> {
         let (reference, hierarchy) = (self.reference.as_ref()?, hierarchies.first()?);
         Some(self.solve_reference(reference, problem.as_ref()?, hierarchy))
     }
@@ -26,14 +29,19 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// The reference and its name in rows. Where it cannot be had, rows have no errors and say why.
     fn solve_reference<'h>(
         &'h self,
-        reference: &Reference<'_, T, D>,
+        reference: &Reference<'_, D>,
         problem: &'h Problem<D>,
-        hierarchy: &'h Hierarchy<T, D>,
-    ) -> FoundReference<'h, T, D> {
+        hierarchy: &'h Hierarchy<D>,
+    ) -> FoundReference<'h, D> {
         let name = reference.name(self.scene.problem.constraint_set());
         (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
+        // errors in single precision are measured against a reference in double precision
+        let solver = match self.precision() {
+            Precision::Double => self.solvers()[0].clone(),
+            Precision::Single => Arc::new(ActiveSet::default()),
+        };
         let mut nested = NestedIteration::new(problem, hierarchy)
-            .shared_solver(self.solvers()[0].clone())
+            .shared_solver(solver)
             .quadrature(self.quadrature);
         let fails = |why: &str| format!("the reference, {name}, was not found: {why}");
         let solved = nested.solve(&*reference.scheme).map_err(|e| fails(&e.to_string()))?;

@@ -9,10 +9,9 @@ use crate::inequality::Outcome;
 use crate::mesh::Mesh;
 use crate::nested::{NestedIteration, Phase, Solved};
 use crate::problem::Problem;
-use crate::real::Real;
 use crate::scenes::check::Violation;
 use crate::scenes::check_exact_on;
-use crate::scheme::{AnyScheme, ExpectedOrders};
+use crate::scheme::{ExpectedOrders, Scheme};
 use crate::study::crossing::Crossing;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
@@ -21,7 +20,7 @@ use crate::study::reference::Measured;
 use crate::study::row::Row;
 use crate::study::setting::setting;
 
-impl<T: Real, const D: usize> Study<'_, T, D> {
+impl<const D: usize> Study<'_, D> {
     /// Adds a row that is finished.
     pub(super) fn finish<'r>(&self, row: Row, rows: &'r mut Vec<Row>) -> Result<&'r Row, Error> {
         #[cfg(feature = "report")]
@@ -37,12 +36,12 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// where the solve needs more than the bytes that were available before the first row.
     pub(super) fn row_or_reason<'p>(
         &self,
-        nested: &mut [NestedIteration<'p, T, D>],
-        of: (&Entry<'_, T, D>, &'p Problem<D>),
+        nested: &mut [NestedIteration<'p, D>],
+        of: (&Entry<'_, D>, &'p Problem<D>),
         (level, solver): (usize, &str),
-        measured: Measured<'_, 'p, T, D>,
+        measured: Measured<'_, 'p, D>,
         (crossing, available): (&Option<Crossing<D>>, Option<u64>),
-    ) -> Result<(Row, Option<Solved<'p, T, D>>), Error> {
+    ) -> Result<(Row, Option<Solved<'p, D>>), Error> {
         // meshes that did not fit in the beginning were not built
         let available = available.and_then(|bytes| Some(bytes.min(memory_of_process()?)));
         if let Err(error) = self.check_level(&*of.0.scheme, level, available) {
@@ -59,11 +58,11 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// none.
     pub(super) fn row<'p>(
         &self,
-        nested: &mut [NestedIteration<'p, T, D>],
-        (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
+        nested: &mut [NestedIteration<'p, D>],
+        (entry, problem): (&Entry<'_, D>, &'p Problem<D>),
         level: usize,
-        measured: Measured<'_, 'p, T, D>,
-    ) -> Result<(Row, Option<Solved<'p, T, D>>), Error> {
+        measured: Measured<'_, 'p, D>,
+    ) -> Result<(Row, Option<Solved<'p, D>>), Error> {
         let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
         let Some((position, nested)) = on_level.next() else {
             unreachable!("a hierarchy has the level")
@@ -87,8 +86,8 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// The row of a problem whose bounds cross on the finest mesh, on one level of these hierarchies.
     fn row_of_crossing<'p>(
         &self,
-        nested: &[NestedIteration<'p, T, D>],
-        of: (&Entry<'_, T, D>, &'p Problem<D>),
+        nested: &[NestedIteration<'p, D>],
+        of: (&Entry<'_, D>, &'p Problem<D>),
         level: usize,
         crossing: &Crossing<D>,
     ) -> Result<Row, Error> {
@@ -106,8 +105,8 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// The error itself if another mesh would have it too.
     pub(super) fn row_without(
         &self,
-        (entry, problem): (&Entry<'_, T, D>, &Problem<D>),
-        (level, mesh): (usize, &Mesh<T, D>),
+        (entry, problem): (&Entry<'_, D>, &Problem<D>),
+        (level, mesh): (usize, &Mesh<D>),
         solver: &str,
         failure: Option<&str>,
         error: Error,
@@ -129,11 +128,11 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// The row of a solution.
     pub(super) fn row_of<'p>(
         &self,
-        entry: &Entry<'_, T, D>,
+        entry: &Entry<'_, D>,
         level: usize,
-        solved: &Solved<'p, T, D>,
+        solved: &Solved<'p, D>,
         solver: &str,
-        measured: Measured<'_, 'p, T, D>,
+        measured: Measured<'_, 'p, D>,
     ) -> Result<Row, Error> {
         (self.observer)(Progress::Entered(Phase::Measures));
         let row = self.measured_row(entry, level, solved, measured)?;
@@ -167,8 +166,8 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         &self,
         row: &Row,
         levels: &[usize],
-        solved: &Solved<'p, T, D>,
-        measured: Measured<'_, 'p, T, D>,
+        solved: &Solved<'p, D>,
+        measured: Measured<'_, 'p, D>,
         unwritten: &mut Option<Error>,
     ) -> Result<(), Error> {
         let Row { scene, label, level, .. } = row;
@@ -193,10 +192,10 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// The row of a solution with its errors and totals, without solver and memory.
     pub(super) fn measured_row<'p>(
         &self,
-        entry: &Entry<'_, T, D>,
+        entry: &Entry<'_, D>,
         level: usize,
-        solved: &Solved<'p, T, D>,
-        measured: Measured<'_, 'p, T, D>,
+        solved: &Solved<'p, D>,
+        measured: Measured<'_, 'p, D>,
     ) -> Result<Row, Error> {
         let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
         let problem = solved.discretisation().problem();
@@ -213,7 +212,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
 
     /// Why the solution that is stated for a problem with data by name does not solve it, if that is found on the mesh
     /// of the first row. Scenes are tested by [`check_scene`](crate::scenes::check_scene).
-    fn why_not_exact(&self, solved: &Solved<'_, T, D>) -> Option<String> {
+    fn why_not_exact(&self, solved: &Solved<'_, D>) -> Option<String> {
         let problem = solved.discretisation().problem();
         let found = || {
             let name = &self.scene.name;
@@ -232,7 +231,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// The row with the names of constraint set and label and the promised orders.
     pub(super) fn named(
         &self,
-        entry: &Entry<'_, T, D>,
+        entry: &Entry<'_, D>,
         problem: &Problem<D>,
         row: Row,
         failure: Option<&str>,
@@ -255,7 +254,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     /// The orders that theory proves; none without an exact solution that holds on the mesh.
     fn expected_orders(
         &self,
-        scheme: &dyn AnyScheme<T, D>,
+        scheme: &dyn Scheme<D>,
         set: &dyn ConstraintSet,
         failure: Option<&str>,
     ) -> ExpectedOrders {

@@ -14,13 +14,12 @@ use crate::mesh::Mesh;
 use crate::nested::Solved;
 #[cfg(feature = "report")]
 use crate::paraview::FieldScalar;
-use crate::real::Real;
-use crate::scheme::{AnyScheme, NamedScheme, SchemeOptions};
+use crate::scheme::{NamedScheme, Scheme, SchemeOptions};
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
 use crate::study::reference::Reference;
 
-impl<'a, T: Real, const D: usize> Study<'a, T, D> {
+impl<'a, const D: usize> Study<'a, D> {
     /// Measures all rows against the solution of this scheme on a level, in place of the exact one: errors,
     /// orders, multiplier and contact set. On a domain the level is a power of two times every other level
     /// and at least four times the finest; on a mesh it is at least two refinements finer.
@@ -28,7 +27,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// ```
     /// use unilateral::prelude::*;
     /// # fn main() -> Result<(), Error> {
-    /// let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    /// let report = Study::<2>::new(scenes::radial(1.0))
     ///     .scheme(ConformingP1)
     ///     .levels([8, 16])
     ///     .reference(ConformingP2, 64)
@@ -39,7 +38,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// # }
     /// ```
     #[must_use]
-    pub fn reference(mut self, scheme: impl AnyScheme<T, D> + 'a, level: usize) -> Self {
+    pub fn reference(mut self, scheme: impl Scheme<D> + 'a, level: usize) -> Self {
         self.reference = Some(Reference { scheme: Arc::new(scheme), set: None, level });
         self
     }
@@ -51,7 +50,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// As [`Study::reference`], with a scheme that other studies have too.
     pub(crate) fn shared_reference(
         mut self,
-        scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+        scheme: Arc<dyn Scheme<D> + 'a>,
         set: Option<Arc<dyn ConstraintSet>>,
         level: usize,
     ) -> Self {
@@ -60,29 +59,25 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
-    pub fn scheme(self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
+    pub fn scheme(self, scheme: impl Scheme<D> + 'a) -> Self {
         self.shared_scheme(Arc::new(scheme), None, None)
     }
     /// Adds a scheme with a constraint set of its own, so that one scheme may stand beside itself with
     /// other bounds.
     #[must_use]
-    pub fn scheme_on(
-        self,
-        scheme: impl AnyScheme<T, D> + 'a,
-        set: impl ConstraintSet + 'static,
-    ) -> Self {
+    pub fn scheme_on(self, scheme: impl Scheme<D> + 'a, set: impl ConstraintSet + 'static) -> Self {
         self.shared_scheme(Arc::new(scheme), Some(Arc::new(set)), None)
     }
     /// Adds a scheme chosen at run time, with the constraint set of the problem.
     #[must_use]
-    pub fn boxed_scheme(self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
+    pub fn boxed_scheme(self, scheme: Box<dyn Scheme<D> + 'a>) -> Self {
         self.shared_scheme(scheme.into(), None, None)
     }
     /// Adds a scheme chosen at run time, with a constraint set of its own.
     #[must_use]
     pub fn boxed_scheme_on(
         self,
-        scheme: Box<dyn AnyScheme<T, D> + 'a>,
+        scheme: Box<dyn Scheme<D> + 'a>,
         set: impl ConstraintSet + 'static,
     ) -> Self {
         self.shared_scheme(scheme.into(), Some(Arc::new(set)), None)
@@ -95,7 +90,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Adds a scheme that other studies have too, with its own constraint set and the choices in its label.
     pub(crate) fn shared_scheme(
         mut self,
-        scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+        scheme: Arc<dyn Scheme<D> + 'a>,
         set: Option<Arc<dyn ConstraintSet>>,
         shown: Option<SchemeOptions>,
     ) -> Self {
@@ -110,7 +105,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     /// Runs on this mesh and refinements of it instead of the scene's own domain.
     #[must_use]
-    pub fn on_mesh(mut self, mesh: Mesh<T, D>) -> Self {
+    pub fn on_mesh(mut self, mesh: Mesh<D>) -> Self {
         self.mesh = Some(mesh);
         (self.fit, self.not_exact) = (OnceCell::new(), OnceCell::new());
         self
@@ -118,12 +113,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Adds a solver of the inequality; without one, the active set method runs. Several solvers stand
     /// side by side: every scheme runs with each of them, also on coarser levels for its start.
     #[must_use]
-    pub fn solver(self, solver: impl InequalitySolver<T> + 'a) -> Self {
+    pub fn solver(self, solver: impl InequalitySolver<f64> + 'a) -> Self {
         self.boxed_solver(Box::new(solver))
     }
     /// Adds a solver of the inequality chosen at run time.
     #[must_use]
-    pub fn boxed_solver(mut self, solver: Box<dyn InequalitySolver<T> + 'a>) -> Self {
+    pub fn boxed_solver(mut self, solver: Box<dyn InequalitySolver<f64> + 'a>) -> Self {
         self.solvers.push(solver.into());
         self
     }
@@ -166,7 +161,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     #[must_use]
     pub fn each_solution(
         mut self,
-        f: impl Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a,
+        f: impl Fn(&str, usize, &Solved<'_, D>) -> Result<(), Error> + 'a,
     ) -> Self {
         self.each_solution = Some(Box::new(f));
         self

@@ -23,8 +23,8 @@ const QUADRATICS: [&str; 9] = [
 ];
 
 fn run<const D: usize>(scene: Scene<D>, schemes: &[&str], levels: [usize; 2]) -> Vec<Row> {
-    let named = |name: &&str| scheme_by_name::<f64, D>(name, &Default::default()).unwrap();
-    let study = Study::<f64, D>::new(scene).levels(levels);
+    let named = |name: &&str| scheme_by_name::<D>(name, &Default::default()).unwrap();
+    let study = Study::<D>::new(scene).levels(levels);
     let study = schemes.iter().fold(study, |study, name| study.boxed_scheme(named(name)));
     study.run().unwrap().rows
 }
@@ -33,15 +33,15 @@ fn run<const D: usize>(scene: Scene<D>, schemes: &[&str], levels: [usize; 2]) ->
 /// of the unit box.
 fn waves<const D: usize>() -> Scene<D> {
     let slope = |k: usize| [4.0, 2.0, 1.0][k];
-    let phase = move |x: &Point<f64, D>| (0..D).map(|k| slope(k) * x[k]).sum::<f64>();
-    let alpha = move |x: &Point<f64, D>| 1.0 + 0.9 * phase(x).sin();
-    let value = |x: &Point<f64, D>| x.iter().map(|x| (PI * x).sin()).product::<f64>();
-    let gradient = |x: &Point<f64, D>| -> Point<f64, D> {
+    let phase = move |x: &Point<D>| (0..D).map(|k| slope(k) * x[k]).sum::<f64>();
+    let alpha = move |x: &Point<D>| 1.0 + 0.9 * phase(x).sin();
+    let value = |x: &Point<D>| x.iter().map(|x| (PI * x).sin()).product::<f64>();
+    let gradient = |x: &Point<D>| -> Point<D> {
         let factor =
             |k: usize, j: usize| if j == k { PI * (PI * x[j]).cos() } else { (PI * x[j]).sin() };
         Point::from_fn(|k, _| (0..D).map(|j| factor(k, j)).product())
     };
-    let load = move |x: &Point<f64, D>| {
+    let load = move |x: &Point<D>| {
         let g = gradient(x);
         let along: f64 = (0..D).map(|k| slope(k) * g[k]).sum();
         alpha(x) * D as f64 * PI * PI * value(x) - 0.9 * phase(x).cos() * along
@@ -100,13 +100,13 @@ fn all_quadratics_keep_their_orders() {
 fn layers() -> Scene<2> {
     let a = |y: f64| if y < 0.5 { 1.0 } else { 10.0 };
     let g = move |y: f64| 0.5_f64.min(y).sin() + (y.max(0.5).sin() - 0.5_f64.sin()) / 10.0;
-    let alpha = move |x: &Point<f64, 2>| a(x[1]) * (1.0 + x[0]);
-    let value = move |x: &Point<f64, 2>| (PI * x[0]).sin() * g(x[1]);
-    let gradient = move |x: &Point<f64, 2>| {
+    let alpha = move |x: &Point<2>| a(x[1]) * (1.0 + x[0]);
+    let value = move |x: &Point<2>| (PI * x[0]).sin() * g(x[1]);
+    let gradient = move |x: &Point<2>| {
         let (sin, cos) = (PI * x[0]).sin_cos();
         Point::from([PI * cos * g(x[1]), sin * x[1].cos() / a(x[1])])
     };
-    let load = move |x: &Point<f64, 2>| {
+    let load = move |x: &Point<2>| {
         let (sin, cos) = (PI * x[0]).sin_cos();
         let along = a(x[1]) * g(x[1]) * (PI * cos - (1.0 + x[0]) * PI * PI * sin);
         (1.0 + x[0]) * sin * x[1].sin() - along
@@ -145,15 +145,15 @@ fn forms_stay_coercive_where_the_coefficient_varies_strongly() {
 #[test]
 fn a_constant_and_a_coefficient_without_variation_in_cells_give_the_same_bits() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [4, 4]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [4, 4]).unwrap();
     let matrix = |name: &str, problem: Problem<2>| {
-        let scheme = scheme_by_name::<f64, 2>(name, &Default::default()).unwrap();
+        let scheme = scheme_by_name::<2>(name, &Default::default()).unwrap();
         let quadrature = DataQuadrature::default();
         Discretisation::new(&*scheme, &problem, &mesh, quadrature).unwrap().matrix().values
     };
     for name in QUADRATICS {
         // one at every barycentre, and but for rounding everywhere
-        let rounded = |x: &Point<f64, 2>| 1.0 + 4.0 * f64::EPSILON * (12.0 * PI * x[0]).sin();
+        let rounded = |x: &Point<2>| 1.0 + 4.0 * f64::EPSILON * (12.0 * PI * x[0]).sin();
         assert_eq!(
             matrix(name, Problem::new().coefficient(rounded)),
             matrix(name, Problem::new()),
@@ -161,7 +161,7 @@ fn a_constant_and_a_coefficient_without_variation_in_cells_give_the_same_bits() 
         );
     }
     // linears see the value at barycentres alone, whatever the coefficient is elsewhere
-    let within = |x: &Point<f64, 2>| 2.0 + (12.0 * PI * x[0]).sin() * (12.0 * PI * x[1]).sin();
+    let within = |x: &Point<2>| 2.0 + (12.0 * PI * x[0]).sin() * (12.0 * PI * x[1]).sin();
     for name in ["p1", "cr", "sipg", "ldg", "br2", "wopsip"] {
         let all = matrix(name, Problem::new().coefficient(within));
         let two = matrix(name, Problem::new().coefficient(|_| 2.0));
@@ -173,7 +173,7 @@ fn a_constant_and_a_coefficient_without_variation_in_cells_give_the_same_bits() 
 #[test]
 fn promises_know_the_coefficient() {
     let order = |setting: &Setting| -> ExpectedOrders {
-        Scheme::<f64, 2>::expected_orders(&ConformingP2, setting)
+        Scheme::<2>::expected_orders(&ConformingP2, setting)
     };
     let smooth = Setting::new(2, Regularity::smooth()).with_regular_dual(true);
     assert_eq!(order(&smooth).h1, Some(2.0));
@@ -182,6 +182,6 @@ fn promises_know_the_coefficient() {
     assert_eq!(order(&stated.with_coefficient(true)).h1, Some(2.0));
     // linears see one value in each cell, which is enough for their order
     let linears: ExpectedOrders =
-        Scheme::<f64, 2>::expected_orders(&ConformingP1, &smooth.with_coefficient(true));
+        Scheme::<2>::expected_orders(&ConformingP1, &smooth.with_coefficient(true));
     assert_eq!(linears.h1, Some(1.0));
 }

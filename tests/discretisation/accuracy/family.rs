@@ -15,7 +15,7 @@ use unilateral::scenes::Scene;
 use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 /// The scheme of this name with its default penalty.
-fn named<const D: usize>(name: &str) -> Boxed<f64, D> {
+fn named<const D: usize>(name: &str) -> Boxed<D> {
     scheme_by_name(name, &SchemeOptions::default()).unwrap()
 }
 
@@ -27,13 +27,13 @@ const QUADRATICS: [&str; 8] =
     ["sipg-p2", "nipg-p2", "iipg-p2", "ldg-p2", "ldg-switch-p2", "br2-p2", "bmmpr-p2", "wopsip-p2"];
 
 /// L2 norm and broken H1 seminorm of a difference of linear functions on each cell.
-fn distance<const D: usize>(mesh: &Mesh<f64, D>, one: &[f64], other: &[f64]) -> [f64; 2] {
+fn distance<const D: usize>(mesh: &Mesh<D>, one: &[f64], other: &[f64]) -> [f64; 2] {
     let rule = Rule::new(D, 2);
     let [mut l2, mut h1] = [0.0; 2];
     for (cell, (one, other)) in one.chunks(D + 1).zip(other.chunks(D + 1)).enumerate() {
         let geometry = mesh.geometry(cell);
         let values: Vec<f64> = one.iter().zip(other).map(|(a, b)| a - b).collect();
-        let slope = |s: Point<f64, D>, k: usize| s + geometry.gradient(k) * values[k];
+        let slope = |s: Point<D>, k: usize| s + geometry.gradient(k) * values[k];
         h1 += geometry.volume * (0..=D).fold(Point::zeros(), slope).norm_squared();
         for (point, weight) in rule.iter() {
             let value: f64 = point.iter().zip(&values).map(|(b, u)| b * u).sum();
@@ -97,11 +97,11 @@ fn linears_under_a_signorini_condition() {
 
 /// The equation `-Laplace u = D u` of a product of cosines, Dirichlet data on the whole boundary.
 fn smooth<const D: usize>() -> Scene<D> {
-    let angle = |x: &Point<f64, D>, k: usize| x[k] + 0.3 * k as f64;
-    let value = move |x: &Point<f64, D>| (0..D).map(|k| angle(x, k).cos()).product::<f64>();
-    let gradient = move |x: &Point<f64, D>| Point::from_fn(|k, _| -value(x) * angle(x, k).tan());
+    let angle = |x: &Point<D>, k: usize| x[k] + 0.3 * k as f64;
+    let value = move |x: &Point<D>| (0..D).map(|k| angle(x, k).cos()).product::<f64>();
+    let gradient = move |x: &Point<D>| Point::from_fn(|k, _| -value(x) * angle(x, k).tan());
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let load = move |x: &Point<f64, D>| D as f64 * value(x);
+    let load = move |x: &Point<D>| D as f64 * value(x);
     own_scene("smooth", domain, Problem::new().source(load).exact(value, gradient))
 }
 

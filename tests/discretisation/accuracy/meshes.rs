@@ -14,15 +14,14 @@ use unilateral::study::{Row, check_fit};
 
 /// The rows of schemes on a mesh and its refinements.
 fn rows_on<const D: usize>(
-    mesh: Mesh<f64, D>,
+    mesh: Mesh<D>,
     scene: Scene<D>,
-    schemes: Vec<Entry<f64, D>>,
+    schemes: Vec<Entry<D>>,
     refinements: impl IntoIterator<Item = usize>,
 ) -> Vec<Row> {
-    let study = Study::<f64, D>::new(scene).on_mesh(mesh).levels(refinements);
-    let add = |study: Study<'static, f64, D>, entry: Entry<f64, D>| {
-        study.boxed_scheme_on(entry.scheme, entry.set)
-    };
+    let study = Study::<D>::new(scene).on_mesh(mesh).levels(refinements);
+    let add =
+        |study: Study<'static, D>, entry: Entry<D>| study.boxed_scheme_on(entry.scheme, entry.set);
     schemes.into_iter().fold(study, add).run().unwrap().rows
 }
 
@@ -48,7 +47,7 @@ fn check_pair(checks: &mut Checks, coarse: &Row, fine: &Row, halvings: usize) {
 }
 
 /// Runs every scheme on two refinements of a mesh in the plane.
-fn on(mesh: Mesh<f64, 2>, scene: Scene<2>, levels: [usize; 2]) {
+fn on(mesh: Mesh<2>, scene: Scene<2>, levels: [usize; 2]) {
     assert_eq!(check_fit(&scene, &mesh).unwrap(), None, "the exact solution does not hold");
     let mut checks = Checks::default();
     for pair in rows_on(mesh, scene, all_schemes(), levels).chunks(2) {
@@ -60,7 +59,7 @@ fn on(mesh: Mesh<f64, 2>, scene: Scene<2>, levels: [usize; 2]) {
 }
 
 /// Runs schemes on a mesh in space and its refinement.
-fn on_refined(mesh: &Mesh<f64, 3>, build: fn() -> Scene<3>, schemes: fn() -> Vec<Entry<f64, 3>>) {
+fn on_refined(mesh: &Mesh<3>, build: fn() -> Scene<3>, schemes: fn() -> Vec<Entry<3>>) {
     assert_eq!(check_fit(&build(), mesh).unwrap(), None, "the exact solution does not hold");
     let mut checks = Checks::default();
     let coarse = rows_on(mesh.clone(), build(), schemes(), [0]);
@@ -72,20 +71,20 @@ fn on_refined(mesh: &Mesh<f64, 3>, build: fn() -> Scene<3>, schemes: fn() -> Vec
 }
 
 /// The schemes with few unknowns.
-fn conforming_and_not() -> Vec<Entry<f64, 3>> {
+fn conforming_and_not() -> Vec<Entry<3>> {
     vec![entry(ConformingP1, Nodes), entry(NonconformingP1, Nodes)]
 }
 
 /// Certificates of every scheme on a mesh as it is.
-fn certified(mesh: Mesh<f64, 3>, scene: Scene<3>) {
+fn certified(mesh: Mesh<3>, scene: Scene<3>) {
     let mut checks = Checks::default();
     rows_on(mesh, scene, all_schemes(), [0]).iter().for_each(|row| checks.certified(row, 1e-9));
     checks.finish();
 }
 
 /// The mesh with its last two axes exchanged.
-fn turned(mesh: &Mesh<f64, 3>) -> Mesh<f64, 3> {
-    let vertices = mesh.vertices().iter().map(|x| Point::<f64, 3>::new(x[0], x[2], x[1])).collect();
+fn turned(mesh: &Mesh<3>) -> Mesh<3> {
+    let vertices = mesh.vertices().iter().map(|x| Point::<3>::new(x[0], x[2], x[1])).collect();
     let facet = |f: &BoundaryFacet| {
         let v: Vec<u32> = mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
         TaggedFacet { vertices: [v[0], v[1], v[2]], part: f.part }
@@ -99,7 +98,7 @@ fn radial_in_space() -> Scene<3> {
 }
 
 /// The block of the folder, with contact at its lower end.
-fn block() -> Mesh<f64, 3> {
+fn block() -> Mesh<3> {
     let mesh = mesh_of_folder("block.msh");
     // contact of the file is at y = 0, of the scene at z = 0: the gap contradicts the Dirichlet data
     let error = check_fit(&scenes::signorini_harmonic::<3>(), &mesh).unwrap_err();
@@ -109,7 +108,7 @@ fn block() -> Mesh<f64, 3> {
 
 #[test]
 fn signorini_on_small_meshes() {
-    let refine = |mesh: Mesh<f64, 2>| mesh.refine().unwrap().0;
+    let refine = |mesh: Mesh<2>| mesh.refine().unwrap().0;
     let plate = refine(refine(small_mesh("plate.msh")));
     on(plate.clone(), scenes::signorini_harmonic(), [0, 1]);
     on(plate.clone(), scenes::signorini_2d(), [0, 1]);
@@ -120,8 +119,8 @@ fn signorini_on_small_meshes() {
 
 /// Refinement must not make cells much worse than they were: the volume over the cube of the
 /// diameter, at its least.
-fn keeps_shape(mesh: &Mesh<f64, 3>) {
-    let shape = |mesh: &Mesh<f64, 3>| {
+fn keeps_shape(mesh: &Mesh<3>) {
+    let shape = |mesh: &Mesh<3>| {
         let of = |c| mesh.geometry(c).volume / mesh.cell_diameter(c).powi(3);
         (0..mesh.n_cells()).map(of).fold(f64::INFINITY, f64::min)
     };

@@ -50,7 +50,7 @@ fn check_orders(checks: &mut Checks, rows: &[Row], bands: Bands) {
 /// Checks the orders of every scheme on a scene.
 fn orders<const D: usize>(scene: Scene<D>, levels: &[usize], bands: Bands) {
     let mut checks = Checks::default();
-    check_orders(&mut checks, &rows::<f64, D>(scene, all_schemes(), levels.to_vec()), bands);
+    check_orders(&mut checks, &rows::<D>(scene, all_schemes(), levels.to_vec()), bands);
     checks.finish();
 }
 
@@ -79,7 +79,7 @@ fn hertz_contact() {
 #[test]
 fn radial_obstacle_on_an_interval() {
     let levels = [32, 64, 128, 256, 512];
-    let found = rows::<f64, 1>(scenes::radial(1.0), all_schemes(), levels);
+    let found = rows::<1>(scenes::radial(1.0), all_schemes(), levels);
     let mut checks = Checks::default();
     for of_scheme in found.chunks(levels.len()) {
         for row in of_scheme {
@@ -118,7 +118,7 @@ const SPACE_OVER_PENALISED: Bands = Bands { h1: [0.95, 1.45], l2: [1.85, 2.25] }
 /// Checks the orders of every scheme on a scene in space.
 fn orders_in_space(scene: Scene<3>, levels: &[usize]) {
     let mut checks = Checks::default();
-    let found = rows::<f64, 3>(scene, all_schemes(), levels.to_vec());
+    let found = rows::<3>(scene, all_schemes(), levels.to_vec());
     for of_scheme in found.chunks(levels.len()) {
         let over_penalised = of_scheme[0].scheme == "wopsip";
         let bands = if over_penalised { SPACE_OVER_PENALISED } else { SPACE };
@@ -149,14 +149,14 @@ fn unit_box<const D: usize>() -> BoxDomain<D> {
 
 /// Poisson's equation with the product of sines, no constraint.
 fn smooth<const D: usize>() -> Scene<D> {
-    let value = |x: &Point<f64, D>| x.iter().map(|t| (PI * t).sin()).product::<f64>();
-    let gradient = |x: &Point<f64, D>| {
+    let value = |x: &Point<D>| x.iter().map(|t| (PI * t).sin()).product::<f64>();
+    let gradient = |x: &Point<D>| {
         let factor = |k: usize, j: usize| {
             if j == k { PI * (PI * x[j]).cos() } else { (PI * x[j]).sin() }
         };
         Point::from_fn(|k, _| (0..D).map(|j| factor(k, j)).product())
     };
-    let load = move |x: &Point<f64, D>| D as f64 * PI * PI * value(x);
+    let load = move |x: &Point<D>| D as f64 * PI * PI * value(x);
     own_scene("smooth", unit_box(), Problem::new().source(load).exact(value, gradient))
 }
 
@@ -164,11 +164,11 @@ fn smooth<const D: usize>() -> Scene<D> {
 /// elsewhere, neither of them zero; the solution is the exponential of the mean of `2x - x_0`.
 fn mixed<const D: usize>() -> Scene<D> {
     let slope = |k: usize| if k == 0 { 1.0 } else { 2.0 } / D as f64;
-    let value = move |x: &Point<f64, D>| (0..D).map(|k| slope(k) * x[k]).sum::<f64>().exp();
-    let gradient = move |x: &Point<f64, D>| Point::from_fn(|k, _| slope(k)) * value(x);
-    let reaction = |x: &Point<f64, D>| 1.0 + x[0];
+    let value = move |x: &Point<D>| (0..D).map(|k| slope(k) * x[k]).sum::<f64>().exp();
+    let gradient = move |x: &Point<D>| Point::from_fn(|k, _| slope(k)) * value(x);
+    let reaction = |x: &Point<D>| 1.0 + x[0];
     let squares: f64 = (0..D).map(|k| slope(k) * slope(k)).sum();
-    let load = move |x: &Point<f64, D>| (reaction(x) - 3.0 * squares) * value(x);
+    let load = move |x: &Point<D>| (reaction(x) - 3.0 * squares) * value(x);
     let problem =
         Problem::new().source(load).coefficient(|_| 3.0).reaction(reaction).exact(value, gradient);
     let mut domain = unit_box();

@@ -37,7 +37,7 @@ impl ConstraintSet for ByMeans {
 /// H1.
 #[test]
 fn own_sets_stand_beside_those_of_the_library() {
-    let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    let report = Study::<2>::new(scenes::radial(1.0))
         .scheme(Sipg::default())
         .scheme_on(Sipg::default(), FacetMeans)
         .scheme_on(Sipg::default(), AllVerticesButOne)
@@ -72,14 +72,14 @@ fn own_sets_stand_beside_those_of_the_library() {
 /// The set of an entry replaces the set of the problem, and both are read by one discretisation.
 #[test]
 fn a_set_of_the_problem_is_that_of_an_entry() {
-    let run = |study: Study<'static, f64, 2>| study.levels([8]).run().unwrap().rows.remove(0);
+    let run = |study: Study<'static, 2>| study.levels([8]).run().unwrap().rows.remove(0);
     let mut scene = scenes::signorini_2d();
     scene.problem = scene.problem.on(FacetMeans);
     let by_problem = run(Study::new(scene.clone()).scheme(Wopsip::default()));
     let by_entry = run(Study::new(scenes::signorini_2d()).scheme_on(Wopsip::default(), FacetMeans));
     assert_eq!(by_problem.constraint, "facet-means");
     assert_eq!(by_problem.error, by_entry.error);
-    let mesh = scene.domain.mesh::<f64>(8).unwrap();
+    let mesh = scene.domain.mesh(8).unwrap();
     let on_mesh = Study::new(scene.clone()).on_mesh(mesh).scheme(Wopsip::default()).levels([0]);
     let on_mesh = on_mesh.run().unwrap().rows.remove(0).error.l2.unwrap();
     assert!((on_mesh / by_entry.error.l2.unwrap() - 1.0).abs() < 1e-10);
@@ -92,19 +92,15 @@ fn a_set_of_the_problem_is_that_of_an_entry() {
 /// The refusal names what the element of the scheme offers.
 #[test]
 fn refusals_name_what_the_element_offers() {
-    fn refusal(scheme: &dyn AnyScheme<f64, 2>, problem: Problem<2>) -> String {
-        let mesh = scenes::signorini_2d().domain.mesh::<f64>(2).unwrap();
-        let refused: Result<Discretisation<'_, f64, 2>, Error> =
+    fn refusal(scheme: &dyn Scheme<2>, problem: Problem<2>) -> String {
+        let mesh = scenes::signorini_2d().domain.mesh(2).unwrap();
+        let refused: Result<Discretisation<'_, 2>, Error> =
             Discretisation::new(scheme, &problem, &mesh, Default::default());
         refused.unwrap_err().to_string()
     }
     let obstacle = || Problem::new().obstacle_below(|_| 0.0);
     for (scheme, problem, offered) in [
-        (
-            &Sipg::default() as &dyn AnyScheme<f64, 2>,
-            obstacle().on(Midpoints),
-            "vertices or facet-means",
-        ),
+        (&Sipg::default() as &dyn Scheme<2>, obstacle().on(Midpoints), "vertices or facet-means"),
         (&ConformingP1, obstacle().on(FacetMeans), "vertices"),
         (&NonconformingP1, obstacle().on(AllVerticesButOne), "facet-means"),
         (&Sipg::default().on(P2), obstacle().on(FacetMeans), "nodes or midpoints or cell-means"),
@@ -123,7 +119,7 @@ fn refusals_name_what_the_element_offers() {
 #[test]
 fn orders_remain_where_the_set_is_that_of_the_nodes() {
     let smooth = Setting::new(2, Regularity::new(2.5)).with_obstacle(true);
-    let orders = |scheme: &dyn AnyScheme<f64, 2>, set: &dyn ConstraintSet| {
+    let orders = |scheme: &dyn Scheme<2>, set: &dyn ConstraintSet| {
         scheme.expected_orders_on(set, &smooth).h1
     };
     assert_eq!(orders(&NonconformingP1, &FacetMeans), Some(1.0));

@@ -42,7 +42,7 @@ fn wopsip_misses_a_line_by_the_closed_form() {
         let h = 1.0 / n as f64;
         let slope = 1.0 / (1.0 + (n as f64 + 1.0) * h.powi(3) / eta);
         let jump = slope * h.powi(3) / eta;
-        let mesh = Mesh::<f64, 1>::kuhn_box(&unit_box(), [n]).unwrap();
+        let mesh = Mesh::<1>::kuhn_box(&unit_box(), [n]).unwrap();
         let problem = Problem::new().exact(|x| x[0], |_| Point::repeat(1.0));
         let u = solve(&wopsip(eta), &problem, &mesh).fields.unwrap().u;
         let mut before = 0.0;
@@ -69,9 +69,8 @@ fn wopsip_misses_a_plane_as_an_independent_implementation_does() {
     ];
     let mut checks = Checks::default();
     for (n, h1, jump) in cases {
-        let mesh = Mesh::<f64, 2>::kuhn_box(&unit_box(), [n, n]).unwrap();
-        let problem =
-            Problem::new().exact(|x| x[0] + 2.0 * x[1], |_| Point::<f64, 2>::new(1.0, 2.0));
+        let mesh = Mesh::<2>::kuhn_box(&unit_box(), [n, n]).unwrap();
+        let problem = Problem::new().exact(|x| x[0] + 2.0 * x[1], |_| Point::<2>::new(1.0, 2.0));
         let error = solve(&wopsip(1.0), &problem, &mesh).error;
         let [ours, energy] = [error.h1.unwrap(), error.energy.unwrap()];
         checks.printed(&format!("n = {n}, H1"), ours, h1, 0.5);
@@ -82,11 +81,11 @@ fn wopsip_misses_a_plane_as_an_independent_implementation_does() {
 
 /// The slope of the linear function `8 + x - 2y`, `8 + x - 2y - 3z` or `8 - x`: it falls along
 /// every axis but the first, so that it presses on a contact part at the lower end of one.
-fn slope<const D: usize>() -> Point<f64, D> {
+fn slope<const D: usize>() -> Point<D> {
     Point::from_fn(|k, _| if k == 0 && D > 1 { 1.0 } else { -(k as f64 + 1.0) })
 }
 
-fn linear<const D: usize>(x: &Point<f64, D>) -> f64 {
+fn linear<const D: usize>(x: &Point<D>) -> f64 {
     8.0 + slope::<D>().dot(x)
 }
 
@@ -98,8 +97,8 @@ fn linear_problems<const D: usize>() -> Vec<(&'static str, Problem<D>)> {
         ("coefficient", poisson().coefficient(|_| 5.0)),
         ("reaction", poisson().reaction(3.0).source(|x| 3.0 * linear(x))),
         ("varying reaction", {
-            let c = |x: &Point<f64, D>| x.norm_squared();
-            let f = move |x: &Point<f64, D>| c(x) * linear(x);
+            let c = |x: &Point<D>| x.norm_squared();
+            let f = move |x: &Point<D>| c(x) * linear(x);
             poisson().source(f).reaction(c)
         }),
         ("obstacle in contact", poisson().constant_source(-1.0).obstacle_below(linear)),
@@ -118,7 +117,7 @@ fn reproduces<const D: usize>(
     checks: &mut Checks,
     on: &str,
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
     tolerance: f64,
 ) {
     for scheme in consistent_schemes() {
@@ -132,7 +131,7 @@ fn reproduces<const D: usize>(
 }
 
 /// All linear problems on a mesh. Where it has a contact part, the gap is the solution itself.
-fn all_linear<const D: usize>(checks: &mut Checks, on: &str, mesh: &Mesh<f64, D>, tolerance: f64) {
+fn all_linear<const D: usize>(checks: &mut Checks, on: &str, mesh: &Mesh<D>, tolerance: f64) {
     for (name, problem) in linear_problems() {
         let problem =
             if mesh.has_part(BoundaryPart::Contact) { problem.signorini(linear) } else { problem };
@@ -212,9 +211,9 @@ mod needs_meshes {
 /// A gap that stays open: the contact part is then a Neumann part without flux.
 #[test]
 fn linears_are_exact_above_an_open_gap() {
-    fn on<const D: usize>(checks: &mut Checks, name: &str, mesh: &Mesh<f64, D>) {
-        let along = |x: &Point<f64, D>| x[0];
-        let direction = |_: &Point<f64, D>| Point::from_fn(|k, _| f64::from(u8::from(k == 0)));
+    fn on<const D: usize>(checks: &mut Checks, name: &str, mesh: &Mesh<D>) {
+        let along = |x: &Point<D>| x[0];
+        let direction = |_: &Point<D>| Point::from_fn(|k, _| f64::from(u8::from(k == 0)));
         let problem = Problem::new().exact(along, direction).signorini(move |x| along(x) - 0.01);
         reproduces(checks, name, &problem, mesh, 1e-12);
     }
@@ -229,8 +228,8 @@ fn linears_are_exact_above_an_open_gap() {
 /// A Dirichlet value and a bound that are equal but for rounding: `sin(pi x)` at one is not zero.
 #[test]
 fn data_equal_but_for_rounding_do_not_contradict() {
-    let sine = |x: &Point<f64, 1>| (std::f64::consts::PI * x[0]).sin();
-    let mesh = Mesh::<f64, 1>::kuhn_box(&unit_box(), [4]).unwrap();
+    let sine = |x: &Point<1>| (std::f64::consts::PI * x[0]).sin();
+    let mesh = Mesh::<1>::kuhn_box(&unit_box(), [4]).unwrap();
     let problem = Problem::new().dirichlet(|_| 0.0).obstacle_below(sine);
     let solved = solve(&ConformingP1, &problem, &mesh);
     assert_eq!(solved.outcome.name(), "converged");
@@ -239,7 +238,7 @@ fn data_equal_but_for_rounding_do_not_contradict() {
 /// The same of a gap and an obstacle from above.
 #[test]
 fn bounds_equal_but_for_rounding_do_not_contradict() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
     let problem = Problem::new().obstacle_above(|x| x[1]).signorini(|_| 1e-19);
     let solved = solve(&ConformingP1, &problem, &mesh);
     assert_eq!(solved.outcome.name(), "converged");
@@ -248,21 +247,20 @@ fn bounds_equal_but_for_rounding_do_not_contradict() {
 /// The coefficient jumps across `x = 1/2`, a union of facets; the solution is linear on either
 /// side, its flux through the interface is continuous, its slope along it is the same.
 fn layered<const D: usize>(contrast: f64) -> Problem<D> {
-    let alpha = move |x: &Point<f64, D>| if x[0] < 0.5 { 1.0 } else { contrast };
-    let across = move |x: &Point<f64, D>| 1.0 / alpha(x);
-    let value = move |x: &Point<f64, D>| {
+    let alpha = move |x: &Point<D>| if x[0] < 0.5 { 1.0 } else { contrast };
+    let across = move |x: &Point<D>| 1.0 / alpha(x);
+    let value = move |x: &Point<D>| {
         let rest: f64 = (1..D).map(|k| 1.0 - k as f64 * x[k]).sum();
         (x[0] - 0.5) * across(x) + rest
     };
-    let gradient = move |x: &Point<f64, D>| {
-        Point::from_fn(|k, _| if k == 0 { across(x) } else { -(k as f64) })
-    };
+    let gradient =
+        move |x: &Point<D>| Point::from_fn(|k, _| if k == 0 { across(x) } else { -(k as f64) });
     Problem::new().coefficient(alpha).exact(value, gradient).signorini(value)
 }
 
 #[test]
 fn layers_of_different_coefficient_are_exact() {
-    fn on<const D: usize>(checks: &mut Checks, name: &str, mesh: &Mesh<f64, D>) {
+    fn on<const D: usize>(checks: &mut Checks, name: &str, mesh: &Mesh<D>) {
         for contrast in [1e-4, 0.2, 7.0, 1e4] {
             // conditioning grows with the contrast, the solution with its reciprocal
             let spread = f64::max(contrast, 1.0 / contrast);

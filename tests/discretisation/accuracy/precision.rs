@@ -2,7 +2,7 @@
 
 use crate::runs::{own_scene, solve};
 use crate::support::checks::Checks;
-use crate::support::rows::{label, rows};
+use crate::support::rows::{label, rows, rows_in};
 use crate::support::scheme_lists::all_schemes;
 use crate::support::schemes::{Entry, wopsip};
 use crate::support::tables::{DEGREE_OF_TABLES, jump_norm, norms_by_rule, solve_as_tables};
@@ -11,6 +11,7 @@ use unilateral::inequality::Outcome;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 
 /// In single precision errors are those of double precision, for the over-penalised scheme too.
@@ -19,8 +20,8 @@ fn single_precision() {
     let mut checks = Checks::default();
     for build in [|| scenes::radial::<2>(1.0), scenes::signorini_2d] {
         let levels = [8, 16];
-        let single = rows::<f32, 2>(build(), all_schemes(), levels);
-        let double = rows::<f64, 2>(build(), all_schemes(), levels);
+        let single = rows_in::<2>(Precision::Single, build(), all_schemes(), levels);
+        let double = rows::<2>(build(), all_schemes(), levels);
         for (single, double) in single.iter().zip(&double) {
             let what = label(single);
             checks.certified(double, 1e-9);
@@ -40,7 +41,7 @@ fn single_precision() {
 fn values<const D: usize>(
     checks: &mut Checks,
     what: &str,
-    scheme: &Entry<f64, D>,
+    scheme: &Entry<D>,
     scene: &Scene<D>,
     level: usize,
 ) -> Vec<f64> {
@@ -64,7 +65,7 @@ fn distance(ours: &[f64], theirs: &[f64]) -> f64 {
 #[test]
 fn scaling_of_the_domain() {
     fn check<const D: usize>(checks: &mut Checks, level: usize) {
-        for scheme in all_schemes::<f64, D>() {
+        for scheme in all_schemes::<D>() {
             let what = format!("{} ({}), {D}d", scheme.name(), scheme.constraint());
             let one = values(checks, &what, &scheme, &scenes::radial::<D>(1.0), level);
             for scale in [1e-6, 1e-3, 1e3, 1e6] {
@@ -91,7 +92,7 @@ fn scaling_of_the_coefficient() {
         scene
     };
     let mut checks = Checks::default();
-    for scheme in all_schemes::<f64, 2>() {
+    for scheme in all_schemes::<2>() {
         let what = format!("{} ({})", scheme.name(), scheme.constraint());
         let one = values(&mut checks, &what, &scheme, &scenes::radial(1.0), 16);
         for factor in [1e-8, 1e-3, 7.0, 1e8] {
@@ -104,10 +105,10 @@ fn scaling_of_the_coefficient() {
 
 /// Poisson's equation with the product of sines on the unit square.
 fn sines() -> Scene<2> {
-    let value = |x: &Point<f64, 2>| (PI * x[0]).sin() * (PI * x[1]).sin();
-    let gradient = |x: &Point<f64, 2>| {
+    let value = |x: &Point<2>| (PI * x[0]).sin() * (PI * x[1]).sin();
+    let gradient = |x: &Point<2>| {
         let [(s, c), (t, d)] = [(PI * x[0]).sin_cos(), (PI * x[1]).sin_cos()];
-        Point::<f64, 2>::new(PI * c * t, PI * s * d)
+        Point::<2>::new(PI * c * t, PI * s * d)
     };
     let problem = Problem::new().source(move |x| 2.0 * PI * PI * value(x)).exact(value, gradient);
     own_scene("sines", BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), problem)
@@ -121,9 +122,9 @@ fn stretched_meshes() {
     let ratios = [1, 4, 16, 64];
     let mut checks = Checks::default();
     let scene = sines();
-    let meshes = ratios
-        .map(|r| Mesh::<f64, 2>::kuhn_box(&scene.domain.bounding_box(), [16, 16 * r]).unwrap());
-    let mut spread = |scheme: &dyn AnyScheme<f64, 2>, printed: [&str; 4], jumps: [&str; 4]| {
+    let meshes =
+        ratios.map(|r| Mesh::<2>::kuhn_box(&scene.domain.bounding_box(), [16, 16 * r]).unwrap());
+    let mut spread = |scheme: &dyn Scheme<2>, printed: [&str; 4], jumps: [&str; 4]| {
         let mut energies = Vec::new();
         for ((mesh, ratio), (h1, jump)) in
             meshes.iter().zip(ratios).zip(printed.into_iter().zip(jumps))
@@ -173,10 +174,8 @@ fn stretched_meshes_with_the_default_factor() {
     let robust = Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() };
     let relative: Vec<f64> = [1, 4, 16, 64]
         .map(|r| {
-            let mesh =
-                Mesh::<f64, 2>::kuhn_box(&scene.domain.bounding_box(), [16, 16 * r]).unwrap();
-            let energy =
-                |s: &dyn AnyScheme<f64, 2>| solve(s, &scene.problem, &mesh).error.energy.unwrap();
+            let mesh = Mesh::<2>::kuhn_box(&scene.domain.bounding_box(), [16, 16 * r]).unwrap();
+            let energy = |s: &dyn Scheme<2>| solve(s, &scene.problem, &mesh).error.energy.unwrap();
             energy(&robust) / energy(&NonconformingP1)
         })
         .to_vec();

@@ -31,7 +31,7 @@ fn check(row: &Row, reference: &Value) {
 }
 
 /// Runs the scheme of a reference row; none for schemes that are not here.
-fn scheme(reference: &Value) -> Option<Box<dyn AnyScheme<f64, 2>>> {
+fn scheme(reference: &Value) -> Option<Box<dyn Scheme<2>>> {
     let eta = || Eta::Absolute(reference["eta"].as_f64().unwrap());
     Some(match reference["scheme"].as_str()? {
         "p1" => Box::new(ConformingP1),
@@ -56,8 +56,7 @@ fn check_scene(name: &str, build: fn() -> scenes::Scene<2>) {
         }
         let Some(scheme) = scheme(reference) else { continue };
         let level = reference["level"].as_u64().unwrap() as usize;
-        let report =
-            Study::<f64, 2>::new(build()).boxed_scheme(scheme).levels([level]).run().unwrap();
+        let report = Study::<2>::new(build()).boxed_scheme(scheme).levels([level]).run().unwrap();
         check(&report.rows[0], reference);
         checked += 1;
     }

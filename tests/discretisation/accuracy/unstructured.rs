@@ -10,7 +10,7 @@ use unilateral::scenes::Scene;
 use unilateral::study::{Row, check_fit};
 
 /// The rows of every scheme by name.
-fn rows<const D: usize>(study: Study<'static, f64, D>) -> Vec<Row> {
+fn rows<const D: usize>(study: Study<'static, D>) -> Vec<Row> {
     let schemes = SCHEMES.iter().map(|(name, _)| scheme_by_name(name, &SchemeOptions::default()));
     schemes.fold(study, |study, scheme| study.boxed_scheme(scheme.unwrap())).run().unwrap().rows
 }

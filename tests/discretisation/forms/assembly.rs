@@ -2,6 +2,8 @@
 //! scheme, on small meshes with moved vertices; invariance under renumbering; the same bits for any
 //! number of threads; facet identities.
 
+use std::sync::Arc;
+
 use crate::support::meshes::{Random, Raw, mixed_box};
 use std::collections::BTreeMap;
 use unilateral::assemble::{DataQuadrature, Discretisation};
@@ -16,24 +18,24 @@ type Piece = Vec<f64>;
 
 /// The slow assembler: functions are lists of pieces, forms are integrated point by point.
 struct Slow<'a, const D: usize> {
-    mesh: &'a Mesh<f64, D>,
+    mesh: &'a Mesh<D>,
     alpha: &'a dyn Fn(usize) -> f64,
     reaction: f64,
 }
 
 impl<const D: usize> Slow<'_, D> {
-    fn corner(&self, c: usize, k: usize) -> Point<f64, D> {
+    fn corner(&self, c: usize, k: usize) -> Point<D> {
         self.mesh.vertices()[self.mesh.cell(c)[k] as usize]
     }
     /// The gradient of a piece from a linear system in its values.
-    fn gradient(&self, c: usize, piece: &Piece) -> Point<f64, D> {
+    fn gradient(&self, c: usize, piece: &Piece) -> Point<D> {
         let edges =
             nalgebra::DMatrix::from_fn(D, D, |r, k| (self.corner(c, r + 1) - self.corner(c, 0))[k]);
         let rises = nalgebra::DVector::from_fn(D, |r, _| piece[r + 1] - piece[0]);
         let g = edges.lu().solve(&rises).unwrap();
         Point::from_fn(|k, _| g[k])
     }
-    fn value(&self, c: usize, piece: &Piece, x: &Point<f64, D>) -> f64 {
+    fn value(&self, c: usize, piece: &Piece, x: &Point<D>) -> f64 {
         piece[0] + self.gradient(c, piece).dot(&(x - self.corner(c, 0)))
     }
     fn volume(&self, c: usize) -> f64 {
@@ -41,7 +43,7 @@ impl<const D: usize> Slow<'_, D> {
             nalgebra::DMatrix::from_fn(D, D, |r, k| (self.corner(c, r + 1) - self.corner(c, 0))[k]);
         edges.determinant().abs() / (1..=D).map(|k| k as f64).product::<f64>()
     }
-    fn measure(points: &[Point<f64, D>]) -> f64 {
+    fn measure(points: &[Point<D>]) -> f64 {
         match D {
             1 => 1.0,
             2 => (points[1] - points[0]).norm(),
@@ -51,20 +53,20 @@ impl<const D: usize> Slow<'_, D> {
             }
         }
     }
-    fn facet_points(&self, c: usize, local: usize) -> Vec<Point<f64, D>> {
+    fn facet_points(&self, c: usize, local: usize) -> Vec<Point<D>> {
         (0..=D).filter(|&k| k != local).map(|k| self.corner(c, k)).collect()
     }
     fn surface(&self, c: usize) -> f64 {
         (0..=D).map(|k| Self::measure(&self.facet_points(c, k))).sum()
     }
     /// Outward: the part of (facet - opposite corner) orthogonal to the facet.
-    fn normal(&self, c: usize, local: usize) -> Point<f64, D> {
+    fn normal(&self, c: usize, local: usize) -> Point<D> {
         let p = self.facet_points(c, local);
         let mut n = p[0] - self.corner(c, local);
-        let mut basis: Vec<Point<f64, D>> = Vec::new();
+        let mut basis: Vec<Point<D>> = Vec::new();
         for q in &p[1..] {
             let mut t = q - p[0];
-            basis.iter().for_each(|b: &Point<f64, D>| t -= b * b.dot(&t));
+            basis.iter().for_each(|b: &Point<D>| t -= b * b.dot(&t));
             basis.push(t / t.norm());
         }
         basis.iter().for_each(|b| n -= b * b.dot(&n));
@@ -110,7 +112,7 @@ impl<const D: usize> Slow<'_, D> {
                 .flat_map(|p| points.iter().map(move |q| (p - q).norm()))
                 .fold(0.0, f64::max),
         };
-        let jump = |w: &[&Piece], x: &Point<f64, D>| {
+        let jump = |w: &[&Piece], x: &Point<D>| {
             let first = self.value(sides[0].0, w[0], x);
             if sides.len() == 2 { first - self.value(sides[1].0, w[1], x) } else { first }
         };
@@ -121,7 +123,7 @@ impl<const D: usize> Slow<'_, D> {
         };
         let rule = Rule::new(D - 1, 4);
         let at = |b: &[f64; 4]| {
-            points.iter().enumerate().fold(Point::<f64, D>::zeros(), |x, (k, p)| x + p * b[k])
+            points.iter().enumerate().fold(Point::<D>::zeros(), |x, (k, p)| x + p * b[k])
         };
         match form {
             Form::Penalty { sigma, theta } => {
@@ -161,38 +163,38 @@ enum Form {
 
 /// Schemes of the test: any element with any form.
 struct Any<E, F> {
-    element: std::marker::PhantomData<E>,
+    element: E,
     form: F,
 }
 
-impl<E, F> Any<E, F> {
-    fn new(form: F) -> Self {
-        Self { element: std::marker::PhantomData, form }
-    }
-}
-
-impl<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clone> Scheme<f64, D>
-    for Any<E, F>
+impl<const D: usize, E, F> Scheme<D> for Any<E, F>
+where
+    E: Element<D> + Copy + 'static,
+    F: FacetForm<D> + Clone + 'static,
 {
-    type Element = E;
-    type Facet = F;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     fn name(&self) -> &str {
         "any"
     }
-    fn facet(&self, _: &Mesh<f64, D>) -> F {
-        self.form.clone()
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(self.element)
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(self.form.clone())
+    }
+    fn dirichlet(&self) -> DirichletBy {
+        DirichletBy::FacetForm
     }
 }
 
-fn alpha_at<const D: usize>(x: &Point<f64, D>) -> f64 {
+fn alpha_at<const D: usize>(x: &Point<D>) -> f64 {
     1.0 + 3.0 * x[0] * x[0]
 }
 
 /// Compares with the dense assembler, entry by entry.
-fn check<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clone>(
-    mesh: &Mesh<f64, D>,
-    form: F,
+fn check<const D: usize>(
+    mesh: &Mesh<D>,
+    element: impl Element<D> + Copy + 'static,
+    form: impl FacetForm<D> + Clone + 'static,
     slow_form: Option<Form>,
     reaction: f64,
     // vertex values of the cell's basis function i
@@ -202,20 +204,20 @@ fn check<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clo
     if reaction > 0.0 {
         problem = problem.reaction(reaction);
     }
-    let scheme = Any::<E, F>::new(form);
+    let layout = element.layout();
+    let scheme = Any { element, form };
     let space = Discretisation::new(&scheme, &problem, mesh, DataQuadrature::default()).unwrap();
     let matrix = space.matrix();
     // unknowns of each cell, from their supports
     let supports = space.supports();
     let find = |c: usize, i: usize| {
         let piece = basis(i);
-        let node: Vec<u32> = if E::LAYOUT.vertex == 1 || (E::LAYOUT.is_broken() && piece[i] == 1.0)
-        {
+        let node: Vec<u32> = if layout.vertex == 1 || (layout.is_broken() && piece[i] == 1.0) {
             vec![mesh.cell(c)[i]]
         } else {
             mesh.facet_vertices(c, i).collect()
         };
-        let owner = E::LAYOUT.is_broken().then_some(c as u32);
+        let owner = layout.is_broken().then_some(c as u32);
         (0..supports.len())
             .find(|&k| supports[k].cell() == owner && supports[k].vertices() == node)
             .unwrap()
@@ -282,26 +284,27 @@ fn mean_basis<const D: usize>(i: usize) -> Piece {
 
 fn check_all<const D: usize>(n: usize) {
     let mut random = Random(3);
-    let mesh =
-        Raw::<D>::jittered(&mixed_box(), n, 0.5, &mut random).shuffled(&mut random).mesh::<f64>();
+    let mesh = Raw::<D>::jittered(&mixed_box(), n, 0.5, &mut random).shuffled(&mut random).mesh();
     let penalty = |rule| InteriorPenalty { symmetry: Symmetry::Symmetric, rule, degree: 1 };
     let over =
         OverPenalty { eta: 0.7, degree: 1, rule: WeightRule::Isotropic, mesh_size: f64::NAN };
-    check::<D, P1, _>(&mesh, NoFacets, None, 0.0, vertex_basis::<D>);
-    check::<D, P1, _>(&mesh, NoFacets, None, 2.5, vertex_basis::<D>);
+    check::<D>(&mesh, P1, NoFacets, None, 0.0, vertex_basis::<D>);
+    check::<D>(&mesh, P1, NoFacets, None, 2.5, vertex_basis::<D>);
     if D > 1 {
         // in one dimension a facet mean is a vertex value and the test tells unknowns by place
-        check::<D, CrouzeixRaviart, _>(&mesh, NoFacets, None, 2.5, mean_basis::<D>);
+        check::<D>(&mesh, CrouzeixRaviart, NoFacets, None, 2.5, mean_basis::<D>);
         let sym = Form::Penalty { sigma: Some(10.0), theta: -1.0 };
-        check::<D, CrouzeixRaviart, _>(
+        check::<D>(
             &mesh,
+            CrouzeixRaviart,
             penalty(PenaltyRule::Diameter(10.0)),
             Some(sym),
             0.0,
             mean_basis::<D>,
         );
-        check::<D, Broken<CrouzeixRaviart>, _>(
+        check::<D>(
             &mesh,
+            Broken(CrouzeixRaviart),
             over,
             Some(Form::Over { eta: 0.7 }),
             0.0,
@@ -309,31 +312,34 @@ fn check_all<const D: usize>(n: usize) {
         );
     }
     let sym = |sigma| Some(Form::Penalty { sigma, theta: -1.0 });
-    check::<D, Broken<P1>, _>(
+    check::<D>(
         &mesh,
+        Broken(P1),
         penalty(PenaltyRule::Diameter(10.0)),
         sym(Some(10.0)),
         0.0,
         vertex_basis::<D>,
     );
-    check::<D, Broken<P1>, _>(
+    check::<D>(
         &mesh,
+        Broken(P1),
         penalty(PenaltyRule::Proven(0.5)),
         sym(None),
         1.0,
         vertex_basis::<D>,
     );
-    check::<D, Broken<P1>, _>(&mesh, over, Some(Form::Over { eta: 0.7 }), 0.0, vertex_basis::<D>);
+    check::<D>(&mesh, Broken(P1), over, Some(Form::Over { eta: 0.7 }), 0.0, vertex_basis::<D>);
     let non_symmetric = InteriorPenalty {
         symmetry: Symmetry::NonSymmetric,
         rule: PenaltyRule::Diameter(1.0),
         degree: 1,
     };
     let slow = Some(Form::Penalty { sigma: Some(1.0), theta: 1.0 });
-    check::<D, Broken<P1>, _>(&mesh, non_symmetric, slow, 0.0, vertex_basis::<D>);
+    check::<D>(&mesh, Broken(P1), non_symmetric, slow, 0.0, vertex_basis::<D>);
     // a conforming space with a facet form: its jumps vanish, its fluxes do not
-    check::<D, P1, _>(
+    check::<D>(
         &mesh,
+        P1,
         penalty(PenaltyRule::Diameter(10.0)),
         sym(Some(10.0)),
         0.0,
@@ -355,7 +361,7 @@ fn dense_oracle_in_three_dimensions() {
 }
 
 /// A function that does not know numbers: of the cell's barycentre and the vertex.
-fn wild<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<f64> {
+fn wild<const D: usize>(mesh: &Mesh<D>) -> Vec<f64> {
     let mut u = Vec::new();
     for c in 0..mesh.n_cells() {
         let b = mesh.barycentre(c);
@@ -377,7 +383,7 @@ fn forms_do_not_depend_on_numbering_or_orientation() {
             .coefficient(alpha_at)
             .source(|x| x[0] * x[0])
             .dirichlet(|x| x.sum());
-        let objective = |mesh: &Mesh<f64, D>, scheme: &dyn AnyScheme<f64, D>| {
+        let objective = |mesh: &Mesh<D>, scheme: &dyn Scheme<D>| {
             let inequality = scheme.inequality(&problem, mesh, DataQuadrature::default()).unwrap();
             let u = wild(mesh);
             // the value, and the size of the terms that cancel in it
@@ -385,14 +391,17 @@ fn forms_do_not_depend_on_numbering_or_orientation() {
             let size: f64 = load.iter().zip(&u).map(|(b, u)| (b * u).abs()).sum();
             (inequality.objective(&u), size)
         };
-        let schemes: [&dyn AnyScheme<f64, D>; 3] = [
+        let schemes: [&dyn Scheme<D>; 3] = [
             &Sipg::default(),
             &Wopsip::default(),
-            &Any::<Broken<P1>, _>::new(InteriorPenalty {
-                symmetry: Symmetry::NonSymmetric,
-                rule: PenaltyRule::Diameter(2.0),
-                degree: 1,
-            }),
+            &Any {
+                element: Broken(P1),
+                form: InteriorPenalty {
+                    symmetry: Symmetry::NonSymmetric,
+                    rule: PenaltyRule::Diameter(2.0),
+                    degree: 1,
+                },
+            },
         ];
         for scheme in schemes {
             let (first, size) = objective(&raw.mesh(), scheme);
@@ -419,7 +428,7 @@ fn a_form_is_invariant_under_reversing_the_axes() {
     };
     mirrored.vertices.iter_mut().for_each(|x| x[0] = 1.0 - x[0]);
     let problem = Problem::<1>::new();
-    let matrix = |mesh: &Mesh<f64, 1>| {
+    let matrix = |mesh: &Mesh<1>| {
         Discretisation::new(&Sipg::default(), &problem, mesh, DataQuadrature::default())
             .unwrap()
             .matrix()
@@ -431,7 +440,7 @@ fn a_form_is_invariant_under_reversing_the_axes() {
 #[test]
 fn the_same_bits_for_any_number_of_threads() {
     fn check<const D: usize>(n: usize) {
-        let mesh = Raw::<D>::jittered(&mixed_box(), n, 0.3, &mut Random(2)).mesh::<f64>();
+        let mesh = Raw::<D>::jittered(&mixed_box(), n, 0.3, &mut Random(2)).mesh();
         let problem = Problem::<D>::new()
             .coefficient(alpha_at)
             .reaction(1.5)
@@ -440,7 +449,7 @@ fn the_same_bits_for_any_number_of_threads() {
             .neumann(|x, n| x[0] * n[0])
             .obstacle_below(|x| x[0] - 1.0)
             .obstacle_above(|x| x[0] + x[0].cos());
-        let schemes: [&dyn AnyScheme<f64, D>; 5] =
+        let schemes: [&dyn Scheme<D>; 5] =
             [&ConformingP1, &ConformingP2, &NonconformingP1, &Sipg::default(), &Wopsip::default()];
         for scheme in schemes {
             let run = |threads| {
@@ -467,13 +476,13 @@ fn the_same_bits_for_any_number_of_threads() {
 /// Data that are not finite in many cells: the message names the same cell for any number of threads.
 #[test]
 fn the_same_error_for_any_number_of_threads() {
-    let mesh = Raw::<2>::jittered(&mixed_box(), 60, 0.3, &mut Random(3)).mesh::<f64>();
-    let nan_beyond = |x: &Point<f64, 2>| if x[0] > 0.2 { f64::NAN } else { 0.0 };
+    let mesh = Raw::<2>::jittered(&mixed_box(), 60, 0.3, &mut Random(3)).mesh();
+    let nan_beyond = |x: &Point<2>| if x[0] > 0.2 { f64::NAN } else { 0.0 };
     let problems = [Problem::new().obstacle_below(nan_beyond), Problem::new().source(nan_beyond)];
     for problem in &problems {
         let error = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let scheme: &dyn AnyScheme<f64, 2> = &Sipg::default();
+            let scheme: &dyn Scheme<2> = &Sipg::default();
             let inequality =
                 || scheme.inequality(problem, &mesh, DataQuadrature::default()).map(|_| ());
             pool.install(inequality).unwrap_err().to_string()
@@ -485,8 +494,8 @@ fn the_same_error_for_any_number_of_threads() {
 
 #[test]
 fn refilling_a_pattern_gives_the_same_matrix() {
-    fn check<S: Scheme<f64, 2>>(scheme: &S) {
-        let mesh = Raw::<2>::jittered(&mixed_box(), 7, 0.3, &mut Random(4)).mesh::<f64>();
+    fn check<S: Scheme<2>>(scheme: &S) {
+        let mesh = Raw::<2>::jittered(&mixed_box(), 7, 0.3, &mut Random(4)).mesh();
         let problem = Problem::<2>::new();
         let discretise =
             || Discretisation::new(scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
@@ -511,11 +520,11 @@ fn continuous_functions_have_no_jump_and_constants_no_energy() {
     // pure Neumann and contact boundary: the form of a constant vanishes for every scheme
     let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
     let domain = unilateral::mesh::BoxDomain::<2>::new(Point::zeros(), Point::repeat(1.0), sides);
-    let mesh = Raw::<2>::jittered(&domain, 4, 0.4, &mut Random(9)).mesh::<f64>();
+    let mesh = Raw::<2>::jittered(&domain, 4, 0.4, &mut Random(9)).mesh();
     let problem = Problem::<2>::new();
     let linear: Vec<f64> =
         mesh.cells().iter().map(|&v| 2.0 * mesh.vertices()[v as usize][0] - 1.0).collect();
-    let schemes: [&dyn AnyScheme<f64, 2>; 2] = [&Sipg::default(), &Wopsip::default()];
+    let schemes: [&dyn Scheme<2>; 2] = [&Sipg::default(), &Wopsip::default()];
     for scheme in schemes {
         let inequality = scheme.inequality(&problem, &mesh, DataQuadrature::default()).unwrap();
         let one = vec![1.0; inequality.size()];
@@ -532,7 +541,7 @@ fn continuous_functions_have_no_jump_and_constants_no_energy() {
 
 #[test]
 fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [4, 4]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [4, 4]).unwrap();
     let problem = Problem::<2>::new();
     let below_bound = |sigma| {
         let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() };
@@ -557,8 +566,8 @@ fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
         height: 1.0,
     };
     let view = FacetView::new(&mesh, (0, 0), 1.0, side, Some(side));
-    assert_eq!(proven_bound::<f64, 2>(1, &view), 0.5 * 2.0 * 6.0);
+    assert_eq!(proven_bound::<2>(1, &view), 0.5 * 2.0 * 6.0);
     let varying = unilateral::facet::Side { least_coefficient: 0.5, ..side };
     let view = FacetView::new(&mesh, (0, 0), 1.0, side, Some(varying));
-    assert_eq!(proven_bound::<f64, 2>(1, &view), 0.5 * (2.0 * 2.0 / 0.5) * 6.0);
+    assert_eq!(proven_bound::<2>(1, &view), 0.5 * (2.0 * 2.0 / 0.5) * 6.0);
 }

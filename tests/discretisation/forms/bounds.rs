@@ -6,12 +6,12 @@ use unilateral::mesh::{BoxDomain, Mesh};
 use unilateral::prelude::*;
 
 /// Vertices with their bounds.
-type AtVertices = Vec<(Point<f64, 2>, Bound<f64>)>;
+type AtVertices = Vec<(Point<2>, Bound<f64>)>;
 
 /// The bounds of conforming linears on a box with contact at its lower end, by vertex.
 fn bounds(problem: &Problem<2>) -> Result<AtVertices, Error> {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
-    let of = ConformingP1.discretise(problem, &mesh, Default::default())?;
+    let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
+    let of = Discretisation::new(&ConformingP1, problem, &mesh, Default::default())?;
     Ok(mesh.vertices().iter().copied().zip(of.bounds()?).collect())
 }
 
@@ -72,9 +72,9 @@ fn contradictions_are_told_from_rounding() {
 /// at the barycentre.
 #[test]
 fn facet_means_are_bound_by_means_in_contact_and_by_values_inside() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
-    let gap = |x: &Point<f64, 2>| x[0] * x[0];
-    for scheme in [&Wopsip::default() as &dyn AnyScheme<f64, 2>, &NonconformingP1] {
+    let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
+    let gap = |x: &Point<2>| x[0] * x[0];
+    for scheme in [&Wopsip::default() as &dyn Scheme<2>, &NonconformingP1] {
         let lower = |problem: &Problem<2>| -> Vec<f64> {
             let of = scheme.discretise(problem, &mesh, Default::default()).unwrap();
             of.bounds().unwrap().iter().filter_map(|bound| bound.lower()).collect()
@@ -115,9 +115,9 @@ fn what_midpoints_bind_in_contact_and_promise() {
 #[test]
 fn data_pin_unknowns_that_an_obstacle_binds_too() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [3, 3]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [3, 3]).unwrap();
     let problem = Problem::new().obstacle_below(|_| -0.5).dirichlet(|x| x[0]);
-    let of = ConformingP1.discretise(&problem, &mesh, Default::default()).unwrap();
+    let of = Discretisation::new(&ConformingP1, &problem, &mesh, Default::default()).unwrap();
     for (x, bound) in mesh.vertices().iter().zip(of.bounds().unwrap()) {
         let inside = (0..2).all(|k| x[k] > 0.1 && x[k] < 0.9);
         assert_eq!(bound, if inside { Bound::Lower(-0.5) } else { Bound::Fixed(x[0]) }, "{x}");

@@ -12,20 +12,20 @@ use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 
 /// The unit cube, Dirichlet everywhere.
-fn cube<const D: usize>(counts: [usize; D]) -> Mesh<f64, D> {
+fn cube<const D: usize>(counts: [usize; D]) -> Mesh<D> {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     Mesh::kuhn_box(&domain, counts).unwrap()
 }
 
-fn assemble<const D: usize, S: Scheme<f64, D>>(scheme: &S, mesh: &Mesh<f64, D>) -> Inequality<f64> {
+fn assemble<const D: usize, S: Scheme<D>>(scheme: &S, mesh: &Mesh<D>) -> Inequality<f64> {
     assemble_on(scheme, Nodes, mesh)
 }
 
 /// In the basis of a constraint set.
-fn assemble_on<const D: usize, S: Scheme<f64, D>>(
+fn assemble_on<const D: usize, S: Scheme<D>>(
     scheme: &S,
     set: impl ConstraintSet + 'static,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
 ) -> Inequality<f64> {
     let problem = Problem::new().on(set);
     let quadrature = Default::default();
@@ -69,7 +69,7 @@ fn plain(matrix: &SparseMatrix<f64>) -> f64 {
 
 /// Condition numbers of the over-penalised matrix: as it is in the basis of vertices, with the
 /// diagonal in means and jumps, with the block diagonal.
-fn over_penalised<const D: usize>(mesh: &Mesh<f64, D>, eta: f64) -> [f64; 3] {
+fn over_penalised<const D: usize>(mesh: &Mesh<D>, eta: f64) -> [f64; 3] {
     let on_vertices = assemble(&wopsip(eta), mesh).matrix;
     let change = MeanJump::new(mesh);
     let matrix = change.transform(&assemble_on(&wopsip(eta), FacetMeans, mesh).matrix);
@@ -162,7 +162,7 @@ fn over_factors() {
 /// `t B - A` at the largest.
 #[test]
 fn eigenvalues_are_where_definiteness_ends() {
-    fn on<const D: usize>(checks: &mut Checks, mesh: &Mesh<f64, D>, accuracy: f64) {
+    fn on<const D: usize>(checks: &mut Checks, mesh: &Mesh<D>, accuracy: f64) {
         let change = MeanJump::new(mesh);
         let matrix = change.transform(&assemble_on(&wopsip(1.0), FacetMeans, mesh).matrix);
         let blocks = change.block_diagonal(&matrix);
@@ -200,7 +200,7 @@ fn definite(matrix: &SparseMatrix<f64>) -> bool {
 }
 
 /// The number from which interior penalty with a rule is positive definite, to a relative 1e-6.
-fn threshold<const D: usize>(mesh: &Mesh<f64, D>, rule: impl Fn(f64) -> PenaltyRule) -> f64 {
+fn threshold<const D: usize>(mesh: &Mesh<D>, rule: impl Fn(f64) -> PenaltyRule) -> f64 {
     let enough =
         |x: f64| definite(&assemble(&Sipg { penalty: rule(x), ..Sipg::default() }, mesh).matrix);
     let (mut below, mut above) = (0.0, 1.0);
@@ -217,7 +217,7 @@ fn threshold<const D: usize>(mesh: &Mesh<f64, D>, rule: impl Fn(f64) -> PenaltyR
 /// Thresholds of `factor / h_F`, and of the proven bound in units of itself.
 #[test]
 fn interior_penalty_is_coercive_from_a_threshold_on() {
-    fn on<const D: usize>(checks: &mut Checks, mesh: &Mesh<f64, D>, printed: [&str; 2], n: &str) {
+    fn on<const D: usize>(checks: &mut Checks, mesh: &Mesh<D>, printed: [&str; 2], n: &str) {
         let factor = threshold(mesh, PenaltyRule::Diameter);
         let share = threshold(mesh, |share| PenaltyRule::Proven(share - 1.0));
         checks.printed(&format!("{D}D, n = {n}, factor"), factor, printed[0], 0.5);

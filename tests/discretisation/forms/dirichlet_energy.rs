@@ -21,9 +21,9 @@ fn energy(inequality: &Inequality<f64>, u: &[f64]) -> f64 {
     product - linear + data.constant()
 }
 
-fn check<const D: usize>(mesh: &Mesh<f64, D>, schemes: &[Box<dyn AnyScheme<f64, D>>]) {
-    let slope: Point<f64, D> = Point::from_fn(|k, _| 1.0 - 0.6 * k as f64);
-    let linear = move |x: &Point<f64, D>| 3.0 + x.dot(&slope);
+fn check<const D: usize>(mesh: &Mesh<D>, schemes: &[Box<dyn Scheme<D>>]) {
+    let slope: Point<D> = Point::from_fn(|k, _| 1.0 - 0.6 * k as f64);
+    let linear = move |x: &Point<D>| 3.0 + x.dot(&slope);
     let problem = Problem::new().dirichlet(linear).coefficient(|_| 2.0);
     let exact = 2.0 * slope.norm_squared();
     for scheme in schemes {
@@ -32,7 +32,7 @@ fn check<const D: usize>(mesh: &Mesh<f64, D>, schemes: &[Box<dyn AnyScheme<f64, 
         let inequality = discretisation.inequality().unwrap();
         let node = |i: usize| {
             let vertices = inequality.supports[i].vertices();
-            let sum: Point<f64, D> = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum();
+            let sum: Point<D> = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum();
             sum / vertices.len() as f64
         };
         let u: Vec<f64> = (0..inequality.size()).map(|i| linear(&node(i))).collect();
@@ -44,7 +44,7 @@ fn check<const D: usize>(mesh: &Mesh<f64, D>, schemes: &[Box<dyn AnyScheme<f64, 
     }
 }
 
-fn schemes<const D: usize>() -> Vec<Box<dyn AnyScheme<f64, D>>> {
+fn schemes<const D: usize>() -> Vec<Box<dyn Scheme<D>>> {
     vec![
         Box::new(Sipg::default()),
         Box::new(Nipg::default()),

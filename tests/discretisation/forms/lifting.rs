@@ -14,7 +14,7 @@ fn facet_to_cell(point: &[f64; 4], local: usize) -> [f64; 4] {
 }
 
 /// A vector field on one cell by its values at the points of the cell rule.
-type FieldAt<const D: usize> = Vec<Point<f64, D>>;
+type FieldAt<const D: usize> = Vec<Point<D>>;
 
 /// What of a function the forms need: on every cell its gradient, on every facet its jump.
 struct Function<const D: usize> {
@@ -29,14 +29,14 @@ struct Function<const D: usize> {
 type Sides = Vec<(usize, usize)>;
 
 struct Slow<'a, const D: usize> {
-    mesh: &'a Mesh<f64, D>,
-    alpha: &'a dyn Fn(&Point<f64, D>) -> f64,
+    mesh: &'a Mesh<D>,
+    alpha: &'a dyn Fn(&Point<D>) -> f64,
     facets: Vec<Sides>,
     lift_degree: usize,
 }
 
 impl<const D: usize> Slow<'_, D> {
-    fn corners(&self, c: usize) -> Vec<Point<f64, D>> {
+    fn corners(&self, c: usize) -> Vec<Point<D>> {
         self.mesh.cell(c).iter().map(|&v| self.mesh.vertices()[v as usize]).collect()
     }
     fn volume(&self, c: usize) -> f64 {
@@ -48,13 +48,13 @@ impl<const D: usize> Slow<'_, D> {
         (self.alpha)(&self.mesh.barycentre(c))
     }
     /// Gradients of the barycentric coordinates.
-    fn gradients(&self, c: usize) -> Vec<Point<f64, D>> {
+    fn gradients(&self, c: usize) -> Vec<Point<D>> {
         let p = self.corners(c);
         let system = DMatrix::from_fn(D + 1, D + 1, |i, k| if k < D { p[i][k] } else { 1.0 });
         let inverse = system.try_inverse().unwrap();
         (0..=D).map(|i| Point::from_fn(|k, _| inverse[(k, i)])).collect()
     }
-    fn normal(&self, side: (usize, usize)) -> Point<f64, D> {
+    fn normal(&self, side: (usize, usize)) -> Point<D> {
         let g = self.gradients(side.0)[side.1];
         -g / g.norm()
     }
@@ -94,20 +94,21 @@ impl<const D: usize> Slow<'_, D> {
     }
 
     /// A basis function, zero outside of its cell.
-    fn function<E: ReferenceElement<f64, D>>(
+    fn function(
         &self,
+        element: &dyn Element<D>,
         cell: usize,
         i: usize,
         share: &dyn Fn(&Sides) -> f64,
     ) -> Function<D> {
         let rule = Rule::new(D, 4);
         let facet_rule = Rule::new(D - 1, 4);
-        let zero = || vec![Point::<f64, D>::zeros(); rule.points.len()];
+        let zero = || vec![Point::<D>::zeros(); rule.points.len()];
         let mut gradient: Vec<FieldAt<D>> = (0..self.mesh.n_cells()).map(|_| zero()).collect();
         let g = self.gradients(cell);
         for (point, out) in rule.points.iter().zip(&mut gradient[cell]) {
             let mut d = [[0.0; 4]; 10];
-            E::derivatives(&point[..=D], &mut d);
+            element.derivatives(&point[..=D], &mut d);
             *out = (0..=D).fold(Point::zeros(), |s, k| s + g[k] * d[i][k]);
         }
         let mut jump = Vec::new();
@@ -118,7 +119,7 @@ impl<const D: usize> Slow<'_, D> {
                 for (k, &(c, local)) in sides.iter().enumerate() {
                     if c == cell {
                         let mut v = [0.0; 10];
-                        E::values(&facet_to_cell(point, local)[..=D], &mut v);
+                        element.values(&facet_to_cell(point, local)[..=D], &mut v);
                         sum += if k == 0 { v[i] } else { -v[i] };
                     }
                 }
@@ -205,7 +206,7 @@ enum Method {
 }
 
 /// Interior and Dirichlet facets, by comparing vertices.
-fn facets<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<Sides> {
+fn facets<const D: usize>(mesh: &Mesh<D>) -> Vec<Sides> {
     let mut all: std::collections::BTreeMap<Vec<u32>, Sides> = Default::default();
     for c in 0..mesh.n_cells() {
         for l in 0..=D {
@@ -220,39 +221,32 @@ fn facets<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<Sides> {
     all.into_values().filter(|sides| sides.len() == 2 || dirichlet(sides)).collect()
 }
 
-fn check<const D: usize, E, S>(
+fn check<const D: usize>(
     which: Method,
-    (scheme, lifts): (&S, Lifts),
+    (scheme, lifts): (&dyn Scheme<D>, Lifts),
     n: usize,
-    share: &dyn Fn(&Point<f64, D>) -> f64,
-) where
-    E: ReferenceElement<f64, D>,
-    S: Scheme<f64, D, Element = Broken<E>>,
-{
+    share: &dyn Fn(&Point<D>) -> f64,
+) {
     let mut random = Random(17);
-    let mesh =
-        Raw::<D>::jittered(&mixed_box(), n, 0.4, &mut random).shuffled(&mut random).mesh::<f64>();
-    check_on::<D, E, S>(&mesh, which, (scheme, lifts), share);
+    let mesh = Raw::<D>::jittered(&mixed_box(), n, 0.4, &mut random).shuffled(&mut random).mesh();
+    check_on(&mesh, which, (scheme, lifts), share);
 }
 
-fn check_on<const D: usize, E, S>(
-    mesh: &Mesh<f64, D>,
+fn check_on<const D: usize>(
+    mesh: &Mesh<D>,
     which: Method,
-    (scheme, lifts): (&S, Lifts),
-    share: &dyn Fn(&Point<f64, D>) -> f64,
-) where
-    E: ReferenceElement<f64, D>,
-    S: Scheme<f64, D, Element = Broken<E>>,
-{
+    (scheme, lifts): (&dyn Scheme<D>, Lifts),
+    share: &dyn Fn(&Point<D>) -> f64,
+) {
     // a constant in each cell, by the side of its barycentre
     let cells = mesh.clone();
-    let contains = move |cell: usize, x: &Point<f64, D>| {
+    let contains = move |cell: usize, x: &Point<D>| {
         let (geometry, corners) = (cells.geometry(cell), cells.cell(cell));
         let from = |k: usize| x - cells.vertices()[corners[k] as usize];
         (0..=D).all(|k| geometry.gradient(k).dot(&from(k)) > -1.0 - 1e-12)
     };
     let cells = mesh.clone();
-    let alpha = move |x: &Point<f64, D>| {
+    let alpha = move |x: &Point<D>| {
         let cell = (0..cells.n_cells()).find(|&cell| contains(cell, x)).unwrap();
         if cells.barycentre(cell)[0] < 0.5 { 3.0 } else { 0.25 }
     };
@@ -261,11 +255,12 @@ fn check_on<const D: usize, E, S>(
     let space = Discretisation::new(scheme, &problem, mesh, DataQuadrature::default()).unwrap();
     let matrix = space.matrix();
     assert!(matrix.is_well_formed());
-    let slow =
-        Slow { mesh, alpha: &alpha, facets: facets(mesh), lift_degree: lifts.degree(E::DEGREE) };
+    let element = scheme.element();
+    let (lift_degree, n) = (lifts.degree(element.degree()), element.per_cell());
+    let slow = Slow { mesh, alpha: &alpha, facets: facets(mesh), lift_degree };
     let of_sides = |sides: &Sides| share(&slow.normal(sides[0]));
-    let functions: Vec<Function<D>> =
-        (0..space.unknowns()).map(|k| slow.function::<E>(k / E::N, k % E::N, &of_sides)).collect();
+    let function = |k| slow.function(&*element, k / n, k % n, &of_sides);
+    let functions: Vec<Function<D>> = (0..space.unknowns()).map(function).collect();
     let scale = matrix.diagonal().into_iter().fold(0.0, f64::max);
     let mut worst = 0.0_f64;
     for (i, v) in functions.iter().enumerate() {
@@ -276,42 +271,42 @@ fn check_on<const D: usize, E, S>(
     assert!(worst <= 1e-14 * scale, "{}: {worst:e} of {scale:e}", scheme.name());
 }
 
-fn every_method<const D: usize, E: ReferenceElement<f64, D>>(element: E, n: usize) {
-    let mean = |_: &Point<f64, D>| 0.5;
+fn every_method<const D: usize, E: Element<D> + Copy + 'static>(element: E, n: usize) {
+    let mean = |_: &Point<D>| 0.5;
     for lifts in [Lifts::Reduced, Lifts::Full] {
-        let br2 = Br2 { eta: Some(4.5), lifts, element };
-        check::<D, E, _>(Method::Br2(4.5), (&br2, lifts), n, &mean);
-        let bmmpr = Bmmpr { eta: 0.7, lifts, element };
-        check::<D, E, _>(Method::Bmmpr(0.7), (&bmmpr, lifts), n, &mean);
-        let ldg = Ldg { eta: 1.3, switch: false, lifts, element };
-        check::<D, E, _>(Method::Ldg(1.3), (&ldg, lifts), n, &mean);
+        let br2 = Br2 { eta: Some(4.5), lifts, ..Default::default() }.on(element);
+        check(Method::Br2(4.5), (&br2, lifts), n, &mean);
+        let bmmpr = Bmmpr { eta: 0.7, lifts, ..Default::default() }.on(element);
+        check(Method::Bmmpr(0.7), (&bmmpr, lifts), n, &mean);
+        let ldg = Ldg { eta: 1.3, switch: false, lifts, ..Default::default() }.on(element);
+        check(Method::Ldg(1.3), (&ldg, lifts), n, &mean);
         // the direction is part of the scheme's definition
         let direction = [1.0, 0.377, 0.142];
-        let one_sided = |normal: &Point<f64, D>| {
+        let one_sided = |normal: &Point<D>| {
             f64::from(normal.iter().zip(direction).map(|(n, d)| n * d).sum::<f64>() > 0.0)
         };
-        let switched = Ldg { eta: 1.0, switch: true, lifts, element };
-        check::<D, E, _>(Method::Ldg(1.0), (&switched, lifts), n, &one_sided);
+        let switched = Ldg { eta: 1.0, switch: true, lifts, ..Default::default() }.on(element);
+        check(Method::Ldg(1.0), (&switched, lifts), n, &one_sided);
     }
 }
 
 #[test]
 fn linears() {
-    every_method::<1, P1>(P1, 5);
-    every_method::<2, P1>(P1, 2);
-    every_method::<3, P1>(P1, 1);
+    every_method::<1, _>(P1, 5);
+    every_method::<2, _>(P1, 2);
+    every_method::<3, _>(P1, 1);
 }
 
 #[test]
 fn quadratics() {
-    every_method::<1, P2>(P2, 4);
-    every_method::<2, P2>(P2, 2);
-    every_method::<3, P2>(P2, 1);
+    every_method::<1, _>(P2, 4);
+    every_method::<2, _>(P2, 2);
+    every_method::<3, _>(P2, 1);
 }
 
 /// A simplex cut at its barycentre: every cell is the neighbour of every other.
-fn cut_at_barycentre<const D: usize>() -> Mesh<f64, D> {
-    let mut vertices = vec![Point::<f64, D>::zeros()];
+fn cut_at_barycentre<const D: usize>() -> Mesh<D> {
+    let mut vertices = vec![Point::<D>::zeros()];
     vertices.extend((0..D).map(|k| Point::from_fn(|j, _| f64::from(j == k))));
     vertices.push(Point::repeat(1.0 / (D + 1) as f64));
     let others = |k: usize| (0..=D as u32).filter(move |&v| v != k as u32);
@@ -327,11 +322,11 @@ fn cut_at_barycentre<const D: usize>() -> Mesh<f64, D> {
 fn cells_that_are_all_neighbours_of_each_other() {
     fn on<const D: usize>() {
         let mesh = cut_at_barycentre::<D>();
-        let mean = |_: &Point<f64, D>| 0.5;
+        let mean = |_: &Point<D>| 0.5;
         for lifts in [Lifts::Reduced, Lifts::Full] {
-            let bmmpr = Bmmpr { eta: 0.7, lifts, element: P1 };
-            check_on::<D, P1, _>(&mesh, Method::Bmmpr(0.7), (&bmmpr, lifts), &mean);
-            check_on::<D, P2, _>(&mesh, Method::Bmmpr(0.7), (&bmmpr.on(P2), lifts), &mean);
+            let bmmpr = Bmmpr { eta: 0.7, lifts, ..Default::default() };
+            check_on(&mesh, Method::Bmmpr(0.7), (&bmmpr, lifts), &mean);
+            check_on(&mesh, Method::Bmmpr(0.7), (&bmmpr.on(P2), lifts), &mean);
         }
     }
     on::<2>();
@@ -345,7 +340,7 @@ fn cells_that_are_all_neighbours_of_each_other() {
 fn full_lifts_bound_the_whole_jump() {
     let written = ["br2", "br2@lifts=full", "bmmpr", "bmmpr@lifts=full", "sipg"];
     let schemes = NamedScheme::list(written).unwrap();
-    let study = Study::<f64, 2>::new(scenes::hertz_2d()).levels([16]);
+    let study = Study::<2>::new(scenes::hertz_2d()).levels([16]);
     let report = schemes.iter().fold(study, Study::named_scheme).run().unwrap();
     let expected = [
         (4.59e-4, 1.82e-2),

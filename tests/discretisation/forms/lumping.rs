@@ -18,10 +18,10 @@ fn unit_box<const D: usize>() -> BoxDomain<D> {
 
 /// Triangles with equal sides, their inner vertices moved by up to a tenth of a side: no angle is
 /// obtuse, so that the triangulation is that of Delaunay.
-fn acute_mesh(n: usize) -> Mesh<f64, 2> {
+fn acute_mesh(n: usize) -> Mesh<2> {
     let mut raw = Raw::jittered(&unit_box(), n, 0.0, &mut Random(1));
-    let is_inside = |x: &Point<f64, 2>| x.iter().all(|&x| x > 1e-9 && x < 1.0 - 1e-9);
-    let place = |(k, x): (usize, &Point<f64, 2>)| {
+    let is_inside = |x: &Point<2>| x.iter().all(|&x| x > 1e-9 && x < 1.0 - 1e-9);
+    let place = |(k, x): (usize, &Point<2>)| {
         let shift = if is_inside(x) { 0.1 / n as f64 } else { 0.0 };
         let angle = 2.4 * k as f64;
         Point::from([
@@ -36,10 +36,10 @@ fn acute_mesh(n: usize) -> Mesh<f64, 2> {
 /// `-Laplace u + c u = 0` with `u = 1` on the boundary and a large reaction: the solution lies
 /// between zero and one.
 fn layer() -> Problem<2> {
-    Problem::new().dirichlet(|_| 1.0).reaction(|x: &Point<f64, 2>| 2e4 * (1.0 + x[1]))
+    Problem::new().dirichlet(|_| 1.0).reaction(|x: &Point<2>| 2e4 * (1.0 + x[1]))
 }
 
-fn assembled(mesh: &Mesh<f64, 2>, quadrature: DataQuadrature) -> Inequality<f64> {
+fn assembled(mesh: &Mesh<2>, quadrature: DataQuadrature) -> Inequality<f64> {
     let problem = layer();
     Discretisation::new(&ConformingP1, &problem, mesh, quadrature).unwrap().inequality().unwrap()
 }
@@ -84,12 +84,12 @@ fn a_lumped_reaction_keeps_the_m_matrix_and_the_sign_of_the_solution() {
 
 #[test]
 fn a_lumped_reaction_keeps_the_orders_of_linears() {
-    let value = |x: &Point<f64, 2>| (x[0] - 2.0 * x[1]).sin();
+    let value = |x: &Point<2>| (x[0] - 2.0 * x[1]).sin();
     let problem = Problem::new()
         .exact(value, |x| Point::from([1.0, -2.0]) * (x[0] - 2.0 * x[1]).cos())
         .reaction(3.0)
         .source(move |x| 8.0 * value(x));
-    let study = Study::<f64, 2>::new(own_scene("reaction", unit_box(), problem))
+    let study = Study::<2>::new(own_scene("reaction", unit_box(), problem))
         .scheme(ConformingP1)
         .scheme(Wopsip::default())
         .scheme(Sipg::default())
@@ -172,7 +172,7 @@ fn a_rule_whose_weights_do_not_sum_to_one_is_refused() {
 /// Loads of polynomials of degree three are exact with linears by either family.
 fn loads<const D: usize>() {
     let problem = Problem::<D>::new().source(|x| (x.sum() - 0.3).powi(3));
-    let mesh = Mesh::<f64, D>::kuhn_box(&unit_box(), [3; D]).unwrap();
+    let mesh = Mesh::<D>::kuhn_box(&unit_box(), [3; D]).unwrap();
     let load = |quadrature| {
         let space = Discretisation::new(&ConformingP1, &problem, &mesh, quadrature).unwrap();
         space.load().unwrap()

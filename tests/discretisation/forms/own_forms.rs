@@ -1,7 +1,9 @@
 //! Forms made outside the library whose formula depends on the facet.
 
+use std::sync::Arc;
+
 use unilateral::algebra::Inequality;
-use unilateral::facet::{FacetKind, Lifted};
+use unilateral::facet::FacetKind;
 use unilateral::kit::check_scheme;
 use unilateral::mesh::{BoundaryPart, BoxDomain, Mesh};
 use unilateral::prelude::*;
@@ -11,18 +13,15 @@ struct NitscheAtBoundary {
     between_cells: f64,
 }
 
-impl<T: Real, const D: usize> FacetForm<T, D> for NitscheAtBoundary {
-    fn uses_flux(&self) -> bool {
-        true
-    }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+impl<const D: usize> FacetForm<D> for NitscheAtBoundary {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         let h = facet.diameter();
         match facet.kind() {
-            FacetKind::Interior => T::lit(self.between_cells) * facet.coefficient() / (h * h * h),
-            FacetKind::Dirichlet => T::lit(20.0) * facet.coefficient() / h,
+            FacetKind::Interior => self.between_cells * facet.coefficient() / (h * h * h),
+            FacetKind::Dirichlet => 20.0 * facet.coefficient() / h,
         }
     }
-    fn integrand(&self, facet: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, facet: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         let jumps = penalty * u.jump * v.jump;
         match facet.kind() {
             FacetKind::Interior => jumps,
@@ -34,31 +33,36 @@ impl<T: Real, const D: usize> FacetForm<T, D> for NitscheAtBoundary {
 /// Continuous linears with weak Dirichlet data: consistent.
 struct Nitsche;
 
-impl<T: Real, const D: usize> Scheme<T, D> for Nitsche {
-    type Element = P1;
-    type Facet = NitscheAtBoundary;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize> Scheme<D> for Nitsche {
     fn name(&self) -> &str {
         "nitsche"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NitscheAtBoundary {
-        NitscheAtBoundary { between_cells: 0.0 }
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(P1)
+    }
+    fn dirichlet(&self) -> DirichletBy {
+        DirichletBy::FacetForm
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(NitscheAtBoundary { between_cells: 0.0 })
     }
 }
 
 /// Broken linears, over-penalised between cells: consistent on the boundary only.
 struct OverPenaltyWithNitsche;
 
-impl<T: Real, const D: usize> Scheme<T, D> for OverPenaltyWithNitsche {
-    type Element = Broken<P1>;
-    type Facet = NitscheAtBoundary;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
-    const CONSISTENT: bool = false;
+impl<const D: usize> Scheme<D> for OverPenaltyWithNitsche {
     fn name(&self) -> &str {
         "over-penalty-with-nitsche"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> NitscheAtBoundary {
-        NitscheAtBoundary { between_cells: 10.0 }
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(P1))
+    }
+    fn is_consistent(&self) -> bool {
+        false
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(NitscheAtBoundary { between_cells: 10.0 })
     }
 }
 
@@ -66,16 +70,16 @@ impl<T: Real, const D: usize> Scheme<T, D> for OverPenaltyWithNitsche {
 #[test]
 fn no_flux_inside_and_nitsche_on_the_boundary_is_one_form() {
     fn on<const D: usize>() {
-        let nitsche = check_scheme::<f64, D, _>(&Nitsche).unwrap_or_else(|e| panic!("{e}"));
+        let nitsche = check_scheme::<D>(&Nitsche).unwrap_or_else(|e| panic!("{e}"));
         assert!(nitsche.consistency.declared && nitsche.consistency.error < 1e-12, "{nitsche}");
-        let broken = check_scheme::<f64, D, _>(&OverPenaltyWithNitsche);
+        let broken = check_scheme::<D>(&OverPenaltyWithNitsche);
         let broken = broken.unwrap_or_else(|e| panic!("{e}"));
         assert!(!broken.consistency.declared && broken.orders.h1 > 0.75, "{broken}");
     }
     on::<1>();
     on::<2>();
     on::<3>();
-    let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    let report = Study::<2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
         .scheme(Nitsche)
         .scheme(OverPenaltyWithNitsche)
@@ -93,30 +97,27 @@ fn no_flux_inside_and_nitsche_on_the_boundary_is_one_form() {
 /// facet to facet.
 struct WeightInFormula(f64);
 
-impl<T: Real, const D: usize> FacetForm<T, D> for WeightInFormula {
-    fn uses_flux(&self) -> bool {
-        true
+impl<const D: usize> FacetForm<D> for WeightInFormula {
+    fn penalty(&self, _: &FacetView<D>) -> f64 {
+        1.0
     }
-    fn penalty(&self, _: &FacetView<T, D>) -> T {
-        T::lit(1.0)
-    }
-    fn integrand(&self, facet: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
-        let weight = T::lit(self.0) * facet.coefficient() / facet.diameter();
+    fn integrand(&self, facet: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
+        let weight = self.0 * facet.coefficient() / facet.diameter();
         weight * penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
     }
 }
 
 struct SipgByFormula<E>(E);
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for SipgByFormula<E> {
-    type Element = Broken<E>;
-    type Facet = WeightInFormula;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize, E: Element<D> + Copy + 'static> Scheme<D> for SipgByFormula<E> {
     fn name(&self) -> &str {
         "sipg-by-formula"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> WeightInFormula {
-        WeightInFormula(30.0)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(self.0))
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(WeightInFormula(30.0))
     }
 }
 
@@ -136,15 +137,15 @@ fn same_matrix_and_load(a: &Inequality<f64>, b: &Inequality<f64>) {
 /// those of the penalty.
 #[test]
 fn a_formula_may_differ_from_facet_to_facet() {
-    fn check<const D: usize, E: ReferenceElement<f64, D>>(element: E) {
+    fn check<const D: usize, E: Element<D> + Copy + 'static>(element: E) {
         let sides = [[BoundaryPart::Dirichlet, BoundaryPart::Neumann]; D];
         let mut upper = Point::repeat(1.0);
         upper[0] = 1.7;
-        let mesh = Mesh::<f64, D>::kuhn_box(&BoxDomain::new(Point::zeros(), upper, sides), [3; D])
-            .unwrap();
+        let mesh =
+            Mesh::<D>::kuhn_box(&BoxDomain::new(Point::zeros(), upper, sides), [3; D]).unwrap();
         let problem = Problem::new()
-            .coefficient(|x: &Point<f64, D>| 1.0 + 3.0 * x[0])
-            .exact(|x: &Point<f64, D>| x[0] * x[D - 1], |_| Point::repeat(1.0));
+            .coefficient(|x: &Point<D>| 1.0 + 3.0 * x[0])
+            .exact(|x: &Point<D>| x[0] * x[D - 1], |_| Point::repeat(1.0));
         let penalty = PenaltyRule::Diameter(30.0);
         let known = Sipg { penalty, ..Sipg::default() }.on(element);
         let known = Discretisation::new(&known, &problem, &mesh, Default::default()).unwrap();
@@ -164,41 +165,41 @@ fn a_formula_may_differ_from_facet_to_facet() {
     check::<3, _>(P2);
 }
 
-/// The terms of the local discontinuous Galerkin method besides its lifts, of which they say nothing.
+/// The local discontinuous Galerkin method, without a word on the degree of its lifts.
 struct FluxesAndJumps;
 
-impl<T: Real, const D: usize> FacetForm<T, D> for FluxesAndJumps {
-    fn uses_flux(&self) -> bool {
+impl<const D: usize> FacetForm<D> for FluxesAndJumps {
+    fn is_lifted(&self) -> bool {
         true
     }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         facet.coefficient() / facet.diameter()
     }
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
         penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
     }
 }
 
 struct OwnLdg<E>(E);
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for OwnLdg<E> {
-    type Element = Broken<E>;
-    type Facet = Lifted<FluxesAndJumps>;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize, E: Element<D> + Copy + 'static> Scheme<D> for OwnLdg<E> {
     fn name(&self) -> &str {
         "own-ldg"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> Lifted<FluxesAndJumps> {
-        Lifted(FluxesAndJumps)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(self.0))
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(FluxesAndJumps)
     }
 }
 
 /// Without a word on lifts they have one degree less than the element.
 #[test]
 fn lifts_have_the_degree_of_gradients_by_default() {
-    fn check<E: ReferenceElement<f64, 2>>(element: E) {
-        let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [3; 2]).unwrap();
-        let problem = Problem::new().dirichlet(|x: &Point<f64, 2>| x[0] * x[1]);
+    fn check<E: Element<2> + Copy + 'static>(element: E) {
+        let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [3; 2]).unwrap();
+        let problem = Problem::new().dirichlet(|x: &Point<2>| x[0] * x[1]);
         let known = Ldg::default().on(element);
         let known = Discretisation::new(&known, &problem, &mesh, Default::default()).unwrap();
         let own = OwnLdg(element);

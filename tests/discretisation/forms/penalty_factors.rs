@@ -1,13 +1,14 @@
 //! Penalty factors that make no penalty are refused by name; small ones are not.
 
-use unilateral::inequality::Outcome;
+use unilateral::inequality::{ActiveSet, Outcome, in_precision};
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 
-type Schemes<T, const D: usize> = Vec<(&'static str, Box<dyn AnyScheme<T, D>>)>;
+type Schemes<const D: usize> = Vec<(&'static str, Box<dyn Scheme<D>>)>;
 
 /// Every scheme with a penalty, with this factor, and the name of the parameter.
-fn with_factor<T: Real, const D: usize>(x: f64) -> Schemes<T, D> {
+fn with_factor<const D: usize>(x: f64) -> Schemes<D> {
     let diameter = PenaltyRule::Diameter(x);
     // the factor of the bound is one plus the margin
     let proven = PenaltyRule::Proven(x - 1.0);
@@ -29,9 +30,9 @@ fn with_factor<T: Real, const D: usize>(x: f64) -> Schemes<T, D> {
     ]
 }
 
-fn refused<T: Real, const D: usize>(factors: &[f64], why: &str) {
+fn refused<const D: usize>(factors: &[f64], why: &str) {
     let (problem, domain) = (Problem::new().source(|_| 1.0), BoxDomain::centred(1.0));
-    let mesh = Mesh::<T, D>::kuhn_box(&domain, [2; D]).unwrap();
+    let mesh = Mesh::<D>::kuhn_box(&domain, [2; D]).unwrap();
     for &x in factors {
         for (parameter, scheme) in with_factor(x) {
             let error = scheme.discretise(&problem, &mesh, Default::default()).unwrap_err();
@@ -49,30 +50,44 @@ fn refused<T: Real, const D: usize>(factors: &[f64], why: &str) {
 #[test]
 fn what_is_no_penalty_is_refused() {
     let none = [f64::NAN, 0.0, -0.0, -1.0, f64::INFINITY, f64::NEG_INFINITY];
-    refused::<f64, 1>(&none, "must be positive and finite");
-    refused::<f64, 2>(&none, "must be positive and finite");
-    refused::<f32, 3>(&none, "must be positive and finite");
-    refused::<f64, 2>(&[1e300], "times the stiffness beside it, f64 holds");
-    refused::<f32, 2>(&[1e30], "times the stiffness beside it, f32 holds");
+    refused::<1>(&none, "must be positive and finite");
+    refused::<2>(&none, "must be positive and finite");
+    refused::<3>(&none, "must be positive and finite");
+    refused::<2>(&[1e300], "times the stiffness beside it");
     // what is multiplied out holds fewer digits than what is kept as a sum
-    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
-    for (parameter, scheme) in with_factor::<f64, 2>(1e25) {
+    let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
+    for (parameter, scheme) in with_factor::<2>(1e25) {
         let is_sum = scheme.name().starts_with("wopsip");
         let problem = Problem::new();
         let made = scheme.discretise(&problem, &mesh, Default::default());
         assert_eq!(made.is_ok(), is_sum, "{} with {parameter}", scheme.name());
     }
     // a margin cannot be so near to -1
-    for (parameter, scheme) in with_factor::<f64, 2>(1e-300).split_off(2) {
+    for (parameter, scheme) in with_factor::<2>(1e-300).split_off(2) {
         let error = scheme.discretise(&Problem::new(), &mesh, Default::default()).unwrap_err();
         assert!(error.to_string().contains("times the stiffness"), "{parameter}: {error}");
     }
 }
 
 #[test]
+fn single_precision_refuses_a_penalty_that_leaves_no_digit_of_the_stiffness() {
+    let row = |precision| {
+        let sipg = Sipg { penalty: PenaltyRule::Diameter(1e9), ..Sipg::default() };
+        let study = Study::<2>::new(scenes::radial(1.0)).scheme(sipg).levels([4]);
+        let study = study.boxed_solver(in_precision(precision, ActiveSet::default()));
+        study.run().unwrap().rows.remove(0)
+    };
+    assert_eq!(row(Precision::Double).status, Outcome::Converged);
+    let single = row(Precision::Single);
+    assert_eq!(single.status, Outcome::Singular);
+    let is_told = |warning: &String| warning.contains("leaves no digit of it in f32");
+    assert!(single.warnings.iter().any(is_told), "{:?}", single.warnings);
+}
+
+#[test]
 fn a_study_names_the_factor() {
     let wopsip = Wopsip { eta: Eta::Absolute(-1.0), ..Wopsip::default() };
-    let study = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(wopsip).levels([4]);
+    let study = Study::<2>::new(scenes::radial(1.0)).scheme(wopsip).levels([4]);
     let expected = "eta = -1: the penalty factor is -1, it must be positive and finite";
     let row = &study.run().unwrap().rows[0];
     assert_eq!(row.status, Outcome::OutOfRange);
@@ -84,10 +99,10 @@ fn a_study_names_the_factor() {
 #[test]
 fn small_penalties_are_possible() {
     let scene = || scenes::radial::<2>(1.0);
-    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.5), [8; 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.5), [8; 2]).unwrap();
     let problem = scene().problem;
     for x in [1e-8, 1e-3, 0.9] {
-        for (_, scheme) in with_factor::<f64, 2>(x) {
+        for (_, scheme) in with_factor::<2>(x) {
             let name = scheme.name().to_owned();
             let of = scheme.discretise(&problem, &mesh, Default::default()).unwrap();
             let is_warned = of.penalty_below_bound().is_some();
@@ -109,9 +124,9 @@ fn small_penalties_are_possible() {
 /// From its bound on, theory proves every form with a penalty coercive.
 #[test]
 fn large_penalties_are_proven_coercive() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [3; 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [3; 2]).unwrap();
     let problem = Problem::new();
-    for (parameter, scheme) in with_factor::<f64, 2>(100.0) {
+    for (parameter, scheme) in with_factor::<2>(100.0) {
         let of = scheme.discretise(&problem, &mesh, Default::default()).unwrap();
         let is_proven = of.is_coercive() && of.penalty_below_bound().is_none();
         assert!(is_proven, "{} with {parameter}", scheme.name());
@@ -121,10 +136,10 @@ fn large_penalties_are_proven_coercive() {
 /// The form without symmetry is coercive with every penalty, and not proven so with none.
 #[test]
 fn without_a_penalty_nothing_is_proven() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
     let is_proven = |penalty| {
         let scheme = Nipg { penalty, ..Nipg::default() };
-        AnyScheme::<f64, 2>::form(&scheme, &mesh).theory().is_coercive
+        Scheme::<2>::form(&scheme, &mesh).theory().is_coercive
     };
     for rule in [PenaltyRule::Diameter, |factor| PenaltyRule::Proven(factor - 1.0)] {
         assert!(is_proven(rule(1e-8)));
@@ -134,16 +149,16 @@ fn without_a_penalty_nothing_is_proven() {
 
 #[test]
 fn coefficients_out_of_range_are_refused() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
     for (value, why) in [
-        (1e-300, "cannot hold the coefficient 1e-300 of cell 0 and its square"),
-        (1e300, "cannot hold the coefficient 1e300 of cell 0 and its square"),
+        (1e-300, "coefficient = 1e-300 in cell 0: "),
+        (1e300, "coefficient = 1e300 in cell 0: "),
         (0.0, "in cell 0: it must be positive and finite"),
         (-2.0, "in cell 0: it must be positive and finite"),
         (f64::NAN, "coefficient is NaN at ("),
     ] {
         let problem = Problem::new().coefficient(move |_| value);
-        for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 2>, &Wopsip::default()] {
+        for scheme in [&ConformingP1 as &dyn Scheme<2>, &Wopsip::default()] {
             let error = scheme.discretise(&problem, &mesh, Default::default()).unwrap_err();
             assert!(error.to_string().contains(why), "{value}: {error}");
         }
@@ -166,7 +181,7 @@ fn boxes_turned_inside_out_are_refused() {
         ([0.0, 0.0], [1.0, f64::INFINITY], "inf"),
         ([0.0, 0.0], [1.0, f64::NAN], "NaN"),
     ] {
-        let study = Study::<f64, 2>::new(scene(lower, upper)).scheme(ConformingP1).levels([4]);
+        let study = Study::<2>::new(scene(lower, upper)).scheme(ConformingP1).levels([4]);
         let error = study.run().unwrap_err().to_string();
         let expected = format!("side of the domain = {side}: positive and finite");
         assert!(error.starts_with(&expected), "{error}");

@@ -1,47 +1,48 @@
 //! Rounding under an over-penalty: the matrix as it is multiplied out, the matrix as the sum it is.
 
-use crate::runs::{own_scene, solve};
+use crate::runs::{own_scene, solve, solve_in};
 use crate::support::checks::Checks;
 use crate::support::scheme_lists::entry;
 use crate::support::schemes::wopsip;
 use std::f64::consts::PI;
 use unilateral::algebra::Inequality;
 use unilateral::assemble::Discretisation;
-use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution};
+use unilateral::inequality::{ActiveSet, Outcome, Solution, in_precision};
 use unilateral::linear::LinearMethod;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Mesh, TaggedFacet};
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 
 /// The unit cube, Dirichlet data but on one side.
-fn cube<T: Real, const D: usize>(n: usize) -> Mesh<T, D> {
+fn cube<const D: usize>(n: usize) -> Mesh<D> {
     Mesh::kuhn_box(&BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), [n; D]).unwrap()
 }
 
-fn assemble<T: Real, const D: usize, S: Scheme<T, D>>(
+fn assemble<const D: usize, S: Scheme<D>>(
     scheme: &S,
     problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
-) -> Inequality<T> {
+    mesh: &Mesh<D>,
+) -> Inequality<f64> {
     Discretisation::new(scheme, problem, mesh, Default::default()).unwrap().inequality().unwrap()
 }
 
 /// The sum is the matrix and the load, in every basis and degree; no other scheme keeps it.
 #[test]
 fn the_penalised_form_is_the_matrix() {
-    fn check<const D: usize, S: Scheme<f64, D>>(
+    fn check<const D: usize, S: Scheme<D>>(
         checks: &mut Checks,
         scheme: &S,
         set: impl ConstraintSet + 'static,
     ) {
         let problem = Problem::new()
-            .source(|x: &Point<f64, D>| 1.0 + x[0])
-            .dirichlet(|x: &Point<f64, D>| 2.0 - x[0] * x[D - 1])
-            .coefficient(|x: &Point<f64, D>| 1.0 + x[0])
+            .source(|x: &Point<D>| 1.0 + x[0])
+            .dirichlet(|x: &Point<D>| 2.0 - x[0] * x[D - 1])
+            .coefficient(|x: &Point<D>| 1.0 + x[0])
             .reaction(3.0)
             .on(set);
-        let inequality = assemble(scheme, &problem, &cube::<f64, D>(2));
+        let inequality = assemble(scheme, &problem, &cube::<D>(2));
         let penalised = inequality.penalised.as_ref().unwrap();
         let n = inequality.size();
         let mut assembled = vec![0.0; n];
@@ -64,7 +65,7 @@ fn the_penalised_form_is_the_matrix() {
         check::<D, _>(checks, &wopsip(3.0).on(P2), Nodes);
         check::<D, _>(checks, &wopsip(3.0).on(P2), CellMeans);
         let problem = Problem::new();
-        let none = assemble(&Sipg::default(), &problem, &cube::<f64, D>(2)).penalised;
+        let none = assemble(&Sipg::default(), &problem, &cube::<D>(2)).penalised;
         checks.that(none.is_none(), || "interior penalty is no sum of jumps".to_owned());
     }
     let mut checks = Checks::default();
@@ -79,7 +80,7 @@ fn the_penalised_form_is_the_matrix() {
 #[test]
 fn rows_of_facet_means_have_one_entry_of_another_cell() {
     fn check<const D: usize>(checks: &mut Checks) {
-        let mesh = cube::<f64, D>(2);
+        let mesh = cube::<D>(2);
         let inequality = assemble(&wopsip(3.0), &Problem::new().on(FacetMeans), &mesh);
         let means = |i: usize| inequality.supports[i].vertices().to_vec();
         let mut across = 0;
@@ -110,28 +111,28 @@ fn rows_of_facet_means_have_one_entry_of_another_cell() {
 }
 
 /// Direct solution with the matrix multiplied out (`is_old`), or as the sum it is.
-fn solution<T: Real>(inequality: &Inequality<T>, is_old: bool) -> Solution<T> {
+fn solution(precision: Precision, inequality: &Inequality<f64>, is_old: bool) -> Solution<f64> {
     let mut inequality = inequality.clone();
     if is_old {
         inequality.load = inequality.assembled_load().into_owned();
         inequality.penalised = None;
     }
-    ActiveSet::default().linear(LinearMethod::Direct).solve(&inequality)
+    in_precision(precision, ActiveSet::default().linear(LinearMethod::Direct)).solve(&inequality)
 }
 
 /// The largest error at nodes for `-u'' = pi^2 sin(pi x)` on `2^level` cells, over-penalty with
 /// factor one.
-fn sine_on_a_line<T: Real>(level: u32, is_old: bool) -> (Outcome, f64) {
-    let problem = Problem::new().source(|x: &Point<f64, 1>| PI * PI * (PI * x[0]).sin());
-    let mesh = cube::<T, 1>(1 << level);
+fn sine_on_a_line(precision: Precision, level: u32, is_old: bool) -> (Outcome, f64) {
+    let problem = Problem::new().source(|x: &Point<1>| PI * PI * (PI * x[0]).sin());
+    let mesh = cube::<1>(1 << level);
     let inequality = assemble(&wopsip(1.0), &problem, &mesh);
-    let solution = solution(&inequality, is_old);
-    let at = |k: usize| mesh.vertices()[inequality.supports[k].vertices()[0] as usize][0].to_f64();
-    let error = |k: usize| (solution.values[k].to_f64() - (PI * at(k)).sin()).abs();
+    let solution = solution(precision, &inequality, is_old);
+    let at = |k: usize| mesh.vertices()[inequality.supports[k].vertices()[0] as usize][0];
+    let error = |k: usize| (solution.values[k] - (PI * at(k)).sin()).abs();
     (solution.outcome, (0..inequality.size()).map(error).fold(0.0, f64::max))
 }
 
-/// On a line the error falls like `h^2` down to the root of the rounding unit, in both scalars, where
+/// On a line the error falls like `h^2` down to the root of the rounding unit, in both precisions, where
 /// the matrix multiplied out loses all digits.
 #[test]
 fn errors_on_a_line_fall_to_the_root_of_rounding() {
@@ -143,32 +144,34 @@ fn errors_on_a_line_fall_to_the_root_of_rounding() {
         checks.that(error <= due, || format!("{what}, 2^{level}: {error:.3e} above {due:.3e}"));
     };
     for level in 4..16 {
-        check("f64", level, sine_on_a_line::<f64>(level, false));
+        check("f64", level, sine_on_a_line(Precision::Double, level, false));
     }
     for level in 4..12 {
-        check("f32", level, sine_on_a_line::<f32>(level, false));
+        check("f32", level, sine_on_a_line(Precision::Single, level, false));
     }
     // where single precision has no digits left, nothing is called a solution
     for level in 14..16 {
-        let (outcome, error) = sine_on_a_line::<f32>(level, false);
+        let (outcome, error) = sine_on_a_line(Precision::Single, level, false);
         let is_told = outcome != Outcome::Converged;
         checks.that(is_told, || format!("f32, 2^{level}: {outcome}, {error:.1e}"));
     }
-    let old = sine_on_a_line::<f64>(12, true).1 / sine_on_a_line::<f64>(12, false).1;
+    let double = Precision::Double;
+    let old = sine_on_a_line(double, 12, true).1 / sine_on_a_line(double, 12, false).1;
     checks.that(old > 100.0, || format!("multiplied out only {old:.1} times worse"));
     checks.finish();
 }
 
 /// The solution at vertices and the L2 error, `None` if it did not converge.
-fn solved<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+fn solved<const D: usize>(
+    precision: Precision,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
 ) -> Result<(Vec<f64>, f64), String> {
-    let solved = solve(scheme, problem, mesh);
+    let solved = solve_in(precision, scheme, problem, mesh);
     let certificate = solved.certificate.largest();
     match solved.outcome {
-        Outcome::Converged if certificate <= T::CERTIFICATE_LIMIT => {
+        Outcome::Converged if certificate <= precision.certificate_limit() => {
             Ok((solved.fields.unwrap().u, solved.error.l2.unwrap()))
         }
         outcome => Err(format!("{outcome}, certificate {certificate:.1e}")),
@@ -176,28 +179,25 @@ fn solved<T: Real, const D: usize>(
 }
 
 /// Solves in `f64` in two units of force, in which everything is rounded otherwise, and in `f32`:
-/// the largest difference over the root mean square of the error, in both scalars.
+/// the largest difference over the root mean square of the error, in both precisions.
 fn rounding_over_error<const D: usize>(
-    schemes: (&dyn AnyScheme<f64, D>, Option<&dyn AnyScheme<f32, D>>),
+    (scheme, is_in_single): (&dyn Scheme<D>, bool),
     scene: &Scene<D>,
     in_thirds: &Scene<D>,
     level: usize,
 ) -> Result<[f64; 2], String> {
-    let mesh = scene.domain.mesh::<f64>(level).unwrap();
-    let (u, error) = solved(schemes.0, &scene.problem, &mesh)?;
-    let (v, _) = solved(schemes.0, &in_thirds.problem, &mesh)?;
+    let mesh = scene.domain.mesh(level).unwrap();
+    let (u, error) = solved(Precision::Double, scheme, &scene.problem, &mesh)?;
+    let (v, _) = solved(Precision::Double, scheme, &in_thirds.problem, &mesh)?;
     let bounds = scene.domain.bounding_box();
     let volume: f64 = (0..D).map(|k| bounds.upper[k] - bounds.lower[k]).product();
     let over_error = |v: &[f64]| {
         let off = u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         off * volume.sqrt() / error
     };
-    let single = match schemes.1 {
-        Some(scheme) => {
-            let mesh = scene.domain.mesh::<f32>(level).unwrap();
-            over_error(&solved(scheme, &scene.problem, &mesh)?.0)
-        }
-        None => 0.0,
+    let single = match is_in_single {
+        true => over_error(&solved(Precision::Single, scheme, &scene.problem, &mesh)?.0),
+        false => 0.0,
     };
     Ok([over_error(&v), single])
 }
@@ -206,7 +206,7 @@ fn rounding_over_error<const D: usize>(
 const FACTORS: [f64; 6] = [1e-2, 1.0, 1e2, 1e4, 1e6, 1e8];
 
 /// Rounding stays below one hundredth of the discretisation error for all factors: Poisson's
-/// equation in both scalars, in every basis and degree.
+/// equation in both precisions, in every basis and degree.
 #[test]
 fn rounding_is_small_for_every_factor() {
     let mut checks = Checks::default();
@@ -217,12 +217,12 @@ fn rounding_is_small_for_every_factor() {
     });
     for eta in FACTORS {
         let w = wopsip(eta);
-        type Pair<'s> = (&'s dyn AnyScheme<f64, 2>, Option<&'s dyn AnyScheme<f32, 2>>);
-        let p2 = w.on(P2);
+        type Pair<'s> = (&'s dyn Scheme<2>, bool);
+        let p2 = w.clone().on(P2);
         let pairs: [(Pair<'_>, &[Scene<2>; 2], usize); 3] = [
-            ((&w, Some(&w)), &in_units, 32),
-            ((&w, Some(&w)), &on_means, 32),
-            ((&p2, None), &in_units, 8),
+            ((&w, true), &in_units, 32),
+            ((&w, true), &on_means, 32),
+            ((&p2, false), &in_units, 8),
         ];
         for (pair, [one, thirds], level) in pairs {
             let what = format!("{}, eta = {eta:e}", pair.0.name());
@@ -253,7 +253,7 @@ fn rounding_is_small_under_an_obstacle() {
                 scene.problem = entry.constrain(&scene.problem);
                 scene
             });
-            match rounding_over_error((&*entry, None), &one, &thirds, 16) {
+            match rounding_over_error((&*entry, false), &one, &thirds, 16) {
                 Ok([off, _]) => checks.that(off <= 0.01, || format!("{what}: {off:.1e}")),
                 Err(why) => checks.that(false, || format!("{what}: {why}")),
             }
@@ -263,8 +263,8 @@ fn rounding_is_small_under_an_obstacle() {
 }
 
 /// The mesh of a scene with every coordinate drawn to zero by a power.
-fn graded(scene: &Scene<2>, level: usize, power: i32) -> Mesh<f64, 2> {
-    let mesh = scene.domain.mesh::<f64>(level).unwrap();
+fn graded(scene: &Scene<2>, level: usize, power: i32) -> Mesh<2> {
+    let mesh = scene.domain.mesh(level).unwrap();
     let vertices = mesh.vertices().iter().map(|x| x.map(|t| t.signum() * t.abs().powi(power)));
     let boundary: Vec<TaggedFacet<2>> = mesh
         .boundary()
@@ -308,8 +308,8 @@ fn graded_meshes() {
 #[ignore = "a table, some seconds"]
 fn table_on_a_line() {
     for level in 4..16 {
-        let [a, b] = [true, false].map(|old| sine_on_a_line::<f32>(level, old));
-        let [c, d] = [true, false].map(|old| sine_on_a_line::<f64>(level, old));
+        let [a, b] = [true, false].map(|old| sine_on_a_line(Precision::Single, level, old));
+        let [c, d] = [true, false].map(|old| sine_on_a_line(Precision::Double, level, old));
         println!(
             "| 2^{level} | {:.2e} {} | {:.2e} {} | {:.3e} {} | {:.3e} {} |",
             a.1, a.0, b.1, b.0, c.1, c.0, d.1, d.0
@@ -319,10 +319,10 @@ fn table_on_a_line() {
 
 /// Poisson's equation with the product of sines on the unit square, forces in some unit.
 fn sines_in_units(unit: f64) -> Scene<2> {
-    let value = |x: &Point<f64, 2>| (PI * x[0]).sin() * (PI * x[1]).sin();
-    let gradient = |x: &Point<f64, 2>| {
+    let value = |x: &Point<2>| (PI * x[0]).sin() * (PI * x[1]).sin();
+    let gradient = |x: &Point<2>| {
         let [(s, c), (t, d)] = [(PI * x[0]).sin_cos(), (PI * x[1]).sin_cos()];
-        Point::<f64, 2>::new(PI * c * t, PI * s * d)
+        Point::<2>::new(PI * c * t, PI * s * d)
     };
     let problem = Problem::new()
         .coefficient(move |_| unit)
@@ -332,14 +332,14 @@ fn sines_in_units(unit: f64) -> Scene<2> {
 }
 
 /// Outcome, L2 error and seconds for it.
-fn sines<T: Real>(n: usize, eta: f64, is_old: bool) -> (Outcome, f64, f64) {
+fn sines(precision: Precision, n: usize, eta: f64, is_old: bool) -> (Outcome, f64, f64) {
     let problem = sines_in_units(1.0).problem;
-    let mesh = cube::<T, 2>(n);
+    let mesh = cube::<2>(n);
     let scheme = wopsip(eta);
     let space = Discretisation::new(&scheme, &problem, &mesh, Default::default()).unwrap();
     let inequality = space.inequality().unwrap();
     let clock = std::time::Instant::now();
-    let solution = solution(&inequality, is_old);
+    let solution = solution(precision, &inequality, is_old);
     let seconds = clock.elapsed().as_secs_f64();
     let error = space.errors(&solution.values).unwrap().l2.unwrap();
     (solution.outcome, error, seconds)
@@ -351,8 +351,8 @@ fn sines<T: Real>(n: usize, eta: f64, is_old: bool) -> (Outcome, f64, f64) {
 fn table_in_the_plane() {
     for n in [32, 64, 128] {
         for eta in [1.0, 1e4, 1e8] {
-            let [a, b] = [true, false].map(|old| sines::<f32>(n, eta, old));
-            let [c, d] = [true, false].map(|old| sines::<f64>(n, eta, old));
+            let [a, b] = [true, false].map(|old| sines(Precision::Single, n, eta, old));
+            let [c, d] = [true, false].map(|old| sines(Precision::Double, n, eta, old));
             print!("| {n} | {eta:e}");
             for (outcome, error, seconds) in [a, b, c, d] {
                 print!(" | {error:.3e} {outcome} {seconds:.3}s");
@@ -369,7 +369,7 @@ fn table_under_an_obstacle() {
     let scene = scenes::radial::<2>(1.0);
     for n in [16, 32, 64, 128] {
         for eta in [1.0, 1e4, 1e8] {
-            let mesh = scene.domain.mesh::<f64>(n).unwrap();
+            let mesh = scene.domain.mesh(n).unwrap();
             let problem = scene.problem.clone().on(FacetMeans);
             let space =
                 Discretisation::new(&wopsip(eta), &problem, &mesh, Default::default()).unwrap();
@@ -378,7 +378,7 @@ fn table_under_an_obstacle() {
             print!("| {n} | {eta:e} | {:.3}s", clock.elapsed().as_secs_f64());
             for is_old in [true, false] {
                 let clock = std::time::Instant::now();
-                let found = solution(&inequality, is_old);
+                let found = solution(Precision::Double, &inequality, is_old);
                 let seconds = clock.elapsed().as_secs_f64();
                 let error = space.errors(&found.values).unwrap().l2.unwrap();
                 print!(" | {error:.3e} {} {} {seconds:.3}s", found.outcome, found.outer);

@@ -9,10 +9,10 @@ use unilateral::scheme::ConformingP2;
 
 #[test]
 fn the_same_bits_where_neighbours_have_distant_numbers() {
-    fn check<const D: usize, S: Scheme<f64, D>>(scheme: &S, n: usize) {
+    fn check<const D: usize, S: Scheme<D>>(scheme: &S, n: usize) {
         let mut random = Random(6);
         let raw = Raw::<D>::jittered(&mixed_box(), n, 0.3, &mut random).shuffled(&mut random);
-        let mesh = raw.mesh::<f64>();
+        let mesh = raw.mesh();
         let problem = Problem::<D>::new().coefficient(|x| 1.0 + x[0] * x[0]);
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -38,7 +38,7 @@ fn the_same_bits_where_neighbours_have_distant_numbers() {
 }
 
 /// A disc of this many triangles around its middle, whose row is as long.
-fn fan(n: u32) -> Mesh<f64, 2> {
+fn fan(n: u32) -> Mesh<2> {
     let angle = |k: u32| std::f64::consts::TAU * f64::from(k) / f64::from(n);
     let rim = (0..n).map(|k| Point::from([angle(k).cos(), angle(k).sin()]));
     let vertices = std::iter::once(Point::from([0.0, 0.0])).chain(rim).collect();
@@ -81,7 +81,7 @@ fn rows_of_any_length_are_filled() {
 #[test]
 #[should_panic(expected = "pattern of another discretisation")]
 fn the_pattern_of_another_discretisation_is_refused() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
     let problem = Problem::<2>::new();
     let quadrature = DataQuadrature::default();
     let quadratic = Discretisation::new(&ConformingP2, &problem, &mesh, quadrature).unwrap();

@@ -1,12 +1,12 @@
 //! The weights of forms on facets of meshes with known geometry.
 
 use crate::support::checks::Checks;
-use unilateral::facet::{FacetLifts, Lifted, Side};
+use unilateral::facet::{FacetLifts, Side};
 use unilateral::mesh::{BoxDomain, Mesh};
 use unilateral::prelude::*;
 
 /// The unit square of two triangles: the diagonal from cell 0 to cell 1, and a side of cell 0.
-fn diagonal_and_side(mesh: &Mesh<f64, 2>, alpha: [f64; 2]) -> [FacetView<'_, f64, 2>; 2] {
+fn diagonal_and_side(mesh: &Mesh<2>, alpha: [f64; 2]) -> [FacetView<'_, 2>; 2] {
     let root = 2_f64.sqrt();
     let side = |cell: usize, height: f64| Side {
         coefficient: alpha[cell],
@@ -21,7 +21,7 @@ fn diagonal_and_side(mesh: &Mesh<f64, 2>, alpha: [f64; 2]) -> [FacetView<'_, f64
     [interior, FacetView::new(mesh, (0, 0), 1.0, side(0, 1.0), None)]
 }
 
-fn unit_square() -> Mesh<f64, 2> {
+fn unit_square() -> Mesh<2> {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     Mesh::kuhn_box(&domain, [1, 1]).unwrap()
 }
@@ -31,7 +31,7 @@ fn penalties_on_two_triangles() {
     let mesh = unit_square();
     let root = 2_f64.sqrt();
     let mut checks = Checks::default();
-    let mut close = |what: &str, form: &dyn FacetForm<f64, 2>, alpha, expected: [f64; 2]| {
+    let mut close = |what: &str, form: &dyn FacetForm<2>, alpha, expected: [f64; 2]| {
         for (view, expected) in diagonal_and_side(&mesh, alpha).iter().zip(expected) {
             checks.close(
                 &format!("{what}, {:?}", view.kind()),
@@ -43,7 +43,7 @@ fn penalties_on_two_triangles() {
     };
     // harmonic mean 3/2 of the coefficients 1 and 3, one half of the flux from each side
     let (ones, jumps) = ([1.0, 1.0], [1.0, 3.0]);
-    let of = |scheme: &dyn AnyScheme<f64, 2>| scheme.form(&mesh);
+    let of = |scheme: &dyn Scheme<2>| scheme.form(&mesh);
     // boundary over volume of a cell, halved between cells, times three halves
     let ratio = (2.0 + root) / 0.5;
     close("sipg", &*of(&Sipg::default()), ones, [0.75 * ratio, 1.5 * ratio]);
@@ -80,7 +80,7 @@ fn the_proven_bound_is_that_of_the_worse_cell() {
     };
     let penalty = |here: f64, there: f64| {
         let view = FacetView::new(&mesh, (0, 1), 1.0, side(here), Some(side(there)));
-        AnyScheme::<f64, 2>::form(&Sipg::default(), &mesh).penalty(&view)
+        Scheme::<2>::form(&Sipg::default(), &mesh).penalty(&view)
     };
     assert!((penalty(0.5, 0.1) / (0.75 * 3.0 / 0.1) - 1.0).abs() < 1e-14);
     assert_eq!(penalty(0.5, 0.1), penalty(0.1, 0.5));
@@ -89,11 +89,11 @@ fn the_proven_bound_is_that_of_the_worse_cell() {
 /// The lifts of the facets of a triangle need a factor of three.
 #[test]
 fn the_bound_of_lifts_is_the_number_of_facets() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [3, 3]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [3, 3]).unwrap();
     let problem = Problem::new();
     for (eta, is_below) in [(2.5, true), (2.99, true), (3.01, false), (4.5, false)] {
         let scheme = Br2 { eta: Some(eta), ..Br2::default() };
-        let of = scheme.discretise(&problem, &mesh, Default::default()).unwrap();
+        let of = Discretisation::new(&scheme, &problem, &mesh, Default::default()).unwrap();
         assert_eq!(of.penalty_below_bound().is_some(), is_below, "eta = {eta}");
     }
 }
@@ -104,8 +104,8 @@ fn the_bound_of_lifts_is_the_number_of_facets() {
 #[test]
 fn moments_of_lifts() {
     fn of<const D: usize>(degree: usize, moment: usize) -> f64 {
-        let form = Lifted(FacetLifts { eta: 1.0, lift_degree: degree - 1, bounded: false });
-        FacetForm::<f64, D>::moment_weight(&form, moment)
+        let form = FacetLifts { eta: 1.0, lift_degree: degree - 1, with_all_lifts: true };
+        FacetForm::<D>::moment_weight(&form, moment)
     }
     // means into constants: the lift is constant, of energy |F|^2 / |K|
     assert_eq!([of::<1>(1, 0), of::<2>(1, 0), of::<3>(1, 0)], [1.0; 3]);
@@ -123,7 +123,7 @@ fn moments_of_lifts() {
 #[test]
 fn the_diameter_of_a_vertex() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [2]).unwrap();
+    let mesh = Mesh::<1>::kuhn_box(&domain, [2]).unwrap();
     let side = |length: f64| Side {
         coefficient: 1.0,
         least_coefficient: 1.0,
@@ -135,17 +135,17 @@ fn the_diameter_of_a_vertex() {
     let end = FacetView::new(&mesh, (0, 1), 1.0, side(0.2), None);
     assert_eq!((between.diameter(), end.diameter()), (0.4, 0.2));
     let over = Wopsip { eta: Eta::Absolute(1.0), ..Wopsip::default() };
-    let form = AnyScheme::<f64, 1>::form(&over, &mesh);
+    let form = Scheme::<1>::form(&over, &mesh);
     assert!((form.penalty(&between) - 0.4_f64.powi(-3)).abs() < 1e-12);
 }
 
 /// The default factor of the over-penalty has no dimension: a penalty scales as the stiffness does.
 #[test]
 fn the_default_over_penalty_scales_with_the_domain() {
-    fn check<const D: usize>(scheme: &dyn AnyScheme<f64, D>, power: i32) {
+    fn check<const D: usize>(scheme: &dyn Scheme<D>, power: i32) {
         let factor = |scale: f64| {
             let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(scale));
-            let mesh = Mesh::<f64, D>::kuhn_box(&domain, [2; D]).unwrap();
+            let mesh = Mesh::<D>::kuhn_box(&domain, [2; D]).unwrap();
             scheme.parameters(&mesh).eta.unwrap()
         };
         let expected = (D as f64).sqrt().powi(power);
@@ -163,7 +163,7 @@ fn the_default_over_penalty_scales_with_the_domain() {
 #[test]
 fn the_limit_of_rounding_is_a_length() {
     let mesh = unit_square();
-    for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 2>, &Sipg::default(), &Wopsip::default()] {
+    for scheme in [&ConformingP1 as &dyn Scheme<2>, &Sipg::default(), &Wopsip::default()] {
         let form = scheme.form(&mesh);
         let limit = |epsilon, length| form.theory().rounding_limit(epsilon, length);
         for length in [1e-3, 1.0, 1e3] {

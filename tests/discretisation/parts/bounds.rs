@@ -1,11 +1,11 @@
 //! Guaranteed bounds over the parts of a mesh.
 
-use super::gathered::process;
+use super::gathered::{on_parts, parts_of, process};
 use std::collections::HashMap;
-use unilateral::distributed::{DistributedIteration, PartHierarchy, in_process};
 use unilateral::error_bound::Unproven;
-use unilateral::mesh::{Layers, Neighbour, Neighbours};
+use unilateral::mesh::{Neighbour, Neighbours};
 use unilateral::prelude::*;
+use unilateral::processes::in_process;
 use unilateral::scenes::Scene;
 
 /// Refinements of the coarsest mesh.
@@ -21,23 +21,22 @@ type OwnPair<const D: usize> = (Vec<(u64, Vec<f64>)>, Vec<([u64; D], u64)>, [f64
 /// Fluxes of two cells in two parts cancel on their facet, and both parts have the same function there: so a sum over
 /// parts is a bound. The bound is that of one part, but for the multipliers that are not exchanged between parts.
 fn holds<const D: usize>(scene: &Scene<D>, coarsest: usize, parts: usize) {
-    let mesh: Mesh<f64, D> = scene.domain.mesh(coarsest).unwrap();
+    let mesh: Mesh<D> = scene.domain.mesh(coarsest).unwrap();
     for name in SCHEMES.split(' ') {
         let scheme = name.parse::<NamedScheme>().unwrap();
         let problem = match scheme.constraint_set() {
             Some(set) => scene.problem.clone().on(set),
             None => scene.problem.clone(),
         };
-        let scheme = scheme.make::<f64, D>();
+        let scheme = scheme.make::<D>();
         let of_parts = |parts: usize| {
             in_process(parts, |number, exchange| -> OwnPair<D> {
                 let process = process(number, exchange);
-                let by = (REFINEMENTS, Layers::across_vertices(2));
-                let meshes = PartHierarchy::new(&mesh, None, by, &process).unwrap();
-                let mut nested = DistributedIteration::new(&problem, &meshes, process.clone());
+                let meshes = parts_of(&mesh, (REFINEMENTS, 2), &process);
+                let mut nested = on_parts(&problem, &meshes, process.clone());
                 let solved = nested.solve_on(REFINEMENTS, &*scheme).unwrap();
                 assert!(solved.converged(), "{name}");
-                let part = solved.part();
+                let part = solved.part().unwrap();
                 let pair = solved.primal_dual_pair().unwrap();
                 let own = (0..part.mesh.n_cells()).filter(|&cell| part.owns(cell));
                 let (mut fluxes, mut values) = (Vec::new(), Vec::new());
@@ -111,18 +110,17 @@ fn what_one_part_cannot_prove_is_proven_nowhere() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let problem = Problem::new()
         .constant_source(1.0)
-        .dirichlet_on("bottom", |x: &Point<f64, 2>| 1.0 - x[0])
+        .dirichlet_on("bottom", |x: &Point<2>| 1.0 - x[0])
         .dirichlet_on("left", 0.0)
         .dirichlet_on("right", 0.0)
         .dirichlet_on("top", 0.0)
         .polynomial_data(1);
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
     let mesh = problem.bind_boundary(mesh).unwrap();
     let unproven = in_process(3, |number, exchange| {
         let process = process(number, exchange);
-        let by = (REFINEMENTS, Layers::across_vertices(2));
-        let meshes = PartHierarchy::new(&mesh, None, by, &process).unwrap();
-        let mut nested = DistributedIteration::new(&problem, &meshes, process.clone());
+        let meshes = parts_of(&mesh, (REFINEMENTS, 2), &process);
+        let mut nested = on_parts(&problem, &meshes, process.clone());
         nested.solve_on(REFINEMENTS, &ConformingP1).unwrap().bound().unwrap().unproven
     });
     assert_eq!(unproven, vec![[Unproven::Boundary]; 3]);

@@ -6,29 +6,25 @@ use unilateral::mesh::{Layers, Part};
 use unilateral::prelude::*;
 
 /// Values of unknowns without any regularity.
-pub fn some_values<T: Real>(n: usize) -> Vec<T> {
-    (0..n).map(|i| T::lit(((i * 7919 % 1013) as f64 / 1013.0 * 6.0).sin())).collect()
+pub fn some_values(n: usize) -> Vec<f64> {
+    (0..n).map(|i| ((i * 7919 % 1013) as f64 / 1013.0 * 6.0).sin()).collect()
 }
 
 /// A discretisation with its inequality.
-pub struct Assembled<'a, T: Real, const D: usize> {
-    pub discretisation: Discretisation<'a, T, D>,
-    pub inequality: Inequality<T>,
+pub struct Assembled<'a, const D: usize> {
+    pub discretisation: Discretisation<'a, D>,
+    pub inequality: Inequality<f64>,
 }
 
-impl<'a, T: Real, const D: usize> Assembled<'a, T, D> {
-    pub fn new(
-        scheme: &dyn AnyScheme<T, D>,
-        problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
-    ) -> Self {
+impl<'a, const D: usize> Assembled<'a, D> {
+    pub fn new(scheme: &dyn Scheme<D>, problem: &'a Problem<D>, mesh: &'a Mesh<D>) -> Self {
         let quadrature = DataQuadrature::default();
         let discretisation = Discretisation::new(scheme, problem, mesh, quadrature).unwrap();
         let inequality = discretisation.inequality().unwrap();
         Self { discretisation, inequality }
     }
     /// The number that each unknown of a part has here.
-    pub fn numbers_of(&self, part: &Part<T, D>, on_part: &Discretisation<'_, T, D>) -> Vec<usize> {
+    pub fn numbers_of(&self, part: &Part<D>, on_part: &Discretisation<'_, D>) -> Vec<usize> {
         let mut numbers = vec![usize::MAX; on_part.unknowns()];
         for (cell, &whole) in part.cells.iter().enumerate() {
             let own = on_part.unknowns_of(cell);
@@ -60,20 +56,20 @@ impl Differences {
 }
 
 /// The bits of a number, exactly converted to `f64`.
-fn bits<T: Real>(x: T) -> u64 {
-    x.to_f64().to_bits()
+fn bits(x: f64) -> u64 {
+    x.to_bits()
 }
 
-fn bits_of_bound<T: Real>(bound: &Bound<T>) -> [Option<u64>; 3] {
+fn bits_of_bound(bound: &Bound<f64>) -> [Option<u64>; 3] {
     let fixed = if let Bound::Fixed(x) = bound { Some(bits(*x)) } else { None };
     [fixed, bound.lower().map(bits), bound.upper().map(bits)]
 }
 
 /// Compares all parts of a mesh with the whole.
-pub fn differences<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+pub fn differences<const D: usize>(
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
     (parts, layers): (usize, Layers),
 ) -> Differences {
     let owners = mesh.partition(parts).unwrap();
@@ -83,17 +79,17 @@ pub fn differences<T: Real, const D: usize>(
 }
 
 /// Compares parts of a mesh with the whole, given the owners of its cells.
-pub fn differences_of<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+pub fn differences_of<const D: usize>(
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
     owners: &[u32],
-    parts: &[Part<T, D>],
+    parts: &[Part<D>],
 ) -> Differences {
     let whole = Assembled::new(scheme, problem, mesh);
     let all = &whole.inequality;
     let owner_of = whole.discretisation.owners(owners);
-    let x: Vec<T> = some_values(all.size());
+    let x: Vec<f64> = some_values(all.size());
     let mut residual = vec![0.0; all.size()];
     all.residual_f64(&x, &mut residual);
     let mut found = Differences::default();
@@ -101,7 +97,7 @@ pub fn differences_of<T: Real, const D: usize>(
         let number = part.number;
         let Assembled { discretisation, inequality } = Assembled::new(scheme, problem, &part.mesh);
         let numbers = whole.numbers_of(part, &discretisation);
-        let values: Vec<T> = numbers.iter().map(|&k| x[k]).collect();
+        let values: Vec<f64> = numbers.iter().map(|&k| x[k]).collect();
         let mut on_part = vec![0.0; values.len()];
         inequality.residual_f64(&values, &mut on_part);
         for (i, owner) in discretisation.owners(&part.owners).into_iter().enumerate() {
@@ -130,10 +126,10 @@ pub fn differences_of<T: Real, const D: usize>(
 
 /// Holds all parts of a mesh to the bits of the whole, with the layers that the scheme asks for.
 #[track_caller]
-pub fn same_bits<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+pub fn same_bits<const D: usize>(
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<D>,
     parts: usize,
 ) {
     let layers = scheme.layers(mesh);

@@ -2,14 +2,14 @@
 
 use super::compare::Assembled;
 use super::meshes::{box_mesh, moved};
-use unilateral::distributed::{
-    Exchange, ExchangeError, InProcess, Merge, Numbering, agree, check_bounds, in_process,
-    merge_all,
-};
 use unilateral::inequality::Violations;
 use unilateral::measure::SquaredErrors;
 use unilateral::mesh::{Extent, Layers};
 use unilateral::prelude::*;
+use unilateral::processes::{
+    Exchange, ExchangeError, InProcess, Merge, Numbering, agree, check_bounds, in_process,
+    merge_all,
+};
 
 /// The message that all parts have.
 #[track_caller]
@@ -174,7 +174,7 @@ fn parts_that_do_not_belong_together_have_no_numbers() {
 /// Of six parts around a vertex the fourth sees none that knows who numbers the vertex.
 #[test]
 fn parts_with_too_few_layers_have_no_numbers() {
-    let mesh = Mesh::<f64, 2>::disc(1.0, 1).unwrap();
+    let mesh = Mesh::<2>::disc(1.0, 1).unwrap();
     let (owners, problem) = ([0, 1, 2, 3, 4, 5], Problem::new());
     let number = |layers| {
         in_process(6, |part, exchange| {
@@ -195,7 +195,7 @@ fn parts_with_too_few_layers_have_no_numbers() {
 fn contradicting_bounds_of_one_part_are_an_error_of_all() {
     let mesh = moved::<2>(6);
     let owners = mesh.partition(4).unwrap();
-    let check = |problem: &Problem<2>, scheme: &dyn AnyScheme<f64, 2>| {
+    let check = |problem: &Problem<2>, scheme: &dyn Scheme<2>| {
         in_process(4, |number, exchange| {
             let part = mesh.part(&owners, number, scheme.layers(&mesh)).unwrap();
             let on_part = Assembled::new(scheme, problem, &part.mesh).discretisation;
@@ -208,9 +208,9 @@ fn contradicting_bounds_of_one_part_are_an_error_of_all() {
     let at = barycentre(last);
     let schemes = NamedScheme::list(["p1", "cr", "sipg", "wopsip", "p2"]).unwrap();
     for scheme in schemes {
-        let scheme = scheme.make::<f64, 2>();
+        let scheme = scheme.make::<2>();
         let problem = |height: f64| {
-            Problem::new().obstacle_above(|_| 1.0).obstacle_below(move |x: &Point<f64, 2>| {
+            Problem::new().obstacle_above(|_| 1.0).obstacle_below(move |x: &Point<2>| {
                 if (x - at).norm() < 0.25 { 1.0 + height } else { -1e3 }
             })
         };
@@ -245,12 +245,12 @@ fn data_that_are_not_finite_in_one_part_are_an_error_of_all() {
     let bad = (0..mesh.n_cells()).rfind(|&cell| owners[cell] == 2).unwrap();
     let (geometry, corners) = (mesh.geometry(bad), mesh.cell(bad).to_vec());
     let vertices = mesh.vertices().to_vec();
-    let problem = Problem::new().source(move |x: &Point<f64, 2>| {
+    let problem = Problem::new().source(move |x: &Point<2>| {
         let inside =
             |k: usize| geometry.gradient(k).dot(&(x - vertices[corners[k] as usize])) > -1.0;
         if (0..3).all(inside) { f64::NAN } else { 1.0 }
     });
-    let (scheme, quadrature): (&dyn AnyScheme<f64, 2>, _) = (&ConformingP1, Default::default());
+    let (scheme, quadrature): (&dyn Scheme<2>, _) = (&ConformingP1, Default::default());
     let serial = scheme.inequality(&problem, &mesh, quadrature).unwrap_err();
     assert!(serial.to_string().contains(&format!("in cell {bad}:")), "{serial}");
     let part = |number| mesh.part(&owners, number, Layers::across_vertices(1)).unwrap();

@@ -1,11 +1,10 @@
 //! Fields of solutions over parts against those of one process.
 
-use super::gathered::process;
+use super::gathered::{on_parts, parts_of, process};
 use std::collections::HashMap;
-use unilateral::distributed::{DistributedIteration, PartHierarchy, in_process};
-use unilateral::mesh::Layers;
 use unilateral::paraview::FieldScalar;
 use unilateral::prelude::*;
+use unilateral::processes::in_process;
 use unilateral::scenes::Scene;
 
 /// By cell of the whole mesh the multiplier, and by cell and facet the pressure, of own cells.
@@ -13,19 +12,18 @@ type OwnFields = (Vec<(u64, f64)>, Vec<((u64, usize), f64)>);
 
 /// Multipliers and pressures beside a cut are those of one part: the residuals of ghosts are those of their owners.
 fn holds(scene: &Scene<2>) {
-    let mesh: Mesh<f64, 2> = scene.domain.mesh(4).unwrap();
+    let mesh: Mesh<2> = scene.domain.mesh(4).unwrap();
     for name in ["p1", "sipg", "nipg", "br2", "wopsip"] {
-        let scheme = name.parse::<NamedScheme>().unwrap().make::<f64, 2>();
+        let scheme = name.parse::<NamedScheme>().unwrap().make::<2>();
         let of_parts = |parts: usize| {
             in_process(parts, |number, exchange| -> OwnFields {
                 let process = process(number, exchange);
-                let by = (1, Layers::across_vertices(1));
-                let meshes = PartHierarchy::new(&mesh, None, by, &process).unwrap();
-                let mut nested = DistributedIteration::new(&scene.problem, &meshes, process);
+                let meshes = parts_of(&mesh, (1, 1), &process);
+                let mut nested = on_parts(&scene.problem, &meshes, process);
                 let solved = nested.solve_on(1, &*scheme).unwrap();
                 assert!(solved.converged(), "{name}");
                 let fields = solved.discretisation().fields(solved.inequality(), solved.solution());
-                let part = solved.part();
+                let part = solved.part().unwrap();
                 let multipliers = fields.multiplier.iter().enumerate();
                 let multipliers = multipliers.filter(|(cell, _)| part.owns(*cell));
                 let places = fields.contact_boundary.iter().zip(&fields.pressure);
@@ -71,16 +69,17 @@ fn multipliers_beside_a_cut_are_those_of_the_whole() {
 #[test]
 fn files_of_parts_have_the_arrays_of_their_list() {
     let scene = scenes::signorini_2d();
-    let mesh: Mesh<f64, 2> = scene.domain.mesh(4).unwrap();
+    let mesh: Mesh<2> = scene.domain.mesh(4).unwrap();
     let folder = std::env::temp_dir().join(format!("unilateral-parts-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     in_process(3, |number, exchange| {
         let process = process(number, exchange);
-        let by = (1, Layers::across_vertices(1));
-        let meshes = PartHierarchy::new(&mesh, None, by, &process).unwrap();
-        let mut nested = DistributedIteration::new(&scene.problem, &meshes, process);
+        let meshes = parts_of(&mesh, (1, 1), &process);
+        let mut nested = on_parts(&scene.problem, &meshes, process);
         let solved = nested.solve_on(1, &ConformingP1).unwrap();
-        solved.write_vtu(&folder, "fields", FieldScalar::Single).unwrap();
+        solved
+            .write_vtu_of_parts(&folder, "fields", |file| file.scalar(FieldScalar::Single))
+            .unwrap();
     });
     let list = std::fs::read_to_string(folder.join("fields.pvtu")).unwrap();
     let arrays = list.split("<PDataArray ").skip(1).map(|rest| rest.split('/').next().unwrap());

@@ -1,11 +1,15 @@
 //! An engine without a library: every part has all rows, and factors them.
 
+use std::rc::Rc;
 use std::sync::Arc;
 use unilateral::algebra::SparseMatrix;
 use unilateral::distributed::{
-    Engine, EngineMethod, EngineSolver, Exchange, InProcess, OwnRows, Process,
+    Engine, EngineMethod, EngineSolver, OwnRows, Process, SolverOnParts,
 };
 use unilateral::linear::{FactorError, Factors};
+use unilateral::mesh::Layers;
+use unilateral::prelude::*;
+use unilateral::processes::{Exchange, InProcess};
 
 #[derive(Debug)]
 pub struct Gathered {
@@ -16,6 +20,26 @@ pub struct Gathered {
 pub fn process(number: u32, exchange: &Arc<InProcess>) -> Process {
     let engine = Gathered { exchange: exchange.clone() };
     Process::new(number, exchange.clone(), engine)
+}
+
+/// The part of a mesh and of its refinements, with layers across vertices.
+pub fn parts_of<const D: usize>(
+    mesh: &Mesh<D>,
+    (refinements, layers): (usize, usize),
+    process: &Process,
+) -> Hierarchy<D> {
+    let (number, exchange) = (process.number, &process.exchange);
+    let layers = Layers::across_vertices(layers);
+    Hierarchy::of_parts(mesh, refinements, layers, (number, exchange)).unwrap()
+}
+
+/// A problem on the parts of nested meshes.
+pub fn on_parts<'a, const D: usize>(
+    problem: &'a Problem<D>,
+    parts: &'a Hierarchy<D>,
+    process: Process,
+) -> NestedIteration<'a, D> {
+    NestedIteration::new(problem, parts).system_solver(Rc::new(SolverOnParts::new(process)))
 }
 
 /// The lists of all parts, one after the other.

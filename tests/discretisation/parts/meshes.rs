@@ -7,18 +7,18 @@ use unilateral::mesh::{BisectedMesh, Extent, Facets, Layers, Neighbour, Neighbou
 use unilateral::prelude::*;
 
 /// The unit box with all parts of the boundary.
-pub fn box_mesh<const D: usize>(n: usize) -> Mesh<f64, D> {
+pub fn box_mesh<const D: usize>(n: usize) -> Mesh<D> {
     Mesh::kuhn_box(&mixed_box(), [n; D]).unwrap()
 }
 
 /// That box with its inner vertices moved, and any order of vertices and cells.
-pub fn moved<const D: usize>(n: usize) -> Mesh<f64, D> {
+pub fn moved<const D: usize>(n: usize) -> Mesh<D> {
     let mut random = Random(7);
     Raw::jittered(&mixed_box::<D>(), n, 0.3, &mut random).shuffled(&mut random).mesh()
 }
 
 /// That box refined towards a corner.
-pub fn bisected<const D: usize>(n: usize) -> Mesh<f64, D> {
+pub fn bisected<const D: usize>(n: usize) -> Mesh<D> {
     let mut refined = BisectedMesh::new(box_mesh::<D>(n));
     for _ in 0..4 {
         let mesh = refined.mesh();
@@ -29,15 +29,16 @@ pub fn bisected<const D: usize>(n: usize) -> Mesh<f64, D> {
 }
 
 /// Every mesh file of this dimension with more than one cell.
-pub fn files<const D: usize>(work: &mut dyn FnMut(&Mesh<f64, D>)) {
+pub fn files<const D: usize>(work: &mut dyn FnMut(&Mesh<D>)) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     let mut paths: Vec<_> = folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "msh"));
     let mut n = 0;
     for path in paths {
-        if gmsh::dimension(&std::fs::read(&path).unwrap()).unwrap() == D {
-            let mesh = gmsh::read::<f64, D>(&path).unwrap().mesh;
+        let file = gmsh::GmshFile::read(&path).unwrap();
+        if file.dimension() == D {
+            let mesh = file.mesh::<D>().unwrap().mesh;
             if mesh.n_cells() > 2 {
                 work(&mesh);
                 n += 1;
@@ -48,7 +49,7 @@ pub fn files<const D: usize>(work: &mut dyn FnMut(&Mesh<f64, D>)) {
 }
 
 /// Half-facets of a mesh beyond which a part of it ends.
-fn cut<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<(usize, usize)> {
+fn cut<const D: usize>(mesh: &Mesh<D>) -> Vec<(usize, usize)> {
     let neighbours = Neighbours::new(mesh);
     let all = (0..mesh.n_cells()).flat_map(|cell| (0..=D).map(move |local| (cell, local)));
     all.filter(|&(cell, local)| neighbours.across(cell, local) == Neighbour::Cut).collect()
@@ -58,7 +59,7 @@ fn cut<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<(usize, usize)> {
 /// cell is not there; every cell is owned once.
 #[test]
 fn a_part_is_a_mesh_of_cells_of_the_whole() {
-    fn on<const D: usize>(mesh: &Mesh<f64, D>, parts: usize) {
+    fn on<const D: usize>(mesh: &Mesh<D>, parts: usize) {
         let owners = mesh.partition(parts).unwrap();
         let neighbours = Neighbours::new(mesh);
         let mut owned = vec![0; mesh.n_cells()];
@@ -132,7 +133,7 @@ fn a_partition_is_balanced() {
 /// facets are cut, also where a mesh is bisected.
 #[test]
 fn refinement_inherits_cut_facets() {
-    fn on<const D: usize>(mesh: &Mesh<f64, D>) {
+    fn on<const D: usize>(mesh: &Mesh<D>) {
         let owners = mesh.partition(3).unwrap();
         let part = mesh.part(&owners, 1, Layers::across_vertices(1)).unwrap();
         let n_cut = cut(&part.mesh).len();
@@ -142,7 +143,7 @@ fn refinement_inherits_cut_facets() {
         assert_eq!(cut(&refined).len(), n_cut << (D - 1));
         for cell in 0..refined.n_cells() {
             let whole = ((part.cells[cell >> D] as usize) << D) + cell % (1 << D);
-            let points = |mesh: &Mesh<f64, D>, cell: usize| -> Vec<Point<f64, D>> {
+            let points = |mesh: &Mesh<D>, cell: usize| -> Vec<Point<D>> {
                 mesh.cell(cell).iter().map(|&v| mesh.vertices()[v as usize]).collect()
             };
             assert_eq!(points(&refined, cell), points(&fine, whole));

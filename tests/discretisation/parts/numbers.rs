@@ -3,19 +3,19 @@
 use super::compare::{Assembled, some_values};
 use super::meshes::{bisected, box_mesh, moved};
 use super::problems::{obstacle_problem, schemes};
-use unilateral::distributed::{Numbering, in_process};
 use unilateral::prelude::*;
+use unilateral::processes::{Numbering, in_process};
 
 /// Every unknown of the whole has one number in all parts, numbers of a part are consecutive, and an update
 /// gives every part the values of the whole.
-fn every_scheme<const D: usize>(mesh: &Mesh<f64, D>, parts: usize) {
+fn every_scheme<const D: usize>(mesh: &Mesh<D>, parts: usize) {
     let owners = mesh.partition(parts).unwrap();
     let problem = obstacle_problem();
     for entry in schemes::<D>() {
         let problem = problem.clone().on(entry.set.clone());
         let whole = Assembled::new(&*entry.scheme, &problem, mesh);
         let n = whole.discretisation.unknowns();
-        let (owner_of, x) = (whole.discretisation.owners(&owners), some_values::<f64>(n));
+        let (owner_of, x) = (whole.discretisation.owners(&owners), some_values(n));
         let found = in_process(parts, |number, exchange| {
             let part = mesh.part(&owners, number, entry.layers(mesh)).unwrap();
             let on_part = Assembled::new(&*entry.scheme, &problem, &part.mesh).discretisation;

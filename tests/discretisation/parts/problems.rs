@@ -9,24 +9,27 @@ use unilateral::prelude::*;
 /// Incomplete interior penalty by a form of its own, on any element: broken ones, and ones that share unknowns.
 pub struct OwnScheme<E>(pub E);
 
-impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for OwnScheme<E> {
-    type Element = E;
-    type Facet = Incomplete;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+impl<const D: usize, E: Element<D> + Copy + 'static> Scheme<D> for OwnScheme<E> {
     fn name(&self) -> &str {
         "own"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> Incomplete {
-        Incomplete(10.0)
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(self.0)
+    }
+    fn dirichlet(&self) -> DirichletBy {
+        DirichletBy::FacetForm
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(Incomplete(10.0))
     }
 }
 
 /// Every scheme of the catalogue with every constraint set that its element has, an over-penalty that reads
 /// the mesh size, lifts of full degree, and schemes of one's own.
-pub fn schemes<const D: usize>() -> Vec<Entry<f64, D>> {
+pub fn schemes<const D: usize>() -> Vec<Entry<D>> {
     let named = ["wopsip@weight=anisotropic", "ldg@lifts=full", "br2@lifts=full"];
     let named = NamedScheme::list(named).unwrap();
-    let mut found: Vec<Entry<f64, D>> = Vec::new();
+    let mut found: Vec<Entry<D>> = Vec::new();
     for named in NamedScheme::all().into_iter().chain(named) {
         for (name, _) in CONSTRAINT_SETS.iter().filter(|set| set.0 != "vertices") {
             let (scheme, set) = (named.make(), constraint_set_by_name(name).unwrap());
@@ -35,7 +38,7 @@ pub fn schemes<const D: usize>() -> Vec<Entry<f64, D>> {
             }
         }
     }
-    let own: [Box<dyn AnyScheme<f64, D>>; 4] = [
+    let own: [Box<dyn Scheme<D>>; 4] = [
         Box::new(OwnScheme(Broken::<P1>::default())),
         Box::new(OwnScheme(P1)),
         Box::new(OwnScheme(P2)),
@@ -45,17 +48,17 @@ pub fn schemes<const D: usize>() -> Vec<Entry<f64, D>> {
     found
 }
 
-fn wave<const D: usize>(x: &Point<f64, D>) -> f64 {
+fn wave<const D: usize>(x: &Point<D>) -> f64 {
     (0..D).map(|k| (k + 1) as f64 * x[k]).sum()
 }
 
 /// An obstacle from below, one from above, a coefficient that varies, and data of an exact solution.
 pub fn obstacle_problem<const D: usize>() -> Problem<D> {
     Problem::new()
-        .coefficient(|x: &Point<f64, D>| 1.0 + 0.5 * wave(x).sin())
+        .coefficient(|x: &Point<D>| 1.0 + 0.5 * wave(x).sin())
         .source(|x| -4.0 + wave(x).cos())
-        .obstacle_below(|x: &Point<f64, D>| -0.1 - 0.2 * x.norm_squared())
-        .obstacle_above(|x: &Point<f64, D>| 3.0 + 0.1 * x[0])
+        .obstacle_below(|x: &Point<D>| -0.1 - 0.2 * x.norm_squared())
+        .obstacle_above(|x: &Point<D>| 3.0 + 0.1 * x[0])
         .exact(
             |x| 1.5 + 0.5 * wave(x).sin(),
             |x| Point::from_fn(|k, _| 0.5 * (k + 1) as f64 * wave(x).cos()),
@@ -66,8 +69,8 @@ pub fn obstacle_problem<const D: usize>() -> Problem<D> {
 pub fn signorini_problem<const D: usize>() -> Problem<D> {
     Problem::new()
         .constant_source(-2.0)
-        .reaction(|x: &Point<f64, D>| 1.0 + x[0] * x[0])
+        .reaction(|x: &Point<D>| 1.0 + x[0] * x[0])
         .dirichlet(|x| 0.3 * wave(x).cos())
         .neumann(|x, normal| 0.7 + wave(x).sin() * normal.sum())
-        .signorini(|x: &Point<f64, D>| -0.5 - 0.1 * wave(x).sin())
+        .signorini(|x: &Point<D>| -0.5 - 0.1 * wave(x).sin())
 }

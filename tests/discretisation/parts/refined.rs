@@ -10,13 +10,13 @@ use unilateral::prelude::*;
 
 /// A mesh and its parts.
 struct Level<const D: usize> {
-    mesh: Mesh<f64, D>,
+    mesh: Mesh<D>,
     owners: Vec<u32>,
-    parts: Vec<Part<f64, D>>,
+    parts: Vec<Part<D>>,
 }
 
 impl<const D: usize> Level<D> {
-    fn new(mesh: &Mesh<f64, D>, parts: usize, layers: Layers) -> Self {
+    fn new(mesh: &Mesh<D>, parts: usize, layers: Layers) -> Self {
         let owners = mesh.partition(parts).unwrap();
         let part = |number| mesh.part(&owners, number, layers).unwrap();
         let parts = (0..parts as u32).map(part).collect();
@@ -24,7 +24,7 @@ impl<const D: usize> Level<D> {
     }
     /// The refined mesh, and each part refined by itself; the extents of all merged.
     fn refine(&self, domain: Option<&Domain<D>>, layers: Layers) -> Self {
-        let refine = |part: &Part<f64, D>| match domain {
+        let refine = |part: &Part<D>| match domain {
             Some(domain) => domain.refine_part(part, layers).unwrap().0,
             None => part.refine(layers).unwrap().0,
         };
@@ -40,11 +40,11 @@ impl<const D: usize> Level<D> {
         Self { mesh, owners: owners.collect(), parts }
     }
     /// Rows of own unknowns with other columns or bits than on the whole mesh.
-    fn differences(&self, scheme: &dyn AnyScheme<f64, D>, problem: &Problem<D>) -> Differences {
+    fn differences(&self, scheme: &dyn Scheme<D>, problem: &Problem<D>) -> Differences {
         differences_of(scheme, problem, &self.mesh, &self.owners, &self.parts)
     }
     #[track_caller]
-    fn same_bits(&self, scheme: &dyn AnyScheme<f64, D>, problem: &Problem<D>) {
+    fn same_bits(&self, scheme: &dyn Scheme<D>, problem: &Problem<D>) {
         let quadrature = DataQuadrature::default();
         let discretisation = Discretisation::new(scheme, problem, &self.mesh, quadrature).unwrap();
         let expected = Differences::only_rows(discretisation.unknowns());
@@ -55,8 +55,8 @@ impl<const D: usize> Level<D> {
 
 /// A part with coordinates as bits, so that all of it can be compared.
 #[track_caller]
-fn same_part<const D: usize>(one: &Part<f64, D>, other: &Part<f64, D>) {
-    let bits = |part: &Part<f64, D>| -> Vec<u64> {
+fn same_part<const D: usize>(one: &Part<D>, other: &Part<D>) {
+    let bits = |part: &Part<D>| -> Vec<u64> {
         part.mesh.vertices().iter().flat_map(|x| x.iter().map(|c| c.to_bits())).collect()
     };
     assert_eq!((one.number, one.layers), (other.number, other.layers));
@@ -76,7 +76,7 @@ fn same_part<const D: usize>(one: &Part<f64, D>, other: &Part<f64, D>) {
 /// one more.
 #[test]
 fn a_refined_part_is_the_part_of_the_refined_mesh() {
-    fn on<const D: usize>(mesh: &Mesh<f64, D>, parts: usize, pairs: &[(Layers, Layers)]) {
+    fn on<const D: usize>(mesh: &Mesh<D>, parts: usize, pairs: &[(Layers, Layers)]) {
         for &(coarse, fine) in pairs {
             let level = Level::new(mesh, parts, coarse);
             for count in 0..=fine.count {
@@ -112,7 +112,7 @@ fn a_refined_part_is_the_part_of_the_refined_mesh() {
 /// Vertices are midpoints of those of the coarse part that are their parents, or these.
 #[test]
 fn vertices_of_a_refined_part_have_their_parents_in_the_coarse_part() {
-    fn on<const D: usize>(mesh: &Mesh<f64, D>) {
+    fn on<const D: usize>(mesh: &Mesh<D>) {
         let layers = Layers::across_vertices(1);
         let part = mesh.part(&mesh.partition(3).unwrap(), 1, layers).unwrap();
         let (fine, refinement) = part.refine(layers).unwrap();
@@ -149,8 +149,8 @@ fn numbers_of_cells_are_bounded() {
 
 /// Refines parts some times, with the layers that a scheme asks for, and holds each level to the whole.
 fn chain<const D: usize>(
-    entries: &[Entry<f64, D>],
-    (mesh, domain): (&Mesh<f64, D>, Option<&Domain<D>>),
+    entries: &[Entry<D>],
+    (mesh, domain): (&Mesh<D>, Option<&Domain<D>>),
     (parts, refinements): (usize, usize),
 ) {
     let mut levels: Vec<(Layers, Vec<Level<D>>)> = Vec::new();
@@ -196,14 +196,14 @@ fn every_scheme_has_the_rows_of_refined_meshes_in_space() {
 #[test]
 fn parts_of_curved_and_foreign_meshes_have_the_rows_of_the_refined_whole() {
     let list = |names: &[&str]| NamedScheme::list(names.iter().copied()).unwrap();
-    fn entries<const D: usize>(schemes: &[NamedScheme]) -> Vec<Entry<f64, D>> {
+    fn entries<const D: usize>(schemes: &[NamedScheme]) -> Vec<Entry<D>> {
         schemes.iter().map(|scheme| scheme.make().into()).collect()
     }
     let plane = list(&["p1", "cr", "sipg", "wopsip@weight=anisotropic", "br2-p2"]);
     files::<2>(&mut |mesh| chain(&entries(&plane), (mesh, None), (3.min(mesh.n_cells()), 2)));
     files::<3>(&mut |mesh| chain(&entries(&plane[..4]), (mesh, None), (2, 1)));
     let domain: Domain<2> = Domain::Disc { radius: 1.0 };
-    let disc = domain.mesh::<f64>(3).unwrap();
+    let disc = domain.mesh(3).unwrap();
     let schemes = list(&["p1", "p2", "cr", "sipg", "wopsip@weight=anisotropic", "ldg", "wopsip"]);
     chain(&entries(&schemes), (&disc, Some(&domain)), (3, 3));
 }
@@ -212,9 +212,9 @@ fn parts_of_curved_and_foreign_meshes_have_the_rows_of_the_refined_whole() {
 /// makes.
 #[test]
 fn one_layer_less_is_not_enough_on_refined_parts() {
-    fn on<const D: usize>(mesh: &Mesh<f64, D>, domain: Option<&Domain<D>>, names: &[&str]) {
+    fn on<const D: usize>(mesh: &Mesh<D>, domain: Option<&Domain<D>>, names: &[&str]) {
         for scheme in NamedScheme::list(names.iter().copied()).unwrap() {
-            let scheme = scheme.make::<f64, D>();
+            let scheme = scheme.make::<D>();
             let layers = scheme.layers(mesh);
             let fewer = Layers { count: layers.count - 1, ..layers };
             let level = Level::new(mesh, 3, layers).refine(domain, layers).refine(domain, fewer);
@@ -242,7 +242,7 @@ fn one_layer_less_is_not_enough_on_refined_parts() {
 #[test]
 fn the_extent_of_all_parts_is_needed() {
     let domain: Domain<2> = Domain::Disc { radius: 1.0 };
-    let mesh = domain.mesh::<f64>(3).unwrap();
+    let mesh = domain.mesh(3).unwrap();
     let layers = Layers::across_facets(1);
     let part = Level::new(&mesh, 3, layers).parts.remove(0);
     let (fine, _) = domain.refine_part(&part, layers).unwrap();

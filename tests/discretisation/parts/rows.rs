@@ -3,13 +3,12 @@
 use super::compare::{differences, same_bits};
 use super::meshes::{bisected, box_mesh, files, moved};
 use super::problems::{obstacle_problem, schemes, signorini_problem};
-use crate::support::meshes::{Random, Raw, mixed_box};
 use unilateral::mesh::Layers;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 
 /// Both problems in every scheme, the problem with a gap where the constraint set has nodes on facets.
-fn every_scheme<const D: usize>(mesh: &Mesh<f64, D>, parts: [usize; 2]) {
+fn every_scheme<const D: usize>(mesh: &Mesh<D>, parts: [usize; 2]) {
     for entry in schemes::<D>() {
         let [obstacle, signorini] =
             [obstacle_problem(), signorini_problem()].map(|problem| problem.on(entry.set.clone()));
@@ -49,7 +48,7 @@ fn parts_of_meshes_from_files_have_the_rows_of_the_whole_mesh() {
         files::<D>(&mut |mesh| {
             for (k, scheme) in schemes.iter().enumerate() {
                 let parts = (2 + k % 4).min(mesh.n_cells());
-                let scheme = scheme.make::<f64, D>();
+                let scheme = scheme.make::<D>();
                 same_bits(&*scheme, &obstacle_problem(), mesh, parts);
                 same_bits(&*scheme, &signorini_problem(), mesh, parts);
             }
@@ -59,12 +58,12 @@ fn parts_of_meshes_from_files_have_the_rows_of_the_whole_mesh() {
     on::<3>();
 }
 
-/// With a layer less than [`AnyScheme::layers`] some rows differ, for schemes of every kind.
+/// With a layer less than [`Scheme::layers`] some rows differ, for schemes of every kind.
 #[test]
 fn one_layer_less_is_not_enough() {
-    fn on<const D: usize>(mesh: &Mesh<f64, D>, names: &[&str]) {
+    fn on<const D: usize>(mesh: &Mesh<D>, names: &[&str]) {
         for scheme in NamedScheme::list(names.iter().copied()).unwrap() {
-            let scheme = scheme.make::<f64, D>();
+            let scheme = scheme.make::<D>();
             let layers = scheme.layers(mesh);
             let fewer = Layers { count: layers.count - 1, ..layers };
             let found = differences(&*scheme, &signorini_problem(), mesh, (4, fewer));
@@ -94,7 +93,7 @@ fn parts_leave_contradictions_of_bounds_to_the_whole() {
     let mesh = box_mesh::<1>(8);
     let problem = Problem::new()
         .dirichlet(|_| -1e-17)
-        .obstacle_below(|x: &Point<f64, 1>| if x[0] > 0.8 { 1.0 } else { 0.0 });
+        .obstacle_below(|x: &Point<1>| if x[0] > 0.8 { 1.0 } else { 0.0 });
     same_bits(&ConformingP1, &problem, &mesh, 3);
 }
 
@@ -103,9 +102,9 @@ fn parts_leave_contradictions_of_bounds_to_the_whole() {
 #[test]
 fn scenes_have_the_rows_of_the_whole_mesh() {
     fn on<const D: usize>(scene: &Scene<D>, n: usize) {
-        let mesh = scene.domain.mesh::<f64>(n).unwrap();
+        let mesh = scene.domain.mesh(n).unwrap();
         for scheme in NamedScheme::list(["p1", "p2", "cr", "sipg", "wopsip", "ldg-p2"]).unwrap() {
-            same_bits(&*scheme.make::<f64, D>(), &scene.problem, &mesh, 3);
+            same_bits(&*scheme.make::<D>(), &scene.problem, &mesh, 3);
         }
     }
     on(&scenes::bilateral_1d(), 8);
@@ -121,23 +120,4 @@ fn scenes_have_the_rows_of_the_whole_mesh() {
     plane.iter().for_each(|scene| on(scene, 4));
     on(&scenes::radial::<3>(1.0), 2);
     on(&scenes::signorini_line_3d(), 2);
-}
-
-/// Rows in single precision.
-#[test]
-fn rows_in_single_precision_are_those_of_the_whole_mesh() {
-    fn on<const D: usize>(mesh: &Mesh<f32, D>) {
-        for scheme in NamedScheme::all() {
-            let scheme = scheme.make::<f32, D>();
-            same_bits(&*scheme, &obstacle_problem(), mesh, 3);
-            same_bits(&*scheme, &signorini_problem(), mesh, 2);
-        }
-    }
-    let domain = mixed_box();
-    on(&Mesh::<f32, 1>::kuhn_box(&domain, [7]).unwrap());
-    let mut random = Random(3);
-    let domain = mixed_box();
-    let moved = Raw::jittered(&domain, 4, 0.3, &mut random).shuffled(&mut random);
-    on(&moved.mesh::<f32>() as &Mesh<f32, 2>);
-    on(&Mesh::<f32, 3>::kuhn_box(&mixed_box(), [2; 3]).unwrap());
 }

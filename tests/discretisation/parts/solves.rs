@@ -2,9 +2,9 @@
 
 use super::gathered::process;
 use std::sync::Arc;
-use unilateral::distributed::{Exchange, InProcess, in_process};
 use unilateral::inequality::Outcome;
 use unilateral::prelude::*;
+use unilateral::processes::{Exchange, InProcess, in_process};
 use unilateral::scenes::Scene;
 use unilateral::study::{PartChecks, Row};
 
@@ -15,7 +15,7 @@ fn study<const D: usize>(
     scene: &Scene<D>,
     schemes: &[&str],
     levels: &[usize],
-) -> Study<'static, f64, D> {
+) -> Study<'static, D> {
     let named = NamedScheme::list(schemes.iter().copied()).unwrap();
     let study = Study::new(scene.clone()).levels(levels.iter().copied());
     named.iter().fold(study, Study::named_scheme)
@@ -205,7 +205,7 @@ fn contradicting_bounds_are_infeasible() {
     let mut scene = scenes::radial::<2>(1.0);
     scene.problem.exact = None;
     scene.problem =
-        scene.problem.obstacle_above(|x: &Point<f64, 2>| if x[0] > 1.2 { -5.0 } else { 5.0 });
+        scene.problem.obstacle_above(|x: &Point<2>| if x[0] > 1.2 { -5.0 } else { 5.0 });
     let serial = study(&scene, &["p1"], &[8]).run().unwrap().rows;
     let rows = on_parts(&scene, (&["p1"], &[8]), 2).remove(0);
     assert_eq!([serial[0].status, rows[0].status], [Outcome::Infeasible; 2]);

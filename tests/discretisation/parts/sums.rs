@@ -5,10 +5,10 @@ use super::meshes::{box_mesh, moved};
 use super::problems::{obstacle_problem, schemes, signorini_problem};
 use std::sync::Arc;
 use unilateral::algebra::Inequality;
-use unilateral::distributed::{InProcess, in_process, merge_all};
 use unilateral::inequality::{Certificate, Violations, certify};
 use unilateral::measure::Errors;
 use unilateral::prelude::*;
+use unilateral::processes::{InProcess, in_process, merge_all};
 
 const ROUNDING: f64 = 1e-14;
 
@@ -33,9 +33,9 @@ type Merged = ([Certificate; 2], Option<Errors>);
 
 /// What the parts merge, each in a thread of its own; all find the same bits.
 fn merged<const D: usize>(
-    scheme: &dyn AnyScheme<f64, D>,
+    scheme: &dyn Scheme<D>,
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
     (parts, x): (usize, &[f64]),
 ) -> Merged {
     let owners = mesh.partition(parts).unwrap();
@@ -69,7 +69,7 @@ fn jump_multipliers(inequality: &Inequality<f64>, u: &[f64]) -> Vec<f64> {
 }
 
 /// Merged and serial numbers of every scheme, for values of any size.
-fn every_scheme<const D: usize>(mesh: &Mesh<f64, D>, parts: usize) {
+fn every_scheme<const D: usize>(mesh: &Mesh<D>, parts: usize) {
     for entry in schemes::<D>() {
         let [obstacle, signorini] =
             [obstacle_problem(), signorini_problem()].map(|problem| problem.on(entry.set.clone()));
@@ -81,8 +81,7 @@ fn every_scheme<const D: usize>(mesh: &Mesh<f64, D>, parts: usize) {
             let label = entry.label_on(problem.constraint_set());
             let whole = Assembled::new(&*entry.scheme, problem, mesh);
             let inequality = &whole.inequality;
-            let x: Vec<f64> =
-                some_values::<f64>(inequality.size()).iter().map(|x| unit * x).collect();
+            let x: Vec<f64> = some_values(inequality.size()).iter().map(|x| unit * x).collect();
             let (certificates, errors) = merged(&*entry.scheme, problem, mesh, (parts, &x));
             let jumps = jump_multipliers(inequality, &x);
             let with_jumps = Violations::of(inequality, &x, &jumps, &|_| true).certificate();

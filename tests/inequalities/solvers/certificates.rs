@@ -9,10 +9,11 @@ use unilateral::inequality::{
     Certificate, InequalitySolver, Outcome, Solution, Violations, certify, contact_of,
 };
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 
 #[test]
 fn values_at_a_bound_but_for_rounding_are_in_contact() {
-    let problem = membrane::<f64>(20, 10.0, |_, _| -0.3);
+    let problem = membrane(20, 10.0, |_, _| -0.3);
     let solution = cold(&problem);
     let closed = |i: &usize| solution.contact[*i] == Contact::Lower;
     assert!((0..400).filter(closed).count() > 50);
@@ -57,7 +58,7 @@ fn a_force_acts_as_far_as_the_opposite_bound() {
 /// from below.
 #[test]
 fn contact_is_told_from_values_alone() {
-    let mut below = membrane::<f64>(20, 10.0, |_, _| -0.3);
+    let mut below = membrane(20, 10.0, |_, _| -0.3);
     let cold = cold(&below);
     let closed = |i: &usize| cold.contact[*i] == Contact::Lower;
     let step =
@@ -120,11 +121,11 @@ fn each_violation_counts_in_the_largest_one() {
         violations[which] = 0.5;
         let certificate = Certificate::new(violations);
         assert_eq!(certificate.largest(), 0.5, "{which}");
-        assert!(!certificate.is_within_limits::<f64>(), "{which}");
+        assert!(!certificate.is_within_limits(Precision::Double), "{which}");
     }
-    let limit = f64::ALGEBRAIC_BOUND_LIMIT;
+    let limit = Precision::Double.algebraic_bound_limit();
     let is_within =
-        |bound: Option<f64>| exact.with_algebraic_bound(bound).is_within_limits::<f64>();
+        |bound: Option<f64>| exact.with_algebraic_bound(bound).is_within_limits(Precision::Double);
     assert_eq!([None, Some(limit), Some(2.0 * limit)].map(is_within), [true, true, false]);
 }
 
@@ -171,7 +172,7 @@ fn a_force_away_from_a_bound_is_no_contact() {
 #[test]
 fn jumps_that_their_multipliers_do_not_have_are_seen() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [2, 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [2, 2]).unwrap();
     let problem = Problem::new().constant_source(1.0);
     let solved = solve(&problem, &mesh, &Wopsip::default()).unwrap();
     let inequality = solved.inequality();
@@ -200,7 +201,7 @@ fn a_solver_is_not_believed() {
         }
     }
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [2, 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [2, 2]).unwrap();
     for (load, outcome) in [(1.0, Outcome::Stalled), (0.0, Outcome::Converged)] {
         let problem = Problem::new().constant_source(load);
         let solved = NestedIteration::new(&problem, &mesh).solver(Confident).solve(&ConformingP1);

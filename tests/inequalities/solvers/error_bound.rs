@@ -45,7 +45,7 @@ fn relative_distance(inequality: &Inequality<f64>, u: &[f64], v: &[f64]) -> f64 
 
 /// Corrupts the solution of a membrane: single values, noise, scaling, values lifted off the obstacle.
 fn corrupted_membranes(trials: usize) {
-    let problem = membrane::<f64>(20, 10.0, |_, _| -0.3);
+    let problem = membrane(20, 10.0, |_, _| -0.3);
     let solution = cold(&problem);
     let bound = solution.algebraic_bound.expect("every active unknown is strongly active");
     assert!(bound < 1e-12, "{bound}");
@@ -73,7 +73,7 @@ fn the_bound_holds_for_corrupted_solutions_of_a_membrane() {
 
 /// A chain of `n` cells: an error in its lowest mode has a residual smaller by the number of cells.
 fn corrupted_chain(n: usize) {
-    let chain = inequality(laplacian::<f64>(n, 1, 2.0), &vec![1.0; n], vec![Bound::Free; n]);
+    let chain = inequality(laplacian(n, 1, 2.0), &vec![1.0; n], vec![Bound::Free; n]);
     let solution = cold(&chain);
     assert_eq!(solution.outcome, Outcome::Converged);
     assert!(solution.algebraic_bound.unwrap() <= 1e-6);
@@ -117,7 +117,7 @@ impl InequalitySolver<f64> for Overconfident {
 #[test]
 fn the_certificate_decides_whatever_a_solver_says() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [8, 8]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&square, [8, 8]).unwrap();
     let membrane = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.2);
     let solved =
         NestedIteration::new(&membrane, &mesh).solver(Overconfident).solve(&ConformingP1).unwrap();

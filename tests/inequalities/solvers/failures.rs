@@ -15,7 +15,7 @@ fn indefinite_matrix_is_not_coercive() {
     for (n, diagonal) in [(9, 3.7), (60, 3.9)] {
         let matrix = laplacian(n, n, diagonal);
         let load = vec![-1.0; n * n];
-        let problem = inequality::<f64>(matrix, &load, vec![Bound::Lower(-1e-3); n * n]);
+        let problem = inequality(matrix, &load, vec![Bound::Lower(-1e-3); n * n]);
         let solution = cold(&problem);
         assert_eq!(solution.outcome, Outcome::NotCoercive);
         assert!(solution.values.iter().all(|u| u.is_finite()));
@@ -41,7 +41,7 @@ fn every_solver_checks_definiteness_first() {
         vec![0.0, 0.0, -1.0, 2.0],
     ];
     let bounds = vec![Bound::Lower(0.0), Bound::Lower(0.0), Bound::Free, Bound::Free];
-    let problem = inequality::<f64>(sparse(&dense), &[-1e3, -1e3, 1.0, 1.0], bounds);
+    let problem = inequality(sparse(&dense), &[-1e3, -1e3, 1.0, 1.0], bounds);
     let outcomes = [
         cold(&problem).outcome,
         InteriorPoint.solve(&problem).outcome,
@@ -54,18 +54,18 @@ fn every_solver_checks_definiteness_first() {
 fn definiteness_is_that_of_the_symmetric_part() {
     let free = [0, 1, 2];
     let rotation = vec![vec![1.0, 9.0, 0.0], vec![-9.0, 1.0, 0.0], vec![0.0, 0.5, 1.0]];
-    assert_eq!(is_positive_definite(&sparse::<f64>(&rotation), false, &free), Ok(true));
+    assert_eq!(is_positive_definite(&sparse(&rotation), false, &free), Ok(true));
     let shear = vec![vec![1.0, 2.1, 0.0], vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0]];
-    assert_eq!(is_positive_definite(&sparse::<f64>(&shear), false, &free), Ok(false));
-    assert_eq!(is_positive_definite(&sparse::<f64>(&shear), false, &[0, 2]), Ok(true));
-    assert_eq!(is_positive_definite(&sparse::<f64>(&shear), true, &[]), Ok(true));
+    assert_eq!(is_positive_definite(&sparse(&shear), false, &free), Ok(false));
+    assert_eq!(is_positive_definite(&sparse(&shear), false, &[0, 2]), Ok(true));
+    assert_eq!(is_positive_definite(&sparse(&shear), true, &[]), Ok(true));
 }
 
 #[test]
 fn singular_matrix_is_singular() {
     // Every row sums to zero: constants are free, large enough for supernodes too.
     for n in [5, 90] {
-        let mut matrix = laplacian::<f64>(n, n, 4.0);
+        let mut matrix = laplacian(n, n, 4.0);
         for i in 0..n * n {
             let range = matrix.row_starts[i] as usize..matrix.row_starts[i + 1] as usize;
             let neighbours = (range.len() - 1) as f64;
@@ -85,7 +85,7 @@ fn singular_matrix_is_singular() {
 
 #[test]
 fn numbers_that_are_not_finite_are_noticed() {
-    let good = membrane::<f64>(5, 1.0, |_, _| -0.01);
+    let good = membrane(5, 1.0, |_, _| -0.01);
     for bad in [f64::NAN, f64::INFINITY] {
         let mut in_matrix = good.clone();
         in_matrix.matrix.values[7] = bad;
@@ -109,7 +109,7 @@ fn numbers_that_are_not_finite_are_noticed() {
 
 #[test]
 fn bad_input_is_named() {
-    let good = membrane::<f64>(5, 1.0, |_, _| -0.01);
+    let good = membrane(5, 1.0, |_, _| -0.01);
     let mut empty = good.clone();
     empty.bounds[3] = Bound::Both(1.0, 0.5);
     assert_eq!(cold(&empty).outcome, Outcome::Infeasible);
@@ -131,7 +131,7 @@ fn bad_input_is_named() {
 
 #[test]
 fn iteration_limit_comes_with_the_best_iterate() {
-    let problem = membrane::<f64>(30, 10.0, |_, _| -0.3);
+    let problem = membrane(30, 10.0, |_, _| -0.3);
     let exact = cold(&problem);
     assert!(exact.outer > 5);
     let mut before = f64::INFINITY;
@@ -147,7 +147,7 @@ fn iteration_limit_comes_with_the_best_iterate() {
 
 #[test]
 fn certificate_sees_every_violation() {
-    let problem = membrane::<f64>(20, 10.0, |_, _| -0.3);
+    let problem = membrane(20, 10.0, |_, _| -0.3);
     let solution = cold(&problem);
     let open = solution.contact.iter().position(|c| *c == Contact::Inactive).unwrap();
     let closed = solution.contact.iter().position(|c| *c == Contact::Lower).unwrap();
@@ -179,7 +179,7 @@ fn certificate_sees_every_violation() {
 
 #[test]
 fn data_whose_squares_underflow_are_refused_and_not_certified() {
-    let good = membrane::<f64>(20, 10.0, |_, _| -0.3);
+    let good = membrane(20, 10.0, |_, _| -0.3);
     let scaled = |factor: f64| {
         let mut problem = good.clone();
         problem.load.iter_mut().for_each(|b| *b *= factor);
@@ -201,7 +201,7 @@ fn data_whose_squares_underflow_are_refused_and_not_certified() {
 /// The form is coercive for every penalty: a negative pivot is one of rounding, and no penalty is too small.
 #[test]
 fn a_huge_penalty_is_not_called_too_small() {
-    let report = Study::<f64, 3>::new(scenes::radial(1.0))
+    let report = Study::<3>::new(scenes::radial(1.0))
         .scheme(Wopsip { eta: Eta::Absolute(1e11), ..Wopsip::default() })
         .levels([4])
         .run()

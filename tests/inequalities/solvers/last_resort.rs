@@ -46,7 +46,7 @@ fn all_agree_on_random_problems() {
 }
 
 /// The inequality of a scene at a level.
-fn of<S: Scheme<f64, 2>>(scene: &Scene<2>, scheme: &S, level: usize) -> Inequality<f64> {
+fn of<S: Scheme<2>>(scene: &Scene<2>, scheme: &S, level: usize) -> Inequality<f64> {
     let mesh = scene.domain.mesh(level).unwrap();
     let space =
         Discretisation::new(scheme, &scene.problem, &mesh, DataQuadrature::default()).unwrap();
@@ -64,7 +64,7 @@ fn scenes_of_all_kinds() -> Vec<Scene<2>> {
     ]
 }
 
-fn wopsip(eta: f64) -> Wopsip {
+fn wopsip<const D: usize>(eta: f64) -> Wopsip<D> {
     Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() }
 }
 
@@ -107,7 +107,7 @@ fn all_schemes_agree_with_the_oracle() {
         for &(name, _) in SCHEMES {
             for place in ["vertices", "facet-means", "nodes", "midpoints", "cell-means"] {
                 let set = constraint_set_by_name(place).unwrap();
-                let scheme = scheme_by_name::<f64, 2>(name, &SchemeOptions::default()).unwrap();
+                let scheme = scheme_by_name::<2>(name, &SchemeOptions::default()).unwrap();
                 // a scheme without such values keeps its nodes
                 let constrained = match scheme.constraint_on(&set) {
                     Some(_) => scene.problem.clone().on(set),
@@ -133,10 +133,11 @@ fn all_schemes_agree_with_the_oracle() {
 }
 
 /// Converged, certified, and with at most so many steps.
-fn converges<const D: usize>(scene: Scene<D>, scheme: Wopsip, level: usize, most: usize) {
-    let report = Study::<f64, D>::new(scene).scheme(scheme).levels([level]).run().unwrap();
+fn converges<const D: usize>(scene: Scene<D>, scheme: Wopsip<D>, level: usize, most: usize) {
+    let eta = scheme.eta;
+    let report = Study::<D>::new(scene).scheme(scheme).levels([level]).run().unwrap();
     let row = &report.rows[0];
-    let what = format!("{} at level {level}, {:?}", row.scene, scheme.eta);
+    let what = format!("{} at level {level}, {:?}", row.scene, eta);
     assert!(row.converged(), "{what}");
     assert!(row.certificate.largest() < 1e-9, "{what}: {:?}", row.certificate);
     let outer = row.iterations.outer.unwrap();
@@ -181,7 +182,7 @@ fn curved_obstacles_converge_on_fine_meshes() {
 #[test]
 fn no_penalty_is_too_large() {
     for eta in [1e-2, 1.0, 1e2, 1e4, 1e6, 1e8, 1e10] {
-        let study = Study::<f64, 2>::new(scenes::ball_2d()).scheme(wopsip(eta));
+        let study = Study::<2>::new(scenes::ball_2d()).scheme(wopsip(eta));
         let row = study.solver(InteriorPoint).levels([8]).run().unwrap().rows.remove(0);
         assert!(row.converged(), "{eta:e}");
         assert!(row.certificate.largest() < 1e-9, "{eta:e}: {:?}", row.certificate);
@@ -196,7 +197,7 @@ fn no_penalty_is_too_large() {
 fn bounds_at_nodes_of_quadratics_are_solved_where_rounding_leaves_digits() {
     let of = |scene: &Scene<2>, eta: f64, level: usize| {
         let scheme: NamedScheme = format!("wopsip-p2@eta={eta:e}").parse().unwrap();
-        let study = Study::<f64, 2>::new(scene.clone()).named_scheme(&scheme).levels([level]);
+        let study = Study::<2>::new(scene.clone()).named_scheme(&scheme).levels([level]);
         study.run().unwrap().rows.remove(0)
     };
     for name in ["torsion-2d", "lshape-2d", "ball-2d", "disc-2d"] {
@@ -230,7 +231,7 @@ fn bounds_at_nodes_of_quadratics_are_solved_where_rounding_leaves_digits() {
 fn quadratics_without_digits_are_refused() {
     let row = |name: &str, level: usize| {
         let scheme: NamedScheme = name.parse().unwrap();
-        let study = Study::<f64, 2>::new(scenes::signorini_2d()).named_scheme(&scheme);
+        let study = Study::<2>::new(scenes::signorini_2d()).named_scheme(&scheme);
         study.levels([level]).run().unwrap().rows.remove(0)
     };
     let says = |row: &Row, text: &str| row.warnings.iter().any(|w| w.contains(text));
@@ -254,7 +255,7 @@ fn jump_multipliers_of_an_arbitrary_active_set_are_no_start() {
     let scheme: NamedScheme = "wopsip-p2@eta=1e4".parse().unwrap();
     let made = scenes::by_name("contrast-2d").unwrap().make(&scenes::Parameters::default());
     let scenes::AnyScene::Two(scene) = made.unwrap() else { panic!() };
-    let study = Study::<f64, 2>::new(scene).named_scheme(&scheme).levels([32]);
+    let study = Study::<2>::new(scene).named_scheme(&scheme).levels([32]);
     let row = study.run().unwrap().rows.remove(0);
     assert!(row.converged(), "{}", row.status);
     assert!(row.certificate.largest() < 1e-14, "{:?}", row.certificate);
@@ -266,7 +267,7 @@ fn jump_multipliers_of_an_arbitrary_active_set_are_no_start() {
 #[test]
 fn rounding_in_a_krylov_method_is_not_an_indefinite_matrix() {
     let scheme: NamedScheme = "wopsip-p2@eta=1e6".parse().unwrap();
-    let study = Study::<f64, 2>::new(scenes::radial(1.0)).named_scheme(&scheme).levels([32]);
+    let study = Study::<2>::new(scenes::radial(1.0)).named_scheme(&scheme).levels([32]);
     let row = study.run().unwrap().rows.remove(0);
     let stages: Vec<Stage> = row.iterations.stages.iter().map(|run| run.stage).collect();
     assert_eq!(stages[..2], [Stage::PreconditionedActiveSet, Stage::DirectActiveSet]);
@@ -281,7 +282,7 @@ fn bounds_on_cell_means_are_recommended_where_they_help() {
     let made = scenes::by_name("lshape-2d").unwrap().make(&scenes::Parameters::default());
     let scenes::AnyScene::Two(scene) = made.unwrap() else { panic!() };
     let row = |scheme: &str| {
-        let study = Study::<f64, 2>::new(scene.clone()).levels([16]);
+        let study = Study::<2>::new(scene.clone()).levels([16]);
         study.named_scheme(&scheme.parse().unwrap()).run().unwrap().rows.remove(0)
     };
     let (nodes, means) = (row("wopsip-p2@eta=1e4"), row("wopsip-p2:cell-means@eta=1e4"));
@@ -298,7 +299,7 @@ fn a_certificate_within_its_limit_has_not_stalled() {
     for (scene, level) in [("polynomial-2d", 8), ("degenerate2-2d", 8)] {
         let made = scenes::by_name(scene).unwrap().make(&scenes::Parameters::default()).unwrap();
         let scenes::AnyScene::Two(scene) = made else { panic!("{scene}") };
-        let study = Study::<f64, 2>::new(scene).scheme_on(wopsip(1e-2), FacetMeans);
+        let study = Study::<2>::new(scene).scheme_on(wopsip(1e-2), FacetMeans);
         let row = study.levels([level]).run().unwrap().rows.remove(0);
         assert!(row.converged(), "{}", row.status);
         assert!(row.certificate.largest() > 2e-14 && row.certificate.largest() < 1e-9);
@@ -308,7 +309,7 @@ fn a_certificate_within_its_limit_has_not_stalled() {
 /// A constant has no energy for rounding to be compared with.
 #[test]
 fn a_solution_without_energy_is_not_singular() {
-    let study = Study::<f64, 3>::new(scenes::ball_3d()).scheme_on(wopsip(1e-2), FacetMeans);
+    let study = Study::<3>::new(scenes::ball_3d()).scheme_on(wopsip(1e-2), FacetMeans);
     let study = study.levels([1]);
     let row = study.run().unwrap().rows.remove(0);
     assert!(row.converged());

@@ -41,8 +41,8 @@ fn rows<const D: usize>(scene: Scene<D>, choice: Choice, levels: &[usize]) -> Ve
     let (name, eta, placement) = choice;
     let set = constraint_set_by_name(placement).unwrap();
     let options = SchemeOptions { eta, ..SchemeOptions::default() };
-    let scheme = scheme_by_name::<f64, D>(name, &options).unwrap();
-    let study = Study::<f64, D>::new(scene).boxed_scheme_on(scheme, set);
+    let scheme = scheme_by_name::<D>(name, &options).unwrap();
+    let study = Study::<D>::new(scene).boxed_scheme_on(scheme, set);
     let study = study.levels(levels.iter().copied());
     study.run().map(|report| report.rows).unwrap_or_default()
 }

@@ -28,7 +28,7 @@ fn a_matrix_declared_symmetric_that_is_not_never_converges_to_a_wrong_answer() {
     let mut converged = 0;
     for seed in 0..60 {
         let mut random = Random::new(seed);
-        let mut matrix = laplacian::<f64>(7, 7, 4.5);
+        let mut matrix = laplacian(7, 7, 4.5);
         let size = [0.05, 0.3, 1.0][seed as usize % 3];
         for i in 0..matrix.size() {
             for k in matrix.row_starts[i] as usize..matrix.row_starts[i + 1] as usize {
@@ -56,7 +56,7 @@ fn a_matrix_declared_symmetric_that_is_not_never_converges_to_a_wrong_answer() {
 #[test]
 fn a_negative_reaction_converges_while_the_form_is_coercive() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [16; 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&domain, [16; 2]).unwrap();
     for (reaction, expected) in [
         (-1.0, Outcome::Converged),
         (-15.0, Outcome::Converged),
@@ -64,7 +64,7 @@ fn a_negative_reaction_converges_while_the_form_is_coercive() {
         (-1000.0, Outcome::NotCoercive),
     ] {
         let problem = Problem::new().reaction(reaction).source(|_| -1.0).obstacle_below(|_| -10.0);
-        for scheme in [&ConformingP1 as &dyn AnyScheme<f64, 2>, &Sipg::default()] {
+        for scheme in [&ConformingP1 as &dyn Scheme<2>, &Sipg::default()] {
             let outcome = solve(&problem, &mesh, scheme).unwrap().solution().outcome;
             assert_eq!(outcome, expected, "{} with {reaction}", scheme.name());
         }
@@ -73,7 +73,7 @@ fn a_negative_reaction_converges_while_the_form_is_coercive() {
 
 #[test]
 fn supports_out_of_range_are_refused_before_arrays_are_made() {
-    let good = || membrane::<f64>(3, 1.0, |_, _| -0.01);
+    let good = || membrane(3, 1.0, |_, _| -0.01);
     let supports = |last: u32, n: usize| -> Vec<Support> {
         (0..n as u32).map(|i| Support::new(None, &[if i == 8 { last } else { i }])).collect()
     };
@@ -96,7 +96,7 @@ fn supports_out_of_range_are_refused_before_arrays_are_made() {
 /// A start in contact everywhere must not hide that nothing was factored.
 #[test]
 fn a_start_in_contact_gives_the_answer_of_a_cold_one() {
-    let problem = membrane::<f64>(12, 3.0, |_, _| -0.05);
+    let problem = membrane(12, 3.0, |_, _| -0.05);
     let start = Start::Contact(vec![Contact::Lower; 144]);
     let warm = ActiveSet::default().solve(&problem.clone().with_start(start));
     assert_eq!(warm.outcome, Outcome::Converged);

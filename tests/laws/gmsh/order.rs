@@ -13,7 +13,7 @@ fn shuffled(n: usize, seed: usize) -> Vec<usize> {
 
 /// A mesh as MSH 2.2, with nodes, corners, facets and cells in disorder and a node that no cell uses. Regions
 /// and boundary groups have the number of their names plus one as name.
-fn in_disorder<const D: usize>(mesh: &Mesh<f64, D>, seed: usize) -> String {
+fn in_disorder<const D: usize>(mesh: &Mesh<D>, seed: usize) -> String {
     let tag = |v: u32| 3 * (v as usize + seed) + 1;
     let n = mesh.vertices().len();
     let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n2 9 9 9\n", n + 1);
@@ -42,7 +42,7 @@ fn in_disorder<const D: usize>(mesh: &Mesh<f64, D>, seed: usize) -> String {
     text + "$EndElements\n"
 }
 
-fn is_the_same_in_any_order<const D: usize>(mesh: &Mesh<f64, D>) {
+fn is_the_same_in_any_order<const D: usize>(mesh: &Mesh<D>) {
     let names = (0..3).map(|k| vec![k.to_string()]).collect();
     let regions = (0..mesh.n_cells()).map(|c| (c % 3) as u16).collect();
     let mesh = mesh.clone().with_regions(names, regions).unwrap();
@@ -54,18 +54,18 @@ fn is_the_same_in_any_order<const D: usize>(mesh: &Mesh<f64, D>) {
         assert!(one.mesh.cells() == other.mesh.cells(), "cells, {seed}");
         for (f, g) in one.mesh.boundary().iter().zip(other.mesh.boundary()) {
             assert_eq!((f.cell, f.local, f.part), (g.cell, g.local, g.part));
-            let names = |mesh: &Mesh<f64, D>, group: u16| {
+            let names = |mesh: &Mesh<D>, group: u16| {
                 mesh.boundary_groups()[usize::from(group)].names.clone()
             };
             assert_eq!(names(&one.mesh, f.group), names(&other.mesh, g.group));
         }
-        let region = |mesh: &Mesh<f64, D>, c: usize| mesh.regions()[mesh.region(c)].clone();
+        let region = |mesh: &Mesh<D>, c: usize| mesh.regions()[mesh.region(c)].clone();
         for c in 0..one.mesh.n_cells() {
             assert_eq!(region(&one.mesh, c), region(&other.mesh, c), "cell {c}");
         }
     }
     // neighbours are near: numbers in disorder differ in a cell by 0.5 to 0.6 of all in the mean
-    let spread = |mesh: &Mesh<f64, D>| {
+    let spread = |mesh: &Mesh<D>| {
         let of = |cell: &[u32]| f64::from(cell[D] - cell[0]);
         mesh.cells().chunks_exact(D + 1).map(of).sum::<f64>() / mesh.n_cells() as f64
     };

@@ -1,10 +1,11 @@
 //! Meshes that are written, and read again.
 
+use super::forms::parse;
 use unilateral::mesh::gmsh;
 use unilateral::prelude::*;
 
 /// The cells of a mesh with the names of their regions, sorted, with the vertices in another numbering.
-fn cells<const D: usize>(mesh: &Mesh<f64, D>, number: &[u64]) -> Vec<(Vec<u64>, Vec<String>)> {
+fn cells<const D: usize>(mesh: &Mesh<D>, number: &[u64]) -> Vec<(Vec<u64>, Vec<String>)> {
     let of = |c: usize| {
         (sorted(mesh.cell(c).iter().copied(), number), mesh.regions()[mesh.region(c)].clone())
     };
@@ -14,7 +15,7 @@ fn cells<const D: usize>(mesh: &Mesh<f64, D>, number: &[u64]) -> Vec<(Vec<u64>, 
 }
 
 /// The boundary facets of a mesh with names, sorted, with the vertices in another numbering.
-fn facets<const D: usize>(mesh: &Mesh<f64, D>, number: &[u64]) -> Vec<(Vec<u64>, Vec<String>)> {
+fn facets<const D: usize>(mesh: &Mesh<D>, number: &[u64]) -> Vec<(Vec<u64>, Vec<String>)> {
     let mut facets: Vec<_> = mesh
         .boundary()
         .iter()
@@ -34,9 +35,9 @@ fn sorted(vertices: impl Iterator<Item = u32>, number: &[u64]) -> Vec<u64> {
     vertices
 }
 
-fn survives<const D: usize>(mesh: &Mesh<f64, D>) {
+fn survives<const D: usize>(mesh: &Mesh<D>) {
     let text = gmsh::to_text(mesh);
-    let read = gmsh::parse::<f64, D>(text.as_bytes()).unwrap();
+    let read = parse::<D>(text.as_bytes());
     assert!(read.warnings.is_empty());
     assert_eq!(read.mesh.vertices().len(), mesh.vertices().len());
     for (x, tag) in read.mesh.vertices().iter().zip(&read.node_tags) {
@@ -55,10 +56,10 @@ fn survives<const D: usize>(mesh: &Mesh<f64, D>) {
 #[test]
 fn written_meshes_are_read_as_they_were() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems");
-    let plate = gmsh::read::<f64, 2>(&folder.join("plate.msh")).unwrap().mesh;
+    let plate = gmsh::read::<2>(&folder.join("plate.msh")).unwrap().mesh;
     survives(&plate);
     survives(&plate.refine().unwrap().0);
-    survives(&gmsh::read::<f64, 3>(&folder.join("bracket.msh")).unwrap().mesh);
+    survives(&gmsh::read::<3>(&folder.join("bracket.msh")).unwrap().mesh);
     survives(&Mesh::kuhn_box(&BoxDomain::<1>::centred(0.3), [7]).unwrap());
     survives(&Mesh::kuhn_box(&BoxDomain::<3>::centred(0.3), [2; 3]).unwrap());
     // cells and facets in several groups
@@ -69,7 +70,7 @@ fn written_meshes_are_read_as_they_were() {
 
 #[test]
 fn a_file_that_cannot_be_written_is_named() {
-    let mesh = Mesh::<f64, 1>::kuhn_box(&BoxDomain::centred(1.0), [2]).unwrap();
+    let mesh = Mesh::<1>::kuhn_box(&BoxDomain::centred(1.0), [2]).unwrap();
     let error = gmsh::write(&mesh, std::path::Path::new("/nowhere/mesh.msh")).unwrap_err();
     assert!(error.to_string().contains("cannot write /nowhere/mesh.msh"), "{error}");
 }

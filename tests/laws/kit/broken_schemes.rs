@@ -1,6 +1,6 @@
 //! Schemes with one mistake each.
 
-use std::marker::PhantomData;
+use std::sync::Arc;
 
 use unilateral::element::{Entity, Layout, Node};
 use unilateral::facet::proven_bound;
@@ -30,45 +30,44 @@ impl<const SYMMETRIC: bool> Form<SYMMETRIC> {
     const RIGHT: Self = Self { flux: 1.0, mirrored: 1.0, share: 1.5, lean: 0.0, power: 0 };
 }
 
-impl<T: Real, const D: usize, const SYMMETRIC: bool> FacetForm<T, D> for Form<SYMMETRIC> {
-    fn uses_flux(&self) -> bool {
-        true
-    }
+impl<const D: usize, const SYMMETRIC: bool> FacetForm<D> for Form<SYMMETRIC> {
     fn is_symmetric(&self) -> bool {
         SYMMETRIC
     }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+    fn penalty(&self, facet: &FacetView<D>) -> f64 {
         let here_is_larger = facet.there.as_ref().is_some_and(|t| facet.here.volume > t.volume);
         let lean = if here_is_larger { 1.0 + self.lean } else { 1.0 };
-        let power = facet.diameter().to_f64().powi(self.power);
-        T::lit(self.share * lean * power) * proven_bound::<T, D>(1, facet)
+        let power = facet.diameter().powi(self.power);
+        (self.share * lean * power) * proven_bound::<D>(1, facet)
     }
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
-        let [flux, mirrored] = [self.flux, self.mirrored].map(T::lit);
+    fn integrand(&self, _: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64 {
+        let [flux, mirrored] = [self.flux, self.mirrored];
         penalty * u.jump * v.jump - flux * u.flux * v.jump - mirrored * v.flux * u.jump
     }
 }
 
-/// A scheme with such a form, on some element.
+/// A scheme with such a form, on the broken version of some element.
 struct Broken1<E, const SYMMETRIC: bool, const CONSISTENT: bool> {
     form: Form<SYMMETRIC>,
-    element: PhantomData<E>,
+    element: E,
 }
 
-impl<T: Real, const D: usize, E, const SYMMETRIC: bool, const CONSISTENT: bool> Scheme<T, D>
+impl<const D: usize, E, const SYMMETRIC: bool, const CONSISTENT: bool> Scheme<D>
     for Broken1<E, SYMMETRIC, CONSISTENT>
 where
-    E: ReferenceElement<T, D>,
+    E: Element<D> + Copy + 'static,
 {
-    type Element = Broken<E>;
-    type Facet = Form<SYMMETRIC>;
-    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
-    const CONSISTENT: bool = CONSISTENT;
     fn name(&self) -> &str {
         "broken"
     }
-    fn facet(&self, _: &Mesh<T, D>) -> Form<SYMMETRIC> {
-        self.form
+    fn element(&self) -> Arc<dyn Element<D>> {
+        Arc::new(Broken(self.element))
+    }
+    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        Box::new(self.form)
+    }
+    fn is_consistent(&self) -> bool {
+        CONSISTENT
     }
 }
 
@@ -77,7 +76,7 @@ type NotSymmetric = Broken1<P1, false, true>;
 type NotConsistent = Broken1<P1, true, false>;
 
 fn symmetric(form: Form<true>) -> Symmetric {
-    Broken1 { form, element: PhantomData }
+    Broken1 { form, element: P1 }
 }
 
 /// The law by itself and all laws together fail with an error that names the law.
@@ -94,19 +93,16 @@ fn caught<R1, R2>(law: Law, alone: Result<R1, KitError>, all: Result<R2, KitErro
 #[test]
 fn the_same_form_without_a_mistake_passes() {
     let scheme = symmetric(Form::RIGHT);
-    let report = check_scheme::<f64, 2, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
-    let sipg = check_scheme::<f64, 2, _>(&Sipg::default()).unwrap_or_else(|e| panic!("{e}"));
+    let report = check_scheme::<2>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+    let sipg = check_scheme::<2>(&Sipg::default()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(report.coercivity, sipg.coercivity);
     assert_eq!(report.orders, sipg.orders);
 }
 
 fn wrong_sign<const D: usize>() {
     let scheme = symmetric(Form { flux: -1.0, mirrored: -1.0, ..Form::RIGHT });
-    let error = caught(
-        Law::Consistency,
-        check_consistency::<f64, D, _>(&scheme),
-        check_scheme::<f64, D, _>(&scheme),
-    );
+    let error =
+        caught(Law::Consistency, check_consistency::<D>(&scheme), check_scheme::<D>(&scheme));
     let KitError::NotConsistent { error, tolerance, .. } = error else { panic!("{error}") };
     assert!(error > 1e6 * tolerance, "{error} against {tolerance}");
 }
@@ -121,8 +117,7 @@ fn a_wrong_sign_of_the_flux_is_not_consistent() {
 #[test]
 fn a_wrong_factor_of_the_flux_is_not_consistent() {
     let scheme = symmetric(Form { flux: 1.001, mirrored: 1.001, ..Form::RIGHT });
-    let [alone, all] =
-        [check_consistency::<f64, 2, _>(&scheme).err(), check_scheme::<f64, 2, _>(&scheme).err()];
+    let [alone, all] = [check_consistency::<2>(&scheme).err(), check_scheme::<2>(&scheme).err()];
     for error in [alone, all] {
         assert!(matches!(error, Some(KitError::NotConsistent { .. })), "{error:?}");
     }
@@ -130,11 +125,7 @@ fn a_wrong_factor_of_the_flux_is_not_consistent() {
 
 fn lopsided<const D: usize>() {
     let scheme = symmetric(Form { mirrored: 0.0, ..Form::RIGHT });
-    let error = caught(
-        Law::Symmetry,
-        check_symmetry::<f64, D, _>(&scheme),
-        check_scheme::<f64, D, _>(&scheme),
-    );
+    let error = caught(Law::Symmetry, check_symmetry::<D>(&scheme), check_scheme::<D>(&scheme));
     let KitError::NotSymmetric { row, column, entry, mirrored, .. } = error else {
         panic!("{error}")
     };
@@ -150,22 +141,14 @@ fn an_incomplete_form_is_not_symmetric() {
 
 #[test]
 fn a_form_that_hides_its_symmetry_is_told() {
-    let scheme = NotSymmetric { form: Form::RIGHT, element: PhantomData };
-    let error = caught(
-        Law::Symmetry,
-        check_symmetry::<f32, 2, _>(&scheme),
-        check_scheme::<f32, 2, _>(&scheme),
-    );
+    let scheme = NotSymmetric { form: Form::RIGHT, element: P1 };
+    let error = caught(Law::Symmetry, check_symmetry::<2>(&scheme), check_scheme::<2>(&scheme));
     assert!(matches!(error, KitError::SymmetricAfterAll { .. }), "{error}");
 }
 
 fn leaning<const D: usize>() {
     let scheme = symmetric(Form { lean: 0.01, ..Form::RIGHT });
-    let error = caught(
-        Law::Invariance,
-        check_invariance::<f64, D, _>(&scheme),
-        check_scheme::<f64, D, _>(&scheme),
-    );
+    let error = caught(Law::Invariance, check_invariance::<D>(&scheme), check_scheme::<D>(&scheme));
     let KitError::EntryDependsOnNumbering { before, after, .. } = error else { panic!("{error}") };
     assert!((before - after).abs() > 1e-3 * before.abs(), "{before} and {after}");
 }
@@ -179,11 +162,7 @@ fn a_penalty_that_depends_on_orientation_is_not_invariant() {
 
 fn too_weak<const D: usize>(share: f64) {
     let scheme = symmetric(Form { share, ..Form::RIGHT });
-    let error = caught(
-        Law::Coercivity,
-        check_coercivity::<f64, D, _>(&scheme),
-        check_scheme::<f64, D, _>(&scheme),
-    );
+    let error = caught(Law::Coercivity, check_coercivity::<D>(&scheme), check_scheme::<D>(&scheme));
     let KitError::NotCoercive { not_positive, unknowns, smallest, .. } = error else {
         panic!("{error}")
     };
@@ -200,12 +179,9 @@ fn a_penalty_below_the_threshold_is_not_coercive() {
 
 #[test]
 fn a_consistent_form_that_says_otherwise_is_told() {
-    let scheme = NotConsistent { form: Form::RIGHT, element: PhantomData };
-    let error = caught(
-        Law::Consistency,
-        check_consistency::<f64, 2, _>(&scheme),
-        check_scheme::<f64, 2, _>(&scheme),
-    );
+    let scheme = NotConsistent { form: Form::RIGHT, element: P1 };
+    let error =
+        caught(Law::Consistency, check_consistency::<2>(&scheme), check_scheme::<2>(&scheme));
     assert!(matches!(error, KitError::ConsistentAfterAll { .. }), "{error}");
 }
 
@@ -213,9 +189,8 @@ fn a_consistent_form_that_says_otherwise_is_told() {
 #[test]
 fn a_penalty_alone_misses_the_order() {
     let form = Form { flux: 0.0, mirrored: 0.0, ..Form::RIGHT };
-    let scheme = NotConsistent { form, element: PhantomData };
-    let error =
-        caught(Law::Orders, check_orders::<f64, 2, _>(&scheme), check_scheme::<f64, 2, _>(&scheme));
+    let scheme = NotConsistent { form, element: P1 };
+    let error = caught(Law::Orders, check_orders::<2>(&scheme), check_scheme::<2>(&scheme));
     let KitError::OrderMissed { norm, measured, expected, .. } = error else { panic!("{error}") };
     assert!(norm == "H1" && measured < 0.5 && expected == 1.0, "{norm}: {measured}");
 }
@@ -224,13 +199,13 @@ fn a_penalty_alone_misses_the_order() {
 #[test]
 fn an_over_penalty_alone_does_not() {
     let form = Form { flux: 0.0, mirrored: 0.0, power: -2, ..Form::RIGHT };
-    let scheme = NotConsistent { form, element: PhantomData };
-    let orders = check_orders::<f64, 2, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+    let scheme = NotConsistent { form, element: P1 };
+    let orders = check_orders::<2>(&scheme).unwrap_or_else(|e| panic!("{e}"));
     assert!(orders.h1 > 0.8, "{orders:?}");
 }
 
 /// Linears with a mistake, by number.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Wrong<const MISTAKE: usize>;
 
 const DERIVATIVE: usize = 0;
@@ -239,27 +214,37 @@ const SUM: usize = 2;
 const COUNT: usize = 3;
 const DEGREE: usize = 4;
 const ENTITY: usize = 5;
+const MANY: usize = 6;
 
-impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for Wrong<MISTAKE> {
-    const N: usize = D + 1;
-    const DEGREE: usize = if MISTAKE == DEGREE { 2 } else { 1 };
-    const BASIS_DEGREE: usize = if MISTAKE == DEGREE || MISTAKE == SUM { 2 } else { 1 };
-    const LAYOUT: Layout =
-        Layout { vertex: 1, edge: 0, facet: 0, cell: if MISTAKE == COUNT { 1 } else { 0 } };
-    fn values(lambda: &[T], out: &mut [T]) {
-        <P1 as ReferenceElement<T, D>>::values(lambda, out);
+impl<const D: usize, const MISTAKE: usize> Element<D> for Wrong<MISTAKE> {
+    fn degree(&self) -> usize {
+        if MISTAKE == DEGREE { 2 } else { 1 }
+    }
+    fn basis_degree(&self) -> usize {
+        if MISTAKE == DEGREE || MISTAKE == SUM { 2 } else { 1 }
+    }
+    fn layout(&self) -> Layout {
+        let cell = match MISTAKE {
+            COUNT => 1,
+            MANY => 18,
+            _ => 0,
+        };
+        Layout { vertex: 1, edge: 0, facet: 0, cell }
+    }
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
+        Element::<D>::values(&P1, lambda, out);
         if MISTAKE == SUM {
             // vanishes at all vertices
             out[0] += lambda[0] * lambda[1];
         }
     }
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        <P1 as ReferenceElement<T, D>>::derivatives(lambda, out);
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
+        Element::<D>::derivatives(&P1, lambda, out);
         if MISTAKE == DERIVATIVE {
-            out[1][0] = T::lit(0.125);
+            out[1][0] = 0.125;
         }
     }
-    fn node(i: usize) -> Node {
+    fn node(&self, i: usize) -> Node {
         match Node::vertex(i) {
             _ if MISTAKE == NODE => Node::facet_mean(i),
             right if MISTAKE == ENTITY => Node::weighted_sum(
@@ -272,31 +257,30 @@ impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for W
 }
 
 /// Quadratics that state the degree of linears for themselves and for their basis.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Understated;
 
-impl<T: Real, const D: usize> ReferenceElement<T, D> for Understated {
-    const N: usize = <P2 as ReferenceElement<T, D>>::N;
-    const DEGREE: usize = 1;
-    const LAYOUT: Layout = <P2 as ReferenceElement<T, D>>::LAYOUT;
-    fn values(lambda: &[T], out: &mut [T]) {
-        <P2 as ReferenceElement<T, D>>::values(lambda, out);
+impl<const D: usize> Element<D> for Understated {
+    fn degree(&self) -> usize {
+        1
     }
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        <P2 as ReferenceElement<T, D>>::derivatives(lambda, out);
+    fn layout(&self) -> Layout {
+        Element::<D>::layout(&P2)
     }
-    fn node(i: usize) -> Node {
-        <P2 as ReferenceElement<T, D>>::node(i)
+    fn values(&self, lambda: &[f64], out: &mut [f64]) {
+        Element::<D>::values(&P2, lambda, out);
+    }
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
+        Element::<D>::derivatives(&P2, lambda, out);
+    }
+    fn node(&self, i: usize) -> Node {
+        Element::<D>::node(&P2, i)
     }
 }
 
 fn wrong_element<const D: usize, const MISTAKE: usize>() -> KitError {
-    let scheme = Broken1::<Wrong<MISTAKE>, true, true> { form: Form::RIGHT, element: PhantomData };
-    caught(
-        Law::Element,
-        check_element::<f64, D, Wrong<MISTAKE>>(),
-        check_scheme::<f64, D, _>(&scheme),
-    )
+    let scheme = Broken1::<_, true, true> { form: Form::RIGHT, element: Wrong::<MISTAKE> };
+    caught(Law::Element, check_element::<D>(&Wrong::<MISTAKE>), check_scheme::<D>(&scheme))
 }
 
 fn wrong_elements<const D: usize>() {
@@ -308,10 +292,10 @@ fn wrong_elements<const D: usize>() {
     assert!(matches!(error, KitError::NotPartitionOfUnity { .. }), "{error}");
     let error = wrong_element::<D, DEGREE>();
     assert!(matches!(error, KitError::PolynomialMissing { degree: 2, .. }), "{error}");
-    let error = check_element::<f64, D, Understated>().unwrap_err();
+    let error = check_element::<D>(&Understated).unwrap_err();
     assert!(matches!(error, KitError::DegreeExceeded { function: 0, stated: 1, .. }), "{error}");
     // the value at a vertex as a functional of the cell, where the vertex owns the unknown
-    let error = check_element::<f64, D, Wrong<ENTITY>>().unwrap_err();
+    let error = check_element::<D>(&Wrong::<ENTITY>).unwrap_err();
     assert!(matches!(error, KitError::NodeElsewhere { node: 0, .. }), "{error}");
 }
 
@@ -322,10 +306,22 @@ fn mistakes_of_elements_are_told_apart() {
     wrong_elements::<3>();
 }
 
-/// A broken element owns all its unknowns, so the count is wrong of the element itself only.
+/// The layout has an unknown in the cell for which no function is written.
 #[test]
-fn a_wrong_count_is_told() {
-    let error = check_element::<f64, 2, Wrong<COUNT>>().unwrap_err();
-    let KitError::LayoutCount { owned, functions, .. } = error else { panic!("{error}") };
-    assert_eq!((owned, functions), (4, 3));
+fn a_function_that_is_not_written_is_told() {
+    let error = wrong_element::<2, COUNT>();
+    assert!(matches!(error, KitError::NotANumber { function: 3, .. }), "{error}");
+}
+
+/// More functions than the assembler has room for are refused by the kit and by the assembler.
+#[test]
+fn too_many_functions_are_told() {
+    let error = wrong_element::<2, MANY>();
+    assert!(matches!(error, KitError::TooManyFunctions { functions: 21, limit: 20 }), "{error}");
+    let mesh = Mesh::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
+    let scheme = Broken1::<_, true, true> { form: Form::RIGHT, element: Wrong::<MANY> };
+    let problem = Problem::new();
+    let refused = Discretisation::new(&scheme, &problem, &mesh, Default::default());
+    let message = refused.unwrap_err().to_string();
+    assert!(message.contains("at most 20 unknowns"), "{message}");
 }

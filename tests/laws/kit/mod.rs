@@ -1,4 +1,4 @@
-//! Every scheme passes the kit, in every dimension and scalar; broken ones are caught by the law
+//! Every scheme passes the kit, in every dimension; broken ones are caught by the law
 //! that is meant for them.
 
 mod broken_schemes;
@@ -18,19 +18,15 @@ macro_rules! schemes {
         $(
             #[test]
             fn $name() {
-                fn on<T: Real, const D: usize, S: Scheme<T, D>>(scheme: &S) {
-                    let report = check_scheme_on::<T, D, S>(scheme, schemes!(@set $($set)?));
+                fn on<const D: usize>(scheme: &dyn Scheme<D>) {
+                    let report = check_scheme_on(scheme, schemes!(@set $($set)?));
                     let report = report.unwrap_or_else(|e| panic!("{e}"));
-                    assert_eq!((report.dimension, report.scalar), (D, T::NAME));
+                    assert_eq!(report.dimension, D);
                     println!("{report}");
                 }
-                let scheme = $scheme;
-                on::<f64, 1, _>(&scheme);
-                on::<f64, 2, _>(&scheme);
-                on::<f64, 3, _>(&scheme);
-                on::<f32, 1, _>(&scheme);
-                on::<f32, 2, _>(&scheme);
-                on::<f32, 3, _>(&scheme);
+                on::<1>(&$scheme);
+                on::<2>(&$scheme);
+                on::<3>(&$scheme);
             }
         )*
     };
@@ -72,11 +68,11 @@ schemes! {
 fn wopsip_on_quadratics() {
     fn on<const D: usize>() {
         let scheme = Wopsip::default().on(P2);
-        check_symmetry::<f64, D, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
-        check_coercivity::<f64, D, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
-        let consistency = check_consistency::<f64, D, _>(&scheme);
+        check_symmetry::<D>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+        check_coercivity::<D>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+        let consistency = check_consistency::<D>(&scheme);
         assert!(!consistency.unwrap_or_else(|e| panic!("{e}")).declared);
-        check_orders::<f64, D, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+        check_orders::<D>(&scheme).unwrap_or_else(|e| panic!("{e}"));
     }
     on::<1>();
     on::<2>();

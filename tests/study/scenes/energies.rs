@@ -13,7 +13,7 @@ fn solved<const D: usize>(
     quadrature: DataQuadrature,
 ) -> Vec<Row> {
     let name = scene.name.clone();
-    let rows = Study::<f64, D>::new(scene)
+    let rows = Study::<D>::new(scene)
         .scheme(ConformingP1)
         .levels(levels.iter().copied())
         .quadrature(quadrature)

@@ -11,21 +11,20 @@ use unilateral::scheme::ConformingP1;
 use unilateral::study::Study;
 
 /// Area of all cells.
-fn area(mesh: &Mesh<f64, 2>) -> f64 {
+fn area(mesh: &Mesh<2>) -> f64 {
     (0..mesh.n_cells()).map(|c| mesh.geometry(c).volume).sum()
 }
 
 /// Vertices up to rounding, whatever their order.
-fn positions(mesh: &Mesh<f64, 2>) -> HashSet<[i64; 2]> {
+fn positions(mesh: &Mesh<2>) -> HashSet<[i64; 2]> {
     mesh.vertices().iter().map(|x| [x[0], x[1]].map(|t| (t * 1e9).round() as i64)).collect()
 }
 
 /// Smallest and largest angle, in degrees.
-fn angles(mesh: &Mesh<f64, 2>) -> (f64, f64) {
+fn angles(mesh: &Mesh<2>) -> (f64, f64) {
     let (mut least, mut most) = (180.0_f64, 0.0_f64);
     for c in 0..mesh.n_cells() {
-        let x: Vec<Point<f64, 2>> =
-            mesh.cell(c).iter().map(|&v| mesh.vertices()[v as usize]).collect();
+        let x: Vec<Point<2>> = mesh.cell(c).iter().map(|&v| mesh.vertices()[v as usize]).collect();
         for k in 0..3 {
             let angle = (x[(k + 1) % 3] - x[k]).angle(&(x[(k + 2) % 3] - x[k])).to_degrees();
             least = least.min(angle);
@@ -38,7 +37,7 @@ fn angles(mesh: &Mesh<f64, 2>) -> (f64, f64) {
 #[test]
 fn the_l_shape_has_its_area_and_its_corner() {
     for n in [1, 2, 3, 8] {
-        let mesh = Mesh::<f64, 2>::l_shape(2.0, n).unwrap();
+        let mesh = Mesh::<2>::l_shape(2.0, n).unwrap();
         assert_eq!(mesh.n_cells(), 6 * n * n);
         assert_eq!(mesh.vertices().len(), (2 * n + 1).pow(2) - n * n);
         assert_eq!(mesh.boundary().len(), 8 * n);
@@ -53,7 +52,7 @@ fn the_l_shape_has_its_area_and_its_corner() {
 #[test]
 fn discs_have_round_boundaries_and_good_angles() {
     for n in [1, 2, 3, 8, 32] {
-        let mesh = Mesh::<f64, 2>::disc(1.0, n).unwrap();
+        let mesh = Mesh::<2>::disc(1.0, n).unwrap();
         assert_eq!(mesh.n_cells(), 6 * n * n);
         assert_eq!(mesh.boundary().len(), 6 * n);
         for facet in mesh.boundary() {
@@ -73,9 +72,9 @@ fn discs_have_round_boundaries_and_good_angles() {
 fn refined_levels_are_the_finer_meshes() {
     for domain in [Domain::<2>::Disc { radius: 1.5 }, Domain::LShape { half: 2.0 }] {
         for n in [1, 3, 4] {
-            let coarse = domain.mesh::<f64>(n).unwrap();
+            let coarse = domain.mesh(n).unwrap();
             let (fine, refinement) = domain.refine(&coarse).unwrap();
-            let direct = domain.mesh::<f64>(2 * n).unwrap();
+            let direct = domain.mesh(2 * n).unwrap();
             assert_eq!(fine.n_cells(), direct.n_cells());
             assert_eq!(positions(&fine), positions(&direct), "{domain:?}, n = {n}");
             assert_eq!(refinement.parents.len(), fine.vertices().len());
@@ -90,7 +89,7 @@ fn shapes_of_the_plane_refuse_what_they_cannot_be() {
     for (shape, name) in
         [(Domain::<3>::Disc { radius: 1.0 }, "disc"), (Domain::LShape { half: 1.0 }, "L-shape")]
     {
-        let Err(MeshError::Parameter { parameter, allowed, .. }) = shape.mesh::<f64>(2) else {
+        let Err(MeshError::Parameter { parameter, allowed, .. }) = shape.mesh(2) else {
             panic!("a {name} in space")
         };
         assert_eq!(parameter, "dimension");
@@ -98,14 +97,14 @@ fn shapes_of_the_plane_refuse_what_they_cannot_be() {
     }
     for (half, n, wrong) in [(1.0, 0, "subdivisions"), (-1.0, 2, "length"), (f64::NAN, 2, "length")]
     {
-        for made in [Mesh::<f64, 2>::disc(half, n), Mesh::<f64, 2>::l_shape(half, n)] {
+        for made in [Mesh::<2>::disc(half, n), Mesh::<2>::l_shape(half, n)] {
             let Err(MeshError::Parameter { parameter, .. }) = made else {
                 panic!("made {half}, {n}")
             };
             assert_eq!(parameter, wrong);
         }
     }
-    let huge = Mesh::<f64, 2>::disc(1.0, 1 << 20);
+    let huge = Mesh::<2>::disc(1.0, 1 << 20);
     assert!(matches!(huge, Err(MeshError::TooLarge { .. })));
 }
 
@@ -114,8 +113,7 @@ fn shapes_of_the_plane_refuse_what_they_cannot_be() {
 fn studies_run_on_both_shapes_from_coarser_levels() {
     for (scene, least_order) in [(disc_2d(), 0.8), (lshape_2d(), 0.6)] {
         let name = scene.name.clone();
-        let report =
-            Study::<f64, 2>::new(scene).scheme(ConformingP1).levels([8, 16, 32]).run().unwrap();
+        let report = Study::<2>::new(scene).scheme(ConformingP1).levels([8, 16, 32]).run().unwrap();
         for row in &report.rows {
             assert!(row.converged(), "{name} {}", row.level);
         }
@@ -130,9 +128,9 @@ fn studies_run_on_both_shapes_from_coarser_levels() {
 #[test]
 fn a_mesh_on_which_an_obstacle_leaves_no_room_for_the_datum_does_not_fit() {
     let unit = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<f64, 2>::kuhn_box(&unit, [4, 4]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&unit, [4, 4]).unwrap();
     let check = |scene| {
-        Study::<f64, 2>::new(scene).scheme(ConformingP1).levels([0]).on_mesh(mesh.clone()).check()
+        Study::<2>::new(scene).scheme(ConformingP1).levels([0]).on_mesh(mesh.clone()).check()
     };
     let Err(Error::UnfitMesh { scene, why }) = check(spiral_2d()) else { panic!("it fits") };
     assert_eq!(scene, "spiral-2d");

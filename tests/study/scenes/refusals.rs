@@ -87,7 +87,7 @@ fn the_check_refuses_broken_signorini_conditions() {
 #[test]
 fn the_check_refuses_the_gradient_of_a_neglected_branch_cut() {
     // atan2 sees the sign of zero: just below the axis the angle is -pi.
-    let power = |exponent: f64, x: &Point<f64, 2>| {
+    let power = |exponent: f64, x: &Point<2>| {
         let (r, theta) = (x.norm(), x[1].atan2(x[0]));
         (r.powf(exponent) * (exponent * theta).cos(), r.powf(exponent) * (exponent * theta).sin())
     };
@@ -133,13 +133,13 @@ fn ridge(sign: f64, problem: Problem<1>) -> Scene<1> {
 
 #[test]
 fn a_kink_passes_only_where_an_obstacle_holds_it() {
-    let held = Problem::new().obstacle_below(|x: &Point<f64, 1>| 0.5 - x[0].abs());
+    let held = Problem::new().obstacle_below(|x: &Point<1>| 0.5 - x[0].abs());
     check_scene(&ridge(1.0, held), 300).unwrap();
-    let held = Problem::new().obstacle_above(|x: &Point<f64, 1>| x[0].abs() - 0.5);
+    let held = Problem::new().obstacle_above(|x: &Point<1>| x[0].abs() - 0.5);
     check_scene(&ridge(-1.0, held), 300).unwrap();
     assert_eq!(refused(&ridge(1.0, Problem::new())), Condition::Kink);
     // An obstacle from below cannot pull.
-    let wrong_side = Problem::new().obstacle_below(|x: &Point<f64, 1>| -0.5 - x[0].abs());
+    let wrong_side = Problem::new().obstacle_below(|x: &Point<1>| -0.5 - x[0].abs());
     assert_eq!(refused(&ridge(-1.0, wrong_side)), Condition::Kink);
 }
 
@@ -186,10 +186,10 @@ fn the_check_refuses_a_wrong_multiplier() {
 #[test]
 fn the_check_refuses_a_wrong_contact_set() {
     for radius in [0.9, 1.1] {
-        let off = move |x: &Point<f64, 2>| radius - x.norm();
+        let off = move |x: &Point<2>| radius - x.norm();
         let scene = restated(radial::<2>(1.0), |exact| exact.with_contact(off, Vec::new()));
         assert_eq!(refused(&scene), Condition::ContactSet);
-        let off = move |x: &Point<f64, 2>| radius / 2.0 - x[0].abs();
+        let off = move |x: &Point<2>| radius / 2.0 - x[0].abs();
         let scene = restated(hertz_2d(), |exact| exact.with_contact(off, Vec::new()));
         assert_eq!(refused(&scene), Condition::ContactSet);
     }

@@ -222,7 +222,7 @@ fn a_tiny_study_measures_every_variant_alike() {
         // the same counts and errors as a study of this scheme alone
         assert_eq!(m.row.order.l2.is_some(), m.row.level == 8);
     }
-    let alone = Study::<f64, 2>::new(scenes::radial(1.0))
+    let alone = Study::<2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
         .solver(
             unilateral::inequality::ActiveSet::default()
@@ -251,7 +251,7 @@ fn adaptive_meshes_stand_beside_uniform_ones() {
     let names: Vec<String> =
         report.variants().iter().map(|v| v.name_among(&report.variants())).collect();
     assert_eq!(names, ["p1, uniform", "p1, adaptive", "wopsip, uniform", "wopsip, adaptive"]);
-    let alone = Study::<f64, 2>::new(scenes::radial(1.0))
+    let alone = Study::<2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
         .scheme(Wopsip::default())
         .levels([4])

@@ -129,7 +129,7 @@ mod tests {
             let text = format!("{} rows", report.rows.len());
             fs::write(directory.join("written"), text).map_err(|e| e.to_string())
         }));
-        let study = Study::<f64, 1>::new(unilateral::scenes::radial(1.0)).levels([4]);
+        let study = Study::<1>::new(unilateral::scenes::radial(1.0)).levels([4]);
         study.scheme(ConformingP1).journal(journal).run().unwrap();
         let _ = thread::spawn(|| panic!("a deliberate panic")).join();
         exit(3)

@@ -19,15 +19,13 @@ use watcher::Watcher;
 use crate::judge::write_requests;
 use crate::one_run::take_directory;
 use crate::shared::{
-    ORDER_TOLERANCE, Request, check_writable, complain, fingerprint, print, print_to, read,
-    use_threads, warn, write,
+    ORDER_TOLERANCE, Request, check_writable, complain, print, print_to, use_threads, warn, write,
 };
 
 use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
-use unilateral::mesh::gmsh;
+use unilateral::mesh::gmsh::GmshFile;
 use unilateral::problem_file::{self, AnyOwnProblem};
-use unilateral::real::Real;
 use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::orders_table;
@@ -47,10 +45,7 @@ pub fn run(options: &Options) -> Request<bool> {
     let resumes = options.adaptive.is_none() && options.dump.is_none();
     let interrupt = Interrupt::install(resumes, move |report| write_all(&copy, report))?;
     let chosen = Chosen::new(options)?;
-    match &options.precision[..] {
-        "f32" => chosen.run::<f32>(options, &interrupt),
-        _ => chosen.run::<f64>(options, &interrupt),
-    }
+    chosen.run(options, &interrupt)
 }
 
 /// How many processes the launcher of an MPI job has started; one without a launcher.
@@ -71,9 +66,9 @@ fn run_over_processes(_: &Options) -> Request<bool> {
 }
 
 /// The program, with all that its rows depend on and do not say.
-fn program<T: Real>(options: &Options, files: &[(&str, String)]) -> Program {
+fn program(options: &Options, files: &[(&str, String)]) -> Program {
     let threads = rayon::current_num_threads();
-    let mut program = Program::new("compare", T::NAME, threads, options.repeat);
+    let mut program = Program::new("compare", &options.precision, threads, options.repeat);
     for (name, value) in
         [("scale", options.scale), ("contrast", options.contrast), ("load", options.load)]
     {
@@ -107,22 +102,14 @@ struct Chosen {
     scenes: Vec<AnyScene>,
     schemes: Vec<NamedScheme>,
     solvers: Vec<String>,
-    mesh: Option<(usize, Vec<u8>)>,
-    /// A problem of a file, in place of scenes, and the contents of the file.
-    own: Option<(AnyOwnProblem, Vec<u8>)>,
+    mesh: Option<GmshFile>,
+    /// A problem of a file, in place of scenes.
+    own: Option<AnyOwnProblem>,
 }
 
 impl Chosen {
     fn new(options: &Options) -> Request<Self> {
-        let mesh = match &options.mesh.path {
-            None => None,
-            Some(path) => {
-                let bytes = read(path)?;
-                let dimension =
-                    gmsh::dimension(&bytes).map_err(|e| format!("{}: {e}", path.display()))?;
-                Some((dimension, bytes))
-            }
-        };
+        let mesh = options.mesh.read()?;
         let schemes = choose_schemes(options)?;
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
@@ -142,15 +129,20 @@ impl Chosen {
                     let path = path.display();
                     return Err(format!("--{name} {x:?}: a parameter of scenes; {path} has none"));
                 }
-                let own = problem_file::read(path).map_err(|e| e.to_string())?;
-                Some((own, read(path)?))
+                Some(problem_file::read(path).map_err(|e| e.to_string())?)
             }
         };
         let scenes = match own {
             Some(_) => Vec::new(),
-            None => Self::scenes(options, mesh.as_ref().map(|m| m.0))?,
+            None => Self::scenes(options, mesh.as_ref().map(GmshFile::dimension))?,
         };
         Ok(Self { scenes, schemes, solvers, mesh, own })
+    }
+
+    /// The names and fingerprints of the files that have been read.
+    fn fingerprints(&self) -> Vec<(&'static str, String)> {
+        let of_mesh = self.mesh.iter().map(|file| ("mesh", file.fingerprint()));
+        of_mesh.chain(self.own.iter().flat_map(AnyOwnProblem::fingerprints)).collect()
     }
 
     fn scenes(options: &Options, mesh: Option<usize>) -> Request<Vec<AnyScene>> {
@@ -197,40 +189,35 @@ impl Chosen {
 
     /// Whether every row converged. Nothing runs and nothing is written before everything has been
     /// checked; afterwards no finished row is lost.
-    fn run<T: Real>(self, options: &Options, interrupt: &Interrupt) -> Request<bool> {
+    fn run(self, options: &Options, interrupt: &Interrupt) -> Request<bool> {
+        let files = self.fingerprints();
         let Self { scenes, schemes, solvers, mesh, own } = self;
         let names = (&schemes[..], &solvers[..]);
-        let mesh = mesh.as_ref();
         let watcher = Watcher::new(options);
         let mut runs = Vec::new();
         for scene in scenes {
+            let mesh = mesh.as_ref();
             runs.extend(match scene {
-                AnyScene::One(of) => prepare::<T, 1>(of.into(), options, names, mesh, &watcher)?,
-                AnyScene::Two(of) => prepare::<T, 2>(of.into(), options, names, mesh, &watcher)?,
-                AnyScene::Three(of) => prepare::<T, 3>(of.into(), options, names, mesh, &watcher)?,
+                AnyScene::One(of) => prepare::<1>(of.into(), options, names, mesh, &watcher)?,
+                AnyScene::Two(of) => prepare::<2>(of.into(), options, names, mesh, &watcher)?,
+                AnyScene::Three(of) => prepare::<3>(of.into(), options, names, mesh, &watcher)?,
             });
         }
-        let mut files: Vec<(&str, String)> =
-            mesh.iter().map(|(_, bytes)| ("mesh", fingerprint(bytes))).collect();
-        if let Some((own, text)) = own {
-            let mesh = own.mesh_bytes().unwrap_or_default();
-            files = vec![("problem", fingerprint(&text)), ("mesh", fingerprint(mesh))];
+        // the runs have the meshes they need
+        drop(mesh);
+        if let Some(own) = own {
             runs.extend(match own {
-                AnyOwnProblem::One(of) => {
-                    prepare::<T, 1>(of.into(), options, names, None, &watcher)?
-                }
-                AnyOwnProblem::Two(of) => {
-                    prepare::<T, 2>(of.into(), options, names, None, &watcher)?
-                }
+                AnyOwnProblem::One(of) => prepare::<1>(of.into(), options, names, None, &watcher)?,
+                AnyOwnProblem::Two(of) => prepare::<2>(of.into(), options, names, None, &watcher)?,
                 AnyOwnProblem::Three(of) => {
-                    prepare::<T, 3>(of.into(), options, names, None, &watcher)?
+                    prepare::<3>(of.into(), options, names, None, &watcher)?
                 }
             });
         }
         if runs.is_empty() {
             return Err("no scene fits the mesh; name one to be told why".to_owned());
         }
-        let program = program::<T>(options, &files);
+        let program = program(options, &files);
         let contents: Vec<String> = files.into_iter().map(|(_, fingerprint)| fingerprint).collect();
         let journal = start(options, program.clone(), &runs)?;
         interrupt.watch(journal);

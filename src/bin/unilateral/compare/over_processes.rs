@@ -2,9 +2,11 @@
 //!
 //! Every process runs the same requests on its part of the meshes. The first one prints, and writes the report.
 
+use unilateral::distributed::Process;
 use unilateral::distributed::petsc::Processes;
-use unilateral::distributed::{ExchangeError, Process, agree};
+use unilateral::mesh::gmsh::GmshFile;
 use unilateral::paraview::FieldScalar;
+use unilateral::processes::{ExchangeError, agree};
 use unilateral::scenes::AnyScene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, PartChecks, Report, Row, Study};
@@ -14,7 +16,7 @@ use super::prepare::{default_levels, place};
 use super::watcher::Watcher;
 use super::{Chosen, check_output, processes_of_job, program, write_all};
 use crate::posed::Posed;
-use crate::shared::{Request, complain, each_once, fingerprint, use_threads};
+use crate::shared::{Request, complain, each_once, use_threads};
 
 /// Whether every row converged: the same in all processes. The first one has said what went wrong.
 pub fn run(options: &Options) -> Request<bool> {
@@ -38,15 +40,11 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
     let mut quiet = options.clone();
     quiet.quiet |= !is_first;
     let watcher = Watcher::new(&quiet);
-    let Chosen { scenes, schemes, mesh, own, .. } = agreed(Chosen::new(options), process)?;
-    let mut files: Vec<(&str, String)> =
-        mesh.iter().map(|(_, bytes)| ("mesh", fingerprint(bytes))).collect();
-    if let Some((own, text)) = &own {
-        let mesh = own.mesh_bytes().unwrap_or_default();
-        files = vec![("problem", fingerprint(text)), ("mesh", fingerprint(mesh))];
-    }
+    let chosen = agreed(Chosen::new(options), process)?;
+    let files = chosen.fingerprints();
+    let Chosen { scenes, schemes, mesh, own, .. } = chosen;
     check_equal(&format!("{options:?} {files:?}"), process)?;
-    let program = program::<f64>(options, &files)
+    let program = program(options, &files)
         .with_request("processes", process.count())
         .with_request("engine", process.engine.name());
     let new_journal = || {
@@ -57,7 +55,6 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
     let all = AllRuns { options, schemes: &schemes, process, watcher: &watcher };
     let (mut rows, mut messages) = (Vec::new(), Vec::new());
     let (journal, mesh) = (journal.as_ref(), mesh.as_ref());
-    let own = own.map(|(own, _)| own);
     let mut add = |found: Result<Vec<Row>, String>| match found {
         Ok(found) => rows.extend(found),
         Err(why) => messages.push(why),
@@ -136,7 +133,7 @@ impl AllRuns<'_> {
     fn run<const D: usize>(
         &self,
         posed: Posed<D>,
-        mesh: Option<&(usize, Vec<u8>)>,
+        mesh: Option<&GmshFile>,
         journal: Option<&Journal>,
     ) -> Request<Vec<Row>> {
         let Self { options, schemes, process, watcher } = *self;
@@ -148,7 +145,7 @@ impl AllRuns<'_> {
         };
         let warn = |warning| watcher.warn_once(warning);
         let mut study =
-            posed.study::<f64>(&warn)?.levels(levels).observer(|progress| watcher.tell(&progress));
+            posed.study(&warn)?.levels(levels).observer(|progress| watcher.tell(&progress));
         study = schemes.iter().fold(study, Study::named_scheme);
         if !options.no_fields {
             let is_double = options.fields == "f64";
@@ -156,9 +153,9 @@ impl AllRuns<'_> {
             study = study.fields_to(&options.out).field_scalar(scalar);
         }
         let mut place = place(options, &name);
-        if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh.path) {
+        if let (Some(file), Some(path)) = (mesh, &options.mesh.path) {
             place = format!("{}, {place}", path.display());
-            study = study.on_mesh(options.mesh.parse(bytes, &warn)?);
+            study = study.on_mesh(options.mesh.mesh(file, &warn)?);
         }
         study.check().map_err(|e| format!("{place}: {e}"))?;
         watcher.expect(D, has_mesh, study.keys().iter().map(|key| key.level));

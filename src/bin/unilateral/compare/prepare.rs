@@ -10,12 +10,13 @@ use crate::posed::Posed;
 use crate::shared::{Request, each_once, fields_with_bound};
 
 use unilateral::error::Error;
-use unilateral::inequality::{SolverOptions, solver_by_name};
+use unilateral::inequality::solver_by_name;
 use unilateral::linear::LinearMethod;
+use unilateral::mesh::gmsh::GmshFile;
 use unilateral::nested::Solved;
 use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
-use unilateral::real::Real;
+use unilateral::real::Precision;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, Row, RowKey, Study, file_name};
 
@@ -33,11 +34,11 @@ pub struct Run<'a> {
 const MOST_CELLS: usize = 5000;
 
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
-pub fn prepare<'a, T: Real, const D: usize>(
+pub fn prepare<'a, const D: usize>(
     posed: Posed<D>,
     options: &'a Options,
     (schemes, solvers): (&[NamedScheme], &[String]),
-    mesh: Option<&(usize, Vec<u8>)>,
+    mesh: Option<&GmshFile>,
     watcher: &'a Watcher,
 ) -> Request<Option<Run<'a>>> {
     let name = posed.name().to_owned();
@@ -53,7 +54,7 @@ pub fn prepare<'a, T: Real, const D: usize>(
         None => LinearMethod::BySize,
     };
     let mut study = posed
-        .study::<T>(&|warning| watcher.warn_once(warning))?
+        .study(&|warning| watcher.warn_once(warning))?
         .levels(levels)
         .repeat(options.repeat)
         .steps(watcher.steps())
@@ -83,8 +84,10 @@ pub fn prepare<'a, T: Real, const D: usize>(
     if let Some(directory) = &options.dump {
         study = study.inequalities_to(directory);
     }
+    let precision = Precision::by_name(&options.precision);
+    let precision = precision.expect("the command line takes the names of precisions alone");
     for name in solvers {
-        study = solver_by_name(name, &SolverOptions::default().linear(linear))
+        study = solver_by_name(name, linear, precision)
             .map(|solver| study.boxed_solver(solver))
             .ok_or_else(|| format!("there is no solver {name}"))?;
     }
@@ -95,9 +98,9 @@ pub fn prepare<'a, T: Real, const D: usize>(
         study = study.named_reference(scheme, *level);
     }
     let mut place = place(options, &name);
-    if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh.path) {
+    if let (Some(file), Some(path)) = (mesh, &options.mesh.path) {
         place = format!("{}, {place}", path.display());
-        study = study.on_mesh(options.mesh.parse(bytes, &|warning| watcher.warn_once(warning))?);
+        study = study.on_mesh(options.mesh.mesh(file, &|warning| watcher.warn_once(warning))?);
     }
     match study.check() {
         Err(Error::UnfitMesh { .. }) if !options.scenes_are_named() => return Ok(None),
@@ -121,10 +124,10 @@ pub fn place(options: &Options, name: &str) -> String {
 }
 
 /// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.
-fn draw<T: Real, const D: usize>(
+fn draw<const D: usize>(
     name: &str,
     level: usize,
-    solved: &Solved<'_, T, D>,
+    solved: &Solved<'_, D>,
     directory: &Path,
 ) -> Result<(), Error> {
     let Some(fields) = fields_with_bound(solved) else { return Ok(()) };

@@ -15,7 +15,7 @@ use std::path::Path;
 
 pub use options::Options;
 
-use crate::mesh_file::{warn_of, with_parts};
+use crate::mesh_file::{cannot_mesh, warn_of, with_parts};
 use crate::one_run::take_directory;
 use crate::shared::{
     Failure, bar, check_writable, end_at_interrupt, print, tick, use_threads, warn, write,
@@ -49,7 +49,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
             _ => {}
         });
     for path in &options.meshes {
-        let read = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let read = gmsh::read::<3>(path).map_err(|e| cannot_mesh(path, &e))?;
         if !options.quiet {
             warn_of(&read.warnings, path, &|warning| warn(&warning));
         }

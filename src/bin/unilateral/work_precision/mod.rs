@@ -1,4 +1,4 @@
-//! Work against precision: what schemes, linear solvers and scalars take to reach a given error.
+//! Work against precision: what schemes, linear solvers and precisions take to reach a given error.
 //!
 //! `cargo run --release -- work-precision --help` lists the options; `--quick` ends within a minute.
 //! Exit codes: 0 if every run converged and nothing changed against the baseline, 1 otherwise, 2 if
@@ -12,17 +12,15 @@ use std::process::Command;
 
 use indicatif::ProgressBar;
 pub use options::Options;
-use unilateral::inequality::ActiveSet;
+use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
+use unilateral::mesh::gmsh::GmshFile;
 use unilateral::problem_file::{self, AnyOwnProblem};
-use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Study, peak_memory_bytes};
-use unilateral::work_precision::{
-    Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
-};
+use unilateral::work_precision::{Case, WorkPrecision, WorkProgress, WorkReport, changes};
 
 use crate::adaptive::words;
 use crate::one_run::take_directory;
@@ -59,19 +57,21 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
     let bar = bar(options.quiet, 0, template);
     let labels = RefCell::new(BTreeSet::new());
+    let file = options.mesh.read()?;
+    let with = (&schemes[..], file.as_ref());
     let mut studies = Vec::new();
     for name in options.scenes() {
         studies.push(match scene(options, &name)? {
-            AnyScene::One(s) => prepare::<1>(options, &schemes, &bar, s.into(), &labels),
-            AnyScene::Two(s) => prepare::<2>(options, &schemes, &bar, s.into(), &labels),
-            AnyScene::Three(s) => prepare::<3>(options, &schemes, &bar, s.into(), &labels),
+            AnyScene::One(s) => prepare::<1>(options, with, &bar, s.into(), &labels),
+            AnyScene::Two(s) => prepare::<2>(options, with, &bar, s.into(), &labels),
+            AnyScene::Three(s) => prepare::<3>(options, with, &bar, s.into(), &labels),
         }?);
     }
     if let Some(path) = &options.problem {
         studies.push(match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) => prepare::<1>(options, &schemes, &bar, own.into(), &labels),
-            AnyOwnProblem::Two(own) => prepare::<2>(options, &schemes, &bar, own.into(), &labels),
-            AnyOwnProblem::Three(own) => prepare::<3>(options, &schemes, &bar, own.into(), &labels),
+            AnyOwnProblem::One(own) => prepare::<1>(options, with, &bar, own.into(), &labels),
+            AnyOwnProblem::Two(own) => prepare::<2>(options, with, &bar, own.into(), &labels),
+            AnyOwnProblem::Three(own) => prepare::<3>(options, with, &bar, own.into(), &labels),
         }?);
     }
     if let (Some(subject), labels) = (&options.subject, labels.borrow())
@@ -83,6 +83,8 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
             format!("--subject {subject}: no scheme has this label; there are: {labels}").into()
         );
     }
+    // the studies have the meshes they need
+    drop(file);
     check_writable(&options.save)?;
     take_directory(&options.out)?;
     end_at_interrupt("the report has the runs so far and is not complete")?;
@@ -145,7 +147,7 @@ type Run<'a> = Box<dyn FnOnce(&mut WorkReport) -> Request<()> + 'a>;
 /// Checks a study with the settings of the options.
 fn prepare<'a, const D: usize>(
     options: &'a Options,
-    schemes: &[NamedScheme],
+    (schemes, file): (&[NamedScheme], Option<&GmshFile>),
     bar: &'a ProgressBar,
     posed: Posed<D>,
     labels: &RefCell<BTreeSet<String>>,
@@ -167,7 +169,7 @@ fn prepare<'a, const D: usize>(
             warn(&warning)
         }
     };
-    let mesh = options.mesh.read(&warn)?;
+    let mesh = file.map(|file| options.mesh.mesh::<D>(file, &warn)).transpose()?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
     let mut study = posed.work_precision(&warn)?.levels(options.levels(D, has_mesh));
     if let Some(mesh) = mesh {
@@ -276,38 +278,32 @@ fn peak(options: &Options) -> Request<bool> {
 
 fn run_one(options: &Options) -> Request<()> {
     let one = "--peak runs one case";
-    let is_single = options.precisions().first() == Some(&Precision::Single);
     if let Some(path) = &options.problem {
         return match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) if is_single => once::<f32, 1>(options, own.into()),
-            AnyOwnProblem::One(own) => once::<f64, 1>(options, own.into()),
-            AnyOwnProblem::Two(own) if is_single => once::<f32, 2>(options, own.into()),
-            AnyOwnProblem::Two(own) => once::<f64, 2>(options, own.into()),
-            AnyOwnProblem::Three(own) if is_single => once::<f32, 3>(options, own.into()),
-            AnyOwnProblem::Three(own) => once::<f64, 3>(options, own.into()),
+            AnyOwnProblem::One(own) => once::<1>(options, own.into()),
+            AnyOwnProblem::Two(own) => once::<2>(options, own.into()),
+            AnyOwnProblem::Three(own) => once::<3>(options, own.into()),
         };
     }
     let name = options.scenes().pop().ok_or(one)?;
     match scene(options, &name)? {
-        AnyScene::One(s) if is_single => once::<f32, 1>(options, s.into()),
-        AnyScene::One(s) => once::<f64, 1>(options, s.into()),
-        AnyScene::Two(s) if is_single => once::<f32, 2>(options, s.into()),
-        AnyScene::Two(s) => once::<f64, 2>(options, s.into()),
-        AnyScene::Three(s) if is_single => once::<f32, 3>(options, s.into()),
-        AnyScene::Three(s) => once::<f64, 3>(options, s.into()),
+        AnyScene::One(s) => once::<1>(options, s.into()),
+        AnyScene::Two(s) => once::<2>(options, s.into()),
+        AnyScene::Three(s) => once::<3>(options, s.into()),
     }
 }
 
-fn once<T: Real, const D: usize>(options: &Options, posed: Posed<D>) -> Request<()> {
-    let mesh = options.mesh.read(&|_| {})?;
+fn once<const D: usize>(options: &Options, posed: Posed<D>) -> Request<()> {
+    let mesh = options.mesh.read_mesh(&|_| {})?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
-    let mut study = posed.study::<T>(&|_| {})?;
+    let mut study = posed.study(&|_| {})?;
     if let Some(mesh) = mesh {
         study = study.on_mesh(mesh);
     }
     let linear = options.linear().first().copied().unwrap_or(LinearMethod::BySize);
-    let study =
-        study.levels(options.levels(D, has_mesh)).solver(ActiveSet::default().linear(linear));
+    let precision = options.precisions().first().copied().unwrap_or_default();
+    let solver = in_precision(precision, ActiveSet::default().linear(linear));
+    let study = study.levels(options.levels(D, has_mesh)).boxed_solver(solver);
     let schemes = options.schemes()?;
     let study = schemes.iter().fold(study, Study::named_scheme);
     study.run().map(drop).map_err(|e| e.to_string())

@@ -131,8 +131,9 @@ impl Options {
     }
 
     pub fn precisions(&self) -> Vec<Precision> {
-        let of = |name: &String| Precision::NAMES.iter().find(|p| p.0 == name).map(|p| p.1);
-        self.precision.iter().filter_map(of).collect()
+        let of = |name: &String| Precision::by_name(name);
+        let known = self.precision.iter().map(of).collect::<Option<Vec<_>>>();
+        known.expect("the command line takes the names of precisions alone")
     }
 
     pub fn rounds(&self) -> usize {

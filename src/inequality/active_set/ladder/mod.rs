@@ -23,10 +23,11 @@ pub(super) const CROSSOVER: usize = 10_000;
 
 /// Solves an inequality.
 ///
-/// The first active set iteration solves its linear systems by a Krylov method or with factors. Where it stagnates,
-/// monotone multigrid follows if it suits the inequality, and else one run of the interior point method. The contact
-/// states at the end of that run are the start of a last active set iteration with factors, whose outcome is that of the
-/// solve.
+/// The first active set iteration solves its linear systems by a Krylov method or with factors. After a stagnating
+/// Krylov iteration monotone multigrid follows if it suits the inequality. The interior point method runs once if
+/// monotone multigrid does not suit or does not converge, or if the iteration with factors stagnates or meets a singular
+/// matrix. Its contact states, if it has an iterate, are the start of a last active set iteration with factors, whose
+/// outcome is that of the solve.
 ///
 /// What else turns the method, each with a row of `tests/program/hard_rows.rs` that needs it:
 ///
@@ -34,10 +35,10 @@ pub(super) const CROSSOVER: usize = 10_000;
 /// |---|---|---|
 /// | a Krylov method from [`CROSSOVER`] unknowns on | `uses_krylov` | spiral-2d, `wopsip:facet-means`, 64 |
 /// | factors where a Krylov method does not fit the matrix | [`End::Unsuitable`] | contrast-disc-2d, `wopsip`, 64 |
-/// | three times the patience where what follows is dear | `krylov_limit` | contrast-disc-2d, `nipg`, 64 |
-/// | the inequality near a few unknowns whose states change in turn | `local_inequality` | radial-3d, `wopsip`, 16 |
+/// | more systems without progress where what follows is dear, any number from a cold start | `krylov_limit` | contrast-disc-2d, `nipg`, 64 |
+/// | the inequality near a few unknowns whose states change in turn, if monotone multigrid does not suit | `local_inequality` | radial-3d, `wopsip`, 16 |
 /// | a body that bounds alone hold starts with all its bounds active | `starting_states` | `neu3.toml`, `p1`, 8 |
-/// | the best iterate, where the last one is no solution | `outcome_of_best` | none: an iteration limit |
+/// | the best iterate, where the last one is no solution | `outcome_of_best` | lshape-2d, `wopsip-p2`, `eta` 1e10, 4 (a test) |
 ///
 /// One part of a mesh has no factors: the first iteration is all.
 pub(super) fn solve<T: Real>(
@@ -46,7 +47,6 @@ pub(super) fn solve<T: Real>(
     guess: &InitialGuess<T>,
     family: &dyn PreconditionerFamily<T>,
 ) -> Solution<T> {
-    guess.steps.set(0);
     if let Err(outcome) = check(inequality) {
         return Solution::without_iterate(inequality, outcome);
     }

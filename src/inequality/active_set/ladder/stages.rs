@@ -242,10 +242,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
     /// The active set iteration with factors.
     pub fn active_set_by_factors(&mut self) -> End {
         let before = self.work();
-        if self.direct.is_none() {
-            // iterates of a Krylov method have no jump multipliers
-            self.iterate.forget_best();
-        }
+        self.forget_krylov_iterates();
         self.linear_solver = "direct";
         let new = || DirectSolver::new(self.inequality);
         let solver = self.direct.get_or_insert_with(new);
@@ -267,10 +264,19 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
         end
     }
 
-    /// One run of the interior point method, whose contact states replace those of the iterate. If it converged its
+    /// Before the first method with factors: iterates of a Krylov method have no jump multipliers.
+    fn forget_krylov_iterates(&mut self) {
+        if self.direct.is_none() && self.inequality.penalised.is_some() {
+            self.iterate.forget_best();
+        }
+    }
+
+    /// One run of the interior point method, whose contact states, if it has an iterate, replace those of the present
+    /// one. If it converged its
     /// values are the best so far: no active set need be better where the states of many unknowns hardly matter.
     pub fn interior_point(&mut self) {
         let before = self.work();
+        self.forget_krylov_iterates();
         let new = || DirectSolver::new(self.inequality);
         let solver = self.direct.get_or_insert_with(new);
         let left = self.settings.max_outer.saturating_sub(self.iterate.outer);
@@ -295,7 +301,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
             End::Outcome(outcome) => self.iterate.outcome_of_best(outcome),
             End::Stagnation => self.iterate.outcome_of_best(Outcome::Cycling),
             End::Singular => self.iterate.outcome_of_best(Outcome::Singular),
-            // distributed values whose bound on the error is too large are no solution, however small their certificate
+            // over parts nothing follows: the bound on the error is too large, or the Krylov method does not fit the matrix
             End::Unsuitable => Outcome::Stalled,
         };
         // a matrix that is not symmetric, although it is declared so, explains a failure

@@ -4,7 +4,7 @@ mod sets;
 use crate::runs::{own_scene, small_mesh, solve};
 use crate::support::checks::Checks;
 use crate::support::meshes::{Random, Raw, mixed_box};
-use crate::support::rows::{label, rows};
+use crate::support::rows::{label, rows, rows_in};
 use crate::support::scheme_lists::entry;
 use crate::support::schemes::Entry;
 use unilateral::algebra::{Contact, Start};
@@ -14,21 +14,22 @@ use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Edges, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
+use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 /// Symmetric interior penalty on broken quadratics.
-fn broken() -> Sipg<P2> {
+fn broken<const D: usize>() -> Sipg<D> {
     Sipg::default().on(P2)
 }
 
 /// Conforming quadratics with bounds at all nodes, and at midpoints.
-fn conforming<T: Real, const D: usize>() -> Vec<Entry<T, D>> {
+fn conforming<const D: usize>() -> Vec<Entry<D>> {
     vec![entry(ConformingP2, Nodes), entry(ConformingP2, Midpoints)]
 }
 
 /// Conforming and discontinuous quadratics with every set of constraints.
-fn all<T: Real, const D: usize>() -> Vec<Entry<T, D>> {
+fn all<const D: usize>() -> Vec<Entry<D>> {
     let mut schemes = conforming();
     schemes.push(entry(broken(), Nodes));
     schemes.push(entry(broken(), Midpoints));
@@ -68,7 +69,7 @@ fn h1_as_tables(scene: &Scene<2>, set: impl ConstraintSet + 'static, level: usiz
             // the side that the rule collapses lies at the first vertex
             let point = [point[2], point[1], point[0]];
             let mut slopes = [[0.0; 4]; 10];
-            <P2 as ReferenceElement<f64, 2>>::derivatives(&point, &mut slopes);
+            Element::<2>::derivatives(&P2, &point, &mut slopes);
             let mut error = -(exact.gradient)(&mesh.point(cell, &point));
             for k in 0..3 {
                 let slope: f64 = values.iter().zip(&slopes).map(|(u, s)| u * s[k]).sum();
@@ -106,11 +107,11 @@ fn the_obstacle_in_the_plane_as_an_independent_implementation_has_it() {
 fn order_in_h1<const D: usize>(
     checks: &mut Checks,
     scene: Scene<D>,
-    schemes: Vec<Entry<f64, D>>,
+    schemes: Vec<Entry<D>>,
     levels: &[usize],
     [low, high]: [f64; 2],
 ) {
-    for row in rows::<f64, D>(scene, schemes, levels.to_vec()) {
+    for row in rows::<D>(scene, schemes, levels.to_vec()) {
         checks.certified(&row, 1e-9);
         if Some(&row.level) == levels.last() {
             let order = row.order.h1.unwrap();
@@ -134,7 +135,7 @@ fn orders_under_inequalities() {
     // measured: 1.479, twice
     order_in_h1(c, scenes::signorini_harmonic::<3>(), conforming(), &[4, 8], [1.4, 1.6]);
     // measured: 1.000, because nothing binds the ends of a cell
-    let midpoints = vec![entry::<f64, 1>(ConformingP2, Midpoints)];
+    let midpoints = vec![entry::<1>(ConformingP2, Midpoints)];
     order_in_h1(c, scenes::radial::<1>(1.0), midpoints, &[512, 1024], [0.95, 1.05]);
     checks.finish();
 }
@@ -143,14 +144,14 @@ fn orders_under_inequalities() {
 /// elsewhere; the solution is the exponential of the mean of `2x - x_0`.
 fn smooth<const D: usize>() -> Scene<D> {
     let slope = |k: usize| if k == 0 { 1.0 } else { 2.0 } / D as f64;
-    let value = move |x: &Point<f64, D>| (0..D).map(|k| slope(k) * x[k]).sum::<f64>().exp();
-    let gradient = move |x: &Point<f64, D>| Point::from_fn(|k, _| slope(k)) * value(x);
+    let value = move |x: &Point<D>| (0..D).map(|k| slope(k) * x[k]).sum::<f64>().exp();
+    let gradient = move |x: &Point<D>| Point::from_fn(|k, _| slope(k)) * value(x);
     let squares: f64 = (0..D).map(|k| slope(k) * slope(k)).sum();
-    let load = move |x: &Point<f64, D>| (1.0 + x[0] - 3.0 * squares) * value(x);
+    let load = move |x: &Point<D>| (1.0 + x[0] - 3.0 * squares) * value(x);
     let problem = Problem::new()
         .source(load)
         .coefficient(|_| 3.0)
-        .reaction(|x: &Point<f64, D>| 1.0 + x[0])
+        .reaction(|x: &Point<D>| 1.0 + x[0])
         .exact(value, gradient);
     let mut domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     domain.sides = [[BoundaryPart::Neumann; 2]; D];
@@ -162,7 +163,7 @@ fn smooth<const D: usize>() -> Scene<D> {
 #[test]
 fn smooth_solutions() {
     fn check<const D: usize>(checks: &mut Checks, levels: [usize; 2]) {
-        for row in rows::<f64, D>(smooth(), all(), levels) {
+        for row in rows::<D>(smooth(), all(), levels) {
             checks.certified(&row, 1e-9);
             let (Some(h1), Some(l2)) = (row.order.h1, row.order.l2) else { continue };
             let holds = (1.9..2.1).contains(&h1) && (2.85..3.15).contains(&l2);
@@ -176,16 +177,16 @@ fn smooth_solutions() {
     checks.finish();
 }
 
-fn quadratic<const D: usize>(x: &Point<f64, D>) -> f64 {
+fn quadratic<const D: usize>(x: &Point<D>) -> f64 {
     x.norm_squared() + (0..D).map(|k| x[k] * x[(k + 1) % D] - (k as f64) * x[k]).sum::<f64>()
 }
 
-fn slope_of_quadratic<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
+fn slope_of_quadratic<const D: usize>(x: &Point<D>) -> Point<D> {
     Point::from_fn(|k, _| 2.0 * x[k] + x[(k + 1) % D] + x[(k + D - 1) % D] - k as f64)
 }
 
 /// The mesh with Dirichlet data in place of contact.
-fn without_contact<const D: usize>(mesh: Mesh<f64, D>) -> Mesh<f64, D> {
+fn without_contact<const D: usize>(mesh: Mesh<D>) -> Mesh<D> {
     let boundary = mesh.boundary().iter().map(|f| {
         let mut vertices = mesh.facet_vertices(f.cell as usize, f.local as usize);
         let vertices = std::array::from_fn(|_| vertices.next().unwrap());
@@ -200,7 +201,7 @@ fn without_contact<const D: usize>(mesh: Mesh<f64, D>) -> Mesh<f64, D> {
 /// shape, the numbers and the order of vertices of the cells.
 #[test]
 fn quadratics_are_reproduced() {
-    fn check<const D: usize>(checks: &mut Checks, mesh: &Mesh<f64, D>) {
+    fn check<const D: usize>(checks: &mut Checks, mesh: &Mesh<D>) {
         let pull = if D == 1 { 4.0 } else { 2.0 * D as f64 };
         let exact = || Problem::new().exact(quadratic, slope_of_quadratic);
         let problems = [
@@ -210,7 +211,7 @@ fn quadratics_are_reproduced() {
             exact().constant_source(-pull).obstacle_above(|x| quadratic(x) + 1.0),
         ];
         for (k, problem) in problems.iter().enumerate() {
-            for scheme in all::<f64, D>() {
+            for scheme in all::<D>() {
                 let solved = solve(&*scheme, &scheme.constrain(problem), mesh);
                 let what = format!("{D}d, problem {k}, {} {}", scheme.name(), scheme.constraint());
                 // full contact under a load that is one too large is reproduced if the mean of a
@@ -228,7 +229,7 @@ fn quadratics_are_reproduced() {
             }
         }
     }
-    fn shuffled<const D: usize>(n: usize) -> Mesh<f64, D> {
+    fn shuffled<const D: usize>(n: usize) -> Mesh<D> {
         let raw = Raw::<D>::jittered(&mixed_box(), n, 0.4, &mut Random(7));
         without_contact(raw.shuffled(&mut Random(8)).mesh())
     }
@@ -253,7 +254,7 @@ fn numbering_does_not_matter() {
         .dirichlet(|x| 0.1 * x[0])
         .obstacle_below(|x| -0.05 - 0.1 * x[1])
         .signorini(|x| 0.02 * x[0] - 0.03);
-    for scheme in all::<f64, 2>() {
+    for scheme in all::<2>() {
         if scheme.constraint() == "cell-means" {
             continue;
         }
@@ -265,8 +266,7 @@ fn numbering_does_not_matter() {
             let touching = solution.contact.iter().filter(|&&c| c == Contact::Lower).count();
             // unknowns by the barycentres of their cell and of their place
             let barycentre = |vertices: &[u32]| {
-                let sum =
-                    vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum::<Point<_, 2>>();
+                let sum = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum::<Point<2>>();
                 sum / vertices.len() as f64
             };
             let keys = inequality.supports.iter().zip(&solution.values).map(|(place, &u)| {
@@ -304,7 +304,7 @@ fn the_basis_with_the_cell_mean_spans_the_quadratics() {
         let mut means = [0.0; 10];
         for (point, weight) in simplex.iter() {
             let mut values = vec![0.0; 10];
-            <P2 as ReferenceElement<f64, D>>::values(&point[..=D], &mut values);
+            Element::<D>::values(&P2, &point[..=D], &mut values);
             means.iter_mut().zip(&values).for_each(|(m, v)| *m += weight * v);
         }
         let to_nodal = |i: usize, v: &[f64]| {
@@ -339,14 +339,14 @@ fn the_basis_with_the_cell_mean_spans_the_quadratics() {
 /// those that reports state.
 #[test]
 fn multipliers_names_and_single_precision() {
-    let names: Vec<_> = all::<f64, 2>().iter().map(|s| s.constraint()).collect();
+    let names: Vec<_> = all::<2>().iter().map(|s| s.constraint()).collect();
     assert_eq!(names, ["nodes", "midpoints", "nodes", "midpoints", "cell-means"]);
-    let named = scheme_by_name::<f64, 2>("p2", &SchemeOptions::default()).unwrap();
+    let named = scheme_by_name::<2>("p2", &SchemeOptions::default()).unwrap();
     assert_eq!((named.name(), named.constraint_on(&Nodes)), ("p2", Some("nodes".to_owned())));
     fn check<const D: usize>(checks: &mut Checks, level: usize) {
         let scene = scenes::radial::<D>(1.0);
-        let mesh = scene.domain.mesh::<f64>(level).unwrap();
-        for scheme in all::<f64, D>() {
+        let mesh = scene.domain.mesh(level).unwrap();
+        for scheme in all::<D>() {
             let solved = solve(&*scheme, &scheme.constrain(&scene.problem), &mesh);
             let multiplier = solved.fields.unwrap().multiplier;
             // cells around the origin have contact around them, and so have the patches of their
@@ -369,8 +369,8 @@ fn multipliers_names_and_single_precision() {
     let mut checks = Checks::default();
     check::<1>(&mut checks, 24);
     check::<2>(&mut checks, 16);
-    let single = rows::<f32, 2>(scenes::radial(1.0), all(), [16]);
-    let double = rows::<f64, 2>(scenes::radial(1.0), all(), [16]);
+    let single = rows_in::<2>(Precision::Single, scenes::radial(1.0), all(), [16]);
+    let double = rows::<2>(scenes::radial(1.0), all(), [16]);
     for (single, double) in single.iter().zip(&double) {
         checks.certified(single, 1e-3);
         let ratio = single.error.h1.unwrap() / double.error.h1.unwrap();

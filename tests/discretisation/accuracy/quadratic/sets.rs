@@ -8,11 +8,11 @@ use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 
-fn bounds<const D: usize, S: Scheme<f64, D>>(
+fn bounds<const D: usize, S: Scheme<D>>(
     scheme: &S,
     set: impl ConstraintSet + 'static,
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<D>,
 ) -> Result<Vec<(usize, Bound<f64>)>, Error> {
     let problem = problem.clone().on(set);
     let space = Discretisation::new(scheme, &problem, mesh, DataQuadrature::default())?;
@@ -23,7 +23,7 @@ fn bounds<const D: usize, S: Scheme<f64, D>>(
 /// Which unknowns are bound, by the number of vertices of their place.
 #[test]
 fn each_set_binds_its_own_nodes() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [2, 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [2, 2]).unwrap();
     let count = |bounds: &[(usize, Bound<f64>)], vertices: usize| {
         bounds.iter().filter(|(n, b)| *n == vertices && b.is_inequality()).count()
     };
@@ -51,7 +51,7 @@ fn each_set_binds_its_own_nodes() {
         let lowest = nodes.iter().filter_map(|b| b.1.lower()).fold(0.0, f64::min);
         assert_eq!(lowest, -3.0);
     }
-    let cube = Mesh::<f64, 3>::kuhn_box(&mixed_box(), [1, 1, 1]).unwrap();
+    let cube = Mesh::<3>::kuhn_box(&mixed_box(), [1, 1, 1]).unwrap();
     let signorini = Problem::<3>::new().signorini(|_| -1.0);
     let count =
         |bounds: Vec<(usize, Bound<f64>)>| bounds.iter().filter(|(_, b)| b.is_inequality()).count();
@@ -60,14 +60,14 @@ fn each_set_binds_its_own_nodes() {
     let midpoints = bounds(&ConformingP2, Midpoints, &signorini, &cube).unwrap();
     assert_eq!([count(nodes), count(midpoints)], [2, 2]);
     let domain = BoxDomain::above_contact();
-    let line = Mesh::<f64, 1>::kuhn_box(&domain, [3]).unwrap();
+    let line = Mesh::<1>::kuhn_box(&domain, [3]).unwrap();
     let end = bounds(&ConformingP2, Midpoints, &Problem::new().signorini(|_| 0.5), &line).unwrap();
     assert_eq!(end.iter().filter(|b| b.1 == Bound::Lower(0.5) && b.0 == 1).count(), 1);
 }
 
 #[test]
 fn what_a_set_cannot_impose_is_refused() {
-    let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [2, 2]).unwrap();
+    let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [2, 2]).unwrap();
     let signorini = Problem::new().signorini(|_| 0.0);
     let error = bounds(&broken(), CellMeans, &signorini, &mesh).unwrap_err();
     assert!(
@@ -83,8 +83,8 @@ fn what_a_set_cannot_impose_is_refused() {
         );
     }
     // a datum below the obstacle at the midpoint of a single edge
-    let tent = |x: &Point<f64, 2>| if (x[1] - 0.25).abs() < 0.1 { 1.0 } else { -1.0 };
-    for scheme in conforming::<f64, 2>() {
+    let tent = |x: &Point<2>| if (x[1] - 0.25).abs() < 0.1 { 1.0 } else { -1.0 };
+    for scheme in conforming::<2>() {
         let problem = scheme.constrain(&Problem::new().obstacle_below(tent));
         let error = scheme.inequality(&problem, &mesh, Default::default()).unwrap_err();
         assert!(matches!(error, Error::EmptyConstraint { lower: 1.0, upper: 0.0, .. }), "{error}");

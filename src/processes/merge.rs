@@ -22,12 +22,12 @@ pub trait Merge: Sized {
 /// Merges what all parts have found, in the order of the parts, so that all have the same bits; all parts call it.
 ///
 /// ```
-/// use unilateral::distributed::{in_process, merge_all};
+/// use unilateral::processes::{in_process, merge_all};
 /// use unilateral::mesh::{Extent, Layers};
 /// use unilateral::prelude::*;
 ///
 /// let square = BoxDomain::dirichlet(Point::from([0.0, 0.0]), Point::from([1.0, 1.0]));
-/// let whole = Mesh::<f64, 2>::kuhn_box(&square, [8, 8])?;
+/// let whole = Mesh::<2>::kuhn_box(&square, [8, 8])?;
 /// let owners = whole.partition(3)?;
 /// let layers = Layers::across_facets(1);
 /// let fine = in_process(3, |number, exchange| {

@@ -12,7 +12,7 @@ use crate::inequality::Outcome;
 /// exchange, for which a part that has left would let the others wait.
 ///
 /// ```
-/// use unilateral::distributed::{agree, in_process};
+/// use unilateral::processes::{agree, in_process};
 ///
 /// let results = in_process(3, |part, exchange| {
 ///     let own = if part == 1 { Err("no memory") } else { Ok(part) };
@@ -31,7 +31,7 @@ pub fn agree<T, E: Display>(
 }
 
 /// As [`agree`], with the outcome that the error of the data stands for, and cells by their numbers in the whole mesh.
-pub(super) fn agree_on_data<T>(
+pub(crate) fn agree_on_data<T>(
     result: Result<T, Error>,
     cells: &[u64],
     exchange: &dyn Exchange,

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::over_parts::OverParts;
+use super::engine::{Engine, EngineMethod, EngineSolver, OwnRows};
 use crate::algebra::{Distribution, SparseMatrix};
-use crate::distributed::engine::{Engine, EngineMethod, EngineSolver, OwnRows};
 use crate::linear::{FactorError, Preconditioner};
+use crate::processes::OverParts;
 
 /// The own rows of a matrix whose unknowns are those of a discretisation.
 pub(super) struct RowsOfPart<'m> {

@@ -9,12 +9,12 @@ use std::borrow::Cow;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::auxiliary_space::{AuxiliarySpace, VertexCorrection};
-use super::over_parts::OverParts;
+use super::engine::{Engine, EngineMethod, EngineSolver, OwnRows};
 use super::own_unknowns::OnOwnUnknowns;
 use crate::algebra::{Distribution, SparseMatrix, any_part};
-use crate::distributed::engine::{Engine, EngineMethod, EngineSolver, OwnRows};
 use crate::linear::precondition::{BlockSolver, FacetMeansSolver, MeanJumpSplitting};
 use crate::linear::{FactorError, PreconditionedSystem, Preconditioner, PreconditionerFamily};
+use crate::processes::OverParts;
 
 /// What corrects where. The preconditioners of engines are made before, so that their matrices are gone while
 /// the inequality is solved; the first preconditioner of a scheme takes them.

@@ -5,7 +5,6 @@ use super::error::ExchangeError;
 use super::exchange::Exchange;
 use crate::assemble::Discretisation;
 use crate::mesh::Part;
-use crate::real::Real;
 
 /// Refuses bounds that contradict each other by more than rounding of the largest datum of all parts, as
 /// [`Discretisation::bounds`] does on a whole mesh; all parts call it.
@@ -16,9 +15,9 @@ use crate::real::Real;
 /// # Errors
 /// [`ExchangeError::Failed`] in all parts, with the message of the lowest part that owns a cell with a contradiction;
 /// cells have their numbers in the whole mesh. Those of the exchange.
-pub fn check_bounds<T: Real, const D: usize>(
-    part: &Part<T, D>,
-    discretisation: &Discretisation<'_, T, D>,
+pub fn check_bounds<const D: usize>(
+    part: &Part<D>,
+    discretisation: &Discretisation<'_, D>,
     exchange: &dyn Exchange,
 ) -> Result<(), ExchangeError> {
     let found = agree_on_data(discretisation.contradictions(), &part.cells, exchange)?;

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::algebra::Distribution;
-use crate::distributed::exchange::Exchange;
-use crate::distributed::numbering::Numbering;
+use super::error::ExchangeError;
+use super::exchange::Exchange;
+use super::numbering::Numbering;
+use crate::algebra::{Contact, Distribution};
 
 /// The numbers of the unknowns with the exchange between the parts.
 #[derive(Debug)]
-pub(super) struct OverParts {
+pub(crate) struct OverParts {
     pub numbering: Numbering,
     pub exchange: Arc<dyn Exchange>,
     /// The number of this part.
@@ -28,6 +29,23 @@ impl OverParts {
         self.numbering.first().last().copied().unwrap_or(0)
     }
 
+    /// Contact states, those of ghosts by their owners.
+    pub fn contact_of_owners(&self, contact: &[Contact]) -> Vec<Contact> {
+        let number = |&state: &Contact| match state {
+            Contact::Inactive => 0.0,
+            Contact::Lower => 1.0,
+            Contact::Upper => 2.0,
+        };
+        let mut states: Vec<f64> = contact.iter().map(number).collect();
+        (self as &dyn Distribution).update(&mut states);
+        let state = |&number: &f64| match number {
+            1.0 => Contact::Lower,
+            2.0 => Contact::Upper,
+            _ => Contact::Inactive,
+        };
+        states.iter().map(state).collect()
+    }
+
     /// Replaces numbers of this part by their sums or maxima over all parts; by NaN where messages fail.
     fn join(&self, numbers: &mut [f64], joined: Joined) {
         match joined(&*self.exchange, numbers) {
@@ -38,8 +56,7 @@ impl OverParts {
 }
 
 /// A sum or maximum over parts.
-type Joined =
-    fn(&dyn Exchange, &[f64]) -> Result<Vec<f64>, crate::distributed::error::ExchangeError>;
+type Joined = fn(&dyn Exchange, &[f64]) -> Result<Vec<f64>, ExchangeError>;
 
 impl Distribution for OverParts {
     fn owns(&self, unknown: usize) -> bool {

@@ -1,8 +1,10 @@
-//! The trait of reference elements.
+//! What an element is.
+
+use std::fmt::Debug;
+use std::sync::Arc;
 
 use super::basis::Basis;
 use super::node::Node;
-use crate::real::Real;
 
 /// Largest number of basis functions of an element: cubics on a tetrahedron.
 pub const MAX_BASIS: usize = 20;
@@ -43,52 +45,53 @@ impl Layout {
     }
 }
 
-/// A finite element on the `D`-simplex.
+/// A finite element on the `D`-simplex, which is tabulated once for each discretisation.
 ///
 /// Laws, tested by [`check_element`](crate::kit::check_element): nodes dual to basis functions,
-/// partition of unity, polynomials of degree [`DEGREE`](Self::DEGREE) in the span, basis functions of
-/// degree [`BASIS_DEGREE`](Self::BASIS_DEGREE) at most, derivatives equal to those of the values, as
-/// many functions as the layout has unknowns, nodes tied to the entities that own the unknowns.
+/// partition of unity, polynomials of its [degree](Self::degree) in the span, basis functions of its
+/// [basis degree](Self::basis_degree) at most, derivatives equal to those of the values, nodes tied to
+/// the entities that own the unknowns.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is not a finite element on a {D}-simplex over `{T}`",
+    message = "`{Self}` is not a finite element on a {D}-simplex",
     note = "elements exist on simplices of dimension 1, 2 and 3"
 )]
-pub trait ReferenceElement<T: Real, const D: usize>: Copy + Send + Sync + 'static {
-    /// Number of basis functions, at most 20: as many as cubics on a tetrahedron have.
-    const N: usize;
+pub trait Element<const D: usize>: Debug + Send + Sync {
     /// Largest degree of which the span of the basis contains all polynomials: what the element
     /// reproduces and what determines the orders of convergence.
-    const DEGREE: usize;
+    fn degree(&self) -> usize;
     /// Largest degree of a basis function, from which the rules for integrals of the basis follow.
-    /// It differs from [`DEGREE`](Self::DEGREE) where the basis has more than the polynomials of
+    /// It differs from the [degree](Self::degree) where the basis has more than the polynomials of
     /// that degree: it is `D + 1` for linears with a bubble that vanishes on the boundary of the cell.
-    const BASIS_DEGREE: usize = Self::DEGREE;
-    /// Unknowns at vertices, edges, facets and inside cells.
-    const LAYOUT: Layout;
-    /// Whether this library has compiled the assembly of the element's shared unknowns; no other
-    /// crate sets it.
-    #[doc(hidden)]
-    const COMPILED: bool = false;
-    /// Writes the `N` basis functions at a point; `lambda` has `D + 1` entries.
-    fn values(lambda: &[T], out: &mut [T]);
-    /// Writes the derivatives of the `N` basis functions with respect to the `D + 1` barycentric
-    /// coordinates, taken as independent.
-    fn derivatives(lambda: &[T], out: &mut [[T; 4]]);
+    fn basis_degree(&self) -> usize {
+        self.degree()
+    }
+    /// Unknowns at vertices, edges, facets and inside cells: as many as there are basis functions,
+    /// at most 20 in a cell.
+    fn layout(&self) -> Layout;
     /// The functional that unknown `i` is the value of.
-    fn node(i: usize) -> Node;
-    /// Calls the visitor with the broken element of the same polynomials that has this basis; none
-    /// if the element knows no such basis. Only broken elements are asked, and
-    /// [`Broken`](super::Broken) passes the question to the element inside.
-    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
-        let _ = (basis, visitor);
+    fn node(&self, i: usize) -> Node;
+    /// Writes the basis functions at a point; `lambda` has `D + 1` entries, `out` as many as there are
+    /// functions.
+    fn values(&self, lambda: &[f64], out: &mut [f64]);
+    /// Writes the derivatives of the basis functions with respect to the `D + 1` barycentric
+    /// coordinates, taken as independent; entries beyond these are zero already.
+    fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]);
+    /// The broken element of the same polynomials that has this basis; none if the element knows no
+    /// such basis. Only broken elements are asked, and [`Broken`](super::Broken) passes the question to
+    /// the element inside.
+    fn broken_in_basis(&self, basis: Basis) -> Option<Arc<dyn Element<D>>> {
+        let _ = basis;
         None
     }
 }
 
-/// A function of an element's type, as [`ReferenceElement::broken_in_basis`] calls it.
-pub trait ElementVisitor<T: Real, const D: usize> {
-    /// What it returns.
-    type Output;
-    /// Called with the element.
-    fn visit<E: ReferenceElement<T, D>>(self) -> Self::Output;
+impl<const D: usize> dyn Element<D> + '_ {
+    /// Number of basis functions.
+    pub fn per_cell(&self) -> usize {
+        self.layout().per_cell(D)
+    }
+    /// The functional of each unknown.
+    pub fn nodes(&self) -> Vec<Node> {
+        (0..self.per_cell()).map(|i| self.node(i)).collect()
+    }
 }

@@ -1,5 +1,6 @@
 //! What can go wrong between parts.
 
+use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::readable_debug::debug_by_display;
 
@@ -77,3 +78,20 @@ pub enum ExchangeError {
 }
 
 debug_by_display!(ExchangeError);
+
+impl From<ExchangeError> for Error {
+    fn from(error: ExchangeError) -> Self {
+        Self::Processes(Box::new(error))
+    }
+}
+
+impl ExchangeError {
+    /// The outcome that an error stands for: of [`Error::Processes`] that of the part that failed.
+    pub(crate) fn outcome_of(error: &Error) -> Option<Outcome> {
+        let Error::Processes(why) = error else { return Outcome::of_error(error) };
+        match why.downcast_ref::<Self>() {
+            Some(Self::Failed { outcome, .. }) => *outcome,
+            _ => None,
+        }
+    }
+}

@@ -1,14 +1,13 @@
 //! Whether a part has the bits of the whole.
 
-use super::solved::DistributedSolved;
 use crate::algebra::{Bound, Inequality};
 use crate::arrays::map_entries;
 use crate::assemble::{DataQuadrature, Discretisation};
-use crate::distributed::agree::agree;
-use crate::distributed::error::ExchangeError;
 use crate::error::Error;
-use crate::mesh::Mesh;
-use crate::scheme::AnyScheme;
+use crate::mesh::{Mesh, Part};
+use crate::nested::Solved;
+use crate::processes::{OverParts, agree};
+use crate::scheme::Scheme;
 
 /// How many own rows of all parts were compared with those of the whole mesh, and in how many of them bits differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,55 +31,60 @@ impl Differences {
     pub fn are_none(&self) -> bool {
         [self.rows, self.loads, self.bounds, self.residuals] == [0; 4]
     }
-}
-
-impl<const D: usize> DistributedSolved<'_, D> {
     /// Compares the own rows of all parts with those of the whole mesh, which every process assembles for this
-    /// purpose; all parts call it.
+    /// purpose; all parts call it. Nothing is compared where the solution is one on a whole mesh.
     ///
     /// # Errors
-    /// [`ExchangeError::Failed`] with the error of assembly, and those of the exchange.
-    pub fn verify(
-        &self,
-        scheme: &dyn AnyScheme<f64, D>,
-        whole: &Mesh<f64, D>,
+    /// [`Error::Processes`] with the error of assembly, and those of the exchange.
+    pub fn from_whole<const D: usize>(
+        solved: &Solved<'_, D>,
+        scheme: &dyn Scheme<D>,
+        whole: &Mesh<D>,
         quadrature: DataQuadrature,
-    ) -> Result<Differences, ExchangeError> {
-        let problem = self.discretisation().problem();
+    ) -> Result<Self, Error> {
+        let Some((part, over_parts)) = solved.part().zip(solved.system().over_parts()) else {
+            return Ok(Self::default());
+        };
+        let problem = solved.discretisation().problem();
         let assembled = scheme.discretise(problem, whole, quadrature).and_then(|of| {
             let inequality = of.inequality()?;
             Ok((of, inequality))
         });
-        let (of, all) = agree::<_, Error>(assembled, self.exchange())?;
-        let own = self.differences(&of, &all);
+        let (of, all) = agree::<_, Error>(assembled, &*over_parts.exchange)?;
+        let own = Self::of_part(solved, (part, over_parts), &of, &all);
         let numbers = [own.compared, own.rows, own.loads, own.bounds, own.residuals];
-        let sums = self.exchange().sum(&numbers.map(|x| x as f64))?;
+        let sums = over_parts.exchange.sum(&numbers.map(|x| x as f64))?;
         let [compared, rows, loads, bounds, residuals] =
             map_entries([0, 1, 2, 3, 4], |k| sums[k] as u64);
-        Ok(Differences { compared, rows, loads, bounds, residuals })
+        Ok(Self { compared, rows, loads, bounds, residuals })
     }
 
     /// The differences of this part.
-    fn differences(&self, of: &Discretisation<'_, f64, D>, all: &Inequality<f64>) -> Differences {
-        let mut numbers = vec![0; self.inequality().size()];
-        for (cell, &whole) in self.part().cells.iter().enumerate() {
-            let own = self.discretisation().unknowns_of(cell);
+    fn of_part<const D: usize>(
+        solved: &Solved<'_, D>,
+        (part, over_parts): (&Part<D>, &OverParts),
+        of: &Discretisation<'_, D>,
+        all: &Inequality<f64>,
+    ) -> Self {
+        let (inequality, values) = (solved.inequality(), solved.values());
+        let mut numbers = vec![0; inequality.size()];
+        for (cell, &whole) in part.cells.iter().enumerate() {
+            let own = solved.discretisation().unknowns_of(cell);
             own.zip(of.unknowns_of(whole as usize)).for_each(|(own, whole)| numbers[own] = whole);
         }
-        let values = &self.solution().values;
         let mut residual = vec![0.0; values.len()];
-        self.inequality().residual_f64(values, &mut residual);
+        inequality.residual_f64(values, &mut residual);
         // the values of unknowns that this part does not have enter no row of its own
         let mut all_values = vec![0.0; all.size()];
         numbers.iter().zip(values).for_each(|(&number, &value)| all_values[number] = value);
         let mut all_residuals = vec![0.0; all.size()];
         all.residual_f64(&all_values, &mut all_residuals);
-        let loads = [self.inequality(), all].map(|of| of.assembled_load());
-        let mut found = Differences::default();
-        for &i in self.own() {
+        let loads = [inequality, all].map(|of| of.assembled_load());
+        let mut found = Self::default();
+        for &i in over_parts.numbering.own() {
             let i = i as usize;
             let number = numbers[i];
-            let (columns, entries) = self.inequality().matrix.row(i);
+            let (columns, entries) = inequality.matrix.row(i);
             let (all_columns, all_entries) = all.matrix.row(number);
             let is_same =
                 columns.iter().map(|&j| numbers[j as usize] as u32).eq(all_columns.iter().copied())
@@ -90,7 +94,7 @@ impl<const D: usize> DistributedSolved<'_, D> {
             let differ = |one: f64, other: f64| u64::from(one.to_bits() != other.to_bits());
             found.loads += differ(loads[0][i], loads[1][number]);
             found.residuals += differ(residual[i], all_residuals[number]);
-            let bounds = map_entries([&self.inequality().bounds[i], &all.bounds[number]], bits);
+            let bounds = map_entries([&inequality.bounds[i], &all.bounds[number]], bits);
             found.bounds += u64::from(bounds[0] != bounds[1]);
         }
         found

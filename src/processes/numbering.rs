@@ -5,7 +5,6 @@ use super::error::ExchangeError;
 use super::exchange::{Exchange, check_lengths};
 use crate::assemble::Discretisation;
 use crate::mesh::Part;
-use crate::real::Real;
 
 /// The number of an unknown whose owner has not answered yet, or does not know it either.
 const UNKNOWN: u64 = u64::MAX;
@@ -35,11 +34,11 @@ impl Numbering {
     ///
     /// # Errors
     /// [`ExchangeError::Failed`] in all parts if cells have other owners in one part than in another, or if a part
-    /// has too few [layers](crate::scheme::AnyScheme#method.layers) to know who numbers an unknown; those of the
+    /// has too few [layers](crate::scheme::Scheme#method.layers) to know who numbers an unknown; those of the
     /// exchange.
-    pub fn new<T: Real, const D: usize>(
-        part: &Part<T, D>,
-        discretisation: &Discretisation<'_, T, D>,
+    pub fn new<const D: usize>(
+        part: &Part<D>,
+        discretisation: &Discretisation<'_, D>,
         exchange: &dyn Exchange,
     ) -> Result<Self, ExchangeError> {
         let per_cell = discretisation.unknowns_of(0).count();
@@ -70,7 +69,7 @@ impl Numbering {
         &self.first
     }
     /// The unknowns that other parts own.
-    pub(in crate::distributed) fn ghosts(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn ghosts(&self) -> impl Iterator<Item = usize> + '_ {
         self.received.iter().flatten().map(|&unknown| unknown as usize)
     }
     /// Gives the unknowns that other parts own the values that they have there; all parts call it.

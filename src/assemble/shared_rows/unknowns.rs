@@ -1,0 +1,55 @@
+//! The unknowns of a cell, with constants where loops over cells need them.
+
+use crate::assemble::space::dofs::{Dofs, KINDS};
+use crate::element::MAX_BASIS;
+
+/// In place of a constant number of unknowns: the number is known at run time only.
+pub(super) const ANY: usize = 0;
+
+/// How many unknowns a cell has and which kind owns each of them.
+///
+/// A constant `N` unrolls the loops over them; then one kind owns the first `D + 1` unknowns and one
+/// kind the others, if there are others: so it is with P1, P2 and Crouzeix-Raviart elements.
+#[derive(Clone, Copy)]
+pub(super) struct CellUnknowns<const D: usize, const N: usize = ANY> {
+    count: usize,
+    kinds: [u8; MAX_BASIS],
+}
+
+impl<const D: usize, const N: usize> CellUnknowns<D, N> {
+    pub fn new(dofs: &Dofs<'_>) -> Self {
+        let mut kinds = [0; MAX_BASIS];
+        for (i, kind) in kinds[..dofs.per_cell()].iter_mut().enumerate() {
+            *kind = dofs.kind(D, i) as u8;
+        }
+        Self { count: dofs.per_cell(), kinds }
+    }
+    /// How many there are.
+    #[inline(always)]
+    pub fn count(&self) -> usize {
+        if const { N == ANY } { self.count } else { N }
+    }
+    /// Which kind owns unknown `i`.
+    #[inline(always)]
+    pub fn kind(&self, i: usize) -> usize {
+        let kind = match const { N == ANY } {
+            true => self.kinds[i],
+            false if i <= D => self.kinds[0],
+            false => self.kinds[D + 1],
+        };
+        // the remainder saves a comparison with the length wherever kinds are indices
+        usize::from(kind) % KINDS
+    }
+}
+
+impl<const D: usize> CellUnknowns<D> {
+    /// The number of unknowns if one kind owns the first `D + 1` of them and one kind the others;
+    /// else [`ANY`].
+    pub fn constant_count(dofs: &Dofs<'_>) -> usize {
+        let of = Self::new(dofs);
+        let is_one = |kinds: &[u8]| kinds.iter().all(|kind| *kind == kinds[0]);
+        let kinds = &of.kinds[..of.count];
+        let fits = kinds.len() > D && is_one(&kinds[..=D]) && is_one(&kinds[D + 1..]);
+        if fits { of.count } else { ANY }
+    }
+}

@@ -1,0 +1,58 @@
+//! A mesh as a whole, or the part of it that one process has.
+
+use std::sync::Arc;
+
+use crate::error::Error;
+use crate::mesh::{Domain, Extent, Mesh, Part, Refinement};
+use crate::processes::{Exchange, agree, merge_all};
+
+/// A mesh of a hierarchy, or the part of it that one process has.
+#[derive(Debug)]
+pub(super) enum Piece<const D: usize> {
+    Whole(Mesh<D>),
+    Part(Part<D>),
+}
+
+/// The part of a mesh that one process has, and its exchange with the others.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SharedPart<'a, const D: usize> {
+    pub part: &'a Part<D>,
+    pub exchange: &'a Arc<dyn Exchange>,
+}
+
+impl<const D: usize> Piece<D> {
+    /// The uniform refinement, on a domain with new vertices on its boundary; all parts call it.
+    pub fn refined(
+        &self,
+        domain: Option<&Domain<D>>,
+        exchange: Option<&Arc<dyn Exchange>>,
+    ) -> Result<(Self, Refinement), Error> {
+        match (self, exchange) {
+            (Self::Part(part), Some(exchange)) => {
+                let refined = match domain {
+                    Some(domain) => domain.refine_part(part, part.layers),
+                    None => part.refine(part.layers),
+                };
+                let (fine, by) = agree(refined, &**exchange)?;
+                // the mesh size is that of all parts
+                let extent = merge_all(&Extent::of(&fine.mesh), &**exchange)?;
+                Ok((Self::Part(fine.with_extent(extent)), by))
+            }
+            _ => {
+                let mesh = self.mesh();
+                let (fine, by) = match domain {
+                    Some(domain) => domain.refine(mesh)?,
+                    None => mesh.refine()?,
+                };
+                Ok((Self::Whole(fine), by))
+            }
+        }
+    }
+    /// The mesh; of a part its own.
+    pub fn mesh(&self) -> &Mesh<D> {
+        match self {
+            Self::Whole(mesh) => mesh,
+            Self::Part(part) => &part.mesh,
+        }
+    }
+}
