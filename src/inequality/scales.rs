@@ -108,7 +108,7 @@ impl Sums {
         }
         sums
     }
-    /// The scales; `epsilon` is machine epsilon of the precision.
+    /// The scales; `epsilon` is machine epsilon of the precision in which the values were computed.
     pub fn scales(&self, epsilon: f64) -> Scales {
         let least = VANISHING * epsilon * self.terms;
         let energy = [(self.energy, least), (self.load_energy, 0.0), (self.diagonal_energy, 0.0)]

@@ -109,7 +109,7 @@ impl<'a, const D: usize> System<'a, D> {
     pub fn inequality(&self) -> &Inequality<f64> {
         &self.inequality
     }
-    /// The mesh; on a part of a mesh that of the part.
+    /// The mesh; on a part of a mesh, the mesh of the part.
     pub fn mesh(&self) -> &'a Mesh<D> {
         self.place.mesh
     }

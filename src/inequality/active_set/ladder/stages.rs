@@ -271,9 +271,9 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
         }
     }
 
-    /// One run of the interior point method, whose contact states, if it has an iterate, replace those of the present
-    /// one. If it converged its
-    /// values are the best so far: no active set need be better where the states of many unknowns hardly matter.
+    /// One run of the interior point method. Its contact states, if it has an iterate, replace those of the present
+    /// iterate. If it converged, its values are the best so far: no active set need be better where the states of many
+    /// unknowns hardly matter.
     pub fn interior_point(&mut self) {
         let before = self.work();
         self.forget_krylov_iterates();
@@ -301,7 +301,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
             End::Outcome(outcome) => self.iterate.outcome_of_best(outcome),
             End::Stagnation => self.iterate.outcome_of_best(Outcome::Cycling),
             End::Singular => self.iterate.outcome_of_best(Outcome::Singular),
-            // over parts nothing follows: the bound on the error is too large, or the Krylov method does not fit the matrix
+            // no method follows over parts: the bound on the error is too large, or the Krylov method does not fit
             End::Unsuitable => Outcome::Stalled,
         };
         // a matrix that is not symmetric, although it is declared so, explains a failure
