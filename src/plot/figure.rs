@@ -1,6 +1,6 @@
 //! Figures of a report: error against mesh size, and error against time.
 
-use super::layout::{FigureLayout, Layer, Sign};
+use super::layout::{FigureLayout, Sign};
 use super::panel::draw_panel;
 use super::pen::Pen;
 use super::series::{Key, Panel, Quantity, keys, scenes, with_curves};
@@ -44,6 +44,21 @@ pub fn convergence(rows: &[Row]) -> Figure {
         })
         .collect();
     Figure { panels, keys, columns }
+}
+
+/// The two figures of a first screen, of the first four scenes: error against time, and the same error against mesh
+/// size; one panel for each scene.
+pub(crate) fn overview(rows: &[Row]) -> [Figure; 2] {
+    let of: Vec<Row> = {
+        let first: Vec<&str> = scenes(rows).into_iter().take(4).collect();
+        rows.iter().filter(|row| first.contains(&&*row.scene)).cloned().collect()
+    };
+    let time = work_precision(&of);
+    let Figure { panels, keys, .. } = convergence(&of);
+    let errors: Vec<&String> = time.panels.iter().map(|panel| &panel.y).collect();
+    let panels = panels.into_iter().filter(|panel| errors.contains(&&panel.y)).collect();
+    let size = Figure { panels, keys, columns: time.columns };
+    [time, size]
 }
 
 /// L2 error against the seconds a run took altogether, one panel for each scene. On adaptive meshes, and where no
@@ -117,34 +132,12 @@ impl Figure {
 
     /// The figure as the text of an SVG file.
     pub fn to_svg(&self) -> String {
-        let mut pen = Pen::new(self.layout().size, false);
-        self.draw(&mut pen, Layer::All);
-        pen.finish()
-    }
-
-    /// The entries of the legend.
-    pub(crate) fn labels(&self) -> impl Iterator<Item = &String> {
-        self.keys.iter().map(|key| &key.label)
-    }
-
-    /// The figure as the text of an SVG file in which the curve of an entry of the legend is a group of the
-    /// class `s` and the place of the entry in a list, so that a page can hide it.
-    pub(crate) fn to_svg_in_groups(&self, series: &[String]) -> String {
-        let mut pen = Pen::new(self.layout().size, false);
-        self.draw(&mut pen, Layer::Frame);
-        for (key, label) in self.labels().enumerate() {
-            let class = series.iter().position(|name| name == label).unwrap_or(series.len());
-            pen.group(&format!("s{class}"), |pen| self.draw(pen, Layer::Curve(key)));
-        }
-        pen.finish()
-    }
-
-    /// Draws a layer of all panels and of the legend.
-    fn draw(&self, pen: &mut Pen, layer: Layer) {
         let layout = self.layout();
+        let mut pen = Pen::new(layout.size, false);
         for (panel, &at) in self.panels.iter().zip(&layout.panels) {
-            draw_panel(pen, panel, at, layer);
+            draw_panel(&mut pen, panel, at);
         }
-        layout.draw_legend(pen, layer);
+        layout.draw_legend(&mut pen);
+        pen.finish()
     }
 }

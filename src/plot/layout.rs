@@ -13,26 +13,6 @@ const SYMBOL: f64 = 34.0;
 const GAP: f64 = 22.0;
 const TEXT: f64 = 15.0;
 
-/// What of a figure is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Layer {
-    /// All of it.
-    All,
-    /// All but the curves.
-    Frame,
-    /// The curve of a key in all panels and in the legend.
-    Curve(usize),
-}
-
-impl Layer {
-    pub fn has_frame(self) -> bool {
-        !matches!(self, Layer::Curve(_))
-    }
-    pub fn has_curve(self, key: usize) -> bool {
-        self == Layer::All || self == Layer::Curve(key)
-    }
-}
-
 /// A sign that the legend explains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sign {
@@ -120,16 +100,9 @@ impl FigureLayout {
         FigureLayout { size: (width, y - LINE / 2.0 + MARGIN), panels: places.collect(), legend }
     }
 
-    /// Draws the legend of a layer.
-    pub fn draw_legend(&self, pen: &mut Pen, layer: Layer) {
+    /// Draws the legend.
+    pub fn draw_legend(&self, pen: &mut Pen) {
         for ((x, y), entry) in &self.legend {
-            let is_shown = match entry {
-                Entry::Curve(key, _) => layer.has_curve(*key),
-                Entry::Sign(_) => layer.has_frame(),
-            };
-            if !is_shown {
-                continue;
-            }
             let middle = (x + SYMBOL / 2.0, *y);
             match entry {
                 Entry::Curve(key, _) => {

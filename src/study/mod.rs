@@ -19,6 +19,7 @@ pub(crate) mod report;
 pub(crate) mod row;
 mod runner;
 mod setting;
+pub(crate) mod summary;
 pub(crate) mod table;
 
 pub use crate::nested::Phase;

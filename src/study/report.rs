@@ -24,6 +24,9 @@ pub struct Program {
     pub target_cpu: String,
     /// What else the rows depend on and do not say, by name: parameters of scenes, a mesh file.
     pub request: BTreeMap<String, String>,
+    /// The command that makes the report again; none of a program without one.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub command: Option<String>,
 }
 
 impl Program {
@@ -39,12 +42,24 @@ impl Program {
             repeat,
             target_cpu: target_cpu(),
             request: BTreeMap::new(),
+            command: None,
         }
     }
     /// States something else on which the rows depend.
     #[must_use]
     pub fn with_request(mut self, name: &str, value: impl ToString) -> Self {
         self.request.insert(name.to_owned(), value.to_string());
+        self
+    }
+    /// States the command that makes the report again, by its words.
+    #[must_use]
+    pub fn with_command(mut self, words: impl Iterator<Item = String>) -> Self {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,@+".contains(c);
+        let quoted = |word: String| match !word.is_empty() && word.chars().all(is_plain) {
+            true => word,
+            false => format!("'{}'", word.replace('\'', "'\\''")),
+        };
+        self.command = Some(words.map(quoted).collect::<Vec<_>>().join(" "));
         self
     }
 }

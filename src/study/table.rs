@@ -8,15 +8,36 @@ use super::rates::rates;
 use super::remarks::{failure, warnings};
 use super::report::Report;
 use super::row::{Row, distinct};
+use super::summary::{lead, summaries};
+use crate::table::{WIDTH, wrapped};
 
 /// The cell of a number that does not apply.
 const NONE: &str = "-";
-/// Characters in a line.
-const WIDTH: usize = 100;
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_tables(f, &self.rows)
+        f.write_str(&self.summary_to_text(WIDTH))
+    }
+}
+
+impl Report {
+    /// What was compared and how it ended, and for each scene one table at the finest level of every series, in
+    /// lines of this many characters.
+    pub fn summary_to_text(&self, width: usize) -> String {
+        if self.rows.is_empty() {
+            return String::new();
+        }
+        let tables = summaries(&self.rows).into_iter().map(|table| table.to_text(width));
+        let lead = wrapped(&lead(&self.rows), width, 0);
+        [lead].into_iter().chain(tables).collect::<Vec<_>>().join("\n")
+    }
+
+    /// The tables of all levels: errors, orders, counts and times, then energy, contact measure, resultant, bound
+    /// and stages.
+    pub fn details_to_text(&self) -> String {
+        let mut text = String::new();
+        write_tables(&mut text, &self.rows).expect("writing to a text does not fail");
+        text
     }
 }
 
@@ -174,16 +195,7 @@ pub(crate) fn heading(rows: &[&Row]) -> String {
 
 /// Writes text in lines of the width of a table, further lines indented.
 fn write_wrapped(f: &mut impl fmt::Write, text: &str) -> fmt::Result {
-    let mut line = String::new();
-    for word in text.split(' ') {
-        if !line.trim().is_empty() && line.chars().count() + word.chars().count() > WIDTH {
-            writeln!(f, "{}", line.trim_end())?;
-            line = "    ".to_owned();
-        }
-        line += word;
-        line.push(' ');
-    }
-    writeln!(f, "{}", line.trim_end())
+    f.write_str(&wrapped(text, WIDTH, 4))
 }
 
 /// One column of a table.
@@ -383,7 +395,7 @@ fn whole(x: Option<usize>) -> String {
 }
 
 /// Three digits and the power of ten: `1.37e-2`.
-fn scientific(x: Option<f64>) -> String {
+pub(super) fn scientific(x: Option<f64>) -> String {
     match x {
         Some(0.0) => "0".to_owned(),
         Some(x) if x.is_finite() => format!("{x:.2e}"),
@@ -406,7 +418,7 @@ fn fixed(x: Option<f64>) -> String {
 }
 
 /// Seconds in six characters, down to what a clock can tell.
-fn seconds(x: f64) -> String {
+pub(super) fn seconds(x: f64) -> String {
     match x {
         x if x > 0.0 && x < 1e-3 => format!("{x:.1e}"),
         x if x < 10.0 => format!("{x:.4}"),

@@ -5,9 +5,8 @@ use super::measured::{Failure, Measured, Phases, Variant, scenes, variants};
 use super::verdict::at_common_error;
 use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
-use crate::output::Table;
-use crate::output::table::Cell;
 use crate::study::row::distinct;
+use crate::table::{Cell, Table};
 
 /// Columns of errors that fit into a line.
 const MOST_ERRORS: usize = 5;

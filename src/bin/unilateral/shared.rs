@@ -72,6 +72,11 @@ pub fn print(text: &str) -> Request<()> {
     print_to(std::io::stdout(), text)
 }
 
+/// Characters in a line of the terminal; a hundred where there is none.
+pub fn terminal_width() -> usize {
+    console::Term::stdout().size_checked().map_or(100, |(_, columns)| columns.into())
+}
+
 /// Prints to a stream; a closed pipe is no error.
 pub fn print_to(mut stream: impl Write, text: &str) -> Request<()> {
     match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {

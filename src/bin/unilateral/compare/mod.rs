@@ -19,7 +19,8 @@ use watcher::Watcher;
 use crate::judge::write_requests;
 use crate::one_run::take_directory;
 use crate::shared::{
-    ORDER_TOLERANCE, Request, check_writable, complain, print, print_to, use_threads, warn, write,
+    ORDER_TOLERANCE, Request, check_writable, complain, print, print_to, terminal_width,
+    use_threads, warn, write,
 };
 
 use unilateral::inequality::SOLVERS;
@@ -68,7 +69,9 @@ fn run_over_processes(_: &Options) -> Request<bool> {
 /// The program, with all that its rows depend on and do not say.
 fn program(options: &Options, files: &[(&str, String)]) -> Program {
     let threads = rayon::current_num_threads();
-    let mut program = Program::new("compare", &options.precision, threads, options.repeat);
+    let words = std::env::args().skip(1);
+    let mut program = Program::new("compare", &options.precision, threads, options.repeat)
+        .with_command(std::iter::once("unilateral".to_owned()).chain(words));
     for (name, value) in
         [("scale", options.scale), ("contrast", options.contrast), ("load", options.load)]
     {
@@ -318,7 +321,11 @@ fn show(options: &Options, report: &Report) -> Request<()> {
     }
     let (out, is_whole) = (options.out.display(), report.complete);
     let files = if is_whole { "Report, plots and fields are" } else { "The incomplete report is" };
-    let text = format!("{report}\nTimes are in seconds. {files} in {out}\n");
+    let details =
+        if options.details { format!("\n{}", report.details_to_text()) } else { String::new() };
+    let more = if options.details { "" } else { "; --details shows all levels" };
+    let summary = report.summary_to_text(terminal_width());
+    let text = format!("{summary}{details}\nTimes are in seconds{more}. {files} in {out}\n");
     match options.json.as_deref().is_some_and(|path| path.as_os_str() == "-") {
         true => print_to(std::io::stderr(), &text),
         false => print(&text),
