@@ -193,12 +193,17 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
     }
 }
 
-/// Adds to a row too long for the positions noted, by searching its columns.
+/// Adds the entries of some unknowns to a row whose positions are not noted, by searching its columns.
 #[cold]
 #[inline(never)]
-fn add_by_search(out: &mut [f64], columns: &[u32], unknowns: &[u32], entry: &dyn Fn(usize) -> f64) {
+pub(super) fn add_by_search(
+    out: &mut [f64],
+    columns: &[u32],
+    unknowns: &[u32],
+    entry: &dyn Fn(usize) -> f64,
+) {
     for (j, unknown) in unknowns.iter().enumerate() {
-        let at = columns.binary_search(unknown).expect("the pattern has the entries of its cells");
+        let at = columns.binary_search(unknown).expect("the pattern has all that is added to it");
         out[at] += entry(j);
     }
 }
