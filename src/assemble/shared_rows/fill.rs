@@ -6,12 +6,12 @@ use std::sync::atomic::Ordering;
 use crate::parallel::for_each_item;
 
 use super::cells::{CellMatrices, CellMatrix, General, Gradients};
-use super::partition::{Location, Rows, partition};
 use super::pattern::{EntryPositions, LONGEST};
-use super::unknowns::{ANY, CellUnknowns};
+use super::unknowns::{ANY, CellUnknowns, Rows};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
 use crate::assemble::space::dofs::{Dofs, KINDS};
+use crate::mesh::incidence::{Columns, Location, partition};
 
 /// The rows of one kind in a subset, and their values.
 struct Target<'v> {
@@ -53,7 +53,7 @@ fn fill_with<const D: usize, const N: usize>(
     let cells = CellMatrices::new(space);
     let unknowns = CellUnknowns::<D, N>::new(dofs);
     let filling = Filling { dofs, row_starts, columns, positions, cells, unknowns };
-    let subsets = partition(dofs);
+    let subsets = partition(dofs.kinds());
     let targets = targets(&subsets, row_starts, values);
     for_each_item(targets, &|k, targets| filling.fill_subset(&subsets[k], targets));
 }

@@ -6,7 +6,6 @@
 
 mod cells;
 mod fill;
-pub(crate) mod partition;
 pub(crate) mod pattern;
 mod unknowns;
 mod with_facets;
