@@ -130,7 +130,8 @@ fn upper_ends<const D: usize>(
     vertices: &Range<u32>,
     ranks_of_cells: Option<&[AtomicU32]>,
 ) -> (Vec<u32>, Vec<u32>) {
-    let mut numbers = NeighbourNumbers::new(n_vertices);
+    let mut last = in_large_pages(vec![0; n_vertices]);
+    let mut numbers = NeighbourNumbers::new(&mut last);
     let (mut upper, mut degrees) = (Vec::new(), Vec::with_capacity(vertices.len()));
     // of each vertex the upper ends in the order of the cells, and the edges of the cells
     let (mut ends, mut cell_edges, mut ranks) = (Vec::new(), Vec::new(), Vec::new());

@@ -140,7 +140,8 @@ fn match_facets_of<const D: usize>(
     vertices: &Range<u32>,
     codes: &[AtomicU32],
 ) -> bool {
-    let mut numbers = NeighbourNumbers::new(n_vertices);
+    let mut last = in_large_pages(vec![0; n_vertices]);
+    let mut numbers = NeighbourNumbers::new(&mut last);
     let mut halves: Vec<HalfFacet> = Vec::new();
     for (lowest, cells) in incidence.stars(vertices).of_vertices(vertices.clone()) {
         numbers.next_vertex();

@@ -108,12 +108,12 @@ impl<'t, C: Columns, const K: usize> Incidence<'t, C, K> {
         let Stars { starts, places } = stars;
         // the count of star k stands at k + 2; summed up, entry k + 1 is where star k starts, and
         // filling the star moves it to where star k ends
-        make_zeros(starts, n + 2);
+        let starts = zeros_in(starts, n + 2);
         self.visit(ranges, |k, _| starts[k + 2] += 1);
         for k in 0..n {
             starts[k + 2] += starts[k + 1];
         }
-        make_zeros(places, starts[n + 1] as usize);
+        let places = zeros_in(places, starts[n + 1] as usize);
         self.visit(ranges, |k, place| {
             let at = &mut starts[k + 1];
             places[*at as usize] = place as u32;
@@ -146,14 +146,15 @@ impl<'t, C: Columns, const K: usize> Incidence<'t, C, K> {
     }
 }
 
-/// Sets the entries of a vector to this many zeros, in the memory it has if that is enough.
-fn make_zeros(vector: &mut Vec<u32>, n: usize) {
+/// This many zeros in a vector, in the memory it has if that is enough.
+fn zeros_in(vector: &mut Vec<u32>, n: usize) -> &mut [u32] {
     if vector.capacity() < n {
         *vector = in_large_pages(vec![0; n]);
     } else {
         vector.clear();
         vector.resize(n, 0);
     }
+    vector
 }
 
 impl<const K: usize> Blocks<K> {

@@ -1,23 +1,21 @@
 //! The neighbours of one vertex, or the columns of one row, each once: numbers in the order in which they come, and
 //! ranks in ascending order.
 
-use crate::memory::in_large_pages;
-
 /// Numbers of the neighbours of a current vertex, from zero. Moving to the next vertex takes constant time.
-pub(crate) struct NeighbourNumbers {
+pub(crate) struct NeighbourNumbers<'n> {
     /// For each neighbour one more than the number of its last pair with a vertex, where numbers run on over all
     /// vertices.
-    last: Vec<u32>,
+    last: &'n mut [u32],
     /// The running number of the first neighbour of the current vertex.
     base: u32,
     n: u32,
 }
 
-impl NeighbourNumbers {
-    /// No numbers yet, for neighbours below `n`.
+impl<'n> NeighbourNumbers<'n> {
+    /// No numbers yet: `last` has a zero for each neighbour. It is borrowed so that the rest stays in registers.
     #[inline(always)]
-    pub fn new(n: usize) -> Self {
-        Self { last: in_large_pages(vec![0; n]), base: 0, n: 0 }
+    pub fn new(last: &'n mut [u32]) -> Self {
+        Self { last, base: 0, n: 0 }
     }
     /// Starts with the next current vertex, of which no neighbour has a number.
     #[inline(always)]

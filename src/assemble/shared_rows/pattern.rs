@@ -147,7 +147,8 @@ impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
     #[inline(never)]
     fn rows(&self, subset: &Rows) -> PatternOfSubset {
         let mut stars = Stars::default();
-        let mut numbers = NeighbourNumbers::new(self.size);
+        let mut last = in_large_pages(vec![0; self.size]);
+        let mut neighbours = NeighbourNumbers::new(&mut last);
         let mut row = Row::default();
         let mut made = self.room_for(subset);
         for part in self.incidence.blocks.parts_of(subset) {
@@ -155,7 +156,7 @@ impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
             let mut k = 0;
             for (rows, made) in part.iter().zip(&mut made) {
                 for _ in rows.clone() {
-                    self.row(stars.of(k), &mut numbers, &mut row, made);
+                    self.row(stars.of(k), &mut neighbours, &mut row, made);
                     k += 1;
                 }
             }
@@ -179,17 +180,18 @@ impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
     fn row(
         &self,
         star: &[u32],
-        neighbours: &mut NeighbourNumbers,
+        neighbours: &mut NeighbourNumbers<'_>,
         row: &mut Row,
         made: &mut PatternOfRows,
     ) {
-        let per_cell = self.incidence.columns.count();
+        let (table, per_cell) = (self.incidence.table, self.incidence.columns.count());
         row.make_room(star.len() * per_cell);
         let Row { columns, numbers, ranks } = row;
+        let columns = &mut columns[..];
         neighbours.next_vertex();
         for (&place, numbers) in star.iter().zip(numbers.chunks_exact_mut(per_cell)) {
             let first = place as usize / per_cell * per_cell;
-            let unknowns = &self.incidence.table[first..first + per_cell];
+            let unknowns = &table[first..first + per_cell];
             for j in 0..per_cell {
                 let number = neighbours.get_or_push(unknowns[j]);
                 numbers[j] = number;
