@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use crate::parallel::map_indices;
 use crate::parallel::vectors::for_each_chunk_of_groups;
 
-use super::incidence::{FirstVertices, VertexToCells, partition};
+use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
 use super::neighbour_numbers::{LANES, NeighbourNumbers, rank};
 use super::simplicial::Mesh;
 use crate::memory::in_large_pages;
@@ -63,11 +63,8 @@ impl Edges {
         ranks: Option<&[AtomicU32]>,
     ) -> Self {
         let incidence = VertexToCells::<D>::new(cells, FirstVertices(D));
-        let ranges = partition(&[0..n_vertices as u32]);
-        let found = |k: usize| {
-            let [vertices] = &ranges[k];
-            upper_ends(&incidence, n_vertices, vertices, ranks)
-        };
+        let ranges = vertex_ranges(n_vertices);
+        let found = |k: usize| upper_ends(&incidence, n_vertices, &ranges[k], ranks);
         let mut found: Vec<(Vec<u32>, Vec<u32>)> = map_indices(ranges.len(), &found);
         let mut starts = in_large_pages(Vec::with_capacity(n_vertices + 1));
         starts.push(0);

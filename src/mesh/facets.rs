@@ -8,7 +8,7 @@ use crate::parallel::map_indices;
 
 use super::boundary::BoundaryPart;
 use super::error::MeshError;
-use super::incidence::{FirstVertices, VertexToCells, partition};
+use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
 use super::neighbour_numbers::NeighbourNumbers;
 use super::simplicial::Mesh;
 use crate::memory::in_large_pages;
@@ -75,11 +75,8 @@ impl Neighbours {
         let incidence = VertexToCells::<D>::new(cells, FirstVertices(2));
         let mut codes = in_large_pages(Vec::with_capacity(cells.len()));
         codes.resize_with(cells.len(), || AtomicU32::new(UNKNOWN));
-        let ranges = partition(&[0..n_vertices as u32]);
-        let matched = |k: usize| {
-            let [vertices] = &ranges[k];
-            match_facets_of(&incidence, n_vertices, vertices, &codes)
-        };
+        let ranges = vertex_ranges(n_vertices);
+        let matched = |k: usize| match_facets_of(&incidence, n_vertices, &ranges[k], &codes);
         if map_indices(ranges.len(), &matched).contains(&false)
             && let Some(error) = mismatch::<D>(cells)
         {

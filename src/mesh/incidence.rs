@@ -230,6 +230,11 @@ pub(super) struct FirstVertices<const D: usize>(pub usize);
 /// The inverse of the map from cells to their first vertices.
 pub(super) type VertexToCells<'m, const D: usize> = Incidence<'m, FirstVertices<D>, 1>;
 
+/// The ranges of vertices that the threads share out.
+pub(super) fn vertex_ranges(n_vertices: usize) -> Vec<Range<u32>> {
+    partition(std::array::from_ref(&(0..n_vertices as u32))).concat()
+}
+
 impl<const D: usize> Columns for FirstVertices<D> {
     #[inline(always)]
     fn width(&self) -> usize {
