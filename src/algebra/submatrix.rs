@@ -65,6 +65,14 @@ impl<T> From<SparseMatrix<T>> for Submatrix<T> {
     }
 }
 
+/// The submatrix as a matrix of its own; not a lower triangle.
+impl<T> From<Submatrix<T>> for SparseMatrix<T> {
+    fn from(matrix: Submatrix<T>) -> Self {
+        let Submatrix { row_starts, columns, values } = matrix;
+        Self { row_starts, columns, values }
+    }
+}
+
 impl<T> Submatrix<T> {
     /// Number of rows.
     pub fn size(&self) -> usize {

@@ -48,8 +48,7 @@ pub(super) fn regular<const D: usize>(
     domain: &BoxDomain<D>,
     n: usize,
 ) -> Result<Sample<D>, KitError> {
-    let mesh = Mesh::kuhn_box(domain, [n; D])
-        .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
+    let mesh = Mesh::kuhn_box(domain, [n; D]).map_err(|why| KitError::not_assembled(law, why))?;
     Ok(Sample { name: "a regular box", mesh })
 }
 
@@ -71,7 +70,7 @@ pub(super) fn moved<const D: usize>(
     };
     let vertices = mesh.vertices().iter().map(move_one).collect();
     let mesh = Mesh::new(vertices, mesh.cells().to_vec(), &tagged(&mesh, |v| v))
-        .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
+        .map_err(|why| KitError::not_assembled(law, why))?;
     Ok(Sample { name: "a box with moved vertices", mesh })
 }
 
@@ -105,6 +104,6 @@ pub(super) fn renumbered<const D: usize>(
         corners.extend(mesh.cell(old as usize).iter().map(|&v| new[v as usize]));
     }
     let mesh = Mesh::new(points, corners, &tagged(mesh, |v| new[v as usize]))
-        .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
+        .map_err(|why| KitError::not_assembled(law, why))?;
     Ok(Renumbered { mesh, vertices, cells })
 }

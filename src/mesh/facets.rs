@@ -8,8 +8,9 @@ use crate::parallel::map_indices;
 
 use super::boundary::BoundaryPart;
 use super::error::MeshError;
+use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
+use super::neighbour_numbers::NeighbourNumbers;
 use super::simplicial::Mesh;
-use super::stars::{NeighbourNumbers, VertexToCells};
 use crate::memory::in_large_pages;
 
 /// The other side of a facet of a cell.
@@ -71,11 +72,11 @@ impl Neighbours {
         n_vertices: usize,
     ) -> Result<Self, MeshError> {
         // the lowest vertex of a facet is the first or the second of its cell
-        let incidence = VertexToCells::<D>::new(cells, n_vertices, 2);
+        let incidence = VertexToCells::<D>::new(cells, FirstVertices(2));
         let mut codes = in_large_pages(Vec::with_capacity(cells.len()));
         codes.resize_with(cells.len(), || AtomicU32::new(UNKNOWN));
-        let ranges = incidence.ranges();
-        let matched = |k: usize| match_facets_of(&incidence, ranges[k].clone(), &codes);
+        let ranges = vertex_ranges(n_vertices);
+        let matched = |k: usize| match_facets_of(&incidence, n_vertices, &ranges[k], &codes);
         if map_indices(ranges.len(), &matched).contains(&false)
             && let Some(error) = mismatch::<D>(cells)
         {
@@ -132,12 +133,14 @@ struct HalfFacet {
 /// a cell is repeated.
 fn match_facets_of<const D: usize>(
     incidence: &VertexToCells<'_, D>,
-    vertices: Range<u32>,
+    n_vertices: usize,
+    vertices: &Range<u32>,
     codes: &[AtomicU32],
 ) -> bool {
-    let mut numbers = NeighbourNumbers::new(incidence.n_vertices());
+    let mut last = in_large_pages(vec![0; n_vertices]);
+    let mut numbers = NeighbourNumbers::new(&mut last);
     let mut halves: Vec<HalfFacet> = Vec::new();
-    for (lowest, cells) in incidence.stars(vertices).iter() {
+    for (lowest, cells) in incidence.stars(vertices).of_vertices(vertices.clone()) {
         numbers.next_vertex();
         halves.clear();
         for (c, first) in cells {

@@ -20,13 +20,14 @@ mod facets;
 mod geometry;
 pub mod gmsh;
 mod groups;
+pub(crate) mod incidence;
 mod names;
+pub(crate) mod neighbour_numbers;
 mod overlap;
 mod part;
 mod refine;
 mod renumber;
 mod simplicial;
-mod stars;
 mod validate;
 
 pub use bisection::{BisectedMesh, Bisection};
