@@ -8,14 +8,14 @@ use super::errors::Errors;
 use super::evaluation::Reference;
 use super::squared_errors::SquaredErrors;
 use crate::assemble::Discretisation;
-use crate::assemble::load::FacetMoments;
 use crate::assemble::space::Space;
+use crate::assemble::space::form_facets::FormFacet;
 use crate::assemble::space::tables::BasisAt;
+use crate::assemble::weak_dirichlet::FacetMoments;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::problem::Exact;
 
@@ -114,9 +114,8 @@ impl<const D: usize> Discretisation<'_, D> {
     ) -> Result<SquaredErrors, Error> {
         let space = &self.space;
         let mut total = space.cell_errors(&Reference::Exact(exact), u, function, counts)?;
-        let neighbours = space.neighbours.as_ref().filter(|_| self.form().couples());
-        if let Some((neighbours, u)) = neighbours.zip(u) {
-            total.of_facets = space.facet_error(self.form(), neighbours, u, counts)?;
+        if let Some(u) = u.filter(|_| self.form().couples()) {
+            total.of_facets = space.facet_error(self.form(), u, counts)?;
         }
         Ok(total)
     }
@@ -127,7 +126,6 @@ impl<const D: usize> Space<'_, D> {
     fn facet_error(
         &self,
         form: &dyn FacetForm<D>,
-        neighbours: &Neighbours,
         u: &[f64],
         counts: Counts<'_>,
     ) -> Result<f64, Error> {
@@ -139,29 +137,22 @@ impl<const D: usize> Space<'_, D> {
             local[..n].iter().zip(&basis.values).map(|(c, v)| c * v).sum()
         };
         let terms_of = |cell: usize, terms: &mut Vec<f64>| -> Result<(), Error> {
-            let mine = self.local_values(cell, u);
-            for local in 0..=D {
-                let (other, data) = match neighbours.across(cell, local) {
-                    Neighbour::Cell { cell: other, .. } if (other as usize) < cell => continue,
-                    Neighbour::Cell { cell: other, local } => {
-                        let values = self.local_values(other as usize, u);
-                        (Some((values, usize::from(local))), Vec::new())
-                    }
-                    Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
-                        let group = self.mesh.boundary_group(cell, local);
-                        let group = group.expect("a boundary facet has a group");
-                        (None, self.dirichlet_moments(&moments, (cell, local), group)?)
-                    }
-                    Neighbour::Boundary(_) | Neighbour::Cut => continue,
+            let values_here = self.local_values(cell, u);
+            for facet in self.form_facets_of(cell) {
+                let FormFacet { here, there } = facet;
+                let values_there = there.map(|(cell, local)| (self.local_values(cell, u), local));
+                let data = match there {
+                    Some(_) => Vec::new(),
+                    None => self.dirichlet_moments(&moments, here, self.group_of(here))?,
                 };
                 let jump = |k: usize| {
-                    let there = match &other {
-                        Some((theirs, local)) => value(&table.on(*local)[k], theirs),
+                    let there = match &values_there {
+                        Some((values, local)) => value(&table.on(*local)[k], values),
                         None => data[k],
                     };
-                    value(&table.on(local)[k], &mine) - there
+                    value(&table.on(here.1)[k], &values_here) - there
                 };
-                let Some(view) = self.facet_view(neighbours, cell, local) else { continue };
+                let view = self.facet_view(facet, None);
                 let penalty = form.penalty(&view);
                 for (k, &degree) in table.degrees.iter().enumerate() {
                     let trace = Trace { jump: jump(k), flux: 0.0 };

@@ -1,9 +1,9 @@
 //! The matrix of one cell, as a list.
 
 use super::unknowns::CellUnknowns;
-use crate::assemble::local::{Local, zero_local};
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, shape};
+use crate::assemble::stiffness::{Local, zero_local};
 use crate::element::MAX_BASIS;
 
 /// The upper triangle of a cell's matrix, by rows; a power of two holds the largest.

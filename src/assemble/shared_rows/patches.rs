@@ -10,9 +10,10 @@ use std::ops::Range;
 
 use crate::algebra::SparseMatrix;
 use crate::assemble::count;
-use crate::assemble::local::{traces, view, zero_local};
 use crate::assemble::space::Space;
+use crate::assemble::space::form_facets::FormFacet;
 use crate::assemble::space::tables::FacetTable;
+use crate::assemble::trace::traces;
 use crate::element::MAX_BASIS;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryPart, Facets};
@@ -180,17 +181,7 @@ fn local_matrices<const D: usize>(patches: &Patches<'_, '_, D>) -> Vec<f64> {
     let of_cells = |range: Range<usize>, entries: &mut [f64]| {
         for (cell, out) in range.zip(entries.chunks_exact_mut(n * n)) {
             let metric = space.metric(cell);
-            let mut local = zero_local();
-            match space.varying_in(cell) {
-                None => stiffness.add::<D>(n, &metric, space.alpha(cell), &mut local),
-                Some((varying, values)) => {
-                    for i in 0..n {
-                        for j in 0..n {
-                            local[i][j] = varying.stiffness::<D>(values, &metric, i, j);
-                        }
-                    }
-                }
-            }
+            let mut local = space.stiffness(&stiffness, cell, &metric);
             if let Some(reaction) = &space.reaction {
                 reaction.add(space.mesh, cell, metric.volume, &mut local);
             }
@@ -229,22 +220,22 @@ fn facet_matrix<const D: usize>(
     let interior = facets.interior().contains(&facet);
     let ((here, i), (there, j)) = (facets.here(facet), facets.there(facet));
     let (m_here, m_there) = (space.metric(here), space.metric(there));
-    let (side_here, side_there) = (space.side(here, i, &m_here), space.side(there, j, &m_there));
-    let view = view(space.mesh, &side_here, interior.then_some(&side_there));
-    let penalty = form.penalty(&view);
     let (own, other) = ((here, i), interior.then_some((there, j)));
+    let view = space.facet_view(FormFacet { here: own, there: other }, None);
+    let penalty = form.penalty(&view);
     let average_weight = form.average_weight(&view);
     let moments = table.on(i).iter().zip(table.on(j)).zip(&table.degrees).enumerate();
     for (k, ((b_here, b_there), &degree)) in moments {
         let mut all = [Trace { jump: 0.0, flux: 0.0 }; 2 * MAX_BASIS];
         let weighted = space.flux_derivatives(own, other, average_weight, k);
         let basis = (b_here, weighted.as_ref());
-        all[..n].copy_from_slice(&traces(form, &view, &side_here, true, basis, n)[..n]);
+        all[..n].copy_from_slice(&traces(form, &view, (&m_here, i), true, basis, n)[..n]);
         if interior {
             let weight = 1.0 - average_weight;
             let weighted = space.flux_derivatives((there, j), Some(own), weight, k);
             let basis = (b_there, weighted.as_ref());
-            all[n..2 * n].copy_from_slice(&traces(form, &view, &side_there, false, basis, n)[..n]);
+            all[n..2 * n]
+                .copy_from_slice(&traces(form, &view, (&m_there, j), false, basis, n)[..n]);
         }
         let penalty = penalty * form.moment_weight(degree);
         let size = if interior { 2 * n } else { n };
