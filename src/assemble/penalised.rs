@@ -8,9 +8,10 @@ use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
 use super::stiffness::zero_local;
 use super::weak_dirichlet::FacetDatum;
-use crate::algebra::{JumpTerm, PenalisedMatrix};
+use crate::algebra::{JumpTerm, MeanJumps, NO_INDEX, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::FacetForm;
+use crate::mesh::HalfFacet;
 use crate::parallel::cells;
 
 /// Moments up to this share of the largest are what quadrature leaves of zero, and differences up to
@@ -41,6 +42,7 @@ pub(crate) fn penalised_matrix<const D: usize>(
         terms: Vec::with_capacity(n_jumps * templates.most_terms()),
         weights: Vec::with_capacity(n_jumps),
         jump_data: Vec::with_capacity(n_jumps),
+        mean_jumps: mean_jumps(space, &table),
     };
     out.term_starts.push(0);
     for facet in space.form_facets() {
@@ -63,6 +65,21 @@ pub(crate) fn penalised_matrix<const D: usize>(
         }
     }
     out
+}
+
+/// The sides of facets to which the jumps belong, if the functions are linear with their values at vertices or their
+/// means over facets as unknowns, and the form acts on means of jumps alone.
+fn mean_jumps<const D: usize>(space: &Space<'_, D>, table: &FacetTable) -> Option<MeanJumps> {
+    let is_basis_of = |node: fn(usize) -> Node| space.nodes.iter().cloned().eq((0..=D).map(node));
+    let are_means = is_basis_of(Node::facet_mean);
+    if D == 1 || space.basis_degree > 1 || table.degrees.len() > 1 {
+        return None;
+    }
+    (are_means || is_basis_of(Node::vertex)).then(|| {
+        let side = |(cell, local): HalfFacet| (cell * (D + 1) + local) as u32;
+        let sides = space.form_facets().map(|f| [side(f.here), f.there.map_or(NO_INDEX, side)]);
+        MeanJumps { are_means, sides: sides.collect() }
+    })
 }
 
 /// Stiffness and reaction of all cells.
