@@ -13,11 +13,6 @@ use crate::error::Error;
 use crate::mesh::HalfFacet;
 use crate::parallel::cells;
 
-/// The sum of coefficients times values.
-fn product(coefficients: &[f64], values: &[f64]) -> f64 {
-    coefficients.iter().zip(values).map(|(c, v)| c * v).sum()
-}
-
 /// What all facets share: the basis functions on them, the moments of Dirichlet data, and what the form needs of cells
 /// and facets.
 type TablesOfFacets<'t> = (&'t FacetTable, &'t FacetMoments<'t>, &'t (Metrics, FacetCoefficients));
@@ -111,19 +106,7 @@ impl<const D: usize> Discretisation<'_, D> {
         let n = space.per_cell();
         let FormFacet { here, there } = facet;
         let weight = weights.at::<D>(here, true, facet.kind());
-        let values_here = space.local_values(here.0, u);
-        let values_there = there.map(|(cell, local)| (space.local_values(cell, u), local));
-        let datum = match there {
-            Some(_) => Vec::new(),
-            None => space.dirichlet_moments(data, here, space.group_of(here))?,
-        };
-        let jump = |k: usize| {
-            let there = match &values_there {
-                Some((values, local)) => product(&values[..n], &table.on(*local)[k].values),
-                None => datum[k],
-            };
-            product(&values_here[..n], &table.on(here.1)[k].values) - there
-        };
+        let jump = space.jump_on(facet, u, (table, data))?;
         let measure = metrics.measure::<D>(here);
         let (fluxes, lifted) = out.split_at_mut(kept);
         for (k, out) in fluxes.iter_mut().enumerate().take(table.degrees.len()) {
@@ -134,21 +117,18 @@ impl<const D: usize> Discretisation<'_, D> {
                 None => (measure * coefficients.jump_jump.at(penalty)) * jump(k),
             };
             if form.uses_flux() {
-                let derivatives = |own: HalfFacet, other, weight: f64| {
-                    let metric = metrics.at::<D>(own.0);
-                    match space.flux_derivatives(own, other, weight, k) {
+                let flux_of = |own: HalfFacet, other, weight| {
+                    let (metric, basis) = (metrics.at::<D>(own.0), &table.on(own.1)[k]);
+                    let derivatives = match space.flux_derivatives(own, other, weight, k) {
                         Some(weighted) => metric.normal_derivatives(own.1, &weighted, n, 1.0),
-                        None => {
-                            let basis = &table.on(own.1)[k];
-                            metric.normal_derivatives(own.1, &basis.derivatives, n, weight)
-                        }
-                    }
+                        None => metric.normal_derivatives(own.1, &basis.derivatives, n, weight),
+                    };
+                    let values = space.local_values(own.0, u);
+                    values[..n].iter().zip(&derivatives).map(|(c, v)| c * v).sum::<f64>()
                 };
-                let of_here = derivatives(here, there, weight.own_flux_weight);
-                let mut flux = product(&values_here[..n], &of_here);
-                if let (Some(there), Some((values, _))) = (there, &values_there) {
-                    let of_there = derivatives(there, Some(here), weight.other_flux_weight);
-                    flux -= product(&values[..n], &of_there);
+                let mut flux = flux_of(here, there, weight.own_flux_weight);
+                if let Some(there) = there {
+                    flux -= flux_of(there, Some(here), weight.other_flux_weight);
                 }
                 tested += coefficients.jump_flux.at(penalty) * flux;
             }

@@ -34,7 +34,7 @@ impl StiffnessTable {
                         }
                     }
                 }
-                pairs.push(pair.map(|row| row));
+                pairs.push(pair);
             }
         }
         Self { pairs }

@@ -4,6 +4,7 @@ use super::count;
 use super::owned_rows::lifted::Lifting;
 use super::space::form_facets::FormFacet;
 use super::space::metric::Metrics;
+use super::space::tables::FacetTable;
 use super::space::{Space, checks};
 use super::trace::traces;
 use crate::algebra::{DirichletEnergy, DirichletTerm};
@@ -69,6 +70,30 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         Ok(sums)
+    }
+
+    /// By moment, the jump of a discrete function over a facet that carries the form; on the boundary its difference
+    /// from the datum.
+    pub fn jump_on(
+        &self,
+        facet: FormFacet,
+        u: &[f64],
+        (table, data): (&FacetTable, &FacetMoments<'_>),
+    ) -> Result<impl Fn(usize) -> f64, Error> {
+        let FormFacet { here, there } = facet;
+        let values_here = self.local_values(here.0, u);
+        let values_there = there.map(|(cell, local)| (self.local_values(cell, u), local));
+        let datum = match there {
+            Some(_) => Vec::new(),
+            None => self.dirichlet_moments(data, here, self.group_of(here))?,
+        };
+        Ok(move |k: usize| {
+            let there = match &values_there {
+                Some((values, local)) => table.on(*local)[k].value(values),
+                None => datum[k],
+            };
+            table.on(here.1)[k].value(&values_here) - there
+        })
     }
 
     /// The Dirichlet data that the facet form imposes, in the order of cells and facets; empty where there are none.

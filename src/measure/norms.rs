@@ -9,10 +9,7 @@ use super::evaluation::Reference;
 use super::squared_errors::SquaredErrors;
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
-use crate::assemble::space::form_facets::FormFacet;
-use crate::assemble::space::tables::BasisAt;
 use crate::assemble::weak_dirichlet::FacetMoments;
-use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::instances::compiled;
@@ -132,26 +129,9 @@ impl<const D: usize> Space<'_, D> {
         let degree = form.moments(self.basis_degree);
         let table = self.facet_table(degree);
         let moments = FacetMoments::new(D, degree, &self.facet_rule);
-        let n = self.per_cell();
-        let value = |basis: &BasisAt, local: &[f64; MAX_BASIS]| -> f64 {
-            local[..n].iter().zip(&basis.values).map(|(c, v)| c * v).sum()
-        };
         let terms_of = |cell: usize, terms: &mut Vec<f64>| -> Result<(), Error> {
-            let values_here = self.local_values(cell, u);
             for facet in self.form_facets_of(cell) {
-                let FormFacet { here, there } = facet;
-                let values_there = there.map(|(cell, local)| (self.local_values(cell, u), local));
-                let data = match there {
-                    Some(_) => Vec::new(),
-                    None => self.dirichlet_moments(&moments, here, self.group_of(here))?,
-                };
-                let jump = |k: usize| {
-                    let there = match &values_there {
-                        Some((values, local)) => value(&table.on(*local)[k], values),
-                        None => data[k],
-                    };
-                    value(&table.on(here.1)[k], &values_here) - there
-                };
+                let jump = self.jump_on(facet, u, (&table, &moments))?;
                 let view = self.facet_view(facet, None);
                 let penalty = form.penalty(&view);
                 for (k, &degree) in table.degrees.iter().enumerate() {

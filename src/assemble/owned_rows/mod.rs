@@ -33,7 +33,7 @@ use rows_by_cell::for_each_cell;
 
 /// The cells coupled to a cell, itself included, ascending.
 pub(crate) struct Coupled {
-    /// At most the cell, its neighbours and theirs.
+    /// At most the cell, its neighbours and the neighbours of these.
     cells: [u32; 17],
     n: usize,
 }
