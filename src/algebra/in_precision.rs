@@ -65,6 +65,7 @@ impl PenalisedMatrix<f64> {
             terms: collect(self.terms.len(), |k| term(&self.terms[k])),
             weights: rounded(&self.weights),
             jump_data: rounded(&self.jump_data),
+            mean_jumps: self.mean_jumps.clone(),
         }
     }
 }

@@ -38,5 +38,6 @@ pub use matrix::SparseMatrix;
 pub use penalised_matrix::{JumpTerm, PenalisedMatrix};
 pub(crate) use rectangular_matrix::{RectangularMatrix, SparseSum, galerkin_product};
 pub(crate) use row::sort_by_column;
+pub use side_penalties::MeanJumps;
 pub(crate) use side_penalties::SidePenalties;
 pub(crate) use submatrix::Submatrix;

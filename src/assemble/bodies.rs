@@ -7,8 +7,8 @@
 use std::ops::Range;
 
 use super::cut_simplices::CutRule;
-use super::local::zero_local;
-use super::space::{Space, data};
+use super::space::{Space, checks};
+use super::stiffness::zero_local;
 use crate::algebra::{FreeBody, NO_INDEX, RESULTANT_ROUNDING, Sum};
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, Components, Neighbours};
@@ -183,12 +183,12 @@ impl<const D: usize> Space<'_, D> {
         }
         if self.problem.has_neumann_data() {
             let rules = FACET_DEGREES.map(|degree| Rule::new(D - 1, degree));
-            for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-                let Some(body) = bodies.of(place.0) else { continue };
-                let (mut integrals, measure) = ([0.0; 3], self.facet_measure(place));
+            for (facet, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+                let Some(body) = bodies.of(facet.0) else { continue };
+                let (mut integrals, measure) = ([0.0; 3], self.facet_measure(facet));
                 for (k, rule) in rules.iter().enumerate() {
                     for (point, weight) in rule.iter() {
-                        let flux = self.neumann_at(place, group, point)?;
+                        let flux = self.neumann_at(facet, group, point)?;
                         add(&mut integrals, k, weight * measure * flux);
                     }
                 }
@@ -219,24 +219,22 @@ impl<const D: usize> Space<'_, D> {
         for k in 0..2 {
             let cut = rules.cut.as_ref().map(|cut| &cut[k]).zip(source.level());
             let mut outcome = Ok(());
-            let is_cut = cut.is_some_and(|(rule, level)| {
-                rule.visit_if_cut(self.mesh, cell, level, &mut |_, x, weight| match data::finite(
-                    source.at(x),
-                    "source",
-                    x,
-                    cell,
-                ) {
-                    Ok(value) => add(&mut integrals, k, weight * volume * value),
-                    Err(error) => outcome = Err(error),
-                })
-            });
+            let is_cut =
+                cut.is_some_and(|(rule, level)| {
+                    rule.visit_if_cut(self.mesh, cell, level, &mut |_, x, weight| {
+                        match checks::finite(source.at(x), "source", x, cell) {
+                            Ok(value) => add(&mut integrals, k, weight * volume * value),
+                            Err(error) => outcome = Err(error),
+                        }
+                    })
+                });
             outcome?;
             if is_cut {
                 continue;
             }
             for (point, weight) in rules.rules[k].iter() {
                 let x = self.cell_point(point, cell);
-                let value = data::finite(source.at(&x), "source", &x, cell)?;
+                let value = checks::finite(source.at(&x), "source", &x, cell)?;
                 add(&mut integrals, k, weight * volume * value);
             }
         }

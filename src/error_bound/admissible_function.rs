@@ -4,10 +4,10 @@ use super::PrimalDualPair;
 use super::flux::Flux;
 use crate::algebra::{Bound, Contact};
 use crate::arrays::map_entries;
+use crate::assemble::space::Space;
 use crate::assemble::space::tables::BasisAt;
-use crate::assemble::space::{Place, Space};
 use crate::element::Node;
-use crate::mesh::{BoundaryPart, Edges, edge_vertices};
+use crate::mesh::{BoundaryPart, Edges, HalfFacet, edge_vertices};
 use crate::problem::DatumRef;
 use crate::real::Point;
 
@@ -55,7 +55,7 @@ impl<const D: usize> Space<'_, D> {
     pub(super) fn pair_nodes_on(
         &self,
         pair: &PrimalDualPair<D>,
-        (cell, local): Place,
+        (cell, local): HalfFacet,
     ) -> impl Iterator<Item = PairNode> {
         self.pair_nodes(pair, cell).filter(move |(ends, _)| !ends.contains(&local))
     }

@@ -1,9 +1,9 @@
 //! The forces on contact facets.
 
 use crate::algebra::{Contact, Inequality};
+use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::assemble::space::{Place, Space};
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryPart, HalfFacet};
 use crate::quadrature::facet_to_cell;
 
 /// The part of the contact force of a node that acts on one of its contact facets.
@@ -101,7 +101,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The integral over a facet of `alpha grad u . n` times a basis function.
-    fn flux_at_node(&self, (cell, local): Place, node: usize, u: &[f64]) -> f64 {
+    fn flux_at_node(&self, (cell, local): HalfFacet, node: usize, u: &[f64]) -> f64 {
         let geometry = self.mesh.geometry(cell);
         let (values, normal) = (self.local_values(cell, u), (geometry.normal(local)));
         let scale = self.facet_measure((cell, local)) * self.alpha(cell);

@@ -4,9 +4,9 @@ use super::PrimalDualPair;
 use super::admissible_function::PairNode;
 use super::estimate::Unproven;
 use crate::arrays::map_entries;
-use crate::assemble::space::{Place, Space};
+use crate::assemble::space::Space;
 use crate::measure::Counts;
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryPart, HalfFacet};
 use crate::problem::{DataByGroup, DatumRef};
 
 /// Numbers that differ by less than this share are equal but for rounding.
@@ -114,9 +114,9 @@ impl<const D: usize> Space<'_, D> {
             self.pair_nodes(pair, cell)
                 .all(|at| exceeds(lower, 1.0, cell, at) && exceeds(upper, -1.0, cell, at))
         };
-        let exceeds_on = |(place, group): (Place, usize)| {
+        let exceeds_on = |(facet, group): (HalfFacet, usize)| {
             let gap = self.data.gap.of(group);
-            self.pair_nodes_on(pair, place).all(|at| exceeds(gap, 1.0, place.0, at))
+            self.pair_nodes_on(pair, facet).all(|at| exceeds(gap, 1.0, facet.0, at))
         };
         (0..self.mesh.n_cells()).all(exceeds_in)
             && self.grouped_facets_of(BoundaryPart::Contact).all(exceeds_on)
@@ -126,11 +126,11 @@ impl<const D: usize> Space<'_, D> {
     /// two facets differ at a common node no function with a square-integrable gradient takes both.
     fn takes_dirichlet_data(&self, pair: &PrimalDualPair<D>, counts: Counts<'_>) -> bool {
         let mut facets = self.grouped_facets_of(BoundaryPart::Dirichlet);
-        facets.all(|(place, group)| {
-            let mut nodes = self.pair_nodes_on(pair, place);
-            !counts(place.0)
+        facets.all(|(facet, group)| {
+            let mut nodes = self.pair_nodes_on(pair, facet);
+            !counts(facet.0)
                 || nodes.all(|(ends, node)| {
-                    let [x, y] = map_entries(ends, |k| self.mesh.cell(place.0)[k] as usize);
+                    let [x, y] = map_entries(ends, |k| self.mesh.cell(facet.0)[k] as usize);
                     let [x, y] = map_entries([x, y], |v| self.mesh.vertices()[v]);
                     let datum = self.dirichlet_at(group, &((x + y) * 0.5));
                     let value = pair.function[node];

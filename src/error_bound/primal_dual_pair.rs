@@ -8,15 +8,15 @@ use super::flux::Flux;
 use crate::algebra::Inequality;
 use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
-use crate::assemble::local::zero_local;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::metric::CellMetric;
+use crate::assemble::stiffness::zero_local;
 use crate::element::Entity;
 use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::measure::Counts;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::{BoundaryPart, HalfFacet, Neighbour, Neighbours};
 
 /// A continuous, piecewise linear or quadratic function within the constraints, and a flux of the space of
 /// Raviart and Thomas of degree one less, whose normal component is single-valued: what a bound on the error
@@ -217,11 +217,11 @@ impl<const D: usize> Discretisation<'_, D> {
 
 impl<const D: usize> Space<'_, D> {
     /// The integral of the Neumann datum over a facet.
-    fn neumann_flux(&self, place: (usize, usize), group: usize) -> Result<f64, NoBound> {
-        let measure = self.facet_measure(place);
+    fn neumann_flux(&self, facet: HalfFacet, group: usize) -> Result<f64, NoBound> {
+        let measure = self.facet_measure(facet);
         let mut sum = 0.0;
         for (point, weight) in self.facet_rule.iter() {
-            sum += weight * measure * self.neumann_at(place, group, point)?;
+            sum += weight * measure * self.neumann_at(facet, group, point)?;
         }
         Ok(sum)
     }

@@ -10,7 +10,7 @@ use super::squared_errors::{SquaredErrors, Squares};
 use crate::arrays::{map_entries, tabulate};
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::tables::CellTable;
-use crate::assemble::space::{Space, Terms, data};
+use crate::assemble::space::{Space, Terms, checks};
 use crate::error::Error;
 use crate::mesh::edge_vertices;
 use crate::parallel::cells;
@@ -278,7 +278,9 @@ impl<const D: usize> Space<'_, D> {
             let value: f64 = terms.iter().map(at).sum();
             let value = match value.is_finite() {
                 true => value,
-                false => data::finite(value, "exact solution", &self.node_point(cell, node), cell)?,
+                false => {
+                    checks::finite(value, "exact solution", &self.node_point(cell, node), cell)?
+                }
             };
             let error = (u[self.dofs.of(cell, i)] - value).abs();
             largest = maximum(largest, error);

@@ -3,7 +3,7 @@
 use super::admissible::Admissible;
 use super::evaluation::Reference;
 use super::squared_errors::Squares;
-use crate::assemble::space::data;
+use crate::assemble::space::checks;
 use crate::assemble::space::tables::BasisAt;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
@@ -85,9 +85,9 @@ impl<const D: usize> CellIntegrand<'_, D> {
             return Ok(sums);
         }
         points().into_iter().try_for_each(|x| {
-            data::finite(self.exact.value(self.cell, &x), "exact solution", &x, self.cell)?;
+            checks::finite(self.exact.value(self.cell, &x), "exact solution", &x, self.cell)?;
             let square = self.exact.gradient(self.cell, &x).norm_squared();
-            data::finite(square, "exact gradient", &x, self.cell).map(|_| ())
+            checks::finite(square, "exact gradient", &x, self.cell).map(|_| ())
         })?;
         Ok(sums)
     }

@@ -5,12 +5,12 @@ use std::ops::Range;
 use super::cell_errors::Counts;
 use crate::assemble::Discretisation;
 use crate::assemble::cut_simplices::in_space;
-use crate::assemble::space::data::finite;
+use crate::assemble::space::Space;
+use crate::assemble::space::checks::finite;
 use crate::assemble::space::tables::BasisAt;
-use crate::assemble::space::{Place, Space};
 use crate::error::Error;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, edge_vertices};
+use crate::mesh::{BoundaryPart, HalfFacet, edge_vertices};
 use crate::parallel::cells;
 use crate::problem::{DataByGroup, DatumRef};
 use crate::quadrature::facet_to_cell;
@@ -176,10 +176,10 @@ impl<const D: usize> Space<'_, D> {
         }
         let on_facets: Vec<Points> =
             (0..D + 1).map(|local| self.points_of_facet(local, at_vertices[2])).collect();
-        for (place, group) in self.grouped_facets_of(BoundaryPart::Contact) {
-            let gap = self.data.gap.of(group).filter(|_| counts(place.0));
+        for (facet, group) in self.grouped_facets_of(BoundaryPart::Contact) {
+            let gap = self.data.gap.of(group).filter(|_| counts(facet.0));
             if let Some(gap) = gap {
-                self.add_penetration_on(place, gap, u, &on_facets[place.1], &mut found)?;
+                self.add_penetration_on(facet, gap, u, &on_facets[facet.1], &mut found)?;
             }
         }
         let is_affine = self.has_affine_data();
@@ -236,7 +236,7 @@ impl<const D: usize> Space<'_, D> {
     /// What a contact facet adds.
     fn add_penetration_on(
         &self,
-        (cell, _): Place,
+        (cell, _): HalfFacet,
         gap: DatumRef<'_, D>,
         u: &[f64],
         points: &Points,

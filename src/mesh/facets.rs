@@ -13,6 +13,9 @@ use super::neighbour_numbers::NeighbourNumbers;
 use super::simplicial::Mesh;
 use crate::memory::in_large_pages;
 
+/// A half-facet, a facet seen from one of its cells: the cell, and the number of the facet in it.
+pub type HalfFacet = (usize, usize);
+
 /// The other side of a facet of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Neighbour {
@@ -49,8 +52,7 @@ fn part_code(part: BoundaryPart) -> u32 {
     BOUNDARY + part as u32
 }
 
-/// A half-facet, a facet seen from one of its cells: four times the cell plus the number of the facet
-/// in it.
+/// The code of a half-facet: four times the cell plus the number of the facet in it.
 fn half_facet_code(cell: usize, local: usize) -> u32 {
     (cell * 4 + local) as u32
 }
@@ -118,7 +120,7 @@ impl Neighbours {
 }
 
 /// The first half-facet of a facet, in a list of those with one lowest vertex.
-struct HalfFacet {
+struct FirstHalf {
     /// The highest vertex of the facet.
     highest: u32,
     /// The entry before this one with the same second vertex: facets with the same two lowest
@@ -139,7 +141,7 @@ fn match_facets_of<const D: usize>(
 ) -> bool {
     let mut last = in_large_pages(vec![0; n_vertices]);
     let mut numbers = NeighbourNumbers::new(&mut last);
-    let mut halves: Vec<HalfFacet> = Vec::new();
+    let mut halves: Vec<FirstHalf> = Vec::new();
     for (lowest, cells) in incidence.stars(vertices).of_vertices(vertices.clone()) {
         numbers.next_vertex();
         halves.clear();
@@ -161,7 +163,7 @@ fn match_facets_of<const D: usize>(
                 }
                 let Some(other) = found.map(|k| &mut halves[k as usize]) else {
                     numbers.push(second);
-                    halves.push(HalfFacet { highest, before, code, matched: false });
+                    halves.push(FirstHalf { highest, before, code, matched: false });
                     continue;
                 };
                 let opposite =
@@ -182,9 +184,8 @@ fn match_facets_of<const D: usize>(
 /// with the same vertices.
 fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
     let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
-    let vertices = |(c, local): (usize, usize)| -> [u32; D] {
-        tabulate(|k| cell(c)[k + usize::from(k >= local)])
-    };
+    let vertices =
+        |(c, local): HalfFacet| -> [u32; D] { tabulate(|k| cell(c)[k + usize::from(k >= local)]) };
     let mut half_facets: Vec<_> = (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1))).collect();
     half_facets.sort_unstable_by_key(|&half_facet| (vertices(half_facet), half_facet));
     for same in half_facets.chunk_by(|&a, &b| vertices(a) == vertices(b)) {
@@ -271,16 +272,16 @@ impl Facets {
     pub fn cut(&self) -> Range<usize> {
         self.starts[4]..self.starts[5]
     }
-    /// The first cell of a facet, and the number of the facet in it.
+    /// A facet seen from its first cell.
     #[inline(always)]
-    pub fn here(&self, facet: usize) -> (usize, usize) {
+    pub fn here(&self, facet: usize) -> HalfFacet {
         let code = self.half_facets[facet][0];
         ((code >> 2) as usize, (code & 3) as usize)
     }
-    /// The second cell of an interior facet, and the number of the facet in it; the first one again on
-    /// the boundary and where the mesh is cut.
+    /// An interior facet seen from its second cell; from the first one again on the boundary and where the
+    /// mesh is cut.
     #[inline(always)]
-    pub fn there(&self, facet: usize) -> (usize, usize) {
+    pub fn there(&self, facet: usize) -> HalfFacet {
         let code = self.half_facets[facet][1];
         ((code >> 2) as usize, (code & 3) as usize)
     }

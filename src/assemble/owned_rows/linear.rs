@@ -21,8 +21,8 @@ struct Reference<const N: usize> {
     gradient: f64,
     /// By facet: products of jumps.
     own: [[[f64; N]; N]; 4],
-    /// By facet and by the number that the cell across has for it.
-    across: [[[[f64; N]; N]; 4]; 4],
+    /// By facet and by the number that the other cell has for it.
+    other: [[[[f64; N]; N]; 4]; 4],
     /// By facet: means of the basis functions.
     means: [[f64; N]; 4],
 }
@@ -72,7 +72,7 @@ impl<const D: usize> Filling<'_, '_, D> {
         Reference {
             gradient: self.gradient.unwrap_or(1.0),
             own: tabulate(|l| of(&self.jumps.own(facet(l))[0])),
-            across: tabulate(|l| tabulate(|m| of(&self.jumps.across(facet(l), facet(m))[0]))),
+            other: tabulate(|l| tabulate(|m| of(&self.jumps.other(facet(l), facet(m))[0]))),
             means: tabulate(|l| tabulate(|i| self.facets.on(facet(l))[0].values[i])),
         }
     }
@@ -103,7 +103,7 @@ impl<const D: usize> Filling<'_, '_, D> {
                     let weight = self.weights.at::<D>(here, from_here, FacetKind::Interior);
                     let facet =
                         self.add_linear::<N, FLUX>(reference, &metric, local, &weight, &mut own);
-                    let products = &reference.across[local][other_local & 3];
+                    let products = &reference.other[local][other_local & 3];
                     let means = &reference.means[other_local & 3];
                     let mut flux = [0.0; N];
                     if FLUX {
@@ -113,7 +113,7 @@ impl<const D: usize> Filling<'_, '_, D> {
                         flux = std::array::from_fn(|i| scale * row[i]);
                     }
                     for i in 0..N {
-                        let out = rows.block::<N>(rows.across[local], i);
+                        let out = rows.block::<N>(rows.others[local], i);
                         for j in 0..N {
                             let jumps = facet.jump_jump * products[i][j];
                             out[j] = if FLUX {

@@ -4,31 +4,16 @@
 use super::fill::add_by_search;
 use crate::algebra::SparseMatrix;
 use crate::assemble::count;
-use crate::assemble::local::{CellSide, traces, view, zero_local};
+use crate::assemble::space::Space;
+use crate::assemble::space::form_facets::FormFacet;
 use crate::assemble::space::tables::FacetTable;
-use crate::assemble::space::{Place, Space};
+use crate::assemble::trace::traces;
 use crate::element::MAX_BASIS;
 use crate::facet::{FacetForm, Trace};
-use crate::mesh::{BoundaryPart, Facets};
-
-/// A facet that carries the form, seen from its first cell and between cells from its second one.
-type FormFacet = (Place, Option<Place>);
+use crate::mesh::HalfFacet;
 
 /// A matrix for the unknowns of the two cells of a facet, of which the upper left corner is used.
 type FacetMatrix = [[f64; 2 * MAX_BASIS]; 2 * MAX_BASIS];
-
-/// The facets that carry the form: those between cells, and those of the Dirichlet part unless data are pinned.
-fn form_facets<const D: usize>(space: &Space<'_, D>) -> impl Iterator<Item = FormFacet> {
-    let facets = Facets::new(space.mesh, space.coupled_neighbours());
-    let end = match space.pins {
-        false => facets.part(BoundaryPart::Dirichlet).end,
-        true => facets.interior().end,
-    };
-    (0..end).map(move |facet| {
-        let is_interior = facets.interior().contains(&facet);
-        (facets.here(facet), is_interior.then(|| facets.there(facet)))
-    })
-}
 
 /// The unknowns of a cell, or of the two cells of a facet, where those that the cells share come twice.
 fn list_unknowns<const D: usize>(
@@ -45,7 +30,8 @@ fn list_unknowns<const D: usize>(
 /// The pattern, with values zero.
 pub(crate) fn pattern<const D: usize>(space: &Space<'_, D>) -> SparseMatrix<f64> {
     let of_cells = (0..space.mesh.n_cells()).map(|cell| (cell, None));
-    let of_facets = form_facets(space).map(|(here, there)| (here.0, there.map(|(cell, _)| cell)));
+    let of_facets =
+        space.form_facets().map(|facet| (facet.here.0, facet.there.map(|(cell, _)| cell)));
     let mut rows: Vec<Vec<u32>> = vec![Vec::new(); space.dofs.size()];
     let mut unknowns = Vec::new();
     for (cell, other) in of_cells.chain(of_facets) {
@@ -72,22 +58,11 @@ pub(crate) fn fill<const D: usize>(
     matrix: &mut SparseMatrix<f64>,
 ) {
     matrix.values.fill(0.0);
-    let n = space.per_cell();
     let stiffness = space.stiffness_table();
     let mut unknowns = Vec::new();
     for cell in 0..space.mesh.n_cells() {
         let metric = space.metric(cell);
-        let mut local = zero_local();
-        match space.varying_in(cell) {
-            None => stiffness.add::<D>(n, &metric, space.alpha(cell), &mut local),
-            Some((varying, values)) => {
-                for i in 0..n {
-                    for j in 0..n {
-                        local[i][j] = varying.stiffness::<D>(values, &metric, i, j);
-                    }
-                }
-            }
-        }
+        let mut local = space.stiffness(&stiffness, cell, &metric);
         if let Some(reaction) = &space.reaction {
             reaction.add(space.mesh, cell, metric.volume, &mut local);
         }
@@ -95,9 +70,9 @@ pub(crate) fn fill<const D: usize>(
         add(matrix, &unknowns, &local);
     }
     let table = space.facet_table(form.moments(space.basis_degree));
-    for (here, there) in form_facets(space) {
-        let local = facet_matrix(space, form, &table, (here, there));
-        list_unknowns(space, here.0, there.map(|(cell, _)| cell), &mut unknowns);
+    for facet in space.form_facets() {
+        let local = facet_matrix(space, form, &table, facet);
+        list_unknowns(space, facet.here.0, facet.there.map(|(cell, _)| cell), &mut unknowns);
         add(matrix, &unknowns, &local);
     }
 }
@@ -116,29 +91,24 @@ fn facet_matrix<const D: usize>(
     space: &Space<'_, D>,
     form: &dyn FacetForm<D>,
     table: &FacetTable,
-    (here, there): FormFacet,
+    facet: FormFacet,
 ) -> FacetMatrix {
     count::facets(1);
     let n = space.per_cell();
-    let metric_here = space.metric(here.0);
-    let metric_there = there.map(|(cell, _)| space.metric(cell));
-    let side_here = space.side(here.0, here.1, &metric_here);
-    let side_there = there.zip(metric_there.as_ref()).map(|((c, l), m)| space.side(c, l, m));
-    let view = view(space.mesh, &side_here, side_there.as_ref());
+    let FormFacet { here, there } = facet;
+    let view = space.facet_view(facet, None);
     let (penalty, average_weight) = (form.penalty(&view), form.average_weight(&view));
-    let traces_of = |side: &CellSide<'_, D>, other, weight, k: usize| {
-        let own = (side.cell, side.local);
-        let weighted = space.flux_derivatives(own, other, weight, k);
-        let basis = (&table.on(side.local)[k], weighted.as_ref());
-        traces(form, &view, side, own == here, basis, n)
+    let traces_of = |own: HalfFacet, weight, k: usize| {
+        let weighted = space.flux_derivatives(own, facet.other(own), weight, k);
+        let basis = (&table.on(own.1)[k], weighted.as_ref());
+        traces(form, &view, (&space.metric(own.0), own.1), own == here, basis, n)
     };
     let mut out = [[0.0; 2 * MAX_BASIS]; 2 * MAX_BASIS];
     for (k, &degree) in table.degrees.iter().enumerate() {
         let mut all = [Trace { jump: 0.0, flux: 0.0 }; 2 * MAX_BASIS];
-        all[..n].copy_from_slice(&traces_of(&side_here, there, average_weight, k)[..n]);
-        if let Some(side) = &side_there {
-            let own = traces_of(side, Some(here), 1.0 - average_weight, k);
-            all[n..2 * n].copy_from_slice(&own[..n]);
+        all[..n].copy_from_slice(&traces_of(here, average_weight, k)[..n]);
+        if let Some(there) = there {
+            all[n..2 * n].copy_from_slice(&traces_of(there, 1.0 - average_weight, k)[..n]);
         }
         let penalty = penalty * form.moment_weight(degree);
         let size = if there.is_some() { 2 * n } else { n };

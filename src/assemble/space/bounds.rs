@@ -4,20 +4,20 @@ use std::ops::Range;
 use std::sync::Mutex;
 
 use super::contradictions::{BoundedNode, Contradiction, DIRICHLET};
-use super::{Space, Terms, data};
+use super::{Space, Terms, checks};
 use crate::algebra::Bound;
 use crate::assemble::count;
 use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryPart, HalfFacet};
 use crate::parallel::vectors::collect;
 use crate::parallel::{cells, lock};
 use crate::problem::DatumRef;
 use crate::real::Point;
 
 /// Sorts facets by the ranks of their groups; not generic, so that the sorting code is compiled once.
-fn sort_by_rank(facets: &mut [((usize, usize), usize)], ranks: &[usize]) {
+fn sort_by_rank(facets: &mut [(HalfFacet, usize)], ranks: &[usize]) {
     facets.sort_by_key(|&(_, group)| ranks[group]);
 }
 
@@ -127,7 +127,8 @@ impl<const D: usize> Space<'_, D> {
             for (k, v) in self.mesh.facet_vertices(cell, local).enumerate() {
                 let Some(dirichlet) = given[v as usize] else { continue };
                 let x = self.mesh.vertices()[v as usize];
-                let datum = data::finite(self.dirichlet_at(dirichlet, &x), "dirichlet", &x, cell)?;
+                let datum =
+                    checks::finite(self.dirichlet_at(dirichlet, &x), "dirichlet", &x, cell)?;
                 // the node at the vertex, where the element has one, else one of the facet
                 let node = self.nodes_on(local).take(k + 1).last();
                 let unknown = node.map_or(0, |i| self.dofs.of(cell, i));
@@ -163,7 +164,7 @@ impl<const D: usize> Space<'_, D> {
             BoundBy::Functional => self.at_node(terms, cell, name, &|x| datum.at(x)),
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
-                data::finite(datum.at(&x), name, &x, cell)
+                checks::finite(datum.at(&x), name, &x, cell)
             }
         }
     }
@@ -220,7 +221,7 @@ impl<const D: usize> Space<'_, D> {
                 count::dirichlet(1);
             }
             let x = self.cell_point(point, cell);
-            Ok(weight * data::finite(datum(&x), name, &x, cell)?)
+            Ok(weight * checks::finite(datum(&x), name, &x, cell)?)
         };
         terms.iter().map(at).sum()
     }

@@ -41,7 +41,7 @@ struct Owners<'a> {
 }
 
 impl<'a> Dofs<'a> {
-    /// The numbering of a layout; facets that own unknowns are told by `neighbours`.
+    /// The numbering of a layout; facets that own unknowns are found by `neighbours`.
     pub fn new<const D: usize>(
         layout: Layout,
         mesh: &'a Mesh<D>,

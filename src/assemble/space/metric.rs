@@ -2,10 +2,13 @@
 
 use std::convert::Infallible;
 
+use super::tables::Derivatives;
 use crate::arrays::map_entries;
+use crate::assemble::count;
+use crate::element::MAX_BASIS;
 use crate::facet::Side;
 use crate::memory::in_large_pages;
-use crate::mesh::Mesh;
+use crate::mesh::{HalfFacet, Mesh};
 use crate::parallel::cells;
 
 /// Products of gradients of a cell's barycentric coordinates, and its measures: all that enters the
@@ -57,6 +60,35 @@ impl<const D: usize> CellMetric<D> {
     #[inline(always)]
     pub fn surface(&self) -> f64 {
         (0..D + 1).fold(0.0, |s, i| s + self.measures[i])
+    }
+    /// The measure of facet `local` of the cell, and the cell as the facet sees it, with the largest coefficient on
+    /// the facet and the least in the cell.
+    #[inline(always)]
+    pub fn side(&self, local: usize, [coefficient, least_coefficient]: [f64; 2]) -> (f64, Side) {
+        let (volume, measure) = (self.volume, self.measures[local]);
+        let height = (D as f64) * volume / measure;
+        let surface = self.surface();
+        (measure, Side { coefficient, least_coefficient, volume, surface, height })
+    }
+    /// The derivatives of the first `n` basis functions along the outward normal of facet `local`, of one moment and
+    /// times the measure of the facet and a factor; the other entries are zero and never read.
+    #[inline(always)]
+    pub fn normal_derivatives(
+        &self,
+        local: usize,
+        derivatives: &Derivatives,
+        n: usize,
+        factor: f64,
+    ) -> [f64; MAX_BASIS] {
+        count::normal_derivatives(n);
+        let products = &self.products[local];
+        let scale = (-(D as f64)) * factor;
+        let mut out = [0.0; MAX_BASIS];
+        for (out, derivatives) in out.iter_mut().zip(derivatives).take(n) {
+            let sum = |sum, k: usize| sum + derivatives[k] * products[k];
+            *out = scale * (1..=D).fold(derivatives[0] * products[0], sum);
+        }
+        out
     }
     #[inline(always)]
     fn write(&self, out: &mut [f64]) {
@@ -216,12 +248,16 @@ impl Metrics {
         let n = CellMetric::<D>::KEPT;
         CellMetric::read(&self.kept[cell * n..(cell + 1) * n])
     }
-    /// The measure of facet `local` of a cell, and the cell as the facet sees it, with the largest
-    /// coefficient on the facet and the least in the cell.
+    /// The measure of a facet.
+    #[inline(always)]
+    pub fn measure<const D: usize>(&self, (cell, local): HalfFacet) -> f64 {
+        self.kept[cell * CellMetric::<D>::KEPT + 1 + local]
+    }
+    /// [`CellMetric::side`], without the products of gradients.
     #[inline(always)]
     pub fn side<const D: usize>(
         &self,
-        (cell, local): (usize, usize),
+        (cell, local): HalfFacet,
         [coefficient, least_coefficient]: [f64; 2],
     ) -> (f64, Side) {
         let kept = &self.kept[cell * CellMetric::<D>::KEPT..][..D + 2];

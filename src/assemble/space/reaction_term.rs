@@ -1,12 +1,12 @@
 //! The reaction term in the matrix of a cell.
 
-use super::data::finite;
+use super::checks::finite;
 use std::sync::Arc;
 
 use super::tables::{BasisAt, CellTable};
 use crate::assemble::count;
 use crate::assemble::cut_simplices::{CutRule, Visit};
-use crate::assemble::local::Local;
+use crate::assemble::stiffness::Local;
 use crate::element::Element;
 use crate::error::Error;
 use crate::mesh::Mesh;

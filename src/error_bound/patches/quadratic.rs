@@ -14,9 +14,9 @@ use std::ops::Range;
 use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
 use crate::arrays::tabulate;
-use crate::assemble::local::StiffnessTable;
 use crate::assemble::space::tables::BasisAt;
-use crate::assemble::space::{INWARD, Place, Space};
+use crate::assemble::space::{INWARD, Space};
+use crate::assemble::stiffness::StiffnessTable;
 use crate::element::Node;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{
@@ -24,7 +24,7 @@ use crate::error_bound::quadratics::{
 };
 use crate::error_bound::shared_multipliers::SharedNodes;
 use crate::measure::Admissible;
-use crate::mesh::{Neighbour, Neighbours, edge_vertices};
+use crate::mesh::{HalfFacet, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
 use crate::real::Point;
 
@@ -46,11 +46,11 @@ pub(super) struct QuadraticCells<'s, 'a, const D: usize> {
     space: &'s Space<'a, D>,
     cells: Vec<KnownOfCell>,
     /// The products of Neumann data and contact forces, by facet; sorted.
-    given: Vec<&'s (Place, Products)>,
+    given: Vec<&'s (HalfFacet, Products)>,
 }
 
 /// Sorts products by the places of their facets. Not in the function that calls it, so that this is compiled once.
-fn sort(given: &mut [&(Place, Products)]) {
+fn sort(given: &mut [&(HalfFacet, Products)]) {
     given.sort_unstable_by_key(|(place, _)| *place);
 }
 

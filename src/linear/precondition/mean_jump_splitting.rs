@@ -100,8 +100,8 @@ impl<T: Real> FacetMeansSolver<T> for Multigrid<'_, T> {
 }
 
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
-    /// The preconditioner of `matrix`, which contains the assembled entries of `penalised`; `None` if the unknowns
-    /// are not those of discontinuous linear functions, if cells are coupled by more than facet means, or if
+    /// The preconditioner of `matrix`, which contains the assembled entries of `penalised`; `None` if `penalised` is no
+    /// penalty on jumps of means of discontinuous linear functions alone, or if
     /// a support has a vertex that `level` does not have.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
@@ -132,7 +132,13 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         ) -> Option<Box<dyn FacetMeansSolver<T> + 'a>>,
         block_solver: Box<dyn BlockSolver<T> + 'a>,
     ) -> Option<Self> {
-        let penalties = SidePenalties::new(penalised, supports)?;
+        let penalties = SidePenalties::new(penalised)?;
+        // the vertices of the facet of a mean, or the vertex of a value
+        let length = if penalties.are_means { penalties.cell_size - 1 } else { 1 };
+        let has_length = |support: &Support| support.vertices().len() == length;
+        if supports.len() != penalised.size() || !supports.iter().all(has_length) {
+            return None;
+        }
         let diagonal = diagonal(penalised, &penalties);
         let zero = T::lit(0.0);
         let n = matrix.size();

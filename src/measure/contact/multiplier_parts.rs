@@ -9,7 +9,7 @@ use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryPart, HalfFacet};
 
 /// What of the multiplier of an unknown acts on one of several cells or contact facets.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +85,7 @@ impl<const D: usize> Space<'_, D> {
         }
         let names: Vec<String> =
             (0..self.mesh.boundary_groups().len()).map(|group| self.name_of_gap(group)).collect();
-        let facets: Vec<((usize, usize), usize)> =
+        let facets: Vec<(HalfFacet, usize)> =
             self.grouped_facets_of(BoundaryPart::Contact).collect();
         for part in self.parts_of_gaps(&inequality.bounds, &multipliers) {
             let ((cell, _), group) = facets[part.place];

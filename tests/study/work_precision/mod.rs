@@ -114,7 +114,8 @@ fn costs_at_an_error_are_time_entries_and_memory() {
         m.add(&row, Phases { solve: total, total, ..Phases::default() });
     }
     let tables = report.tables();
-    let costs = tables.iter().map(|table| table.to_text(100)).find(|t| t.contains("costs")).unwrap();
+    let costs =
+        tables.iter().map(|table| table.to_text(100)).find(|t| t.contains("costs")).unwrap();
     let lines: Vec<&str> = costs.lines().collect();
     assert_eq!(lines[0], "radial-2d: costs at an error of 5e-3 in L2");
     // level 200^(1/2): 6 unknowns, 70 entries and 1 MB to its square
