@@ -59,7 +59,7 @@ pub fn disc_2d() -> Scene<2> {
     let dome = Dome { radius: 0.5, skirt: 0.45, contact: A_ON_DISC };
     let summary = "circular membrane, no load, the obstacle is a ball; curved boundary";
     let outside = |r: f64| -r.ln();
-    let problem = Problem { dirichlet: Some(Datum::Constant(0.0)), ..Problem::new() };
+    let problem = Problem { dirichlet: Datum::Constant(0.0).into(), ..Problem::new() };
     over(dome, "disc-2d", summary, Domain::Disc { radius: 1.0 }, problem, outside)
 }
 
