@@ -90,7 +90,8 @@ fn run<const D: usize>(
     &(_, _, is_linear, name, level): &Case,
 ) -> Result<Row, Failure> {
     if is_linear {
-        (scene.problem.lower, scene.problem.upper) = (None, None);
+        scene.problem.lower.everywhere = None;
+        scene.problem.upper.everywhere = None;
     }
     if name == "wopsip-means" {
         scene.problem = scene.problem.on(FacetMeans);

@@ -183,8 +183,8 @@ mod tests {
     #[test]
     fn rounding_of_the_load_is_no_load_that_was_added() {
         let matrix = SparseMatrix { row_starts: vec![0, 1], columns: vec![0], values: vec![1.0] };
-        let mut problem = Inequality::new(matrix, true, vec![0.1], vec![Bound::Lower(0.0)])
-            .with_kernel(vec![vec![(0, 1.0)]]);
+        let mut problem = Inequality::new(matrix, true, vec![0.1], vec![Bound::Lower(0.0)]);
+        problem.kernel = vec![vec![(0, 1.0)]];
         let assembled = 0.1;
         problem.bodies = vec![FreeBody { kernel: Some(0), assembled, ..FreeBody::unloaded() }];
         let rounded = problem.in_precision::<f32>();

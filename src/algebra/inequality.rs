@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::NO_INDEX;
 use super::bound::{Bound, Contact};
 use super::dirichlet_energy::DirichletEnergy;
 use super::distribution::{Distribution, sum_over_parts};
 use super::free_body::{FreeBody, Sum};
-use super::index::NO_INDEX;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
 use crate::parallel::vectors::all;
@@ -136,12 +136,6 @@ impl<T: Real> Inequality<T> {
             distribution: None,
         }
     }
-    /// States that the inequality is that of one part of a mesh.
-    #[must_use]
-    pub fn with_distribution(mut self, distribution: Arc<dyn Distribution>) -> Self {
-        self.distribution = Some(distribution);
-        self
-    }
     /// The other parts, if there are any.
     pub(crate) fn distribution(&self) -> Option<&dyn Distribution> {
         self.distribution.as_deref()
@@ -149,37 +143,6 @@ impl<T: Real> Inequality<T> {
     /// Whether an unknown belongs to this part; all do where there is one part.
     pub(crate) fn owns(&self, unknown: usize) -> bool {
         self.distribution.as_ref().is_none_or(|distribution| distribution.owns(unknown))
-    }
-    /// Replaces the initial active set.
-    #[must_use]
-    pub fn with_start(mut self, start: Start) -> Self {
-        self.start = start;
-        self
-    }
-    /// Replaces the supports of unknowns.
-    #[must_use]
-    pub fn with_supports(mut self, supports: Vec<Support>) -> Self {
-        self.supports = supports;
-        self
-    }
-    /// States that unknown `i` is the value at vertex `i` of a conforming linear function.
-    #[must_use]
-    pub fn with_conforming_linear(mut self) -> Self {
-        self.conforming_linear = true;
-        self
-    }
-    /// Sets the kernel of the matrix, whose vectors are then the bodies that bounds alone hold.
-    #[must_use]
-    pub fn with_kernel(mut self, kernel: Vec<Vec<(u32, T)>>) -> Self {
-        (self.kernel, self.bodies) = (kernel, Vec::new());
-        self
-    }
-    /// States that the matrix is positive definite on all unknowns that are not fixed, but for the
-    /// kernel: solvers do not test such a matrix.
-    #[must_use]
-    pub fn with_definite_matrix(mut self) -> Self {
-        self.is_definite = true;
-        self
     }
     /// Number of unknowns, fixed ones included.
     pub fn size(&self) -> usize {

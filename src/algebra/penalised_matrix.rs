@@ -2,7 +2,7 @@
 
 use crate::parallel::vectors::for_each_chunk;
 
-use super::index::NO_INDEX;
+use super::NO_INDEX;
 use super::side_penalties::MeanJumps;
 use crate::real::Real;
 

@@ -1,6 +1,6 @@
 //! The penalty on jumps of facet means of discontinuous linear functions, by sides of facets.
 
-use super::index::NO_INDEX;
+use super::NO_INDEX;
 use super::penalised_matrix::PenalisedMatrix;
 use crate::memory::in_large_pages;
 use crate::real::Real;

@@ -13,7 +13,7 @@ use crate::algebra::{FreeBody, NO_INDEX, RESULTANT_ROUNDING, Sum};
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, Components, Neighbours};
 use crate::parallel::cells;
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::quadrature::Rule;
 
 /// The degrees of the two rules on facets.
@@ -207,7 +207,7 @@ impl<const D: usize> Space<'_, D> {
     /// The integrals of the source over a cell.
     fn integrate_source(
         &self,
-        source: DatumRef<'_, D>,
+        source: &Datum<D>,
         cell: usize,
         rules: &CellRules,
     ) -> Result<Integrals, Error> {

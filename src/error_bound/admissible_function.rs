@@ -8,7 +8,7 @@ use crate::assemble::space::Space;
 use crate::assemble::space::tables::BasisAt;
 use crate::element::Node;
 use crate::mesh::{BoundaryPart, Edges, HalfFacet, edge_vertices};
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::real::Point;
 
 /// The nodes of the admissible function: the vertices of the mesh and, for quadratics, after them the
@@ -202,7 +202,7 @@ impl<const D: usize> Space<'_, D> {
         let (at_vertices, at_midpoints) = values.split_at_mut(nodes.n_vertices);
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); at_midpoints.len()];
         // what a datum asks of the value at the midpoint of an edge
-        let least = |datum: DatumRef<'_, D>, cell: usize, &[a, b]: &[usize; 2]| {
+        let least = |datum: &Datum<D>, cell: usize, &[a, b]: &[usize; 2]| {
             let ends = map_entries([a, b], |k| self.mesh.cell(cell)[k] as usize);
             let [x, y] = map_entries(ends, |v| self.mesh.vertices()[v]);
             let middle = datum.at(&midpoint(&x, &y));

@@ -7,7 +7,7 @@ use crate::arrays::map_entries;
 use crate::assemble::space::Space;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryPart, HalfFacet};
-use crate::problem::{DataByGroup, DatumRef};
+use crate::problem::{DataByGroup, Datum};
 
 /// Numbers that differ by less than this share are equal but for rounding.
 const AGREEMENT: f64 = 1e-12;
@@ -95,7 +95,7 @@ impl<const D: usize> Space<'_, D> {
     /// Whether the Bernstein coefficients of a quadratic on all edges exceed those of obstacles and gaps, but for
     /// rounding: data may leave an obstacle between nodes, and two obstacles may ask more than one value can do.
     fn exceeds_obstacles(&self, pair: &PrimalDualPair<D>) -> bool {
-        let exceeds = |bound: Option<DatumRef<'_, D>>, sign, cell, (ends, node): PairNode| {
+        let exceeds = |bound: Option<&Datum<D>>, sign, cell, (ends, node): PairNode| {
             let Some(bound) = bound else { return true };
             let ends = map_entries(ends, |k| self.mesh.cell(cell)[k] as usize);
             let [x, y] = map_entries(ends, |v| self.mesh.vertices()[v]);

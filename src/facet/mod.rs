@@ -19,6 +19,7 @@
 mod dirichlet;
 mod interior_penalty;
 mod lifting;
+mod local_fluxes;
 mod none;
 mod over_penalty;
 mod parameters;
@@ -29,6 +30,7 @@ mod view;
 pub use dirichlet::DirichletBy;
 pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
 pub use lifting::{FacetLifts, Lifts};
+pub use local_fluxes::LocalFluxes;
 pub use none::NoFacets;
 pub use over_penalty::{OverPenalty, WeightRule};
 pub use parameters::PenaltyParameters;

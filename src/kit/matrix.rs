@@ -1,6 +1,6 @@
 //! What the laws need of a matrix.
 
-use crate::algebra::{Inequality, SparseMatrix, Submatrix};
+use crate::algebra::{Inequality, SparseMatrix};
 
 /// The support of an unknown, in words.
 pub(super) fn describe(inequality: &Inequality<f64>, unknown: usize) -> String {
@@ -15,8 +15,7 @@ pub(super) fn describe(inequality: &Inequality<f64>, unknown: usize) -> String {
 
 /// The symmetric part on the free unknowns, scaled to a diagonal of plus or minus ones.
 pub(super) fn scaled_symmetric_part(inequality: &Inequality<f64>) -> SparseMatrix<f64> {
-    let mut part =
-        SparseMatrix::from(Submatrix::new(&inequality.matrix, &inequality.free_unknowns()));
+    let mut part = inequality.matrix.submatrix(&inequality.free_unknowns());
     let scale = |a: f64| if a.abs() > 0.0 { a.abs().sqrt().recip() } else { 1.0 };
     let scales: Vec<f64> = part.diagonal().into_iter().map(scale).collect();
     for (row, scale) in scales.iter().enumerate() {

@@ -23,7 +23,7 @@
 //! let report = check_scheme::<2>(&Sipg::default()).unwrap();
 //! assert!(report.coercivity.smallest > 0.0);
 //!
-//! let too_weak = Sipg { penalty: PenaltyRule::Diameter(1.0), ..Sipg::default() };
+//! let too_weak = Sipg { penalty: PenaltyRule::Diameter(1.0) };
 //! let error = check_scheme::<2>(&too_weak).unwrap_err();
 //! assert!(error.to_string().starts_with("coercivity: "));
 //! ```

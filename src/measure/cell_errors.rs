@@ -14,7 +14,7 @@ use crate::assemble::space::{Space, Terms, checks};
 use crate::error::Error;
 use crate::mesh::edge_vertices;
 use crate::parallel::cells;
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule};
 use crate::real::{Point, maximum};
 
@@ -255,7 +255,7 @@ impl<const D: usize> Space<'_, D> {
     /// obstacle exceeds no linear admissible function within a cell.
     fn has_linear_obstacles(&self, cell: usize) -> bool {
         let (region, corners) = (self.mesh.region(cell), self.mesh.corners(cell));
-        let is_linear = |bound: DatumRef<'_, D>| {
+        let is_linear = |bound: &Datum<D>| {
             let at_corners = corners.map(|x| bound.at(&x));
             edge_vertices(D).iter().all(|&[a, b]| {
                 let at_middle = bound.at(&((corners[a] + corners[b]) * 0.5));
@@ -291,7 +291,7 @@ impl<const D: usize> Space<'_, D> {
 
 /// Whether a coefficient may jump within a cell with these corners, though no level says so.
 fn may_jump<const D: usize>(
-    coefficient: Option<DatumRef<'_, D>>,
+    coefficient: Option<&Datum<D>>,
     corner: impl Fn(usize) -> Point<D>,
 ) -> bool {
     let Some(alpha) = coefficient else { return false };

@@ -7,7 +7,7 @@ use crate::assemble::space::checks;
 use crate::assemble::space::tables::BasisAt;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::real::Point;
 
 /// A discrete function in a cell.
@@ -34,9 +34,9 @@ pub(super) struct CellIntegrand<'a, const D: usize> {
     /// The diffusion coefficient in the energy norm of the discrete function, where it is constant in the cell.
     pub alpha: f64,
     /// The diffusion coefficient where the scheme evaluates it at the points of a rule.
-    pub varying: Option<DatumRef<'a, D>>,
-    pub coefficient: Option<DatumRef<'a, D>>,
-    pub reaction: Option<DatumRef<'a, D>>,
+    pub varying: Option<&'a Datum<D>>,
+    pub coefficient: Option<&'a Datum<D>>,
+    pub reaction: Option<&'a Datum<D>>,
 }
 
 impl<const D: usize> CellIntegrand<'_, D> {

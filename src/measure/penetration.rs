@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, HalfFacet, edge_vertices};
 use crate::parallel::cells;
-use crate::problem::{DataByGroup, DatumRef};
+use crate::problem::{DataByGroup, Datum};
 use crate::quadrature::facet_to_cell;
 use crate::real::{Point, Precision};
 
@@ -237,7 +237,7 @@ impl<const D: usize> Space<'_, D> {
     fn add_penetration_on(
         &self,
         (cell, _): HalfFacet,
-        gap: DatumRef<'_, D>,
+        gap: &Datum<D>,
         u: &[f64],
         points: &Points,
         found: &mut Penetration,

@@ -1,6 +1,7 @@
 //! The affine geometry of one cell.
 
 use super::simplicial::Mesh;
+use crate::arrays::tabulate;
 use crate::real::Point;
 
 /// Volume of a cell and gradients of its barycentric coordinates.
@@ -22,32 +23,14 @@ impl<const D: usize> CellGeometry<D> {
         const { assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only") }
         let origin = corner(0);
         let edge = |k: usize| corner(k + 1) - origin;
-        let mut gradients = [Point::zeros(); 4];
+        let edges = tabulate(|k| if k < D { with_zeros(edge(k)) } else { [0.0; 3] });
+        let (normals, determinant) = cofactors::<D>(edges);
         let zero = 0.0;
-        let determinant;
-        match D {
-            1 => {
-                determinant = edge(0)[0];
-                gradients[1][0] = 1.0;
-            }
-            2 => {
-                let (a, b) = (edge(0), edge(1));
-                determinant = a[0] * b[1] - a[1] * b[0];
-                (gradients[1][0], gradients[1][1]) = (b[1], -b[0]);
-                (gradients[2][0], gradients[2][1]) = (-a[1], a[0]);
-            }
-            _ => {
-                let (a, b, c) = (edge(0), edge(1), edge(2));
-                gradients[1] = cross(&b, &c);
-                gradients[2] = cross(&c, &a);
-                gradients[3] = cross(&a, &b);
-                determinant = a.dot(&gradients[1]);
-            }
-        }
+        let mut gradients = [Point::zeros(); 4];
         let inverse = if determinant == zero { zero } else { 1.0 / determinant };
         for k in 1..=D {
-            gradients[k] *= inverse;
-            let gradient = gradients[k];
+            let gradient = Point::from_fn(|axis, _| normals[k - 1][axis]) * inverse;
+            gradients[k] = gradient;
             gradients[0] -= gradient;
         }
         let magnitude = if determinant < zero { -determinant } else { determinant };
@@ -57,7 +40,7 @@ impl<const D: usize> CellGeometry<D> {
 
     /// Whether the determinant of the edges from corner 0 to the others is positive.
     #[inline(always)]
-    pub(super) fn is_positive(&self) -> bool {
+    pub(crate) fn is_positive(&self) -> bool {
         self.is_positive
     }
 
@@ -88,13 +71,66 @@ impl<const D: usize> CellGeometry<D> {
     }
 }
 
-const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
+/// The factorial of each dimension.
+pub(crate) const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
 
-/// The vector product; meaningful for `D = 3` only.
+/// The gradients of the barycentric coordinates 1 to `D` of a simplex times the determinant of the edges from corner 0
+/// to the others, and the determinant.
 #[inline(always)]
-fn cross<const D: usize>(a: &Point<D>, b: &Point<D>) -> Point<D> {
-    let at = |v: &Point<D>, k: usize| v[k % D.max(1)];
-    Point::from_fn(|k, _| at(a, k + 1) * at(b, k + 2) - at(a, k + 2) * at(b, k + 1))
+pub(crate) fn cofactors<const D: usize>([a, b, c]: [[f64; 3]; 3]) -> ([[f64; 3]; 3], f64) {
+    let normals = match D {
+        1 => [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]],
+        2 => [[b[1], -b[0], 0.0], [-a[1], a[0], 0.0], [0.0; 3]],
+        _ => [cross(b, c), cross(c, a), cross(a, b)],
+    };
+    (normals, dot::<D>(a, normals[0]))
+}
+
+/// The scalar product of the first `D` coordinates.
+#[inline(always)]
+pub(crate) fn dot<const D: usize>(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
+}
+
+/// The vector product.
+#[inline(always)]
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The coordinates of a vector, with zeros after them.
+#[inline(always)]
+pub(crate) fn with_zeros<const D: usize>(vector: Point<D>) -> [f64; 3] {
+    tabulate(|axis| if axis < D { vector[axis] } else { 0.0 })
+}
+
+/// A fold over the squares of the lengths of the edges of a simplex, without those at one of its corners.
+#[inline(always)]
+pub(super) fn fold_edges<const D: usize>(
+    corner: impl Fn(usize) -> Point<D>,
+    left_out: Option<usize>,
+    start: f64,
+    choose: impl Fn(f64, f64) -> f64,
+) -> f64 {
+    let mut chosen = start;
+    for i in 0..=D {
+        for j in 0..i {
+            if left_out != Some(i) && left_out != Some(j) {
+                chosen = choose((corner(i) - corner(j)).norm_squared(), chosen);
+            }
+        }
+    }
+    chosen
+}
+
+/// The length of the longest edge of a simplex, without those at one of its corners.
+#[inline(always)]
+pub(super) fn longest_edge<const D: usize>(
+    corner: impl Fn(usize) -> Point<D>,
+    left_out: Option<usize>,
+) -> f64 {
+    let square = fold_edges(corner, left_out, 0.0, |a, b| if a > b { a } else { b });
+    nalgebra::ComplexField::sqrt(square)
 }
 
 impl<const D: usize> Mesh<D> {
@@ -134,17 +170,7 @@ impl<const D: usize> Mesh<D> {
     #[inline(always)]
     pub fn facet_diameter(&self, c: usize, local: usize) -> f64 {
         let cell = self.cell(c);
-        let mut largest = 0.0;
-        for i in 0..=D {
-            for j in 0..i {
-                if i != local && j != local {
-                    let edge = self.vertices[cell[i] as usize] - self.vertices[cell[j] as usize];
-                    let square = edge.norm_squared();
-                    largest = if square > largest { square } else { largest };
-                }
-            }
-        }
-        nalgebra::ComplexField::sqrt(largest)
+        longest_edge(|k| self.vertices[cell[k] as usize], Some(local))
     }
 }
 

@@ -6,7 +6,7 @@ use super::boundary::{BoundaryFacet, BoundaryPart};
 use super::components::Components;
 use super::error::MeshError;
 use super::facets::{CELL_LIMIT, Neighbours};
-use super::geometry::{CellGeometry, describe_point};
+use super::geometry::{CellGeometry, describe_point, longest_edge};
 use super::groups::{BoundaryGroup, Groups, NameSets};
 use super::overlap::{check_folds, check_overlaps, lie_on_others};
 use super::simplicial::Mesh;
@@ -156,12 +156,7 @@ fn check_volumes<const D: usize>(
         let corner = |k: usize| vertices[cell[k] as usize];
         let geometry = CellGeometry::new(corner);
         let volume = geometry.volume;
-        let mut diameter = 0.0_f64;
-        for i in 0..=D {
-            for j in 0..i {
-                diameter = diameter.max((corner(i) - corner(j)).norm());
-            }
-        }
+        let diameter = longest_edge(corner, None);
         let scaled = volume / diameter.powi(D as i32);
         // overflow and underflow count as degenerate
         if scaled.is_nan() || scaled <= 8.0 * f64::EPSILON {

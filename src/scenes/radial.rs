@@ -62,7 +62,7 @@ pub fn radial_quarter_2d() -> Scene<2> {
         name: "radial-quarter-2d".into(),
         summary: "a quarter of radial-2d, with Neumann sides on the axes of symmetry",
         domain: domain.into(),
-        problem: Problem { neumann: Some(BoundaryFlux::Constant(0.0)), ..scene.problem },
+        problem: Problem { neumann: BoundaryFlux::Constant(0.0).into(), ..scene.problem },
         regularity: scene.regularity,
     }
 }

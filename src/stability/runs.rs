@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::choice::Choice;
-use crate::algebra::{Bound, SparseMatrix, Submatrix};
+use crate::algebra::{Bound, SparseMatrix};
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, in_precision};
 use crate::linear::{LinearMethod, is_positive_definite};
@@ -137,7 +137,7 @@ pub(crate) fn free_matrix<const D: usize>(
     choice: &Choice,
 ) -> Result<SparseMatrix<f64>, Error> {
     let inequality = choice.inequality(problem, mesh)?;
-    Ok(Submatrix::new(&inequality.matrix, &inequality.free_unknowns()).into())
+    Ok(inequality.matrix.submatrix(&inequality.free_unknowns()))
 }
 
 /// `-Laplace u = f` in the unit box with `u` the product of `sin(pi x_k)`.

@@ -4,7 +4,7 @@ use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, BoxDomain, Mesh, describe_point};
-use crate::problem::{DataOnMesh, Datum, NamedData, Problem};
+use crate::problem::{DataOnMesh, Given, Problem};
 use crate::real::Point;
 use crate::scenes::Scene;
 use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
@@ -62,17 +62,13 @@ pub(super) fn check_scheme<const D: usize>(
     quadrature: DataQuadrature,
 ) -> Result<(), Error> {
     // bounds without names, which the cube does not have
-    let zero = |is_given: bool, old: Option<Datum<D>>| old.or(is_given.then_some(0.0.into()));
-    let (lower, gap) = (!problem.named.lower.is_empty(), !problem.named.gap.is_empty());
-    let upper = !problem.named.upper.is_empty();
-    let problem = Problem {
-        coefficient: None,
-        lower: zero(lower, problem.lower),
-        upper: zero(upper, problem.upper),
-        gap: zero(gap, problem.gap),
-        named: NamedData::default(),
-        ..problem
-    };
+    let mut problem = problem;
+    for bound in [&mut problem.lower, &mut problem.upper, &mut problem.gap] {
+        if bound.everywhere.is_none() && bound.is_given() {
+            bound.everywhere = Some(0.0.into());
+        }
+    }
+    let problem = Problem { coefficient: Given::default(), ..problem.in_group(&[], &[]) };
     let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::<D>::kuhn_box(&cube, [1; D])?;
     match scheme.discretise(&problem, &mesh, quadrature) {
@@ -150,7 +146,7 @@ fn first_failure<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Option<Str
         let middle = mesh.barycentre(cell);
         let alpha = data.coefficient.of(mesh.region(cell)).map_or(1.0, |a| a.at(&middle));
         let gradient = (exact.gradient)(&x);
-        let opening = (exact.value)(&x) - gap.at(&x);
+        let opening = exact.value.at(&x) - gap.at(&x);
         let pressure = alpha * gradient.dot(&normal);
         let size = 1.0 + opening.abs() + alpha * gradient.norm();
         // the smaller of two non-negative numbers must vanish

@@ -15,8 +15,8 @@ pub(super) fn setting<const D: usize>(scene: &Scene<D>, on_mesh: bool) -> Settin
         obstacle: problem.has_obstacle(),
         contact: problem.has_gap(),
         regularity: scene.regularity,
-        coefficient: problem.has_coefficient(),
-        regular_dual: !problem.has_coefficient()
+        coefficient: problem.coefficient.is_given(),
+        regular_dual: !problem.coefficient.is_given()
             && (D == 1 || !on_mesh && is_convex && all_dirichlet),
     }
 }

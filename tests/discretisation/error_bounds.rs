@@ -27,7 +27,7 @@ fn right_side<const D: usize>(
     let density = exact.multiplier.as_ref().unwrap();
     let degree = if D < 3 { 13 } else { 7 };
     let rule = Rule::new(D, degree);
-    let source = |x: &Point<D>| problem.source.as_ref().map_or(0.0, |f| f.at(x));
+    let source = |x: &Point<D>| problem.source.everywhere.as_ref().map_or(0.0, |f| f.at(x));
     let mut sum = 0.0;
     for cell in 0..mesh.n_cells() {
         let geometry = mesh.geometry(cell);
@@ -50,10 +50,10 @@ fn right_side<const D: usize>(
                     (x - mesh.vertices()[corners[k]]) * (flux[k] / (D as f64 * geometry.volume))
                 })
                 .sum();
-            let u = (exact.value)(x);
-            let alpha = problem.coefficient.as_ref().map_or(1.0, |f| f.at(x));
+            let u = exact.value.at(x);
+            let alpha = problem.coefficient.everywhere.as_ref().map_or(1.0, |f| f.at(x));
             for (psi, sign) in [(&problem.lower, 1.0), (&problem.upper, -1.0)] {
-                let Some(psi) = psi else { continue };
+                let Some(psi) = &psi.everywhere else { continue };
                 if sign * (psi.at(x) - v) > 0.0 {
                     v = psi.at(x);
                     gradient = Point::from_fn(|k, _| {
@@ -77,7 +77,7 @@ fn right_side<const D: usize>(
     let rule = Rule::new(D - 1, degree);
     for f in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
         let (cell, local) = (f.cell as usize, f.local as usize);
-        let gap = problem.gap.as_ref().unwrap();
+        let gap = problem.gap.everywhere.as_ref().unwrap();
         let measure = mesh.geometry(cell).facet_measure(local);
         let force = pair.flux.through(cell, local) / measure;
         let corners: Vec<usize> = mesh.facet_vertices(cell, local).map(|v| v as usize).collect();
@@ -87,7 +87,7 @@ fn right_side<const D: usize>(
             let interpolated: f64 = (0..D).map(|k| pair.function[corners[k]] * point[k]).sum();
             let v = interpolated.max(gap.at(&x));
             let weight = weight * measure;
-            sum += weight * force * ((exact.value)(&x) - gap.at(&x));
+            sum += weight * force * (exact.value.at(&x) - gap.at(&x));
             sum += weight * density(&x) * (v - gap.at(&x));
         }
     }

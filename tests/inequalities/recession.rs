@@ -131,7 +131,9 @@ fn entries_of_the_kernel_and_of_data_belong_to_unknowns() {
     let outcome = |inequality| ActiveSet::default().solve(&inequality).outcome;
     assert_eq!(outcome(good.clone()), Outcome::Converged);
     for kernel in [vec![(9, 1.0)], vec![(0, 0.0)], vec![(0, f64::NAN)], vec![]] {
-        assert_eq!(outcome(good.clone().with_kernel(vec![kernel])), Outcome::Malformed);
+        let mut wrong = good.clone();
+        wrong.kernel = vec![kernel];
+        assert_eq!(outcome(wrong), Outcome::Malformed);
     }
     let mut beyond = good;
     let terms = vec![DirichletTerm { unknown: 9, load: 1.0, linear: 2.0, constant: 1.0 }];

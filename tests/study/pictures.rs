@@ -214,7 +214,7 @@ fn density_and_midpoints_are_those_of_the_solution() {
     for (k, u) in fields.midpoints.iter().enumerate() {
         let cell = mesh.cell(k / edges.len());
         let ends = edges[k % edges.len()].map(|v| mesh.vertices()[cell[v] as usize]);
-        let error = (u - exact(&(0.5 * (ends[0] + ends[1])))).abs();
+        let error = (u - exact.at(&(0.5 * (ends[0] + ends[1])))).abs();
         assert!(error < 5e-3, "{error}");
     }
 }

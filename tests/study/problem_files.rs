@@ -125,7 +125,7 @@ fn branches_that_are_not_taken_do_not_count() {
     let load = "[source]\ndefault = \"if(x > 0 && log(x) < 0, -sqrt(x), -8)\"\n";
     std::fs::write(&path, format!("{BOX}{load}{SIDES}")).unwrap();
     let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("a problem in the plane") };
-    let at = |x: f64| own.problem.source.as_ref().unwrap().at(&Point::from([x, 0.5]));
+    let at = |x: f64| own.problem.source.everywhere.as_ref().unwrap().at(&Point::from([x, 0.5]));
     assert_eq!([at(-0.5), at(0.25)], [-8.0, -0.5]);
 }
 

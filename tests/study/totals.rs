@@ -55,9 +55,9 @@ fn bounding_box<const D: usize>(scene: &Scene<D>) -> (Point<D>, Point<D>) {
 fn the_energy_of_every_scheme_tends_to_the_exact_one_with_twice_the_order_in_h1() {
     let scene = scenes::radial::<2>(1.0);
     let exact = scene.problem.exact.clone().unwrap();
-    let source = scene.problem.source.clone().unwrap();
+    let source = scene.problem.source.everywhere.clone().unwrap();
     let energy = integral(bounding_box(&scene), |x| {
-        0.5 * (exact.gradient)(x).norm_squared() - source.at(x) * (exact.value)(x)
+        0.5 * (exact.gradient)(x).norm_squared() - source.at(x) * exact.value.at(x)
     });
     let levels = [16, 32, 64];
     let schemes = schemes().into_iter().filter(|s| s.layout().cell < 6);

@@ -290,7 +290,7 @@ fn quadratics_are_written_as_quadratics() {
         assert!((value - expected).abs() < 1e-12);
     }
     for (x, (u, error)) in points.iter().zip(u.iter().zip(&error)) {
-        let expected = u - (exact.value)(&Point::from([x[0], x[1]]));
+        let expected = u - exact.value.at(&Point::from([x[0], x[1]]));
         assert!((error - expected).abs() < 1e-14);
     }
 }
@@ -397,7 +397,7 @@ fn the_error_is_the_difference_from_a_reference() {
     let largest = error.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
     assert!(largest > 1e-2, "{largest}");
     for ((x, u), error) in points.chunks(3).zip(u).zip(error) {
-        let from_exact = u - (exact.value)(&Point::from([x[0], x[1]]));
+        let from_exact = u - exact.value.at(&Point::from([x[0], x[1]]));
         assert!((error - from_exact).abs() < 0.02 * largest, "{x:?}: {error} {from_exact}");
     }
 }

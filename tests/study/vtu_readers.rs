@@ -70,7 +70,7 @@ fn put<const D: usize>(
         let solved =
             solve(problem, meshes, &*scheme.parse::<NamedScheme>().unwrap().make()).unwrap();
         assert!(solved.converged(), "{name} {scheme}: {}", solved.outcome());
-        let force = match problem.gap.is_some() {
+        let force = match problem.gap.is_given() {
             true => solved.multiplier().unwrap().iter().sum(),
             false => f64::NAN,
         };

@@ -11,7 +11,7 @@ use crate::algebra::{Bound, Contact};
 use crate::constraint::BoundBy;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 
 /// A datum gives a bound if they differ by at most this many units of rounding.
 const ROUNDINGS: f64 = 16.0;
@@ -107,7 +107,7 @@ impl<const D: usize> Space<'_, D> {
         state: Option<Contact>,
     ) -> bool {
         let region = self.mesh.region(cell);
-        let gives = |psi: Option<DatumRef<'_, D>>, bound: Option<f64>| {
+        let gives = |psi: Option<&Datum<D>>, bound: Option<f64>| {
             let Some((psi, bound)) = psi.zip(bound) else { return false };
             let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), "obstacle", psi);
             value.is_ok_and(|value| is_bound(value, bound))

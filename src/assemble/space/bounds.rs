@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::mesh::{BoundaryPart, HalfFacet};
 use crate::parallel::vectors::collect;
 use crate::parallel::{cells, lock};
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::real::Point;
 
 /// Sorts facets by the ranks of their groups; not generic, so that the sorting code is compiled once.
@@ -100,7 +100,7 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<(), Error> {
         count::bounds(1);
         let (region, node) = (self.mesh.region(cell), &self.nodes[i]);
-        let at = |psi: Option<DatumRef<'_, D>>| {
+        let at = |psi: Option<&Datum<D>>| {
             let value = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
             psi.map(value).transpose()
         };
@@ -158,7 +158,7 @@ impl<const D: usize> Space<'_, D> {
         terms: &Terms,
         (cell, node): (usize, &Node),
         name: &'static str,
-        datum: DatumRef<'_, D>,
+        datum: &Datum<D>,
     ) -> Result<f64, Error> {
         match by {
             BoundBy::Functional => self.at_node(terms, cell, name, &|x| datum.at(x)),
@@ -188,7 +188,9 @@ impl<const D: usize> Space<'_, D> {
                 if let Bound::Fixed(_) = bounds[unknown] {
                     continue;
                 }
-                let at = |name, datum: Datum<'_, D>| self.at_node(&terms[i], cell, name, datum);
+                let at = |name, datum: &dyn Fn(&Point<D>) -> f64| {
+                    self.at_node(&terms[i], cell, name, datum)
+                };
                 let value = if zero { 0.0 } else { at("dirichlet", &datum)? };
                 let node = BoundedNode { unknown, cell, x: self.node_point(cell, &self.nodes[i]) };
                 // obstacles must leave room for the datum; a mean is compared with a mean: over a
@@ -214,7 +216,7 @@ impl<const D: usize> Space<'_, D> {
         terms: &Terms,
         cell: usize,
         name: &'static str,
-        datum: Datum<'_, D>,
+        datum: &dyn Fn(&Point<D>) -> f64,
     ) -> Result<f64, Error> {
         let at = |(point, weight): &([f64; 4], f64)| {
             if name == "dirichlet" {
@@ -226,9 +228,6 @@ impl<const D: usize> Space<'_, D> {
         terms.iter().map(at).sum()
     }
 }
-
-/// A function of space.
-type Datum<'f, const D: usize> = &'f dyn Fn(&Point<D>) -> f64;
 
 /// The bound between two values, of which each may be absent.
 fn between<const D: usize>(

@@ -19,7 +19,6 @@ use crate::error::Error;
 use crate::mesh::{HalfFacet, Mesh};
 use crate::problem::DataByGroup;
 use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule, facet_to_cell};
-use crate::real::Point;
 
 /// Samples that differ from the value at the barycentre by no more than this, in units of rounding, are
 /// those of a constant.
@@ -77,8 +76,7 @@ impl VaryingCoefficient {
         let mut starts = vec![CONSTANT; mesh.n_cells()];
         let mut values: Vec<f64> = Vec::new();
         for (cell, start) in starts.iter_mut().enumerate() {
-            let corners = mesh.cell(cell).iter().map(|&v| mesh.vertices()[v as usize]);
-            let corners: [Point<D>; 4] = padded(corners);
+            let corners = mesh.corners(cell);
             let first = values.len();
             for point in &points {
                 let x = corners.iter().zip(point).map(|(corner, &b)| corner * b).sum();
@@ -226,11 +224,4 @@ fn sampled_points(dimension: usize, cell_rule: &Rule, facet_rule: &Rule) -> Vec<
         }
     }
     points
-}
-
-/// The points, with zeros after them.
-fn padded<const D: usize>(points: impl Iterator<Item = Point<D>>) -> [Point<D>; 4] {
-    let mut all = [Point::zeros(); 4];
-    all.iter_mut().zip(points).for_each(|(to, from)| *to = from);
-    all
 }

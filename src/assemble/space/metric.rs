@@ -3,12 +3,12 @@
 use std::convert::Infallible;
 
 use super::tables::Derivatives;
-use crate::arrays::map_entries;
+use crate::arrays::tabulate;
 use crate::assemble::count;
 use crate::element::MAX_BASIS;
 use crate::facet::Side;
 use crate::memory::in_large_pages;
-use crate::mesh::{HalfFacet, Mesh};
+use crate::mesh::{FACTORIAL, HalfFacet, Mesh, cofactors, cross, dot, with_zeros};
 use crate::parallel::cells;
 
 /// Products of gradients of a cell's barycentric coordinates, and its measures: all that enters the
@@ -128,21 +128,9 @@ pub(crate) fn shape<const D: usize>(
 ) -> (f64, [[f64; 4]; 4]) {
     let zero = 0.0;
     let corners = mesh.cell(cell);
-    let mut edges = [[zero; 3]; 3];
-    let origin = &mesh.vertices()[corners[0] as usize];
-    for k in 0..D {
-        let corner = &mesh.vertices()[corners[k + 1] as usize];
-        for axis in 0..D {
-            edges[k][axis] = corner[axis] - origin[axis];
-        }
-    }
-    let [a, b, c] = edges;
-    let normals = match D {
-        1 => [[1.0, zero, zero], [zero; 3], [zero; 3]],
-        2 => [[b[1], -b[0], zero], [-a[1], a[0], zero], [zero; 3]],
-        _ => [cross(b, c), cross(c, a), cross(a, b)],
-    };
-    let determinant = dot::<D>(a, normals[0]);
+    let corner = |k: usize| mesh.vertices()[corners[k] as usize];
+    let edges = tabulate(|k| if k < D { with_zeros(corner(k + 1) - corner(0)) } else { [zero; 3] });
+    let (normals, determinant) = cofactors::<D>(edges);
     let size = if determinant < zero { -determinant } else { determinant };
     let scale = if size == zero { zero } else { scale / (size * FACTORIAL[D]) };
     let mut products = [[zero; 4]; 4];
@@ -195,32 +183,14 @@ const PAIR: [[[usize; 4]; 4]; 4] = {
 #[inline(always)]
 fn first_facet<const D: usize>(mesh: &Mesh<D>, cell: usize) -> f64 {
     let corners = mesh.cell(cell);
-    let edge = |k: usize| {
-        let mut edge = [0.0; 3];
-        let ends = map_entries([corners[1], corners[k.min(D)]], |v| &mesh.vertices()[v as usize]);
-        for axis in 0..D {
-            edge[axis] = ends[1][axis] - ends[0][axis];
-        }
-        edge
-    };
+    let corner = |k: usize| mesh.vertices()[corners[k.min(D)] as usize];
+    let edge = |k: usize| with_zeros(corner(k) - corner(1));
     let length = |a: [f64; 3]| nalgebra::ComplexField::sqrt(dot::<3>(a, a));
     match D {
         1 => 1.0,
         2 => length(edge(2)),
         _ => 0.5 * length(cross(edge(2), edge(3))),
     }
-}
-
-const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
-
-#[inline(always)]
-fn dot<const D: usize>(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
-}
-
-#[inline(always)]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The metrics of all cells, computed once: each is read by the cell and by its neighbours.

@@ -113,9 +113,9 @@ impl<const D: usize> Space<'_, D> {
     /// The name under which the contact force of a boundary group is shown.
     fn name_of_gap(&self, group: usize) -> String {
         let names = &self.mesh.boundary_groups()[group].names;
-        let given = self.problem.named.gap.iter().map(|(name, _)| name);
-        let name = given.chain(names).find(|name| names.contains(name));
-        match name.map(String::as_str) {
+        let given = self.problem.gap.names();
+        let mut given = given.chain(names.iter().map(String::as_str));
+        match given.find(|name| names.iter().any(|n| n == name)) {
             None => "contact".to_owned(),
             Some(name @ ("lower" | "upper")) => format!("{name} (contact)"),
             Some(name) => name.to_owned(),

@@ -11,7 +11,7 @@ use crate::arrays::tabulate;
 use crate::error::Error;
 use crate::input::{beginning, fingerprint};
 use crate::mesh::{BoundaryFacet, BoundaryPart, BoxDomain, Mesh, SIDES};
-use crate::problem::{Datum, Problem};
+use crate::problem::{Datum, Given, Problem};
 use crate::real::Point;
 use check::{Allowed, Checks, Entry};
 
@@ -61,12 +61,12 @@ struct OnGroup {
 type Done<V = ()> = Result<V, ProblemFileError>;
 
 impl<'t, const D: usize> Builder<'_, 't, D> {
-    /// Reads a table of data by region; `set` puts one into the problem.
+    /// Reads a table of data by region; `of` is where the problem has them.
     fn by_region(
         &mut self,
         (name, value): (&str, &Value<'t>),
         (allowed, at_vertices): (Allowed, bool),
-        set: fn(Problem<D>, Option<&str>, Datum<D>) -> Problem<D>,
+        of: fn(&mut Problem<D>) -> &mut Given<Datum<D>>,
     ) -> Done {
         let table = self.source.table(name, value)?;
         let groups: Vec<String> = table.keys().map(|key| key.get_ref().to_string()).collect();
@@ -89,7 +89,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             };
             let region = (group != DEFAULT).then_some(&group[..]);
             let given = piecewise(&formula, level.as_ref().map(|(level, _)| level));
-            self.problem = set(std::mem::take(&mut self.problem), region, given);
+            of(&mut self.problem).give(region, given);
             let entry = |what: &str, offset, (allowed, at_vertices), formula: &Formula| Entry {
                 datum: format!("{name}.{group}{what}"),
                 group: region.map(str::to_owned),
@@ -114,16 +114,10 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         self.source.allow(table, &["lower", "upper"])?;
         let how = (Allowed::Finite, true);
         if let Some(value) = table.get("lower") {
-            self.by_region(("obstacle.lower", value), how, |p, region, psi| match region {
-                Some(region) => p.obstacle_below_in(region, psi),
-                None => Problem { lower: Some(psi), ..p },
-            })?;
+            self.by_region(("obstacle.lower", value), how, |p| &mut p.lower)?;
         }
         if let Some(value) = table.get("upper") {
-            self.by_region(("obstacle.upper", value), how, |p, region, psi| match region {
-                Some(region) => p.obstacle_above_in(region, psi),
-                None => Problem { upper: Some(psi), ..p },
-            })?;
+            self.by_region(("obstacle.upper", value), how, |p| &mut p.upper)?;
         }
         Ok(())
     }
@@ -179,18 +173,15 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     /// Puts what is given on a boundary group into the problem.
     fn put_on(&mut self, group: &str, given: &OnGroup) {
         let OnGroup { part, formula, datum, offset } = given;
-        let mut problem = std::mem::take(&mut self.problem);
-        self.problem = match part {
-            BoundaryPart::Dirichlet => problem.dirichlet_on(group, formula.datum()),
+        let (problem, name) = (&mut self.problem, Some(&group[..]));
+        match part {
+            BoundaryPart::Dirichlet => problem.dirichlet.give(name, formula.datum()),
+            BoundaryPart::Neumann => problem.neumann.give(name, formula.flux()),
             BoundaryPart::Contact => {
                 self.gaps.push(formula.clone());
-                problem.signorini_on(group, formula.datum())
+                problem.gap.give(name, formula.datum());
             }
-            BoundaryPart::Neumann => {
-                problem.named.neumann.push((group.to_owned(), formula.flux()));
-                problem
-            }
-        };
+        }
         self.entries.push(Entry {
             datum: datum.clone(),
             group: Some(group.to_owned()),
@@ -228,7 +219,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
 
     /// Gives gaps that depend on the normal those of the facets of their groups.
     fn put_normals(&mut self, mesh: &Mesh<D>) {
-        for ((group, datum), formula) in self.problem.named.gap.iter_mut().zip(&self.gaps) {
+        for ((group, datum), formula) in self.problem.gap.named.iter_mut().zip(&self.gaps) {
             let groups = mesh.boundary_groups();
             let is_meant = |f: &&BoundaryFacet| groups[usize::from(f.group)].names.contains(group);
             let facets = mesh.boundary().iter().filter(is_meant).map(|f| {
@@ -304,28 +295,15 @@ pub(super) fn problem<'t, const D: usize>(
         match &**key.get_ref() {
             "coefficient" => {
                 let how = (Allowed::Positive, false);
-                builder.by_region(
-                    ("coefficient", value),
-                    how,
-                    |p, region, alpha| match region {
-                        Some(region) => p.coefficient_in(region, alpha),
-                        None => Problem { coefficient: Some(alpha), ..p },
-                    },
-                )?;
+                builder.by_region(("coefficient", value), how, |p| &mut p.coefficient)?;
             }
             "source" => {
                 let how = (Allowed::Finite, false);
-                builder.by_region(("source", value), how, |p, region, f| match region {
-                    Some(region) => p.source_in(region, f),
-                    None => Problem { source: Some(f), ..p },
-                })?;
+                builder.by_region(("source", value), how, |p| &mut p.source)?;
             }
             "reaction" => {
                 let how = (Allowed::NotNegative, false);
-                builder.by_region(("reaction", value), how, |p, region, c| match region {
-                    Some(region) => p.reaction_in(region, c),
-                    None => p.reaction(c),
-                })?;
+                builder.by_region(("reaction", value), how, |p| &mut p.reaction)?;
             }
             "obstacle" => builder.obstacles(value)?,
             "boundary" => builder.boundary(value)?,

@@ -36,7 +36,7 @@ pub(super) fn check_at<const D: usize>(
     let (value, flux) = (exact * evaluator.scales.value, exact * evaluator.scales.flux);
     let problem = evaluator.problem;
     let outflow = evaluator.flux(&x).dot(&normal);
-    match (part, &problem.neumann, &problem.gap) {
+    match (part, &problem.neumann.everywhere, &problem.gap.everywhere) {
         (BoundaryPart::Dirichlet, _, _) => {
             let error = (problem.dirichlet_at(&x) - evaluator.value(&x)).abs();
             evaluator.require(Condition::Dirichlet, &x, error, value)?;

@@ -544,7 +544,7 @@ fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
     let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [4, 4]).unwrap();
     let problem = Problem::<2>::new();
     let below_bound = |sigma| {
-        let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() };
+        let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma) };
         Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default())
             .unwrap()
             .penalty_below_bound()

@@ -217,8 +217,7 @@ fn definite(matrix: &SparseMatrix<f64>) -> bool {
 
 /// The number from which interior penalty with a rule is positive definite, to a relative 1e-6.
 fn threshold<const D: usize>(mesh: &Mesh<D>, rule: impl Fn(f64) -> PenaltyRule) -> f64 {
-    let enough =
-        |x: f64| definite(&assemble(&Sipg { penalty: rule(x), ..Sipg::default() }, mesh).matrix);
+    let enough = |x: f64| definite(&assemble(&Sipg { penalty: rule(x) }, mesh).matrix);
     let (mut below, mut above) = (0.0, 1.0);
     while !enough(above) {
         (below, above) = (above, 2.0 * above);

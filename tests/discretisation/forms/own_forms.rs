@@ -147,7 +147,7 @@ fn a_formula_may_differ_from_facet_to_facet() {
             .coefficient(|x: &Point<D>| 1.0 + 3.0 * x[0])
             .exact(|x: &Point<D>| x[0] * x[D - 1], |_| Point::repeat(1.0));
         let penalty = PenaltyRule::Diameter(30.0);
-        let known = Sipg { penalty, ..Sipg::default() }.on(element);
+        let known = Sipg { penalty }.on(element);
         let known = Discretisation::new(&known, &problem, &mesh, Default::default()).unwrap();
         let own = SipgByFormula(element);
         let own = Discretisation::new(&own, &problem, &mesh, Default::default()).unwrap();

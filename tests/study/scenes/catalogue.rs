@@ -148,7 +148,7 @@ fn a_parameter_that_a_scene_does_not_take_is_refused() {
 fn entries_outside_the_catalogue_hand_their_parameter_on() {
     let loaded = Entry::with_load(-2.0, |load| {
         let mut scene = radial::<1>(1.0);
-        scene.problem.source = Some(load.into());
+        scene.problem.source.everywhere = Some(load.into());
         scene
     });
     assert!(loaded.accepts.load && !loaded.accepts.scale);

@@ -67,7 +67,7 @@ fn the_contact_disc_of_the_ball_has_the_radius_of_its_equation() {
 #[test]
 fn the_obstacle_of_the_ball_is_finite_and_continuously_differentiable() {
     let scene = ball_2d();
-    let psi = scene.problem.lower.as_ref().unwrap();
+    let psi = scene.problem.lower.everywhere.as_ref().unwrap();
     let at = |r: f64| psi.at(&Point::from([r, 0.0]));
     let h = 1e-6;
     assert_close((at(0.9) - at(0.9 - h)) / h, (at(0.9 + h) - at(0.9)) / h, 1e-4);
@@ -105,7 +105,7 @@ fn the_harmonic_signorini_solution_is_the_same_in_two_and_three_dimensions() {
         let [along, across] = gradient(&plane, [x, z]);
         assert_eq!(gradient(&space, [x, 0.7, z]), [along, 0.0, across]);
     }
-    assert!(plane.problem.source.is_none() && space.problem.source.is_none());
+    assert!(plane.problem.source.everywhere.is_none() && space.problem.source.everywhere.is_none());
 }
 
 #[test]

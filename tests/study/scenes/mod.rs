@@ -27,7 +27,7 @@ fn exact<const D: usize>(scene: &Scene<D>) -> &Exact<D> {
 }
 
 fn value<const D: usize>(scene: &Scene<D>, x: [f64; D]) -> f64 {
-    (exact(scene).value)(&Point::from(x))
+    exact(scene).value.at(&Point::from(x))
 }
 
 fn gradient<const D: usize>(scene: &Scene<D>, x: [f64; D]) -> [f64; D] {
@@ -35,7 +35,7 @@ fn gradient<const D: usize>(scene: &Scene<D>, x: [f64; D]) -> [f64; D] {
 }
 
 fn source<const D: usize>(scene: &Scene<D>, x: [f64; D]) -> f64 {
-    scene.problem.source.as_ref().map_or(0.0, |f| f.at(&Point::from(x)))
+    scene.problem.source.everywhere.as_ref().map_or(0.0, |f| f.at(&Point::from(x)))
 }
 
 /// Equal to the digits a table prints.

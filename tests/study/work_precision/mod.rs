@@ -10,7 +10,6 @@ use serde_json::Value;
 use synthetic::{measured, synthetic};
 use unilateral::inequality::Outcome;
 use unilateral::measure::ErrorNorm;
-use unilateral::output::Table;
 use unilateral::prelude::*;
 use unilateral::work_precision::{
     Failure, Measured, Phases, Precision, Standing, WorkAtError, WorkPrecision, WorkProgress,

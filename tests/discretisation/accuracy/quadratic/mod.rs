@@ -19,7 +19,7 @@ use unilateral::scenes::Scene;
 use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 /// Symmetric interior penalty on broken quadratics.
-fn broken<const D: usize>() -> Sipg<D> {
+fn broken<const D: usize>() -> OnElement<Sipg, D> {
     Sipg::default().on(P2)
 }
 
