@@ -9,7 +9,6 @@ use crate::study::row::Row;
 pub(crate) enum Cost {
     Seconds,
     Unknowns,
-    Memory,
 }
 
 impl Cost {
@@ -18,7 +17,6 @@ impl Cost {
         match self {
             Cost::Seconds => "time",
             Cost::Unknowns => "unknowns",
-            Cost::Memory => "memory",
         }
     }
 
@@ -26,7 +24,6 @@ impl Cost {
         match self {
             Cost::Seconds => Quantity::Seconds,
             Cost::Unknowns => Quantity::Unknowns,
-            Cost::Memory => Quantity::Memory,
         }
     }
 }

@@ -13,8 +13,6 @@ pub(crate) enum Quantity {
     SecondsWithBound,
     /// Number of unknowns.
     Unknowns,
-    /// Peak of memory in megabytes, less that of an empty run.
-    Memory,
     /// L2 error.
     L2,
     /// Error in the broken H1 seminorm.
@@ -33,7 +31,6 @@ impl Quantity {
             Quantity::Seconds => "time in s",
             Quantity::SecondsWithBound => "time in s, bound included",
             Quantity::Unknowns => "number of unknowns",
-            Quantity::Memory => "peak memory above that of an empty run in MB",
             Quantity::L2 => "L2 error",
             Quantity::H1 => "broken H1 error",
             Quantity::Energy => "error in the broken energy norm",
@@ -49,7 +46,6 @@ impl Quantity {
             Quantity::Seconds => Some(row.seconds.total.max(1e-6)),
             Quantity::SecondsWithBound => Some(row.seconds_with_bound().max(1e-6)),
             Quantity::Unknowns => row.unknowns.map(|n| n as f64),
-            Quantity::Memory => row.peak_memory_bytes.map(|bytes| bytes as f64 / 1e6),
             Quantity::L2 => row.error.l2,
             Quantity::H1 => row.error.h1,
             Quantity::Energy => row.error.broken_energy,

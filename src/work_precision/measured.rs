@@ -6,7 +6,7 @@ use crate::measure::ErrorNorm;
 use crate::study::row::distinct;
 use crate::study::{Row, Seconds};
 
-/// A scheme on a scene with constraint set, linear solver and precision: one curve of a plot.
+/// A scheme on a scene with constraint set, linear solver and kind of meshes: one curve of a plot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Variant {
     /// Name of the scene.
@@ -19,8 +19,6 @@ pub struct Variant {
     pub label: String,
     /// The linear solver asked for: `direct`, `iterative` or `by-size`.
     pub linear_asked: String,
-    /// Scalar of assembly and solve: `f64` or `f32`.
-    pub precision: String,
     /// The meshes: `uniform` or `adaptive`.
     pub meshes: String,
 }
@@ -83,11 +81,9 @@ impl Phases {
 /// A row with the times of all its runs. Its `seconds` are those of the fastest run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// Counts, errors and certificate. `peak_memory_bytes` is that of this case.
+    /// Counts, errors and certificate. `peak_memory_bytes` is the peak of the process during this case.
     #[serde(flatten)]
     pub row: Row,
-    /// Scalar of assembly and solve.
-    pub precision: String,
     /// The linear solver asked for; `linear` is the one that was used.
     pub linear_asked: String,
     /// The meshes: `uniform` or `adaptive`.
@@ -112,7 +108,6 @@ impl Measured {
     pub fn new(row: Row, phases: Phases, case: &Case) -> Self {
         Measured {
             row,
-            precision: case.variant.precision.clone(),
             linear_asked: case.variant.linear_asked.clone(),
             meshes: case.variant.meshes.clone(),
             runs: 1,
@@ -156,7 +151,6 @@ impl Measured {
             constraint: self.row.constraint.clone(),
             label: self.row.label.clone(),
             linear_asked: self.linear_asked.clone(),
-            precision: self.precision.clone(),
             meshes: self.meshes.clone(),
         }
     }
@@ -198,21 +192,17 @@ impl Failure {
 impl Variant {
     /// Whether the other one is this scheme with these choices, perhaps on another scene.
     pub(super) fn differs_in_scene_only(&self, other: &Variant) -> bool {
-        let of =
-            |v: &Variant| [&v.label, &v.linear_asked, &v.precision, &v.meshes].map(String::clone);
+        let of = |v: &Variant| [&v.label, &v.linear_asked, &v.meshes].map(String::clone);
         of(self) == of(other)
     }
 
-    /// The name of the variant among others of a report: the label of the scheme, and the linear solver,
-    /// the precision and the meshes where they vary.
+    /// The name of the variant among others of a report: the label of the scheme, and the linear solver and the
+    /// meshes where they vary.
     pub fn name_among(&self, all: &[Variant]) -> String {
         let varies = |part: fn(&Variant) -> &str| all.iter().any(|v| part(v) != part(self));
         let mut label = self.label.clone();
         if varies(|v| &v.linear_asked) {
             label += &format!(", {}", self.linear_asked);
-        }
-        if varies(|v| &v.precision) {
-            label += &format!(", {}", self.precision);
         }
         if varies(|v| &v.meshes) {
             label += &format!(", {}", self.meshes);

@@ -1,4 +1,4 @@
-//! Time, unknowns and memory at a given error, interpolated between the levels that were run.
+//! Time, unknowns and entries at a given error, interpolated between the levels that were run.
 
 use serde::Serialize;
 
@@ -23,7 +23,7 @@ fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
 pub struct WorkPoint {
     /// The error; none where the run failed.
     pub error: Option<f64>,
-    /// Seconds, unknowns or bytes.
+    /// Seconds, unknowns or entries.
     pub work: f64,
 }
 
@@ -64,7 +64,7 @@ pub enum Standing {
     Unknown,
 }
 
-/// Time, unknowns, entries and memory with which a variant reaches an error.
+/// Time, unknowns and entries with which a variant reaches an error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct WorkAtError {
@@ -90,8 +90,6 @@ pub struct WorkAtError {
     pub unknowns: Option<f64>,
     /// Entries stored in the matrix.
     pub entries: Option<f64>,
-    /// Peak of memory.
-    pub memory_bytes: Option<f64>,
 }
 
 /// All variants of the report at all errors worth comparing at: for every scene and norm the numbers 1,
@@ -174,7 +172,6 @@ fn work_of_variants_at(
             ratio: seconds.map(|s| s / best),
             unknowns: at(levels, &|m| m.row.unknowns.map(|n| n as f64)),
             entries: at(levels, &|m| m.row.nonzeros.map(|n| n as f64)),
-            memory_bytes: at(levels, &|m| m.row.peak_memory_bytes.map(|b| b as f64)),
         }
     };
     curves.iter().zip(seconds).map(of).collect()

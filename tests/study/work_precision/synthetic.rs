@@ -11,7 +11,6 @@ pub fn measured(scheme: &str, level: usize, factor: f64) -> Measured {
         constraint: "vertices".into(),
         label: scheme.into(),
         linear_asked: "direct".into(),
-        precision: "f64".into(),
         meshes: "uniform".into(),
     };
     let mut row = row("radial-2d", scheme, level);
