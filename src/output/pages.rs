@@ -11,6 +11,7 @@ use crate::input::beginning;
 use crate::study::rates::rates;
 use crate::study::remarks::{failure, warnings};
 use crate::study::row::distinct;
+use crate::study::series::names;
 use crate::study::table::{Column, columns, heading, limits, scenes, totals, unproven};
 use crate::study::{Program, Report, Row, file_name};
 
@@ -73,8 +74,8 @@ impl Report {
     /// Two tables for each scene, with the columns of the tables for a terminal: errors and times, then
     /// energy, contact measure, resultant, error bound and stages.
     pub fn tables(&self) -> Vec<Table> {
-        let tables = |(scene, rows): (&str, Vec<&Row>)| {
-            [Some(table(scene, &rows)), second(scene, &rows)].into_iter().flatten()
+        let tables = |(scene, rows): (String, Vec<&Row>)| {
+            [Some(table(&scene, &rows)), second(&scene, &rows)].into_iter().flatten()
         };
         scenes(&self.rows).into_iter().flat_map(tables).collect()
     }
@@ -106,18 +107,15 @@ impl Report {
     /// The report as a page: every number of every row, and the pictures `SCENE-LABEL.svg` that are in the
     /// directory.
     pub(super) fn page(&self, directory: &Path) -> HtmlPage {
-        let series = distinct(self.rows.iter().map(|r| [&r.label, &r.solver]));
-        let name =
-            |&[label, solver]: &[&String; 2]| match self.rows.iter().all(|r| r.solver == *solver) {
-                true => label.clone(),
-                false => format!("{label}, {solver}"),
-            };
+        let series = self.series();
+        let names_of_series = names(&series);
         let mut keys = Vec::new();
         let mut tables = Vec::new();
         for (scene, rows) in scenes(&self.rows) {
             let mut cells = Vec::new();
             for row in &rows {
-                let place = series.iter().position(|s| *s == [&row.label, &row.solver]);
+                let own = series.iter().find(|s| s.rows.iter().any(|r| std::ptr::eq(*r, *row)));
+                let place = own.and_then(|s| names_of_series.iter().position(|n| *n == s.name));
                 // plain data with string keys: its serialisation cannot fail
                 let value = serde_json::to_value(row).unwrap_or(Value::Null);
                 let mut found = Vec::new();
@@ -149,10 +147,11 @@ impl Report {
             });
         }
         let mut pictures = Vec::new();
+        // of uniform and adaptive meshes there is one picture
         for (scene, label, solver) in
-            distinct(self.rows.iter().map(|r| (&r.scene, &r.label, &r.solver)))
+            distinct(series.iter().map(|s| (&s.variant.scene, &s.variant.label, &s.variant.solver)))
         {
-            let is_alone = self.rows.iter().all(|r| r.solver == *solver);
+            let is_alone = series.iter().all(|s| s.variant.solver == *solver);
             let of = if is_alone { label.clone() } else { format!("{label}-{solver}") };
             let path = directory.join(file_name(&format!("{scene}-{of}")) + ".svg");
             if let Ok(svg) = std::fs::read_to_string(path) {
@@ -166,7 +165,7 @@ impl Report {
                 .iter()
                 .map(|key| (beginning(key.as_bytes(), 80), SHOWN.contains(&&**key)))
                 .collect(),
-            series: series.iter().map(name).collect(),
+            series: names_of_series,
             tables,
             drawings: Vec::new(),
             pictures,

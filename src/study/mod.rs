@@ -18,6 +18,7 @@ pub(crate) mod remarks;
 pub(crate) mod report;
 pub(crate) mod row;
 mod runner;
+pub(crate) mod series;
 mod setting;
 pub(crate) mod table;
 
@@ -37,3 +38,4 @@ pub use part_figures::{PartFigures, PartSeconds};
 pub use report::{Program, Report};
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
 pub use runner::{PartChecks, Progress, Study};
+pub use series::{Meshes, Series, Variant};

@@ -1,20 +1,14 @@
 //! Errors against what they cost, drawn.
 
-use super::measured::{Measured, variants};
-use super::work_at_error::curves;
-use crate::plot::{Cost, Figure, NamedCurve, cost_figure};
+use super::measured::Measured;
+use crate::plot::{Cost, Figure, cost_figure};
+use crate::study::series::series_of;
 
 /// The figures `SCENE-time` and `SCENE-unknowns` of a scene.
 pub(crate) fn figures(rows: &[Measured], scene: &str) -> Vec<(String, Figure)> {
-    let variants = variants(rows);
-    let curves: Vec<NamedCurve<'_>> = curves(rows, scene)
-        .into_iter()
-        .map(|(variant, levels)| NamedCurve {
-            label: variant.name_among(&variants),
-            rows: levels.into_iter().map(|m| &m.row).collect(),
-        })
-        .collect();
+    let mut series = series_of(rows);
+    series.retain(|of| of.variant.scene == scene);
     let figure =
-        |cost: Cost| (format!("{scene}-{}", cost.name()), cost_figure(scene, &curves, cost));
+        |cost: Cost| (format!("{scene}-{}", cost.name()), cost_figure(scene, &series, cost));
     [Cost::Seconds, Cost::Unknowns].map(figure).into()
 }

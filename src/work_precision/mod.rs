@@ -12,7 +12,8 @@ mod verdict;
 mod work_at_error;
 
 pub use crate::real::Precision;
-pub use measured::{Case, Failure, Measured, Phases, Variant};
+pub use crate::study::Variant;
+pub use measured::{Case, Failure, Measured, Phases};
 pub use report::WorkReport;
 pub use work_at_error::{Standing, WorkAtError};
 

@@ -6,7 +6,7 @@ use serde_json::json;
 
 #[cfg(feature = "plot")]
 use super::figures::figures;
-use super::measured::{Failure, Measured, Variant, scenes, variants};
+use super::measured::{Failure, Measured, scenes, variants};
 use super::tables::{details, summary};
 use super::verdict::verdict;
 use super::work_at_error::{WorkAtError, work_at_errors};
@@ -16,8 +16,8 @@ use crate::output::html::HtmlPage;
 use crate::output::latex::latex_files;
 use crate::output::table::markdown;
 use crate::output::{Provenance, Table, csv};
-use crate::study::Program;
 use crate::study::row::distinct;
+use crate::study::{Program, Variant};
 
 /// The results of a work-precision study on any number of scenes.
 #[derive(Clone, Debug, PartialEq)]

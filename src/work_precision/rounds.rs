@@ -8,8 +8,7 @@ use super::report::WorkReport;
 use super::slots::Slot;
 use super::{WorkPrecision, WorkProgress};
 use crate::error::Error;
-use crate::study::Row;
-use crate::study::row::distinct;
+use crate::study::{Row, fill_orders};
 
 /// The least time between two writes of finished rows within a round.
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
@@ -89,7 +88,7 @@ impl<const D: usize> WorkPrecision<'_, D> {
                     let row = completed(row, &slot.case, against_reference);
                     match slot.measured.get_mut(step) {
                         Some(measured) => measured.add(&row, phases),
-                        None => slot.measured.push(Measured::new(row, phases, &slot.case)),
+                        None => slot.measured.push(Measured::new(row, phases)),
                     }
                 }
             }
@@ -115,9 +114,10 @@ impl<const D: usize> WorkPrecision<'_, D> {
     }
 }
 
-/// The row of a run, of which an adaptive step has no peak of its own, with its errors where they are against a
-/// reference.
+/// The row of a run with the linear solver asked for, and with its errors where they are against a reference. An adaptive
+/// step has no peak of its own.
 fn completed(mut row: Row, case: &Case, against_reference: &[Row]) -> Row {
+    row.linear_asked.clone_from(&case.variant.linear_asked);
     if case.is_adaptive() {
         row.peak_memory_bytes = None;
         return row;
@@ -136,17 +136,4 @@ fn completed(mut row: Row, case: &Case, against_reference: &[Row]) -> Row {
 /// Sorts indices by their keys; not generic, so that the sorting code is compiled once.
 fn sort_by(order: &mut [usize], key: &dyn Fn(usize) -> (bool, usize)) {
     order.sort_by_key(|&k| key(k));
-}
-
-/// Observed orders, variant by variant.
-fn fill_orders(rows: &mut [Measured]) {
-    for variant in distinct(rows.iter().map(Measured::variant)) {
-        let mut own: Vec<&mut Measured> =
-            rows.iter_mut().filter(|m| m.variant() == variant).collect();
-        let mut plain: Vec<_> = own.iter().map(|m| m.row.clone()).collect();
-        crate::study::fill_orders(&mut plain);
-        for (measured, row) in own.iter_mut().zip(plain) {
-            measured.row.order = row.order;
-        }
-    }
 }

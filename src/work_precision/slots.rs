@@ -2,13 +2,13 @@
 
 use super::WorkPrecision;
 use super::case::Candidate;
-use super::measured::{ADAPTIVE, Case, Failure, Measured, UNIFORM, Variant};
+use super::measured::{Case, Failure, Measured};
 use crate::error::Error;
 use crate::inequality::{ActiveSet, in_precision};
 use crate::linear::LinearMethod;
 use crate::nested::Adaptivity;
 use crate::real::Precision;
-use crate::study::Study;
+use crate::study::{Meshes, Study, Variant};
 
 /// A case, its study, and its results so far.
 pub(super) struct Slot<'s, const D: usize> {
@@ -59,17 +59,16 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         let scene = self.scene.clone();
         let name = LinearMethod::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
         let in_force = set.as_deref().unwrap_or(scene.problem.constraint_set());
-        let constraint = scheme.constraint_on(in_force);
+        let solver = in_precision(self.precision, ActiveSet::default().linear(linear));
         let variant = Variant {
             scene: scene.name.clone(),
-            scheme: scheme.name().to_owned(),
-            constraint: constraint.unwrap_or_else(|| in_force.name().to_owned()),
             label: scheme.label_with(in_force, shown),
-            linear_asked: name.to_owned(),
-            meshes: if adaptivity.is_some() { ADAPTIVE } else { UNIFORM }.to_owned(),
+            solver: solver.name().to_owned(),
+            linear_asked: Some(name.to_owned()),
+            meshes: adaptivity.map_or(Meshes::Uniform, |of| Meshes::Adaptive { theta: of.theta }),
         };
         let mut study = Study::<D>::new(scene)
-            .boxed_solver(in_precision(self.precision, ActiveSet::default().linear(linear)))
+            .boxed_solver(solver)
             .shared_scheme(scheme, set, shown)
             .levels([level]);
         if let Some(adaptivity) = adaptivity {

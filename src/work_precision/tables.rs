@@ -1,12 +1,13 @@
 //! The tables of a report: for every scene what was run, where the time went, what it costs to reach one
 //! error, and how long it takes to reach others.
 
-use super::measured::{Failure, Measured, Phases, Variant, scenes, variants};
+use super::measured::{Failure, Measured, Phases, scenes, variants};
 use super::verdict::at_common_error;
 use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
 use crate::output::Table;
 use crate::output::table::Cell;
+use crate::study::Variant;
 use crate::study::row::distinct;
 
 /// Columns of errors that fit into a line.

@@ -2,9 +2,11 @@
 
 use serde::Serialize;
 
-use super::measured::{Failure, Measured, Variant};
+use super::measured::{Failure, Measured};
 use crate::measure::ErrorNorm;
+use crate::study::Variant;
 use crate::study::row::distinct;
+use crate::study::series::series_of;
 
 /// The error of a row in a norm; none where the run did not converge.
 fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
@@ -116,15 +118,9 @@ pub(crate) fn work_at_errors(rows: &[Measured], refused: &[Failure]) -> Vec<Work
 }
 
 /// The levels of every variant of a scene, in order.
-pub(crate) fn curves<'a>(rows: &'a [Measured], scene: &str) -> Vec<(Variant, Vec<&'a Measured>)> {
-    let of_scene = || rows.iter().filter(|m| m.row.scene == scene);
-    let variants = distinct(of_scene().map(Measured::variant));
-    let levels = |variant: Variant| {
-        let mut levels: Vec<&Measured> = of_scene().filter(|m| m.variant() == variant).collect();
-        levels.sort_by_key(|m| m.row.level);
-        (variant, levels)
-    };
-    variants.into_iter().map(levels).collect()
+fn curves<'a>(rows: &'a [Measured], scene: &str) -> Vec<(Variant, Vec<&'a Measured>)> {
+    let of_scene = series_of(rows).into_iter().filter(|of| of.variant.scene == scene);
+    of_scene.map(|of| (of.variant, of.rows)).collect()
 }
 
 type Curves<'a> = [(Variant, Vec<&'a Measured>)];

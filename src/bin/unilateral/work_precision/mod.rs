@@ -164,7 +164,7 @@ fn with_settings<'a, const D: usize>(
             WorkProgress::Started(case, round) => {
                 let v = &case.variant;
                 let meshes = match case.is_adaptive() {
-                    true => v.meshes.clone(),
+                    true => v.meshes.name().to_owned(),
                     false => format!("level {}", case.level),
                 };
                 bar.set_message(format!("{}, {}, {meshes}, round {}", v.scene, v.label, round + 1));
