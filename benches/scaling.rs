@@ -108,10 +108,9 @@ fn run<const D: usize>(
 fn run_on_mesh(path: &str, linear: LinearMethod) -> Result<Row, Failure> {
     let mesh = gmsh::read::<2>(Path::new(path))?.mesh;
     let times = (1e6 / mesh.vertices().len() as f64).log2() / 2.0;
-    let report = Study::<2>::new(scenes::radial::<2>(1.0))
+    let report = Study::<2>::new(scenes::radial::<2>(1.0).domain(mesh))
         .scheme(ConformingP1)
         .solver(ActiveSet::default().linear(linear))
-        .on_mesh(mesh)
         .levels([times.round().max(0.0) as usize])
         .run()?;
     report.rows.into_iter().next().ok_or_else(|| "no row".into())

@@ -12,7 +12,7 @@ pub use crate::nested::{AdaptiveMeshes, Adaptivity, Stop, adapt};
 pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
 pub use crate::problem::Problem;
 pub use crate::real::Point;
-pub use crate::scenes;
+pub use crate::scenes::{self, Scene};
 pub use crate::scheme::*;
 #[cfg(feature = "report")]
 pub use crate::study::Journal;

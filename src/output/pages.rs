@@ -28,8 +28,8 @@ impl Report {
     /// Two tables for each scene, with the columns of the tables for a terminal: errors and times, then
     /// energy, contact measure, resultant, error bound and stages.
     pub fn tables(&self) -> Vec<Table> {
-        let tables = |(scene, rows): (&str, Vec<&Row>)| {
-            [Some(table(scene, &rows)), second(scene, &rows)].into_iter().flatten()
+        let tables = |(scene, rows): (String, Vec<&Row>)| {
+            [Some(table(&scene, &rows)), second(&scene, &rows)].into_iter().flatten()
         };
         scenes(&self.rows).into_iter().flat_map(tables).collect()
     }
@@ -42,13 +42,13 @@ impl Report {
 
     /// The report as a page, which links the pictures `SCENE-LABEL.svg` that are in the directory.
     pub(super) fn page(&self, directory: &Path) -> HtmlPage {
-        let of_scene = |(scene, rows): (&str, Vec<&Row>)| Section {
-            title: scene.to_owned(),
-            tables: [Some(table(scene, &rows)), second(scene, &rows)]
+        let of_scene = |(scene, rows): (String, Vec<&Row>)| Section {
+            tables: [Some(table(&scene, &rows)), second(&scene, &rows)]
                 .into_iter()
                 .flatten()
                 .collect(),
-            pictures: self.pictures(scene, directory),
+            pictures: self.pictures(&scene, directory),
+            title: scene,
             ..Section::default()
         };
         HtmlPage {

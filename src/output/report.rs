@@ -8,7 +8,7 @@ use crate::files::replace_text;
 #[cfg(feature = "plot")]
 use crate::plot::{convergence, work_precision};
 use crate::study::summary::summaries;
-use crate::study::{Report, Row, file_name};
+use crate::study::{Report, Series, Variant, file_name};
 use crate::table::latex_document;
 
 impl Report {
@@ -31,11 +31,11 @@ impl Report {
         for plot in ["convergence", "work_precision"] {
             names.push(format!("{plot}.svg"));
         }
-        for Row { scene, label, solver, level, .. } in &self.rows {
+        for Series { variant: Variant { scene, label, solver, .. }, rows, .. } in self.series() {
             for stem in [format!("{scene}-{label}"), format!("{scene}-{label}-{solver}")] {
                 let stem = file_name(&stem);
                 names.extend(["svg", "vtu", "pvd"].map(|end| format!("{stem}.{end}")));
-                names.push(format!("{stem}-{level}.vtu"));
+                names.extend(rows.iter().map(|row| format!("{stem}-{}.vtu", row.level)));
             }
         }
         for name in names {

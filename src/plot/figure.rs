@@ -3,8 +3,10 @@
 use super::layout::{FigureLayout, Sign};
 use super::panel::draw_panel;
 use super::pen::Pen;
-use super::series::{Key, Panel, Quantity, keys, scenes, with_curves};
-use crate::study::Row;
+use super::series::{Panel, Quantity, with_curves};
+use crate::study::row::distinct;
+use crate::study::series::{names, series_of};
+use crate::study::{Row, Series};
 
 /// A drawing that can be written as SVG.
 #[derive(Clone, Debug)]
@@ -12,18 +14,19 @@ pub struct Figure {
     /// The panels, row by row.
     pub(super) panels: Vec<Panel>,
     /// The entries of the legend, shared by the panels.
-    pub(super) keys: Vec<Key>,
+    pub(super) keys: Vec<String>,
     /// Number of panels in a row.
     pub(super) columns: usize,
 }
 
 /// Error against mesh size, with reference slopes: for each scene one panel for the L2 error and
-/// one for the error in the broken H1 seminorm. On adaptive meshes error in the broken energy norm and bound
+/// one for the error in the broken H1 seminorm. With adaptive meshes error in the broken energy norm and bound
 /// against the number of unknowns. A band goes from each error in the energy norm up to the bound on it; where no
 /// error is known the bound itself is shown.
 pub fn convergence(rows: &[Row]) -> Figure {
-    let keys = keys(rows);
-    let scenes = scenes(rows);
+    let series = series_of(rows);
+    let names = names(&series);
+    let scenes = scenes(&series);
     let columns = match scenes.len() {
         0..=3 => 2,
         4..=16 => 4,
@@ -31,28 +34,27 @@ pub fn convergence(rows: &[Row]) -> Figure {
     };
     let panels = scenes
         .iter()
-        .flat_map(|scene| {
-            let (size, errors) = match is_adaptive(rows, scene) {
+        .flat_map(|(scene, series)| {
+            let (size, errors) = match is_adaptive(series) {
                 true => (Quantity::Unknowns, [Quantity::Energy, Quantity::Bound]),
                 false => (Quantity::MeshSize, [Quantity::L2, Quantity::H1]),
             };
-            let panel = |error| Panel::new(rows, &keys, scene, size, error);
-            match has_errors(rows, scene) {
+            let panel = |error| Panel::new((scene, series), &names, size, error);
+            match has_errors(series) {
                 true => with_curves(errors.map(panel).into()),
                 false => with_curves(vec![panel(Quantity::Bound)]),
             }
         })
         .collect();
-    Figure { panels, keys, columns }
+    Figure { panels, keys: names, columns }
 }
 
 /// The two figures of a first screen, of the first four scenes: error against time, and the same error against mesh
 /// size; one panel for each scene.
 pub(crate) fn overview(rows: &[Row]) -> [Figure; 2] {
-    let of: Vec<Row> = {
-        let first: Vec<&str> = scenes(rows).into_iter().take(4).collect();
-        rows.iter().filter(|row| first.contains(&&*row.scene)).cloned().collect()
-    };
+    let first: Vec<&str> =
+        distinct(rows.iter().map(|row| &*row.scene)).into_iter().take(4).collect();
+    let of: Vec<Row> = rows.iter().filter(|row| first.contains(&&*row.scene)).cloned().collect();
     let time = work_precision(&of);
     let Figure { panels, keys, .. } = convergence(&of);
     let errors: Vec<&String> = time.panels.iter().map(|panel| &panel.y).collect();
@@ -61,11 +63,12 @@ pub(crate) fn overview(rows: &[Row]) -> [Figure; 2] {
     [time, size]
 }
 
-/// L2 error against the seconds a run took altogether, one panel for each scene. On adaptive meshes, and where no
+/// L2 error against the seconds a run took altogether, one panel for each scene. With adaptive meshes, and where no
 /// error is known, the error bound against the seconds with those of the bound. Runs that did not converge are marked.
 pub fn work_precision(rows: &[Row]) -> Figure {
-    let keys = keys(rows);
-    let scenes = scenes(rows);
+    let series = series_of(rows);
+    let names = names(&series);
+    let scenes = scenes(&series);
     let columns = match scenes.len() {
         0 | 1 => 1,
         2 | 4 => 2,
@@ -75,26 +78,32 @@ pub fn work_precision(rows: &[Row]) -> Figure {
     };
     let panels = scenes
         .iter()
-        .map(|scene| {
-            let (time, error) = match is_adaptive(rows, scene) || !has_errors(rows, scene) {
+        .map(|(scene, series)| {
+            let (time, error) = match is_adaptive(series) || !has_errors(series) {
                 true => (Quantity::SecondsWithBound, Quantity::Bound),
                 false => (Quantity::Seconds, Quantity::L2),
             };
-            Panel::new(rows, &keys, scene, time, error)
+            Panel::new((scene, series), &names, time, error)
         })
         .flat_map(|panel| with_curves(vec![panel]))
         .collect();
-    Figure { panels, keys, columns }
+    Figure { panels, keys: names, columns }
 }
 
-/// Whether the meshes of a scene are adaptive.
-fn is_adaptive(rows: &[Row], scene: &str) -> bool {
-    rows.iter().any(|row| row.scene == scene && row.theta.is_some())
+/// The series of each scene, in the order in which scenes first occur.
+fn scenes<'s, 'r>(series: &'s [Series<'r>]) -> Vec<(&'s str, Vec<&'s Series<'r>>)> {
+    let of = |scene| (scene, series.iter().filter(|s| s.variant.scene == scene).collect());
+    distinct(series.iter().map(|s| s.variant.scene.as_str())).into_iter().map(of).collect()
+}
+
+/// Whether some meshes of a scene are adaptive.
+fn is_adaptive(series: &[&Series<'_>]) -> bool {
+    series.iter().any(|s| s.variant.meshes.is_adaptive())
 }
 
 /// Whether some error of a scene is known.
-fn has_errors(rows: &[Row], scene: &str) -> bool {
-    rows.iter().any(|row| row.scene == scene && row.error.l2.is_some())
+fn has_errors(series: &[&Series<'_>]) -> bool {
+    series.iter().flat_map(|s| &s.rows).any(|row| row.error.l2.is_some())
 }
 
 impl Figure {

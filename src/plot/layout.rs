@@ -1,7 +1,6 @@
 //! Positions of panels and legend.
 
 use super::pen::{Align, Pen, ScreenPoint, text_width};
-use super::series::Key;
 use super::style::{GREY, INK, draw_failed, draw_limit, draw_mark, draw_slope, segment};
 
 /// Width and height of a panel with its labels.
@@ -63,14 +62,14 @@ pub(crate) struct FigureLayout {
 
 impl FigureLayout {
     /// Panels in a grid, the legend below them in as many lines as it takes.
-    pub fn new(panels: usize, columns: usize, keys: &[Key], signs: &[Sign]) -> Self {
+    pub fn new(panels: usize, columns: usize, keys: &[String], signs: &[Sign]) -> Self {
         let rows = panels.max(1).div_ceil(columns);
         let places = (0..panels).map(|i| {
             (MARGIN + (i % columns) as f64 * PANEL.0, MARGIN + (i / columns) as f64 * PANEL.1)
         });
 
         let mut entries: Vec<Entry> =
-            keys.iter().enumerate().map(|(k, key)| Entry::Curve(k, key.label.clone())).collect();
+            keys.iter().enumerate().map(|(k, key)| Entry::Curve(k, key.clone())).collect();
         entries.extend(signs.iter().copied().map(Entry::Sign));
         // an entry of the legend may be wider than the panels
         let widest = entries.iter().map(Entry::width).fold(columns as f64 * PANEL.0, f64::max);

@@ -1,4 +1,4 @@
-//! Problems of one's own from a TOML file: mesh or box, data by name as numbers or expressions.
+//! Problems of one's own from a TOML file, as scenes: mesh or box, data by name as numbers or expressions.
 //!
 //! ```toml
 //! name = "plate"
@@ -40,22 +40,34 @@
 mod data;
 mod error;
 mod expression;
-mod own_problem;
 mod table;
 
 pub use error::{ProblemFileError, ProblemFileErrorKind};
-pub use own_problem::{AnyOwnProblem, Geometry, OwnProblem};
 
 use std::path::Path;
 
 use crate::input::read_file;
+use crate::scenes::AnyScene;
 use table::Source;
+
+/// What a problem file and its mesh file say.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct ProblemFile {
+    /// The problem on its box or on its mesh, whose boundary has the parts that the file says. Its name is that of the
+    /// file if the file gives none.
+    pub scene: AnyScene,
+    /// The [`fingerprint`](crate::input::fingerprint)s of the files: `problem`, and `mesh` if there is one.
+    pub fingerprints: Vec<(&'static str, String)>,
+    /// What the mesh file has that is not used, after its path.
+    pub warnings: Vec<String>,
+}
 
 /// Reads a problem and holds its data against its mesh: names, and values at vertices and barycentres.
 ///
 /// # Errors
 /// Every [`ProblemFileError`].
-pub fn read(path: &Path) -> Result<AnyOwnProblem, ProblemFileError> {
+pub fn read(path: &Path) -> Result<ProblemFile, ProblemFileError> {
     let unreadable =
         |error| ProblemFileError::of_file(path, ProblemFileErrorKind::Unreadable, error);
     let text = String::from_utf8(read_file(path).map_err(unreadable)?)
@@ -63,9 +75,9 @@ pub fn read(path: &Path) -> Result<AnyOwnProblem, ProblemFileError> {
     let source = Source { path, text: &text };
     let root = source.root()?;
     let place = source.place(&root)?;
-    Ok(match place.dimension() {
-        1 => AnyOwnProblem::One(data::problem(&source, &root, &place)?),
-        2 => AnyOwnProblem::Two(data::problem(&source, &root, &place)?),
-        _ => AnyOwnProblem::Three(data::problem(&source, &root, &place)?),
-    })
+    match place.dimension() {
+        1 => data::problem::<1>(&source, &root, &place),
+        2 => data::problem::<2>(&source, &root, &place),
+        _ => data::problem::<3>(&source, &root, &place),
+    }
 }

@@ -59,7 +59,7 @@ pub(crate) fn row_on<const D: usize>(
     choice: &Choice,
 ) -> Result<Row, Error> {
     scene.problem = choice.constrain(scene.problem);
-    let study = Study::<D>::new(scene).on_mesh(mesh).boxed_scheme(choice.make());
+    let study = Study::<D>::new(scene.domain(mesh)).boxed_scheme(choice.make());
     Ok(study.solver(solver()).levels([0]).run()?.rows.swap_remove(0))
 }
 

@@ -3,14 +3,14 @@
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, BoxDomain, Mesh, describe_point};
+use crate::mesh::{BoundaryPart, BoxDomain, Domain, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Given, Problem};
 use crate::real::Point;
 use crate::scenes::Scene;
 use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 
-/// Checks that a mesh is compatible with a scene. Returns the barycentre of a facet on which the
-/// exact solution of the scene breaks the contact condition, or none.
+/// Checks that a scene fits its domain. Returns the barycentre of a facet of a mesh on which the exact solution of the
+/// scene breaks the contact condition, or none.
 ///
 /// Dirichlet and Neumann data of a scene with an exact solution come from that solution wherever
 /// the mesh has such parts, so it stays the solution on any domain where it is smooth enough. Only
@@ -19,12 +19,12 @@ use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 /// # Errors
 /// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part, or if the data of
 /// the scene are no data on the mesh: not finite, or without an admissible value.
-pub fn check_fit<const D: usize>(
-    scene: &Scene<D>,
-    mesh: &Mesh<D>,
-) -> Result<Option<String>, Error> {
+pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Error> {
+    let Domain::Mesh(mesh) = &scene.domain else {
+        return check_contact(scene).map(|()| None);
+    };
     mesh.check_boundary_parts()?;
-    check_contact(scene, mesh.has_part(BoundaryPart::Contact))?;
+    check_contact(scene)?;
     check_data(scene, mesh)?;
     Ok(first_failure(scene, mesh))
 }
@@ -111,17 +111,9 @@ fn first_twice<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
     })
 }
 
-/// Checks that the built-in domain of a scene has the parts its problem needs.
-///
-/// # Errors
-/// [`Error::UnfitMesh`].
-pub(crate) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
-    check_contact(scene, scene.domain.has_part(BoundaryPart::Contact))
-}
-
-/// Checks that there is a contact part if and only if there is a Signorini condition.
-fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), Error> {
-    let why = match (scene.problem.has_gap(), contact) {
+/// Checks that the domain has a contact part if and only if there is a Signorini condition.
+fn check_contact<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
+    let why = match (scene.problem.has_gap(), scene.domain.has_part(BoundaryPart::Contact)) {
         (true, false) => {
             "the problem has a Signorini condition, but the mesh has no contact part: no group named \"contact\" or with a gap"
         }

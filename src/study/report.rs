@@ -116,8 +116,7 @@ impl Report {
         text
     }
     /// The limits of energy, contact measure and resultant of every series with three levels that converged,
-    /// from the three finest of them. Rows of one scene, label, constraint set and solver are a series.
-    /// Adaptive meshes have no limits: their sizes are not those of one family.
+    /// from the three finest of them. Adaptive meshes have no limits: their sizes are not those of one family.
     ///
     /// A limit is that of three figures, coarsest mesh first, whose error is `C h^p`: Richardson extrapolation
     /// with the order that the figures themselves show. None where they do not tend to a limit like a power of

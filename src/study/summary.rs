@@ -2,7 +2,8 @@
 
 use super::remarks::warnings;
 use super::row::{Row, distinct};
-use super::table::{scenes, scientific, seconds, unproven};
+use super::series::{Series, series_of};
+use super::table::{scientific, seconds, unproven};
 use crate::table::{Cell, Table};
 
 /// A column of the summary.
@@ -43,19 +44,15 @@ pub(crate) fn lead(rows: &[Row]) -> String {
 
 /// The tables of all scenes: at most eight columns, the best number of a column marked.
 pub(crate) fn summaries(rows: &[Row]) -> Vec<Table> {
-    scenes(rows).into_iter().map(|(scene, rows)| summary(scene, &rows)).collect()
+    let series = series_of(rows);
+    let scenes = distinct(series.iter().map(|series| &*series.variant.scene));
+    let of_scene = |scene| series.iter().filter(move |series| series.variant.scene == scene);
+    scenes.into_iter().map(|scene| summary(scene, &of_scene(scene).collect::<Vec<_>>())).collect()
 }
 
-fn summary(scene: &str, rows: &[&Row]) -> Table {
-    let has_solvers = rows.iter().any(|r| r.solver != rows[0].solver);
-    let name =
-        |r: &Row| if has_solvers { format!("{}, {}", r.label, r.solver) } else { r.label.clone() };
-    let key =
-        |r: &Row| (r.label.clone(), r.constraint.clone(), r.solver.clone(), r.theta.is_some());
-    let series = distinct(rows.iter().map(|r| key(r)));
-    let of =
-        |series: &_| rows.iter().filter(|r| key(r) == *series).max_by_key(|r| r.level).copied();
-    let finest: Vec<&Row> = series.iter().filter_map(of).collect();
+fn summary(scene: &str, series: &[&Series<'_>]) -> Table {
+    let finest: Vec<&Row> =
+        series.iter().filter_map(|series| series.rows.last().copied()).collect();
     let columns = columns(&finest);
     let best: Vec<Option<f64>> = columns.iter().map(|column| best(column, &finest)).collect();
     let cell = |column: &Column, best: Option<f64>, row: &Row| match (column.cell)(row) {
@@ -64,22 +61,25 @@ fn summary(scene: &str, rows: &[&Row]) -> Table {
         None => Cell::Nothing,
     };
     let mut told = Told::default();
-    let line = |row: &&Row| {
+    let line = |(series, row): (&&Series<'_>, &&Row)| {
         let numbers = columns.iter().zip(&best).map(|(column, &best)| cell(column, best, row));
         let status = Cell::Words(told.status(row));
-        [Cell::Words(name(row))].into_iter().chain(numbers).chain([status]).collect()
+        [Cell::Words(series.name.clone())].into_iter().chain(numbers).chain([status]).collect()
     };
-    let lines = finest.iter().map(line).collect();
+    let lines = series.iter().zip(&finest).map(line).collect();
     let names = columns.iter().map(|column| column.name);
     let levels = distinct(finest.iter().map(|r| r.level.to_string()));
     let references = distinct(finest.iter().filter_map(|r| r.reference()));
     let references = references.iter().map(|reference| format!("; errors against {reference}"));
-    let is_finest = |row: &Row| finest.iter().any(|finest| std::ptr::eq(*finest, row));
-    let coarser: Vec<&&Row> = rows.iter().filter(|r| !r.converged() && !is_finest(r)).collect();
     let mut remarks = Vec::new();
-    for message in distinct(coarser.iter().map(|r| told.message(r))) {
-        let of = coarser.iter().filter(|r| told.message(r) == message);
-        let of: Vec<String> = of.map(|r| format!("{} at {}", name(r), r.level)).collect();
+    let mut coarser: Vec<(&str, &Row)> = Vec::new();
+    for series in series {
+        let rows = series.rows.iter().rev().skip(1).rev();
+        coarser.extend(rows.filter(|row| !row.converged()).map(|row| (&*series.name, *row)));
+    }
+    for message in distinct(coarser.iter().map(|(_, row)| told.message(row))) {
+        let of = coarser.iter().filter(|(_, row)| told.message(row) == message);
+        let of: Vec<String> = of.map(|(name, row)| format!("{name} at {}", row.level)).collect();
         remarks.push(format!("{}: {message}", of.join(", ")));
     }
     let warnings = warnings(&finest).into_iter().map(|(labels, text)| format!("{labels}: {text}"));

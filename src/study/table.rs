@@ -8,6 +8,7 @@ use super::rates::rates;
 use super::remarks::{failure, warnings};
 use super::report::Report;
 use super::row::{Row, distinct};
+use super::series::series_of;
 use super::summary::{lead, summaries};
 use crate::table::{WIDTH, wrapped};
 
@@ -42,7 +43,7 @@ impl Report {
 }
 
 /// Writes one table for each scene, in the order in which scenes first occur, with a blank line
-/// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
+/// between series; times are in seconds. `certif.` is the largest of the four numbers of the
 /// certificate, `effect.` the error bound over the true error in the broken energy norm, `bound` the bound on that
 /// error, with a mark where a term of it is not proven. A row that did not converge is followed by
 /// the reason. Where no error is known there are columns of error bound, energy, contact measure and
@@ -53,15 +54,27 @@ fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
         if i > 0 {
             writeln!(f)?;
         }
-        write_scene(f, scene, &rows)?;
+        write_scene(f, &scene, &rows)?;
     }
     Ok(())
 }
 
-/// The rows of each scene, in the order in which scenes first occur.
-pub(crate) fn scenes(rows: &[Row]) -> Vec<(&str, Vec<&Row>)> {
-    let of = |scene| (scene, rows.iter().filter(|r| r.scene == scene).collect());
-    distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().map(of).collect()
+/// The rows of each table with its title: those of a scene, in the order in which scenes first occur. Where a scene has
+/// uniform and adaptive meshes, each kind has its table, since their columns differ.
+pub(crate) fn scenes(rows: &[Row]) -> Vec<(String, Vec<&Row>)> {
+    let of = |scene: &str| {
+        let of_scene = rows.iter().filter(|r| r.scene == scene);
+        let (adaptive, uniform): (Vec<&Row>, Vec<&Row>) = of_scene.partition(|r| r.theta.is_some());
+        match (uniform.is_empty(), adaptive.is_empty()) {
+            (false, false) => vec![
+                (format!("{scene}, uniform meshes"), uniform),
+                (format!("{scene}, adaptive meshes"), adaptive),
+            ],
+            (true, _) => vec![(scene.to_owned(), adaptive)],
+            (_, true) => vec![(scene.to_owned(), uniform)],
+        }
+    };
+    distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().flat_map(of).collect()
 }
 
 /// The table of one scene.
@@ -69,14 +82,13 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     write_wrapped(f, &format!("{scene}: {}", heading(rows)))?;
     let lines = Lines::new(columns(rows), rows);
     lines.write(f, |c| c.name.to_owned())?;
-    let key = |r: &Row| [&r.label, &r.constraint, &r.solver].map(String::clone);
-    let series = distinct(rows.iter().map(|r| key(r)));
+    let series = series_of(rows);
     let mut told = Vec::new();
     for (i, of_series) in series.iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
         }
-        for row in rows.iter().filter(|r| key(r) == *of_series) {
+        for row in of_series.plain_rows() {
             lines.write(f, |c| (c.cell)(row))?;
             if !row.converged() {
                 let message = failure(row);
@@ -97,8 +109,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     for line in rates(rows).iter().chain(&unproven(rows)) {
         write_wrapped(f, &format!("  {line}"))?;
     }
-    let finest = |of_series| rows.iter().rfind(|r| key(r) == of_series).copied();
-    let finest: Vec<&Row> = series.into_iter().filter_map(finest).collect();
+    let finest: Vec<&Row> = series.iter().filter_map(|s| s.plain_rows().next_back()).collect();
     for columns in [totals(rows), of_processes(rows)].into_iter().filter(|c| !c.is_empty()) {
         let lines = Lines::new(columns, &finest);
         writeln!(f)?;
@@ -121,9 +132,8 @@ fn has_errors(rows: &[&Row]) -> bool {
 /// The limits of energy, contact measure and resultant of each series.
 pub(crate) fn limits(rows: &[&Row]) -> Vec<String> {
     let mut lines = Vec::new();
-    let rows: Vec<Row> = rows.iter().map(|&row| row.clone()).collect();
     let has_solvers = rows.iter().any(|r| r.solver != rows[0].solver);
-    for series in extrapolate(&rows) {
+    for series in extrapolate(rows) {
         let limit = |name: &str, limit: Option<Limit>| {
             let Limit { value, order } = limit?;
             let order =

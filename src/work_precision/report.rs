@@ -6,7 +6,7 @@ use serde_json::json;
 
 #[cfg(feature = "plot")]
 use super::figures::figures;
-use super::measured::{Failure, Measured, Variant, scenes, variants};
+use super::measured::{Failure, Measured, scenes, variants};
 use super::tables::{details, summary};
 use super::verdict::verdict;
 use super::work_at_error::{WorkAtError, work_at_errors};
@@ -14,15 +14,15 @@ use crate::error::Error;
 use crate::files::replace_text;
 use crate::output::html::{HtmlPage, Section};
 use crate::output::{Provenance, csv};
-use crate::study::Program;
 use crate::study::row::distinct;
+use crate::study::{Program, Variant};
 use crate::table::{Table, WIDTH, latex_document, markdown};
 
 /// The results of a work-precision study on any number of scenes.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct WorkReport {
-    /// The program; `precision` lists all precisions, `repeat` is the number of rounds.
+    /// The program; `repeat` is the number of rounds.
     pub program: Program,
     /// Time and machine.
     pub provenance: Provenance,
@@ -31,10 +31,6 @@ pub struct WorkReport {
     pub setting: String,
     /// The label of the scheme that verdicts compare with the others.
     pub subject: String,
-    /// Peak of memory of a run without a case: of the process before the first one, or what
-    /// [`WorkPrecision::empty_memory`](super::WorkPrecision::empty_memory) states. Plots show memory above
-    /// it.
-    pub empty_memory_bytes: Option<u64>,
     /// One row for every scene, variant and level that gave one.
     pub rows: Vec<Measured>,
     /// Cases that were not run or ended in an error.
@@ -49,13 +45,12 @@ impl WorkReport {
             provenance: Provenance::now(rounds),
             setting: String::new(),
             subject: String::new(),
-            empty_memory_bytes: None,
             rows: Vec::new(),
             refused: Vec::new(),
         }
     }
 
-    /// Time, unknowns and memory at given errors.
+    /// Time, unknowns and entries at given errors.
     pub fn reach(&self) -> Vec<WorkAtError> {
         work_at_errors(&self.rows, &self.refused)
     }
@@ -98,14 +93,13 @@ impl WorkReport {
         [self.detail_tables(), self.summary_tables()].concat()
     }
 
-    /// The report as JSON: `program`, `provenance`, `setting`, `empty_memory_bytes`, `rows`, `failures`, `reach` and
+    /// The report as JSON: `program`, `provenance`, `setting`, `rows`, `failures`, `reach` and
     /// `verdicts`. What does not apply is null.
     pub fn to_json(&self) -> String {
         let value = json!({
             "program": self.program,
             "provenance": self.provenance,
             "setting": self.setting,
-            "empty_memory_bytes": self.empty_memory_bytes,
             "rows": self.rows,
             "failures": self.failures(),
             "reach": self.reach(),
@@ -150,7 +144,7 @@ impl WorkReport {
         let mut plots = Vec::new();
         #[cfg(feature = "plot")]
         for scene in self.scenes() {
-            for (name, figure) in figures(&self.rows, scene, self.empty_memory_bytes) {
+            for (name, figure) in figures(&self.rows, scene) {
                 plots.push((name, figure.to_svg()));
             }
         }
@@ -221,14 +215,13 @@ impl WorkReport {
         files.iter().map(|(name, text)| replace_text(&directory.join(name), text)).collect()
     }
 
-    /// Writes the errors of a scene against time, unknowns and memory as `SCENE-time.svg`,
-    /// `SCENE-unknowns.svg` and `SCENE-memory.svg`.
+    /// Writes the errors of a scene against time and unknowns as `SCENE-time.svg` and `SCENE-unknowns.svg`.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     #[cfg(feature = "plot")]
     pub fn write_figures(&self, directory: &Path, scene: &str) -> Result<Vec<PathBuf>, Error> {
-        let figures = figures(&self.rows, scene, self.empty_memory_bytes).into_iter();
+        let figures = figures(&self.rows, scene).into_iter();
         figures
             .map(|(name, figure)| {
                 replace_text(&directory.join(format!("{name}.svg")), &figure.to_svg())

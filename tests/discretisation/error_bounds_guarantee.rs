@@ -148,10 +148,10 @@ fn rules_follow_the_degrees_of_data() {
     let gap = |x: &Point<2>| -0.1 + 0.1 * x[0].powi(2);
     let functions = Problem::new().source(source).neumann(flux).signorini(gap);
     let mut polynomials = functions.clone();
-    polynomials.source = Some(Datum::polynomial(12, source));
-    polynomials.neumann =
+    polynomials.source.everywhere = Some(Datum::polynomial(12, source));
+    polynomials.neumann.everywhere =
         Some(BoundaryFlux::Polynomial { value: std::sync::Arc::new(flux), degree: 12 });
-    polynomials.gap = Some(Datum::polynomial(2, gap));
+    polynomials.gap.everywhere = Some(Datum::polynomial(2, gap));
     for name in ["p1", "sipg", "p2"] {
         let scheme: NamedScheme = name.parse().unwrap();
         let scheme = scheme.make();

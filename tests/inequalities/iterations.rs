@@ -74,7 +74,7 @@ fn few_iterations_on_one_mesh<const D: usize>(scene: impl Fn() -> Scene<D>, leve
     for level in levels {
         let mesh = scene().domain.mesh(level).unwrap();
         assert!(mesh.vertices().len() > 10_000, "multigrid begins there");
-        let study = Study::<D>::new(scene()).on_mesh(mesh).levels([0]).scheme(ConformingP1);
+        let study = Study::<D>::new(scene().domain(mesh)).levels([0]).scheme(ConformingP1);
         let study = if level == levels[0] { study.scheme(Sipg::default()) } else { study };
         for row in &study.run().unwrap().rows {
             checks.certified(row, 1e-9);

@@ -107,7 +107,6 @@ fn the_other_commands_refuse_before_the_work_too() {
     let file = scratch.file("file", "");
     let (below, out) = (scratch.path("file/report"), scratch.path("out"));
     for (name, options, words) in [
-        ("work-precision", format!("--quick --save {below} --out {out}"), "cannot write"),
         ("work-precision", format!("--quick --out {below}"), "cannot write"),
         ("work-precision", format!("--scene radial-2d --reference 20 --out {out}"), "reference"),
         ("stability", format!("--quick --markdown {below} --out {out}"), "cannot write"),

@@ -131,7 +131,7 @@ fn what_an_adaptive_study_cannot_have_is_refused_before_work() {
     let mesh = scenes::radial::<2>(1.0).domain.mesh(6).unwrap();
     let own = Problem::new().constant_source(-1.0).obstacle_below(|_| -0.05);
     assert!(mesh.has_part(BoundaryPart::Dirichlet));
-    let own = Study::<2>::of_problem("own", own, mesh).unwrap().scheme(Sipg::default());
+    let own = Study::<2>::new(Scene::new("own", mesh, own)).scheme(Sipg::default());
     let rows = own.adaptive(adaptivity).run().unwrap().rows;
     assert!(rows[0].cells == 72 && rows[1].bound.total < rows[0].bound.total);
 }

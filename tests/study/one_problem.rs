@@ -38,7 +38,7 @@ fn one_call_and_a_study_give_the_same_bits() {
     let (_, of_study) = plate();
     // the domain of the scene is not used
     let scene = Scene::new("plate", BoxDomain::above_contact(), of_study);
-    let study = Study::<2>::new(scene).on_mesh(mesh.clone()).levels([0, 3]);
+    let study = Study::<2>::new(scene.domain(mesh.clone())).levels([0, 3]);
     let study = study.scheme(ConformingP1).scheme(Sipg::default()).scheme(Wopsip::default());
     let rows = study.run().unwrap().rows;
     let meshes = Hierarchy::refine(&mesh, 3).unwrap();

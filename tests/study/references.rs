@@ -169,8 +169,7 @@ fn a_problem_of_ones_own_needs_a_name_and_a_mesh() {
         .constant_source(-4.0)
         .signorini_on("bottom", -0.1)
         .neumann_on("left", |_, _| 0.0);
-    let report = Study::of_problem("own", problem, mesh)
-        .unwrap()
+    let report = Study::new(Scene::of_problem("own", problem, mesh).unwrap())
         .scheme(ConformingP1)
         .scheme(Sipg::default())
         .levels([0, 1, 2])
@@ -185,7 +184,7 @@ fn a_problem_of_ones_own_needs_a_name_and_a_mesh() {
     }
     let first = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [4, 4]).unwrap();
     assert!(first.has_part(BoundaryPart::Dirichlet));
-    let early = Study::of_problem("own", Problem::new(), first).unwrap().scheme(ConformingP1);
+    let early = Study::new(Scene::new("own", first, Problem::new())).scheme(ConformingP1);
     let error = early.levels([0, 1]).reference(ConformingP2, 2).check().unwrap_err();
     assert!(error.to_string().contains("at least 3"), "{error}");
 }

@@ -20,7 +20,7 @@ fn orders_are_taken_within_a_scheme_and_between_runs_that_converged() {
     ];
     rows[4].status = Outcome::Cycling;
     rows[5].order.l2 = Some(7.0);
-    rows[7].constraint = "facet-means".into();
+    rows[7].label = "p1:facet-means".into();
     fill_orders(&mut rows);
     let orders: Vec<_> = rows.iter().map(|r| r.order.l2).collect();
     let close = |x: Option<f64>, y: f64| (x.unwrap() - y).abs() < 1e-12;

@@ -8,8 +8,9 @@ use unilateral::element::{Element, P2};
 use unilateral::mesh::{BoundaryPart, BoxDomain, Domain, GroupedFacet, Mesh};
 use unilateral::paraview::{FieldScalar, VtuFile};
 use unilateral::prelude::*;
-use unilateral::problem_file::{self, AnyOwnProblem};
+use unilateral::problem_file;
 use unilateral::real::Point;
+use unilateral::scenes::AnyScene;
 use unilateral::scenes::Scene;
 use unilateral::study::file_name;
 
@@ -406,8 +407,10 @@ fn the_error_is_the_difference_from_a_reference() {
 #[test]
 fn points_keep_their_places_far_from_the_origin() {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/problems/utm.toml");
-    let AnyOwnProblem::Two(own) = problem_file::read(&own).unwrap() else { panic!("in the plane") };
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+    let AnyScene::Two(own) = problem_file::read(&own).unwrap().scene else {
+        panic!("in the plane")
+    };
+    let mesh = own.domain.mesh(0).unwrap();
     let meshes = Hierarchy::refine(&mesh, 3).unwrap();
     let solved = solve(&own.problem, &meshes, &ConformingP1).unwrap();
     let scratch = Scratch::new("vtu-utm");
@@ -425,8 +428,10 @@ fn points_keep_their_places_far_from_the_origin() {
 #[test]
 fn groups_are_arrays_of_small_integers() {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.toml");
-    let AnyOwnProblem::Two(own) = problem_file::read(&own).unwrap() else { panic!("in the plane") };
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+    let AnyScene::Two(own) = problem_file::read(&own).unwrap().scene else {
+        panic!("in the plane")
+    };
+    let mesh = own.domain.mesh(0).unwrap();
     let scratch = Scratch::new("vtu-groups");
     let path = scratch.0.join("fields.vtu");
     let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use unilateral::in_its_dimension;
 use unilateral::input::{excerpt, excerpts};
 use unilateral::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile, GmshWarning};
 use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
+use unilateral::scenes::AnyScene;
 
 use crate::shared::Request;
 
@@ -27,13 +29,19 @@ impl MeshFile {
         self.path.as_ref().map(read).transpose()
     }
 
-    /// The mesh, where there is a file; warnings of the file go to `warn`.
-    pub fn read_mesh<const D: usize>(&self, warn: &dyn Fn(String)) -> Request<Option<Mesh<D>>> {
-        self.read()?.map(|file| self.mesh(&file, warn)).transpose()
+    /// A scene on the mesh of the contents of the file, where there is one; warnings go to `warn`.
+    pub fn under(
+        &self,
+        scene: AnyScene,
+        file: Option<&GmshFile>,
+        warn: &dyn Fn(String),
+    ) -> Request<AnyScene> {
+        let Some(file) = file else { return Ok(scene) };
+        Ok(in_its_dimension!(scene, |scene| scene.domain(self.mesh(file, warn)?).into()))
     }
 
     /// The mesh of the contents of the file; warnings go to `warn`.
-    pub fn mesh<const D: usize>(&self, file: &GmshFile, warn: &dyn Fn(String)) -> Request<Mesh<D>> {
+    fn mesh<const D: usize>(&self, file: &GmshFile, warn: &dyn Fn(String)) -> Request<Mesh<D>> {
         let path = self.path.as_deref().expect("a file that has been read has a path");
         let read = file.mesh::<D>().map_err(|e| cannot_mesh(path, &e))?;
         warn_of(&read.warnings, path, warn);

@@ -4,15 +4,16 @@ mod check;
 
 use toml::de::DeTable;
 
+use super::ProblemFile;
 use super::error::{ProblemFileError, ProblemFileErrorKind};
-use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
 use crate::arrays::tabulate;
 use crate::error::Error;
 use crate::input::{beginning, fingerprint};
-use crate::mesh::{BoundaryFacet, BoundaryPart, BoxDomain, Mesh, SIDES};
+use crate::mesh::{BoundaryFacet, BoundaryPart, BoxDomain, Domain, Mesh, MeshError, SIDES};
 use crate::problem::{Datum, Given, Problem};
 use crate::real::Point;
+use crate::scenes::{AnyScene, Scene};
 use check::{Allowed, Checks, Entry};
 
 const KEYS: [&str; 9] =
@@ -273,7 +274,10 @@ pub(super) fn problem<'t, const D: usize>(
     source: &Source<'t>,
     root: &DeTable<'t>,
     place: &Place,
-) -> Done<OwnProblem<D>> {
+) -> Done<ProblemFile>
+where
+    AnyScene: From<Scene<D>>,
+{
     source.allow(root, &KEYS)?;
     let name = match root.get("name") {
         Some(name) => source.string("name", name)?.into(),
@@ -311,13 +315,16 @@ pub(super) fn problem<'t, const D: usize>(
             _ => {}
         }
     }
-    let geometry = match place {
+    let mut fingerprints = vec![("problem", fingerprint(source.text.as_bytes()))];
+    let mut warnings = Vec::new();
+    let domain: Domain<D> = match place {
         Place::File { path, file, offset } => {
             let read = file.mesh::<D>().map_err(|e| source.mesh_error(*offset, path, e))?;
             let groups = read.mesh.boundary_groups().iter().map(|group| group.names.clone());
             builder.complete(&groups.collect::<Vec<_>>());
-            let fingerprint = file.fingerprint();
-            Geometry::File { path: path.clone(), fingerprint, read: Box::new(read) }
+            fingerprints.push(("mesh", file.fingerprint()));
+            warnings.extend(read.warnings.iter().map(|w| format!("{}: {w}", path.display())));
+            read.mesh.into()
         }
         Place::Box { corners } => {
             let [lower, upper] = [0, 1].map(|k| Point::<D>::from_fn(|axis, _| corners[k][axis]));
@@ -329,19 +336,25 @@ pub(super) fn problem<'t, const D: usize>(
                     domain = domain.side(side / 2, side % 2, *part);
                 }
             }
-            Geometry::Box(domain)
+            domain.into()
         }
     };
-    let fingerprint = fingerprint(source.text.as_bytes());
-    let mut own = OwnProblem { name, fingerprint, problem: builder.problem.clone(), geometry };
     let failed =
         |error: Error| ProblemFileError::of_file(source.path, ProblemFileErrorKind::Problem, error);
-    let mesh = own.sample_mesh().map_err(failed)?;
+    let mesh = sample_mesh(&domain).map_err(|error| failed(error.into()))?;
     builder.put_normals(&mesh);
-    own.problem.clone_from(&builder.problem);
-    let Builder { problem, entries, parts, gradient_offset, .. } = &builder;
-    let gradient_offset = *gradient_offset;
-    Checks { source, problem, entries, parts, gradient_offset }.run(&mesh)?;
-    own.problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
-    Ok(own)
+    let Builder { problem, entries, parts, gradient_offset, .. } = builder;
+    Checks { source, problem: &problem, entries: &entries, parts: &parts, gradient_offset }
+        .run(&mesh)?;
+    let mesh = problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
+    let domain = if domain.is_mesh() { mesh.into() } else { domain };
+    Ok(ProblemFile { scene: Scene::new(name, domain, problem).into(), fingerprints, warnings })
+}
+
+/// A mesh to hold the data against, of a box one with few cells, whatever its sides.
+fn sample_mesh<const D: usize>(domain: &Domain<D>) -> Result<Mesh<D>, MeshError> {
+    match domain {
+        Domain::Box(domain) => Mesh::kuhn_box(domain, domain.counts(4).map(|n| n.min(64))),
+        other => other.mesh(0),
+    }
 }

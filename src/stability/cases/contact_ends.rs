@@ -112,10 +112,9 @@ fn junction(choice: &Choice, sink: Sink<'_>) -> Result<(), Error> {
     let lower = Point::<2>::new(-1.1, 0.0);
     let domain = BoxDomain { lower, ..BoxDomain::above_contact() };
     let mesh: Mesh<2> = Mesh::kuhn_box(&domain, [20, 10])?;
-    let mut scene = scenes::signorini_2d();
+    let mut scene = scenes::signorini_2d().domain(mesh);
     scene.problem = choice.constrain(scene.problem);
-    let study = Study::<2>::new(scene).on_mesh(mesh);
-    let study = study.boxed_scheme(choice.make()).solver(solver());
+    let study = Study::<2>::new(scene).boxed_scheme(choice.make()).solver(solver());
     let (told, how) = match study.levels([0]).run() {
         Err(why) => (true, why.to_string()),
         Ok(report) => {

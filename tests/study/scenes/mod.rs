@@ -1,5 +1,6 @@
 //! The catalogue: every scene solves its inequality, and the check that says so can say no.
 
+use unilateral::in_its_dimension;
 use unilateral::problem::Exact;
 use unilateral::real::Point;
 use unilateral::scenes::check::Violation;
@@ -15,11 +16,7 @@ mod values;
 const SAMPLES: usize = 1000;
 
 fn check_any(scene: &AnyScene) -> Result<(), Violation> {
-    match scene {
-        AnyScene::One(scene) => check_scene(scene, SAMPLES),
-        AnyScene::Two(scene) => check_scene(scene, SAMPLES),
-        AnyScene::Three(scene) => check_scene(scene, SAMPLES),
-    }
+    in_its_dimension!(scene, |scene| check_scene(scene, SAMPLES))
 }
 
 fn exact<const D: usize>(scene: &Scene<D>) -> &Exact<D> {

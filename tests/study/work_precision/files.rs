@@ -1,13 +1,13 @@
-//! The files of a report of work against precision, read back; baselines.
+//! The files of a report of work against precision, read back.
 
 use std::process::Command;
 
-use super::synthetic::{measured, synthetic};
+use super::synthetic::synthetic;
 use crate::scratch::Scratch;
 use unilateral::inequality::Outcome;
 use unilateral::output::LATEX_PACKAGES;
 use unilateral::stability::{Effort, Stability};
-use unilateral::work_precision::{Failure, changes};
+use unilateral::work_precision::Failure;
 
 /// Cells of a line without quoted commas.
 fn table(csv: &str) -> Vec<Vec<&str>> {
@@ -40,9 +40,7 @@ fn csv_reads_back_to_the_same_numbers() {
     assert_eq!(lines[3][smallest].parse::<f64>().unwrap().to_bits(), expected.to_bits());
     let reach = report.reach_csv();
     assert_eq!(table(&reach).len(), 1 + report.reach().len());
-    assert!(reach.starts_with(
-        "scene,scheme,constraint,label,linear_asked,precision,meshes,norm,error,standing,"
-    ));
+    assert!(reach.starts_with("scene,label,solver,linear_asked,meshes,norm,error,standing,"));
 }
 
 /// Rows of each table in Markdown: bars in each.
@@ -114,39 +112,6 @@ fn needs_pdflatex_to_compile_latex() {
 }
 
 #[test]
-fn a_baseline_tells_changed_counts_and_errors_and_ignores_times() {
-    let baseline = synthetic().to_json();
-    let mut report = synthetic();
-    for m in &mut report.rows {
-        m.smallest.total *= 7.0;
-        m.row.seconds.solve *= 3.0;
-        m.row.peak_memory_bytes = None;
-        // a rounding error is no change
-        m.row.error.h1 = m.row.error.h1.map(|e| e * (1.0 + 1e-12));
-    }
-    let same = changes(&baseline, &report).unwrap();
-    assert_eq!(same.changed, [""; 0]);
-    assert_eq!((same.compared, same.missing.len(), same.new.len()), (8, 0, 0));
-
-    report.rows[1].row.iterations.outer = Some(4);
-    report.rows[2].row.error.l2 = report.rows[2].row.error.l2.map(|e| 1.001 * e);
-    report.rows[4].row.status = Outcome::Cycling;
-    let dropped = report.rows.pop().unwrap();
-    report.rows.push(measured("cr", 8, 1.0));
-    let different = changes(&baseline, &report).unwrap();
-    assert_eq!(different.changed.len(), 3, "{different}");
-    let name = "radial-2d, p1, vertices, direct, f64, level 16";
-    assert_eq!(different.changed[0], format!("{name}: iterations.outer was 3, is 4"));
-    assert!(different.changed[1].contains("level 32: error.l2 was 0.0009765625, is 0.000977"));
-    assert!(different.changed[2].contains("status was \"converged\", is \"cycling\""));
-    assert_eq!(different.missing.len(), 1);
-    assert!(different.missing[0].ends_with(&format!("level {}", dropped.row.level)));
-    assert!(different.new[0].contains("cr"));
-    assert!(different.to_string().starts_with("against the baseline: 7 rows compared, 3 numbers"));
-    assert!(changes("{}", &report).is_err() && changes("no JSON", &report).is_err());
-}
-
-#[test]
 fn failures_are_listed_and_drawn() {
     let mut report = synthetic();
     report.rows[2].row.status = Outcome::Cycling;
@@ -156,20 +121,18 @@ fn failures_are_listed_and_drawn() {
     assert!(report.to_text().contains("failed: p1, level 32: cycling"));
     let scratch = Scratch::new("drawn");
     let written = report.write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 6 + 3);
-    for plot in ["time", "unknowns", "memory"] {
+    assert_eq!(written.len(), 6 + 2);
+    for plot in ["time", "unknowns"] {
         let text = scratch.read(&format!("radial-2d-{plot}.svg"));
         assert!(text.contains("did not converge"), "{plot}");
     }
-    let memory = scratch.read("radial-2d-memory.svg");
-    assert!(memory.contains("peak memory above that of an empty run in MB"));
     // a page comes with the last round
     assert!(!scratch.0.join("report.html").exists());
     report.provenance.complete = true;
     let written = report.write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 6 + 3);
+    assert_eq!(written.len(), 6 + 2);
     let page = scratch.read("report.html");
-    assert!(page.matches("<svg").count() == 3 && page.contains("time to reach an error"), "{page}");
+    assert!(page.matches("<svg").count() == 2 && page.contains("time to reach an error"), "{page}");
     // nothing is left of what was on its way
     let hidden = std::fs::read_dir(&scratch.0).unwrap();
     let is_hidden = |e: std::fs::DirEntry| e.file_name().to_string_lossy().starts_with('.');
