@@ -8,7 +8,7 @@ use super::csv::flatten;
 use super::html::{HtmlCell, HtmlPage, HtmlTable};
 use super::table::{Cell, Table};
 use crate::input::beginning;
-use crate::study::rates::rates;
+use crate::study::orders::rates::rates;
 use crate::study::remarks::{failure, warnings};
 use crate::study::row::distinct;
 use crate::study::series::names;
