@@ -5,7 +5,7 @@ use std::path::Path;
 use super::html::{HtmlPage, Section};
 #[cfg(feature = "plot")]
 use crate::plot::overview;
-use crate::study::rates::rates;
+use crate::study::orders::rates::rates;
 use crate::study::remarks::{failure, warnings};
 use crate::study::row::distinct;
 use crate::study::summary::{lead, summaries};

@@ -10,9 +10,8 @@ mod file_name;
 #[cfg(feature = "report")]
 mod journal;
 mod memory;
-mod orders;
+pub(crate) mod orders;
 mod part_figures;
-pub(crate) mod rates;
 mod reference;
 pub(crate) mod remarks;
 pub(crate) mod report;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::extrapolate::{Extrapolated, extrapolate};
 use super::row::Row;
+use super::series::{Series, series_of};
 
 /// The program that made a report, and its settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -114,6 +115,25 @@ impl Report {
         let mut text = serde_json::to_string_pretty(self).unwrap_or_else(|_| "null".to_owned());
         text.push('\n');
         text
+    }
+    /// The series of the report, in the order in which they first occur: the rows of one scheme with one solver on one
+    /// scene, those of uniform and of adaptive meshes apart. Tables, orders, limits and plots go by them.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let study = || Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1);
+    /// let mut report = study().levels([8, 4]).run()?;
+    /// report.rows.extend(study().adaptive(Adaptivity::default().steps(2)).run()?.rows);
+    /// let series = report.series();
+    /// assert_eq!([&series[0].name[..], &series[1].name[..]], ["p1, uniform", "p1, adaptive"]);
+    /// assert_eq!([series[0].rows[0].level, series[1].rows.len()], [4, 3]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn series(&self) -> Vec<Series<'_>> {
+        series_of(&self.rows)
     }
     /// The limits of energy, contact measure and resultant of every series with three levels that converged,
     /// from the three finest of them. Adaptive meshes have no limits: their sizes are not those of one family.

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use super::part_figures::PartFigures;
-use super::series::Meshes;
 use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
@@ -307,11 +306,6 @@ impl Row {
     pub fn key(&self) -> RowKey {
         let [scene, label, solver] = [&self.scene, &self.label, &self.solver].map(String::clone);
         RowKey { scene, label, solver, level: self.level }
-    }
-
-    /// The meshes to which that of the row belongs.
-    pub fn meshes(&self) -> Meshes {
-        self.theta.map_or(Meshes::Uniform, |theta| Meshes::Adaptive { theta })
     }
 
     /// The size in which orders are: the mesh size; on adaptive meshes the power `-1/D` of the number of

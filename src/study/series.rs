@@ -2,7 +2,6 @@
 
 use std::borrow::Borrow;
 
-use super::report::Report;
 use super::row::{Row, distinct};
 
 /// The meshes of a series.
@@ -19,6 +18,11 @@ pub enum Meshes {
 }
 
 impl Meshes {
+    /// The meshes to which that of a row belongs.
+    #[must_use]
+    pub fn of(row: &Row) -> Self {
+        row.theta.map_or(Self::Uniform, |theta| Self::Adaptive { theta })
+    }
     /// `uniform` or `adaptive`.
     pub fn name(self) -> &'static str {
         match self {
@@ -62,7 +66,7 @@ impl Variant {
     pub fn of(row: &Row) -> Self {
         let [scene, label, solver] = [&row.scene, &row.label, &row.solver].map(String::clone);
         let linear_asked = row.linear_asked.clone();
-        Self { scene, label, solver, linear_asked, meshes: row.meshes() }
+        Self { scene, label, solver, linear_asked, meshes: Meshes::of(row) }
     }
     /// Whether a row is of this variant.
     pub(super) fn has(&self, row: &Row) -> bool {
@@ -70,7 +74,7 @@ impl Variant {
             && self.label == row.label
             && self.solver == row.solver
             && self.linear_asked == row.linear_asked
-            && self.meshes == row.meshes()
+            && self.meshes == Meshes::of(row)
     }
     /// Whether the other one is the same, perhaps on another scene.
     #[cfg(feature = "report")]
@@ -145,26 +149,4 @@ pub(crate) fn series_of<R: Borrow<Row>>(rows: &[R]) -> Vec<Series<'_, R>> {
 #[cfg(feature = "report")]
 pub(crate) fn names<R>(series: &[Series<'_, R>]) -> Vec<String> {
     distinct(series.iter().map(|series| series.name.clone()))
-}
-
-impl Report {
-    /// The series of the report, in the order in which they first occur: the rows of one scheme with one solver on one
-    /// scene, those of uniform and of adaptive meshes apart. Tables, orders, limits and plots go by them.
-    ///
-    /// ```
-    /// use unilateral::prelude::*;
-    /// # fn main() -> Result<(), Error> {
-    /// let study = || Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1);
-    /// let mut report = study().levels([8, 4]).run()?;
-    /// report.rows.extend(study().adaptive(Adaptivity::default().steps(2)).run()?.rows);
-    /// let series = report.series();
-    /// assert_eq!([&series[0].name[..], &series[1].name[..]], ["p1, uniform", "p1, adaptive"]);
-    /// assert_eq!([series[0].rows[0].level, series[1].rows.len()], [4, 3]);
-    /// # Ok(())
-    /// # }
-    /// ```
-    #[must_use]
-    pub fn series(&self) -> Vec<Series<'_>> {
-        series_of(&self.rows)
-    }
 }

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::extrapolate::{Limit, extrapolate};
+use super::orders::rates::rates;
 use super::part_figures::PartFigures;
-use super::rates::rates;
 use super::remarks::{failure, warnings};
 use super::report::Report;
 use super::row::{Row, distinct};

@@ -87,7 +87,7 @@ impl Measured {
     /// The result of a first run.
     pub fn new(row: Row, phases: Phases) -> Self {
         Measured {
-            meshes: row.meshes(),
+            meshes: Meshes::of(&row),
             row,
             runs: 1,
             smallest: phases,

@@ -1,8 +1,8 @@
 //! What adaptive steps came to, in one line for each series: rates, effectivities, times.
 
-use super::row::Row;
-use super::series::{Series, series_of};
 use crate::measure::fit_order;
+use crate::study::row::Row;
+use crate::study::series::{Series, series_of};
 
 /// The orders of bound and error over the last half of the steps of each adaptive series, by least squares, the
 /// range of effectivities, and the time of all steps over that of the last one.
