@@ -7,7 +7,7 @@ pub use crate::error::Error;
 pub use crate::facet::{
     DirichletBy, FacetForm, FacetView, Lifts, NoFacets, PenaltyRule, Trace, WeightRule,
 };
-pub use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+pub use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
 pub use crate::nested::{AdaptiveMeshes, Adaptivity, Stop, adapt};
 pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
 pub use crate::problem::Problem;

@@ -83,7 +83,7 @@ impl Inequality<f64> {
             symmetric: self.symmetric,
             load: rounded(&self.load),
             bounds: self.bounds.iter().map(Bound::in_precision).collect(),
-            supports: self.supports.clone(),
+            locations: self.locations.clone(),
             conforming_linear: self.conforming_linear,
             start: self.start.clone(),
             penalised: self.penalised.as_ref().map(PenalisedMatrix::in_precision),

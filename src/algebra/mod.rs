@@ -6,7 +6,7 @@
 //! discontinuous linear functions. `dense`: small dense matrices.
 //! `dirichlet_energy`: the part of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
-//! unknown. `inequality`: supports of unknowns and the inequality. `in_precision`:
+//! unknown. `inequality`: locations of unknowns and the inequality. `in_precision`:
 //! matrices, bounds and inequalities rounded.
 
 mod bound;
@@ -17,6 +17,7 @@ mod free_body;
 mod in_precision;
 mod inequality;
 mod matrix;
+mod mean_jumps;
 mod penalised_matrix;
 mod rectangular_matrix;
 mod side_penalties;
@@ -28,12 +29,12 @@ pub(crate) use distribution::{any_part, sum_over_parts};
 pub use free_body::FreeBody;
 pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
 pub(crate) use in_precision::rounded;
-pub use inequality::{Inequality, Start, Support};
+pub use inequality::{DofLocation, Inequality, Start};
 pub use matrix::SparseMatrix;
 pub(crate) use matrix::sort_by_column;
+pub use mean_jumps::MeanJumps;
 pub use penalised_matrix::{JumpTerm, PenalisedMatrix};
 pub(crate) use rectangular_matrix::{RectangularMatrix, SparseSum, galerkin_product};
-pub use side_penalties::MeanJumps;
 pub(crate) use side_penalties::SidePenalties;
 
 /// Marks the absence of an index in arrays of `u32` indices.

@@ -3,7 +3,7 @@
 use crate::parallel::vectors::for_each_chunk;
 
 use super::NO_INDEX;
-use super::side_penalties::MeanJumps;
+use super::mean_jumps::MeanJumps;
 use crate::real::Real;
 
 /// The matrix `A = K + M^T S M`, stored by `K`, `M` and `S`, and the Dirichlet data `g` that it imposes: the load of

@@ -11,7 +11,7 @@ use super::space::{Space, checks};
 use super::stiffness::zero_local;
 use crate::algebra::{FreeBody, NO_INDEX, RESULTANT_ROUNDING, Sum};
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, Components, Neighbours};
+use crate::mesh::{BoundaryCondition, Components, Neighbours};
 use crate::parallel::cells;
 use crate::problem::Datum;
 use crate::quadrature::Rule;
@@ -94,7 +94,7 @@ impl<const D: usize> Space<'_, D> {
         };
         let mut components = Components::of_cells(neighbours);
         let mut is_held = vec![false; mesh.n_cells()];
-        for (cell, _) in self.facets_of(BoundaryPart::Dirichlet) {
+        for (cell, _) in self.facets_of(BoundaryCondition::Dirichlet) {
             is_held[components.find(cell)] = true;
         }
         let constants = self.constants();
@@ -148,7 +148,7 @@ impl<const D: usize> Space<'_, D> {
             body.stops_below |= self.data.lower.of(region).is_some();
             body.stops_above |= self.data.upper.of(region).is_some();
         }
-        for ((cell, _), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, _), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             if let (Some(body), Some(_)) = (bodies.of(cell), self.data.gap.of(group)) {
                 bodies.bodies[body].stops_below = true;
             }
@@ -183,7 +183,7 @@ impl<const D: usize> Space<'_, D> {
         }
         if self.problem.has_neumann_data() {
             let rules = FACET_DEGREES.map(|degree| Rule::new(D - 1, degree));
-            for (facet, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+            for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
                 let Some(body) = bodies.of(facet.0) else { continue };
                 let (mut integrals, measure) = ([0.0; 3], self.facet_measure(facet));
                 for (k, rule) in rules.iter().enumerate() {

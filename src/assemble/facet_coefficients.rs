@@ -10,7 +10,7 @@ use super::trace::flux_weight;
 use crate::arrays::map_entries;
 use crate::facet::{FacetForm, FacetKind, FacetView, Trace};
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, HalfFacet};
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::cells;
 
 /// A coefficient of the form, at most linear in the penalty weight.
@@ -126,7 +126,7 @@ impl FacetCoefficients {
         let zero = Coefficients::zero();
         let coefficients = if is_uniform {
             let interior = space.form_facets().find(|facet| facet.there.is_some());
-            let mut on_boundary = space.facets_of(BoundaryPart::Dirichlet);
+            let mut on_boundary = space.facets_of(BoundaryCondition::Dirichlet);
             let dirichlet = on_boundary.find_map(|facet| space.form_facet(facet));
             map_entries([interior, dirichlet], |facet| facet.map_or(zero, of)).into()
         } else {

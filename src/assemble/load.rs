@@ -14,7 +14,7 @@ use super::space::{INWARD, Space, checks};
 use super::weak_dirichlet::FacetDatum;
 use crate::error::Error;
 use crate::facet::FacetForm;
-use crate::mesh::{BoundaryPart, HalfFacet};
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::vectors::zeros;
 use crate::parallel::{cells, once};
 use crate::quadrature::{Rule, facet_to_cell};
@@ -43,7 +43,8 @@ impl<const D: usize> Space<'_, D> {
     }
 
     fn integrate_load(&self) -> Result<Vec<f64>, Error> {
-        let flux = self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
+        let flux =
+            self.problem.has_neumann_data() && self.mesh.has_condition(BoundaryCondition::Neumann);
         let source = &self.data.source;
         if !source.is_given() && !self.has_weak_data() && !flux {
             return Ok(Vec::new());
@@ -146,7 +147,7 @@ impl<const D: usize> Space<'_, D> {
 
     fn add_neumann(&self, load: &mut [f64]) -> Result<(), Error> {
         let n = self.per_cell();
-        for (facet, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+        for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
             let ((cell, local), measure) = (facet, self.facet_measure(facet));
             let out = &mut load[cell * n..(cell + 1) * n];
             for (point, weight) in self.facet_rule.iter() {

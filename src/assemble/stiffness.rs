@@ -1,10 +1,8 @@
 //! The stiffness of a cell.
 
-use super::space::Space;
 use super::space::metric::CellMetric;
 use super::space::tables::CellTable;
 use crate::element::MAX_BASIS;
-use crate::quadrature::Rule;
 
 /// A small dense matrix, of which an element uses the upper left corner.
 pub(crate) type Local = [[f64; MAX_BASIS]; MAX_BASIS];
@@ -51,28 +49,5 @@ impl StiffnessTable {
             }
         }
         sum
-    }
-}
-
-impl<const D: usize> Space<'_, D> {
-    /// The stiffness of the reference element.
-    pub fn stiffness_table(&self) -> StiffnessTable {
-        let degree = 2 * self.basis_degree.saturating_sub(1);
-        StiffnessTable::new(D, &self.cell_table(Rule::new(D, degree)))
-    }
-    /// The entries `(alpha grad phi_j, grad phi_i)` over a cell, from the table of the reference element. The loops
-    /// over cells that fill a matrix make the same numbers in place.
-    pub fn stiffness(&self, table: &StiffnessTable, cell: usize, metric: &CellMetric<D>) -> Local {
-        let (n, alpha, varying) = (self.per_cell(), self.alpha(cell), self.varying_in(cell));
-        let mut out = zero_local();
-        for (i, row) in out.iter_mut().enumerate().take(n) {
-            for (j, entry) in row.iter_mut().enumerate().take(n) {
-                *entry = match varying {
-                    None => alpha * table.entry(metric, i, j),
-                    Some((varying, values)) => varying.stiffness(values, metric, i, j),
-                };
-            }
-        }
-        out
     }
 }

@@ -10,7 +10,7 @@ use super::trace::traces;
 use crate::algebra::{DirichletEnergy, DirichletTerm};
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
-use crate::mesh::{BoundaryPart, HalfFacet};
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::{OrthonormalPolynomials, Rule};
 
 /// A facet on which the form imposes data.
@@ -50,7 +50,7 @@ impl<const D: usize> Space<'_, D> {
     pub fn has_weak_data(&self) -> bool {
         !self.pins
             && self.problem.has_dirichlet_data()
-            && self.mesh.has_part(BoundaryPart::Dirichlet)
+            && self.mesh.has_condition(BoundaryCondition::Dirichlet)
     }
 
     /// Moments of Dirichlet data on a facet.
@@ -106,7 +106,7 @@ impl<const D: usize> Space<'_, D> {
         let on_facet = |(facet, group)| {
             Ok(FacetDatum { facet, moments: self.dirichlet_moments(&moments, facet, group)? })
         };
-        self.grouped_facets_of(BoundaryPart::Dirichlet).map(on_facet).collect()
+        self.grouped_facets_of(BoundaryCondition::Dirichlet).map(on_facet).collect()
     }
 
     /// Visits all moments on all facets with data, one facet after the other.

@@ -7,7 +7,7 @@ use crate::arrays::map_entries;
 use crate::assemble::space::Space;
 use crate::assemble::space::tables::BasisAt;
 use crate::element::Node;
-use crate::mesh::{BoundaryPart, Edges, HalfFacet, edge_vertices};
+use crate::mesh::{BoundaryCondition, Edges, HalfFacet, edge_vertices};
 use crate::problem::Datum;
 use crate::real::Point;
 
@@ -178,7 +178,7 @@ impl<const D: usize> Space<'_, D> {
         } else if self.problem.has_obstacle() {
             (0..values.len()).for_each(|v| add(v, 0));
         }
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             for v in self.mesh.facet_vertices(cell, local) {
                 let x = self.mesh.vertices()[v as usize];
@@ -222,7 +222,7 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         let on_facet = |local: usize, edge: &[usize; 2]| !edge.contains(&local);
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             for (edge, node) in nodes.of_edges(D, cell).filter(|(e, _)| on_facet(local, e)) {
                 let low = &mut bounds[node - nodes.n_vertices].0;
@@ -233,7 +233,7 @@ impl<const D: usize> Space<'_, D> {
             *value = value.min(high).max(low);
         }
         let mut ranks = vec![usize::MAX; at_midpoints.len()];
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Dirichlet) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
             for (&[a, b], node) in nodes.of_edges(D, cell).filter(|(e, _)| on_facet(local, e)) {
                 let edge = node - nodes.n_vertices;
                 let rank = self.data.dirichlet_rank[group];

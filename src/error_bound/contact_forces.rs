@@ -3,7 +3,7 @@
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::mesh::{BoundaryPart, HalfFacet};
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::facet_to_cell;
 
 /// The part of the contact force of a node that acts on one of its contact facets.
@@ -41,7 +41,7 @@ impl<const D: usize> Space<'_, D> {
         let is_in_contact = |unknown: usize| {
             contact.get(unknown) != Some(&Contact::Inactive) && !obstacles.act_at(unknown)
         };
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             if self.data.gap.of(group).is_none() {
                 continue;
             }

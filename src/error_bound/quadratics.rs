@@ -20,11 +20,11 @@ use super::contact_forces::NodeForce;
 use super::flux::Flux;
 use super::shared_multipliers::SharedNodes;
 use crate::algebra::{Bound, Contact};
-use crate::arrays::{map_entries, tabulate};
+use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::stiffness::zero_local;
-use crate::mesh::{BoundaryPart, HalfFacet, edge_vertices};
+use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
 use crate::parallel::cells;
 use crate::quadrature::{OrthonormalPolynomials, facet_to_cell};
 
@@ -56,7 +56,7 @@ pub(super) struct CellLoads {
 pub(super) fn densities<const D: usize>(products: &[f64; 4], facet: usize) -> [f64; 4] {
     let sum: f64 = products[..=D].iter().sum();
     let d = D as f64;
-    tabulate(|j| match j <= D && j != facet {
+    array_of(|j| match j <= D && j != facet {
         true => d * ((d + 1.0) * products[j] - sum),
         false => 0.0,
     })
@@ -107,7 +107,7 @@ impl<const D: usize> Space<'_, D> {
         };
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let functional = |terms: &Vec<([f64; 4], f64)>| -> Products {
-            tabulate(|a| tabulate(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum()))
+            array_of(|a| array_of(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum()))
         };
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
         let neumann = self.neumann_products()?;
@@ -154,7 +154,7 @@ impl<const D: usize> Space<'_, D> {
     fn neumann_products(&self) -> Result<Vec<(HalfFacet, Products)>, NoBound> {
         let mut neumann = Vec::new();
         if self.problem.has_neumann_data() {
-            for (facet, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+            for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
                 let measure = self.facet_measure(facet);
                 let mut products = Products::default();
                 for (point, weight) in self.facet_rule.iter() {

@@ -104,7 +104,7 @@ pub enum KitErrorKind {
     NoEigenvalue,
     /// Definiteness could not be decided: the source is a [`FactorError`](crate::linear::FactorError).
     NotFactored,
-    /// Two unknowns of a cell have the same support, so that numberings cannot be compared.
+    /// Two unknowns of a cell have the same location, so that numberings cannot be compared.
     UnknownsNotTold,
     /// An entry of the matrix depends on numbers of vertices or cells.
     EntryDependsOnNumbering,

@@ -8,7 +8,7 @@ use super::matrix::{describe, row_sizes};
 use super::meshes::{Renumbered, Sample};
 use super::report::InvarianceReport;
 use super::{meshes, problems};
-use crate::algebra::{Inequality, Support};
+use crate::algebra::{DofLocation, Inequality};
 
 /// Rounding units by which entries of matrix and load may change.
 const ENTRY_UNITS: f64 = 512.0;
@@ -43,13 +43,13 @@ struct Numbered {
     solution: Vec<f64>,
 }
 
-/// The cell and the vertices of a support, in the numbers of the first mesh.
+/// The cell and the vertices of a location, in the numbers of the first mesh.
 type Key = (Option<u32>, Vec<u32>);
 
-fn key(support: &Support, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -> u32) -> Key {
-    let mut vertices: Vec<u32> = support.vertices().iter().map(|&v| vertex(v)).collect();
+fn key(location: &DofLocation, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -> u32) -> Key {
+    let mut vertices: Vec<u32> = location.vertices().iter().map(|&v| vertex(v)).collect();
     vertices.sort_unstable();
-    (support.cell().map(cell), vertices)
+    (location.cell().map(cell), vertices)
 }
 
 impl Numbered {
@@ -61,7 +61,7 @@ impl Numbered {
         Ok(Self { inequality, load, solution })
     }
 
-    /// The support of an unknown, in words.
+    /// The location of an unknown, in words.
     fn place(&self, unknown: usize) -> String {
         describe(&self.inequality, unknown)
     }
@@ -77,20 +77,20 @@ impl Numbered {
             let message = format!("unknowns {first} and {second} live at the same place, {place}");
             KitError::new(Law::Invariance, KitErrorKind::UnknownsNotTold, message)
         };
-        let supports = &self.inequality.supports;
-        let mut here = HashMap::with_capacity(supports.len());
-        for (second, support) in supports.iter().enumerate() {
-            let key = key(support, |v| vertices[v as usize], |c| cells[c as usize]);
+        let locations = &self.inequality.locations;
+        let mut here = HashMap::with_capacity(locations.len());
+        for (second, location) in locations.iter().enumerate() {
+            let key = key(location, |v| vertices[v as usize], |c| cells[c as usize]);
             if let Some(first) = here.insert(key, second) {
                 return Err(error(first, second, self.place(second)));
             }
         }
-        // both meshes have the same supports, so that one that is not found is one that is there twice
-        let find = |(first, support): (usize, &Support)| {
-            let number = here.remove(&key(support, |v| v, |c| c));
+        // both meshes have the same locations, so that one that is not found is one that is there twice
+        let find = |(first, location): (usize, &DofLocation)| {
+            let number = here.remove(&key(location, |v| v, |c| c));
             number.ok_or_else(|| error(first, first, there.place(first)))
         };
-        there.inequality.supports.iter().enumerate().map(find).collect()
+        there.inequality.locations.iter().enumerate().map(find).collect()
     }
 
     fn load(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {

@@ -2,11 +2,11 @@
 
 use crate::algebra::{Inequality, SparseMatrix};
 
-/// The support of an unknown, in words.
+/// The location of an unknown, in words.
 pub(super) fn describe(inequality: &Inequality<f64>, unknown: usize) -> String {
-    let support = &inequality.supports[unknown];
-    let cell = support.cell().map_or_else(String::new, |cell| format!("cell {cell}, "));
-    match support.vertices() {
+    let location = &inequality.locations[unknown];
+    let cell = location.cell().map_or_else(String::new, |cell| format!("cell {cell}, "));
+    match location.vertices() {
         [] => format!("{cell}inside"),
         [vertex] => format!("{cell}vertex {vertex}"),
         vertices => format!("{cell}amid vertices {vertices:?}"),

@@ -7,7 +7,7 @@ use super::cell_integrand::{CellIntegrand, LocalFunction};
 use super::evaluation::Reference;
 use super::kinks::Kinks;
 use super::squared_errors::{SquaredErrors, Squares};
-use crate::arrays::{map_entries, tabulate};
+use crate::arrays::{array_of, map_entries};
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::tables::CellTable;
 use crate::assemble::space::{Space, Terms, checks};
@@ -164,7 +164,7 @@ impl<const D: usize> Space<'_, D> {
         cell: usize,
     ) -> CellIntegrand<'c, D> {
         let geometry = self.mesh.geometry(cell);
-        let gradients: [Point<D>; 4] = tabulate(|k| match k <= D {
+        let gradients: [Point<D>; 4] = array_of(|k| match k <= D {
             true => *geometry.gradient(k),
             false => Point::zeros(),
         });

@@ -6,7 +6,7 @@ use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, HalfFacet, edge_vertices};
+use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
 use crate::quadrature::facet_to_cell;
 
 /// Fields on the cells of the mesh, for pictures.
@@ -86,7 +86,7 @@ impl<const D: usize> Space<'_, D> {
         };
         let n_cells = self.mesh.n_cells();
         let contact_boundary: Vec<HalfFacet> = match self.problem.has_gap() {
-            true => self.facets_of(BoundaryPart::Contact).collect(),
+            true => self.facets_of(BoundaryCondition::Contact).collect(),
             false => Vec::new(),
         };
         let multipliers =

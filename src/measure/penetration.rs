@@ -10,7 +10,7 @@ use crate::assemble::space::checks::finite;
 use crate::assemble::space::tables::BasisAt;
 use crate::error::Error;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, HalfFacet, edge_vertices};
+use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
 use crate::parallel::cells;
 use crate::problem::{DataByGroup, Datum};
 use crate::quadrature::facet_to_cell;
@@ -176,7 +176,7 @@ impl<const D: usize> Space<'_, D> {
         }
         let on_facets: Vec<Points> =
             (0..D + 1).map(|local| self.points_of_facet(local, at_vertices[2])).collect();
-        for (facet, group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for (facet, group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let gap = self.data.gap.of(group).filter(|_| counts(facet.0));
             if let Some(gap) = gap {
                 self.add_penetration_on(facet, gap, u, &on_facets[facet.1], &mut found)?;
@@ -284,14 +284,14 @@ impl<const D: usize> Space<'_, D> {
     /// Whether all data but obstacles and gaps are known to be affine.
     fn has_affine_data(&self) -> bool {
         let data = &self.data;
-        let has = |part| self.mesh.has_part(part);
+        let has = |part| self.mesh.has_condition(part);
         // without Neumann data an exact solution gives the flux
         let is_known = data.neumann.is_given() || self.problem.exact.is_none();
         let flux_is_affine = data.neumann.every(&|flux| self.is_affine_degree(flux.degree()))
             && (is_known || self.is_affine_degree(None));
         [&data.coefficient, &data.source, &data.reaction].into_iter().all(|d| self.is_affine(d))
-            && (!has(BoundaryPart::Dirichlet) || self.is_affine(&data.dirichlet))
-            && (!has(BoundaryPart::Neumann) || flux_is_affine)
+            && (!has(BoundaryCondition::Dirichlet) || self.is_affine(&data.dirichlet))
+            && (!has(BoundaryCondition::Neumann) || flux_is_affine)
     }
 }
 

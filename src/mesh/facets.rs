@@ -3,10 +3,10 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::parallel::map_indices;
 
-use super::boundary::BoundaryPart;
+use super::boundary::BoundaryCondition;
 use super::error::MeshError;
 use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
 use super::neighbour_numbers::NeighbourNumbers;
@@ -27,7 +27,7 @@ pub enum Neighbour {
         local: u8,
     },
     /// The boundary.
-    Boundary(BoundaryPart),
+    Boundary(BoundaryCondition),
     /// Cells that the mesh does not have, because it is a [part](super::Part) of another one: no data are
     /// given here, nothing is bound, and no form has a term.
     Cut,
@@ -48,7 +48,7 @@ const UNKNOWN: u32 = u32::MAX;
 /// Largest number of cells the codes can name.
 pub(super) const CELL_LIMIT: usize = (BOUNDARY as usize) / 4;
 
-fn part_code(part: BoundaryPart) -> u32 {
+fn part_code(part: BoundaryCondition) -> u32 {
     BOUNDARY + part as u32
 }
 
@@ -63,7 +63,7 @@ impl Neighbours {
         let mut found = Self::match_facets::<D>(mesh.cells(), mesh.vertices().len())
             .expect("the facets of a mesh were matched when it was made");
         for f in mesh.boundary() {
-            found.set(f.cell as usize, f.local as usize, f.part);
+            found.set(f.cell as usize, f.local as usize, f.condition);
         }
         found
     }
@@ -94,9 +94,9 @@ impl Neighbours {
     pub fn across(&self, cell: usize, local: usize) -> Neighbour {
         let code = self.codes[cell * self.per_cell + local];
         match code.wrapping_sub(BOUNDARY) {
-            0 => Neighbour::Boundary(BoundaryPart::Dirichlet),
-            1 => Neighbour::Boundary(BoundaryPart::Neumann),
-            2 => Neighbour::Boundary(BoundaryPart::Contact),
+            0 => Neighbour::Boundary(BoundaryCondition::Dirichlet),
+            1 => Neighbour::Boundary(BoundaryCondition::Neumann),
+            2 => Neighbour::Boundary(BoundaryCondition::Contact),
             3 => Neighbour::Cut,
             _ => Neighbour::Cell { cell: code >> 2, local: (code & 3) as u8 },
         }
@@ -114,7 +114,7 @@ impl Neighbours {
     pub(super) fn is_unmatched(&self, cell: usize, local: usize) -> bool {
         self.codes[cell * self.per_cell + local] == UNKNOWN
     }
-    pub(super) fn set(&mut self, cell: usize, local: usize, part: BoundaryPart) {
+    pub(super) fn set(&mut self, cell: usize, local: usize, part: BoundaryCondition) {
         self.codes[cell * self.per_cell + local] = part_code(part);
     }
 }
@@ -185,7 +185,7 @@ fn match_facets_of<const D: usize>(
 fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
     let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
     let vertices =
-        |(c, local): HalfFacet| -> [u32; D] { tabulate(|k| cell(c)[k + usize::from(k >= local)]) };
+        |(c, local): HalfFacet| -> [u32; D] { array_of(|k| cell(c)[k + usize::from(k >= local)]) };
     let mut half_facets: Vec<_> = (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1))).collect();
     half_facets.sort_unstable_by_key(|&half_facet| (vertices(half_facet), half_facet));
     for same in half_facets.chunk_by(|&a, &b| vertices(a) == vertices(b)) {
@@ -234,8 +234,8 @@ impl Facets {
             }
         }
         let mut starts = [0, half_facets.len(), 0, 0, 0, 0];
-        for (k, part) in BoundaryPart::ALL.into_iter().enumerate() {
-            let of_part = mesh.boundary().iter().filter(|f| f.part == part);
+        for (k, part) in BoundaryCondition::ALL.into_iter().enumerate() {
+            let of_part = mesh.boundary().iter().filter(|f| f.condition == part);
             half_facets.extend(of_part.map(|f| {
                 let code = half_facet_code(f.cell as usize, f.local as usize);
                 [code, code]
@@ -265,7 +265,7 @@ impl Facets {
         self.starts[0]..self.starts[1]
     }
     /// Numbers of the facets of a part of the boundary.
-    pub fn part(&self, part: BoundaryPart) -> Range<usize> {
+    pub fn part(&self, part: BoundaryCondition) -> Range<usize> {
         self.starts[part as usize + 1]..self.starts[part as usize + 2]
     }
     /// Numbers of the facets beyond which the cells of another part of the mesh lie.

@@ -1,7 +1,7 @@
 //! The affine geometry of one cell.
 
 use super::simplicial::Mesh;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::real::Point;
 
 /// Volume of a cell and gradients of its barycentric coordinates.
@@ -23,7 +23,7 @@ impl<const D: usize> CellGeometry<D> {
         const { assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only") }
         let origin = corner(0);
         let edge = |k: usize| corner(k + 1) - origin;
-        let edges = tabulate(|k| if k < D { with_zeros(edge(k)) } else { [0.0; 3] });
+        let edges = array_of(|k| if k < D { with_zeros(edge(k)) } else { [0.0; 3] });
         let (normals, determinant) = cofactors::<D>(edges);
         let zero = 0.0;
         let mut gradients = [Point::zeros(); 4];
@@ -101,7 +101,7 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 /// The coordinates of a vector, with zeros after them.
 #[inline(always)]
 pub(crate) fn with_zeros<const D: usize>(vector: Point<D>) -> [f64; 3] {
-    tabulate(|axis| if axis < D { vector[axis] } else { 0.0 })
+    array_of(|axis| if axis < D { vector[axis] } else { 0.0 })
 }
 
 /// A fold over the squares of the lengths of the edges of a simplex, without those at one of its corners.

@@ -31,7 +31,7 @@ mod simplicial;
 mod validate;
 
 pub use bisection::{BisectedMesh, Bisection};
-pub use boundary::{BoundaryFacet, BoundaryPart};
+pub use boundary::{BoundaryCondition, BoundaryFacet};
 pub(crate) use components::Components;
 #[cfg(feature = "problem-files")]
 pub(crate) use domain::SIDES;

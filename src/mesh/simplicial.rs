@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::boundary::{BoundaryFacet, BoundaryPart};
+use super::boundary::{BoundaryCondition, BoundaryFacet};
 use super::geometry::{fold_edges, longest_edge};
 use super::groups::Groups;
 use super::part::extent::Extent;
@@ -62,8 +62,8 @@ impl<const D: usize> Mesh<D> {
         &self.boundary
     }
     /// Whether some facet belongs to a part of the boundary.
-    pub fn has_part(&self, part: BoundaryPart) -> bool {
-        self.boundary.iter().any(|f| f.part == part)
+    pub fn has_condition(&self, part: BoundaryCondition) -> bool {
+        self.boundary.iter().any(|f| f.condition == part)
     }
     /// Whether every component of the mesh, connected through facets, has a Dirichlet facet; of a part, whether
     /// every component of the whole mesh has one.

@@ -6,10 +6,10 @@ use super::html::{HtmlPage, Section};
 #[cfg(feature = "plot")]
 use crate::plot::overview;
 use crate::study::orders::rates::rates;
-use crate::study::remarks::{failure, warnings};
 use crate::study::row::distinct;
-use crate::study::summary::{lead, summaries};
-use crate::study::table::{Column, columns, heading, limits, scenes, totals, unproven};
+use crate::study::tables::levels::{Column, columns, heading, limits, scenes, totals, unproven};
+use crate::study::tables::remarks::{failure, warnings};
+use crate::study::tables::summary::{lead, summaries};
 use crate::study::{Program, Report, Row, file_name};
 use crate::table::{Cell, Table};
 

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::files::replace_text;
 #[cfg(feature = "plot")]
 use crate::plot::{convergence, work_precision};
-use crate::study::summary::summaries;
+use crate::study::tables::summary::summaries;
 use crate::study::{Report, Series, Variant, file_name};
 use crate::table::latex_document;
 

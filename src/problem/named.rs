@@ -6,7 +6,7 @@ use super::datum::{BoundaryFlux, Datum};
 use super::{Given, Problem};
 use crate::input::excerpt;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, Mesh, MeshError};
+use crate::mesh::{BoundaryCondition, Mesh, MeshError};
 use crate::real::Point;
 
 /// Data for named regions and boundary groups.
@@ -15,7 +15,7 @@ use crate::real::Point;
 /// use unilateral::prelude::*;
 /// # fn main() -> Result<(), Error> {
 /// // the square with its sides, its lower half of another material
-/// let domain = BoxDomain::<2>::centred(1.0).side(1, 0, BoundaryPart::Contact);
+/// let domain = BoxDomain::<2>::centred(1.0).side(1, 0, BoundaryCondition::Contact);
 /// let mesh = Mesh::<2>::kuhn_box(&domain, [8, 8])?;
 /// let is_below = |c| usize::from(mesh.barycentre(c)[1] < 0.0);
 /// let of_cells = (0..mesh.n_cells()).map(|c| is_below(c) as u16).collect();
@@ -101,10 +101,10 @@ impl<const D: usize> Problem<D> {
         data.into_iter().flat_map(Given::names)
     }
     /// The boundary groups that have data, each with its part.
-    fn boundary_groups(&self) -> impl Iterator<Item = (&str, BoundaryPart)> {
-        let dirichlet = self.dirichlet.names().map(|name| (name, BoundaryPart::Dirichlet));
-        let contact = self.gap.names().map(|name| (name, BoundaryPart::Contact));
-        let neumann = self.neumann.names().map(|name| (name, BoundaryPart::Neumann));
+    fn boundary_groups(&self) -> impl Iterator<Item = (&str, BoundaryCondition)> {
+        let dirichlet = self.dirichlet.names().map(|name| (name, BoundaryCondition::Dirichlet));
+        let contact = self.gap.names().map(|name| (name, BoundaryCondition::Contact));
+        let neumann = self.neumann.names().map(|name| (name, BoundaryCondition::Neumann));
         dirichlet.chain(contact).chain(neumann)
     }
     /// The names of boundary groups that have data.
@@ -112,7 +112,7 @@ impl<const D: usize> Problem<D> {
         self.boundary_groups().map(|(name, _)| name)
     }
     /// The part of the boundary to which the data of a group belong.
-    pub(super) fn part_of(&self, group: &str) -> Option<BoundaryPart> {
+    pub(super) fn part_of(&self, group: &str) -> Option<BoundaryCondition> {
         self.boundary_groups().find(|(name, _)| *name == group).map(|(_, part)| part)
     }
     /// Whether some data are those of a named region or boundary group.
@@ -142,7 +142,7 @@ impl<const D: usize> Problem<D> {
     /// their part.
     ///
     /// # Errors
-    /// [`MeshError::GroupInTwoParts`], also where a group `dirichlet`, `neumann` or `contact` is given
+    /// [`MeshError::GroupWithTwoConditions`], also where a group `dirichlet`, `neumann` or `contact` is given
     /// data of another kind.
     pub fn bind_boundary(&self, mesh: Mesh<D>) -> Result<Mesh<D>, MeshError> {
         compiled!(const D: fn(&Problem<D>, Mesh<D>) -> Result<Mesh<D>, MeshError>
@@ -150,21 +150,21 @@ impl<const D: usize> Problem<D> {
         )(self, mesh)
     }
     fn bind(&self, mesh: Mesh<D>) -> Result<Mesh<D>, MeshError> {
-        let all: Vec<(&str, BoundaryPart)> = self.boundary_groups().collect();
+        let all: Vec<(&str, BoundaryCondition)> = self.boundary_groups().collect();
         for &(name, part) in &all {
-            let own = BoundaryPart::from_name(name).map(|part| (name, part));
+            let own = BoundaryCondition::from_name(name).map(|part| (name, part));
             let first = own.or_else(|| all.iter().copied().find(|(other, _)| *other == name));
             if let Some((first, other)) = first.filter(|(_, other)| *other != part) {
                 let groups = Box::new([first, name].map(excerpt));
-                return Err(MeshError::GroupInTwoParts {
+                return Err(MeshError::GroupWithTwoConditions {
                     groups,
-                    parts: [other.name(), part.name()],
+                    conditions: [other.name(), part.name()],
                 });
             }
         }
         if all.is_empty() {
             return Ok(mesh);
         }
-        mesh.with_boundary_parts(&|name| self.part_of(name))
+        mesh.with_boundary_conditions(&|name| self.part_of(name))
     }
 }

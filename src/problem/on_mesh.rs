@@ -4,7 +4,7 @@ use super::datum::{BoundaryFlux, Datum};
 use super::{Given, Problem};
 use crate::error::Error;
 use crate::input::{excerpt, excerpts};
-use crate::mesh::{BoundaryGroup, BoundaryPart, Mesh, MeshError};
+use crate::mesh::{BoundaryCondition, BoundaryGroup, Mesh, MeshError};
 
 /// What is given in each region, or on each boundary group.
 #[derive(Clone)]
@@ -110,12 +110,12 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
         }
         for group in boundary {
             let given = group.names.iter().find_map(|n| Some((n, problem.part_of(n)?)));
-            match (given, group.part) {
+            match (given, group.condition) {
                 (Some((name, given)), Some(part)) if given != part => {
                     let (group, given, part) = (excerpt(name), given.name(), part.name());
                     return Err(Error::UnboundBoundary { group, given, part });
                 }
-                (None, Some(BoundaryPart::Contact))
+                (None, Some(BoundaryCondition::Contact))
                     if problem.gap.everywhere.is_none() && problem.gap.is_given() =>
                 {
                     return Err(MeshError::undecided(&group.names).into());

@@ -31,7 +31,7 @@ impl<const D: usize> Scene<D> {
     /// ([`Problem::bind_boundary`]).
     ///
     /// # Errors
-    /// [`MeshError::GroupInTwoParts`] where two data claim one boundary group.
+    /// [`MeshError::GroupWithTwoConditions`] where two data claim one boundary group.
     pub fn of_problem(
         name: impl Into<String>,
         problem: Problem<D>,

@@ -3,7 +3,7 @@
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, BoxDomain, Domain, Mesh, describe_point};
+use crate::mesh::{BoundaryCondition, BoxDomain, Domain, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Given, Problem};
 use crate::real::Point;
 use crate::scenes::Scene;
@@ -113,7 +113,10 @@ fn first_twice<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
 
 /// Checks that the domain has a contact part if and only if there is a Signorini condition.
 fn check_contact<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
-    let why = match (scene.problem.has_gap(), scene.domain.has_part(BoundaryPart::Contact)) {
+    let why = match (
+        scene.problem.has_gap(),
+        scene.domain.has_condition(BoundaryCondition::Contact),
+    ) {
         (true, false) => {
             "the problem has a Signorini condition, but the mesh has no contact part: no group named \"contact\" or with a gap"
         }
@@ -130,7 +133,7 @@ fn first_failure<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Option<Str
     let data = DataOnMesh::new(&scene.problem, mesh).ok()?;
     let exact = scene.problem.exact.as_ref()?;
     let slack = 1e3 * f64::EPSILON;
-    for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+    for facet in mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
         let (cell, local) = (facet.cell as usize, facet.local as usize);
         let x = mesh.facet_barycentre(cell, local);
         let normal = mesh.geometry(cell).normal(local);

@@ -13,14 +13,12 @@ mod memory;
 pub(crate) mod orders;
 mod part_figures;
 mod reference;
-pub(crate) mod remarks;
 pub(crate) mod report;
 pub(crate) mod row;
 mod runner;
 pub(crate) mod series;
 mod setting;
-pub(crate) mod summary;
-pub(crate) mod table;
+pub(crate) mod tables;
 
 pub use crate::nested::Phase;
 pub use compatibility::check_fit;

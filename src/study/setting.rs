@@ -1,6 +1,6 @@
 //! The assumptions of the proofs of orders.
 
-use crate::mesh::{BoundaryPart, Domain};
+use crate::mesh::{BoundaryCondition, Domain};
 use crate::scenes::Scene;
 use crate::scheme::Setting;
 
@@ -8,8 +8,9 @@ use crate::scheme::Setting;
 pub(super) fn setting<const D: usize>(scene: &Scene<D>) -> Setting {
     let Scene { problem, domain, .. } = scene;
     let is_convex = !matches!(domain, Domain::LShape { .. } | Domain::Mesh(_));
-    let all_dirichlet =
-        ![BoundaryPart::Neumann, BoundaryPart::Contact].iter().any(|&p| domain.has_part(p));
+    let all_dirichlet = ![BoundaryCondition::Neumann, BoundaryCondition::Contact]
+        .iter()
+        .any(|&p| domain.has_condition(p));
     Setting {
         dimension: D,
         obstacle: problem.has_obstacle(),

@@ -75,7 +75,7 @@ fn right_side<const D: usize>(
         }
     }
     let rule = Rule::new(D - 1, degree);
-    for f in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+    for f in mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
         let (cell, local) = (f.cell as usize, f.local as usize);
         let gap = problem.gap.everywhere.as_ref().unwrap();
         let measure = mesh.geometry(cell).facet_measure(local);
@@ -188,8 +188,8 @@ fn a_vertex_with_two_fans_has_balanced_fluxes() {
             let mut add = |vertices: [u32; 2], part| boundary.push(TaggedFacet { vertices, part });
             for transposed in [false, true] {
                 let number = |i, j| if transposed { number(j, i) } else { number(i, j) };
-                add([number(k, 0), number(k + 1, 0)], BoundaryPart::Neumann);
-                add([number(k, n), number(k + 1, n)], BoundaryPart::Dirichlet);
+                add([number(k, 0), number(k + 1, 0)], BoundaryCondition::Neumann);
+                add([number(k, n), number(k + 1, n)], BoundaryCondition::Dirichlet);
             }
         }
     }
@@ -297,7 +297,7 @@ pub fn change_flux<const D: usize>(
             add(flux, (cell, local), change);
             add(flux, (other as usize, usize::from(there)), -change);
         }
-        Neighbour::Boundary(BoundaryPart::Dirichlet) => add(flux, (cell, local), change),
+        Neighbour::Boundary(BoundaryCondition::Dirichlet) => add(flux, (cell, local), change),
         _ => {}
     }
 }

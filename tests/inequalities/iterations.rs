@@ -227,7 +227,8 @@ fn a_huge_penalty_is_solved_like_a_moderate_one() {
 /// A body held by contact alone, at one point: a start without contact must not end as singular.
 #[test]
 fn a_body_held_at_one_point_is_not_singular() {
-    let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
+    let sides =
+        [[BoundaryCondition::Neumann; 2], [BoundaryCondition::Contact, BoundaryCondition::Neumann]];
     let domain = BoxDomain::new(Point::from([-1.0, 0.0]), Point::from([1.0, 1.0]), sides);
     let scene = || {
         let problem =

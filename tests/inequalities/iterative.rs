@@ -202,7 +202,7 @@ fn what_cannot_be_solved_is_named() {
     wrong.load[5] = f64::NAN;
     assert_eq!(outcome(&wrong), Outcome::NotFinite);
     let mut wrong = grid(40, 0.1);
-    wrong.supports.truncate(3);
+    wrong.locations.truncate(3);
     let solution = with(LinearMethod::Iterative).solve(&wrong);
     assert_eq!(solution.outcome, Outcome::Malformed);
 }

@@ -1,7 +1,7 @@
 //! Studies on meshes that follow the error bound.
 
 use super::scratch::Scratch;
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::study::{Program, fill_orders};
@@ -130,7 +130,7 @@ fn what_an_adaptive_study_cannot_have_is_refused_before_work() {
     assert_eq!(rows[0].cells, 128);
     let mesh = scenes::radial::<2>(1.0).domain.mesh(6).unwrap();
     let own = Problem::new().constant_source(-1.0).obstacle_below(|_| -0.05);
-    assert!(mesh.has_part(BoundaryPart::Dirichlet));
+    assert!(mesh.has_condition(BoundaryCondition::Dirichlet));
     let own = Study::<2>::new(Scene::new("own", mesh, own)).scheme(Sipg::default());
     let rows = own.adaptive(adaptivity).run().unwrap().rows;
     assert!(rows[0].cells == 72 && rows[1].bound.total < rows[0].bound.total);

@@ -2,7 +2,7 @@
 
 use super::scratch::Scratch;
 use std::path::{Path, PathBuf};
-use unilateral::mesh::{BoundaryPart, Domain, Mesh};
+use unilateral::mesh::{BoundaryCondition, Domain, Mesh};
 use unilateral::prelude::*;
 use unilateral::problem_file::{ProblemFileError, read};
 use unilateral::scenes::AnyScene;
@@ -30,7 +30,7 @@ fn groups_without_a_table_have_what_is_given_by_default() {
     let left = "[boundary.left]\nkind = \"dirichlet\"\n";
     let own = problem(&folder, &format!("box = [[0, 0], [1, 1]]\n{DEFAULT}{left}")).unwrap();
     let Domain::Box(domain) = &own.domain else { panic!("a box") };
-    let (fixed, free) = (BoundaryPart::Dirichlet, BoundaryPart::Neumann);
+    let (fixed, free) = (BoundaryCondition::Dirichlet, BoundaryCondition::Neumann);
     assert_eq!(domain.sides, [[fixed, free], [free, free]]);
     let mesh = mesh_file("holes.msh");
     let outer = "[boundary.outer]\nkind = \"dirichlet\"\n";
@@ -38,7 +38,7 @@ fn groups_without_a_table_have_what_is_given_by_default() {
     let own = problem(&folder, &format!("{of_mesh}{DEFAULT}")).unwrap();
     let mesh = own.domain.mesh(0).unwrap();
     let groups = mesh.boundary_groups().iter();
-    let mut parts: Vec<_> = groups.map(|g| (g.names.join(" "), g.part)).collect();
+    let mut parts: Vec<_> = groups.map(|g| (g.names.join(" "), g.condition)).collect();
     parts.sort_by(|a, b| a.0.cmp(&b.0));
     assert_eq!(parts, [("bore".to_owned(), Some(free)), ("outer".to_owned(), Some(fixed))]);
 
@@ -60,7 +60,7 @@ fn a_default_reaches_groups_that_share_facets() {
         own.map(|own| own.domain.mesh(0).unwrap()).map_err(|error| error.to_string())
     };
     let mesh = of_kind("contact").unwrap();
-    assert!(mesh.boundary().iter().all(|facet| facet.part == BoundaryPart::Contact));
+    assert!(mesh.boundary().iter().all(|facet| facet.condition == BoundaryCondition::Contact));
     let message = of_kind("dirichlet").map(|_| ()).unwrap_err();
     assert!(message.contains("share facets"), "{message}");
 }

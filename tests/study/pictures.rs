@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use unilateral::measure::Fields;
 use unilateral::mesh::BoxDomain;
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::paraview::{VtuFile, write_pvd};
 use unilateral::plot::{Picture, Slice};
 use unilateral::prelude::*;
@@ -32,7 +32,7 @@ fn picture<const D: usize>(
 }
 
 fn cube<const D: usize>(n: usize) -> Mesh<D> {
-    let sides = [[BoundaryPart::Dirichlet; 2]; D];
+    let sides = [[BoundaryCondition::Dirichlet; 2]; D];
     let domain = BoxDomain::new(Point::zeros(), Point::repeat(1.0), sides);
     Mesh::kuhn_box(&domain, [n; D]).unwrap()
 }

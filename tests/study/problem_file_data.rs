@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::problem_files::{BOX, SIDES};
 use super::scratch::Scratch;
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::prelude::*;
 use unilateral::problem_file::read;
 use unilateral::scenes::AnyScene;
@@ -140,7 +140,7 @@ fn tables_of_a_file_become_the_data_of_their_name() {
         let is_matrix = mesh.regions()[mesh.region(cell)].contains(&"matrix".to_owned());
         volumes[usize::from(is_matrix)] += mesh.geometry(cell).volume;
     }
-    let neumann = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Neumann);
+    let neumann = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Neumann);
     let measure = |cell: u32, local: u8| mesh.geometry(cell as usize).facet_measure(local.into());
     let length: f64 = neumann.map(|f| measure(f.cell, f.local)).sum();
     fn of<'a>(problem: &'a Problem<2>, mesh: &'a Mesh<2>) -> Discretisation<'a, 2> {

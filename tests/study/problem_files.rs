@@ -2,7 +2,7 @@
 
 use super::scratch::Scratch;
 use std::path::Path;
-use unilateral::mesh::{BoundaryPart, Domain, Mesh};
+use unilateral::mesh::{BoundaryCondition, Domain, Mesh};
 use unilateral::prelude::*;
 use unilateral::problem_file::read;
 use unilateral::scenes::AnyScene;
@@ -64,7 +64,10 @@ fn the_plate_has_its_materials_on_every_level() {
 fn the_foot_carries_the_load_of_the_bracket() {
     let AnyScene::Three(own) = example("bracket.toml") else { panic!("a problem in space") };
     let mesh = own.domain.mesh(0).unwrap();
-    assert!(mesh.has_part(BoundaryPart::Contact) && !mesh.has_part(BoundaryPart::Dirichlet));
+    assert!(
+        mesh.has_condition(BoundaryCondition::Contact)
+            && !mesh.has_condition(BoundaryCondition::Dirichlet)
+    );
     // weight, and the traction on the head, whose mean over the head is -2
     let load = -(0.6 * 0.3 + 0.3 * 0.6 * 0.9) - 2.0 * 0.3 * 0.6;
     for force in solve_all(&own) {
@@ -98,7 +101,7 @@ fn a_box_has_sides_and_an_exact_solution() {
     let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("a problem in the plane") };
     assert_eq!(own.name, "harmonic");
     let Domain::Box(domain) = &own.domain else { panic!("a box") };
-    assert_eq!(domain.sides[1], [BoundaryPart::Contact, BoundaryPart::Neumann]);
+    assert_eq!(domain.sides[1], [BoundaryCondition::Contact, BoundaryCondition::Neumann]);
     let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
     let solved = solve(&own.problem, &mesh, &ConformingP2).unwrap();
     assert!(

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use flate2::read::ZlibDecoder;
 use unilateral::element::{Element, P2};
-use unilateral::mesh::{BoundaryPart, BoxDomain, Domain, GroupedFacet, Mesh};
+use unilateral::mesh::{BoundaryCondition, BoxDomain, Domain, GroupedFacet, Mesh};
 use unilateral::paraview::{FieldScalar, VtuFile};
 use unilateral::prelude::*;
 use unilateral::problem_file;
@@ -311,7 +311,8 @@ fn integrates<const D: usize>(scene: &Scene<D>, scheme: &dyn Scheme<D>, level: u
     let Domain::Box(domain) = &scene.domain else { panic!("a box") };
     let sides = domain.sides.iter().flatten();
     let names = sides.zip(["left", "right", "bottom", "top", "back", "front"]);
-    let contact_side = names.filter(|(side, _)| **side == BoundaryPart::Contact).map(|(_, n)| n);
+    let contact_side =
+        names.filter(|(side, _)| **side == BoundaryCondition::Contact).map(|(_, n)| n);
     let members: Vec<Vec<usize>> = contact_side.map(|n| grid.integers("CellData", n)).collect();
     let (mut total, mut touching) = (0.0, 0);
     for (c, cell) in grid.cells().iter().enumerate() {

@@ -9,7 +9,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::arrays::{map_entries, tabulate};
+use crate::arrays::{array_of, map_entries};
 use crate::mesh::Mesh;
 use crate::problem::Field;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule, facet_to_cell};
@@ -21,7 +21,7 @@ pub(crate) type Visit<'v, const D: usize> = &'v mut dyn FnMut(&[f64; 4], &Point<
 
 /// A part of a simplex, by barycentric coordinates in it.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct Piece {
     corners: [[f64; 4]; 4],
     /// Share of the measure of the whole simplex.
     share: f64,
@@ -125,19 +125,19 @@ impl CutRule {
         self.whole.iter().for_each(|(point, weight)| visit(point, weight));
     }
 
-    fn whole(&self) -> Part {
-        let corners = tabulate(|i| tabulate(|k| f64::from(u8::from(i == k))));
-        Part { corners, share: 1.0, bisections: 0 }
+    fn whole(&self) -> Piece {
+        let corners = array_of(|i| array_of(|k| f64::from(u8::from(i == k))));
+        Piece { corners, share: 1.0, bisections: 0 }
     }
 
-    fn visit_uncut(&self, part: &Part, visit: &mut dyn FnMut(&[f64; 4], f64)) {
+    fn visit_uncut(&self, part: &Piece, visit: &mut dyn FnMut(&[f64; 4], f64)) {
         let rule = if part.share == 1.0 { &self.whole } else { &self.part };
         rule.iter().for_each(|(point, weight)| visit(&part.point(point), weight * part.share));
     }
 
     fn visit_part<const D: usize>(
         &self,
-        part: &Part,
+        part: &Piece,
         corners: &[Point<D>; 4],
         level: &Field<D>,
         visit: &mut dyn FnMut(&[f64; 4], f64),
@@ -160,7 +160,7 @@ impl CutRule {
     /// part: a change of sign between these points is not detected.
     fn is_cut<const D: usize>(
         &self,
-        part: &Part,
+        part: &Piece,
         corners: &[Point<D>; 4],
         level: &Field<D>,
     ) -> bool {
@@ -181,7 +181,7 @@ impl CutRule {
     /// of edges tell. Its zero set is then nearly plane.
     fn is_nearly_linear<const D: usize>(
         &self,
-        part: &Part,
+        part: &Piece,
         corners: &[Point<D>; 4],
         level: &Field<D>,
     ) -> bool {
@@ -201,7 +201,7 @@ impl CutRule {
     }
 
     /// The two halves on both sides of the middle of the longest edge.
-    fn halves<const D: usize>(&self, part: &Part, corners: &[Point<D>; 4]) -> [Part; 2] {
+    fn halves<const D: usize>(&self, part: &Piece, corners: &[Point<D>; 4]) -> [Piece; 2] {
         let points = part.corners.map(|c| in_space(&c, corners));
         let mut longest = (0, 0, -1.0);
         for i in 0..=self.dimension {
@@ -215,7 +215,7 @@ impl CutRule {
         let (i, j, _) = longest;
         let middle = between(&part.corners[i], &part.corners[j], 0.5);
         map_entries([i, j], |replaced| {
-            let mut half = Part { share: 0.5 * part.share, ..*part };
+            let mut half = Piece { share: 0.5 * part.share, ..*part };
             half.bisections += 1;
             half.corners[replaced] = middle;
             half
@@ -226,7 +226,7 @@ impl CutRule {
     /// `signs` are the signs of the function at the corners of `part`, zero at corners that are zeros.
     fn divide<const D: usize>(
         &self,
-        part: &Part,
+        part: &Piece,
         signs: [i8; 4],
         corners: &[Point<D>; 4],
         level: &Field<D>,
@@ -256,7 +256,7 @@ impl CutRule {
         let r = zero_between(|r| level(&in_space(&between(&from, &to, r), corners)));
         let r = r.unwrap_or(0.5);
         for (replaced, share) in [(i, r), (j, 1.0 - r)] {
-            let mut divided = Part { share: share * part.share, ..*part };
+            let mut divided = Piece { share: share * part.share, ..*part };
             let mut signs = signs;
             divided.corners[replaced] = between(&from, &to, r);
             signs[replaced] = 0;
@@ -269,7 +269,7 @@ impl CutRule {
     /// facet to the zero set as the weight of one point and its negative as that of the other.
     fn correct<const D: usize>(
         &self,
-        part: &Part,
+        part: &Piece,
         apex: usize,
         corners: &[Point<D>; 4],
         level: &Field<D>,
@@ -293,16 +293,16 @@ impl CutRule {
     }
 }
 
-impl Part {
+impl Piece {
     /// A point of the part, or of one of its faces, in barycentric coordinates of the whole.
     fn point(&self, barycentric: &[f64; 4]) -> [f64; 4] {
-        tabulate(|k| (0..4).map(|i| barycentric[i] * self.corners[i][k]).sum())
+        array_of(|k| (0..4).map(|i| barycentric[i] * self.corners[i][k]).sum())
     }
 }
 
 /// The point `(1 - r) p + r q`.
 fn between(p: &[f64; 4], q: &[f64; 4], r: f64) -> [f64; 4] {
-    tabulate(|k| (1.0 - r) * p[k] + r * q[k])
+    array_of(|k| (1.0 - r) * p[k] + r * q[k])
 }
 
 /// The rule with fewest points of this degree.

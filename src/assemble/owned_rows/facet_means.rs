@@ -12,7 +12,7 @@ use crate::assemble::space::Space;
 use crate::assemble::space::metric::Metrics;
 use crate::assemble::stiffness::zero_local;
 use crate::facet::{FacetForm, FacetKind};
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::mesh::{BoundaryCondition, Neighbour};
 
 /// Whether the unknowns are facet means of linear functions and the form acts on means of jumps only, without higher
 /// moments, fluxes and lifts.
@@ -73,7 +73,7 @@ pub(super) fn fill<const D: usize>(
                 Neighbour::Cell { cell: other, local: other_local } => {
                     (facet.min((other as usize, other_local as usize)), FacetKind::Interior)
                 }
-                Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
+                Neighbour::Boundary(BoundaryCondition::Dirichlet) if !space.pins => {
                     (facet, FacetKind::Dirichlet)
                 }
                 Neighbour::Boundary(_) | Neighbour::Cut => {

@@ -10,7 +10,7 @@ use crate::assemble::space::metric::CellMetric;
 use crate::assemble::space::tables::Derivatives;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetKind;
-use crate::mesh::{BoundaryPart, HalfFacet, Neighbour};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour};
 
 /// A dense block of the rows of a cell, of which small elements use the upper left corner.
 type Block<const N: usize> = [[f64; N]; N];
@@ -141,7 +141,7 @@ impl<const D: usize> Filling<'_, '_, D> {
                     let facet = self.add_facet::<N, M>(own, Some(other), weight, &mut block_of_own);
                     self.write_other::<N, M>(&facet, other, &mut rows);
                 }
-                Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
+                Neighbour::Boundary(BoundaryCondition::Dirichlet) if !self.space.pins => {
                     let weight = self.weights.at::<D>((cell, local), true, FacetKind::Dirichlet);
                     self.add_facet::<N, M>(own, None, weight, &mut block_of_own);
                 }

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::{Space, Terms};
 use crate::algebra::{Bound, Contact};
 use crate::constraint::BoundBy;
-use crate::mesh::BoundaryPart;
+use crate::mesh::BoundaryCondition;
 use crate::parallel::cells;
 use crate::problem::Datum;
 
@@ -119,7 +119,7 @@ impl<const D: usize> Space<'_, D> {
     /// By unknown whether no gap binds it.
     fn unknowns_without_gap(&self) -> Vec<bool> {
         let mut without = vec![true; self.dofs.size()];
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             if self.data.gap.of(group).is_some() {
                 let bounded = self.bounded_nodes_on(local);
                 bounded.for_each(|(i, _)| without[self.dofs.of(cell, i)] = false);

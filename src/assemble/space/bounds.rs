@@ -10,7 +10,7 @@ use crate::assemble::count;
 use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, HalfFacet};
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::vectors::collect;
 use crate::parallel::{cells, lock};
 use crate::problem::Datum;
@@ -121,7 +121,7 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let given = self.dirichlet_groups();
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             // a function that jumps along the boundary, down to the Dirichlet data, has no finite energy
             for (k, v) in self.mesh.facet_vertices(cell, local).enumerate() {
@@ -177,7 +177,7 @@ impl<const D: usize> Space<'_, D> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let zero = !self.problem.has_dirichlet_data();
         let (lowers, uppers) = (&self.data.lower, &self.data.upper);
-        let mut facets: Vec<_> = self.grouped_facets_of(BoundaryPart::Dirichlet).collect();
+        let mut facets: Vec<_> = self.grouped_facets_of(BoundaryCondition::Dirichlet).collect();
         // the first facet decides on an unknown
         sort_by_rank(&mut facets, &self.data.dirichlet_rank);
         for ((cell, local), group) in facets {

@@ -3,7 +3,7 @@
 use super::Space;
 use super::metric::Metrics;
 use crate::facet::{FacetKind, FacetView};
-use crate::mesh::{BoundaryPart, HalfFacet, Neighbour};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour};
 
 /// A facet that carries the form: one between two cells, or one with Dirichlet data that the form imposes.
 ///
@@ -38,7 +38,7 @@ impl<'a, const D: usize> Space<'a, D> {
                 let other = (cell as usize, usize::from(local));
                 Some(FormFacet { here: own.min(other), there: Some(own.max(other)) })
             }
-            Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
+            Neighbour::Boundary(BoundaryCondition::Dirichlet) if !self.pins => {
                 Some(FormFacet { here: own, there: None })
             }
             Neighbour::Boundary(_) | Neighbour::Cut => None,

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::tables::Derivatives;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::assemble::count;
 use crate::element::MAX_BASIS;
 use crate::facet::Side;
@@ -129,7 +129,7 @@ pub(crate) fn shape<const D: usize>(
     let zero = 0.0;
     let corners = mesh.cell(cell);
     let corner = |k: usize| mesh.vertices()[corners[k] as usize];
-    let edges = tabulate(|k| if k < D { with_zeros(corner(k + 1) - corner(0)) } else { [zero; 3] });
+    let edges = array_of(|k| if k < D { with_zeros(corner(k + 1) - corner(0)) } else { [zero; 3] });
     let (normals, determinant) = cofactors::<D>(edges);
     let size = if determinant < zero { -determinant } else { determinant };
     let scale = if size == zero { zero } else { scale / (size * FACTORIAL[D]) };
@@ -242,11 +242,11 @@ impl Metrics {
         let n = CellMetric::<D>::KEPT;
         let kept = &self.kept[cell * n + D + 2..(cell + 1) * n];
         // by products with zeros and ones: facets come in no order that branches could foresee
-        let (supports, others) = (&PAIR[D][local & 3], &OTHERS[local & 3]);
+        let (locations, others) = (&PAIR[D][local & 3], &OTHERS[local & 3]);
         let mut row = [0.0; 4];
         let mut sum = 0.0;
         for k in 0..=D {
-            row[k] = others[k] * kept[supports[k]];
+            row[k] = others[k] * kept[locations[k]];
             sum -= row[k];
         }
         for k in 0..=D {
@@ -259,7 +259,7 @@ impl Metrics {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{BoundaryPart, TaggedFacet};
+    use crate::mesh::{BoundaryCondition, TaggedFacet};
     use crate::real::Point;
 
     #[test]
@@ -267,7 +267,7 @@ mod tests {
         for short in [1e-3, 1e-6, 1e-9] {
             let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, short]].map(Point::<2>::from);
             let sides = [[0, 1], [0, 2], [1, 2]]
-                .map(|vertices| TaggedFacet { vertices, part: BoundaryPart::Dirichlet });
+                .map(|vertices| TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet });
             let mesh = Mesh::new(vertices.to_vec(), vec![0, 1, 2], &sides).expect("one cell");
             let metric: CellMetric<2> = CellMetric::of(&mesh, 0);
             let exact = [short, (1.0 + short * short).sqrt(), 1.0];

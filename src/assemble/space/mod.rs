@@ -15,7 +15,7 @@
 //! | `reaction_term` | the reaction term of the matrix |
 //! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
 //! | `active_obstacles` | where obstacles give the bound that is active |
-//! | `supports`, `node_vertices` | the supports of basis functions, by the vertices that stand for a node |
+//! | `locations`, `node_vertices` | the locations of unknowns, by the vertices that stand for a node |
 
 pub(crate) mod active_obstacles;
 mod bounds;
@@ -25,19 +25,20 @@ pub(crate) mod contradictions;
 mod diffusion;
 pub(crate) mod dofs;
 pub(crate) mod form_facets;
+mod locations;
 pub(crate) mod metric;
 mod node_vertices;
 pub(crate) mod reaction_term;
-mod supports;
 pub(crate) mod tables;
 
 use std::sync::{Arc, OnceLock};
 
+use super::stiffness::{Local, StiffnessTable, zero_local};
 use super::{DataQuadrature, count};
 use crate::constraint::{BoundBy, in_basis_of, offered};
 use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
-use crate::mesh::{BoundaryFacet, BoundaryPart, HalfFacet, Mesh, Neighbours};
+use crate::mesh::{BoundaryCondition, BoundaryFacet, HalfFacet, Mesh, Neighbours};
 use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::Point;
@@ -206,6 +207,26 @@ impl<'a, const D: usize> Space<'a, D> {
             && (0..=D).all(|i| (0..=D).all(|k| is_one(i, k)));
         all.then_some(factor)
     }
+    /// The stiffness of the reference element.
+    pub fn stiffness_table(&self) -> StiffnessTable {
+        let degree = 2 * self.basis_degree.saturating_sub(1);
+        StiffnessTable::new(D, &self.cell_table(Rule::new(D, degree)))
+    }
+    /// The entries `(alpha grad phi_j, grad phi_i)` over a cell, from the table of the reference element. The loops
+    /// over cells that fill a matrix make the same numbers in place.
+    pub fn stiffness(&self, table: &StiffnessTable, cell: usize, metric: &CellMetric<D>) -> Local {
+        let (n, alpha, varying) = (self.per_cell(), self.alpha(cell), self.varying_in(cell));
+        let mut out = zero_local();
+        for (i, row) in out.iter_mut().enumerate().take(n) {
+            for (j, entry) in row.iter_mut().enumerate().take(n) {
+                *entry = match varying {
+                    None => alpha * table.entry(metric, i, j),
+                    Some((varying, values)) => varying.stiffness(values, metric, i, j),
+                };
+            }
+        }
+        out
+    }
     /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
     pub fn is_conforming_linear(&self) -> bool {
         !self.broken && self.nodes.iter().cloned().eq((0..=D).map(Node::vertex))
@@ -227,15 +248,15 @@ impl<'a, const D: usize> Space<'a, D> {
         local
     }
     /// The boundary facets of a part, by cell and number in the cell.
-    pub fn facets_of(&self, part: BoundaryPart) -> impl Iterator<Item = HalfFacet> {
+    pub fn facets_of(&self, part: BoundaryCondition) -> impl Iterator<Item = HalfFacet> {
         self.grouped_facets_of(part).map(|(facet, _)| facet)
     }
     /// The boundary facets of a part with the numbers of their groups.
     pub fn grouped_facets_of(
         &self,
-        part: BoundaryPart,
+        condition: BoundaryCondition,
     ) -> impl Iterator<Item = (HalfFacet, usize)> {
-        let of_part = move |f: &&BoundaryFacet| f.part == part;
+        let of_part = move |f: &&BoundaryFacet| f.condition == condition;
         let facet = |f: &BoundaryFacet| ((f.cell as usize, f.local as usize), usize::from(f.group));
         self.mesh.boundary().iter().filter(of_part).map(facet)
     }

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use unilateral::exchange::read_vector;
 use unilateral::in_its_dimension;
 use unilateral::inequality::{ActiveSet, in_precision};
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::real::Precision;
 use unilateral::scenes::{self, Parameters, Scene};
 use unilateral::scheme::NamedScheme;
@@ -49,7 +49,7 @@ pub fn write_requests(
     let files = [absolute(&options.mesh.path), absolute(&options.problem)];
     let [mesh, problem] = files.map(|file| file.map_err(|e| format!("cannot find a file: {e}")));
     let (mesh, problem) = (mesh?, problem?);
-    let part = |(name, part): &(String, BoundaryPart)| (name.clone(), part.name());
+    let part = |(name, part): &(String, BoundaryCondition)| (name.clone(), part.name());
     let boundary: BTreeMap<String, &str> = options.mesh.boundary.iter().map(part).collect();
     // the meshes of a reference are refined from that of the coarsest level
     let coarsest = keys.iter().map(|key| key.level).min();
@@ -135,7 +135,7 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
             let file = found_beside(&options.directory, file);
             let parts = request["boundary"].as_object().into_iter().flatten();
             let part = |(name, part): (&String, &Value)| {
-                Some((name.clone(), BoundaryPart::from_name(part.as_str()?)?))
+                Some((name.clone(), BoundaryCondition::from_name(part.as_str()?)?))
             };
             let boundary = parts.filter_map(part).collect();
             let mesh = MeshFile { path: Some(file.clone()), boundary };

@@ -6,7 +6,7 @@ use clap::Args;
 use unilateral::in_its_dimension;
 use unilateral::input::{excerpt, excerpts};
 use unilateral::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile, GmshWarning};
-use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
+use unilateral::mesh::{BoundaryCondition, Mesh, MeshError};
 use unilateral::scenes::AnyScene;
 
 use crate::shared::Request;
@@ -19,7 +19,7 @@ pub struct MeshFile {
     pub path: Option<PathBuf>,
     /// The parts of other groups of the mesh, as bore=neumann
     #[arg(long, value_delimiter = ',', value_name = "NAME=PART[,...]", requires = "mesh", value_parser = boundary)]
-    pub boundary: Vec<(String, BoundaryPart)>,
+    pub boundary: Vec<(String, BoundaryCondition)>,
 }
 
 impl MeshFile {
@@ -68,7 +68,7 @@ pub fn warn_of(warnings: &[GmshWarning], path: &Path, warn: &dyn Fn(String)) {
 pub fn with_parts<const D: usize>(
     mesh: Mesh<D>,
     path: &Path,
-    boundary: &[(String, BoundaryPart)],
+    boundary: &[(String, BoundaryCondition)],
 ) -> Request<Mesh<D>> {
     let file = path.display();
     let groups: Vec<&str> =
@@ -86,7 +86,7 @@ pub fn with_parts<const D: usize>(
         let given = boundary.iter().find(|(group, _)| group == name);
         given.map(|(_, part)| *part)
     };
-    let mesh = mesh.with_boundary_parts(&part_of).map_err(|e| format!("{file}: {e}"))?;
+    let mesh = mesh.with_boundary_conditions(&part_of).map_err(|e| format!("{file}: {e}"))?;
     mesh.check_boundary_parts().map_err(|e| match e {
         MeshError::UndecidedGroup { group, .. } => format!(
             "{file}: nothing says what holds on boundary group {group}: \
@@ -98,9 +98,9 @@ pub fn with_parts<const D: usize>(
 }
 
 /// A boundary group and its part.
-pub fn boundary(text: &str) -> Request<(String, BoundaryPart)> {
+pub fn boundary(text: &str) -> Request<(String, BoundaryCondition)> {
     let found = text.rsplit_once('=');
     let found =
-        found.and_then(|(name, part)| Some((name.to_owned(), BoundaryPart::from_name(part)?)));
+        found.and_then(|(name, part)| Some((name.to_owned(), BoundaryCondition::from_name(part)?)));
     found.ok_or_else(|| "expected NAME=dirichlet, NAME=neumann or NAME=contact".to_owned())
 }

@@ -17,7 +17,7 @@ use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
 use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::vertices_of;
-use crate::mesh::{BoundaryPart, HalfFacet, Neighbour, Neighbours};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
 use crate::quadrature::facet_to_cell;
 
 /// Visits of each pair of vertices of each facet.
@@ -136,7 +136,7 @@ impl<const D: usize> Space<'_, D> {
         flux: &mut Flux<D>,
     ) {
         let facets: Vec<(HalfFacet, usize)> =
-            self.grouped_facets_of(BoundaryPart::Contact).collect();
+            self.grouped_facets_of(BoundaryCondition::Contact).collect();
         let mut touches = vec![false; self.mesh.vertices().len()];
         for ((cell, local), _) in &facets {
             self.mesh.facet_vertices(*cell, *local).for_each(|v| touches[v as usize] = true);

@@ -10,7 +10,7 @@ use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, HalfFacet, Neighbours};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbours};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -91,7 +91,7 @@ impl<const D: usize> Space<'_, D> {
         if self.broken {
             return multipliers.chunks_exact(n).map(|m| m.iter().sum()).collect();
         }
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+        for (cell, local) in self.facets_of(BoundaryCondition::Dirichlet) {
             self.nodes_on(local).for_each(|i| multipliers[self.dofs.of(cell, i)] = 0.0);
         }
         let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));

@@ -23,7 +23,7 @@ mod quadratics;
 use crate::assemble::space::Space;
 use crate::measure::Counts;
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, HalfFacet, Neighbour, Neighbours};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
 
 /// Multipliers below this share of the largest one are rounding.
 const ROUNDING: f64 = 1e-10;
@@ -140,7 +140,7 @@ impl<const D: usize> Space<'_, D> {
                             ]));
                         }
                     }
-                    Neighbour::Boundary(BoundaryPart::Dirichlet) => {
+                    Neighbour::Boundary(BoundaryCondition::Dirichlet) => {
                         steps.push(ExchangeStep::WithDirichlet(facet));
                     }
                     Neighbour::Boundary(_) | Neighbour::Cut => {}

@@ -7,7 +7,7 @@
 
 use super::cells_of_quadratics::{CellOfQuadratics, CellsOfQuadratics};
 use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, visit_steps};
-use crate::arrays::{map_entries, tabulate};
+use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
@@ -161,7 +161,7 @@ impl<const D: usize> Space<'_, D> {
             }
             let sum: f64 = means.iter().sum();
             let value = |k: usize| (d + 1.0) * ((d + 2.0) * means[k] - sum);
-            tabulate(|k| if k <= D { value(k) } else { 0.0 })
+            array_of(|k| if k <= D { value(k) } else { 0.0 })
         };
         (0..self.mesh.n_cells()).map(of_cell).collect()
     }

@@ -7,7 +7,7 @@ use super::cell_flux::share_of_one_sign;
 use crate::assemble::space::Space;
 use crate::error_bound::quadratics::vertices_of;
 use crate::error_bound::{NoBound, PrimalDualPair};
-use crate::mesh::{BoundaryPart, HalfFacet};
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::{Rule, facet_to_cell};
 
 /// A negative contact force below this share of the largest one is rounding.
@@ -94,7 +94,7 @@ impl<const D: usize> Space<'_, D> {
         let n_cells = self.mesh.n_cells();
         let zeros = |is_needed: bool| vec![0.0; if is_needed { n_cells } else { 0 }];
         let has_fluxes =
-            self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
+            self.problem.has_neumann_data() && self.mesh.has_condition(BoundaryCondition::Neumann);
         let has_gap = self.problem.has_gap();
         let rule = self.rule_of_facets(pair.degree);
         let mut terms = BoundaryTerms {
@@ -102,7 +102,7 @@ impl<const D: usize> Space<'_, D> {
             contact: zeros(has_gap),
         };
         if has_fluxes {
-            for (facet, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+            for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
                 let measure = self.facet_measure(facet);
                 let flux = self.flux_on(pair, facet);
                 let mut square = 0.0;
@@ -115,7 +115,7 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         let (mut least, mut largest) = (0.0_f64, 0.0_f64);
-        for (facet, group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for (facet, group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             let admissible = self.admissible_in(pair, facet.0);
             let flux = self.flux_on(pair, facet);

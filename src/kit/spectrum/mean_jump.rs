@@ -1,7 +1,7 @@
 //! Means and jumps over facets in place of the values on either side.
 
 use crate::algebra::{RectangularMatrix, SparseMatrix, galerkin_product};
-use crate::mesh::{BoundaryPart, Facets, Mesh, Neighbours};
+use crate::mesh::{BoundaryCondition, Facets, Mesh, Neighbours};
 
 /// The change of variables that takes facet means of a broken space apart into their mean and
 /// their jump: a sparse matrix `E` with at most two entries in each row.
@@ -30,7 +30,7 @@ impl MeanJump {
         let facets = Facets::new(mesh, &Neighbours::new(mesh));
         let numbers = facets.numbers::<D>(mesh.n_cells());
         // interior facets are numbered first, Dirichlet ones next
-        let (interior, dirichlet) = (facets.interior(), facets.part(BoundaryPart::Dirichlet));
+        let (interior, dirichlet) = (facets.interior(), facets.part(BoundaryCondition::Dirichlet));
         let means = facets.len() - dirichlet.len();
         let change = RectangularMatrix::by_rows(0..numbers.len(), |unknown, columns, values| {
             let facet = numbers[unknown] as usize;

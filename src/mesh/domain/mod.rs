@@ -8,12 +8,12 @@ pub use boxes::BoxDomain;
 #[cfg(feature = "problem-files")]
 pub(crate) use boxes::SIDES;
 
-use super::boundary::BoundaryPart;
+use super::boundary::BoundaryCondition;
 use super::error::MeshError;
 use super::part::{Layers, Part};
 use super::refine::Refinement;
 use super::simplicial::Mesh;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::instances::compiled;
 use crate::real::Point;
 
@@ -94,11 +94,11 @@ impl<const D: usize> Domain<D> {
         }
     }
     /// Whether the boundary has a facet in this part.
-    pub fn has_part(&self, part: BoundaryPart) -> bool {
+    pub fn has_condition(&self, part: BoundaryCondition) -> bool {
         match self {
             Domain::Box(domain) => domain.sides.iter().flatten().any(|&side| side == part),
-            Domain::Mesh(mesh) => mesh.has_part(part),
-            _ => part == BoundaryPart::Dirichlet,
+            Domain::Mesh(mesh) => mesh.has_condition(part),
+            _ => part == BoundaryCondition::Dirichlet,
         }
     }
 
@@ -119,7 +119,7 @@ impl<const D: usize> Domain<D> {
         match self {
             Domain::Box(domain) => {
                 let counts = domain.counts(level);
-                tabulate(|k| (domain.upper[k] - domain.lower[k]) / counts[k] as f64)
+                array_of(|k| (domain.upper[k] - domain.lower[k]) / counts[k] as f64)
             }
             Domain::Mesh(_) => [self.length() / 2_f64.powf(level as f64); D],
             _ => [self.length() / level as f64; D],

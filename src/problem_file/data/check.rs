@@ -1,7 +1,7 @@
 //! Names and values of a problem file, held against the mesh.
 
 use crate::input::{excerpt, excerpts};
-use crate::mesh::BoundaryPart;
+use crate::mesh::BoundaryCondition;
 use crate::mesh::{Mesh, describe_point};
 use crate::problem::{BoundaryFlux, Problem};
 use crate::problem_file::error::{ProblemFileError, ProblemFileErrorKind};
@@ -82,7 +82,7 @@ pub(super) struct Checks<'s, 't, const D: usize> {
     pub problem: &'s Problem<D>,
     pub entries: &'s [Entry<D>],
     /// The boundary groups that the file names.
-    pub parts: &'s [(String, BoundaryPart)],
+    pub parts: &'s [(String, BoundaryCondition)],
     /// Where the file has the gradient of the exact solution.
     pub gradient_offset: usize,
 }

@@ -7,10 +7,10 @@ use toml::de::DeTable;
 use super::contents::ProblemFile;
 use super::error::{ProblemFileError, ProblemFileErrorKind};
 use super::table::{Formula, Place, Source, Value};
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::error::Error;
 use crate::input::{beginning, fingerprint};
-use crate::mesh::{BoundaryFacet, BoundaryPart, BoxDomain, Domain, Mesh, MeshError, SIDES};
+use crate::mesh::{BoundaryCondition, BoundaryFacet, BoxDomain, Domain, Mesh, MeshError, SIDES};
 use crate::problem::{Datum, Given, Problem};
 use crate::real::Point;
 use crate::scenes::{AnyScene, Scene};
@@ -39,7 +39,7 @@ struct Builder<'s, 't, const D: usize> {
     source: &'s Source<'t>,
     problem: Problem<D>,
     entries: Vec<Entry<D>>,
-    parts: Vec<(String, BoundaryPart)>,
+    parts: Vec<(String, BoundaryCondition)>,
     /// What is given on boundary groups without a table of their own.
     on_other_groups: Option<OnGroup>,
     /// The gaps of the problem, in their order.
@@ -52,7 +52,7 @@ struct Builder<'s, 't, const D: usize> {
 
 /// What a file gives on a boundary group.
 struct OnGroup {
-    part: BoundaryPart,
+    condition: BoundaryCondition,
     formula: Formula,
     /// Its name in the file.
     datum: String,
@@ -143,17 +143,17 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let Some(kind) = table.get("kind") else {
             return Err(self.source.missing(offset, "kind", kinds));
         };
-        let part = BoundaryPart::from_name(self.source.string("kind", kind)?)
+        let part = BoundaryCondition::from_name(self.source.string("kind", kind)?)
             .ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?;
-        if BoundaryPart::from_name(group).is_some_and(|named| named != part) {
+        if BoundaryCondition::from_name(group).is_some_and(|named| named != part) {
             let expected =
                 "what the name of the group says: dirichlet, neumann and contact fix their kind";
             return Err(self.source.wrong_type("kind", kind, expected));
         }
         let (name, takes_normal) = match part {
-            BoundaryPart::Dirichlet => ("value", false),
-            BoundaryPart::Neumann => ("flux", true),
-            BoundaryPart::Contact => ("gap", true),
+            BoundaryCondition::Dirichlet => ("value", false),
+            BoundaryCondition::Neumann => ("flux", true),
+            BoundaryCondition::Contact => ("gap", true),
         };
         self.source.allow(table, &["kind", name])?;
         let variables = match takes_normal {
@@ -162,23 +162,23 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         };
         let formula = match table.get(name) {
             Some(value) => self.source.formula(name, value, &variables)?,
-            None if self.has_exact && part != BoundaryPart::Contact => {
+            None if self.has_exact && part != BoundaryCondition::Contact => {
                 let purpose = "the exact solution does not stand for data that are left out";
                 return Err(self.source.missing(offset, name, purpose));
             }
             None => Formula::Number(0.0),
         };
-        Ok(OnGroup { part, formula, datum: format!("boundary.{group}.{name}"), offset })
+        Ok(OnGroup { condition: part, formula, datum: format!("boundary.{group}.{name}"), offset })
     }
 
     /// Puts what is given on a boundary group into the problem.
     fn put_on(&mut self, group: &str, given: &OnGroup) {
-        let OnGroup { part, formula, datum, offset } = given;
+        let OnGroup { condition: part, formula, datum, offset } = given;
         let (problem, name) = (&mut self.problem, Some(&group[..]));
         match part {
-            BoundaryPart::Dirichlet => problem.dirichlet.give(name, formula.datum()),
-            BoundaryPart::Neumann => problem.neumann.give(name, formula.flux()),
-            BoundaryPart::Contact => {
+            BoundaryCondition::Dirichlet => problem.dirichlet.give(name, formula.datum()),
+            BoundaryCondition::Neumann => problem.neumann.give(name, formula.flux()),
+            BoundaryCondition::Contact => {
                 self.gaps.push(formula.clone());
                 problem.gap.give(name, formula.datum());
             }
@@ -188,7 +188,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             group: Some(group.to_owned()),
             is_boundary: true,
             others: Vec::new(),
-            at_vertices: *part != BoundaryPart::Neumann,
+            at_vertices: *part != BoundaryCondition::Neumann,
             offset: *offset,
             allowed: Allowed::Finite,
             value: formula.flux(),
@@ -206,7 +206,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let (with_table, without): (Vec<_>, Vec<_>) = groups.iter().partition(|g| has_table(g));
         for names in without {
             let of_part = |name: &&String| {
-                BoundaryPart::from_name(name).is_none_or(|part| part == given.part)
+                BoundaryCondition::from_name(name).is_none_or(|part| part == given.condition)
             };
             let is_own = |name: &&String| !with_table.iter().any(|group| group.contains(name));
             let own = names.iter().filter(of_part).find(is_own);
@@ -226,7 +226,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             let facets = mesh.boundary().iter().filter(is_meant).map(|f| {
                 let (cell, local) = (f.cell as usize, usize::from(f.local));
                 let vertices: Vec<u32> = mesh.facet_vertices(cell, local).collect();
-                let corners = tabulate(|k| mesh.vertices()[vertices[k] as usize]);
+                let corners = array_of(|k| mesh.vertices()[vertices[k] as usize]);
                 (corners, mesh.geometry(cell).normal(local))
             });
             *datum = formula.datum_on(facets.collect());

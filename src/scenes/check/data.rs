@@ -2,7 +2,7 @@
 
 use super::samples::{BoundaryPoint, boundary, lattice};
 use super::violation::{Condition, Violation};
-use crate::mesh::BoundaryPart;
+use crate::mesh::BoundaryCondition;
 use crate::real::Point;
 use crate::scenes::scene::Scene;
 
@@ -16,19 +16,19 @@ pub(super) fn check<const D: usize>(
     for x in inside.iter().copied().chain(lattice(domain)) {
         check_at(scene, &x)?;
     }
-    for BoundaryPoint { x, normal, part } in boundary(domain, samples) {
+    for BoundaryPoint { x, normal, condition } in boundary(domain, samples) {
         check_at(scene, &x)?;
-        match part {
-            BoundaryPart::Dirichlet => check_dirichlet(scene, &x)?,
-            BoundaryPart::Contact if !scene.problem.has_gap() => {
+        match condition {
+            BoundaryCondition::Dirichlet => check_dirichlet(scene, &x)?,
+            BoundaryCondition::Contact if !scene.problem.has_gap() => {
                 return Err(Violation::new(&scene.name, Condition::GapGiven, &x, f64::NAN, 0.0));
             }
-            BoundaryPart::Neumann => {
+            BoundaryCondition::Neumann => {
                 if let Some(q) = &scene.problem.neumann.everywhere {
                     finite(scene, "neumann", &x, q.at(&x, &normal))?;
                 }
             }
-            BoundaryPart::Contact => {}
+            BoundaryCondition::Contact => {}
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! The end of contact at a vertex and off all vertices.
 
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
 use crate::nested::Hierarchy;
 use crate::real::Point;
 use crate::scenes;
@@ -88,7 +88,7 @@ fn largest_on_contact(
     let found = solved(&problem, &meshes, choice, true)?;
     let Some(fields) = found.fields() else { return Ok(None) };
     let mut largest = 0.0_f64;
-    for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+    for facet in mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
         let (cell, local) = (facet.cell as usize, facet.local as usize);
         let ends: Vec<(f64, f64)> = (0..3)
             .filter(|&k| k != local)

@@ -95,7 +95,7 @@ fn turned(mesh: &Mesh<3>) -> Mesh<3> {
     let vertices = mesh.vertices().iter().map(|x| Point::<3>::new(x[0], x[2], x[1])).collect();
     let facet = |f: &BoundaryFacet| {
         let v: Vec<u32> = mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
-        TaggedFacet { vertices: [v[0], v[1], v[2]], part: f.part }
+        TaggedFacet { vertices: [v[0], v[1], v[2]], condition: f.condition }
     };
     let boundary: Vec<TaggedFacet<3>> = mesh.boundary().iter().map(facet).collect();
     Mesh::new(vertices, mesh.cells().to_vec(), &boundary).unwrap()

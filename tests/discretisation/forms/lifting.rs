@@ -4,7 +4,7 @@
 use crate::support::meshes::{Random, Raw, mixed_box};
 use nalgebra::{DMatrix, DVector};
 use unilateral::assemble::{DataQuadrature, Discretisation};
-use unilateral::mesh::{BoundaryPart, Mesh, TaggedFacet};
+use unilateral::mesh::{BoundaryCondition, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 
@@ -215,7 +215,8 @@ fn facets<const D: usize>(mesh: &Mesh<D>) -> Vec<Sides> {
     }
     let dirichlet = |sides: &Sides| {
         mesh.boundary().iter().any(|f| {
-            (f.cell as usize, f.local as usize) == sides[0] && f.part == BoundaryPart::Dirichlet
+            (f.cell as usize, f.local as usize) == sides[0]
+                && f.condition == BoundaryCondition::Dirichlet
         })
     };
     all.into_values().filter(|sides| sides.len() == 2 || dirichlet(sides)).collect()
@@ -313,7 +314,10 @@ fn cut_at_barycentre<const D: usize>() -> Mesh<D> {
     let cells = (0..=D).flat_map(|k| others(k).chain([D as u32 + 1])).collect();
     let side = |k: usize| {
         let v: Vec<u32> = others(k).collect();
-        TaggedFacet { vertices: std::array::from_fn(|i| v[i]), part: BoundaryPart::Dirichlet }
+        TaggedFacet {
+            vertices: std::array::from_fn(|i| v[i]),
+            condition: BoundaryCondition::Dirichlet,
+        }
     };
     Mesh::new(vertices, cells, &(0..=D).map(side).collect::<Vec<_>>()).unwrap()
 }

@@ -102,8 +102,8 @@ fn a_spectrum_that_is_not_reached_is_an_error() {
 fn means_and_jumps() {
     fn on<const D: usize>() {
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-            .side(0, 1, unilateral::mesh::BoundaryPart::Neumann)
-            .side(D - 1, 0, unilateral::mesh::BoundaryPart::Contact);
+            .side(0, 1, unilateral::mesh::BoundaryCondition::Neumann)
+            .side(D - 1, 0, unilateral::mesh::BoundaryCondition::Contact);
         let mesh = Mesh::<D>::kuhn_box(&domain, [3; D]).unwrap();
         let assemble = |scheme: &Wopsip| {
             let problem = Problem::new().on(FacetMeans);
@@ -123,8 +123,9 @@ fn means_and_jumps() {
         let c = change.expand(&y);
         let inner = |c: &[f64]| c.iter().filter(|&&c| c == 1.0).count();
         let dirichlet = mesh.boundary().iter();
-        let dirichlet =
-            dirichlet.filter(|f| f.part == unilateral::mesh::BoundaryPart::Dirichlet).count();
+        let dirichlet = dirichlet
+            .filter(|f| f.condition == unilateral::mesh::BoundaryCondition::Dirichlet)
+            .count();
         assert_eq!(inner(&c), change.size() - dirichlet);
         // E^T A E applied in one go and step by step
         let mut random = 1_u64;

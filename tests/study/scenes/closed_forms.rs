@@ -1,6 +1,6 @@
 //! Closed forms, constants and rounding.
 
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::scenes::{Scene, ball_2d, hertz_2d, radial, signorini_2d, signorini_harmonic};
 
 use super::{assert_close, gradient, source, value};
@@ -136,7 +136,7 @@ fn tips_are_finite_and_rounding_does_not_cross_the_branch_cut() {
 #[test]
 fn zero_in_contact_is_exact_on_the_contact_side() {
     for scene in [signorini_2d(), signorini_harmonic::<2>()] {
-        assert_eq!(scene.domain.bounding_box().sides[1][0], BoundaryPart::Contact);
+        assert_eq!(scene.domain.bounding_box().sides[1][0], BoundaryCondition::Contact);
         for x in [-0.9, -0.5, -1e-9] {
             assert_eq!(value(&scene, [x, 0.0]), 0.0);
             assert_eq!(gradient(&scene, [-x, 0.0])[1], 0.0);

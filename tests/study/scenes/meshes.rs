@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use unilateral::error::Error;
-use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
+use unilateral::mesh::{BoundaryCondition, Mesh, MeshError};
 use unilateral::mesh::{BoxDomain, Domain};
 use unilateral::real::Point;
 use unilateral::scenes::{Scene, disc_2d, lshape_2d, radial, spiral_2d};
@@ -44,7 +44,7 @@ fn the_l_shape_has_its_area_and_its_corner() {
         assert!((area(&mesh) - 12.0).abs() < 1e-12);
         assert!(mesh.vertices().contains(&Point::zeros()));
         assert!(mesh.vertices().iter().all(|x| x[0] <= 0.0 || x[1] >= 0.0));
-        assert!(mesh.boundary().iter().all(|f| f.part == BoundaryPart::Dirichlet));
+        assert!(mesh.boundary().iter().all(|f| f.condition == BoundaryCondition::Dirichlet));
         assert!(mesh.is_supported());
     }
 }

@@ -1,6 +1,6 @@
 //! The check says no.
 
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::mesh::BoxDomain;
 use unilateral::problem::{Exact, Problem};
 use unilateral::real::Point;
@@ -62,7 +62,7 @@ fn the_check_refuses_wrong_boundary_data() {
     scene.problem = scene.problem.dirichlet(|x| (2.0 / x.norm()).ln());
     assert_eq!(refused(&scene), Condition::Dirichlet);
     let mut scene = radial::<2>(1.0);
-    scene.domain = BoxDomain::centred(1.5).side(0, 1, BoundaryPart::Neumann).into();
+    scene.domain = BoxDomain::centred(1.5).side(0, 1, BoundaryCondition::Neumann).into();
     scene.problem = scene.problem.neumann(|_, _| 0.0);
     assert_eq!(refused(&scene), Condition::Neumann);
 }
@@ -76,7 +76,7 @@ fn the_check_refuses_broken_signorini_conditions() {
     scene.problem = scene.problem.signorini(|x| -1e-3 - x[0] * x[0] / 2.0);
     assert_eq!(refused(&scene), Condition::ContactComplementarity);
     let mut scene = hertz_2d();
-    scene.domain = BoxDomain::above_contact().side(1, 1, BoundaryPart::Contact).into();
+    scene.domain = BoxDomain::above_contact().side(1, 1, BoundaryCondition::Contact).into();
     scene.problem = scene.problem.signorini(|_| -10.0);
     assert!(matches!(refused(&scene), Condition::ContactFlux | Condition::ContactComplementarity));
     let mut scene = hertz_2d();

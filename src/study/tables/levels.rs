@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-use super::extrapolate::{Limit, extrapolate};
-use super::orders::rates::rates;
-use super::part_figures::PartFigures;
 use super::remarks::{failure, warnings};
-use super::report::Report;
-use super::row::{Row, distinct};
-use super::series::series_of;
 use super::summary::{lead, summaries};
+use crate::study::extrapolate::{Limit, extrapolate};
+use crate::study::orders::rates::rates;
+use crate::study::part_figures::PartFigures;
+use crate::study::report::Report;
+use crate::study::row::{Row, distinct};
+use crate::study::series::series_of;
 use crate::table::{WIDTH, wrapped};
 
 /// The cell of a number that does not apply.

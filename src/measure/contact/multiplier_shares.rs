@@ -2,18 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use super::entity::{ContactEntity, Place};
+use super::entity::{CellOrFacet, ContactEntity};
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, HalfFacet};
+use crate::mesh::{BoundaryCondition, HalfFacet};
 
 /// What of the multiplier of an unknown acts on one of several cells or contact facets.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct Share {
     /// The position of the cell or facet in the list of cells or of contact facets.
     place: usize,
     unknown: usize,
@@ -86,7 +86,7 @@ impl<const D: usize> Space<'_, D> {
         let names: Vec<String> =
             (0..self.mesh.boundary_groups().len()).map(|group| self.name_of_gap(group)).collect();
         let facets: Vec<(HalfFacet, usize)> =
-            self.grouped_facets_of(BoundaryPart::Contact).collect();
+            self.grouped_facets_of(BoundaryCondition::Contact).collect();
         for part in self.parts_of_gaps(&inequality.bounds, &multipliers) {
             let ((cell, _), group) = facets[part.place];
             if of_cells(cell) {
@@ -102,7 +102,7 @@ impl<const D: usize> Space<'_, D> {
         let given = obstacles.into_iter().filter(|(_, data)| data.is_given());
         let mut names: Vec<String> = given.map(|(name, _)| name.to_owned()).collect();
         for (group, of_group) in self.mesh.boundary_groups().iter().enumerate() {
-            let is_contact = of_group.part == Some(BoundaryPart::Contact);
+            let is_contact = of_group.condition == Some(BoundaryCondition::Contact);
             if is_contact && self.data.gap.of(group).is_some() {
                 names.push(self.name_of_gap(group));
             }
@@ -135,7 +135,7 @@ impl<const D: usize> Space<'_, D> {
 
     /// The parts of the multipliers of obstacles in all cells: that of a shared unknown by volume among the cells whose
     /// obstacle gives the bound.
-    fn parts_of_obstacles(&self, of: &Multipliers) -> Vec<Part> {
+    fn parts_of_obstacles(&self, of: &Multipliers) -> Vec<Share> {
         let n_cells = self.mesh.n_cells();
         let volume = |cell: usize| self.mesh.geometry(cell).volume;
         let acting = |cell: usize| {
@@ -154,7 +154,7 @@ impl<const D: usize> Space<'_, D> {
         for cell in 0..n_cells {
             parts.extend(acting(cell).map(|unknown| {
                 let value = of.by_unknown[unknown] * (volume(cell) / totals[unknown]);
-                Part { place: cell, unknown, value }
+                Share { place: cell, unknown, value }
             }));
         }
         parts
@@ -162,13 +162,13 @@ impl<const D: usize> Space<'_, D> {
 
     /// The parts of the multipliers of gaps on all contact facets: by measure among the facets whose gap gives the
     /// bound.
-    fn parts_of_gaps(&self, bounds: &[Bound<f64>], of: &Multipliers) -> Vec<Part> {
+    fn parts_of_gaps(&self, bounds: &[Bound<f64>], of: &Multipliers) -> Vec<Share> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let mut parts = Vec::new();
         // of each unknown whether a gap gives the bound, and the measure of its facets with the best answer
         let mut best = vec![(false, 0.0); if self.problem.has_gap() { bounds.len() } else { 0 }];
         let mut gives_of_part = Vec::new();
-        let facets = self.grouped_facets_of(BoundaryPart::Contact).enumerate();
+        let facets = self.grouped_facets_of(BoundaryCondition::Contact).enumerate();
         for (place, ((cell, local), group)) in
             facets.filter(|(_, (_, group))| self.data.gap.of(*group).is_some())
         {
@@ -184,7 +184,7 @@ impl<const D: usize> Space<'_, D> {
                     lower if gives => *lower = (true, measure),
                     _ => {}
                 }
-                parts.push(Part { place, unknown, value: measure });
+                parts.push(Share { place, unknown, value: measure });
                 gives_of_part.push(gives);
             }
         }
@@ -214,7 +214,7 @@ impl<const D: usize> Space<'_, D> {
         inequality: &Inequality<f64>,
         of: &Multipliers,
     ) -> Vec<f64> {
-        let facets = self.grouped_facets_of(BoundaryPart::Contact);
+        let facets = self.grouped_facets_of(BoundaryCondition::Contact);
         let facets = facets.map(|((cell, local), group)| ((cell, Some(local)), group));
         let parts = self.parts_of_gaps(&inequality.bounds, of);
         self.densities(&facets.collect::<Vec<_>>(), &parts, inequality)
@@ -225,8 +225,8 @@ impl<const D: usize> Space<'_, D> {
     /// functions on the group.
     fn densities(
         &self,
-        places: &[(Place, usize)],
-        parts: &[Part],
+        places: &[(CellOrFacet, usize)],
+        parts: &[Share],
         inequality: &Inequality<f64>,
     ) -> Vec<f64> {
         let mut groups: Vec<usize> = places.iter().map(|(_, group)| *group).collect();
@@ -240,7 +240,7 @@ impl<const D: usize> Space<'_, D> {
             let entities: Vec<ContactEntity> = of_group.iter().map(|&k| entity(k)).collect();
             let mut at_vertices = vec![0.0; self.mesh.vertices().len()];
             for part in parts.iter().filter(|part| places[part.place].1 == group) {
-                let around = inequality.supports[part.unknown].vertices();
+                let around = inequality.locations[part.unknown].vertices();
                 let share = part.value / around.len() as f64;
                 around.iter().for_each(|&v| at_vertices[v as usize] += share);
             }

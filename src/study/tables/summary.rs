@@ -1,9 +1,9 @@
 //! The summary of a report: one table for each scene at the finest level of every series, and how the runs ended.
 
+use super::levels::{scientific, seconds, unproven};
 use super::remarks::warnings;
-use super::row::{Row, distinct};
-use super::series::{Series, series_of};
-use super::table::{scientific, seconds, unproven};
+use crate::study::row::{Row, distinct};
+use crate::study::series::{Series, series_of};
 use crate::table::{Cell, Table};
 
 /// A column of the summary.
