@@ -25,8 +25,8 @@ pub struct Program {
     pub target_cpu: String,
     /// What else the rows depend on and do not say, by name: parameters of scenes, a mesh file.
     pub request: BTreeMap<String, String>,
-    /// The command that makes the report again; none of a program without one.
-    #[cfg_attr(feature = "report", serde(default))]
+    /// The command that makes the report again, for its page; files of rows do not have it.
+    #[cfg_attr(feature = "report", serde(skip))]
     pub command: Option<String>,
 }
 

@@ -156,7 +156,8 @@ p1              123456 converged
 wopsip:facet-   123456
 means@factor=
 10
-    stalled: the residual fell no more
+    stalled: the residual fell
+    no more
 ";
         assert_eq!(table.to_text(32), expected);
     }

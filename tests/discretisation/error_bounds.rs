@@ -185,7 +185,8 @@ fn a_vertex_with_two_fans_has_balanced_fluxes() {
             cells.extend([a, number(i + 1, j), b, a, number(i, j + 1), b]);
         }
         for k in 0..n {
-            let mut add = |vertices: [u32; 2], part| boundary.push(TaggedFacet { vertices, part });
+            let mut add =
+                |vertices: [u32; 2], condition| boundary.push(TaggedFacet { vertices, condition });
             for transposed in [false, true] {
                 let number = |i, j| if transposed { number(j, i) } else { number(i, j) };
                 add([number(k, 0), number(k + 1, 0)], BoundaryCondition::Neumann);

@@ -192,7 +192,8 @@ fn a_problem_gives_the_boundary_its_parts() {
         .signorini_on("bottom", |x: &Point<2>| 0.1 * x[0] - 0.1)
         .neumann_on("left", |x, n| x[1] * n[0]);
     let mesh = problem.bind_boundary(divided::<2>(8)).unwrap();
-    let part = |BoundaryGroup { names, part, .. }: &BoundaryGroup| (names[0].clone(), *part);
+    let part =
+        |BoundaryGroup { names, condition, .. }: &BoundaryGroup| (names[0].clone(), *condition);
     let parts: Vec<_> = mesh.boundary_groups().iter().map(part).collect();
     let expected = [
         ("left", BoundaryCondition::Neumann),

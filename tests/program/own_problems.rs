@@ -310,7 +310,7 @@ fn files_of_an_earlier_request_go() {
     }
     assert!(out.join("mine-p1.svg").exists());
     let page = std::fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(!page.contains("p1 on radial-2d"));
+    assert!(!page.contains("radial-2d-p1.svg"));
 }
 
 /// Problems of the test data, with their meshes.

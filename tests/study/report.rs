@@ -280,6 +280,7 @@ fn the_summary_says_which_runs_did_not_converge_and_marks_the_best_of_the_others
     rows[last].status = Outcome::Stalled;
     rows[last].message = Some("nothing moved".into());
     rows[last].error.l2 = Some(1e-9);
+    rows[last - 3].error.l2 = Some(5e-4);
     let (name, level) = (rows[last].label.clone(), rows[last].level);
     let (scene, n) = (rows[last].scene.clone(), rows.len());
     let text = report(rows).summary_to_text(100);
@@ -290,7 +291,7 @@ fn the_summary_says_which_runs_did_not_converge_and_marks_the_best_of_the_others
     );
     assert!(words.contains("stalled: nothing moved"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
-    assert!(!text.contains("\u{2022} 1.00e-9") && text.contains('\u{2022}'), "{text}");
+    assert!(!text.contains("\u{2022} 1.00e-9") && text.contains("\u{2022} 5.00e-4"), "{text}");
 }
 
 /// Width and height that a PNG file states.

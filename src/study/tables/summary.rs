@@ -1,6 +1,6 @@
 //! The summary of a report: one table for each scene at the finest level of every series, and how the runs ended.
 
-use super::levels::{scientific, seconds, unproven};
+use super::levels::{scenes, scientific, seconds, unproven};
 use super::remarks::warnings;
 use crate::study::row::{Row, distinct};
 use crate::study::series::{Series, series_of};
@@ -44,15 +44,15 @@ pub(crate) fn lead(rows: &[Row]) -> String {
 
 /// The tables of all scenes: at most eight columns, the best number of a column marked.
 pub(crate) fn summaries(rows: &[Row]) -> Vec<Table> {
-    let series = series_of(rows);
-    let scenes = distinct(series.iter().map(|series| &*series.variant.scene));
-    let of_scene = |scene| series.iter().filter(move |series| series.variant.scene == scene);
-    scenes.into_iter().map(|scene| summary(scene, &of_scene(scene).collect::<Vec<_>>())).collect()
+    let tables = scenes(rows).into_iter();
+    tables
+        .map(|(title, rows)| summary(&title, rows[0].theta.is_some(), &series_of(&rows)))
+        .collect()
 }
 
-fn summary(scene: &str, series: &[&Series<'_>]) -> Table {
+fn summary(title: &str, is_adaptive: bool, series: &[Series<'_, &Row>]) -> Table {
     let finest: Vec<&Row> =
-        series.iter().filter_map(|series| series.rows.last().copied()).collect();
+        series.iter().filter_map(|series| series.plain_rows().next_back()).collect();
     let columns = columns(&finest);
     let best: Vec<Option<f64>> = columns.iter().map(|column| best(column, &finest)).collect();
     let cell = |column: &Column, best: Option<f64>, row: &Row| match (column.cell)(row) {
@@ -61,7 +61,7 @@ fn summary(scene: &str, series: &[&Series<'_>]) -> Table {
         None => Cell::Nothing,
     };
     let mut told = Told::default();
-    let line = |(series, row): (&&Series<'_>, &&Row)| {
+    let line = |(series, row): (&Series<'_, &Row>, &&Row)| {
         let numbers = columns.iter().zip(&best).map(|(column, &best)| cell(column, best, row));
         let status = Cell::Words(told.status(row));
         [Cell::Words(series.name.clone())].into_iter().chain(numbers).chain([status]).collect()
@@ -74,8 +74,9 @@ fn summary(scene: &str, series: &[&Series<'_>]) -> Table {
     let mut remarks = Vec::new();
     let mut coarser: Vec<(&str, &Row)> = Vec::new();
     for series in series {
-        let rows = series.rows.iter().rev().skip(1).rev();
-        coarser.extend(rows.filter(|row| !row.converged()).map(|row| (&*series.name, *row)));
+        let mut rows = series.plain_rows();
+        rows.next_back();
+        coarser.extend(rows.filter(|row| !row.converged()).map(|row| (&*series.name, row)));
     }
     for message in distinct(coarser.iter().map(|(_, row)| told.message(row))) {
         let of = coarser.iter().filter(|(_, row)| told.message(row) == message);
@@ -84,7 +85,12 @@ fn summary(scene: &str, series: &[&Series<'_>]) -> Table {
     }
     let warnings = warnings(&finest).into_iter().map(|(labels, text)| format!("{labels}: {text}"));
     Table {
-        title: format!("{scene}, level {}{}", levels.join(", "), references.collect::<String>()),
+        title: format!(
+            "{title}, {} {}{}",
+            if is_adaptive { "step" } else { "level" },
+            levels.join(", "),
+            references.collect::<String>()
+        ),
         columns: ["scheme"].into_iter().chain(names).chain(["status"]).map(str::to_owned).collect(),
         rows: lines,
         remarks: remarks.into_iter().chain(warnings).chain(unproven(&finest)).collect(),
@@ -150,7 +156,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
         columns.push(column("H1 (order)", true, |r| figure(r.error.h1, r.order.h1)));
     }
     if any(|r| r.bound.effectivity) && !is_adaptive {
-        columns.push(column("bound / error", true, |r| {
+        columns.push(column("bound/error", true, |r| {
             let mark = if r.bound.guaranteed == Some(false) { "*" } else { "" };
             r.bound.effectivity.map(|x| (x, format!("{x:.2}{mark}"), None))
         }));

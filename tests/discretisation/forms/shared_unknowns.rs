@@ -45,7 +45,7 @@ fn fan(n: u32) -> Mesh<2> {
     let rims = (0..n).map(|k| [k + 1, (k + 1) % n + 1]);
     let cells = rims.clone().flat_map(|[a, b]| [0, a, b]).collect();
     let part = BoundaryCondition::Dirichlet;
-    let boundary: Vec<_> = rims.map(|vertices| TaggedFacet { vertices, part }).collect();
+    let boundary: Vec<_> = rims.map(|vertices| TaggedFacet { vertices, condition: part }).collect();
     Mesh::new(vertices, cells, &boundary).unwrap()
 }
 

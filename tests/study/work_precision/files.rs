@@ -74,7 +74,7 @@ fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
         let (columns, rest) = table.split_once("}\n\\toprule\n").unwrap();
         let body = rest.split("\\end{tabular}").next().unwrap();
         let lines: Vec<&str> = body.lines().filter(|l| l.contains(" & ")).collect();
-        assert!(lines.len() > 3);
+        assert!(lines.len() > 1, "{text}");
         for line in lines {
             assert_eq!(line.matches(" & ").count() + 1, columns.len(), "{line}");
             assert!(line.ends_with("\\\\"), "{line}");
@@ -121,7 +121,7 @@ fn failures_are_listed_and_drawn() {
     assert!(report.to_text().contains("failed: p1, level 32: cycling"));
     let scratch = Scratch::new("drawn");
     let written = report.write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 6 + 2);
+    assert_eq!(written.len(), 5 + 2);
     for plot in ["time", "unknowns"] {
         let text = scratch.read(&format!("radial-2d-{plot}.svg"));
         assert!(text.contains("did not converge"), "{plot}");

@@ -193,7 +193,7 @@ fn without_contact<const D: usize>(mesh: Mesh<D>) -> Mesh<D> {
         let contact = f.condition == BoundaryCondition::Contact;
         TaggedFacet {
             vertices,
-            part: if contact { BoundaryCondition::Dirichlet } else { f.condition },
+            condition: if contact { BoundaryCondition::Dirichlet } else { f.condition },
         }
     });
     let boundary: Vec<_> = boundary.collect();
