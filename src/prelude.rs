@@ -6,6 +6,7 @@ pub use crate::element::{Broken, CrouzeixRaviart, Element, Entity, Node, P1, P2}
 pub use crate::error::Error;
 pub use crate::facet::{
     DirichletBy, FacetForm, FacetView, Lifts, NoFacets, PenaltyRule, Trace, WeightRule,
+    proven_bound,
 };
 pub use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
 pub use crate::nested::{AdaptiveMeshes, Adaptivity, Stop, adapt};

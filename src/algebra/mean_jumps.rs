@@ -2,8 +2,8 @@
 
 use super::NO_INDEX;
 
-/// The jumps of a [`PenalisedMatrix`](super::PenalisedMatrix) of discontinuous linear functions that penalises on each facet the jump of the
-/// mean, and no other moment of the jump.
+/// The jumps of a [`PenalisedMatrix`](super::PenalisedMatrix) of discontinuous linear functions that penalises on each
+/// facet the jump of the mean, and no other moment of the jump.
 ///
 /// A facet has one side in each of its cells. Sides have the indices of unknowns: side `i` of a cell belongs to
 /// facet `i` of the cell, which is opposite to vertex `i`.
@@ -17,15 +17,19 @@ pub struct MeanJumps {
 }
 
 impl MeanJumps {
-    /// Whether there are sides for each of `n_jumps` jumps, all of cells with as many unknowns as facets in two or three
-    /// dimensions.
+    /// Whether each of `n_jumps` jumps has its sides, no side has two jumps, and cells have as many unknowns as facets
+    /// in two or three dimensions.
     pub(super) fn is_well_formed(&self, n_jumps: usize, size: usize, cell_size: usize) -> bool {
-        let is_side = |side: u32| (side as usize) < size;
+        let mut has_jump = vec![false; size];
+        let mut is_new = |side: u32| {
+            let known = has_jump.get_mut(side as usize);
+            known.is_some_and(|known| !std::mem::replace(known, true))
+        };
         (3..=4).contains(&cell_size)
             && self.sides.len() == n_jumps
             && self
                 .sides
                 .iter()
-                .all(|&[one, opposite]| is_side(one) && (opposite == NO_INDEX || is_side(opposite)))
+                .all(|&[one, opposite]| is_new(one) && (opposite == NO_INDEX || is_new(opposite)))
     }
 }

@@ -4,6 +4,7 @@ use super::count;
 use super::owned_rows::lifted::Lifting;
 use super::space::form_facets::FormFacet;
 use super::space::metric::Metrics;
+use super::space::tables::FacetDatum;
 use super::space::tables::FacetTable;
 use super::space::{Space, checks};
 use super::trace::traces;
@@ -12,13 +13,6 @@ use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::{OrthonormalPolynomials, Rule};
-
-/// A facet on which the form imposes data.
-pub(crate) struct FacetDatum {
-    pub facet: HalfFacet,
-    /// The moments of the datum on the facet.
-    pub moments: Vec<f64>,
-}
 
 /// What moments of data on facets are computed with.
 pub(crate) struct FacetMoments<'r> {

@@ -16,8 +16,8 @@ use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups, zeros};
 ///
 /// `D` is the block diagonal part of `A` with one block for the unknowns of each cell. `P` maps the
 /// vertex values of a conforming linear function to unknowns: an unknown is the mean of the values
-/// at the vertices of its location. `C` is a preconditioner of the matrix of the form on conforming linear functions, not
-/// of `A`.
+/// at the vertices of its location. `C` is a preconditioner of the matrix of the form on conforming linear functions,
+/// not of `A`.
 pub(super) struct AuxiliarySpace<'a> {
     blocks: BlockJacobi<'a>,
     /// The unknowns that the part owns; only the blocks of these are complete.

@@ -40,7 +40,7 @@ impl<'f, const D: usize> FormTheory<'f, D> {
     pub fn with_coercivity(self, is_coercive: bool) -> Self {
         Self { is_coercive, ..self }
     }
-    /// Sets the margin over a proven bound.
+    /// Sets the margin over a proven bound: 0.5 for a penalty of 1.5 times the bound.
     #[must_use]
     pub fn with_margin(self, margin: f64) -> Self {
         Self { margin: Some(margin), ..self }

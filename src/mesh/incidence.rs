@@ -77,7 +77,7 @@ pub(crate) struct Blocks<const K: usize> {
 
 /// Where the numbers of a block are: none, some or all of them in a range.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Location {
+pub(crate) enum Overlap {
     Outside,
     Across,
     Inside,
@@ -197,21 +197,21 @@ impl<const K: usize> Blocks<K> {
     pub fn of<'b>(
         &'b self,
         ranges: &'b Ranges<K>,
-    ) -> impl Iterator<Item = (Range<usize>, Location, &'b Ranges<K>)> {
+    ) -> impl Iterator<Item = (Range<usize>, Overlap, &'b Ranges<K>)> {
         let location = move |hull: &Ranges<K>| {
             let pairs = || hull.iter().zip(ranges).filter(|(hull, _)| !hull.is_empty());
             if pairs().all(|(hull, range)| range.start <= hull.start && hull.end <= range.end) {
-                Location::Inside
+                Overlap::Inside
             } else if pairs().any(|(hull, range)| hull.start < range.end && range.start < hull.end)
             {
-                Location::Across
+                Overlap::Across
             } else {
-                Location::Outside
+                Overlap::Outside
             }
         };
         let all = self.hulls.iter().enumerate();
         all.map(move |(block, hull)| (Self::cells(block, self.n_cells), location(hull), hull))
-            .filter(|(_, location, _)| *location != Location::Outside)
+            .filter(|(_, location, _)| *location != Overlap::Outside)
     }
 }
 

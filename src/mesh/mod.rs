@@ -42,7 +42,8 @@ pub(crate) use edges::edge_vertices;
 pub use error::MeshError;
 pub use facets::{Facets, HalfFacet, Neighbour, Neighbours};
 pub use geometry::CellGeometry;
-pub(crate) use geometry::{FACTORIAL, cofactors, cross, describe_point, dot, with_zeros};
+pub(crate) use geometry::describe_point;
+pub(crate) use geometry::simplex::{FACTORIAL, cofactors, cross, dot, with_zeros};
 pub use groups::BoundaryGroup;
 #[cfg(feature = "problem-files")]
 pub(crate) use overlap::FacetSearch;

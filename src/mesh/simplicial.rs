@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::boundary::{BoundaryCondition, BoundaryFacet};
-use super::geometry::{fold_edges, longest_edge};
+use super::geometry::simplex::{fold_edges, longest_edge};
 use super::groups::Groups;
 use super::part::extent::Extent;
 use crate::parallel::cells;

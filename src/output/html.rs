@@ -83,9 +83,12 @@ impl HtmlPage {
             }
             text += "</section>\n";
         }
-        text += "<section>\n<h2>How this page was made</h2>\n";
-        self.provenance.iter().for_each(|of| text += &paragraph(" class=\"provenance\"", of));
-        text + "</section>\n</body>\n</html>\n"
+        if !self.provenance.is_empty() {
+            text += "<section>\n<h2>How this page was made</h2>\n";
+            self.provenance.iter().for_each(|of| text += &paragraph(" class=\"provenance\"", of));
+            text += "</section>\n";
+        }
+        text + "</body>\n</html>\n"
     }
 }
 
@@ -100,7 +103,7 @@ fn plots(plots: &[(String, String)]) -> String {
     }
     let mut text = "<div class=\"plots\">\n".to_owned();
     for (title, svg) in plots {
-        let svg = svg[svg.find("<svg").unwrap_or(0)..].trim_end();
+        let svg = svg[svg.find("<svg").expect("a drawing is an SVG file")..].trim_end();
         let title = escape(title);
         text += &format!(
             "<figure class=\"plot\" role=\"img\" aria-label=\"{title}\">{svg}<figcaption>{title}</figcaption></figure>\n"

@@ -47,7 +47,7 @@ impl Report {
                 .into_iter()
                 .flatten()
                 .collect(),
-            pictures: self.pictures(&scene, directory),
+            pictures: self.pictures(&rows[0].scene, directory),
             title: scene,
             ..Section::default()
         };

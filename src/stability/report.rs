@@ -225,7 +225,7 @@ impl StabilityReport {
         let mut paragraphs = self.paragraphs().into_iter();
         let page = HtmlPage {
             title: "Stability".to_owned(),
-            lead: paragraphs.next().unwrap_or_default(),
+            lead: paragraphs.next().expect("the heading is the first paragraph"),
             summary: self.verdict_tables(),
             sections: vec![
                 Section {
@@ -293,7 +293,8 @@ impl StabilityReport {
         )
     }
 
-    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be. Each file takes the place of an earlier one only when it is whole.
+    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be. Each file takes
+    /// the place of an earlier one only when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.

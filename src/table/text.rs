@@ -67,7 +67,7 @@ impl Table {
         let mut widths: Vec<usize> = (0..=last)
             .map(|k| {
                 let lengths = cells.iter().map(|row| row[k].chars().count());
-                let words = self.columns[k].split(' ').map(|word| word.chars().count());
+                let words = self.columns[k].split_inclusive(is_break).map(length);
                 lengths.filter(|&n| is_short(k, n)).chain(words).max().unwrap_or(0)
             })
             .collect();
@@ -76,7 +76,8 @@ impl Table {
         let excess = (whole + gap * last).saturating_sub(width);
         if excess > 0 && self.is_left(0) {
             let piece = |text: &str| text.split_inclusive(is_break).map(length).max().unwrap_or(0);
-            let least = cells.iter().map(|row| piece(&row[0])).max().unwrap_or(0);
+            let first = cells.iter().map(|row| &row[0]).chain([&self.columns[0]]);
+            let least = first.map(|text| piece(text)).max().unwrap_or(0);
             widths[0] = widths[0].saturating_sub(excess).max(least);
         }
         (widths, gap)

@@ -278,7 +278,7 @@ mod needs_petsc {
         }
     }
 
-    /// Options that processes do not location are refused with one sentence.
+    /// Options that processes do not support are refused with one sentence.
     #[test]
     #[ignore = "needs PETSc and mpirun"]
     fn what_processes_do_not_support_is_refused() {

@@ -17,9 +17,9 @@
 use super::Coupled;
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, Metrics};
+use crate::assemble::space::tables::FacetDatum;
 use crate::assemble::space::tables::FacetTable;
 use crate::assemble::trace::flux_weight;
-use crate::assemble::weak_dirichlet::FacetDatum;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
 use crate::mesh::HalfFacet;

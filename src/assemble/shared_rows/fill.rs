@@ -11,7 +11,7 @@ use super::unknowns::{ANY, CellUnknowns, Rows};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
 use crate::assemble::space::dofs::{Dofs, KINDS};
-use crate::mesh::incidence::{Columns, Location, partition};
+use crate::mesh::incidence::{Columns, Overlap, partition};
 
 /// The rows of one kind in a subset, and their values.
 struct Target<'v> {
@@ -138,11 +138,11 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
     fn block<M: CellMatrix>(
         &self,
         cells: Range<usize>,
-        location: Location,
+        location: Overlap,
         targets: &mut [Target<'_>; KINDS],
         matrices: M,
     ) {
-        if location == Location::Inside {
+        if location == Overlap::Inside {
             self.add::<M, true>(cells, targets, matrices);
         } else {
             self.add::<M, false>(cells, targets, matrices);

@@ -38,7 +38,7 @@ impl Smoother {
     }
 
     /// Sets the fixed unknowns, and the unknowns `kept`, which are neither fixed nor smoothed; smoothers by cells do
-    /// not location the latter, and smooth them.
+    /// not support the latter, and smooth them.
     ///
     /// # Errors
     /// [`FactorError::NotPositive`] if the block of a cell is not positive definite.

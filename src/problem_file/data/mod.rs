@@ -174,7 +174,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     /// Puts what is given on a boundary group into the problem.
     fn put_on(&mut self, group: &str, given: &OnGroup) {
         let OnGroup { condition: part, formula, datum, offset } = given;
-        let (problem, name) = (&mut self.problem, Some(&group[..]));
+        let (problem, name) = (&mut self.problem, Some(group));
         match part {
             BoundaryCondition::Dirichlet => problem.dirichlet.give(name, formula.datum()),
             BoundaryCondition::Neumann => problem.neumann.give(name, formula.flux()),

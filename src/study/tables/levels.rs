@@ -1,46 +1,17 @@
-//! Reports as text for a terminal: one table for each scene.
+//! All levels as text for a terminal: one table for each scene.
 
 use std::fmt;
 
 use super::remarks::{failure, warnings};
-use super::summary::{lead, summaries};
 use crate::study::extrapolate::{Limit, extrapolate};
 use crate::study::orders::rates::rates;
 use crate::study::part_figures::PartFigures;
-use crate::study::report::Report;
 use crate::study::row::{Row, distinct};
 use crate::study::series::series_of;
 use crate::table::{WIDTH, wrapped};
 
 /// The cell of a number that does not apply.
 const NONE: &str = "-";
-
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.summary_to_text(WIDTH))
-    }
-}
-
-impl Report {
-    /// What was compared and how it ended, and for each scene one table at the finest level of every series, in
-    /// lines of this many characters.
-    pub fn summary_to_text(&self, width: usize) -> String {
-        if self.rows.is_empty() {
-            return String::new();
-        }
-        let tables = summaries(&self.rows).into_iter().map(|table| table.to_text(width));
-        let lead = wrapped(&lead(&self.rows), width, 0);
-        [lead].into_iter().chain(tables).collect::<Vec<_>>().join("\n")
-    }
-
-    /// The tables of all levels: errors, orders, counts and times, then energy, contact measure, resultant, bound
-    /// and stages.
-    pub fn details_to_text(&self) -> String {
-        let mut text = String::new();
-        write_tables(&mut text, &self.rows).expect("writing to a text does not fail");
-        text
-    }
-}
 
 /// Writes one table for each scene, in the order in which scenes first occur, with a blank line
 /// between series; times are in seconds. `certif.` is the largest of the four numbers of the
@@ -49,7 +20,7 @@ impl Report {
 /// the reason. Where no error is known there are columns of error bound, energy, contact measure and
 /// resultant, and their limits below; where errors are known a second table has these, for the finest level
 /// of each series, and the stages that ran.
-fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
+pub(super) fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
     for (i, (scene, rows)) in scenes(rows).into_iter().enumerate() {
         if i > 0 {
             writeln!(f)?;

@@ -6,11 +6,16 @@ use crate::study::row::{Row, distinct};
 use crate::study::series::{Series, series_of};
 use crate::table::{Cell, Table};
 
+/// The name of the column of effectivities.
+const BOUND: &str = "bound/error";
+
+/// A number that is compared, its text and a remark.
+type Figure = (f64, String, Option<String>);
+
 /// A column of the summary.
 struct Column {
     name: &'static str,
-    /// The cell of a row: the number that is compared, its text and a remark.
-    cell: fn(&Row) -> Option<(f64, String, Option<String>)>,
+    cell: fn(&Row) -> Option<Figure>,
     /// Whether the least number is the best.
     has_best: bool,
 }
@@ -134,7 +139,8 @@ fn best(column: &Column, rows: &[&Row]) -> Option<f64> {
         .filter(|row| row.converged())
         .filter_map(|row| (column.cell)(row))
         .map(|(x, ..)| x)
-        .filter(|x| x.is_finite())
+        // a bound below the error is none
+        .filter(|x| x.is_finite() && (column.name != BOUND || *x >= 1.0))
         .collect();
     let least = numbers.iter().copied().min_by(f64::total_cmp)?;
     (column.has_best && numbers.iter().any(|&x| x > least)).then_some(least)
@@ -156,7 +162,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
         columns.push(column("H1 (order)", true, |r| figure(r.error.h1, r.order.h1)));
     }
     if any(|r| r.bound.effectivity) && !is_adaptive {
-        columns.push(column("bound/error", true, |r| {
+        columns.push(column(BOUND, true, |r| {
             let mark = if r.bound.guaranteed == Some(false) { "*" } else { "" };
             r.bound.effectivity.map(|x| (x, format!("{x:.2}{mark}"), None))
         }));
@@ -180,6 +186,6 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
 }
 
 /// An error in three digits with its order.
-fn figure(x: Option<f64>, order: Option<f64>) -> Option<(f64, String, Option<String>)> {
+fn figure(x: Option<f64>, order: Option<f64>) -> Option<Figure> {
     x.map(|x| (x, scientific(Some(x)), order.map(|p| format!("{p:.2}"))))
 }

@@ -74,7 +74,7 @@ fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
         let (columns, rest) = table.split_once("}\n\\toprule\n").unwrap();
         let body = rest.split("\\end{tabular}").next().unwrap();
         let lines: Vec<&str> = body.lines().filter(|l| l.contains(" & ")).collect();
-        assert!(lines.len() > 1, "{text}");
+        assert!(columns.len() == 1 || lines.len() > 1, "{table}");
         for line in lines {
             assert_eq!(line.matches(" & ").count() + 1, columns.len(), "{line}");
             assert!(line.ends_with("\\\\"), "{line}");
