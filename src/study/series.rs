@@ -2,7 +2,9 @@
 
 use std::borrow::Borrow;
 
-use super::row::{Row, distinct};
+use super::row::Row;
+#[cfg(feature = "report")]
+use super::row::distinct;
 
 /// The meshes of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]

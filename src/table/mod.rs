@@ -67,6 +67,7 @@ impl Table {
     }
 
     /// The title as a name of files and labels: letters and digits, and `-` for all else.
+    #[cfg(feature = "report")]
     pub fn slug(&self) -> String {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
         let text: String = self.title.chars().map(plain).collect();

@@ -212,7 +212,7 @@ fn large_penalties() {
 fn a_huge_penalty_is_solved_like_a_moderate_one() {
     let errors = [1e4, 1e10].map(|eta| {
         let eta = Eta::Absolute(eta);
-        let scheme = Wopsip { eta, weight: WeightRule::Isotropic, ..Wopsip::default() };
+        let scheme = Wopsip { eta, weight: WeightRule::Isotropic };
         let study = Study::<2>::new(scenes::signorini_2d()).scheme(scheme).levels([128]);
         let row = study.run().unwrap().rows.remove(0);
         assert!(row.converged(), "{eta:?}");

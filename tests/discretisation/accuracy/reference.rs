@@ -40,9 +40,7 @@ fn scheme(reference: &Value) -> Option<Box<dyn Scheme<2>>> {
             let sigma = reference["sigma"].as_f64().unwrap();
             Box::new(Sipg { penalty: PenaltyRule::Diameter(sigma) })
         }
-        "wopsip" => {
-            Box::new(Wopsip { eta: eta(), weight: WeightRule::Isotropic, ..Wopsip::default() })
-        }
+        "wopsip" => Box::new(Wopsip { eta: eta(), weight: WeightRule::Isotropic }),
         _ => return None,
     })
 }

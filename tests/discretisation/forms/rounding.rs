@@ -218,7 +218,7 @@ fn rounding_is_small_for_every_factor() {
     for eta in FACTORS {
         let w = wopsip(eta);
         type Pair<'s> = (&'s dyn Scheme<2>, bool);
-        let p2 = w.clone().on(P2);
+        let p2 = w.on(P2);
         let pairs: [(Pair<'_>, &[Scene<2>; 2], usize); 3] = [
             ((&w, true), &in_units, 32),
             ((&w, true), &on_means, 32),
