@@ -3,7 +3,6 @@
 use std::convert::Infallible;
 
 use super::tables::Derivatives;
-use crate::arrays::array_of;
 use crate::assemble::count;
 use crate::element::MAX_BASIS;
 use crate::facet::Side;
@@ -128,8 +127,15 @@ pub(crate) fn shape<const D: usize>(
 ) -> (f64, [[f64; 4]; 4]) {
     let zero = 0.0;
     let corners = mesh.cell(cell);
-    let corner = |k: usize| mesh.vertices()[corners[k] as usize];
-    let edges = array_of(|k| if k < D { with_zeros(corner(k + 1) - corner(0)) } else { [zero; 3] });
+    // loops over numbers: differences of points in place of these take half as long again
+    let mut edges = [[zero; 3]; 3];
+    let origin = &mesh.vertices()[corners[0] as usize];
+    for k in 0..D {
+        let corner = &mesh.vertices()[corners[k + 1] as usize];
+        for axis in 0..D {
+            edges[k][axis] = corner[axis] - origin[axis];
+        }
+    }
     let (normals, determinant) = cofactors::<D>(edges);
     let size = if determinant < zero { -determinant } else { determinant };
     let scale = if size == zero { zero } else { scale / (size * FACTORIAL[D]) };
