@@ -90,7 +90,8 @@ fn run<const D: usize>(
     &(_, _, is_linear, name, level): &Case,
 ) -> Result<Row, Failure> {
     if is_linear {
-        (scene.problem.lower, scene.problem.upper) = (None, None);
+        scene.problem.lower.everywhere = None;
+        scene.problem.upper.everywhere = None;
     }
     if name == "wopsip-means" {
         scene.problem = scene.problem.on(FacetMeans);
@@ -107,10 +108,9 @@ fn run<const D: usize>(
 fn run_on_mesh(path: &str, linear: LinearMethod) -> Result<Row, Failure> {
     let mesh = gmsh::read::<2>(Path::new(path))?.mesh;
     let times = (1e6 / mesh.vertices().len() as f64).log2() / 2.0;
-    let report = Study::<2>::new(scenes::radial::<2>(1.0))
+    let report = Study::<2>::new(scenes::radial::<2>(1.0).domain(mesh))
         .scheme(ConformingP1)
         .solver(ActiveSet::default().linear(linear))
-        .on_mesh(mesh)
         .levels([times.round().max(0.0) as usize])
         .run()?;
     report.rows.into_iter().next().ok_or_else(|| "no row".into())

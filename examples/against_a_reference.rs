@@ -14,7 +14,7 @@ fn main() -> Result<(), Error> {
         .obstacle_above(|x| 0.2 + 0.1 * x[1])
         .dirichlet_on("rim", 0.0);
     let mesh = gmsh::read::<2>("examples/problems/membrane.msh".as_ref())?.mesh;
-    let report = Study::of_problem("membrane", membrane, mesh)?
+    let report = Study::new(Scene::of_problem("membrane", membrane, mesh)?)
         .scheme(ConformingP1)
         .scheme(NonconformingP1)
         .scheme(Sipg::default())

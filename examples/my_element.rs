@@ -67,7 +67,7 @@ impl<const D: usize> Scheme<D> for WithBubble {
     /// Those of linears on an equation; under an inequality the values at nodes are a set for which
     /// nothing is claimed here.
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        match setting.is_linear() {
+        match setting.is_linear() && setting.regular_dual {
             true => ExpectedOrders::none().with_l2(2.0).with_h1(1.0),
             false => ExpectedOrders::none(),
         }

@@ -9,7 +9,8 @@ use std::sync::Arc;
 use unilateral::kit::check_scheme;
 use unilateral::prelude::*;
 
-/// `sigma / h_F [u][v] - {d_n u}[v]`: no symmetrising term.
+/// `sigma alpha_F / h_F [u][v] - {alpha d_n u}[v]`: no symmetrising term. The penalty that is provably enough for a
+/// symmetric form is [`proven_bound`].
 struct Incomplete(f64);
 
 impl<const D: usize> FacetForm<D> for Incomplete {
@@ -25,11 +26,11 @@ impl<const D: usize> FacetForm<D> for Incomplete {
 }
 
 /// A name, an element and a facet form, which imposes Dirichlet data too.
-struct Iipg(f64);
+struct MyIipg(f64);
 
-impl<const D: usize> Scheme<D> for Iipg {
+impl<const D: usize> Scheme<D> for MyIipg {
     fn name(&self) -> &str {
-        "iipg"
+        "my-iipg"
     }
     fn element(&self) -> Arc<dyn Element<D>> {
         Arc::new(Broken(P1))
@@ -40,11 +41,11 @@ impl<const D: usize> Scheme<D> for Iipg {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    print!("{}", check_scheme::<2>(&Iipg(10.0))?);
+    print!("{}", check_scheme::<2>(&MyIipg(10.0))?);
     let report = Study::<2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
         .scheme(Sipg::default())
-        .scheme(Iipg(10.0))
+        .scheme(MyIipg(10.0))
         .levels([8, 16, 32])
         .run()?;
     print!("{report}");

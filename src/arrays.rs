@@ -5,7 +5,7 @@
 //! so that this is a noticeable part of the library's compilation.
 
 /// The array of the values of a function at `0`, `1`, ..., in this order. It has at least one entry.
-pub(crate) fn tabulate<X: Copy, const N: usize>(mut entry: impl FnMut(usize) -> X) -> [X; N] {
+pub(crate) fn array_of<X: Copy, const N: usize>(mut entry: impl FnMut(usize) -> X) -> [X; N] {
     let mut entries = [entry(0); N];
     for k in 1..N {
         entries[k] = entry(k);
@@ -18,5 +18,5 @@ pub(crate) fn map_entries<A: Copy, X: Copy, const N: usize>(
     from: [A; N],
     mut entry: impl FnMut(A) -> X,
 ) -> [X; N] {
-    tabulate(|k| entry(from[k]))
+    array_of(|k| entry(from[k]))
 }

@@ -52,7 +52,7 @@ pub enum Error {
         unknown: usize,
         /// A cell of the unknown.
         cell: u64,
-        /// A point of the support of the unknown, as coordinates in parentheses.
+        /// A point of the location of the unknown, as coordinates in parentheses.
         at: String,
         /// The larger lower bound.
         lower: f64,

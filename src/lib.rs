@@ -55,6 +55,7 @@ pub mod scheme;
 #[cfg(feature = "report")]
 pub mod stability;
 pub mod study;
+mod table;
 mod theory;
 #[cfg(feature = "report")]
 pub mod work_precision;

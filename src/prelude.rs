@@ -6,13 +6,14 @@ pub use crate::element::{Broken, CrouzeixRaviart, Element, Entity, Node, P1, P2}
 pub use crate::error::Error;
 pub use crate::facet::{
     DirichletBy, FacetForm, FacetView, Lifts, NoFacets, PenaltyRule, Trace, WeightRule,
+    proven_bound,
 };
-pub use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+pub use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
 pub use crate::nested::{AdaptiveMeshes, Adaptivity, Stop, adapt};
 pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
 pub use crate::problem::Problem;
 pub use crate::real::Point;
-pub use crate::scenes;
+pub use crate::scenes::{self, Scene};
 pub use crate::scheme::*;
 #[cfg(feature = "report")]
 pub use crate::study::Journal;

@@ -7,7 +7,8 @@ pub(crate) const RESULTANT_ROUNDING: f64 = 64.0;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FreeBody {
-    /// The position in [`Inequality::kernel`](super::Inequality::kernel) of the vector whose support has the unknowns
+    /// The position in [`Inequality::kernel`](super::Inequality::kernel) of the vector whose nonzero entries are the
+    /// unknowns
     /// of the body; `None` if the body shares unknowns with one that is held, as the two sides of a vertex at which
     /// bodies touch.
     pub kernel: Option<usize>,

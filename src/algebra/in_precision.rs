@@ -65,6 +65,7 @@ impl PenalisedMatrix<f64> {
             terms: collect(self.terms.len(), |k| term(&self.terms[k])),
             weights: rounded(&self.weights),
             jump_data: rounded(&self.jump_data),
+            mean_jumps: self.mean_jumps.clone(),
         }
     }
 }
@@ -82,7 +83,7 @@ impl Inequality<f64> {
             symmetric: self.symmetric,
             load: rounded(&self.load),
             bounds: self.bounds.iter().map(Bound::in_precision).collect(),
-            supports: self.supports.clone(),
+            locations: self.locations.clone(),
             conforming_linear: self.conforming_linear,
             start: self.start.clone(),
             penalised: self.penalised.as_ref().map(PenalisedMatrix::in_precision),
@@ -182,8 +183,8 @@ mod tests {
     #[test]
     fn rounding_of_the_load_is_no_load_that_was_added() {
         let matrix = SparseMatrix { row_starts: vec![0, 1], columns: vec![0], values: vec![1.0] };
-        let mut problem = Inequality::new(matrix, true, vec![0.1], vec![Bound::Lower(0.0)])
-            .with_kernel(vec![vec![(0, 1.0)]]);
+        let mut problem = Inequality::new(matrix, true, vec![0.1], vec![Bound::Lower(0.0)]);
+        problem.kernel = vec![vec![(0, 1.0)]];
         let assembled = 0.1;
         problem.bodies = vec![FreeBody { kernel: Some(0), assembled, ..FreeBody::unloaded() }];
         let rounded = problem.in_precision::<f32>();

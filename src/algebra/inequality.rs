@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::NO_INDEX;
 use super::bound::{Bound, Contact};
 use super::dirichlet_energy::DirichletEnergy;
 use super::distribution::{Distribution, sum_over_parts};
 use super::free_body::{FreeBody, Sum};
-use super::index::NO_INDEX;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
 use crate::parallel::vectors::all;
@@ -24,7 +24,7 @@ pub enum Start {
     Contact(Vec<Contact>),
 }
 
-/// The support of an unknown: the vertices whose barycentre is its node, and the cell that owns it
+/// The location of an unknown: the vertices whose barycentre is its node, and the cell that owns it
 /// in a broken space.
 ///
 /// One vertex stands for a vertex value, two for the value at the midpoint of an edge, `D` for the
@@ -33,13 +33,13 @@ pub enum Start {
 /// third of the edge. A node that is the barycentre of no four vertices has four whose barycentre is
 /// near to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Support {
+pub struct DofLocation {
     cell: u32,
     vertices: [u32; 4],
 }
 
-impl Support {
-    /// The support with one to four vertices, owned by a cell, or shared by cells (`None`).
+impl DofLocation {
+    /// The location with one to four vertices, owned by a cell, or shared by cells (`None`).
     ///
     /// # Panics
     /// If there are more than four vertices.
@@ -78,8 +78,8 @@ pub struct Inequality<T> {
     pub load: Vec<T>,
     /// The admissible values of each unknown.
     pub bounds: Vec<Bound<T>>,
-    /// The support of each unknown; empty if unknown. Iterative solvers need it.
-    pub supports: Vec<Support>,
+    /// The location of each unknown; empty if unknown. Iterative solvers need it.
+    pub locations: Vec<DofLocation>,
     /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
     pub conforming_linear: bool,
     /// The initial active set.
@@ -110,7 +110,7 @@ pub struct Inequality<T> {
 }
 
 impl<T: Real> Inequality<T> {
-    /// The inequality with a matrix, whether it is symmetric, a load and bounds; without supports,
+    /// The inequality with a matrix, whether it is symmetric, a load and bounds; without locations,
     /// initial active set and penalised matrix.
     #[must_use]
     pub fn new(
@@ -119,13 +119,13 @@ impl<T: Real> Inequality<T> {
         load: Vec<T>,
         bounds: Vec<Bound<T>>,
     ) -> Self {
-        let (supports, start) = (Vec::new(), Start::Cold);
+        let (locations, start) = (Vec::new(), Start::Cold);
         Self {
             matrix,
             symmetric,
             load,
             bounds,
-            supports,
+            locations,
             conforming_linear: false,
             start,
             penalised: None,
@@ -136,12 +136,6 @@ impl<T: Real> Inequality<T> {
             distribution: None,
         }
     }
-    /// States that the inequality is that of one part of a mesh.
-    #[must_use]
-    pub fn with_distribution(mut self, distribution: Arc<dyn Distribution>) -> Self {
-        self.distribution = Some(distribution);
-        self
-    }
     /// The other parts, if there are any.
     pub(crate) fn distribution(&self) -> Option<&dyn Distribution> {
         self.distribution.as_deref()
@@ -149,37 +143,6 @@ impl<T: Real> Inequality<T> {
     /// Whether an unknown belongs to this part; all do where there is one part.
     pub(crate) fn owns(&self, unknown: usize) -> bool {
         self.distribution.as_ref().is_none_or(|distribution| distribution.owns(unknown))
-    }
-    /// Replaces the initial active set.
-    #[must_use]
-    pub fn with_start(mut self, start: Start) -> Self {
-        self.start = start;
-        self
-    }
-    /// Replaces the supports of unknowns.
-    #[must_use]
-    pub fn with_supports(mut self, supports: Vec<Support>) -> Self {
-        self.supports = supports;
-        self
-    }
-    /// States that unknown `i` is the value at vertex `i` of a conforming linear function.
-    #[must_use]
-    pub fn with_conforming_linear(mut self) -> Self {
-        self.conforming_linear = true;
-        self
-    }
-    /// Sets the kernel of the matrix, whose vectors are then the bodies that bounds alone hold.
-    #[must_use]
-    pub fn with_kernel(mut self, kernel: Vec<Vec<(u32, T)>>) -> Self {
-        (self.kernel, self.bodies) = (kernel, Vec::new());
-        self
-    }
-    /// States that the matrix is positive definite on all unknowns that are not fixed, but for the
-    /// kernel: solvers do not test such a matrix.
-    #[must_use]
-    pub fn with_definite_matrix(mut self) -> Self {
-        self.is_definite = true;
-        self
     }
     /// Number of unknowns, fixed ones included.
     pub fn size(&self) -> usize {
@@ -190,8 +153,8 @@ impl<T: Real> Inequality<T> {
         let is_free = |&i: &u32| self.bounds[i as usize].fixed_value().is_none();
         (0..self.bounds.len() as u32).filter(is_free).collect()
     }
-    /// Whether matrix, load, bounds, penalised matrix and the supports, if there are any, have the same
-    /// size, the two matrices are well formed, and the vertices of supports are below four times the number of
+    /// Whether matrix, load, bounds, penalised matrix and the locations, if there are any, have the same
+    /// size, the two matrices are well formed, and the vertices of locations are below four times the number of
     /// unknowns: an array by vertices is not larger.
     /// Entries of the kernel and terms of Dirichlet data belong to unknowns, bodies to vectors of the kernel.
     pub fn is_well_formed(&self) -> bool {
@@ -199,9 +162,9 @@ impl<T: Real> Inequality<T> {
             && self.bounds.len() == self.size()
             && self.matrix.is_well_formed()
             && self.penalised.as_ref().is_none_or(|p| p.is_well_formed(self.size()))
-            && (self.supports.is_empty() || self.supports.len() == self.size())
-            && all(self.supports.len(), |i| {
-                self.supports[i].vertices().iter().all(|&v| (v as usize) < 4 * self.size())
+            && (self.locations.is_empty() || self.locations.len() == self.size())
+            && all(self.locations.len(), |i| {
+                self.locations[i].vertices().iter().all(|&v| (v as usize) < 4 * self.size())
             })
             && self.kernel.iter().all(|w| self.is_kernel_vector(w))
             && self.bodies.iter().all(|body| body.kernel.is_none_or(|k| k < self.kernel.len()))

@@ -1,8 +1,8 @@
 //! Square sparse matrices in compressed sparse rows.
 
-use crate::parallel::vectors::{all, for_each_chunk};
-
+use super::NO_INDEX;
 use crate::memory::in_large_pages;
+use crate::parallel::vectors::{all, for_each_chunk};
 use crate::real::Real;
 
 /// A square sparse matrix in compressed sparse rows; columns ascend strictly in each row.
@@ -16,11 +16,29 @@ pub struct SparseMatrix<T> {
     pub values: Vec<T>,
 }
 
-impl<T: Real> SparseMatrix<T> {
+impl<T> SparseMatrix<T> {
     /// Number of rows.
     pub fn size(&self) -> usize {
         self.row_starts.len().saturating_sub(1)
     }
+    /// Number of stored entries.
+    pub fn nonzeros(&self) -> usize {
+        self.columns.len()
+    }
+    /// Columns and values of row `i`.
+    #[inline]
+    pub fn row(&self, i: usize) -> (&[u32], &[T]) {
+        let range = self.row_starts[i] as usize..self.row_starts[i + 1] as usize;
+        (&self.columns[range.clone()], &self.values[range])
+    }
+    /// Columns and mutable values of row `i`.
+    pub(crate) fn row_mut(&mut self, i: usize) -> (&[u32], &mut [T]) {
+        let range = self.row_starts[i] as usize..self.row_starts[i + 1] as usize;
+        (&self.columns[range.clone()], &mut self.values[range])
+    }
+}
+
+impl<T: Real> SparseMatrix<T> {
     /// Whether the three vectors describe a square matrix: row starts ascend, columns ascend strictly
     /// in each row and are less than the size, and every entry has a value.
     pub fn is_well_formed(&self) -> bool {
@@ -34,16 +52,6 @@ impl<T: Real> SparseMatrix<T> {
                 columns.windows(2).all(|w| w[0] < w[1])
                     && columns.last().is_none_or(|&j| (j as usize) < n)
             })
-    }
-    /// Number of stored entries.
-    pub fn nonzeros(&self) -> usize {
-        self.columns.len()
-    }
-    /// Columns and values of row `i`.
-    #[inline]
-    pub fn row(&self, i: usize) -> (&[u32], &[T]) {
-        let range = self.row_starts[i] as usize..self.row_starts[i + 1] as usize;
-        (&self.columns[range.clone()], &self.values[range])
     }
     /// The entry at (i, j), zero where none is stored.
     pub fn get(&self, i: usize, j: usize) -> T {
@@ -124,6 +132,42 @@ impl<T: Real> SparseMatrix<T> {
             transpose((&self.row_starts, &self.columns, &self.values), self.size());
         Self { row_starts, columns, values }
     }
+    /// `A_II` for the ascending index set `free`, whose positions number rows and columns.
+    pub(crate) fn submatrix(&self, free: &[u32]) -> Self {
+        self.extract(free, false)
+    }
+    /// The lower triangle of `A_II`, diagonal included, for the ascending index set `free`.
+    pub(crate) fn lower_triangle(&self, free: &[u32]) -> Self {
+        self.extract(free, true)
+    }
+    fn extract(&self, free: &[u32], is_lower: bool) -> Self {
+        let mut position = vec![NO_INDEX; self.size()];
+        for (k, &i) in free.iter().enumerate() {
+            position[i as usize] = k as u32;
+        }
+        // An upper bound on the number of entries avoids reallocation.
+        let stored = free.iter().map(|&i| self.row(i as usize).0.len()).sum::<usize>();
+        let capacity = if is_lower { (stored + free.len()).div_ceil(2) } else { stored };
+        let mut submatrix = Self {
+            row_starts: Vec::with_capacity(free.len() + 1),
+            columns: Vec::with_capacity(capacity),
+            values: Vec::with_capacity(capacity),
+        };
+        submatrix.row_starts.push(0);
+        for (k, &i) in free.iter().enumerate() {
+            let last = if is_lower { k as u32 } else { NO_INDEX - 1 };
+            let (columns, values) = self.row(i as usize);
+            for (&j, &a) in columns.iter().zip(values) {
+                let j = position[j as usize];
+                if j <= last {
+                    submatrix.columns.push(j);
+                    submatrix.values.push(a);
+                }
+            }
+            submatrix.row_starts.push(submatrix.columns.len() as u32);
+        }
+        submatrix
+    }
     /// The symmetric part `(A + A^T) / 2`, symmetric to the last bit. Its pattern is the union of
     /// those of `A` and `A^T`.
     #[must_use]
@@ -156,6 +200,12 @@ impl<T: Real> SparseMatrix<T> {
         }
         part
     }
+}
+
+/// Sorts the entries of a row by their columns; generic over the scalar alone, so that the sorting code
+/// is not compiled for every caller.
+pub(crate) fn sort_by_column<T: Real>(row: &mut [(u32, T)]) {
+    row.sort_unstable_by_key(|&(column, _)| column);
 }
 
 /// The transpose of a matrix with `n_columns` columns, both given by row starts, columns and values.

@@ -1,13 +1,12 @@
 //! Algebraic data: sparse and dense matrices, and the variational inequality that every solver and
 //! exporter takes. Independent of mesh, dimension and scheme.
 //!
-//! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse rows, and
-//! `P^T A P`.
-//! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
-//! discontinuous linear functions. `dense`: small dense matrices. `row`: rows in the making.
+//! `matrix`: compressed sparse rows, and parts of them. `rectangular_matrix`: prolongations in compressed sparse
+//! rows, and `P^T A P`. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
+//! discontinuous linear functions. `dense`: small dense matrices.
 //! `dirichlet_energy`: the part of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
-//! unknown. `inequality`: supports of unknowns and the inequality. `index`: the missing index. `in_precision`:
+//! unknown. `inequality`: locations of unknowns and the inequality. `in_precision`:
 //! matrices, bounds and inequalities rounded.
 
 mod bound;
@@ -16,14 +15,12 @@ mod dirichlet_energy;
 mod distribution;
 mod free_body;
 mod in_precision;
-mod index;
 mod inequality;
 mod matrix;
+mod mean_jumps;
 mod penalised_matrix;
 mod rectangular_matrix;
-mod row;
 mod side_penalties;
-mod submatrix;
 
 pub use bound::{Bound, Contact};
 pub use dirichlet_energy::{DirichletEnergy, DirichletTerm};
@@ -32,11 +29,13 @@ pub(crate) use distribution::{any_part, sum_over_parts};
 pub use free_body::FreeBody;
 pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
 pub(crate) use in_precision::rounded;
-pub(crate) use index::NO_INDEX;
-pub use inequality::{Inequality, Start, Support};
+pub use inequality::{DofLocation, Inequality, Start};
 pub use matrix::SparseMatrix;
+pub(crate) use matrix::sort_by_column;
+pub use mean_jumps::MeanJumps;
 pub use penalised_matrix::{JumpTerm, PenalisedMatrix};
 pub(crate) use rectangular_matrix::{RectangularMatrix, SparseSum, galerkin_product};
-pub(crate) use row::sort_by_column;
 pub(crate) use side_penalties::SidePenalties;
-pub(crate) use submatrix::Submatrix;
+
+/// Marks the absence of an index in arrays of `u32` indices.
+pub(crate) const NO_INDEX: u32 = u32::MAX;

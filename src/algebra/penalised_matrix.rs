@@ -2,7 +2,8 @@
 
 use crate::parallel::vectors::for_each_chunk;
 
-use super::index::NO_INDEX;
+use super::NO_INDEX;
+use super::mean_jumps::MeanJumps;
 use crate::real::Real;
 
 /// The matrix `A = K + M^T S M`, stored by `K`, `M` and `S`, and the Dirichlet data `g` that it imposes: the load of
@@ -33,6 +34,9 @@ pub struct PenalisedMatrix<T> {
     pub weights: Vec<T>,
     /// `g`.
     pub jump_data: Vec<T>,
+    /// The sides of facets to which the jumps belong, where they are those of means of discontinuous linear functions
+    /// in two or three dimensions. Products and preconditioners for these functions need them.
+    pub mean_jumps: Option<MeanJumps>,
 }
 
 /// The term `weight * (u[here] - u[there])` of a jump. The difference is computed first, so that a
@@ -88,6 +92,7 @@ impl<T: Real> PenalisedMatrix<T> {
             && self.term_starts[n] as usize == self.terms.len()
             && self.terms.iter().all(|t| is_valid(t.here) && is_valid(t.there))
             && self.weights.iter().all(|&s| s > T::lit(0.0))
+            && self.mean_jumps.as_ref().is_none_or(|m| m.is_well_formed(n, size, self.block_size))
     }
 
     /// The two blocks whose unknowns a jump contains, first that of [`JumpTerm::here`]; `None` for a

@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use super::index::NO_INDEX;
-use super::matrix::{SparseMatrix, transpose};
-use super::row::sort_by_column;
+use super::NO_INDEX;
+use super::matrix::{SparseMatrix, sort_by_column, transpose};
 use crate::parallel::map_groups;
 use crate::real::Real;
 

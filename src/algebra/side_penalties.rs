@@ -1,18 +1,16 @@
 //! The penalty on jumps of facet means of discontinuous linear functions, by sides of facets.
 
-use super::index::NO_INDEX;
-use super::inequality::Support;
-use super::penalised_matrix::{JumpTerm, PenalisedMatrix};
+use super::NO_INDEX;
+use super::mean_jumps::MeanJumps;
+use super::penalised_matrix::PenalisedMatrix;
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
-/// The penalty `M^T S M` of a [`PenalisedMatrix`] of discontinuous linear functions that penalises on each facet
-/// the jump of the mean, and no other moment of the jump.
+/// The penalty `M^T S M` of a [`PenalisedMatrix`] with [`MeanJumps`].
 ///
-/// A facet has one side in each of its cells. Sides have the indices of unknowns: side `i` of a cell belongs to
-/// facet `i` of the cell, which is opposite to vertex `i`. The bilinear form `v . M^T S M u` is the sum over facets of
-/// `penalty * [u] * [v]`. The jump `[u]` is the mean of `u` over one side minus the mean over the opposite side; on
-/// a facet with Dirichlet data it is the mean over the only side.
+/// The bilinear form `v . M^T S M u` is the sum over facets of `penalty * [u] * [v]`. The jump `[u]` is the mean of
+/// `u` over one side minus the mean over the opposite side; on a facet with Dirichlet data it is the mean over the
+/// only side.
 pub(crate) struct SidePenalties<T> {
     /// Number of unknowns of a cell.
     pub cell_size: usize,
@@ -25,74 +23,28 @@ pub(crate) struct SidePenalties<T> {
 }
 
 impl<T: Real> SidePenalties<T> {
-    /// The penalties of a matrix; `None` if the unknowns of the matrix are not those of discontinuous linear
-    /// functions in two or three dimensions, or if the matrix penalises another moment of a jump than the mean.
-    pub fn new(penalised: &PenalisedMatrix<T>, supports: &[Support]) -> Option<Self> {
-        let (n, cell_size) = (penalised.size(), penalised.block_size);
-        if !(3..=4).contains(&cell_size) || supports.len() != n || n == 0 {
-            return None;
-        }
-        let are_means = supports[0].vertices().len() == cell_size - 1;
-        let length = if are_means { cell_size - 1 } else { 1 };
-        if supports.iter().any(|p| p.cell().is_none() || p.vertices().len() != length) {
-            return None;
-        }
-        let mut sides = Self {
-            cell_size,
-            are_means,
-            opposite: in_large_pages(vec![NO_INDEX; n]),
-            penalty: in_large_pages(vec![T::lit(0.0); n]),
-        };
-        for jump in 0..penalised.n_jumps() {
-            let terms = penalised.terms_of(jump);
-            let here = sides.side(terms, |t| t.here)?;
-            let there = sides.side(terms, |t| t.there);
-            let mean = terms.iter().fold(T::lit(0.0), |sum, t| sum + t.weight);
-            let penalty = penalised.weights[jump] * mean * mean;
-            for side in [Some(here), there].into_iter().flatten() {
-                // a second jump is a moment of higher degree
-                if sides.has_jump(side) {
-                    return None;
-                }
-                sides.penalty[side] = penalty;
-            }
-            if let Some(there) = there {
-                (sides.opposite[here], sides.opposite[there]) = (there as u32, here as u32);
+    /// The penalties of a matrix; `None` if it has no [`MeanJumps`].
+    pub fn new(penalised: &PenalisedMatrix<T>) -> Option<Self> {
+        let MeanJumps { are_means, sides } = penalised.mean_jumps.as_ref()?;
+        let n = penalised.size();
+        let mut opposite = in_large_pages(vec![NO_INDEX; n]);
+        let mut penalty = in_large_pages(vec![T::lit(0.0); n]);
+        for (jump, &[one, other]) in sides.iter().enumerate() {
+            let terms = penalised.terms_of(jump).iter();
+            let mean = terms.fold(T::lit(0.0), |sum, t| sum + t.weight);
+            let of_jump = penalised.weights[jump] * mean * mean;
+            penalty[one as usize] = of_jump;
+            if other != NO_INDEX {
+                penalty[other as usize] = of_jump;
+                (opposite[one as usize], opposite[other as usize]) = (other, one);
             }
         }
-        Some(sides)
+        let (cell_size, are_means) = (penalised.block_size, *are_means);
+        Some(Self { cell_size, are_means, opposite, penalty })
     }
 
     /// Whether the jump over the facet of a side, or the mean on a facet with Dirichlet data, is penalised.
     pub fn has_jump(&self, side: usize) -> bool {
         self.penalty[side] != T::lit(0.0)
-    }
-
-    /// The side over which one part of a jump, with the unknowns `unknown` of the terms, is the mean; `None` if
-    /// this part is not the mean over a side.
-    fn side(&self, terms: &[JumpTerm<T>], unknown: impl Fn(&JumpTerm<T>) -> u32) -> Option<usize> {
-        let size = self.cell_size;
-        if terms.iter().any(|t| unknown(t) == JumpTerm::<T>::NO_UNKNOWN) {
-            return None;
-        }
-        let mut unknowns = terms.iter().map(|t| unknown(t) as usize);
-        if self.are_means {
-            return unknowns.next().filter(|_| terms.len() == 1);
-        }
-        if terms.len() != size - 1 {
-            return None;
-        }
-        // vertex values have equal weights in the mean, up to the rounding of a quadrature rule
-        let weight = terms[0].weight.to_f64();
-        let is_equal = |t: &JumpTerm<T>| {
-            (t.weight.to_f64() - weight).abs() <= T::EPSILON.sqrt() * weight.abs()
-        };
-        if !terms.iter().all(is_equal) {
-            return None;
-        }
-        // the facet is opposite to the vertex without a term
-        let cell = unknowns.next()? / size;
-        let has_term = |i: usize| terms.iter().any(|t| unknown(t) as usize == cell * size + i);
-        (0..size).find(|&i| !has_term(i)).map(|facet| cell * size + facet)
     }
 }

@@ -7,13 +7,13 @@
 use std::ops::Range;
 
 use super::cut_simplices::CutRule;
-use super::local::zero_local;
-use super::space::{Space, data};
+use super::space::{Space, checks};
+use super::stiffness::zero_local;
 use crate::algebra::{FreeBody, NO_INDEX, RESULTANT_ROUNDING, Sum};
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, Components, Neighbours};
+use crate::mesh::{BoundaryCondition, Components, Neighbours};
 use crate::parallel::cells;
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::quadrature::Rule;
 
 /// The degrees of the two rules on facets.
@@ -94,7 +94,7 @@ impl<const D: usize> Space<'_, D> {
         };
         let mut components = Components::of_cells(neighbours);
         let mut is_held = vec![false; mesh.n_cells()];
-        for (cell, _) in self.facets_of(BoundaryPart::Dirichlet) {
+        for (cell, _) in self.facets_of(BoundaryCondition::Dirichlet) {
             is_held[components.find(cell)] = true;
         }
         let constants = self.constants();
@@ -148,7 +148,7 @@ impl<const D: usize> Space<'_, D> {
             body.stops_below |= self.data.lower.of(region).is_some();
             body.stops_above |= self.data.upper.of(region).is_some();
         }
-        for ((cell, _), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, _), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             if let (Some(body), Some(_)) = (bodies.of(cell), self.data.gap.of(group)) {
                 bodies.bodies[body].stops_below = true;
             }
@@ -183,12 +183,12 @@ impl<const D: usize> Space<'_, D> {
         }
         if self.problem.has_neumann_data() {
             let rules = FACET_DEGREES.map(|degree| Rule::new(D - 1, degree));
-            for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-                let Some(body) = bodies.of(place.0) else { continue };
-                let (mut integrals, measure) = ([0.0; 3], self.facet_measure(place));
+            for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
+                let Some(body) = bodies.of(facet.0) else { continue };
+                let (mut integrals, measure) = ([0.0; 3], self.facet_measure(facet));
                 for (k, rule) in rules.iter().enumerate() {
                     for (point, weight) in rule.iter() {
-                        let flux = self.neumann_at(place, group, point)?;
+                        let flux = self.neumann_at(facet, group, point)?;
                         add(&mut integrals, k, weight * measure * flux);
                     }
                 }
@@ -207,7 +207,7 @@ impl<const D: usize> Space<'_, D> {
     /// The integrals of the source over a cell.
     fn integrate_source(
         &self,
-        source: DatumRef<'_, D>,
+        source: &Datum<D>,
         cell: usize,
         rules: &CellRules,
     ) -> Result<Integrals, Error> {
@@ -219,24 +219,22 @@ impl<const D: usize> Space<'_, D> {
         for k in 0..2 {
             let cut = rules.cut.as_ref().map(|cut| &cut[k]).zip(source.level());
             let mut outcome = Ok(());
-            let is_cut = cut.is_some_and(|(rule, level)| {
-                rule.visit_if_cut(self.mesh, cell, level, &mut |_, x, weight| match data::finite(
-                    source.at(x),
-                    "source",
-                    x,
-                    cell,
-                ) {
-                    Ok(value) => add(&mut integrals, k, weight * volume * value),
-                    Err(error) => outcome = Err(error),
-                })
-            });
+            let is_cut =
+                cut.is_some_and(|(rule, level)| {
+                    rule.visit_if_cut(self.mesh, cell, level, &mut |_, x, weight| {
+                        match checks::finite(source.at(x), "source", x, cell) {
+                            Ok(value) => add(&mut integrals, k, weight * volume * value),
+                            Err(error) => outcome = Err(error),
+                        }
+                    })
+                });
             outcome?;
             if is_cut {
                 continue;
             }
             for (point, weight) in rules.rules[k].iter() {
                 let x = self.cell_point(point, cell);
-                let value = data::finite(source.at(&x), "source", &x, cell)?;
+                let value = checks::finite(source.at(&x), "source", &x, cell)?;
                 add(&mut integrals, k, weight * volume * value);
             }
         }

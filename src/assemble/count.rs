@@ -54,7 +54,7 @@ mod tests {
     use super::take;
     use crate::assemble::{DataQuadrature, Discretisation};
     use crate::constraint::FacetMeans;
-    use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+    use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
     use crate::problem::Problem;
     use crate::real::Point;
     use crate::scheme::{ConformingP1, NonconformingP1, Scheme, Sipg, Wopsip};
@@ -62,8 +62,8 @@ mod tests {
     /// What assembling an inequality counts, on one thread.
     fn counted<S: Scheme<2>>(scheme: &S, problem: &Problem<2>) -> BTreeMap<&'static str, usize> {
         let sides = [
-            [BoundaryPart::Dirichlet, BoundaryPart::Neumann],
-            [BoundaryPart::Contact, BoundaryPart::Dirichlet],
+            [BoundaryCondition::Dirichlet, BoundaryCondition::Neumann],
+            [BoundaryCondition::Contact, BoundaryCondition::Dirichlet],
         ];
         let domain = BoxDomain { lower: Point::zeros(), upper: Point::repeat(1.0), sides };
         let mesh = Mesh::kuhn_box(&domain, [4, 4]).unwrap();

@@ -3,13 +3,14 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
-use super::local::flux_weight;
 use super::space::Space;
+use super::space::form_facets::FormFacet;
 use super::space::metric::Metrics;
+use super::trace::flux_weight;
 use crate::arrays::map_entries;
 use crate::facet::{FacetForm, FacetKind, FacetView, Trace};
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::cells;
 
 /// A coefficient of the form, at most linear in the penalty weight.
@@ -83,7 +84,7 @@ pub(crate) struct FacetWeight<'w> {
     /// The weight in the flux of the cell whose rows are made; its average weight where the coefficient
     /// varies in one of the cells.
     pub own_flux_weight: f64,
-    /// The same of the cell across.
+    /// The same of the other cell.
     pub other_flux_weight: f64,
 }
 
@@ -99,22 +100,19 @@ impl FacetCoefficients {
         let per_cell = stride * (D + 1);
         let n_cells = space.mesh.n_cells();
         let mut entries = in_large_pages(vec![0.0; per_cell * n_cells]);
-        let across = |(cell, local)| match space.coupled_neighbours().across(cell, local) {
-            Neighbour::Cell { cell, local } => Some((cell as usize, local as usize)),
-            Neighbour::Boundary(_) | Neighbour::Cut => None,
-        };
+        let view = |facet| space.facet_view(facet, Some(metrics));
         let fill = |cells: Range<usize>, chunk: &mut [f64]| {
             for (cell, out) in cells.zip(chunk.chunks_exact_mut(per_cell)) {
-                for (local, out) in out.chunks_exact_mut(stride).enumerate() {
-                    let Some(facet) = kept_view(space, metrics, cell, local) else { continue };
-                    out[0] = form.penalty(&facet);
+                for facet in space.form_facets_of(cell) {
+                    let out = &mut out[facet.here.1 * stride..][..stride];
+                    let of_facet = view(facet);
+                    out[0] = form.penalty(&of_facet);
                     if uses_flux {
-                        let average_weight = form.average_weight(&facet);
-                        (out[1], out[2]) = if space.varies_at((cell, local), across((cell, local)))
-                        {
+                        let average_weight = form.average_weight(&of_facet);
+                        (out[1], out[2]) = if space.varies_at(facet.here, facet.there) {
                             (average_weight, 1.0 - average_weight)
                         } else {
-                            let of = |is_here| flux_weight(&facet, average_weight, is_here);
+                            let of = |is_here| flux_weight(&of_facet, average_weight, is_here);
                             (of(true), of(false))
                         };
                     }
@@ -124,26 +122,28 @@ impl FacetCoefficients {
         };
         let Ok(()) = cells::for_each(n_cells, &|c| c * per_cell, &mut entries, &fill);
         let is_uniform = form.is_uniform();
-        let facets = || (0..n_cells * (D + 1)).map(|k| (k / (D + 1), k % (D + 1)));
-        let view = |(cell, local)| kept_view(space, metrics, cell, local);
-        let of = |facet: FacetView<'_, D>| Coefficients::of(form, &facet);
-        let or_zero = |of: Option<Coefficients>| of.unwrap_or_else(Coefficients::zero);
+        let of = |facet: FormFacet| Coefficients::of(form, &view(facet));
+        let zero = Coefficients::zero();
         let coefficients = if is_uniform {
-            let interior = facets().filter_map(view).find(|f| f.kind() == FacetKind::Interior);
-            let dirichlet = space.facets_of(BoundaryPart::Dirichlet).find_map(view);
-            map_entries([interior, dirichlet], |facet| or_zero(facet.map(of))).into()
+            let interior = space.form_facets().find(|facet| facet.there.is_some());
+            let mut on_boundary = space.facets_of(BoundaryCondition::Dirichlet);
+            let dirichlet = on_boundary.find_map(|facet| space.form_facet(facet));
+            map_entries([interior, dirichlet], |facet| facet.map_or(zero, of)).into()
         } else {
-            facets().map(|facet| or_zero(view(facet).map(of))).collect()
+            let mut of_all = vec![zero; n_cells * (D + 1)];
+            for facet in space.form_facets() {
+                of_all[facet.here.0 * (D + 1) + facet.here.1] = of(facet);
+            }
+            of_all
         };
         Self { coefficients, is_uniform, entries, stride }
     }
 
-    /// The numbers of a facet, kept at facet `local` of the cell here, as asked for from that cell
-    /// or from the one across.
+    /// The numbers of a facet that is seen so from the cell here, as that cell asks for them or the one there.
     #[inline(always)]
     pub fn at<const D: usize>(
         &self,
-        here: (usize, usize),
+        here: HalfFacet,
         from_here: bool,
         kind: FacetKind,
     ) -> FacetWeight<'_> {
@@ -158,24 +158,4 @@ impl FacetCoefficients {
         }
         FacetWeight { coefficients, penalty: kept[0], own_flux_weight, other_flux_weight }
     }
-}
-
-/// The view of a facet that carries a form, from the cell with the lower number: what was kept of the
-/// cells is read, and products of gradients are left out.
-#[inline(always)]
-fn kept_view<'a, const D: usize>(
-    space: &Space<'a, D>,
-    metrics: &Metrics,
-    cell: usize,
-    local: usize,
-) -> Option<FacetView<'a, D>> {
-    let side = |place| metrics.side::<D>(place, space.extreme_coefficients(place));
-    let there = match space.coupled_neighbours().across(cell, local) {
-        Neighbour::Cell { cell: other, .. } if (other as usize) < cell => return None,
-        Neighbour::Cell { cell: other, local } => Some(side((other as usize, local as usize)).1),
-        Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => None,
-        Neighbour::Boundary(_) | Neighbour::Cut => return None,
-    };
-    let (measure, here) = side((cell, local));
-    Some(FacetView::new(space.mesh, (cell, local), measure, here, there))
 }

@@ -4,22 +4,14 @@ use std::ops::Range;
 
 use super::Discretisation;
 use super::facet_coefficients::FacetCoefficients;
-use super::load::FacetMoments;
-use super::owned_rows::lifted::{LiftTable, Lifting, MAX_MOMENTS};
+use super::owned_rows::lifted::{Lifting, MAX_MOMENTS};
+use super::space::form_facets::FormFacet;
 use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
+use super::weak_dirichlet::FacetMoments;
 use crate::error::Error;
-use crate::facet::FacetKind;
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::mesh::HalfFacet;
 use crate::parallel::cells;
-
-/// The sum of coefficients times values.
-fn product(coefficients: &[f64], values: &[f64]) -> f64 {
-    coefficients.iter().zip(values).map(|(c, v)| c * v).sum()
-}
-
-/// The two cells of a facet that carries the form: cell and number of the facet in it.
-type Sides = ((usize, usize), Option<(usize, usize)>);
 
 /// What all facets share: the basis functions on them, the moments of Dirichlet data, and what the form needs of cells
 /// and facets.
@@ -57,26 +49,26 @@ impl<const D: usize> Discretisation<'_, D> {
         let mut here = vec![0.0; n_cells * per_cell];
         cells::for_each(n_cells, &|c| c * per_cell, &mut here, &|cells, out| {
             for (cell, out) in cells.zip(out.chunks_exact_mut(per_cell)) {
-                let mut facet = starts.as_ref().map(|starts| starts[cell] as usize);
-                for (local, out) in out.chunks_exact_mut(stride).enumerate() {
-                    let Some(sides) = self.sides((cell, local)) else { continue };
+                let first = starts.as_ref().map(|starts| starts[cell] as usize);
+                for (k, facet) in space.form_facets_of(cell).enumerate() {
                     let n = table.degrees.len();
-                    let multipliers = jump_multipliers.zip(facet).map(|(m, f)| &m[f * n..][..n]);
+                    let multipliers = jump_multipliers.zip(first);
+                    let multipliers = multipliers.map(|(m, first)| &m[(first + k) * n..][..n]);
                     let tables = (&table, &data, prepared);
-                    self.moments_on_facet(u, sides, tables, multipliers, kept, out)?;
-                    facet = facet.map(|facet| facet + 1);
+                    let out = &mut out[facet.here.1 * stride..][..stride];
+                    self.moments_on_facet(u, facet, tables, multipliers, kept, out)?;
                 }
             }
             Ok::<(), Error>(())
         })?;
-        let place = |(cell, local): (usize, usize)| cell * (D + 1) + local;
+        let number = |(cell, local): HalfFacet| cell * (D + 1) + local;
         let mut fluxes = vec![0.0; n_cells * (D + 1) * kept];
         let mut jumps = vec![0.0; n_cells * (D + 1) * n_lifted];
-        for (k, of_facet) in here.chunks_exact(stride).enumerate() {
-            let Some((own, across)) = self.sides((k / (D + 1), k % (D + 1))) else { continue };
-            for (side, sign) in [(Some(own), 1.0), (across, -1.0)] {
-                let Some(side) = side.map(place) else { continue };
-                let (moments, lifted) = of_facet.split_at(kept);
+        for facet in space.form_facets() {
+            let of_facet = &here[number(facet.here) * stride..][..stride];
+            let (moments, lifted) = of_facet.split_at(kept);
+            for (side, sign) in [(Some(facet.here), 1.0), (facet.there, -1.0)] {
+                let Some(side) = side.map(number) else { continue };
                 let to = &mut fluxes[side * kept..][..kept];
                 to.iter_mut().zip(moments).for_each(|(to, from)| *to = sign * from);
                 let to = &mut jumps[side * n_lifted..][..n_lifted];
@@ -89,26 +81,13 @@ impl<const D: usize> Discretisation<'_, D> {
         Ok(fluxes)
     }
 
-    /// The cells of a facet that carries the form, if it is told by the cell here.
-    fn sides(&self, (cell, local): (usize, usize)) -> Option<Sides> {
-        match self.space.coupled_neighbours().across(cell, local) {
-            Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
-                Some(((cell, local), Some((other as usize, usize::from(there)))))
-            }
-            Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
-                Some(((cell, local), None))
-            }
-            _ => None,
-        }
-    }
-
-    /// By cell, how many facets that carry the form the cells before it tell.
+    /// By cell, how many facets that carry the form are counted with the cells before it.
     fn facet_starts(&self) -> Vec<u32> {
-        let count = |cell| (0..D + 1).filter(|&local| self.sides((cell, local)).is_some()).count();
         let mut end = 0;
         let start = |cell| {
-            end += count(cell) as u32;
-            end - count(cell) as u32
+            let start = end;
+            end += self.space.form_facets_of(cell).count() as u32;
+            start
         };
         (0..self.space.mesh.n_cells()).map(start).collect()
     }
@@ -117,7 +96,7 @@ impl<const D: usize> Discretisation<'_, D> {
     fn moments_on_facet(
         &self,
         u: &[f64],
-        ((cell, local), across): Sides,
+        facet: FormFacet,
         (table, data, (metrics, weights)): TablesOfFacets<'_>,
         multipliers: Option<&[f64]>,
         kept: usize,
@@ -125,26 +104,10 @@ impl<const D: usize> Discretisation<'_, D> {
     ) -> Result<(), Error> {
         let (space, form) = (&self.space, self.form());
         let n = space.per_cell();
-        let kind = if across.is_some() { FacetKind::Interior } else { FacetKind::Dirichlet };
-        let weight = weights.at::<D>((cell, local), true, kind);
-        let own = space.local_values(cell, u);
-        let other = across.map(|(other, local)| (space.local_values(other, u), local));
-        let datum = match across {
-            Some(_) => Vec::new(),
-            None => {
-                let group = space.mesh.boundary_group(cell, local);
-                let group = group.expect("a boundary facet has a group");
-                space.dirichlet_moments(data, (cell, local), group)?
-            }
-        };
-        let jump = |k: usize| {
-            let there = match &other {
-                Some((values, local)) => product(&values[..n], &table.on(*local)[k].values),
-                None => datum[k],
-            };
-            product(&own[..n], &table.on(local)[k].values) - there
-        };
-        let measure = metrics.at::<D>(cell).measures[local];
+        let FormFacet { here, there } = facet;
+        let weight = weights.at::<D>(here, true, facet.kind());
+        let jump = space.jump_on(facet, u, (table, data))?;
+        let measure = metrics.measure::<D>(here);
         let (fluxes, lifted) = out.split_at_mut(kept);
         for (k, out) in fluxes.iter_mut().enumerate().take(table.degrees.len()) {
             let penalty = weight.penalty * form.moment_weight(table.degrees[k]);
@@ -154,23 +117,18 @@ impl<const D: usize> Discretisation<'_, D> {
                 None => (measure * coefficients.jump_jump.at(penalty)) * jump(k),
             };
             if form.uses_flux() {
-                let derivatives = |(cell, local): (usize, usize), across, weight: f64| {
-                    let metric = metrics.at::<D>(cell);
-                    let side = space.side(cell, local, &metric);
-                    match space.flux_derivatives((cell, local), across, weight, k) {
-                        Some(weighted) => side.normal_derivatives(&weighted, n, 1.0),
-                        None => {
-                            let basis = &table.on(local)[k];
-                            side.normal_derivatives(&basis.derivatives, n, weight)
-                        }
-                    }
+                let flux_of = |own: HalfFacet, other, weight| {
+                    let (metric, basis) = (metrics.at::<D>(own.0), &table.on(own.1)[k]);
+                    let derivatives = match space.flux_derivatives(own, other, weight, k) {
+                        Some(weighted) => metric.normal_derivatives(own.1, &weighted, n, 1.0),
+                        None => metric.normal_derivatives(own.1, &basis.derivatives, n, weight),
+                    };
+                    let values = space.local_values(own.0, u);
+                    values[..n].iter().zip(&derivatives).map(|(c, v)| c * v).sum::<f64>()
                 };
-                let mut flux =
-                    product(&own[..n], &derivatives((cell, local), across, weight.own_flux_weight));
-                if let (Some(there), Some((values, _))) = (across, &other) {
-                    let here = Some((cell, local));
-                    flux -=
-                        product(&values[..n], &derivatives(there, here, weight.other_flux_weight));
+                let mut flux = flux_of(here, there, weight.own_flux_weight);
+                if let Some(there) = there {
+                    flux -= flux_of(there, Some(here), weight.other_flux_weight);
                 }
                 tested += coefficients.jump_flux.at(penalty) * flux;
             }
@@ -182,12 +140,10 @@ impl<const D: usize> Discretisation<'_, D> {
         Ok(())
     }
 
-    /// Adds what the products of lifts tell of the fluxes, from the jumps as each cell sees them.
+    /// Adds the part of the fluxes that the products of lifts make, from the jumps as each cell sees them.
     fn add_lifted_fluxes(&self, jumps: &[f64], kept: usize, metrics: &Metrics, fluxes: &mut [f64]) {
         let (space, form) = (&self.space, self.form());
-        let neighbours = space.coupled_neighbours();
-        let table = LiftTable::new(space, form.lift_degree(space.basis_degree));
-        let lifting = Lifting { space, form, metrics, table: &table };
+        let lifting = Lifting::new(space, form, metrics);
         let products = cells::map(space.mesh.n_cells(), &|centres: Range<usize>| {
             let of_centre = |centre: usize| {
                 let jump = |local: usize, k: usize| match local <= D {
@@ -195,7 +151,7 @@ impl<const D: usize> Discretisation<'_, D> {
                     false => 0.0,
                 };
                 let jumps = std::array::from_fn(|local| std::array::from_fn(|k| jump(local, k)));
-                lifting.products_with_moments(neighbours, centre, &jumps, kept)
+                lifting.products_with_moments(centre, &jumps, kept)
             };
             centres.map(of_centre).collect::<Vec<_>>()
         });
@@ -203,9 +159,9 @@ impl<const D: usize> Discretisation<'_, D> {
             for (local, products) in products.iter().enumerate().take(D + 1) {
                 for (k, &product) in products.iter().enumerate().take(kept) {
                     fluxes[(centre * (D + 1) + local) * kept + k] -= product;
-                    if let Neighbour::Cell { cell, local } = neighbours.across(centre, local) {
-                        let place = cell as usize * (D + 1) + usize::from(local);
-                        fluxes[place * kept + k] += product;
+                    let facet = space.form_facet((centre, local));
+                    if let Some((cell, local)) = facet.and_then(|of| of.other((centre, local))) {
+                        fluxes[(cell * (D + 1) + local) * kept + k] += product;
                     }
                 }
             }

@@ -1,7 +1,7 @@
 //! Products of jumps on the facets of the reference cell.
 
-use super::local::{Local, zero_local};
 use super::space::tables::FacetTable;
+use super::stiffness::{Local, zero_local};
 use crate::element::MAX_BASIS;
 
 /// For each pair of facets the sums over moments of the products of basis functions: what the
@@ -13,7 +13,7 @@ pub(crate) struct JumpProducts {
     /// By facet of this cell, then by class.
     own: Vec<Local>,
     /// By facet of this cell, facet of the other cell, then by class.
-    across: Vec<Local>,
+    other: Vec<Local>,
     facets: usize,
 }
 
@@ -30,27 +30,27 @@ impl JumpProducts {
         let sum = |local: usize, other: usize, class: f64| {
             let mut sum = zero_local();
             let moments = table.on(local).iter().zip(table.on(other)).zip(&of_degree);
-            for ((mine, theirs), _) in moments.filter(|(_, w)| **w == class) {
+            for ((own, other), _) in moments.filter(|(_, w)| **w == class) {
                 for i in 0..MAX_BASIS {
                     for j in 0..MAX_BASIS {
-                        sum[i][j] += mine.values[i] * theirs.values[j];
+                        sum[i][j] += own.values[i] * other.values[j];
                     }
                 }
             }
             sum
         };
-        let (mut own, mut across) = (Vec::new(), Vec::new());
+        let (mut own, mut others) = (Vec::new(), Vec::new());
         for local in 0..=D {
             for &class in &weights {
                 own.push(sum(local, local, class));
             }
             for other in 0..=D {
                 for &class in &weights {
-                    across.push(sum(local, other, class));
+                    others.push(sum(local, other, class));
                 }
             }
         }
-        Self { own, across, weights, facets: D + 1 }
+        Self { own, other: others, weights, facets: D + 1 }
     }
     /// This cell with itself, by class.
     #[inline(always)]
@@ -60,9 +60,9 @@ impl JumpProducts {
     }
     /// This cell with the other, by class.
     #[inline(always)]
-    pub fn across(&self, local: usize, other: usize) -> &[Local] {
+    pub fn other(&self, local: usize, other: usize) -> &[Local] {
         let n = self.weights.len();
         let pair = local * self.facets + other;
-        &self.across[pair * n..(pair + 1) * n]
+        &self.other[pair * n..(pair + 1) * n]
     }
 }

@@ -8,40 +8,22 @@ use std::ops::Range;
 use super::bodies::FreeBodies;
 use super::count;
 use super::cut_simplices::CutRule;
-use super::local::{traces, view};
-use super::owned_rows::lifted::{LiftTable, Lifting};
 use super::space::metric::Metrics;
 use super::space::tables::BasisAt;
-use super::space::{INWARD, Place, Space, data};
+use super::space::tables::FacetDatum;
+use super::space::{INWARD, Space, checks};
 use crate::error::Error;
-use crate::facet::{FacetForm, Trace};
-use crate::mesh::BoundaryPart;
+use crate::facet::FacetForm;
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::vectors::zeros;
 use crate::parallel::{cells, once};
-use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
+use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
-
-/// A cell, one of its facets and the moments of the Dirichlet datum on it.
-pub(crate) type FacetDatum = (usize, (usize, Vec<f64>));
-
-/// The data in the order of cells and facets; not generic, so that the sorting code is compiled once.
-pub(super) fn by_facet(data: &[FacetDatum]) -> Vec<&FacetDatum> {
-    let mut sorted: Vec<&FacetDatum> = data.iter().collect();
-    sorted.sort_unstable_by_key(|(cell, (local, _))| (*cell, *local));
-    sorted
-}
 
 /// What is added to a cell's part of the load.
 type OfCell<'w> = &'w (dyn Fn(usize, &mut [f64]) -> Result<(), Error> + Sync);
 
 impl<const D: usize> Space<'_, D> {
-    /// Whether Dirichlet data enter through the facet form.
-    fn has_weak_data(&self) -> bool {
-        !self.pins
-            && self.problem.has_dirichlet_data()
-            && self.mesh.has_part(BoundaryPart::Dirichlet)
-    }
-
     /// Source and Neumann data tested with each cell's basis functions; empty if neither they nor
     /// weak Dirichlet data are there. Integrals of a source that varies are kept for cells that share unknowns:
     /// load, energy and bound ask for them.
@@ -61,7 +43,8 @@ impl<const D: usize> Space<'_, D> {
     }
 
     fn integrate_load(&self) -> Result<Vec<f64>, Error> {
-        let flux = self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
+        let flux =
+            self.problem.has_neumann_data() && self.mesh.has_condition(BoundaryCondition::Neumann);
         let source = &self.data.source;
         if !source.is_given() && !self.has_weak_data() && !flux {
             return Ok(Vec::new());
@@ -94,7 +77,7 @@ impl<const D: usize> Space<'_, D> {
 
     fn add_constant_source(&self, f: f64, load: &mut [f64]) -> Result<(), Error> {
         count::source(1);
-        let f = data::finite(f, "source", &Point::<D>::zeros(), 0)?;
+        let f = checks::finite(f, "source", &Point::<D>::zeros(), 0)?;
         let means: Vec<f64> = self.basis_means().iter().map(|mean| f * mean).collect();
         self.fill_each_cell(load, &|cell, out| {
             let volume = self.mesh.geometry(cell).volume;
@@ -123,7 +106,7 @@ impl<const D: usize> Space<'_, D> {
             let volume = self.mesh.geometry(cell).volume;
             let mut add = |x: &Point<D>, weight: f64, basis: &BasisAt| {
                 count::source(1);
-                let value = weight * volume * data::finite(f.at(x), "source", x, cell)?;
+                let value = weight * volume * checks::finite(f.at(x), "source", x, cell)?;
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
                     *out += value * phi;
                 }
@@ -164,12 +147,11 @@ impl<const D: usize> Space<'_, D> {
 
     fn add_neumann(&self, load: &mut [f64]) -> Result<(), Error> {
         let n = self.per_cell();
-        for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-            let (cell, local) = place;
-            let measure = self.facet_measure((cell, local));
+        for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
+            let ((cell, local), measure) = (facet, self.facet_measure(facet));
             let out = &mut load[cell * n..(cell + 1) * n];
             for (point, weight) in self.facet_rule.iter() {
-                let flux = weight * measure * self.neumann_at(place, group, point)?;
+                let flux = weight * measure * self.neumann_at(facet, group, point)?;
                 let basis = self.basis_at(&facet_to_cell(point, local));
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
                     *out += flux * phi;
@@ -182,7 +164,7 @@ impl<const D: usize> Space<'_, D> {
     /// The Neumann datum at a point of a facet.
     pub fn neumann_at(
         &self,
-        (cell, local): Place,
+        (cell, local): HalfFacet,
         group: usize,
         point: &[f64; 4],
     ) -> Result<f64, Error> {
@@ -198,43 +180,9 @@ impl<const D: usize> Space<'_, D> {
             }
             (None, None) => 0.0,
         };
-        data::finite(flux, "neumann", &x, cell)
+        checks::finite(flux, "neumann", &x, cell)
     }
 
-    /// Moments of Dirichlet data on a facet.
-    pub fn dirichlet_moments(
-        &self,
-        moments: &FacetMoments<'_>,
-        (cell, local): Place,
-        group: usize,
-    ) -> Result<Vec<f64>, Error> {
-        let mut sums = vec![0.0; moments.polynomials.len()];
-        for (point, w) in moments.rule.iter() {
-            count::dirichlet(1);
-            let x = self.facet_point(point, cell, local);
-            let value = data::finite(self.dirichlet_at(group, &x), "dirichlet", &x, cell)?;
-            for (k, sum) in sums.iter_mut().enumerate() {
-                *sum += w * value * moments.polynomials.value(k, point);
-            }
-        }
-        Ok(sums)
-    }
-}
-
-/// What moments of data on facets are computed with.
-pub(crate) struct FacetMoments<'r> {
-    polynomials: OrthonormalPolynomials,
-    rule: &'r Rule,
-}
-
-impl<'r> FacetMoments<'r> {
-    /// Moments up to a degree, by a rule on facets.
-    pub fn new(dimension: usize, degree: usize, rule: &'r Rule) -> Self {
-        Self { polynomials: OrthonormalPolynomials::new(dimension - 1, degree), rule }
-    }
-}
-
-impl<const D: usize> Space<'_, D> {
     /// The load of all unknowns; the metrics of all cells are asked for only where jumps are lifted.
     pub fn load<'m>(
         &self,
@@ -258,64 +206,10 @@ impl<const D: usize> Space<'_, D> {
         if !bodies.bodies.is_empty() && !by_cell.is_empty() {
             self.correct_resultants(bodies, by_cell.to_mut());
         }
-        let mut data = Vec::new();
-        if self.has_weak_data() {
-            data = self.weak_data(form)?;
-        }
+        let data = self.weak_data(form)?;
         if with_data && !data.is_empty() {
-            let by_cell = by_cell.to_mut();
-            self.add_dirichlet(form, &data, by_cell);
-            if form.is_lifted() {
-                self.add_lifted(form, metrics(), &data, by_cell);
-            }
+            self.add_weak_data(form, metrics, &data, by_cell.to_mut());
         }
         Ok((self.gather_load(by_cell), data))
-    }
-
-    /// The moments of Dirichlet data that the facet form imposes, facet by facet.
-    fn weak_data(&self, form: &dyn FacetForm<D>) -> Result<Vec<FacetDatum>, Error> {
-        let degree = form.moments(self.basis_degree);
-        let moments = FacetMoments::new(D, degree, &self.facet_rule);
-        let of_facet = |((cell, local), group)| {
-            Ok((cell, (local, self.dirichlet_moments(&moments, (cell, local), group)?)))
-        };
-        self.grouped_facets_of(BoundaryPart::Dirichlet).map(of_facet).collect()
-    }
-
-    /// Dirichlet data as the trial trace of the facet form.
-    fn add_dirichlet(&self, form: &dyn FacetForm<D>, data: &[FacetDatum], load: &mut [f64]) {
-        let n = self.per_cell();
-        let table = self.facet_table(form.moments(self.basis_degree));
-        for &(cell, (local, ref values)) in data {
-            let metric = self.metric(cell);
-            let here = self.side(cell, local, &metric);
-            let facet = view(self.mesh, &here, None);
-            let penalty = form.penalty(&facet);
-            let out = &mut load[cell * n..(cell + 1) * n];
-            for (k, (basis, &value)) in table.on(local).iter().zip(values).enumerate() {
-                let weighted = self.flux_derivatives((cell, local), None, 1.0, k);
-                let test = traces(form, &facet, &here, true, (basis, weighted.as_ref()), n);
-                let datum = Trace { jump: value, flux: 0.0 };
-                let penalty = penalty * form.moment_weight(table.degrees[k]);
-                for (out, &v) in out.iter_mut().zip(&test) {
-                    *out += facet.measure * form.integrand(&facet, v, datum, penalty);
-                }
-            }
-        }
-    }
-
-    /// What the products of lifts make of Dirichlet data.
-    fn add_lifted(
-        &self,
-        form: &dyn FacetForm<D>,
-        metrics: &Metrics,
-        data: &[FacetDatum],
-        load: &mut [f64],
-    ) {
-        let table = LiftTable::new(self, form.lift_degree(self.basis_degree));
-        let lifting = Lifting { space: self, form, metrics, table: &table };
-        for (cell, datum) in data {
-            lifting.add_load(self.coupled_neighbours(), *cell, datum, load);
-        }
     }
 }

@@ -3,15 +3,15 @@
 use std::convert::Infallible;
 
 use super::facet_coefficients::FacetCoefficients;
-use super::load::{FacetDatum, by_facet};
-use super::local::zero_local;
+use super::space::Space;
 use super::space::metric::Metrics;
+use super::space::tables::FacetDatum;
 use super::space::tables::FacetTable;
-use super::space::{Place, Space};
-use crate::algebra::{JumpTerm, PenalisedMatrix};
+use super::stiffness::zero_local;
+use crate::algebra::{JumpTerm, MeanJumps, NO_INDEX, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
-use crate::facet::{FacetForm, FacetKind};
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::facet::FacetForm;
+use crate::mesh::HalfFacet;
 use crate::parallel::cells;
 
 /// Moments up to this share of the largest are what quadrature leaves of zero, and differences up to
@@ -30,11 +30,11 @@ pub(crate) fn penalised_matrix<const D: usize>(
     (metrics, weights): (&Metrics, &FacetCoefficients),
     dirichlet: &[FacetDatum],
 ) -> PenalisedMatrix<f64> {
-    let mut dirichlet = by_facet(dirichlet).into_iter().peekable();
+    let mut dirichlet = dirichlet.iter().peekable();
     let table = space.facet_table(form.moments(space.basis_degree));
     let templates = Templates::new(D, &space.nodes, &table);
     let of_degree: Vec<f64> = table.degrees.iter().map(|&k| form.moment_weight(k)).collect();
-    let n_jumps = n_facets_with_jumps(space) * of_degree.len();
+    let n_jumps = space.form_facets().count() * of_degree.len();
     let mut out = PenalisedMatrix {
         block_size: space.per_cell(),
         blocks: blocks(space, metrics),
@@ -42,75 +42,57 @@ pub(crate) fn penalised_matrix<const D: usize>(
         terms: Vec::with_capacity(n_jumps * templates.most_terms()),
         weights: Vec::with_capacity(n_jumps),
         jump_data: Vec::with_capacity(n_jumps),
+        mean_jumps: mean_jumps(space, &table),
     };
     out.term_starts.push(0);
-    for cell in 0..space.mesh.n_cells() {
-        let metric = metrics.at::<D>(cell);
-        for local in 0..=D {
-            let (kind, other, template) = match jump_across(space, (cell, local)) {
-                Some(Some((other, there))) => {
-                    (FacetKind::Interior, other, templates.between(local, there))
-                }
-                Some(None) => (FacetKind::Dirichlet, cell, templates.on_boundary(local)),
-                None => continue,
-            };
-            let datum = dirichlet.next_if(|(c, (l, _))| (*c, *l) == (cell, local));
-            let zeros = of_degree.iter().map(|_| 0.0);
-            match &datum {
-                Some((_, (_, values))) => out.jump_data.extend(values.iter().copied()),
-                None => out.jump_data.extend(zeros),
-            }
-            let weight = weights.at::<D>((cell, local), true, kind);
-            let measure = metric.measures[local];
-            for (terms, &factor) in template.iter().zip(&of_degree) {
-                out.terms.extend(terms.iter().map(|t| t.between(cell, other, out.block_size)));
-                out.term_starts.push(out.terms.len() as u32);
-                let jump_jump = weight.coefficients.jump_jump.at(weight.penalty * factor);
-                out.weights.push(measure * jump_jump);
-            }
+    for facet in space.form_facets() {
+        let (cell, local) = facet.here;
+        let (other, template) = match facet.there {
+            Some((other, there)) => (other, templates.between(local, there)),
+            None => (cell, templates.on_boundary(local)),
+        };
+        match dirichlet.next_if(|datum| datum.facet == facet.here) {
+            Some(datum) => out.jump_data.extend(&datum.moments),
+            None => out.jump_data.extend(of_degree.iter().map(|_| 0.0)),
+        }
+        let weight = weights.at::<D>(facet.here, true, facet.kind());
+        let measure = metrics.measure::<D>(facet.here);
+        for (terms, &factor) in template.iter().zip(&of_degree) {
+            out.terms.extend(terms.iter().map(|t| t.between(cell, other, out.block_size)));
+            out.term_starts.push(out.terms.len() as u32);
+            let jump_jump = weight.coefficients.jump_jump.at(weight.penalty * factor);
+            out.weights.push(measure * jump_jump);
         }
     }
     out
 }
 
-/// `None` if the jump on a facet does not count in this cell; else the place on the other side of the facet, or
-/// `Some(None)` on the Dirichlet part. A jump counts in the first of two cells, and where Dirichlet data are weak.
-fn jump_across<const D: usize>(
-    space: &Space<'_, D>,
-    (cell, local): Place,
-) -> Option<Option<Place>> {
-    match space.coupled_neighbours().across(cell, local) {
-        Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
-            Some(Some((other as usize, there.into())))
-        }
-        Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => Some(None),
-        _ => None,
+/// The sides of facets to which the jumps belong, if the functions are linear with their values at vertices or their
+/// means over facets as unknowns, and the form acts on means of jumps alone.
+fn mean_jumps<const D: usize>(space: &Space<'_, D>, table: &FacetTable) -> Option<MeanJumps> {
+    let is_basis_of = |node: fn(usize) -> Node| space.nodes.iter().cloned().eq((0..=D).map(node));
+    let are_means = is_basis_of(Node::facet_mean);
+    if D == 1 || space.basis_degree > 1 || table.degrees.len() > 1 {
+        return None;
     }
-}
-
-/// The number of facets on which jumps count.
-fn n_facets_with_jumps<const D: usize>(space: &Space<'_, D>) -> usize {
-    let place = |k: usize| (k / (D + 1), k % (D + 1));
-    let n = space.mesh.n_cells() * (D + 1);
-    (0..n).filter(|&k| jump_across(space, place(k)).is_some()).count()
+    (are_means || is_basis_of(Node::vertex)).then(|| {
+        let side = |(cell, local): HalfFacet| (cell * (D + 1) + local) as u32;
+        let sides = space.form_facets().map(|f| [side(f.here), f.there.map_or(NO_INDEX, side)]);
+        MeanJumps { are_means, sides: sides.collect() }
+    })
 }
 
 /// Stiffness and reaction of all cells.
 fn blocks<const D: usize>(space: &Space<'_, D>, metrics: &Metrics) -> Vec<f64> {
     let n = space.per_cell();
-    let stiffness = space.stiffness_table();
+    let table = space.stiffness_table();
     let mut blocks = vec![0.0; n * n * space.mesh.n_cells()];
     let fill = |cells: std::ops::Range<usize>, chunk: &mut [f64]| {
         for (cell, out) in cells.zip(chunk.chunks_exact_mut(n * n)) {
             let metric = metrics.at::<D>(cell);
-            let coefficient = space.alpha(cell);
-            for (k, out) in out.iter_mut().enumerate() {
-                *out = match space.varying_in(cell) {
-                    None => coefficient * stiffness.entry::<D>(&metric, k / n, k % n),
-                    Some((varying, values)) => {
-                        varying.stiffness::<D>(values, &metric, k / n, k % n)
-                    }
-                };
+            let stiffness = space.stiffness(&table, cell, &metric);
+            for (row, stiffness) in out.chunks_exact_mut(n).zip(&stiffness) {
+                row.copy_from_slice(&stiffness[..n]);
             }
             if let Some(reaction) = &space.reaction {
                 let mut own = zero_local();

@@ -34,9 +34,8 @@ impl<const D: usize> Space<'_, D> {
 
     /// The penalty on the first facet that has one over the stiffness beside it; none without such a facet.
     fn penalty_over_stiffness(&self, form: &dyn FacetForm<D>) -> Option<f64> {
-        let neighbours = self.neighbours.as_ref()?;
-        let view = |k: usize| self.facet_view(neighbours, k / (D + 1), k % (D + 1));
-        let facet = (0..self.mesh.n_cells() * (D + 1)).find_map(view)?;
+        let first = if form.couples() { self.form_facets().next() } else { None };
+        let facet = self.facet_view(first?, None);
         let stiffness = facet.largest(|side| side.coefficient * side.surface / side.volume);
         Some(form.penalty(&facet) / stiffness)
     }

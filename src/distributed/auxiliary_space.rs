@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::algebra::dense::invert_positive_definite;
-use crate::algebra::{RectangularMatrix, SparseMatrix, Support};
+use crate::algebra::{DofLocation, RectangularMatrix, SparseMatrix};
 use crate::linear::precondition::{rows_of_means, unknowns_per_cell};
 use crate::linear::{FactorError, Preconditioner};
 use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups, zeros};
@@ -16,8 +16,8 @@ use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups, zeros};
 ///
 /// `D` is the block diagonal part of `A` with one block for the unknowns of each cell. `P` maps the
 /// vertex values of a conforming linear function to unknowns: an unknown is the mean of the values
-/// at the vertices of its support. `C` is a preconditioner of the matrix of the form on conforming linear functions, not
-/// of `A`.
+/// at the vertices of its location. `C` is a preconditioner of the matrix of the form on conforming linear functions,
+/// not of `A`.
 pub(super) struct AuxiliarySpace<'a> {
     blocks: BlockJacobi<'a>,
     /// The unknowns that the part owns; only the blocks of these are complete.
@@ -31,11 +31,11 @@ impl<'a> AuxiliarySpace<'a> {
     /// cell.
     pub fn new(
         matrix: &'a SparseMatrix<f64>,
-        supports: &[Support],
+        locations: &[DofLocation],
         own: Vec<bool>,
         correction: VertexCorrection<'a>,
     ) -> Option<Self> {
-        let blocks = BlockJacobi::new(matrix, unknowns_per_cell(supports)?)?;
+        let blocks = BlockJacobi::new(matrix, unknowns_per_cell(locations)?)?;
         Some(Self { blocks, own, correction })
     }
 }
@@ -59,13 +59,13 @@ impl Preconditioner<f64> for AuxiliarySpace<'_> {
 }
 
 /// The correction `P C P^T r` by conforming linear functions that vanish at the vertices in the
-/// supports of fixed unknowns; for `P` and `C` see [`AuxiliarySpace`].
+/// locations of fixed unknowns; for `P` and `C` see [`AuxiliarySpace`].
 pub(super) struct VertexCorrection<'a> {
     /// `C`.
     coarse: Box<dyn Preconditioner<f64> + 'a>,
     /// The vertices with Dirichlet data.
     dirichlet: Cow<'a, [bool]>,
-    /// `P`: an unknown is the mean of the values at the vertices of its support.
+    /// `P`: an unknown is the mean of the values at the vertices of its location.
     interpolation: RectangularMatrix<f64>,
     /// `P^T`.
     transpose: RectangularMatrix<f64>,
@@ -77,15 +77,15 @@ pub(super) struct VertexCorrection<'a> {
 }
 
 impl<'a> VertexCorrection<'a> {
-    /// The correction with functions that vanish at the vertices for which `dirichlet` is true; `None` if a support is
+    /// The correction with functions that vanish at the vertices for which `dirichlet` is true; `None` if a location is
     /// empty or contains a vertex that is not less than the length of `dirichlet`.
     pub fn new(
         coarse: Box<dyn Preconditioner<f64> + 'a>,
         dirichlet: Cow<'a, [bool]>,
-        supports: &[Support],
+        locations: &[DofLocation],
     ) -> Option<Self> {
         let n = dirichlet.len();
-        let interpolation = rows_of_means(supports.iter().map(Support::vertices), n)?;
+        let interpolation = rows_of_means(locations.iter().map(DofLocation::vertices), n)?;
         let transpose = interpolation.transpose(n);
         let (residual, values) = (zeros(n), zeros(n));
         let fixed_vertices = vec![false; n];
@@ -93,7 +93,7 @@ impl<'a> VertexCorrection<'a> {
     }
 
     /// Sets the fixed unknowns, and the fixed vertices: those with Dirichlet data, and those in the
-    /// support of a fixed unknown.
+    /// location of a fixed unknown.
     ///
     /// # Errors
     /// The error of the preconditioner `C`.

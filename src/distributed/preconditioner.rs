@@ -48,7 +48,7 @@ impl PreconditionerFamily<f64> for EnginePreconditioners {
         system: PreconditionedSystem<'a, f64>,
     ) -> Option<Box<dyn Preconditioner<f64> + 'a>> {
         let PreconditionedSystem { matrix, inequality, .. } = system;
-        let (engine, supports) = (&*self.engine, &inequality.supports);
+        let (engine, locations) = (&*self.engine, &inequality.locations);
         let take = |of: &Mutex<Option<OnOwnUnknowns>>| {
             of.lock().unwrap_or_else(PoisonError::into_inner).take()
         };
@@ -61,15 +61,15 @@ impl PreconditionerFamily<f64> for EnginePreconditioners {
             Auxiliary::Conforming(of, dirichlet) => {
                 let dirichlet = Cow::Owned(dirichlet.clone());
                 let coarse = Box::new(take(of)?);
-                let correction = VertexCorrection::new(coarse, dirichlet, supports)?;
+                let correction = VertexCorrection::new(coarse, dirichlet, locations)?;
                 let is_own = |i: usize| self.over_parts.owns(i);
                 let own = (0..matrix.size()).map(is_own).collect();
-                Box::new(AuxiliarySpace::new(matrix, supports, own, correction)?)
+                Box::new(AuxiliarySpace::new(matrix, locations, own, correction)?)
             }
             Auxiliary::FacetMeans(of, unknowns) => {
                 let penalised = inequality.penalised.as_ref()?;
                 let block = BlockOverParts::new(self.engine.clone(), self.over_parts.clone());
-                let places = (&supports[..], self.n_vertices);
+                let places = (&locations[..], self.n_vertices);
                 let solver = take(of)?;
                 let splitting = MeanJumpSplitting::with_solvers(
                     matrix,

@@ -185,10 +185,10 @@ impl<const D: usize> Solve<'_, '_, D> {
     /// What corrects besides the blocks of cells, with the auxiliary matrix.
     fn auxiliary(&self) -> Result<Auxiliary, Error> {
         let inequality = self.system.inequality();
-        let supports = &inequality.supports;
-        // unknowns that cells share and whose supports are facets are those of Crouzeix-Raviart functions
+        let locations = &inequality.locations;
+        // unknowns that cells share and whose locations are facets are those of Crouzeix-Raviart functions
         let is_of_facets = !self.system.discretisation().space.broken
-            && supports.iter().all(|support| support.vertices().len() == D);
+            && locations.iter().all(|location| location.vertices().len() == D);
         if D == 1 {
             return Ok(Auxiliary::None(EngineMethod::Factors, 0.0));
         }
@@ -198,7 +198,7 @@ impl<const D: usize> Solve<'_, '_, D> {
         }
         // facet means carry the whole energy of unknowns that are means
         let are_means = inequality.penalised.is_some()
-            && supports.first().is_some_and(|support| support.vertices().len() > 1);
+            && locations.first().is_some_and(|location| location.vertices().len() > 1);
         let multigrid = |of: &Inequality<f64>, over_parts: &Arc<OverParts>| {
             let few = if are_means { 0.0 } else { few_changes::<D>(over_parts) };
             let by = (EngineMethod::Multigrid, few);

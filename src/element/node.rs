@@ -1,6 +1,6 @@
 //! Degrees of freedom: functionals on the functions of a cell.
 
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::mesh::edge_vertices;
 use crate::quadrature::{Rule, facet_to_cell};
 
@@ -81,7 +81,7 @@ impl Node {
     /// The value at the barycentre of a cell of this dimension.
     pub fn barycentre(dimension: usize) -> Self {
         let share = 1.0 / (dimension + 1) as f64;
-        Self::value(Entity::Cell, tabulate(|k| if k <= dimension { share } else { 0.0 }))
+        Self::value(Entity::Cell, array_of(|k| if k <= dimension { share } else { 0.0 }))
     }
     /// The mean over the facet opposite a vertex of the cell.
     pub fn facet_mean(k: usize) -> Self {
@@ -152,7 +152,7 @@ impl Node {
             Functional::Sum(terms) => mean(&mut terms.iter().map(|(point, w)| (*point, w.abs()))),
             Functional::Mean => {
                 let vertices = (0..dimension + 1).filter(|&k| self.entity.contains(dimension, k));
-                let vertex = |k: usize| tabulate(|i| f64::from(u8::from(i == k)));
+                let vertex = |k: usize| array_of(|i| f64::from(u8::from(i == k)));
                 mean(&mut vertices.map(|k| (vertex(k), 1.0)))
             }
         }

@@ -4,11 +4,11 @@ use super::PrimalDualPair;
 use super::flux::Flux;
 use crate::algebra::{Bound, Contact};
 use crate::arrays::map_entries;
+use crate::assemble::space::Space;
 use crate::assemble::space::tables::BasisAt;
-use crate::assemble::space::{Place, Space};
 use crate::element::Node;
-use crate::mesh::{BoundaryPart, Edges, edge_vertices};
-use crate::problem::DatumRef;
+use crate::mesh::{BoundaryCondition, Edges, HalfFacet, edge_vertices};
+use crate::problem::Datum;
 use crate::real::Point;
 
 /// The nodes of the admissible function: the vertices of the mesh and, for quadratics, after them the
@@ -55,7 +55,7 @@ impl<const D: usize> Space<'_, D> {
     pub(super) fn pair_nodes_on(
         &self,
         pair: &PrimalDualPair<D>,
-        (cell, local): Place,
+        (cell, local): HalfFacet,
     ) -> impl Iterator<Item = PairNode> {
         self.pair_nodes(pair, cell).filter(move |(ends, _)| !ends.contains(&local))
     }
@@ -178,7 +178,7 @@ impl<const D: usize> Space<'_, D> {
         } else if self.problem.has_obstacle() {
             (0..values.len()).for_each(|v| add(v, 0));
         }
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             for v in self.mesh.facet_vertices(cell, local) {
                 let x = self.mesh.vertices()[v as usize];
@@ -202,7 +202,7 @@ impl<const D: usize> Space<'_, D> {
         let (at_vertices, at_midpoints) = values.split_at_mut(nodes.n_vertices);
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); at_midpoints.len()];
         // what a datum asks of the value at the midpoint of an edge
-        let least = |datum: DatumRef<'_, D>, cell: usize, &[a, b]: &[usize; 2]| {
+        let least = |datum: &Datum<D>, cell: usize, &[a, b]: &[usize; 2]| {
             let ends = map_entries([a, b], |k| self.mesh.cell(cell)[k] as usize);
             let [x, y] = map_entries(ends, |v| self.mesh.vertices()[v]);
             let middle = datum.at(&midpoint(&x, &y));
@@ -222,7 +222,7 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         let on_facet = |local: usize, edge: &[usize; 2]| !edge.contains(&local);
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             for (edge, node) in nodes.of_edges(D, cell).filter(|(e, _)| on_facet(local, e)) {
                 let low = &mut bounds[node - nodes.n_vertices].0;
@@ -233,7 +233,7 @@ impl<const D: usize> Space<'_, D> {
             *value = value.min(high).max(low);
         }
         let mut ranks = vec![usize::MAX; at_midpoints.len()];
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Dirichlet) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
             for (&[a, b], node) in nodes.of_edges(D, cell).filter(|(e, _)| on_facet(local, e)) {
                 let edge = node - nodes.n_vertices;
                 let rank = self.data.dirichlet_rank[group];

@@ -1,9 +1,9 @@
 //! The forces on contact facets.
 
 use crate::algebra::{Contact, Inequality};
+use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::assemble::space::{Place, Space};
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::facet_to_cell;
 
 /// The part of the contact force of a node that acts on one of its contact facets.
@@ -41,7 +41,7 @@ impl<const D: usize> Space<'_, D> {
         let is_in_contact = |unknown: usize| {
             contact.get(unknown) != Some(&Contact::Inactive) && !obstacles.act_at(unknown)
         };
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             if self.data.gap.of(group).is_none() {
                 continue;
             }
@@ -101,7 +101,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The integral over a facet of `alpha grad u . n` times a basis function.
-    fn flux_at_node(&self, (cell, local): Place, node: usize, u: &[f64]) -> f64 {
+    fn flux_at_node(&self, (cell, local): HalfFacet, node: usize, u: &[f64]) -> f64 {
         let geometry = self.mesh.geometry(cell);
         let (values, normal) = (self.local_values(cell, u), (geometry.normal(local)));
         let scale = self.facet_measure((cell, local)) * self.alpha(cell);

@@ -1,8 +1,8 @@
 //! The constant of Friedrichs' inequality of a mesh.
 
 use crate::algebra::Distribution;
-use crate::arrays::{map_entries, tabulate};
-use crate::mesh::{BoundaryPart, Mesh};
+use crate::arrays::{array_of, map_entries};
+use crate::mesh::{BoundaryCondition, Mesh};
 use crate::real::Point;
 
 /// A normal whose component is smaller than this is orthogonal to the axis.
@@ -27,10 +27,10 @@ impl<const D: usize> FriedrichsData<D> {
             low = low.zip_map(&x, f64::min);
             high = high.zip_map(&x, f64::max);
         }
-        let free = mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet);
+        let free = mesh.boundary().iter().filter(|f| f.condition != BoundaryCondition::Dirichlet);
         let normal = |cell: u32, local: u8| mesh.geometry(cell as usize).normal(usize::from(local));
         let normals: Vec<_> = free.map(|f| normal(f.cell, f.local)).collect();
-        let is_held = tabulate(|axis| {
+        let is_held = array_of(|axis| {
             map_entries([1.0, -1.0], |sign| normals.iter().all(|n| sign * n[axis] <= PARALLEL))
         });
         Self { low, high, is_held }
@@ -84,16 +84,16 @@ mod tests {
         };
         let near = |a: Option<f64>, b: f64| a.is_some_and(|a| (a - b).abs() < 1e-12);
         assert!(near(constant(&square()), 0.5_f64.sqrt()));
-        let one_side = square().side(1, 0, BoundaryPart::Contact);
+        let one_side = square().side(1, 0, BoundaryCondition::Contact);
         assert!(near(constant(&one_side), (1.25_f64).powf(-0.5)));
         let all = |part| {
             let axes = [(0, 0), (0, 1), (1, 0), (1, 1)];
             axes.iter().fold(square(), |d, &(axis, end)| d.side(axis, end, part))
         };
-        assert_eq!(constant(&all(BoundaryPart::Neumann)), None);
+        assert_eq!(constant(&all(BoundaryCondition::Neumann)), None);
         // over parts too, where one end alone is held
         for end in [0, 1] {
-            let held = all(BoundaryPart::Neumann).side(0, end, BoundaryPart::Dirichlet);
+            let held = all(BoundaryCondition::Neumann).side(0, end, BoundaryCondition::Dirichlet);
             let mesh = Mesh::<2>::kuhn_box(&held, [3, 3]).expect("a mesh");
             let data = FriedrichsData::of(&mesh);
             for data in [data, data.over_parts(&OnePart)] {

@@ -4,10 +4,10 @@ use super::PrimalDualPair;
 use super::admissible_function::PairNode;
 use super::estimate::Unproven;
 use crate::arrays::map_entries;
-use crate::assemble::space::{Place, Space};
+use crate::assemble::space::Space;
 use crate::measure::Counts;
-use crate::mesh::BoundaryPart;
-use crate::problem::{DataByGroup, DatumRef};
+use crate::mesh::{BoundaryCondition, HalfFacet};
+use crate::problem::{DataByGroup, Datum};
 
 /// Numbers that differ by less than this share are equal but for rounding.
 const AGREEMENT: f64 = 1e-12;
@@ -45,7 +45,7 @@ impl<const D: usize> Space<'_, D> {
             && !is_linear
             && obstacles.iter().any(|d| d.is_given())
             && !self.exceeds_obstacles(pair);
-        let has_data = D > 1 && self.mesh.has_part(BoundaryPart::Dirichlet);
+        let has_data = D > 1 && self.mesh.has_condition(BoundaryCondition::Dirichlet);
         let found = [
             (is_inexact, Unproven::Quadrature),
             (
@@ -68,7 +68,7 @@ impl<const D: usize> Space<'_, D> {
     /// The degree of Neumann data on facets, likewise; that of the flux of an exact solution is unknown.
     pub(super) fn neumann_degree(&self) -> Option<usize> {
         let flux = |group| self.data.neumann.of(group);
-        let mut facets = self.grouped_facets_of(BoundaryPart::Neumann);
+        let mut facets = self.grouped_facets_of(BoundaryCondition::Neumann);
         let is_exact =
             self.problem.exact.is_some() && facets.any(|(_, group)| flux(group).is_none());
         let of_exact = is_exact.then_some(None);
@@ -85,7 +85,7 @@ impl<const D: usize> Space<'_, D> {
     /// point.
     fn has_inexact_facets(&self) -> bool {
         D > 1
-            && self.mesh.has_part(BoundaryPart::Neumann)
+            && self.mesh.has_condition(BoundaryCondition::Neumann)
             && self.problem.has_neumann_data()
             && self.neumann_degree().is_none_or(|degree| {
                 !self.facet_rule.moments(D - 1, degree).all(|moment| moment.is_exact())
@@ -95,7 +95,7 @@ impl<const D: usize> Space<'_, D> {
     /// Whether the Bernstein coefficients of a quadratic on all edges exceed those of obstacles and gaps, but for
     /// rounding: data may leave an obstacle between nodes, and two obstacles may ask more than one value can do.
     fn exceeds_obstacles(&self, pair: &PrimalDualPair<D>) -> bool {
-        let exceeds = |bound: Option<DatumRef<'_, D>>, sign, cell, (ends, node): PairNode| {
+        let exceeds = |bound: Option<&Datum<D>>, sign, cell, (ends, node): PairNode| {
             let Some(bound) = bound else { return true };
             let ends = map_entries(ends, |k| self.mesh.cell(cell)[k] as usize);
             let [x, y] = map_entries(ends, |v| self.mesh.vertices()[v]);
@@ -114,23 +114,23 @@ impl<const D: usize> Space<'_, D> {
             self.pair_nodes(pair, cell)
                 .all(|at| exceeds(lower, 1.0, cell, at) && exceeds(upper, -1.0, cell, at))
         };
-        let exceeds_on = |(place, group): (Place, usize)| {
+        let exceeds_on = |(facet, group): (HalfFacet, usize)| {
             let gap = self.data.gap.of(group);
-            self.pair_nodes_on(pair, place).all(|at| exceeds(gap, 1.0, place.0, at))
+            self.pair_nodes_on(pair, facet).all(|at| exceeds(gap, 1.0, facet.0, at))
         };
         (0..self.mesh.n_cells()).all(exceeds_in)
-            && self.grouped_facets_of(BoundaryPart::Contact).all(exceeds_on)
+            && self.grouped_facets_of(BoundaryCondition::Contact).all(exceeds_on)
     }
 
     /// Whether the function of a pair has the data of all Dirichlet facets at its nodes on them: where data of
     /// two facets differ at a common node no function with a square-integrable gradient takes both.
     fn takes_dirichlet_data(&self, pair: &PrimalDualPair<D>, counts: Counts<'_>) -> bool {
-        let mut facets = self.grouped_facets_of(BoundaryPart::Dirichlet);
-        facets.all(|(place, group)| {
-            let mut nodes = self.pair_nodes_on(pair, place);
-            !counts(place.0)
+        let mut facets = self.grouped_facets_of(BoundaryCondition::Dirichlet);
+        facets.all(|(facet, group)| {
+            let mut nodes = self.pair_nodes_on(pair, facet);
+            !counts(facet.0)
                 || nodes.all(|(ends, node)| {
-                    let [x, y] = map_entries(ends, |k| self.mesh.cell(place.0)[k] as usize);
+                    let [x, y] = map_entries(ends, |k| self.mesh.cell(facet.0)[k] as usize);
                     let [x, y] = map_entries([x, y], |v| self.mesh.vertices()[v]);
                     let datum = self.dirichlet_at(group, &((x + y) * 0.5));
                     let value = pair.function[node];

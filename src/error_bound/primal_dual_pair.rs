@@ -8,15 +8,15 @@ use super::flux::Flux;
 use crate::algebra::Inequality;
 use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
-use crate::assemble::local::zero_local;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::metric::CellMetric;
+use crate::assemble::stiffness::zero_local;
 use crate::element::Entity;
 use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::measure::Counts;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
 
 /// A continuous, piecewise linear or quadratic function within the constraints, and a flux of the space of
 /// Raviart and Thomas of degree one less, whose normal component is single-valued: what a bound on the error
@@ -217,11 +217,11 @@ impl<const D: usize> Discretisation<'_, D> {
 
 impl<const D: usize> Space<'_, D> {
     /// The integral of the Neumann datum over a facet.
-    fn neumann_flux(&self, place: (usize, usize), group: usize) -> Result<f64, NoBound> {
-        let measure = self.facet_measure(place);
+    fn neumann_flux(&self, facet: HalfFacet, group: usize) -> Result<f64, NoBound> {
+        let measure = self.facet_measure(facet);
         let mut sum = 0.0;
         for (point, weight) in self.facet_rule.iter() {
-            sum += weight * measure * self.neumann_at(place, group, point)?;
+            sum += weight * measure * self.neumann_at(facet, group, point)?;
         }
         Ok(sum)
     }
@@ -229,11 +229,12 @@ impl<const D: usize> Space<'_, D> {
     /// Sets the fluxes through the boundary but for its Dirichlet part: Neumann data and contact forces. Residuals there
     /// are multipliers, and sums of patches are rounding, which may have the wrong sign for a contact force.
     fn set_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut Flux<D>) -> Result<(), NoBound> {
-        for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
+        for f in self.mesh.boundary().iter().filter(|f| f.condition != BoundaryCondition::Dirichlet)
+        {
             flux.set_zero_on(f.cell as usize, f.local.into());
         }
         if self.problem.has_neumann_data() {
-            for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+            for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
                 flux.add_through(cell, local, self.neumann_flux((cell, local), group)?);
             }
         }

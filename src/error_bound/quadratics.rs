@@ -20,11 +20,11 @@ use super::contact_forces::NodeForce;
 use super::flux::Flux;
 use super::shared_multipliers::SharedNodes;
 use crate::algebra::{Bound, Contact};
-use crate::arrays::{map_entries, tabulate};
-use crate::assemble::local::zero_local;
+use crate::arrays::{array_of, map_entries};
+use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::assemble::space::{Place, Space};
-use crate::mesh::{BoundaryPart, edge_vertices};
+use crate::assemble::stiffness::zero_local;
+use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
 use crate::parallel::cells;
 use crate::quadrature::{OrthonormalPolynomials, facet_to_cell};
 
@@ -42,9 +42,9 @@ pub(super) struct CellLoads {
     /// The same without multipliers.
     pub given: Vec<f64>,
     /// By facet the products of Neumann data, which are among the loads.
-    pub neumann: Vec<(Place, Products)>,
+    pub neumann: Vec<(HalfFacet, Products)>,
     /// By facet the products of contact forces.
-    pub contact: Vec<(Place, Products)>,
+    pub contact: Vec<(HalfFacet, Products)>,
     /// By unknown of a cell its functional at `lambda_a lambda_j`.
     pub functionals: Vec<Products>,
     /// The nodes whose multipliers cells share.
@@ -56,7 +56,7 @@ pub(super) struct CellLoads {
 pub(super) fn densities<const D: usize>(products: &[f64; 4], facet: usize) -> [f64; 4] {
     let sum: f64 = products[..=D].iter().sum();
     let d = D as f64;
-    tabulate(|j| match j <= D && j != facet {
+    array_of(|j| match j <= D && j != facet {
         true => d * ((d + 1.0) * products[j] - sum),
         false => 0.0,
     })
@@ -107,7 +107,7 @@ impl<const D: usize> Space<'_, D> {
         };
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let functional = |terms: &Vec<([f64; 4], f64)>| -> Products {
-            tabulate(|a| tabulate(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum()))
+            array_of(|a| array_of(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum()))
         };
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
         let neumann = self.neumann_products()?;
@@ -151,18 +151,18 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The products of Neumann data, by facet.
-    fn neumann_products(&self) -> Result<Vec<(Place, Products)>, NoBound> {
+    fn neumann_products(&self) -> Result<Vec<(HalfFacet, Products)>, NoBound> {
         let mut neumann = Vec::new();
         if self.problem.has_neumann_data() {
-            for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-                let measure = self.facet_measure(place);
+            for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
+                let measure = self.facet_measure(facet);
                 let mut products = Products::default();
                 for (point, weight) in self.facet_rule.iter() {
-                    let flux = weight * measure * self.neumann_at(place, group, point)?;
-                    let point = facet_to_cell(point, place.1);
+                    let flux = weight * measure * self.neumann_at(facet, group, point)?;
+                    let point = facet_to_cell(point, facet.1);
                     add(&mut products, |a, j| flux * point[a] * point[j]);
                 }
-                neumann.push((place, products));
+                neumann.push((facet, products));
             }
         }
         Ok(neumann)
@@ -229,12 +229,12 @@ impl<const D: usize> Space<'_, D> {
 }
 
 /// The products of contact forces, by facet; those of a facet follow each other.
-fn contact_products(forces: &[NodeForce], functionals: &[Products]) -> Vec<(Place, Products)> {
-    let mut contact: Vec<(Place, Products)> = Vec::new();
+fn contact_products(forces: &[NodeForce], functionals: &[Products]) -> Vec<(HalfFacet, Products)> {
+    let mut contact: Vec<(HalfFacet, Products)> = Vec::new();
     for force in forces {
-        let place = (force.cell, force.local);
-        if contact.last().is_none_or(|(last, _)| *last != place) {
-            contact.push((place, Products::default()));
+        let facet = (force.cell, force.local);
+        if contact.last().is_none_or(|(last, _)| *last != facet) {
+            contact.push((facet, Products::default()));
         }
         let Some((_, products)) = contact.last_mut() else { continue };
         add(products, |a, j| force.value * functionals[force.node][a][j]);

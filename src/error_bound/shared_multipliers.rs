@@ -6,7 +6,7 @@
 use crate::algebra::{Bound, Contact};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::mesh::BoundaryPart;
+use crate::mesh::BoundaryCondition;
 
 /// The nodes of quadratics that cells share.
 pub(super) struct SharedNodes {
@@ -72,7 +72,7 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         for f in self.mesh.boundary() {
-            if self.broken || f.part != BoundaryPart::Dirichlet {
+            if self.broken || f.condition != BoundaryCondition::Dirichlet {
                 for i in self.nodes_on(usize::from(f.local)) {
                     surrounded[numbers[f.cell as usize * n + i] as usize] = false;
                 }

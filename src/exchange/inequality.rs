@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::npy::{array, scalar};
 use super::npz::archive;
-use crate::algebra::{Bound, Inequality, SparseMatrix, Support};
+use crate::algebra::{Bound, DofLocation, Inequality, SparseMatrix};
 use crate::error::{Error, write_error};
 use crate::files::replace;
 use crate::instances::compiled;
@@ -27,7 +27,7 @@ use crate::mesh::Mesh;
 /// [`Error::Write`].
 ///
 /// # Panics
-/// If a support of the inequality names a vertex that the mesh does not have.
+/// If a location of the inequality names a vertex that the mesh does not have.
 pub fn write_inequality<const D: usize>(
     directory: impl AsRef<Path>,
     inequality: &Inequality<f64>,
@@ -44,7 +44,7 @@ fn write_files<const D: usize>(
     inequality: &Inequality<f64>,
     mesh: &Mesh<D>,
 ) -> Result<(), Error> {
-    write_files_with(directory, inequality, &|file| write_places(file, &inequality.supports, mesh))
+    write_files_with(directory, inequality, &|file| write_places(file, &inequality.locations, mesh))
 }
 
 /// As [`write_files`], compiled once for all dimensions.
@@ -115,14 +115,14 @@ fn write_matrix(file: &mut dyn Write, matrix: &SparseMatrix<f64>) -> std::io::Re
 
 fn write_places<const D: usize>(
     file: &mut dyn Write,
-    supports: &[Support],
+    locations: &[DofLocation],
     mesh: &Mesh<D>,
 ) -> std::io::Result<()> {
     let axes = &["x", "y", "z"][..D];
     writeln!(file, "unknown,cell,{},vertices", axes.join(","))?;
-    for (unknown, support) in supports.iter().enumerate() {
-        let vertices = support.vertices();
-        let cell = support.cell().map_or_else(String::new, |cell| cell.to_string());
+    for (unknown, location) in locations.iter().enumerate() {
+        let vertices = location.vertices();
+        let cell = location.cell().map_or_else(String::new, |cell| cell.to_string());
         write!(file, "{unknown},{cell}")?;
         for k in 0..D {
             let sum: f64 = vertices.iter().map(|&v| mesh.vertices()[v as usize][k]).sum();

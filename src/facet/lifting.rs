@@ -25,10 +25,6 @@ impl Lifts {
             Self::Full => element,
         }
     }
-    /// The choice, if it is not the default one.
-    pub(crate) fn unless_default(self) -> Option<Self> {
-        Some(self).filter(|&lifts| lifts != Self::default())
-    }
 }
 
 /// `eta sum_F int alpha r_F(u) . r_F(v)` with the consistency terms of the symmetric interior

@@ -19,6 +19,7 @@
 mod dirichlet;
 mod interior_penalty;
 mod lifting;
+mod local_fluxes;
 mod none;
 mod over_penalty;
 mod parameters;
@@ -29,6 +30,7 @@ mod view;
 pub use dirichlet::DirichletBy;
 pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
 pub use lifting::{FacetLifts, Lifts};
+pub use local_fluxes::LocalFluxes;
 pub use none::NoFacets;
 pub use over_penalty::{OverPenalty, WeightRule};
 pub use parameters::PenaltyParameters;
@@ -54,12 +56,12 @@ pub struct Trace {
 /// `{ jump: u_D, flux: 0 }`: wherever `[u]` stands on a Dirichlet facet, `[u] - u_D` is meant) and
 /// the penalty part of the norm (the formula at traces without flux).
 pub trait FacetForm<const D: usize>: Send + Sync {
-    /// Whether there is a form at all. Without one, facets are not even built.
+    /// Whether there is a form at all, by default true. Without one, facets are not even built.
     fn couples(&self) -> bool {
         true
     }
     /// Whether the formula reads fluxes; if not, no normal derivative is computed, and those it would
-    /// read are not numbers.
+    /// read are not numbers. By default true.
     fn uses_flux(&self) -> bool {
         true
     }
@@ -68,46 +70,53 @@ pub trait FacetForm<const D: usize>: Send + Sync {
     /// `|grad v + r(v)|^2`. Only broken elements of degree one or two carry such a form.
     ///
     /// Source: D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002),
-    /// 1749-1779, section 3.
+    /// 1749-1779, section 3. By default false.
     fn is_lifted(&self) -> bool {
         false
     }
-    /// The degree of lifts, at most that of the moments, for basis functions of this degree.
+    /// The degree of lifts, at most that of the moments, for basis functions of this degree; by default one less.
     fn lift_degree(&self, degree: usize) -> usize {
         degree - 1
     }
-    /// Whether `integrand(v, u)` equals `integrand(u, v)`.
+    /// Whether `integrand(v, u)` equals `integrand(u, v)`, by default true.
     fn is_symmetric(&self) -> bool {
         true
     }
-    /// Up to which degree the form sees moments of traces, for basis functions of this degree.
+    /// Up to which degree the form sees moments of traces, for basis functions of this degree; by default up to that
+    /// degree, which is all. Higher moments of jump and flux are dropped from the whole formula. The fluxes of linears
+    /// are constant on a facet: a form on linears that needs the mean of the jump alone sees moment zero, which is
+    /// cheaper.
     fn moments(&self, degree: usize) -> usize {
         degree
     }
-    /// The weight of the cell here in the mean flux; the weight of the cell there is what is left to
-    /// one.
+    /// The weight of the cell here in the mean flux, by default one half; the weight of the cell there is what is left
+    /// to one.
     fn average_weight(&self, facet: &FacetView<D>) -> f64 {
         let _ = facet;
         0.5
     }
     /// The penalty weight of a facet, computed once for each.
     fn penalty(&self, facet: &FacetView<D>) -> f64;
-    /// By what the penalty weight is multiplied for moments of this degree.
-    fn moment_weight(&self, degree: usize) -> f64 {
-        let _ = degree;
+    /// By what the penalty weight is multiplied for the moments of degree `moment` of a trace, by default one. The
+    /// integrand of such a moment has the product as its penalty; fluxes have no weight. For a penalty on the mean of
+    /// the jump alone it is one for `moment = 0`, else zero.
+    fn moment_weight(&self, moment: usize) -> f64 {
+        let _ = moment;
         1.0
     }
-    /// What theory and reports say of the form: parameters in force, the least penalty.
+    /// What theory and reports say of the form: parameters in force, the least penalty. By default nothing: the matrix
+    /// is then tested for definiteness before a solve, and reports state no penalty.
     fn theory(&self) -> FormTheory<'_, D> {
         FormTheory::new()
     }
     /// Whether the formula is the same on all interior facets and the same on all Dirichlet facets,
-    /// but for the penalty weight. It is then read off once for each kind, not once for each facet.
+    /// but for the penalty weight; by default false. It is then read off once for each kind, not once for each facet,
+    /// which is faster. A formula that does not look at its facet is uniform.
     fn is_uniform(&self) -> bool {
         false
     }
-    /// The formula, per unit measure of the facet, for one moment of each trace: bilinear in the
-    /// traces, and at most linear in the penalty weight. It may differ between facets, by their kind,
+    /// The formula, per unit measure of the facet, for one moment of each trace, the same for every moment: moments do
+    /// not mix, and moment zero is the mean over the facet. It is bilinear in the traces, and at most linear in the penalty weight. It may differ between facets, by their kind,
     /// normal, diameter or coefficient. The assembler reads it off at unit traces, with the weights
     /// zero and one.
     fn integrand(&self, facet: &FacetView<D>, v: Trace, u: Trace, penalty: f64) -> f64;

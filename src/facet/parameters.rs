@@ -25,12 +25,6 @@ impl PenaltyParameters {
         self.sigma = Some(sigma);
         self
     }
-    /// Sets the WOPSIP factor.
-    #[must_use]
-    pub const fn with_eta(mut self, eta: f64) -> Self {
-        self.eta = Some(eta);
-        self
-    }
     /// Sets the rule that turns the factor into a weight.
     #[must_use]
     pub fn with_rule(mut self, rule: impl Into<String>) -> Self {

@@ -8,7 +8,7 @@ use super::FacetView;
 /// w_F C_p max_K ( alpha_F^2 / alpha_K  |dK| / |K| ),   C_p = p (p + D - 1) / D
 /// ```
 ///
-/// with `w_F` 1/2 on interior and 1 on Dirichlet facets, `|dK|` the measure of the boundary of cell
+/// with `p` the given degree, that of the basis functions, `w_F` 1/2 on interior and 1 on Dirichlet facets, `|dK|` the measure of the boundary of cell
 /// `K`, `alpha_F` the harmonic mean of the coefficients and `alpha_K` the coefficient of the cell. Where the
 /// coefficient varies in a cell, `alpha_F` is made of the largest values on the facet and `alpha_K` is
 /// the least value in the cell. Derivation: the consistency terms are

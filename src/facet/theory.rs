@@ -21,8 +21,6 @@ pub struct FormTheory<'f, const D: usize> {
     pub least_penalty: Option<LeastPenalty<'f, D>>,
     /// The margin over a proven bound, where the weight is chosen by that bound.
     pub margin: Option<f64>,
-    /// By what [`Self::rounding_limit`] is scaled; one half by default, as measured for linears.
-    pub rounding_factor: f64,
 }
 
 impl<'f, const D: usize> FormTheory<'f, D> {
@@ -30,13 +28,7 @@ impl<'f, const D: usize> FormTheory<'f, D> {
     #[must_use]
     pub fn new() -> Self {
         let parameters = PenaltyParameters::default();
-        Self {
-            parameters,
-            is_coercive: false,
-            least_penalty: None,
-            margin: None,
-            rounding_factor: 0.5,
-        }
+        Self { parameters, is_coercive: false, least_penalty: None, margin: None }
     }
     /// Sets the factors in force.
     #[must_use]
@@ -48,7 +40,7 @@ impl<'f, const D: usize> FormTheory<'f, D> {
     pub fn with_coercivity(self, is_coercive: bool) -> Self {
         Self { is_coercive, ..self }
     }
-    /// Sets the margin over a proven bound.
+    /// Sets the margin over a proven bound: 0.5 for a penalty of 1.5 times the bound.
     #[must_use]
     pub fn with_margin(self, margin: f64) -> Self {
         Self { margin: Some(margin), ..self }
@@ -66,17 +58,13 @@ impl<'f, const D: usize> FormTheory<'f, D> {
     pub fn with_least_penalty(self, least: impl Fn(&FacetView<'_, D>) -> f64 + 'f) -> Self {
         Self { is_coercive: true, least_penalty: Some(Box::new(least)), ..self }
     }
-    /// Sets the factor of the rounding limit.
-    #[must_use]
-    pub fn with_rounding_factor(self, rounding_factor: f64) -> Self {
-        Self { rounding_factor, ..self }
-    }
     /// The length of an edge below which rounding, with this rounding unit and on a domain of this
     /// diameter, may outweigh the discretisation error: for a condition number of
     /// `(h / length)^-2` against an error of `(h / length)^2`. A penalty does not enter: interior
-    /// penalty has one of the size of the stiffness, an over-penalty is kept apart from it.
+    /// penalty has one of the size of the stiffness, an over-penalty is kept apart from it. The factor one half is
+    /// measured for linears.
     pub fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
-        self.rounding_factor * length * epsilon.powf(0.25)
+        0.5 * length * epsilon.powf(0.25)
     }
 }
 
@@ -93,7 +81,6 @@ impl<const D: usize> fmt::Debug for FormTheory<'_, D> {
             .field("is_coercive", &self.is_coercive)
             .field("least_penalty", &self.least_penalty.is_some())
             .field("margin", &self.margin)
-            .field("rounding_factor", &self.rounding_factor)
             .finish()
     }
 }

@@ -1,6 +1,6 @@
 //! A facet and its cells, as a penalty may see them.
 
-use crate::mesh::Mesh;
+use crate::mesh::{HalfFacet, Mesh};
 use crate::real::Point;
 
 /// One cell as its facet sees it.
@@ -34,8 +34,8 @@ pub enum FacetKind {
 #[derive(Clone, Copy, Debug)]
 pub struct FacetView<'a, const D: usize> {
     mesh: &'a Mesh<D>,
-    /// The cell here, and the facet's number in it.
-    place: (usize, usize),
+    /// The facet seen from the cell here.
+    half: HalfFacet,
     /// The measure of the facet; one in one dimension.
     pub measure: f64,
     /// The cell here.
@@ -45,16 +45,16 @@ pub struct FacetView<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> FacetView<'a, D> {
-    /// The view of facet `local` of the cell here.
+    /// The view of a facet: the facet seen from the cell here, its measure and its cells.
     #[inline(always)]
     pub fn new(
         mesh: &'a Mesh<D>,
-        place: (usize, usize),
+        half: HalfFacet,
         measure: f64,
         here: Side,
         there: Option<Side>,
     ) -> Self {
-        Self { mesh, place, measure, here, there }
+        Self { mesh, half, measure, here, there }
     }
     /// Whether the facet lies between two cells or on the Dirichlet part of the boundary.
     #[inline(always)]
@@ -67,12 +67,12 @@ impl<'a, const D: usize> FacetView<'a, D> {
         match (D, &self.there) {
             (1, None) => self.here.volume,
             (1, Some(there)) => (self.here.volume + there.volume) * 0.5,
-            _ => self.mesh.facet_diameter(self.place.0, self.place.1),
+            _ => self.mesh.facet_diameter(self.half.0, self.half.1),
         }
     }
     /// The unit normal, from here to there, outward on the boundary.
     pub fn normal(&self) -> Point<D> {
-        self.mesh.geometry(self.place.0).normal(self.place.1)
+        self.mesh.geometry(self.half.0).normal(self.half.1)
     }
     /// The harmonic mean of the coefficients, `2 a b / (a + b)`; on the boundary the coefficient.
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! The data from which a solver of an inequality starts.
 
 use super::step_counter::StepCounter;
-use crate::algebra::{Contact, Support, rounded};
+use crate::algebra::{Contact, DofLocation, rounded};
 use crate::linear::CoarseSpaces;
 use crate::real::Real;
 
@@ -78,25 +78,25 @@ impl InitialGuess<f64> {
 }
 
 /// The contact states of unknowns from those of vertices: a bound is active at an unknown if it is active at more than
-/// half of the vertices of its support.
-pub(crate) fn contact_of_supports(supports: &[Support], contact: &[Contact]) -> Vec<Contact> {
-    let state = |support: &Support| {
-        let vertices = support.vertices();
+/// half of the vertices of its location.
+pub(crate) fn contact_of_locations(locations: &[DofLocation], contact: &[Contact]) -> Vec<Contact> {
+    let state = |location: &DofLocation| {
+        let vertices = location.vertices();
         let has_most = |side: &Contact| {
             let on = vertices.iter().filter(|&&v| contact[v as usize] == *side).count();
             2 * on > vertices.len()
         };
         [Contact::Lower, Contact::Upper].into_iter().find(has_most).unwrap_or_default()
     };
-    supports.iter().map(state).collect()
+    locations.iter().map(state).collect()
 }
 
-/// The mean of the vertex values over each support.
-pub(crate) fn means_over_supports<T: Real>(supports: &[Support], values: &[T]) -> Vec<T> {
-    let mean = |support: &Support| {
-        let vertices = support.vertices();
+/// The mean of the vertex values over each location.
+pub(crate) fn means_over_locations<T: Real>(locations: &[DofLocation], values: &[T]) -> Vec<T> {
+    let mean = |location: &DofLocation| {
+        let vertices = location.vertices();
         let sum = vertices.iter().fold(T::lit(0.0), |s, &v| s + values[v as usize]);
         sum / T::lit(vertices.len().max(1) as f64)
     };
-    supports.iter().map(mean).collect()
+    locations.iter().map(mean).collect()
 }

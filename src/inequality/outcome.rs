@@ -35,8 +35,8 @@ pub enum Outcome {
     OutOfRange,
     /// The lower bound of an unknown exceeds its upper bound.
     Infeasible,
-    /// Sizes of matrix, load, bounds and supports do not match, the matrix violates an invariant of its
-    /// type, or a support names a vertex that cannot exist.
+    /// Sizes of matrix, load, bounds and locations do not match, the matrix violates an invariant of its
+    /// type, or a location names a vertex that cannot exist.
     Malformed,
     /// The factors do not fit into memory.
     OutOfMemory,
@@ -131,7 +131,7 @@ impl Outcome {
                 "the lower bound of an unknown exceeds its upper bound: no function is admissible"
             }
             Outcome::Malformed => {
-                "sizes of matrix, load, bounds and supports do not match, an entry of the matrix is out of place, or a matrix declared symmetric is not"
+                "sizes of matrix, load, bounds and locations do not match, an entry of the matrix is out of place, or a matrix declared symmetric is not"
             }
             Outcome::OutOfMemory => "the factors of the matrix do not fit into memory",
         }

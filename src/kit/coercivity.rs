@@ -3,23 +3,16 @@
 use nalgebra::DMatrix;
 
 use super::discrete::{Tested, assemble};
-use super::error::{KitError, Law};
-use super::matrix::Assembled;
+use super::error::{KitError, KitErrorKind, Law};
+use super::matrix::scaled_symmetric_part;
 use super::meshes::Sample;
 use super::report::CoercivityReport;
 use super::spectrum::{CholeskyMatrix, Diagonal, Lanczos};
 use super::{meshes, problems};
 use crate::algebra::SparseMatrix;
-use crate::instances::compiled;
 use crate::linear::FactorError;
 
 pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<CoercivityReport, KitError> {
-    compiled!(const D: fn(&Tested<'_, D>) -> Result<CoercivityReport, KitError>
-            = check_scheme
-    )(scheme)
-}
-
-fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<CoercivityReport, KitError> {
     let (law, domain, n) = (Law::Coercivity, meshes::clamped(), meshes::subdivisions(D));
     let mut smallest = f64::INFINITY;
     // without reaction, which would help
@@ -27,7 +20,7 @@ fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<CoercivityRepo
     for sample in [meshes::regular(law, &domain, n)?, meshes::moved(law, &domain, n)?] {
         let Sample { name, mesh } = sample;
         let inequality = assemble(law, scheme, &problem, &mesh)?;
-        let part = Assembled::of(&inequality).scaled_symmetric_part();
+        let part = scaled_symmetric_part(&inequality);
         smallest = f64::min(smallest, smallest_eigenvalue(&part, name)?);
     }
     Ok(CoercivityReport { smallest })
@@ -36,23 +29,33 @@ fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<CoercivityRepo
 /// The smallest eigenvalue of a positive definite matrix; of another one, that and their number
 /// in the error.
 fn smallest_eigenvalue(part: &SparseMatrix<f64>, name: &str) -> Result<f64, KitError> {
-    let mesh = name.to_owned();
+    let error = |kind, message| KitError::new(Law::Coercivity, kind, message);
     match CholeskyMatrix::new(part) {
-        Ok(a) if part.size() > 0 => Lanczos::default()
-            .smallest(&a, &Diagonal::identity(part.size()))
-            .map_err(|why| KitError::NoEigenvalue { mesh, why }),
+        Ok(a) if part.size() > 0 => {
+            Lanczos::default().smallest(&a, &Diagonal::identity(part.size())).map_err(|why| {
+                let message = format!("no smallest eigenvalue on {name}: {why}");
+                error(KitErrorKind::NoEigenvalue, message).caused_by(why)
+            })
+        }
         Ok(_) => Ok(f64::INFINITY),
-        Err(FactorError::NotPositive | FactorError::Singular) => Err(not_coercive(part, mesh)),
-        Err(why) => Err(KitError::NotFactored { mesh, why }),
+        Err(FactorError::NotPositive | FactorError::Singular) => Err(not_coercive(part, name)),
+        Err(why) => {
+            let message = format!("the matrix could not be factored on {name}: {why}");
+            Err(error(KitErrorKind::NotFactored, message).caused_by(why))
+        }
     }
 }
 
-fn not_coercive(part: &SparseMatrix<f64>, mesh: String) -> KitError {
+fn not_coercive(part: &SparseMatrix<f64>, mesh: &str) -> KitError {
     let unknowns = part.size();
     let dense = DMatrix::from_fn(unknowns, unknowns, |i, j| part.get(i, j));
     let eigenvalues = dense.symmetric_eigenvalues();
     // a Cholesky factorisation calls those singular that are not positive but for rounding
     let rounding = 16.0 * f64::EPSILON * unknowns as f64;
     let not_positive = unknowns - eigenvalues.iter().filter(|&&e| e > rounding).count();
-    KitError::NotCoercive { mesh, not_positive, unknowns, smallest: eigenvalues.min() }
+    let smallest = eigenvalues.min();
+    let message = format!(
+        "on {mesh} the form has {not_positive} of {unknowns} eigenvalues that are not positive, the smallest {smallest:.3e} (diagonal scaled to ones)"
+    );
+    KitError::new(Law::Coercivity, KitErrorKind::NotCoercive, message)
 }

@@ -3,11 +3,12 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-use super::error::{KitError, Law};
+use super::error::{KitError, KitErrorKind, Law};
 use super::meshes::Sample;
 use crate::algebra::Inequality;
 use crate::assemble::DataQuadrature;
 use crate::constraint::{ConstraintSet, Nodes};
+use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
 use crate::measure::Errors;
 use crate::mesh::{BoxDomain, Mesh};
@@ -74,7 +75,7 @@ pub(super) fn assemble<const D: usize>(
 ) -> Result<Inequality<f64>, KitError> {
     scheme
         .inequality(&scheme.problem(problem), mesh, quadrature(scheme.degree()))
-        .map_err(|why| KitError::NotAssembled { law, why })
+        .map_err(|why| KitError::not_assembled(law, why))
 }
 
 /// The solution of a linear problem.
@@ -86,7 +87,10 @@ pub(super) fn solve<const D: usize>(
     let solution = ActiveSet::default().solve(inequality);
     match solution.outcome {
         Outcome::Converged => Ok(solution.values),
-        outcome => Err(KitError::NotSolved { law, mesh: sample.name.to_owned(), outcome }),
+        outcome => {
+            let message = format!("the linear problem on {} ended as {outcome}", sample.name);
+            Err(KitError::new(law, KitErrorKind::NotSolved, message))
+        }
     }
 }
 
@@ -106,5 +110,5 @@ pub(super) fn solve_and_judge<const D: usize>(
         let errors = discretisation.errors(&u)?;
         Ok(Judged { errors, vertex_values: discretisation.vertex_values(&u) })
     };
-    judge().map_err(|why| KitError::NotAssembled { law, why })
+    judge().map_err(|why: Error| KitError::not_assembled(law, why))
 }

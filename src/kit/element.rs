@@ -1,6 +1,6 @@
 //! The laws of a reference element.
 
-use super::error::KitError;
+use super::error::{KitError, KitErrorKind, Law};
 use super::report::ElementReport;
 use crate::element::{Element, Entity, Layout, MAX_BASIS, Node};
 use crate::mesh::edge_vertices;
@@ -31,15 +31,22 @@ struct Tested<'e, const D: usize> {
 /// they enter gradients.
 ///
 /// # Errors
-/// [`KitError::TooManyFunctions`], [`KitError::NotANumber`], [`KitError::NotDual`],
-/// [`KitError::NodeElsewhere`], [`KitError::NotPartitionOfUnity`], [`KitError::PolynomialMissing`],
-/// [`KitError::DegreeExceeded`], [`KitError::WrongDerivative`].
+/// [`KitErrorKind::TooManyFunctions`], [`KitErrorKind::NotANumber`], [`KitErrorKind::NotDual`],
+/// [`KitErrorKind::NodeElsewhere`], [`KitErrorKind::NotPartitionOfUnity`], [`KitErrorKind::PolynomialMissing`],
+/// [`KitErrorKind::DegreeExceeded`], [`KitErrorKind::WrongDerivative`].
 pub fn check_element<const D: usize>(element: &dyn Element<D>) -> Result<ElementReport, KitError> {
     let functions = element.per_cell();
     if functions > MAX_BASIS {
-        return Err(KitError::TooManyFunctions { functions, limit: MAX_BASIS });
+        let message = format!(
+            "the layout owns {functions} unknowns of a cell, at most {MAX_BASIS} are allowed"
+        );
+        return Err(error(KitErrorKind::TooManyFunctions, message));
     }
     Tested::new(element, Rule::new(D, 5).points).check(UNITS * f64::EPSILON)
+}
+
+fn error(kind: KitErrorKind, message: String) -> KitError {
+    KitError::new(Law::Element, kind, message)
 }
 
 /// A functional, as points with weights, at a function.
@@ -93,7 +100,9 @@ impl<'e, const D: usize> Tested<'e, D> {
         for point in &self.points {
             let values = self.values_at(point);
             if let Some(function) = values[..self.functions].iter().position(|v| v.is_nan()) {
-                return Err(KitError::NotANumber { function, at: self.describe(point) });
+                let at = self.describe(point);
+                let message = format!("basis function {function} is not a number at {at}");
+                return Err(error(KitErrorKind::NotANumber, message));
             }
         }
         Ok(())
@@ -108,7 +117,9 @@ impl<'e, const D: usize> Tested<'e, D> {
                 let expected = f64::from(u8::from(i == j));
                 let difference = (found - expected).abs();
                 if !within(difference, tolerance) {
-                    return Err(KitError::NotDual { node: i, function: j, found, expected });
+                    let message =
+                        format!("node {i} of basis function {j} is {found:.6}, not {expected}");
+                    return Err(error(KitErrorKind::NotDual, message));
                 }
                 largest = largest.max(difference);
             }
@@ -130,7 +141,9 @@ impl<'e, const D: usize> Tested<'e, D> {
         for (node, (tied, owner)) in self.nodes.iter().zip(owners).enumerate() {
             let entity = tied.entity();
             if !vertices(entity).eq(vertices(owner)) {
-                return Err(KitError::NodeElsewhere { node, entity, owner });
+                let message =
+                    format!("node {node} is tied to {entity:?}, its unknown belongs to {owner:?}");
+                return Err(error(KitErrorKind::NodeElsewhere, message));
             }
         }
         Ok(())
@@ -146,27 +159,35 @@ impl<'e, const D: usize> Tested<'e, D> {
             let mean = |rule: &Rule| rule.iter().map(|(p, w)| w * square(p)).sum::<f64>();
             let (found, expected) = (mean(&rule), mean(&finer));
             if !within(found - expected, tolerance) {
-                return Err(KitError::DegreeExceeded { function, stated, found, expected });
+                let message = format!(
+                    "a rule for basis functions of degree {stated} gives {found:.6e} for the mean of the square of function {function}, which is {expected:.6e}: state the degree of the basis as `basis_degree`"
+                );
+                return Err(error(KitErrorKind::DegreeExceeded, message));
             }
         }
         Ok(())
     }
 
-    /// Partition of unity is the case of degree zero, with an error variant of its own.
+    /// Partition of unity is the case of degree zero, with an error of its own kind.
     fn interpolation(&self, tolerance: f64) -> Result<f64, KitError> {
         let mut largest: f64 = 0.0;
         for point in &self.points {
             let values = self.values_at(point);
             let sum: f64 = values[..self.functions].iter().sum();
             if !within(sum - 1.0, tolerance) {
-                return Err(KitError::NotPartitionOfUnity { at: self.describe(point), sum });
+                let at = self.describe(point);
+                let message = format!("at {at} the basis functions sum to {sum:.6}, not to one");
+                return Err(error(KitErrorKind::NotPartitionOfUnity, message));
             }
             for degree in 0..=self.element.degree() {
                 let f = |point: &[f64; 4]| polynomial(degree, point);
                 let difference = self.interpolant(&f, &values) - f(point);
                 if !within(difference, tolerance) {
                     let (stated, at) = (self.element.degree(), self.describe(point));
-                    return Err(KitError::PolynomialMissing { degree, stated, at, difference });
+                    let message = format!(
+                        "a polynomial of degree {degree} differs by {difference:.3e} from its interpolant at {at}, although the element is said to be of degree {stated}"
+                    );
+                    return Err(error(KitErrorKind::PolynomialMissing, message));
                 }
                 largest = largest.max(difference.abs());
             }
@@ -191,14 +212,10 @@ impl<'e, const D: usize> Tested<'e, D> {
                         let (stated, difference) = (row[to] - row[from], along[function]);
                         if !within(stated - difference, tolerance / STEP) {
                             let at = self.describe(point);
-                            return Err(KitError::WrongDerivative {
-                                function,
-                                at,
-                                from,
-                                to,
-                                stated,
-                                difference,
-                            });
+                            let message = format!(
+                                "basis function {function} has derivative {stated:.6} at {at} from vertex {from} to vertex {to}, differences give {difference:.6}"
+                            );
+                            return Err(error(KitErrorKind::WrongDerivative, message));
                         }
                         largest = largest.max((stated - difference).abs());
                     }

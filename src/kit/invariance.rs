@@ -3,43 +3,32 @@
 use std::collections::HashMap;
 
 use super::discrete::{Tested, assemble, solve};
-use super::error::{KitError, Law};
-use super::matrix::{Assembled, row_sizes};
+use super::error::{KitError, KitErrorKind, Law};
+use super::matrix::{describe, row_sizes};
 use super::meshes::{Renumbered, Sample};
 use super::report::InvarianceReport;
 use super::{meshes, problems};
-use crate::algebra::Support;
-use crate::instances::compiled;
+use crate::algebra::{DofLocation, Inequality};
 
 /// Rounding units by which entries of matrix and load may change.
 const ENTRY_UNITS: f64 = 512.0;
 /// Rounding units by which unknowns may change, which condition magnifies.
 const SOLUTION_UNITS: f64 = 8192.0;
 
-pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<InvarianceReport, KitError> {
-    compiled!(const D: fn(&Tested<'_, D>) -> Result<InvarianceReport, KitError>
-            = check_scheme
-    )(scheme)
-}
+/// When numbers change that must not.
+const RENUMBERED: &str = "when vertices and cells are renumbered";
 
-fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<InvarianceReport, KitError> {
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<InvarianceReport, KitError> {
     let law = Law::Invariance;
     let sample = meshes::moved::<D>(law, &meshes::mixed(), meshes::subdivisions(D))?;
-    let problem = problems::rich();
-    let inequality = assemble(law, scheme, &problem, &sample.mesh)?;
-    let u = solve(law, &inequality, &sample)?;
-    let before = Numbered { assembled: Assembled::of(&inequality), solution: u.clone() };
+    let before = Numbered::new(scheme, &sample)?;
     let mut report = InvarianceReport { matrix: 0.0, load: 0.0, solution: 0.0 };
     for seed in [1, 2] {
         let Renumbered { mesh, vertices, cells } = meshes::renumbered(law, &sample.mesh, seed)?;
-        let other = Sample { name: "a renumbered box", mesh };
-        let inequality = assemble(law, scheme, &problem, &other.mesh)?;
-        let u = solve(law, &inequality, &other)?;
-        let after = Numbered { assembled: Assembled::of(&inequality), solution: u.clone() };
+        let after = Numbered::new(scheme, &Sample { name: "a renumbered box", mesh })?;
         let new = after.numbers_of(&before, &vertices, &cells)?;
-        let Numbered { assembled, .. } = &before;
         let tolerance = ENTRY_UNITS * f64::EPSILON;
-        report.matrix = report.matrix.max(matrix(assembled, &after.assembled, &new, tolerance)?);
+        report.matrix = report.matrix.max(before.matrix(&after, &new, tolerance)?);
         report.load = report.load.max(before.load(&after, &new, tolerance)?);
         let tolerance = SOLUTION_UNITS * f64::EPSILON;
         report.solution = report.solution.max(before.solution(&after, &new, tolerance)?);
@@ -49,20 +38,34 @@ fn check_scheme<const D: usize>(scheme: &Tested<'_, D>) -> Result<InvarianceRepo
 
 /// A linear problem and its solution in one numbering.
 struct Numbered {
-    assembled: Assembled,
+    inequality: Inequality<f64>,
+    load: Vec<f64>,
     solution: Vec<f64>,
 }
 
-/// The cell and the vertices of a support, in the numbers of the first mesh.
+/// The cell and the vertices of a location, in the numbers of the first mesh.
 type Key = (Option<u32>, Vec<u32>);
 
-fn key(support: &Support, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -> u32) -> Key {
-    let mut vertices: Vec<u32> = support.vertices().iter().map(|&v| vertex(v)).collect();
+fn key(location: &DofLocation, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -> u32) -> Key {
+    let mut vertices: Vec<u32> = location.vertices().iter().map(|&v| vertex(v)).collect();
     vertices.sort_unstable();
-    (support.cell().map(cell), vertices)
+    (location.cell().map(cell), vertices)
 }
 
 impl Numbered {
+    fn new<const D: usize>(scheme: &Tested<'_, D>, sample: &Sample<D>) -> Result<Self, KitError> {
+        let law = Law::Invariance;
+        let inequality = assemble(law, scheme, &problems::rich(), &sample.mesh)?;
+        let solution = solve(law, &inequality, sample)?;
+        let load = inequality.assembled_load().into_owned();
+        Ok(Self { inequality, load, solution })
+    }
+
+    /// The location of an unknown, in words.
+    fn place(&self, unknown: usize) -> String {
+        describe(&self.inequality, unknown)
+    }
+
     /// The number here of every unknown there; vertices and cells have these numbers there.
     fn numbers_of(
         &self,
@@ -70,44 +73,94 @@ impl Numbered {
         vertices: &[u32],
         cells: &[u32],
     ) -> Result<Vec<usize>, KitError> {
-        let supports = &self.assembled.supports;
-        let mut here = HashMap::with_capacity(supports.len());
-        for (second, support) in supports.iter().enumerate() {
-            let key = key(support, |v| vertices[v as usize], |c| cells[c as usize]);
+        let error = |first, second, place| {
+            let message = format!("unknowns {first} and {second} live at the same place, {place}");
+            KitError::new(Law::Invariance, KitErrorKind::UnknownsNotTold, message)
+        };
+        let locations = &self.inequality.locations;
+        let mut here = HashMap::with_capacity(locations.len());
+        for (second, location) in locations.iter().enumerate() {
+            let key = key(location, |v| vertices[v as usize], |c| cells[c as usize]);
             if let Some(first) = here.insert(key, second) {
-                let place = self.assembled.describe(second);
-                return Err(KitError::UnknownsNotTold { first, second, place });
+                return Err(error(first, second, self.place(second)));
             }
         }
-        // both meshes have the same supports, so that one that is not found is one that is there twice
-        let find = |(first, support): (usize, &Support)| {
-            here.remove(&key(support, |v| v, |c| c)).ok_or_else(|| {
-                let place = there.assembled.describe(first);
-                KitError::UnknownsNotTold { first, second: first, place }
-            })
+        // both meshes have the same locations, so that one that is not found is one that is there twice
+        let find = |(first, location): (usize, &DofLocation)| {
+            let number = here.remove(&key(location, |v| v, |c| c));
+            number.ok_or_else(|| error(first, first, there.place(first)))
         };
-        there.assembled.supports.iter().enumerate().map(find).collect()
+        there.inequality.locations.iter().enumerate().map(find).collect()
     }
 
     fn load(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {
-        let (old, other) = (&self.assembled.load, &after.assembled.load);
-        let (change, unknown) = largest_change(old, other, new);
-        if change <= tolerance {
-            return Ok(change);
-        }
-        let place = self.assembled.describe(unknown);
-        let (before, after) = (old[unknown], other[new[unknown]]);
-        Err(KitError::LoadDependsOnNumbering { unknown, place, before, after })
+        let kind = KitErrorKind::LoadDependsOnNumbering;
+        self.vector("the load of", kind, [&self.load, &after.load], new, tolerance)
     }
 
     fn solution(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {
-        let (change, unknown) = largest_change(&self.solution, &after.solution, new);
+        let kind = KitErrorKind::SolutionDependsOnNumbering;
+        let vectors = [&self.solution[..], &after.solution];
+        self.vector("the solution at", kind, vectors, new, tolerance)
+    }
+
+    /// The largest change of a vector, relative to its largest entry.
+    fn vector(
+        &self,
+        what: &str,
+        kind: KitErrorKind,
+        [before, after]: [&[f64]; 2],
+        new: &[usize],
+        tolerance: f64,
+    ) -> Result<f64, KitError> {
+        let (change, unknown) = largest_change(before, after, new);
         if change <= tolerance {
             return Ok(change);
         }
-        let place = self.assembled.describe(unknown);
-        let (before, after) = (self.solution[unknown], after.solution[new[unknown]]);
-        Err(KitError::SolutionDependsOnNumbering { unknown, place, before, after })
+        let message = format!(
+            "{what} unknown {unknown} ({}) changes from {:.6e} to {:.6e} {RENUMBERED}",
+            self.place(unknown),
+            before[unknown],
+            after[new[unknown]],
+        );
+        Err(KitError::new(Law::Invariance, kind, message))
+    }
+
+    /// The largest change of an entry of the matrix, relative to the size of its row and column.
+    fn matrix(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {
+        let [before, other] = [self, after].map(|numbered| &numbered.inequality.matrix);
+        let sizes = row_sizes(before);
+        let mut largest: f64 = 0.0;
+        let mut compare = |row: usize, column: usize| {
+            let entries = [before.get(row, column), other.get(new[row], new[column])];
+            let change = (entries[0] - entries[1]).abs() / (sizes[row] * sizes[column]).sqrt();
+            if change <= tolerance {
+                largest = largest.max(change);
+                return Ok(());
+            }
+            let message = format!(
+                "the entry at ({row}, {column}) changes from {:.6e} to {:.6e} {RENUMBERED}; row: {}; column: {}",
+                entries[0],
+                entries[1],
+                self.place(row),
+                self.place(column),
+            );
+            Err(KitError::new(Law::Invariance, KitErrorKind::EntryDependsOnNumbering, message))
+        };
+        let mut old = vec![0; new.len()];
+        for (i, &k) in new.iter().enumerate() {
+            old[k] = i;
+        }
+        // entries of either pattern: one that only the other has must be zero
+        for i in 0..new.len() {
+            for &j in before.row(i).0 {
+                compare(i, j as usize)?;
+            }
+            for &j in other.row(new[i]).0 {
+                compare(i, old[j as usize])?;
+            }
+        }
+        Ok(largest)
     }
 }
 
@@ -123,45 +176,4 @@ fn largest_change(before: &[f64], after: &[f64], new: &[usize]) -> (f64, usize) 
         }
     }
     largest
-}
-
-/// The largest change of an entry, relative to the size of its row and column.
-fn matrix(
-    before: &Assembled,
-    after: &Assembled,
-    new: &[usize],
-    tolerance: f64,
-) -> Result<f64, KitError> {
-    let sizes = row_sizes(&before.matrix);
-    let mut largest: f64 = 0.0;
-    let mut compare = |row: usize, column: usize| {
-        let entries = [before.matrix.get(row, column), after.matrix.get(new[row], new[column])];
-        let change = (entries[0] - entries[1]).abs() / (sizes[row] * sizes[column]).sqrt();
-        if change <= tolerance {
-            largest = largest.max(change);
-            return Ok(());
-        }
-        Err(KitError::EntryDependsOnNumbering {
-            row,
-            column,
-            before: entries[0],
-            after: entries[1],
-            row_place: before.describe(row),
-            column_place: before.describe(column),
-        })
-    };
-    let mut old = vec![0; new.len()];
-    for (i, &k) in new.iter().enumerate() {
-        old[k] = i;
-    }
-    // entries of either pattern: one that only the other has must be zero
-    for i in 0..new.len() {
-        for &j in before.matrix.row(i).0 {
-            compare(i, j as usize)?;
-        }
-        for &j in after.matrix.row(new[i]).0 {
-            compare(i, old[j as usize])?;
-        }
-    }
-    Ok(largest)
 }

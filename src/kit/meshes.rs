@@ -2,7 +2,7 @@
 
 use super::error::{KitError, Law};
 use super::split_mix::SplitMix64;
-use crate::mesh::{BoundaryPart, BoxDomain, Mesh, TaggedFacet};
+use crate::mesh::{BoundaryCondition, BoxDomain, Mesh, TaggedFacet};
 use crate::real::Point;
 
 /// Largest displacement of a vertex along an axis, in units of the distance between neighbours.
@@ -39,7 +39,7 @@ pub(super) fn clamped<const D: usize>() -> BoxDomain<D> {
 
 /// The unit box with Neumann data at the upper end of the first axis, Dirichlet data elsewhere.
 pub(super) fn mixed<const D: usize>() -> BoxDomain<D> {
-    clamped().side(0, 1, BoundaryPart::Neumann)
+    clamped().side(0, 1, BoundaryCondition::Neumann)
 }
 
 /// The Kuhn triangulation of a box.
@@ -48,8 +48,7 @@ pub(super) fn regular<const D: usize>(
     domain: &BoxDomain<D>,
     n: usize,
 ) -> Result<Sample<D>, KitError> {
-    let mesh = Mesh::kuhn_box(domain, [n; D])
-        .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
+    let mesh = Mesh::kuhn_box(domain, [n; D]).map_err(|why| KitError::not_assembled(law, why))?;
     Ok(Sample { name: "a regular box", mesh })
 }
 
@@ -71,7 +70,7 @@ pub(super) fn moved<const D: usize>(
     };
     let vertices = mesh.vertices().iter().map(move_one).collect();
     let mesh = Mesh::new(vertices, mesh.cells().to_vec(), &tagged(&mesh, |v| v))
-        .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
+        .map_err(|why| KitError::not_assembled(law, why))?;
     Ok(Sample { name: "a box with moved vertices", mesh })
 }
 
@@ -81,7 +80,7 @@ fn tagged<const D: usize>(mesh: &Mesh<D>, number: impl Fn(u32) -> u32) -> Vec<Ta
         let mut vertices = [0; D];
         let old = mesh.facet_vertices(facet.cell as usize, facet.local as usize);
         vertices.iter_mut().zip(old).for_each(|(v, old)| *v = number(old));
-        TaggedFacet { vertices, part: facet.part }
+        TaggedFacet { vertices, condition: facet.condition }
     };
     mesh.boundary().iter().map(tag).collect()
 }
@@ -105,6 +104,6 @@ pub(super) fn renumbered<const D: usize>(
         corners.extend(mesh.cell(old as usize).iter().map(|&v| new[v as usize]));
     }
     let mesh = Mesh::new(points, corners, &tagged(mesh, |v| new[v as usize]))
-        .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
+        .map_err(|why| KitError::not_assembled(law, why))?;
     Ok(Renumbered { mesh, vertices, cells })
 }

@@ -23,7 +23,7 @@
 //! let report = check_scheme::<2>(&Sipg::default()).unwrap();
 //! assert!(report.coercivity.smallest > 0.0);
 //!
-//! let too_weak = Sipg { penalty: PenaltyRule::Diameter(1.0), ..Sipg::default() };
+//! let too_weak = Sipg { penalty: PenaltyRule::Diameter(1.0) };
 //! let error = check_scheme::<2>(&too_weak).unwrap_err();
 //! assert!(error.to_string().starts_with("coercivity: "));
 //! ```
@@ -45,7 +45,7 @@ mod split_mix;
 mod symmetry;
 
 pub use element::check_element;
-pub use error::{KitError, Law};
+pub use error::{KitError, KitErrorKind, Law};
 pub use quadrature::check_quadrature;
 pub use report::{
     CoercivityReport, ConsistencyReport, ElementReport, InvarianceReport, KitReport, OrdersReport,
@@ -55,6 +55,7 @@ pub use report::{
 use std::sync::Arc;
 
 use crate::constraint::{ConstraintSet, Nodes};
+use crate::instances::compiled;
 use crate::scheme::Scheme;
 use discrete::Tested;
 
@@ -74,12 +75,15 @@ pub fn check_scheme_on<const D: usize>(
     scheme: &dyn Scheme<D>,
     set: impl ConstraintSet + 'static,
 ) -> Result<KitReport, KitError> {
-    let element = check_element(&*scheme.element())?;
-    let tested: &Tested<'_, D> = &Tested { set: Arc::new(set), ..Tested::new(scheme) };
+    let tested = Tested { set: Arc::new(set), ..Tested::new(scheme) };
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<KitReport, KitError> = check_all)(&tested)
+}
+
+fn check_all<const D: usize>(tested: &Tested<'_, D>) -> Result<KitReport, KitError> {
     Ok(KitReport {
         scheme: tested.name().to_owned(),
         dimension: D,
-        element,
+        element: check_element(&*tested.element())?,
         symmetry: symmetry::check(tested)?,
         coercivity: coercivity::check(tested)?,
         invariance: invariance::check(tested)?,
@@ -91,42 +95,54 @@ pub fn check_scheme_on<const D: usize>(
 /// The matrix is symmetric to rounding if the form declares it, and measurably not otherwise.
 ///
 /// # Errors
-/// [`KitError::NotSymmetric`], [`KitError::SymmetricAfterAll`].
+/// [`KitErrorKind::NotSymmetric`], [`KitErrorKind::SymmetricAfterAll`].
 pub fn check_symmetry<const D: usize>(scheme: &dyn Scheme<D>) -> Result<SymmetryReport, KitError> {
-    symmetry::check::<D>(&Tested::new(scheme))
+    let tested = Tested::new(scheme);
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<SymmetryReport, KitError> = symmetry::check)(
+        &tested,
+    )
 }
 
 /// The symmetric part of the matrix is positive definite on the free unknowns.
 ///
 /// # Errors
-/// [`KitError::NotCoercive`].
+/// [`KitErrorKind::NotCoercive`].
 pub fn check_coercivity<const D: usize>(
     scheme: &dyn Scheme<D>,
 ) -> Result<CoercivityReport, KitError> {
-    coercivity::check::<D>(&Tested::new(scheme))
+    let tested = Tested::new(scheme);
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<CoercivityReport, KitError> = coercivity::check)(
+        &tested,
+    )
 }
 
 /// Matrix, load and solution do not depend on the numbers of vertices and cells, nor on the order
 /// in which a cell lists its vertices.
 ///
 /// # Errors
-/// [`KitError::EntryDependsOnNumbering`], [`KitError::LoadDependsOnNumbering`],
-/// [`KitError::SolutionDependsOnNumbering`], [`KitError::UnknownsNotTold`].
+/// [`KitErrorKind::EntryDependsOnNumbering`], [`KitErrorKind::LoadDependsOnNumbering`],
+/// [`KitErrorKind::SolutionDependsOnNumbering`], [`KitErrorKind::UnknownsNotTold`].
 pub fn check_invariance<const D: usize>(
     scheme: &dyn Scheme<D>,
 ) -> Result<InvarianceReport, KitError> {
-    invariance::check::<D>(&Tested::new(scheme))
+    let tested = Tested::new(scheme);
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<InvarianceReport, KitError> = invariance::check)(
+        &tested,
+    )
 }
 
 /// The patch test: a polynomial of the element's degree is reproduced to rounding if the scheme
 /// declares itself consistent ([`Scheme::is_consistent`]), and measurably missed otherwise.
 ///
 /// # Errors
-/// [`KitError::NotConsistent`], [`KitError::ConsistentAfterAll`].
+/// [`KitErrorKind::NotConsistent`], [`KitErrorKind::ConsistentAfterAll`].
 pub fn check_consistency<const D: usize>(
     scheme: &dyn Scheme<D>,
 ) -> Result<ConsistencyReport, KitError> {
-    consistency::check::<D>(&Tested::new(scheme))
+    let tested = Tested::new(scheme);
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<ConsistencyReport, KitError> = consistency::check)(
+        &tested,
+    )
 }
 
 /// Errors against a smooth solution fall with the order of the element: its degree in the broken
@@ -135,7 +151,10 @@ pub fn check_consistency<const D: usize>(
 /// consistent symmetric forms.
 ///
 /// # Errors
-/// [`KitError::OrderMissed`].
+/// [`KitErrorKind::OrderMissed`].
 pub fn check_orders<const D: usize>(scheme: &dyn Scheme<D>) -> Result<OrdersReport, KitError> {
-    orders::check::<D>(&Tested::new(scheme))
+    let tested = Tested::new(scheme);
+    compiled!(const D: fn(&Tested<'_, D>) -> Result<OrdersReport, KitError> = orders::check)(
+        &tested,
+    )
 }

@@ -1,7 +1,7 @@
 //! Continuous functions within the constraints, evaluated in cells.
 
 use crate::mesh::edge_vertices;
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::real::Point;
 
 /// The step of difference quotients of obstacles, as a share of the diameter of the cell.
@@ -21,7 +21,7 @@ pub(crate) struct Admissible<'d, const D: usize> {
     /// The gradients of the barycentric coordinates.
     pub gradients: [Point<D>; 4],
     /// The obstacles, lower and upper one.
-    pub bounds: [Option<DatumRef<'d, D>>; 2],
+    pub bounds: [Option<&'d Datum<D>>; 2],
     /// The diameter of the cell.
     pub diameter: f64,
 }

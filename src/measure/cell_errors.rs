@@ -7,14 +7,14 @@ use super::cell_integrand::{CellIntegrand, LocalFunction};
 use super::evaluation::Reference;
 use super::kinks::Kinks;
 use super::squared_errors::{SquaredErrors, Squares};
-use crate::arrays::{map_entries, tabulate};
+use crate::arrays::{array_of, map_entries};
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::tables::CellTable;
-use crate::assemble::space::{Space, Terms, data};
+use crate::assemble::space::{Space, Terms, checks};
 use crate::error::Error;
 use crate::mesh::edge_vertices;
 use crate::parallel::cells;
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule};
 use crate::real::{Point, maximum};
 
@@ -164,7 +164,7 @@ impl<const D: usize> Space<'_, D> {
         cell: usize,
     ) -> CellIntegrand<'c, D> {
         let geometry = self.mesh.geometry(cell);
-        let gradients: [Point<D>; 4] = tabulate(|k| match k <= D {
+        let gradients: [Point<D>; 4] = array_of(|k| match k <= D {
             true => *geometry.gradient(k),
             false => Point::zeros(),
         });
@@ -255,7 +255,7 @@ impl<const D: usize> Space<'_, D> {
     /// obstacle exceeds no linear admissible function within a cell.
     fn has_linear_obstacles(&self, cell: usize) -> bool {
         let (region, corners) = (self.mesh.region(cell), self.mesh.corners(cell));
-        let is_linear = |bound: DatumRef<'_, D>| {
+        let is_linear = |bound: &Datum<D>| {
             let at_corners = corners.map(|x| bound.at(&x));
             edge_vertices(D).iter().all(|&[a, b]| {
                 let at_middle = bound.at(&((corners[a] + corners[b]) * 0.5));
@@ -278,7 +278,9 @@ impl<const D: usize> Space<'_, D> {
             let value: f64 = terms.iter().map(at).sum();
             let value = match value.is_finite() {
                 true => value,
-                false => data::finite(value, "exact solution", &self.node_point(cell, node), cell)?,
+                false => {
+                    checks::finite(value, "exact solution", &self.node_point(cell, node), cell)?
+                }
             };
             let error = (u[self.dofs.of(cell, i)] - value).abs();
             largest = maximum(largest, error);
@@ -289,7 +291,7 @@ impl<const D: usize> Space<'_, D> {
 
 /// Whether a coefficient may jump within a cell with these corners, though no level says so.
 fn may_jump<const D: usize>(
-    coefficient: Option<DatumRef<'_, D>>,
+    coefficient: Option<&Datum<D>>,
     corner: impl Fn(usize) -> Point<D>,
 ) -> bool {
     let Some(alpha) = coefficient else { return false };

@@ -3,11 +3,11 @@
 use super::admissible::Admissible;
 use super::evaluation::Reference;
 use super::squared_errors::Squares;
-use crate::assemble::space::data;
+use crate::assemble::space::checks;
 use crate::assemble::space::tables::BasisAt;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::real::Point;
 
 /// A discrete function in a cell.
@@ -34,9 +34,9 @@ pub(super) struct CellIntegrand<'a, const D: usize> {
     /// The diffusion coefficient in the energy norm of the discrete function, where it is constant in the cell.
     pub alpha: f64,
     /// The diffusion coefficient where the scheme evaluates it at the points of a rule.
-    pub varying: Option<DatumRef<'a, D>>,
-    pub coefficient: Option<DatumRef<'a, D>>,
-    pub reaction: Option<DatumRef<'a, D>>,
+    pub varying: Option<&'a Datum<D>>,
+    pub coefficient: Option<&'a Datum<D>>,
+    pub reaction: Option<&'a Datum<D>>,
 }
 
 impl<const D: usize> CellIntegrand<'_, D> {
@@ -85,9 +85,9 @@ impl<const D: usize> CellIntegrand<'_, D> {
             return Ok(sums);
         }
         points().into_iter().try_for_each(|x| {
-            data::finite(self.exact.value(self.cell, &x), "exact solution", &x, self.cell)?;
+            checks::finite(self.exact.value(self.cell, &x), "exact solution", &x, self.cell)?;
             let square = self.exact.gradient(self.cell, &x).norm_squared();
-            data::finite(square, "exact gradient", &x, self.cell).map(|_| ())
+            checks::finite(square, "exact gradient", &x, self.cell).map(|_| ())
         })?;
         Ok(sums)
     }

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::assemble::Discretisation;
-use crate::assemble::local::zero_local;
 use crate::assemble::space::Space;
+use crate::assemble::stiffness::zero_local;
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::parallel::cells;

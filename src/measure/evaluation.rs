@@ -23,7 +23,7 @@ impl<const D: usize> Reference<'_, D> {
     /// The value at a point of a cell.
     pub fn value(&self, cell: usize, x: &Point<D>) -> f64 {
         match self {
-            Self::Exact(exact) => (exact.value)(x),
+            Self::Exact(exact) => exact.value.at(x),
             Self::Coarse { space, values, refinements } => {
                 let (basis, local) = space.evaluate(cell >> (D * refinements), x, values);
                 basis.value(&local)

@@ -6,7 +6,7 @@ use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, edge_vertices};
+use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
 use crate::quadrature::facet_to_cell;
 
 /// Fields on the cells of the mesh, for pictures.
@@ -30,7 +30,7 @@ pub struct Fields {
     /// The discrete contact set, and the multiplier's density at vertices.
     pub discrete_contact: DiscreteContact,
     /// The facets of the contact boundary: cell, and number in the cell.
-    pub contact_boundary: Vec<(usize, usize)>,
+    pub contact_boundary: Vec<HalfFacet>,
     /// The contact pressure on each of these facets: as `multiplier`, of the unknowns to which the gap of its boundary
     /// group gives the active bound. Its integral over a group is the contact force there.
     pub pressure: Vec<f64>,
@@ -85,8 +85,8 @@ impl<const D: usize> Space<'_, D> {
             touching as f64 / f64::from(all.max(1))
         };
         let n_cells = self.mesh.n_cells();
-        let contact_boundary: Vec<(usize, usize)> = match self.problem.has_gap() {
-            true => self.facets_of(BoundaryPart::Contact).collect(),
+        let contact_boundary: Vec<HalfFacet> = match self.problem.has_gap() {
+            true => self.facets_of(BoundaryCondition::Contact).collect(),
             false => Vec::new(),
         };
         let multipliers =
@@ -108,14 +108,14 @@ impl<const D: usize> Space<'_, D> {
                 Some(of) => self.densities_of_gaps(inequality, of),
                 None => vec![f64::NAN; contact_boundary.len()],
             },
-            gap: contact_boundary.iter().map(|&place| self.mean_gap(place, u)).collect(),
+            gap: contact_boundary.iter().map(|&facet| self.mean_gap(facet, u)).collect(),
             bound: Vec::new(),
             contact_boundary,
         }
     }
 
     /// The mean of `u - g` over a facet.
-    fn mean_gap(&self, (cell, local): (usize, usize), u: &[f64]) -> f64 {
+    fn mean_gap(&self, (cell, local): HalfFacet, u: &[f64]) -> f64 {
         let values = self.local_values(cell, u);
         let group = self.mesh.boundary_group(cell, local);
         let gap = group.and_then(|group| self.data.gap.of(group));

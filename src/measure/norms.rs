@@ -8,14 +8,11 @@ use super::errors::Errors;
 use super::evaluation::Reference;
 use super::squared_errors::SquaredErrors;
 use crate::assemble::Discretisation;
-use crate::assemble::load::FacetMoments;
 use crate::assemble::space::Space;
-use crate::assemble::space::tables::BasisAt;
-use crate::element::MAX_BASIS;
+use crate::assemble::weak_dirichlet::FacetMoments;
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::problem::Exact;
 
@@ -114,9 +111,8 @@ impl<const D: usize> Discretisation<'_, D> {
     ) -> Result<SquaredErrors, Error> {
         let space = &self.space;
         let mut total = space.cell_errors(&Reference::Exact(exact), u, function, counts)?;
-        let neighbours = space.neighbours.as_ref().filter(|_| self.form().couples());
-        if let Some((neighbours, u)) = neighbours.zip(u) {
-            total.of_facets = space.facet_error(self.form(), neighbours, u, counts)?;
+        if let Some(u) = u.filter(|_| self.form().couples()) {
+            total.of_facets = space.facet_error(self.form(), u, counts)?;
         }
         Ok(total)
     }
@@ -127,41 +123,16 @@ impl<const D: usize> Space<'_, D> {
     fn facet_error(
         &self,
         form: &dyn FacetForm<D>,
-        neighbours: &Neighbours,
         u: &[f64],
         counts: Counts<'_>,
     ) -> Result<f64, Error> {
         let degree = form.moments(self.basis_degree);
         let table = self.facet_table(degree);
         let moments = FacetMoments::new(D, degree, &self.facet_rule);
-        let n = self.per_cell();
-        let value = |basis: &BasisAt, local: &[f64; MAX_BASIS]| -> f64 {
-            local[..n].iter().zip(&basis.values).map(|(c, v)| c * v).sum()
-        };
         let terms_of = |cell: usize, terms: &mut Vec<f64>| -> Result<(), Error> {
-            let mine = self.local_values(cell, u);
-            for local in 0..=D {
-                let (other, data) = match neighbours.across(cell, local) {
-                    Neighbour::Cell { cell: other, .. } if (other as usize) < cell => continue,
-                    Neighbour::Cell { cell: other, local } => {
-                        let values = self.local_values(other as usize, u);
-                        (Some((values, usize::from(local))), Vec::new())
-                    }
-                    Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
-                        let group = self.mesh.boundary_group(cell, local);
-                        let group = group.expect("a boundary facet has a group");
-                        (None, self.dirichlet_moments(&moments, (cell, local), group)?)
-                    }
-                    Neighbour::Boundary(_) | Neighbour::Cut => continue,
-                };
-                let jump = |k: usize| {
-                    let there = match &other {
-                        Some((theirs, local)) => value(&table.on(*local)[k], theirs),
-                        None => data[k],
-                    };
-                    value(&table.on(local)[k], &mine) - there
-                };
-                let Some(view) = self.facet_view(neighbours, cell, local) else { continue };
+            for facet in self.form_facets_of(cell) {
+                let jump = self.jump_on(facet, u, (&table, &moments))?;
+                let view = self.facet_view(facet, None);
                 let penalty = form.penalty(&view);
                 for (k, &degree) in table.degrees.iter().enumerate() {
                     let trace = Trace { jump: jump(k), flux: 0.0 };

@@ -5,14 +5,14 @@ use std::ops::Range;
 use super::cell_errors::Counts;
 use crate::assemble::Discretisation;
 use crate::assemble::cut_simplices::in_space;
-use crate::assemble::space::data::finite;
+use crate::assemble::space::Space;
+use crate::assemble::space::checks::finite;
 use crate::assemble::space::tables::BasisAt;
-use crate::assemble::space::{Place, Space};
 use crate::error::Error;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, edge_vertices};
+use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
 use crate::parallel::cells;
-use crate::problem::{DataByGroup, DatumRef};
+use crate::problem::{DataByGroup, Datum};
 use crate::quadrature::facet_to_cell;
 use crate::real::{Point, Precision};
 
@@ -176,10 +176,10 @@ impl<const D: usize> Space<'_, D> {
         }
         let on_facets: Vec<Points> =
             (0..D + 1).map(|local| self.points_of_facet(local, at_vertices[2])).collect();
-        for (place, group) in self.grouped_facets_of(BoundaryPart::Contact) {
-            let gap = self.data.gap.of(group).filter(|_| counts(place.0));
+        for (facet, group) in self.grouped_facets_of(BoundaryCondition::Contact) {
+            let gap = self.data.gap.of(group).filter(|_| counts(facet.0));
             if let Some(gap) = gap {
-                self.add_penetration_on(place, gap, u, &on_facets[place.1], &mut found)?;
+                self.add_penetration_on(facet, gap, u, &on_facets[facet.1], &mut found)?;
             }
         }
         let is_affine = self.has_affine_data();
@@ -236,8 +236,8 @@ impl<const D: usize> Space<'_, D> {
     /// What a contact facet adds.
     fn add_penetration_on(
         &self,
-        (cell, _): Place,
-        gap: DatumRef<'_, D>,
+        (cell, _): HalfFacet,
+        gap: &Datum<D>,
         u: &[f64],
         points: &Points,
         found: &mut Penetration,
@@ -284,14 +284,14 @@ impl<const D: usize> Space<'_, D> {
     /// Whether all data but obstacles and gaps are known to be affine.
     fn has_affine_data(&self) -> bool {
         let data = &self.data;
-        let has = |part| self.mesh.has_part(part);
+        let has = |part| self.mesh.has_condition(part);
         // without Neumann data an exact solution gives the flux
         let is_known = data.neumann.is_given() || self.problem.exact.is_none();
         let flux_is_affine = data.neumann.every(&|flux| self.is_affine_degree(flux.degree()))
             && (is_known || self.is_affine_degree(None));
         [&data.coefficient, &data.source, &data.reaction].into_iter().all(|d| self.is_affine(d))
-            && (!has(BoundaryPart::Dirichlet) || self.is_affine(&data.dirichlet))
-            && (!has(BoundaryPart::Neumann) || flux_is_affine)
+            && (!has(BoundaryCondition::Dirichlet) || self.is_affine(&data.dirichlet))
+            && (!has(BoundaryCondition::Neumann) || flux_is_affine)
     }
 }
 

@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use crate::parallel::map_indices;
 use crate::parallel::vectors::for_each_chunk_of_groups;
 
+use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
+use super::neighbour_numbers::{LANES, NeighbourNumbers, rank};
 use super::simplicial::Mesh;
-use super::stars::{NeighbourNumbers, VertexToCells};
 use crate::memory::in_large_pages;
 
 /// Local vertices of the edges of a cell, ordered by their second vertex. A cell of dimension `D`
@@ -61,9 +62,9 @@ impl Edges {
         n_vertices: usize,
         ranks: Option<&[AtomicU32]>,
     ) -> Self {
-        let incidence = VertexToCells::<D>::new(cells, n_vertices, D);
-        let ranges = incidence.ranges();
-        let found = |k: usize| upper_ends(&incidence, ranges[k].clone(), ranks);
+        let incidence = VertexToCells::<D>::new(cells, FirstVertices(D));
+        let ranges = vertex_ranges(n_vertices);
+        let found = |k: usize| upper_ends(&incidence, n_vertices, &ranges[k], ranks);
         let mut found: Vec<(Vec<u32>, Vec<u32>)> = map_indices(ranges.len(), &found);
         let mut starts = in_large_pages(Vec::with_capacity(n_vertices + 1));
         starts.push(0);
@@ -122,35 +123,41 @@ fn joined(found: &[(Vec<u32>, Vec<u32>)]) -> Vec<u32> {
 /// these vertices.
 fn upper_ends<const D: usize>(
     incidence: &VertexToCells<'_, D>,
-    vertices: Range<u32>,
+    n_vertices: usize,
+    vertices: &Range<u32>,
     ranks_of_cells: Option<&[AtomicU32]>,
 ) -> (Vec<u32>, Vec<u32>) {
-    let mut numbers = NeighbourNumbers::new(incidence.n_vertices());
+    let mut last = in_large_pages(vec![0; n_vertices]);
+    let mut numbers = NeighbourNumbers::new(&mut last);
     let (mut upper, mut degrees) = (Vec::new(), Vec::with_capacity(vertices.len()));
     // of each vertex the upper ends in the order of the cells, and the edges of the cells
     let (mut ends, mut cell_edges, mut ranks) = (Vec::new(), Vec::new(), Vec::new());
-    for (_, cells) in incidence.stars(vertices).iter() {
+    for (_, cells) in incidence.stars(vertices).of_vertices(vertices.clone()) {
         numbers.next_vertex();
         ends.clear();
         cell_edges.clear();
         for (c, i) in cells {
             for (j, &end) in incidence.cell(c).iter().enumerate().skip(i + 1) {
-                let number = numbers.get(end).unwrap_or_else(|| {
-                    numbers.push(end);
+                let number = numbers.get_or_push(end);
+                if number as usize == ends.len() {
                     ends.push(end);
-                    ends.len() as u32 - 1
-                });
+                }
                 // edge (i, j) of a cell follows the edges of lower second vertices
                 cell_edges.push((c * edge_vertices(D).len() + j * (j - 1) / 2 + i, number));
             }
         }
-        rank(&ends, &mut ranks);
+        let n = ends.len();
+        ends.resize(n.next_multiple_of(LANES), 0);
+        if ranks.len() < ends.len() {
+            ranks.resize(ends.len(), 0);
+        }
+        rank(&mut ends, n, &mut ranks);
         let start = upper.len();
-        upper.resize(start + ends.len(), 0);
-        for (&end, &rank) in ends.iter().zip(&ranks) {
+        upper.resize(start + n, 0);
+        for (&end, &rank) in ends[..n].iter().zip(&ranks) {
             upper[start + rank as usize] = end;
         }
-        degrees.push(ends.len() as u32);
+        degrees.push(n as u32);
         if let Some(ranks_of_cells) = ranks_of_cells {
             for &(edge, number) in &cell_edges {
                 ranks_of_cells[edge].store(ranks[number as usize], Ordering::Relaxed);
@@ -158,24 +165,6 @@ fn upper_ends<const D: usize>(
         }
     }
     (upper, degrees)
-}
-
-/// Length of the longest list that is ranked by comparing all pairs.
-const ALL_PAIRS: usize = 64;
-
-/// The rank of each number of a list in its sorted order.
-fn rank(list: &[u32], ranks: &mut Vec<u32>) {
-    ranks.clear();
-    if list.len() <= ALL_PAIRS {
-        ranks.extend(list.iter().map(|a| list.iter().map(|b| u32::from(b < a)).sum::<u32>()));
-        return;
-    }
-    let mut order: Vec<u32> = (0..list.len() as u32).collect();
-    order.sort_unstable_by_key(|&k| list[k as usize]);
-    ranks.resize(list.len(), 0);
-    for (rank, k) in order.into_iter().enumerate() {
-        ranks[k as usize] = rank as u32;
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Errors of meshes.
 
-use super::boundary::BoundaryPart;
+use super::boundary::BoundaryCondition;
 use crate::input::excerpt;
 use crate::readable_debug::debug_by_display;
 
@@ -158,16 +158,16 @@ pub enum MeshError {
         /// Position in the list of tagged facets.
         tag: usize,
     },
-    /// Two groups of a boundary facet are given different parts.
+    /// Two groups of a boundary facet are given different conditions.
     #[error(
         "boundary groups {} and {} share facets, but the first is {} and the second {}: give them facets of their own",
-        groups[0], groups[1], parts[0], parts[1]
+        groups[0], groups[1], conditions[0], conditions[1]
     )]
-    GroupInTwoParts {
+    GroupWithTwoConditions {
         /// The two groups.
         groups: Box<[String; 2]>,
-        /// Their parts.
-        parts: [&'static str; 2],
+        /// Their conditions.
+        conditions: [&'static str; 2],
     },
     /// Neither the name of a boundary group nor the problem says what holds there.
     #[error(
@@ -209,7 +209,7 @@ pub(crate) const UNITE: &str = "let parts that were meshed apart share their nod
 impl MeshError {
     /// The error for a boundary group of undecided part with these names.
     pub(crate) fn undecided(names: &[String]) -> Self {
-        let meant = |name: &String| BoundaryPart::from_name(&name.trim().to_lowercase());
+        let meant = |name: &String| BoundaryCondition::from_name(&name.trim().to_lowercase());
         let hint = names.iter().find_map(meant).map(|part| format!("; write {}", part.name()));
         let names: Vec<String> = names.iter().map(excerpt).collect();
         Self::UndecidedGroup { group: names.join(", "), hint: hint.unwrap_or_default() }

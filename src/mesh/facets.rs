@@ -3,14 +3,18 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::parallel::map_indices;
 
-use super::boundary::BoundaryPart;
+use super::boundary::BoundaryCondition;
 use super::error::MeshError;
+use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
+use super::neighbour_numbers::NeighbourNumbers;
 use super::simplicial::Mesh;
-use super::stars::{NeighbourNumbers, VertexToCells};
 use crate::memory::in_large_pages;
+
+/// A half-facet, a facet seen from one of its cells: the cell, and the number of the facet in it.
+pub type HalfFacet = (usize, usize);
 
 /// The other side of a facet of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +27,7 @@ pub enum Neighbour {
         local: u8,
     },
     /// The boundary.
-    Boundary(BoundaryPart),
+    Boundary(BoundaryCondition),
     /// Cells that the mesh does not have, because it is a [part](super::Part) of another one: no data are
     /// given here, nothing is bound, and no form has a term.
     Cut,
@@ -44,12 +48,11 @@ const UNKNOWN: u32 = u32::MAX;
 /// Largest number of cells the codes can name.
 pub(super) const CELL_LIMIT: usize = (BOUNDARY as usize) / 4;
 
-fn part_code(part: BoundaryPart) -> u32 {
+fn part_code(part: BoundaryCondition) -> u32 {
     BOUNDARY + part as u32
 }
 
-/// A half-facet, a facet seen from one of its cells: four times the cell plus the number of the facet
-/// in it.
+/// The code of a half-facet: four times the cell plus the number of the facet in it.
 fn half_facet_code(cell: usize, local: usize) -> u32 {
     (cell * 4 + local) as u32
 }
@@ -60,7 +63,7 @@ impl Neighbours {
         let mut found = Self::match_facets::<D>(mesh.cells(), mesh.vertices().len())
             .expect("the facets of a mesh were matched when it was made");
         for f in mesh.boundary() {
-            found.set(f.cell as usize, f.local as usize, f.part);
+            found.set(f.cell as usize, f.local as usize, f.condition);
         }
         found
     }
@@ -71,11 +74,11 @@ impl Neighbours {
         n_vertices: usize,
     ) -> Result<Self, MeshError> {
         // the lowest vertex of a facet is the first or the second of its cell
-        let incidence = VertexToCells::<D>::new(cells, n_vertices, 2);
+        let incidence = VertexToCells::<D>::new(cells, FirstVertices(2));
         let mut codes = in_large_pages(Vec::with_capacity(cells.len()));
         codes.resize_with(cells.len(), || AtomicU32::new(UNKNOWN));
-        let ranges = incidence.ranges();
-        let matched = |k: usize| match_facets_of(&incidence, ranges[k].clone(), &codes);
+        let ranges = vertex_ranges(n_vertices);
+        let matched = |k: usize| match_facets_of(&incidence, n_vertices, &ranges[k], &codes);
         if map_indices(ranges.len(), &matched).contains(&false)
             && let Some(error) = mismatch::<D>(cells)
         {
@@ -91,9 +94,9 @@ impl Neighbours {
     pub fn across(&self, cell: usize, local: usize) -> Neighbour {
         let code = self.codes[cell * self.per_cell + local];
         match code.wrapping_sub(BOUNDARY) {
-            0 => Neighbour::Boundary(BoundaryPart::Dirichlet),
-            1 => Neighbour::Boundary(BoundaryPart::Neumann),
-            2 => Neighbour::Boundary(BoundaryPart::Contact),
+            0 => Neighbour::Boundary(BoundaryCondition::Dirichlet),
+            1 => Neighbour::Boundary(BoundaryCondition::Neumann),
+            2 => Neighbour::Boundary(BoundaryCondition::Contact),
             3 => Neighbour::Cut,
             _ => Neighbour::Cell { cell: code >> 2, local: (code & 3) as u8 },
         }
@@ -111,13 +114,13 @@ impl Neighbours {
     pub(super) fn is_unmatched(&self, cell: usize, local: usize) -> bool {
         self.codes[cell * self.per_cell + local] == UNKNOWN
     }
-    pub(super) fn set(&mut self, cell: usize, local: usize, part: BoundaryPart) {
+    pub(super) fn set(&mut self, cell: usize, local: usize, part: BoundaryCondition) {
         self.codes[cell * self.per_cell + local] = part_code(part);
     }
 }
 
 /// The first half-facet of a facet, in a list of those with one lowest vertex.
-struct HalfFacet {
+struct FirstHalf {
     /// The highest vertex of the facet.
     highest: u32,
     /// The entry before this one with the same second vertex: facets with the same two lowest
@@ -132,12 +135,14 @@ struct HalfFacet {
 /// a cell is repeated.
 fn match_facets_of<const D: usize>(
     incidence: &VertexToCells<'_, D>,
-    vertices: Range<u32>,
+    n_vertices: usize,
+    vertices: &Range<u32>,
     codes: &[AtomicU32],
 ) -> bool {
-    let mut numbers = NeighbourNumbers::new(incidence.n_vertices());
-    let mut halves: Vec<HalfFacet> = Vec::new();
-    for (lowest, cells) in incidence.stars(vertices).iter() {
+    let mut last = in_large_pages(vec![0; n_vertices]);
+    let mut numbers = NeighbourNumbers::new(&mut last);
+    let mut halves: Vec<FirstHalf> = Vec::new();
+    for (lowest, cells) in incidence.stars(vertices).of_vertices(vertices.clone()) {
         numbers.next_vertex();
         halves.clear();
         for (c, first) in cells {
@@ -158,7 +163,7 @@ fn match_facets_of<const D: usize>(
                 }
                 let Some(other) = found.map(|k| &mut halves[k as usize]) else {
                     numbers.push(second);
-                    halves.push(HalfFacet { highest, before, code, matched: false });
+                    halves.push(FirstHalf { highest, before, code, matched: false });
                     continue;
                 };
                 let opposite =
@@ -179,9 +184,8 @@ fn match_facets_of<const D: usize>(
 /// with the same vertices.
 fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
     let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
-    let vertices = |(c, local): (usize, usize)| -> [u32; D] {
-        tabulate(|k| cell(c)[k + usize::from(k >= local)])
-    };
+    let vertices =
+        |(c, local): HalfFacet| -> [u32; D] { array_of(|k| cell(c)[k + usize::from(k >= local)]) };
     let mut half_facets: Vec<_> = (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1))).collect();
     half_facets.sort_unstable_by_key(|&half_facet| (vertices(half_facet), half_facet));
     for same in half_facets.chunk_by(|&a, &b| vertices(a) == vertices(b)) {
@@ -230,8 +234,8 @@ impl Facets {
             }
         }
         let mut starts = [0, half_facets.len(), 0, 0, 0, 0];
-        for (k, part) in BoundaryPart::ALL.into_iter().enumerate() {
-            let of_part = mesh.boundary().iter().filter(|f| f.part == part);
+        for (k, part) in BoundaryCondition::ALL.into_iter().enumerate() {
+            let of_part = mesh.boundary().iter().filter(|f| f.condition == part);
             half_facets.extend(of_part.map(|f| {
                 let code = half_facet_code(f.cell as usize, f.local as usize);
                 [code, code]
@@ -261,23 +265,23 @@ impl Facets {
         self.starts[0]..self.starts[1]
     }
     /// Numbers of the facets of a part of the boundary.
-    pub fn part(&self, part: BoundaryPart) -> Range<usize> {
+    pub fn part(&self, part: BoundaryCondition) -> Range<usize> {
         self.starts[part as usize + 1]..self.starts[part as usize + 2]
     }
     /// Numbers of the facets beyond which the cells of another part of the mesh lie.
     pub fn cut(&self) -> Range<usize> {
         self.starts[4]..self.starts[5]
     }
-    /// The first cell of a facet, and the number of the facet in it.
+    /// A facet seen from its first cell.
     #[inline(always)]
-    pub fn here(&self, facet: usize) -> (usize, usize) {
+    pub fn here(&self, facet: usize) -> HalfFacet {
         let code = self.half_facets[facet][0];
         ((code >> 2) as usize, (code & 3) as usize)
     }
-    /// The second cell of an interior facet, and the number of the facet in it; the first one again on
-    /// the boundary and where the mesh is cut.
+    /// An interior facet seen from its second cell; from the first one again on the boundary and where the
+    /// mesh is cut.
     #[inline(always)]
-    pub fn there(&self, facet: usize) -> (usize, usize) {
+    pub fn there(&self, facet: usize) -> HalfFacet {
         let code = self.half_facets[facet][1];
         ((code >> 2) as usize, (code & 3) as usize)
     }

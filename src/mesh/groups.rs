@@ -4,7 +4,7 @@
 //! boundary facets with the same names a *boundary group*; the mesh stores one number for each cell
 //! and boundary facet. Refinement keeps both.
 
-use super::boundary::BoundaryPart;
+use super::boundary::BoundaryCondition;
 
 /// The names that a set of boundary facets has in common, and its part of the boundary.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub struct BoundaryGroup {
     pub names: Vec<String>,
     /// The part; none as long as neither a name (`dirichlet`, `neumann`, `contact`) nor a problem
     /// decides.
-    pub part: Option<BoundaryPart>,
+    pub condition: Option<BoundaryCondition>,
 }
 
 /// The regions and boundary groups of a mesh, by number.
@@ -30,8 +30,9 @@ pub(in crate::mesh) struct Groups {
 
 impl Groups {
     /// One region without names, and boundary groups of one name each with these parts.
-    pub fn of_boundary(boundary: impl IntoIterator<Item = (String, BoundaryPart)>) -> Self {
-        let group = |(name, part)| BoundaryGroup { names: vec![name], part: Some(part) };
+    pub fn of_boundary(boundary: impl IntoIterator<Item = (String, BoundaryCondition)>) -> Self {
+        let group =
+            |(name, condition)| BoundaryGroup { names: vec![name], condition: Some(condition) };
         let boundary = boundary.into_iter().map(group).collect();
         Self { regions: vec![Vec::new()], boundary, inside: Vec::new() }
     }

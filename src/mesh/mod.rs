@@ -20,17 +20,18 @@ mod facets;
 mod geometry;
 pub mod gmsh;
 mod groups;
+pub(crate) mod incidence;
 mod names;
+pub(crate) mod neighbour_numbers;
 mod overlap;
 mod part;
 mod refine;
 mod renumber;
 mod simplicial;
-mod stars;
 mod validate;
 
 pub use bisection::{BisectedMesh, Bisection};
-pub use boundary::{BoundaryFacet, BoundaryPart};
+pub use boundary::{BoundaryCondition, BoundaryFacet};
 pub(crate) use components::Components;
 #[cfg(feature = "problem-files")]
 pub(crate) use domain::SIDES;
@@ -39,9 +40,10 @@ pub use domain::{BoxDomain, Domain};
 pub use edges::Edges;
 pub(crate) use edges::edge_vertices;
 pub use error::MeshError;
-pub use facets::{Facets, Neighbour, Neighbours};
+pub use facets::{Facets, HalfFacet, Neighbour, Neighbours};
 pub use geometry::CellGeometry;
 pub(crate) use geometry::describe_point;
+pub(crate) use geometry::simplex::{FACTORIAL, cofactors, cross, dot, with_zeros};
 pub use groups::BoundaryGroup;
 #[cfg(feature = "problem-files")]
 pub(crate) use overlap::FacetSearch;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::boundary::BoundaryPart;
+use super::boundary::BoundaryCondition;
 use super::error::MeshError;
 use super::facets::Neighbours;
 use super::groups::BoundaryGroup;
@@ -64,58 +64,59 @@ impl<const D: usize> Mesh<D> {
         Ok(self)
     }
 
-    /// The mesh with the part of each boundary group decided by its names; a group that has no name for
-    /// which `part_of` knows a part keeps the part that it has.
+    /// The mesh with the condition of each boundary group decided by its names; a group that has no name for
+    /// which `condition_of` knows a condition keeps the condition that it has.
     ///
     /// # Errors
-    /// [`MeshError::GroupInTwoParts`].
-    pub fn with_boundary_parts(
+    /// [`MeshError::GroupWithTwoConditions`].
+    pub fn with_boundary_conditions(
         self,
-        part_of: &dyn Fn(&str) -> Option<BoundaryPart>,
+        condition_of: &dyn Fn(&str) -> Option<BoundaryCondition>,
     ) -> Result<Self, MeshError> {
         compiled!(const D: fn(
                 Mesh<D>,
-                &dyn Fn(&str) -> Option<BoundaryPart>,
+                &dyn Fn(&str) -> Option<BoundaryCondition>,
             ) -> Result<Mesh<D>, MeshError>
-                = Mesh::decide_parts
-        )(self, part_of)
+                = Mesh::decide_conditions
+        )(self, condition_of)
     }
-    fn decide_parts(
+    fn decide_conditions(
         mut self,
-        part_of: &dyn Fn(&str) -> Option<BoundaryPart>,
+        condition_of: &dyn Fn(&str) -> Option<BoundaryCondition>,
     ) -> Result<Self, MeshError> {
         let groups = Arc::make_mut(&mut self.groups);
-        for BoundaryGroup { names, part } in &mut groups.boundary {
-            let mut known: Option<(&str, BoundaryPart)> = None;
-            let decided = |name: &str| part_of(name).or_else(|| BoundaryPart::from_name(name));
+        for BoundaryGroup { names, condition } in &mut groups.boundary {
+            let mut known: Option<(&str, BoundaryCondition)> = None;
+            let decided =
+                |name: &str| condition_of(name).or_else(|| BoundaryCondition::from_name(name));
             for (name, found) in names.iter().filter_map(|name| Some((name, decided(name)?))) {
                 match known {
                     Some((first, other)) if other != found => {
-                        return Err(MeshError::GroupInTwoParts {
+                        return Err(MeshError::GroupWithTwoConditions {
                             groups: Box::new([first, name].map(excerpt)),
-                            parts: [other.name(), found.name()],
+                            conditions: [other.name(), found.name()],
                         });
                     }
                     _ => known = Some((name, found)),
                 }
             }
-            *part = known.map(|(_, part)| part).or(*part);
+            *condition = known.map(|(_, condition)| condition).or(*condition);
         }
         for facet in &mut self.boundary {
-            if let Some(part) = groups.boundary[usize::from(facet.group)].part {
-                facet.part = part;
+            if let Some(condition) = groups.boundary[usize::from(facet.group)].condition {
+                facet.condition = condition;
             }
         }
         self.is_supported = is_supported(&Neighbours::new(&self), &self.boundary);
         Ok(self)
     }
 
-    /// Checks that the part of every boundary group is decided.
+    /// Checks that the condition of every boundary group is decided.
     ///
     /// # Errors
     /// [`MeshError::UndecidedGroup`].
     pub fn check_boundary_parts(&self) -> Result<(), MeshError> {
-        match self.groups.boundary.iter().find(|group| group.part.is_none()) {
+        match self.groups.boundary.iter().find(|group| group.condition.is_none()) {
             Some(group) => Err(MeshError::undecided(&group.names)),
             None => Ok(()),
         }

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::boundary::BoundaryFacet;
 use super::simplicial::Mesh;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::parallel::vectors::collect;
 
 /// Bits of each coordinate on the lattice of the curve.
@@ -34,7 +34,7 @@ impl<const D: usize> Mesh<D> {
             });
         }
         let barycentre =
-            |cell: &[u32]| tabulate(|k| cell.iter().map(|&v| corner(v)[k] / (D + 1) as f64).sum());
+            |cell: &[u32]| array_of(|k| cell.iter().map(|&v| corner(v)[k] / (D + 1) as f64).sum());
         let points: Vec<[f64; D]> =
             collect(self.n_cells(), |c| barycentre(&sorted[c * (D + 1)..][..D + 1]));
         let order = order_along_curve(&points);
@@ -95,11 +95,11 @@ fn order_along_curve<const D: usize>(points: &[[f64; D]]) -> Vec<u32> {
     let fold = |k: usize, start: f64, f: fn(f64, f64) -> f64| {
         points.iter().fold(start, |found, x| f(found, x[k]))
     };
-    let low: [f64; D] = tabulate(|k| fold(k, f64::INFINITY, f64::min));
-    let high: [f64; D] = tabulate(|k| fold(k, f64::NEG_INFINITY, f64::max));
+    let low: [f64; D] = array_of(|k| fold(k, f64::INFINITY, f64::min));
+    let high: [f64; D] = array_of(|k| fold(k, f64::NEG_INFINITY, f64::max));
     let side = (0..D).map(|k| high[k] - low[k]).fold(f64::MIN_POSITIVE, f64::max);
     let steps = f64::from((1_u32 << BITS) - 1) / side;
-    let key = |x: &[f64; D]| hilbert::<D>(tabulate(|k| ((x[k] - low[k]) * steps) as u32));
+    let key = |x: &[f64; D]| hilbert::<D>(array_of(|k| ((x[k] - low[k]) * steps) as u32));
     let mut order = collect(points.len(), |k| (key(&points[k]), k as u32));
     order.sort_unstable();
     order.into_iter().map(|(_, k)| k).collect()
@@ -139,7 +139,7 @@ mod tests {
     /// All points of a lattice of the size of the curve: each step goes to a neighbour.
     fn steps<const D: usize>(side: usize) {
         let n = side.pow(D as u32);
-        let place = |k: usize| tabulate(|d| (k / side.pow(d as u32) % side) as f64);
+        let place = |k: usize| array_of(|d| (k / side.pow(d as u32) % side) as f64);
         let points: Vec<[f64; D]> = (0..n).map(place).collect();
         let order = order_along_curve(&points);
         for pair in order.windows(2) {

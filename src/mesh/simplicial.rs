@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::boundary::{BoundaryFacet, BoundaryPart};
+use super::boundary::{BoundaryCondition, BoundaryFacet};
+use super::geometry::simplex::{fold_edges, longest_edge};
 use super::groups::Groups;
 use super::part::extent::Extent;
 use crate::parallel::cells;
@@ -61,8 +62,8 @@ impl<const D: usize> Mesh<D> {
         &self.boundary
     }
     /// Whether some facet belongs to a part of the boundary.
-    pub fn has_part(&self, part: BoundaryPart) -> bool {
-        self.boundary.iter().any(|f| f.part == part)
+    pub fn has_condition(&self, part: BoundaryCondition) -> bool {
+        self.boundary.iter().any(|f| f.condition == part)
     }
     /// Whether every component of the mesh, connected through facets, has a Dirichlet facet; of a part, whether
     /// every component of the whole mesh has one.
@@ -84,28 +85,15 @@ impl<const D: usize> Mesh<D> {
     /// The largest distance of two vertices of a cell.
     pub fn cell_diameter(&self, c: usize) -> f64 {
         let cell = self.cell(c);
-        let mut largest = 0.0;
-        for (i, &a) in cell.iter().enumerate() {
-            for &b in &cell[..i] {
-                let d = (self.vertices[a as usize] - self.vertices[b as usize]).norm_squared();
-                largest = if d > largest { d } else { largest };
-            }
-        }
-        nalgebra::ComplexField::sqrt(largest)
+        longest_edge(|k| self.vertices[cell[k] as usize], None)
     }
     /// The smallest distance of two vertices of a cell.
     pub fn shortest_edge(&self) -> f64 {
         let shortest_of = |cells: Range<usize>| {
-            let mut shortest = f64::INFINITY;
-            for cell in cells.map(|cell| self.cell(cell)) {
-                for (i, &a) in cell.iter().enumerate() {
-                    for &b in &cell[..i] {
-                        let edge = self.vertices[a as usize] - self.vertices[b as usize];
-                        shortest = shortest.min(edge.norm_squared());
-                    }
-                }
-            }
-            shortest
+            cells.fold(f64::INFINITY, |shortest, c| {
+                let cell = self.cell(c);
+                fold_edges(|k| self.vertices[cell[k] as usize], None, shortest, f64::min)
+            })
         };
         let shortest = cells::map(self.n_cells(), &shortest_of);
         shortest.into_iter().fold(f64::INFINITY, f64::min).sqrt()

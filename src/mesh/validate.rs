@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use super::boundary::{BoundaryFacet, BoundaryPart};
+use super::boundary::{BoundaryCondition, BoundaryFacet};
 use super::components::Components;
 use super::error::MeshError;
 use super::facets::{CELL_LIMIT, Neighbours};
+use super::geometry::simplex::longest_edge;
 use super::geometry::{CellGeometry, describe_point};
 use super::groups::{BoundaryGroup, Groups, NameSets};
 use super::overlap::{check_folds, check_overlaps, lie_on_others};
 use super::simplicial::Mesh;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::parallel::cells;
@@ -22,7 +23,7 @@ pub struct TaggedFacet<const D: usize> {
     /// The vertices.
     pub vertices: [u32; D],
     /// The part.
-    pub part: BoundaryPart,
+    pub condition: BoundaryCondition,
 }
 
 /// A facet of the boundary by its `D` vertices, in any order, and the number of a named group.
@@ -51,14 +52,19 @@ impl<const D: usize> Mesh<D> {
         boundary: &[TaggedFacet<D>],
     ) -> Result<Self, MeshError> {
         let grouped =
-            |f: &TaggedFacet<D>| GroupedFacet { vertices: f.vertices, group: f.part as u16 };
+            |f: &TaggedFacet<D>| GroupedFacet { vertices: f.vertices, group: f.condition as u16 };
         let facets: Vec<_> = boundary.iter().map(grouped).collect();
-        Self::with_groups(vertices, cells, &facets, &BoundaryPart::ALL.map(|p| p.name().to_owned()))
+        Self::with_groups(
+            vertices,
+            cells,
+            &facets,
+            &BoundaryCondition::ALL.map(|p| p.name().to_owned()),
+        )
     }
 
     /// A mesh as [`Mesh::new`] makes it, with boundary facets in named groups, of which each may be in
     /// several. The names `dirichlet`, `neumann` and `contact` say to which part their facets belong; the
-    /// part of other groups is decided by [`Mesh::with_boundary_parts`]. Facets between two cells are
+    /// part of other groups is decided by [`Mesh::with_boundary_conditions`]. Facets between two cells are
     /// left out of groups with other names.
     ///
     /// # Errors
@@ -106,7 +112,7 @@ impl<const D: usize> Mesh<D> {
 pub(super) fn is_supported(neighbours: &Neighbours, boundary: &[BoundaryFacet]) -> bool {
     let mut components = Components::of_cells(neighbours);
     let mut has_dirichlet = vec![false; neighbours.n_cells()];
-    for facet in boundary.iter().filter(|facet| facet.part == BoundaryPart::Dirichlet) {
+    for facet in boundary.iter().filter(|facet| facet.condition == BoundaryCondition::Dirichlet) {
         has_dirichlet[components.find(facet.cell as usize)] = true;
     }
     (0..neighbours.n_cells()).all(|cell| has_dirichlet[components.find(cell)])
@@ -156,12 +162,7 @@ fn check_volumes<const D: usize>(
         let corner = |k: usize| vertices[cell[k] as usize];
         let geometry = CellGeometry::new(corner);
         let volume = geometry.volume;
-        let mut diameter = 0.0_f64;
-        for i in 0..=D {
-            for j in 0..i {
-                diameter = diameter.max((corner(i) - corner(j)).norm());
-            }
-        }
+        let diameter = longest_edge(corner, None);
         let scaled = volume / diameter.powi(D as i32);
         // overflow and underflow count as degenerate
         if scaled.is_nan() || scaled <= 8.0 * f64::EPSILON {
@@ -184,8 +185,8 @@ fn check_volumes<const D: usize>(
 type OpenFacet<const D: usize> = ([u32; D], usize, usize);
 
 /// The part that one of the names of a group stands for.
-fn part_of(names: &[String]) -> Option<BoundaryPart> {
-    names.iter().find_map(|name| BoundaryPart::from_name(name))
+fn part_of(names: &[String]) -> Option<BoundaryCondition> {
+    names.iter().find_map(|name| BoundaryCondition::from_name(name))
 }
 
 /// Gives every facet of the boundary its group and part.
@@ -197,7 +198,7 @@ fn match_boundary<const D: usize>(
 ) -> Result<(Vec<BoundaryFacet>, Groups), MeshError> {
     let facet = |c: usize, local: usize| -> [u32; D] {
         let cell = &cells[c * (D + 1)..(c + 1) * (D + 1)];
-        tabulate(|k| cell[k + usize::from(k >= local)])
+        array_of(|k| cell[k + usize::from(k >= local)])
     };
     let half_facets = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
     let mut open: Vec<OpenFacet<D>> = half_facets()
@@ -227,7 +228,7 @@ fn match_boundary<const D: usize>(
                 all
             });
             let is_inside = inside.binary_search(&key).is_ok();
-            if is_inside && BoundaryPart::from_name(name).is_none() {
+            if is_inside && BoundaryCondition::from_name(name).is_none() {
                 has_inner[group] = true;
                 continue;
             }
@@ -239,7 +240,8 @@ fn match_boundary<const D: usize>(
             set_of[k] = Some(group);
             continue;
         };
-        if let (Some(one), Some(two)) = (part_of(sets.names(first)), BoundaryPart::from_name(name))
+        if let (Some(one), Some(two)) =
+            (part_of(sets.names(first)), BoundaryCondition::from_name(name))
             && one != two
         {
             let (first, second) = (one.name(), two.name());
@@ -261,11 +263,16 @@ fn match_boundary<const D: usize>(
         sets_used.resize(sets_used.len().max(set + 1), None);
         let group = *sets_used[set].get_or_insert_with(|| {
             let names = sets.names(set).to_vec();
-            groups.push(BoundaryGroup { part: part_of(&names), names });
+            groups.push(BoundaryGroup { condition: part_of(&names), names });
             (groups.len() - 1) as u16
         });
-        let part = groups[usize::from(group)].part.unwrap_or(BoundaryPart::Neumann);
-        boundary.push(BoundaryFacet { cell: cell as u32, local: local as u8, part, group });
+        let part = groups[usize::from(group)].condition.unwrap_or(BoundaryCondition::Neumann);
+        boundary.push(BoundaryFacet {
+            cell: cell as u32,
+            local: local as u8,
+            condition: part,
+            group,
+        });
     }
     if groups.len() > usize::from(u16::MAX) {
         let (what, count, limit) = ("boundary groups", groups.len(), usize::from(u16::MAX));

@@ -48,18 +48,18 @@ impl<const D: usize> Hierarchy<D> {
     /// # Errors
     /// [`Error::Parameter`] for more cells than can be numbered.
     pub fn refine(mesh: &Mesh<D>, refinements: usize) -> Result<Self, Error> {
-        Coarsest::Mesh(mesh).build(refinements)
+        Self::of_domain(&Domain::Mesh(mesh.clone()), refinements)
     }
 
     /// The mesh of a built-in domain with `level` subdivisions of its shortest side, and the coarser
     /// meshes of which it is a refinement: level `n` is the refinement of level `n / 2` if `n` is even
-    /// and `n / 2` is at least 4.
+    /// and `n / 2` is at least 4. Of a domain that is a mesh, the mesh and its refinements up to the level.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for level zero and for one with more cells than can be numbered or with
+    /// [`Error::Parameter`] for level zero of a built-in domain and for one with more cells than can be numbered or with
     /// cells too small for floating-point numbers, [`Error::Mesh`] if the domain has no mesh.
     pub fn of_domain(domain: &Domain<D>, level: usize) -> Result<Self, Error> {
-        Coarsest::Domain(domain).build(level)
+        Self::of_domain_from(domain, level, COARSEST)
     }
 
     /// The part with the number `number` of a mesh and of its uniform refinements, levels zero to `refinements`; all
@@ -175,24 +175,15 @@ impl<const D: usize> Hierarchy<D> {
 /// Fewest subdivisions of a level that serves as a coarser one.
 const COARSEST: usize = 4;
 
-/// From which the meshes of a hierarchy are refined.
-pub(crate) enum Coarsest<'a, const D: usize> {
-    /// A built-in domain.
-    Domain(&'a Domain<D>),
-    /// An input mesh.
-    Mesh(&'a Mesh<D>),
-}
-
-impl<const D: usize> Coarsest<'_, D> {
-    /// The levels of the hierarchy that ends with a level, coarsest first; no level of a domain but the last
+/// The hierarchies of a domain: of a built-in one, or of the mesh of a file.
+impl<const D: usize> Hierarchy<D> {
+    /// The levels of the hierarchy that ends with a level, coarsest first; no level of a built-in domain but the last
     /// is less than `coarsest`.
-    fn levels(&self, level: usize, coarsest: usize) -> Vec<usize> {
+    fn levels_of(domain: &Domain<D>, level: usize, coarsest: usize) -> Vec<usize> {
         let mut levels = vec![level];
-        let coarser = |level: usize| match self {
-            Self::Mesh(_) => level.checked_sub(1),
-            Self::Domain(_) => {
-                (level.is_multiple_of(2) && level / 2 >= coarsest).then_some(level / 2)
-            }
+        let coarser = |level: usize| match domain {
+            Domain::Mesh(_) => level.checked_sub(1),
+            _ => (level.is_multiple_of(2) && level / 2 >= coarsest).then_some(level / 2),
         };
         while let Some(next) = levels.last().and_then(|&l| coarser(l)) {
             levels.push(next);
@@ -201,28 +192,23 @@ impl<const D: usize> Coarsest<'_, D> {
         levels
     }
 
-    /// The levels of the hierarchy that ends with a level, coarsest first.
-    pub fn levels_to(&self, level: usize) -> Vec<usize> {
-        self.levels(level, COARSEST)
-    }
-
-    /// The fewest hierarchies that have all of these levels.
+    /// The fewest hierarchies that have all of these levels of a domain.
     ///
     /// # Errors
-    /// Those of [`Coarsest::build`].
-    pub fn build_all(&self, levels: &[usize]) -> Result<Vec<Hierarchy<D>>, Error> {
-        Self::all_by(levels, |level| self.build(level))
+    /// Those of [`Hierarchy::of_domain`].
+    pub(crate) fn all_of_domain(domain: &Domain<D>, levels: &[usize]) -> Result<Vec<Self>, Error> {
+        Self::all_by(levels, |level| Self::of_domain(domain, level))
     }
 
     /// The fewest hierarchies that have all of these levels, each built by a function of its finest level.
     ///
     /// # Errors
     /// Those of the function.
-    pub fn all_by(
+    pub(crate) fn all_by(
         levels: &[usize],
-        build: impl Fn(usize) -> Result<Hierarchy<D>, Error>,
-    ) -> Result<Vec<Hierarchy<D>>, Error> {
-        let mut hierarchies: Vec<Hierarchy<D>> = Vec::new();
+        build: impl Fn(usize) -> Result<Self, Error>,
+    ) -> Result<Vec<Self>, Error> {
+        let mut hierarchies: Vec<Self> = Vec::new();
         for level in descending(levels) {
             if !hierarchies.iter().any(|h| h.position(level).is_some()) {
                 hierarchies.push(build(level)?);
@@ -231,114 +217,91 @@ impl<const D: usize> Coarsest<'_, D> {
         Ok(hierarchies)
     }
 
-    /// The hierarchy that ends with a level.
+    /// As [`Hierarchy::of_domain`]; no mesh of a built-in domain but the last has a level less than `coarsest`.
     ///
     /// # Errors
-    /// Those of [`Coarsest::check`] and of refinement.
-    pub fn build(&self, level: usize) -> Result<Hierarchy<D>, Error> {
-        self.build_from(level, COARSEST)
-    }
-
-    /// The hierarchy that ends with a level; no mesh of a domain but the last has a level less than
-    /// `coarsest`.
-    ///
-    /// # Errors
-    /// Those of [`Coarsest::check`] and of refinement.
-    pub fn build_from(&self, level: usize, coarsest: usize) -> Result<Hierarchy<D>, Error> {
-        compiled!(const D: fn(&Coarsest<'_, D>, usize, usize) -> Result<Hierarchy<D>, Error>
-                = |of, level, coarsest| of.build_meshes(level, coarsest)
-        )(self, level, coarsest)
-    }
-    fn build_meshes(&self, level: usize, coarsest: usize) -> Result<Hierarchy<D>, Error> {
-        self.check(level)?;
-        let levels = self.levels(level, coarsest);
-        let first = || {
-            Ok(Piece::Whole(match self {
-                Self::Mesh(mesh) => (*mesh).clone(),
-                Self::Domain(domain) => domain.mesh(levels[0])?,
-            }))
-        };
-        Hierarchy::build(&levels, first, self.domain(), None)
-    }
-    fn domain(&self) -> Option<&Domain<D>> {
-        match self {
-            Self::Domain(domain) => Some(domain),
-            Self::Mesh(_) => None,
-        }
+    /// Those of [`Hierarchy::of_domain`].
+    pub(crate) fn of_domain_from(
+        domain: &Domain<D>,
+        level: usize,
+        coarsest: usize,
+    ) -> Result<Self, Error> {
+        compiled!(const D: fn(&Domain<D>, usize, usize) -> Result<Hierarchy<D>, Error>
+            = |domain, level, coarsest| {
+                check_level(domain, level)?;
+                let levels = Hierarchy::levels_of(domain, level, coarsest);
+                let first = || Ok(Piece::Whole(domain.mesh(levels[0])?));
+                Hierarchy::build(&levels, first, Some(domain), None)
+            }
+        )(domain, level, coarsest)
     }
 
     /// The parts of the hierarchy that ends with a level; its coarsest mesh has enough cells for each process. All
     /// processes call it.
     ///
     /// # Errors
-    /// Those of [`Coarsest::build`] and of [`Hierarchy::of_parts`].
-    pub fn build_parts(
-        &self,
+    /// Those of [`Hierarchy::of_domain`] and of [`Hierarchy::of_parts`].
+    pub(crate) fn of_domain_in_parts(
+        domain: &Domain<D>,
         level: usize,
         layers: impl Fn(&Mesh<D>) -> Layers,
         process: (u32, &Arc<dyn Exchange>),
-    ) -> Result<Hierarchy<D>, Error> {
-        self.check(level)?;
-        let mut levels = self.levels_to(level);
+    ) -> Result<Self, Error> {
+        check_level(domain, level)?;
+        let mut levels = Self::levels_of(domain, level, COARSEST);
         let least = CELLS_OF_PART * process.1.parts() as f64;
-        while levels.len() > 1 && self.cells(levels[0]) < least {
+        while levels.len() > 1 && domain.cells(levels[0]) < least {
             levels.remove(0);
         }
-        let first = self.build(levels[0])?;
+        let first = Self::of_domain(domain, levels[0])?;
         let coarsest = first.finest();
-        Hierarchy::build_parts(&levels, (coarsest, self.domain()), layers(coarsest), process)
+        Self::build_parts(&levels, (coarsest, Some(domain)), layers(coarsest), process)
     }
+}
 
-    /// The number of cells of a level.
-    pub fn cells(&self, level: usize) -> f64 {
-        match self {
-            Self::Mesh(mesh) => (mesh.n_cells() as f64) * 2_f64.powi(D as i32).powf(level as f64),
-            Self::Domain(domain) => domain.cells(level),
+/// Checks the number and size of the cells of a level of a domain before any mesh is built.
+pub(crate) fn check_level<const D: usize>(domain: &Domain<D>, level: usize) -> Result<(), Error> {
+    let refuse = |parameter, value, allowed| Err(Error::Parameter { parameter, value, allowed });
+    let is_mesh = domain.is_mesh();
+    if !is_mesh {
+        let domain = domain.bounding_box();
+        let sides = domain.upper - domain.lower;
+        if let Some(side) = sides.iter().find(|side| !(**side > 0.0 && side.is_finite())) {
+            let allowed = "positive and finite, the upper corner less the lower one".to_owned();
+            return refuse("side of the domain", side.to_string(), allowed);
         }
     }
-
-    /// Checks the number and size of the cells of a level before any mesh is built.
-    pub fn check(&self, level: usize) -> Result<(), Error> {
-        let refuse =
-            |parameter, value, allowed| Err(Error::Parameter { parameter, value, allowed });
-        if let Self::Domain(domain) = self {
-            let domain = domain.bounding_box();
-            let sides = domain.upper - domain.lower;
-            if let Some(side) = sides.iter().find(|side| !(**side > 0.0 && side.is_finite())) {
-                let allowed = "positive and finite, the upper corner less the lower one".to_owned();
-                return refuse("side of the domain", side.to_string(), allowed);
-            }
-        }
-        let cells = self.cells(level);
-        // 32-bit indices number the unknowns and matrix entries of a discontinuous space
-        let limit = f64::from(u32::MAX) / ((D + 1) * (D + 1) * (D + 2)) as f64;
-        if cells > limit {
-            let kind = match self {
-                Self::Domain(_) => "subdivisions of the shortest side",
-                Self::Mesh(_) => "refinements of the mesh",
-            };
-            let allowed = format!(
-                "so many {kind} would make {cells:.1e} cells, at most {limit:.1e} are possible"
-            );
-            return refuse("level", level.to_string(), allowed);
-        }
-        // the constructor of an input mesh checks its cells
-        let Self::Domain(domain) = self else { return Ok(()) };
-        if level == 0 {
-            let allowed = "a built-in mesh has at least one subdivision of its shortest side; refinements, from 0, are those of a mesh file".to_owned();
-            return refuse("level", "0".to_owned(), allowed);
-        }
-        // squares and volumes of cells, and their reciprocals, must be in the range of floating-point numbers
-        let power = D.max(2) as i32;
-        let outside = |&h: &f64| !(h.powi(power).is_normal() && h.powi(-power).is_normal());
-        match domain.spacings(level).into_iter().find(outside) {
-            None => Ok(()),
-            Some(h) => refuse(
-                "spacing",
-                format!("{h:.1e}"),
-                "one whose powers up to the dimension are floating-point numbers; choose another scale or level".to_owned(),
-            ),
-        }
+    let cells = domain.cells(level);
+    // 32-bit indices number the unknowns and matrix entries of a discontinuous space
+    let limit = f64::from(u32::MAX) / ((D + 1) * (D + 1) * (D + 2)) as f64;
+    if cells > limit {
+        let kind = match is_mesh {
+            true => "refinements of the mesh",
+            false => "subdivisions of the shortest side",
+        };
+        let allowed = format!(
+            "so many {kind} would make {cells:.1e} cells, at most {limit:.1e} are possible"
+        );
+        return refuse("level", level.to_string(), allowed);
+    }
+    // the constructor of an input mesh checks its cells
+    if is_mesh {
+        return Ok(());
+    }
+    if level == 0 {
+        let allowed = "a built-in mesh has at least one subdivision of its shortest side; refinements, from 0, are those of a mesh file".to_owned();
+        return refuse("level", "0".to_owned(), allowed);
+    }
+    // squares and volumes of cells, and their reciprocals, must be in the range of floating-point numbers
+    let power = D.max(2) as i32;
+    let outside = |&h: &f64| !(h.powi(power).is_normal() && h.powi(-power).is_normal());
+    match domain.spacings(level).into_iter().find(outside) {
+        None => Ok(()),
+        Some(h) => refuse(
+            "spacing",
+            format!("{h:.1e}"),
+            "one whose powers up to the dimension are floating-point numbers; choose another scale or level".to_owned(),
+        ),
     }
 }
 
@@ -364,8 +327,8 @@ mod tests {
     #[test]
     fn levels_that_are_refinements_of_each_other_share_a_hierarchy() {
         let scene = scenes::radial::<2>(1.0);
-        let coarsest = Coarsest::<2>::Domain(&scene.domain);
-        let hierarchies = coarsest.build_all(&[8, 12, 16, 6, 7]).unwrap();
+        let levels = [8, 12, 16, 6, 7];
+        let hierarchies = Hierarchy::<2>::all_of_domain(&scene.domain, &levels).unwrap();
         let levels: Vec<Vec<usize>> =
             hierarchies.iter().map(|h| h.meshes.iter().map(|m| m.level).collect()).collect();
         assert_eq!(levels, [vec![4, 8, 16], vec![6, 12], vec![7]]);

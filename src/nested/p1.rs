@@ -7,13 +7,13 @@ use std::time::Instant;
 use super::cascade::solve_cascade;
 use super::meshes::Meshes;
 use super::solved::Solved;
-use super::system::{Place, System, SystemSolver};
-use crate::algebra::{Bound, Contact, Inequality, SparseMatrix, Start, Support};
+use super::system::{MeshOfSystem, System, SystemSolver};
+use crate::algebra::{Bound, Contact, DofLocation, Inequality, SparseMatrix, Start};
 use crate::assemble::DataQuadrature;
 use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::inequality::initial_guess::{
-    P1_ENERGY_TOLERANCE, contact_of_supports, means_over_supports,
+    P1_ENERGY_TOLERANCE, contact_of_locations, means_over_locations,
 };
 use crate::inequality::{InitialGuess, Outcome, StepCounter};
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level};
@@ -66,15 +66,15 @@ impl P1Solution {
     }
 
     /// The starting contact of unknowns: an unknown starts in contact if more than half of the vertices
-    /// of its support are in contact.
-    pub(super) fn contact_of(&self, supports: &[Support]) -> Vec<Contact> {
-        contact_of_supports(supports, &self.contact)
+    /// of its location are in contact.
+    pub(super) fn contact_of(&self, locations: &[DofLocation]) -> Vec<Contact> {
+        contact_of_locations(locations, &self.contact)
     }
 
-    /// The starting values of unknowns: the means of values over the vertices of each support; none
+    /// The starting values of unknowns: the means of values over the vertices of each location; none
     /// without values.
-    pub(super) fn values_of(&self, supports: &[Support]) -> Option<Vec<f64>> {
-        (!self.values.is_empty()).then(|| means_over_supports(supports, &self.values))
+    pub(super) fn values_of(&self, locations: &[DofLocation]) -> Option<Vec<f64>> {
+        (!self.values.is_empty()).then(|| means_over_locations(locations, &self.values))
     }
 }
 
@@ -231,8 +231,8 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
     }
 
     /// A mesh, by its position, with the quadrature of data.
-    pub fn place(&self, position: usize) -> Place<'a, D> {
-        Place {
+    pub fn place(&self, position: usize) -> MeshOfSystem<'a, D> {
+        MeshOfSystem {
             mesh: self.meshes.mesh(position),
             shared: self.meshes.shared_part(position),
             quadrature: self.quadrature,

@@ -40,10 +40,10 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         if let Some(start) = start {
             // a start without contact stays cold: the solver must detect a body that only contact holds
             if start.contact.iter().any(|&c| c != Contact::Inactive) {
-                inequality.start = Start::Contact(start.contact_of(&inequality.supports));
+                inequality.start = Start::Contact(start.contact_of(&inequality.locations));
             }
             guess.coarse_spaces = start.coarse_spaces.clone();
-            guess.values = start.values_of(&inequality.supports);
+            guess.values = start.values_of(&inequality.locations);
         }
         guess
     }

@@ -18,7 +18,7 @@ use crate::scheme::Scheme;
 
 /// A mesh, or the part of a mesh that one process has, with the quadrature of data on it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place<'a, const D: usize> {
+pub(super) struct MeshOfSystem<'a, const D: usize> {
     pub mesh: &'a Mesh<D>,
     pub shared: Option<SharedPart<'a, D>>,
     pub quadrature: DataQuadrature,
@@ -29,7 +29,7 @@ pub(super) struct Place<'a, const D: usize> {
 pub struct System<'a, const D: usize> {
     pub(super) discretisation: Discretisation<'a, D>,
     pub(super) inequality: Inequality<f64>,
-    place: Place<'a, D>,
+    place: MeshOfSystem<'a, D>,
     over_parts: Option<Arc<OverParts>>,
     /// Seconds of assembly.
     pub(crate) assemble_seconds: f64,
@@ -45,7 +45,7 @@ impl<'a, const D: usize> System<'a, D> {
     pub(super) fn new(
         scheme: &dyn Scheme<D>,
         problem: &'a Problem<D>,
-        place: Place<'a, D>,
+        place: MeshOfSystem<'a, D>,
     ) -> Result<Self, Error> {
         let clock = Instant::now();
         let assemble = || {

@@ -6,7 +6,7 @@ use crate::assemble::Discretisation;
 use crate::constraint::CellMeans;
 use crate::inequality::{Outcome, Solution};
 use crate::input::excerpt;
-use crate::mesh::{BoundaryPart, Mesh, describe_point};
+use crate::mesh::{BoundaryCondition, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Problem};
 use crate::real::Precision;
 use crate::scheme::Scheme;
@@ -150,7 +150,7 @@ pub(super) fn dirichlet_jumps<const D: usize>(problem: &Problem<D>, mesh: &Mesh<
     else {
         return Vec::new();
     };
-    let of_facets = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Dirichlet);
+    let of_facets = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Dirichlet);
     let mut values: Vec<(u32, usize, f64)> = Vec::new();
     for facet in of_facets {
         let group = usize::from(facet.group);

@@ -2,12 +2,9 @@
 
 pub(crate) mod csv;
 pub(crate) mod html;
-pub(crate) mod latex;
 mod pages;
 mod provenance;
 mod report;
-pub(crate) mod table;
 
-pub use latex::LATEX_PACKAGES;
+pub use crate::table::{LATEX_PACKAGES, Table};
 pub use provenance::Provenance;
-pub use table::Table;

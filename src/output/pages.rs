@@ -2,61 +2,16 @@
 
 use std::path::Path;
 
-use serde_json::Value;
-
-use super::csv::flatten;
-use super::html::{HtmlCell, HtmlPage, HtmlTable};
-use super::table::{Cell, Table};
-use crate::input::beginning;
-use crate::study::rates::rates;
-use crate::study::remarks::{failure, warnings};
+use super::html::{HtmlPage, Section};
+#[cfg(feature = "plot")]
+use crate::plot::overview;
+use crate::study::orders::rates::rates;
 use crate::study::row::distinct;
-use crate::study::table::{Column, columns, heading, limits, scenes, totals, unproven};
+use crate::study::tables::levels::{Column, columns, heading, limits, scenes, totals, unproven};
+use crate::study::tables::remarks::{failure, warnings};
+use crate::study::tables::summary::{lead, summaries};
 use crate::study::{Program, Report, Row, file_name};
-
-/// Columns of the page that are shown at first, by their keys.
-const SHOWN: [&str; 20] = [
-    "against",
-    "label",
-    "level",
-    "mesh_size",
-    "unknowns",
-    "status",
-    "message",
-    "error.l2",
-    "order.l2",
-    "error.h1",
-    "order.h1",
-    "error.broken_energy",
-    "bound.discrete",
-    "order.bound",
-    "energy",
-    "contact_measure",
-    "resultant",
-    "active",
-    "iterations.outer",
-    "seconds.total",
-];
-/// Columns of tables in LaTeX: what fits into the width of a page.
-const PRINTED: [&str; 17] = [
-    "scheme",
-    "solver",
-    "n",
-    "step",
-    "unknowns",
-    "bound",
-    "L2",
-    "order",
-    "H1",
-    "energy norm",
-    "energy",
-    "contact",
-    "resultant",
-    "outer",
-    "solve",
-    "stages (outer)",
-    "total",
-];
+use crate::table::{Cell, Table};
 
 impl Report {
     /// Program and settings in one line.
@@ -73,8 +28,8 @@ impl Report {
     /// Two tables for each scene, with the columns of the tables for a terminal: errors and times, then
     /// energy, contact measure, resultant, error bound and stages.
     pub fn tables(&self) -> Vec<Table> {
-        let tables = |(scene, rows): (&str, Vec<&Row>)| {
-            [Some(table(scene, &rows)), second(scene, &rows)].into_iter().flatten()
+        let tables = |(scene, rows): (String, Vec<&Row>)| {
+            [Some(table(&scene, &rows)), second(&scene, &rows)].into_iter().flatten()
         };
         scenes(&self.rows).into_iter().flat_map(tables).collect()
     }
@@ -85,114 +40,70 @@ impl Report {
         format!("# Comparison\n\n{}\n\n{}", self.heading(), tables.join("\n"))
     }
 
-    /// The tables in LaTeX, with the columns that fit into the width of a page; see
-    /// [`LATEX_PACKAGES`](super::LATEX_PACKAGES).
-    pub fn latex_tables(&self) -> Vec<Table> {
-        let mut tables = self.tables();
-        for table in &mut tables {
-            let kept: Vec<bool> =
-                table.columns.iter().map(|name| PRINTED.contains(&&**name)).collect();
-            let retain = |cells: &mut Vec<_>| {
-                let mut kept = kept.iter();
-                cells.retain(|_| kept.next() == Some(&true));
-            };
-            table.rows.iter_mut().for_each(retain);
-            let mut kept = kept.iter();
-            table.columns.retain(|_| kept.next() == Some(&true));
-        }
-        tables
-    }
-
-    /// The report as a page: every number of every row, and the pictures `SCENE-LABEL.svg` that are in the
-    /// directory.
+    /// The report as a page, which links the pictures `SCENE-LABEL.svg` that are in the directory.
     pub(super) fn page(&self, directory: &Path) -> HtmlPage {
-        let series = distinct(self.rows.iter().map(|r| [&r.label, &r.solver]));
-        let name =
-            |&[label, solver]: &[&String; 2]| match self.rows.iter().all(|r| r.solver == *solver) {
-                true => label.clone(),
-                false => format!("{label}, {solver}"),
-            };
-        let mut keys = Vec::new();
-        let mut tables = Vec::new();
-        for (scene, rows) in scenes(&self.rows) {
-            let mut cells = Vec::new();
-            for row in &rows {
-                let place = series.iter().position(|s| *s == [&row.label, &row.solver]);
-                // plain data with string keys: its serialisation cannot fail
-                let value = serde_json::to_value(row).unwrap_or(Value::Null);
-                let mut found = Vec::new();
-                flatten("", &value, &mut found);
-                cells.push((place, found));
-            }
-            // constant columns are in the title of the table, empty ones nowhere
-            let mut names = distinct(cells.iter().flat_map(|(_, row)| row.iter().map(|of| &of.0)));
-            // objects of a row that failed are null and have no keys
-            let text = |row: &[(String, String)], name: &str| {
-                row.iter().find(|(key, _)| key == name).map_or(String::new(), |of| of.1.clone())
-            };
-            let is_there = |key: &str| cells.iter().any(|(_, row)| !text(row, key).is_empty());
-            names.retain(|key| is_there(key) && *key != "scene" && *key != "dimension");
-            let columns = names.iter().map(|key| place_of(&mut keys, key)).collect();
-            let rows_of_table = cells.iter().map(|(place, row)| {
-                (*place, names.iter().map(|key| html_cell(&text(row, key))).collect())
-            });
-            tables.push(HtmlTable {
-                title: format!("{scene}, dimension {}", rows[0].dimension),
-                columns,
-                rows: rows_of_table.collect(),
-                remarks: [heading(&rows)]
-                    .into_iter()
-                    .chain(limits(&rows))
-                    .chain(rates(&rows))
-                    .chain(unproven(&rows))
-                    .collect(),
-            });
-        }
-        let mut pictures = Vec::new();
-        for (scene, label, solver) in
-            distinct(self.rows.iter().map(|r| (&r.scene, &r.label, &r.solver)))
-        {
-            let is_alone = self.rows.iter().all(|r| r.solver == *solver);
-            let of = if is_alone { label.clone() } else { format!("{label}-{solver}") };
-            let path = directory.join(file_name(&format!("{scene}-{of}")) + ".svg");
-            if let Ok(svg) = std::fs::read_to_string(path) {
-                pictures.push((format!("{of} on {scene}"), svg));
-            }
-        }
+        let of_scene = |(scene, rows): (String, Vec<&Row>)| Section {
+            tables: [Some(table(&scene, &rows)), second(&scene, &rows)]
+                .into_iter()
+                .flatten()
+                .collect(),
+            pictures: self.pictures(&rows[0].scene, directory),
+            title: scene,
+            ..Section::default()
+        };
         HtmlPage {
             title: "Comparison of schemes".to_owned(),
-            paragraphs: vec![self.heading()],
-            columns: keys
-                .iter()
-                .map(|key| (beginning(key.as_bytes(), 80), SHOWN.contains(&&**key)))
+            lead: lead(&self.rows),
+            summary: summaries(&self.rows),
+            plots: self.overview(),
+            sections: [self.plots()]
+                .into_iter()
+                .flatten()
+                .chain(scenes(&self.rows).into_iter().map(of_scene))
                 .collect(),
-            series: series.iter().map(name).collect(),
-            tables,
-            drawings: Vec::new(),
-            pictures,
+            provenance: [self.heading()].into_iter().chain(self.program.command.clone()).collect(),
         }
     }
-}
 
-/// The place of a key in a list, to which it is added if need be.
-fn place_of(keys: &mut Vec<String>, key: &str) -> usize {
-    keys.iter().position(|k| k == key).unwrap_or_else(|| {
-        keys.push(key.to_owned());
-        keys.len() - 1
-    })
-}
+    /// The plots of the first screen.
+    #[cfg(feature = "plot")]
+    fn overview(&self) -> Vec<(String, String)> {
+        let titles = ["Error against time", "Error against mesh size"].map(str::to_owned);
+        let figures = overview(&self.rows).map(|figure| figure.to_svg());
+        titles.into_iter().zip(figures).collect()
+    }
+    #[cfg(not(feature = "plot"))]
+    fn overview(&self) -> Vec<(String, String)> {
+        Vec::new()
+    }
 
-/// The cell of a value: numbers in four digits, with all digits beside the pointer.
-fn html_cell(text: &str) -> HtmlCell {
-    let is_whole = text.bytes().all(|b| b.is_ascii_digit());
-    let number = text.parse::<f64>().ok();
-    let short = number.filter(|_| !is_whole).map(|x| match x.abs() {
-        0.0 => "0".to_owned(),
-        a if (0.01..1e4).contains(&a) => format!("{x:.4}"),
-        _ => format!("{x:.3e}"),
-    });
-    let full = short.is_some().then(|| text.to_owned());
-    HtmlCell { text: short.unwrap_or_else(|| text.to_owned()), full, is_number: number.is_some() }
+    /// The section of the plots with all errors, which stand beside the page.
+    fn plots(&self) -> Option<Section> {
+        let plot = |file: &str, title: &str| (title.to_owned(), file.to_owned());
+        cfg!(feature = "plot").then(|| Section {
+            title: "All scenes".to_owned(),
+            pictures: vec![
+                plot("convergence.svg", "Errors against mesh size"),
+                plot("work_precision.svg", "Error against time"),
+            ],
+            ..Section::default()
+        })
+    }
+
+    /// The pictures of a scene: titles and files.
+    fn pictures(&self, scene: &str, directory: &Path) -> Vec<(String, String)> {
+        let mut pictures = Vec::new();
+        let of_scene = self.rows.iter().filter(|r| r.scene == scene);
+        for (label, solver) in distinct(of_scene.map(|r| (&r.label, &r.solver))) {
+            let is_alone = self.rows.iter().all(|r| r.solver == *solver);
+            let of = if is_alone { label.clone() } else { format!("{label}-{solver}") };
+            let file = file_name(&format!("{scene}-{of}")) + ".svg";
+            if directory.join(&file).exists() {
+                pictures.push((format!("{of} on {scene}"), file));
+            }
+        }
+        pictures
+    }
 }
 
 /// The table of a scene.

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::csv;
-use super::latex::latex_files;
 use crate::error::Error;
 use crate::files::replace_text;
 #[cfg(feature = "plot")]
 use crate::plot::{convergence, work_precision};
-use crate::study::{Report, Row, file_name};
+use crate::study::tables::summary::summaries;
+use crate::study::{Report, Series, Variant, file_name};
+use crate::table::latex_document;
 
 impl Report {
     /// Rows as comma-separated values after a header of keys, nested keys joined by dots (`error.l2`,
@@ -26,17 +27,15 @@ impl Report {
     /// has no file of this one beside it.
     pub fn remove_files(&self, directory: impl AsRef<Path>) {
         let mut names: Vec<String> =
-            ["csv", "md", "html"].map(|end| format!("report.{end}")).into();
-        let tables = latex_files("report", &[], &self.latex_tables(), &[]);
-        names.extend(tables.into_iter().map(|(name, _)| name));
+            ["csv", "md", "tex", "html"].map(|end| format!("report.{end}")).into();
         for plot in ["convergence", "work_precision"] {
             names.push(format!("{plot}.svg"));
         }
-        for Row { scene, label, solver, level, .. } in &self.rows {
+        for Series { variant: Variant { scene, label, solver, .. }, rows, .. } in self.series() {
             for stem in [format!("{scene}-{label}"), format!("{scene}-{label}-{solver}")] {
                 let stem = file_name(&stem);
                 names.extend(["svg", "vtu", "pvd"].map(|end| format!("{stem}.{end}")));
-                names.push(format!("{stem}-{level}.vtu"));
+                names.extend(rows.iter().map(|row| format!("{stem}-{}.vtu", row.level)));
             }
         }
         for name in names {
@@ -45,12 +44,10 @@ impl Report {
         }
     }
 
-    /// Writes `report.json`, `report.csv`, `report.md`, `report.tex`, every table of that as
-    /// `table-TITLE.tex`, the plots `convergence.svg` and `work_precision.svg`, and
-    /// `report.html` into a directory, which is made if need be. Returns the files in order. The page has
-    /// the pictures `SCENE-LABEL.svg` that are in the directory. Without the feature `plot` there are no
-    /// plots. Each file is replaced as a whole: a
-    /// reader never sees a part of it.
+    /// Writes `report.json`, `report.csv`, `report.md`, `report.tex`, the plots `convergence.svg` and
+    /// `work_precision.svg`, and `report.html` into a directory, which is made if need be. Returns the files in
+    /// order. The page shows these plots and the pictures `SCENE-LABEL.svg` of the directory. Without the feature
+    /// `plot` there are no plots. Each file is replaced as a whole: a reader never sees a part of it.
     ///
     /// # Errors
     /// [`Error::Write`] of the first file that cannot be written; the others are written all the same.
@@ -63,19 +60,15 @@ impl Report {
         put("report.json", &self.to_json());
         put("report.csv", &self.to_csv());
         put("report.md", &self.to_markdown());
-        for (name, text) in latex_files("report", &[], &self.latex_tables(), &[]) {
-            put(&name, &text);
-        }
-        #[cfg_attr(not(feature = "plot"), expect(unused_mut))]
-        let mut page = self.page(directory);
+        put("report.tex", &latex_document(&[], &summaries(&self.rows)));
         #[cfg(feature = "plot")]
-        for (name, title, figure) in [
-            ("convergence.svg", "Error against mesh size", convergence(&self.rows)),
-            ("work_precision.svg", "Error against time", work_precision(&self.rows)),
+        for (name, figure) in [
+            ("convergence.svg", convergence(&self.rows)),
+            ("work_precision.svg", work_precision(&self.rows)),
         ] {
-            results.push(replace_text(&directory.join(name), &figure.to_svg()));
-            page.draw(title, &figure);
+            put(name, &figure.to_svg());
         }
+        let page = self.page(directory);
         results.push(replace_text(&directory.join("report.html"), &page.to_html()));
         results.into_iter().collect()
     }

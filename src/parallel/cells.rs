@@ -1,4 +1,4 @@
-//! Parallel loops of the assembly over chunks of cells, rows or patches.
+//! Parallel loops of the assembly over chunks of cells or rows.
 //!
 //! The work on a chunk is a `dyn Fn`, so that a loop is compiled once and not once for each scheme.
 
@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::{for_each_item, lock, map_groups, split};
 
-/// Number of items (cells, rows or patches) in a chunk.
+/// Number of items (cells or rows) in a chunk.
 pub(crate) const CHUNK: usize = 1024;
 
 /// Number of chunks of `n` items.

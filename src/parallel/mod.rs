@@ -1,7 +1,7 @@
 //! Parallel loops over chunks, of fixed length where a result depends on it, for the same bits with any number of
 //! threads.
 //!
-//! `cells`: loops of the assembly over cells, rows or patches. `vectors`: loops of solvers over the
+//! `cells`: loops of the assembly over cells or rows. `vectors`: loops of solvers over the
 //! entries of vectors, with inner products and pseudorandom signs.
 //!
 //! Every loop but [`vectors::collect`] ends in [`for_each_index`], so that the task machinery of rayon is compiled once

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{for_each_item, map_indices, map_items};
+use super::map_items;
 use crate::memory::in_large_pages;
 use crate::real::{Real, maximum};
 
@@ -32,7 +32,7 @@ pub(crate) fn pseudorandom_signs() -> impl Iterator<Item = bool> {
 
 /// The Euclidean inner product `x . y`, products and sum in `f64`.
 pub(crate) fn dot<T: Real>(x: &[T], y: &mut [T]) -> f64 {
-    sum_chunks(y, |range, y| {
+    sum_chunks(y, 1, |range, y| {
         let products = x[range].iter().zip(y.iter());
         products.fold(0.0, |sum, (x, y)| sum + x.to_f64() * y.to_f64())
     })
@@ -43,9 +43,50 @@ fn is_sequential(n: usize) -> bool {
     n <= CHUNK || rayon::current_num_threads() == 1
 }
 
+/// The length of chunks that divide no group of `group` consecutive entries.
+pub(crate) const fn chunk_of_groups(group: usize) -> usize {
+    CHUNK / group * group
+}
+
+/// Gathers the values of `work` on the index range and the item of each chunk of `0..n`, in the order of chunks; no
+/// chunk divides a group of `group` consecutive indices.
+fn gather<X: Send, R: Send, G: FromIterator<R>>(
+    n: usize,
+    group: usize,
+    items: impl Iterator<Item = X>,
+    work: impl Fn(Range<usize>, X) -> R + Sync,
+) -> G {
+    let length = chunk_of_groups(group);
+    let one = |k: usize, item: X| work(k * length..((k + 1) * length).min(n), item);
+    if is_sequential(n) {
+        items.enumerate().map(|(k, item)| one(k, item)).collect()
+    } else {
+        map_items(items.collect(), &one).into_iter().collect()
+    }
+}
+
+/// A sum of partial sums, in their order.
+struct Total(f64);
+
+impl FromIterator<f64> for Total {
+    fn from_iter<I: IntoIterator<Item = f64>>(parts: I) -> Self {
+        Self(parts.into_iter().sum())
+    }
+}
+
 /// The values of `work` on the index range of each chunk of `0..n`, in the order of chunks.
 pub(crate) fn map_chunks<R: Send>(n: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
     map_chunks_of_groups(n, 1, work)
+}
+
+/// As [`map_chunks`]; no chunk divides a group of `group` consecutive indices.
+pub(crate) fn map_chunks_of_groups<R: Send>(
+    n: usize,
+    group: usize,
+    work: impl Fn(Range<usize>) -> R + Sync,
+) -> Vec<R> {
+    let items = (0..n.div_ceil(chunk_of_groups(group))).map(|_| ());
+    gather(n, group, items, |range, ()| work(range))
 }
 
 /// Whether a predicate holds for all indices below `n`.
@@ -58,73 +99,28 @@ pub(crate) fn largest(n: usize, work: impl Fn(usize) -> f64 + Sync) -> f64 {
     map_chunks(n, |range| range.map(&work).fold(0.0, maximum)).into_iter().fold(0.0, maximum)
 }
 
-/// The length of chunks that divide no group of `group` consecutive entries.
-pub(crate) const fn chunk_of_groups(group: usize) -> usize {
-    CHUNK / group * group
-}
-
-/// As [`map_chunks`]; no chunk divides a group of `group` consecutive entries.
-pub(crate) fn map_chunks_of_groups<R: Send>(
-    n: usize,
-    group: usize,
-    work: impl Fn(Range<usize>) -> R + Sync,
-) -> Vec<R> {
-    let length = chunk_of_groups(group);
-    let n_ranges = n.div_ceil(length);
-    let one = |k: usize| work(k * length..((k + 1) * length).min(n));
-    if is_sequential(n) { (0..n_ranges).map(one).collect() } else { map_indices(n_ranges, &one) }
-}
-
-/// The sum over the chunks of `x` of the values of `work` for the index range and the entries of a chunk.
+/// The sum over the chunks of `x` of the values of `work` for the index range and the entries of a chunk; no chunk
+/// divides a group of `group` consecutive entries.
 pub(crate) fn sum_chunks<A: Send>(
     x: &mut [A],
-    work: impl Fn(Range<usize>, &mut [A]) -> f64 + Sync,
-) -> f64 {
-    sum_chunks_of_groups(x, 1, work)
-}
-
-/// As [`sum_chunks`]; no chunk divides a group of `group` consecutive entries.
-pub(crate) fn sum_chunks_of_groups<A: Send>(
-    x: &mut [A],
     group: usize,
     work: impl Fn(Range<usize>, &mut [A]) -> f64 + Sync,
 ) -> f64 {
-    let (n, length) = (x.len(), chunk_of_groups(group));
-    let one = |(k, x): (usize, &mut [A])| work(k * length..k * length + x.len(), x);
-    if is_sequential(n) {
-        x.chunks_mut(length).enumerate().map(one).sum()
-    } else {
-        let chunks = x.chunks_mut(length).collect();
-        map_items(chunks, &|k, x| one((k, x))).iter().sum()
-    }
+    let Total(sum) = gather(x.len(), group, x.chunks_mut(chunk_of_groups(group)), work);
+    sum
 }
 
-/// The sum of the values of `work` on the index range and the entries of each chunk of two vectors
-/// of the same length.
+/// As [`sum_chunks`], for two vectors of the same length.
 pub(crate) fn sum_chunks_of_two<A: Send, B: Send>(
     x: &mut [A],
     y: &mut [B],
-    work: impl Fn(Range<usize>, &mut [A], &mut [B]) -> f64 + Sync,
-) -> f64 {
-    sum_chunks_of_groups_of_two(x, y, 1, work)
-}
-
-/// As [`sum_chunks_of_two`]; no chunk divides a group of `group` consecutive entries.
-pub(crate) fn sum_chunks_of_groups_of_two<A: Send, B: Send>(
-    x: &mut [A],
-    y: &mut [B],
     group: usize,
     work: impl Fn(Range<usize>, &mut [A], &mut [B]) -> f64 + Sync,
 ) -> f64 {
     let (n, length) = (x.len(), chunk_of_groups(group));
-    let one =
-        |(k, (x, y)): (usize, (&mut [A], &mut [B]))| work(k * length..k * length + x.len(), x, y);
-    if is_sequential(n) {
-        x.chunks_mut(length).zip(y.chunks_mut(length)).enumerate().map(one).sum()
-    } else {
-        let chunks = x.chunks_mut(length).zip(y.chunks_mut(length)).collect();
-        map_items(chunks, &|k, x_and_y| one((k, x_and_y))).iter().sum()
-    }
+    let chunks = x.chunks_mut(length).zip(y.chunks_mut(length));
+    let Total(sum) = gather(n, group, chunks, |range, (x, y)| work(range, x, y));
+    sum
 }
 
 /// The values of `work` at all indices below `n`, in newly allocated memory that all threads write.
@@ -155,11 +151,5 @@ pub(crate) fn for_each_chunk_of_groups<A: Send>(
     group: usize,
     work: impl Fn(Range<usize>, &mut [A]) + Sync,
 ) {
-    let (n, length) = (x.len(), chunk_of_groups(group));
-    let one = |(k, x): (usize, &mut [A])| work(k * length..k * length + x.len(), x);
-    if is_sequential(n) {
-        x.chunks_mut(length).enumerate().for_each(one);
-    } else {
-        for_each_item(x.chunks_mut(length).collect(), &|k, x| one((k, x)));
-    }
+    gather(x.len(), group, x.chunks_mut(chunk_of_groups(group)), work)
 }

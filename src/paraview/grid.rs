@@ -1,7 +1,6 @@
 //! Points and cells of a VTK grid, linear or quadratic.
 
-use crate::arrays::tabulate;
-use crate::mesh::{Edges, Mesh, edge_vertices};
+use crate::mesh::{CellGeometry, Edges, Mesh, edge_vertices};
 use crate::real::Point;
 
 /// Ends of the edges of a line, a triangle and a tetrahedron in the order of the format.
@@ -57,7 +56,7 @@ impl<const D: usize> Grid<D> {
             let mut corners: Vec<usize> = (0..D + 1).collect();
             // Cells of a mesh list their vertices by number, those of the format counterclockwise, or
             // seen from the fourth: otherwise volumes come out negative.
-            if D > 1 && orientation(mesh, cell, &corners) < 0.0 {
+            if D > 1 && !is_positive(mesh, cell, &corners) {
                 corners.swap(D - 1, D);
             }
             grid.push(&numbers[cell * n..(cell + 1) * n], &corners, is_quadratic);
@@ -67,7 +66,7 @@ impl<const D: usize> Grid<D> {
             let mut corners: Vec<usize> = (0..D + 1).filter(|&k| k != local).collect();
             // in space the normal points outwards
             let with_opposite = [&corners[..], &[local]].concat();
-            if D == 3 && orientation(mesh, cell, &with_opposite) > 0.0 {
+            if D == 3 && is_positive(mesh, cell, &with_opposite) {
                 corners.swap(1, 2);
             }
             // linear, since readers of the format do not integrate over quadratic lines
@@ -121,16 +120,7 @@ fn shared<const D: usize>(mesh: &Mesh<D>, u: &[f64], n: usize) -> Option<(Vec<us
     Some((sources, numbers))
 }
 
-/// Positive if the vertices of a cell in this order span a positive volume or area.
-fn orientation<const D: usize>(mesh: &Mesh<D>, cell: usize, order: &[usize]) -> f64 {
-    let vertex = |i: usize| mesh.vertices()[mesh.cell(cell)[order[i]] as usize];
-    let edge = |i: usize| -> [f64; 3] {
-        let step = vertex(i) - vertex(0);
-        tabulate(|k| if k < D { step[k] } else { 0.0 })
-    };
-    let (a, b) = (edge(1), edge(2));
-    let c = if D == 3 { edge(3) } else { [0.0, 0.0, 1.0] };
-    c[0] * (a[1] * b[2] - a[2] * b[1])
-        + c[1] * (a[2] * b[0] - a[0] * b[2])
-        + c[2] * (a[0] * b[1] - a[1] * b[0])
+/// Whether the vertices of a cell in this order span a positive volume or area.
+fn is_positive<const D: usize>(mesh: &Mesh<D>, cell: usize, order: &[usize]) -> bool {
+    CellGeometry::new(|i| mesh.vertices()[mesh.cell(cell)[order[i]] as usize]).is_positive()
 }

@@ -1,10 +1,12 @@
 //! Figures of a report: error against mesh size, and error against time.
 
-use super::layout::{FigureLayout, Layer, Sign};
+use super::layout::{FigureLayout, Sign};
 use super::panel::draw_panel;
 use super::pen::Pen;
-use super::series::{Key, Panel, Quantity, keys, scenes, with_curves};
-use crate::study::Row;
+use super::series::{Panel, Quantity, with_curves};
+use crate::study::row::distinct;
+use crate::study::series::{names, series_of};
+use crate::study::{Row, Series};
 
 /// A drawing that can be written as SVG.
 #[derive(Clone, Debug)]
@@ -12,18 +14,19 @@ pub struct Figure {
     /// The panels, row by row.
     pub(super) panels: Vec<Panel>,
     /// The entries of the legend, shared by the panels.
-    pub(super) keys: Vec<Key>,
+    pub(super) keys: Vec<String>,
     /// Number of panels in a row.
     pub(super) columns: usize,
 }
 
 /// Error against mesh size, with reference slopes: for each scene one panel for the L2 error and
-/// one for the error in the broken H1 seminorm. On adaptive meshes error in the broken energy norm and bound
+/// one for the error in the broken H1 seminorm. With adaptive meshes error in the broken energy norm and bound
 /// against the number of unknowns. A band goes from each error in the energy norm up to the bound on it; where no
 /// error is known the bound itself is shown.
 pub fn convergence(rows: &[Row]) -> Figure {
-    let keys = keys(rows);
-    let scenes = scenes(rows);
+    let series = series_of(rows);
+    let names = names(&series);
+    let scenes = scenes(&series);
     let columns = match scenes.len() {
         0..=3 => 2,
         4..=16 => 4,
@@ -31,26 +34,41 @@ pub fn convergence(rows: &[Row]) -> Figure {
     };
     let panels = scenes
         .iter()
-        .flat_map(|scene| {
-            let (size, errors) = match is_adaptive(rows, scene) {
+        .flat_map(|(scene, series)| {
+            let (size, errors) = match is_adaptive(series) {
                 true => (Quantity::Unknowns, [Quantity::Energy, Quantity::Bound]),
                 false => (Quantity::MeshSize, [Quantity::L2, Quantity::H1]),
             };
-            let panel = |error| Panel::new(rows, &keys, scene, size, error);
-            match has_errors(rows, scene) {
+            let panel = |error| Panel::new((scene, series), &names, size, error);
+            match has_errors(series) {
                 true => with_curves(errors.map(panel).into()),
                 false => with_curves(vec![panel(Quantity::Bound)]),
             }
         })
         .collect();
-    Figure { panels, keys, columns }
+    Figure { panels, keys: names, columns }
 }
 
-/// L2 error against the seconds a run took altogether, one panel for each scene. On adaptive meshes, and where no
+/// The two figures of a first screen, of the first four scenes: error against time, and the same error against mesh
+/// size; one panel for each scene.
+pub(crate) fn overview(rows: &[Row]) -> [Figure; 2] {
+    let first: Vec<&str> =
+        distinct(rows.iter().map(|row| &*row.scene)).into_iter().take(4).collect();
+    let of: Vec<Row> = rows.iter().filter(|row| first.contains(&&*row.scene)).cloned().collect();
+    let time = work_precision(&of);
+    let Figure { panels, keys, .. } = convergence(&of);
+    let errors: Vec<&String> = time.panels.iter().map(|panel| &panel.y).collect();
+    let panels = panels.into_iter().filter(|panel| errors.contains(&&panel.y)).collect();
+    let size = Figure { panels, keys, columns: time.columns };
+    [time, size]
+}
+
+/// L2 error against the seconds a run took altogether, one panel for each scene. With adaptive meshes, and where no
 /// error is known, the error bound against the seconds with those of the bound. Runs that did not converge are marked.
 pub fn work_precision(rows: &[Row]) -> Figure {
-    let keys = keys(rows);
-    let scenes = scenes(rows);
+    let series = series_of(rows);
+    let names = names(&series);
+    let scenes = scenes(&series);
     let columns = match scenes.len() {
         0 | 1 => 1,
         2 | 4 => 2,
@@ -60,26 +78,32 @@ pub fn work_precision(rows: &[Row]) -> Figure {
     };
     let panels = scenes
         .iter()
-        .map(|scene| {
-            let (time, error) = match is_adaptive(rows, scene) || !has_errors(rows, scene) {
+        .map(|(scene, series)| {
+            let (time, error) = match is_adaptive(series) || !has_errors(series) {
                 true => (Quantity::SecondsWithBound, Quantity::Bound),
                 false => (Quantity::Seconds, Quantity::L2),
             };
-            Panel::new(rows, &keys, scene, time, error)
+            Panel::new((scene, series), &names, time, error)
         })
         .flat_map(|panel| with_curves(vec![panel]))
         .collect();
-    Figure { panels, keys, columns }
+    Figure { panels, keys: names, columns }
 }
 
-/// Whether the meshes of a scene are adaptive.
-fn is_adaptive(rows: &[Row], scene: &str) -> bool {
-    rows.iter().any(|row| row.scene == scene && row.theta.is_some())
+/// The series of each scene, in the order in which scenes first occur.
+fn scenes<'s, 'r>(series: &'s [Series<'r>]) -> Vec<(&'s str, Vec<&'s Series<'r>>)> {
+    let of = |scene| (scene, series.iter().filter(|s| s.variant.scene == scene).collect());
+    distinct(series.iter().map(|s| s.variant.scene.as_str())).into_iter().map(of).collect()
+}
+
+/// Whether some meshes of a scene are adaptive.
+fn is_adaptive(series: &[&Series<'_>]) -> bool {
+    series.iter().any(|s| s.variant.meshes.is_adaptive())
 }
 
 /// Whether some error of a scene is known.
-fn has_errors(rows: &[Row], scene: &str) -> bool {
-    rows.iter().any(|row| row.scene == scene && row.error.l2.is_some())
+fn has_errors(series: &[&Series<'_>]) -> bool {
+    series.iter().flat_map(|s| &s.rows).any(|row| row.error.l2.is_some())
 }
 
 impl Figure {
@@ -117,34 +141,12 @@ impl Figure {
 
     /// The figure as the text of an SVG file.
     pub fn to_svg(&self) -> String {
-        let mut pen = Pen::new(self.layout().size, false);
-        self.draw(&mut pen, Layer::All);
-        pen.finish()
-    }
-
-    /// The entries of the legend.
-    pub(crate) fn labels(&self) -> impl Iterator<Item = &String> {
-        self.keys.iter().map(|key| &key.label)
-    }
-
-    /// The figure as the text of an SVG file in which the curve of an entry of the legend is a group of the
-    /// class `s` and the place of the entry in a list, so that a page can hide it.
-    pub(crate) fn to_svg_in_groups(&self, series: &[String]) -> String {
-        let mut pen = Pen::new(self.layout().size, false);
-        self.draw(&mut pen, Layer::Frame);
-        for (key, label) in self.labels().enumerate() {
-            let class = series.iter().position(|name| name == label).unwrap_or(series.len());
-            pen.group(&format!("s{class}"), |pen| self.draw(pen, Layer::Curve(key)));
-        }
-        pen.finish()
-    }
-
-    /// Draws a layer of all panels and of the legend.
-    fn draw(&self, pen: &mut Pen, layer: Layer) {
         let layout = self.layout();
+        let mut pen = Pen::new(layout.size, false);
         for (panel, &at) in self.panels.iter().zip(&layout.panels) {
-            draw_panel(pen, panel, at, layer);
+            draw_panel(&mut pen, panel, at);
         }
-        layout.draw_legend(pen, layer);
+        layout.draw_legend(&mut pen);
+        pen.finish()
     }
 }

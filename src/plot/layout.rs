@@ -1,7 +1,6 @@
 //! Positions of panels and legend.
 
 use super::pen::{Align, Pen, ScreenPoint, text_width};
-use super::series::Key;
 use super::style::{GREY, INK, draw_failed, draw_limit, draw_mark, draw_slope, segment};
 
 /// Width and height of a panel with its labels.
@@ -12,26 +11,6 @@ const LINE: f64 = 22.0;
 const SYMBOL: f64 = 34.0;
 const GAP: f64 = 22.0;
 const TEXT: f64 = 15.0;
-
-/// What of a figure is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Layer {
-    /// All of it.
-    All,
-    /// All but the curves.
-    Frame,
-    /// The curve of a key in all panels and in the legend.
-    Curve(usize),
-}
-
-impl Layer {
-    pub fn has_frame(self) -> bool {
-        !matches!(self, Layer::Curve(_))
-    }
-    pub fn has_curve(self, key: usize) -> bool {
-        self == Layer::All || self == Layer::Curve(key)
-    }
-}
 
 /// A sign that the legend explains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,14 +62,14 @@ pub(crate) struct FigureLayout {
 
 impl FigureLayout {
     /// Panels in a grid, the legend below them in as many lines as it takes.
-    pub fn new(panels: usize, columns: usize, keys: &[Key], signs: &[Sign]) -> Self {
+    pub fn new(panels: usize, columns: usize, keys: &[String], signs: &[Sign]) -> Self {
         let rows = panels.max(1).div_ceil(columns);
         let places = (0..panels).map(|i| {
             (MARGIN + (i % columns) as f64 * PANEL.0, MARGIN + (i / columns) as f64 * PANEL.1)
         });
 
         let mut entries: Vec<Entry> =
-            keys.iter().enumerate().map(|(k, key)| Entry::Curve(k, key.label.clone())).collect();
+            keys.iter().enumerate().map(|(k, key)| Entry::Curve(k, key.clone())).collect();
         entries.extend(signs.iter().copied().map(Entry::Sign));
         // an entry of the legend may be wider than the panels
         let widest = entries.iter().map(Entry::width).fold(columns as f64 * PANEL.0, f64::max);
@@ -120,16 +99,9 @@ impl FigureLayout {
         FigureLayout { size: (width, y - LINE / 2.0 + MARGIN), panels: places.collect(), legend }
     }
 
-    /// Draws the legend of a layer.
-    pub fn draw_legend(&self, pen: &mut Pen, layer: Layer) {
+    /// Draws the legend.
+    pub fn draw_legend(&self, pen: &mut Pen) {
         for ((x, y), entry) in &self.legend {
-            let is_shown = match entry {
-                Entry::Curve(key, _) => layer.has_curve(*key),
-                Entry::Sign(_) => layer.has_frame(),
-            };
-            if !is_shown {
-                continue;
-            }
             let middle = (x + SYMBOL / 2.0, *y);
             match entry {
                 Entry::Curve(key, _) => {

@@ -15,7 +15,8 @@ mod slopes;
 mod style;
 mod sweep;
 
-pub(crate) use cost::{Cost, NamedCurve, cost_figure};
+pub(crate) use cost::{Cost, cost_figure};
+pub(crate) use figure::overview;
 pub use figure::{Figure, convergence, work_precision};
 pub use picture::{Picture, Slice};
 pub(crate) use sweep::{SweepPoint, sweep_figure};

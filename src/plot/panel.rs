@@ -1,7 +1,7 @@
 //! One panel: frame, ticks, curves, marks.
 
 use super::axis::{LogAxis, Tick};
-use super::layout::{Layer, PANEL};
+use super::layout::PANEL;
 use super::pen::{Align, Pen, ScreenPoint};
 use super::series::{Panel, Point};
 use super::slopes::Slopes;
@@ -111,14 +111,12 @@ impl<'a> Frame<'a> {
 }
 
 /// Draws a panel with its upper left corner at a position.
-pub(crate) fn draw_panel(pen: &mut Pen, panel: &Panel, at: ScreenPoint, layer: Layer) {
+pub(crate) fn draw_panel(pen: &mut Pen, panel: &Panel, at: ScreenPoint) {
     let frame = Frame::new(panel);
     let origin = (at.0 + LEFT, at.1 + TOP);
-    if layer.has_frame() {
-        draw_frame(pen, &frame, at, origin);
-    }
+    draw_frame(pen, &frame, at, origin);
     if panel.has_curves() {
-        draw_curves(pen, &frame, origin, layer);
+        draw_curves(pen, &frame, origin);
     }
 }
 
@@ -180,13 +178,13 @@ fn draw_ticks(pen: &mut Pen, frame: &Frame, (left, top): ScreenPoint) {
 
 /// Bands first, then lines, then marks, then failures: what matters most is on top. A line ends where a run
 /// did not converge.
-fn draw_curves(pen: &mut Pen, frame: &Frame, origin: ScreenPoint, layer: Layer) {
+fn draw_curves(pen: &mut Pen, frame: &Frame, origin: ScreenPoint) {
     let places: Vec<Vec<ScreenPoint>> = frame
         .places()
         .into_iter()
         .map(|c| c.into_iter().map(|(x, y)| (origin.0 + x, origin.1 + y)).collect())
         .collect();
-    let curves = || frame.panel.curves.iter().zip(&places).filter(|(c, _)| layer.has_curve(c.key));
+    let curves = || frame.panel.curves.iter().zip(&places);
     for (curve, places) in curves() {
         for (points, ends) in curve.points.windows(2).zip(places.windows(2)) {
             let bound = |k: usize| {

@@ -84,15 +84,6 @@ impl Pen {
         self.text + "</svg>\n"
     }
 
-    /// Draws a group of a class, by which a page can hide it.
-    pub fn group(&mut self, class: &str, draw: impl FnOnce(&mut Self)) {
-        self.close_path();
-        self.push(&format!("<g class=\"{class}\">\n"));
-        draw(self);
-        self.close_path();
-        self.push("</g>\n");
-    }
-
     /// A straight line.
     pub fn line(&mut self, from: ScreenPoint, to: ScreenPoint, width: f64, colour: Colour) {
         self.dashes(from, to, width, colour, &[]);
@@ -291,13 +282,11 @@ mod tests {
     }
 
     #[test]
-    fn text_is_escaped_and_groups_are_closed() {
+    fn text_is_escaped() {
         let lines = drawn(false, |pen| {
             pen.line((0.0, 0.0), (1.0, 0.0), 1.0, BLUE);
-            pen.group("s0", |pen| {
-                pen.dashes((0.0, 0.0), (0.0, 1.0), 1.0, BLUE, &[1.0, 2.0]);
-                pen.power("a & b", "<2", (1.0, 1.0), 10.0, BLUE, Align::Right);
-            });
+            pen.dashes((0.0, 0.0), (0.0, 1.0), 1.0, BLUE, &[1.0, 2.0]);
+            pen.power("a & b", "<2", (1.0, 1.0), 10.0, BLUE, Align::Right);
         });
         let text = "<text x=\"8\" y=\"8\" dy=\"28\" font-size=\"80\" text-anchor=\"end\" fill=\"#0072B2\">\
                     a &amp; b<tspan dy=\"-29\" font-size=\"60\">&lt;2</tspan></text>";
@@ -305,6 +294,6 @@ mod tests {
         let found: Vec<&str> = lines.iter().map(String::as_str).collect();
         let whole = format!("{line} d=\"M0 0h8\"/>");
         let dashed = format!("{line} stroke-dasharray=\"8 16\" d=\"M0 0v8\"/>");
-        assert_eq!(found, [&whole, "<g class=\"s0\">", &dashed, text, "</g>", "</svg>"]);
+        assert_eq!(found, [&whole, &dashed, text, "</svg>"]);
     }
 }

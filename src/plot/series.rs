@@ -1,6 +1,7 @@
 //! Curves of points, taken from rows.
 
-use crate::study::row::{Row, distinct, sort_by_level};
+use crate::study::Series;
+use crate::study::row::{Row, distinct};
 
 /// A number of a row that an axis shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,8 +14,6 @@ pub(crate) enum Quantity {
     SecondsWithBound,
     /// Number of unknowns.
     Unknowns,
-    /// Peak of memory in megabytes, less that of an empty run.
-    Memory,
     /// L2 error.
     L2,
     /// Error in the broken H1 seminorm.
@@ -33,7 +32,6 @@ impl Quantity {
             Quantity::Seconds => "time in s",
             Quantity::SecondsWithBound => "time in s, bound included",
             Quantity::Unknowns => "number of unknowns",
-            Quantity::Memory => "peak memory above that of an empty run in MB",
             Quantity::L2 => "L2 error",
             Quantity::H1 => "broken H1 error",
             Quantity::Energy => "error in the broken energy norm",
@@ -49,7 +47,6 @@ impl Quantity {
             Quantity::Seconds => Some(row.seconds.total.max(1e-6)),
             Quantity::SecondsWithBound => Some(row.seconds_with_bound().max(1e-6)),
             Quantity::Unknowns => row.unknowns.map(|n| n as f64),
-            Quantity::Memory => row.peak_memory_bytes.map(|bytes| bytes as f64 / 1e6),
             Quantity::L2 => row.error.l2,
             Quantity::H1 => row.error.h1,
             Quantity::Energy => row.error.broken_energy,
@@ -98,41 +95,6 @@ pub(crate) struct Orders {
     pub falls_over: Option<u32>,
 }
 
-/// A curve's name: one colour and one mark in all panels.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
-    scheme: String,
-    solver: String,
-    /// The text in the legend.
-    pub label: String,
-}
-
-impl Key {
-    /// A key that is known by its label alone.
-    pub fn labelled(label: &str) -> Self {
-        Key { scheme: label.to_owned(), solver: String::new(), label: label.to_owned() }
-    }
-}
-
-/// The curves of a report by their labels, in the order in which they first occur; the solver is named
-/// where a report has more than one.
-pub(crate) fn keys(rows: &[Row]) -> Vec<Key> {
-    let series = distinct(rows.iter().map(|r| [&r.label, &r.solver]));
-    let key = |&[scheme, solver]: &[&String; 2]| {
-        let mut label = scheme.clone();
-        if series.iter().any(|[_, s]| *s != solver) {
-            label += &format!(", {solver}");
-        }
-        Key { scheme: scheme.clone(), solver: solver.clone(), label }
-    };
-    series.iter().map(key).collect()
-}
-
-/// The scenes of a report, in the order in which they first occur.
-pub(crate) fn scenes(rows: &[Row]) -> Vec<&str> {
-    distinct(rows.iter().map(|r| r.scene.as_str()))
-}
-
 /// One run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Point {
@@ -157,7 +119,7 @@ impl Point {
 /// The runs of one scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Curve {
-    /// Index of its key.
+    /// The place of its name in the legend, which gives colour and mark.
     pub key: usize,
     /// From coarse to fine.
     pub points: Vec<Point>,
@@ -178,18 +140,18 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
-    /// The panel of a scene.
-    pub fn new(rows: &[Row], keys: &[Key], scene: &str, x: Quantity, y: Quantity) -> Self {
-        let curves = keys.iter().enumerate().map(|(key, of)| {
-            let mut runs: Vec<&Row> = rows
-                .iter()
-                .filter(|r| r.scene == scene)
-                .filter(|r| r.label == of.scheme && r.solver == of.solver)
-                .collect();
-            sort_by_level(&mut runs);
-            Curve { key, points: runs.iter().filter_map(|r| Point::of(r, x, y)).collect() }
+    /// The panel of a scene: a curve for each of its series.
+    pub fn new(
+        (scene, series): (&str, &[&Series<'_>]),
+        names: &[String],
+        x: Quantity,
+        y: Quantity,
+    ) -> Self {
+        let curves = series.iter().filter_map(|of| {
+            let key = names.iter().position(|name| *name == of.name)?;
+            Some(Curve { key, points: of.rows.iter().filter_map(|r| Point::of(r, x, y)).collect() })
         });
-        let of_scene = || rows.iter().filter(|r| r.scene == scene);
+        let of_scene = || series.iter().flat_map(|of| of.rows.iter().copied());
         let orders = match x {
             Quantity::MeshSize => y.orders(of_scene()),
             // the best rate of linears, on any meshes

@@ -1,7 +1,7 @@
 //! Numbers over the parameter of a sweep.
 
 use super::figure::Figure;
-use super::series::{Curve, Key, Orders, Panel, Point};
+use super::series::{Curve, Orders, Panel, Point};
 use crate::study::row::distinct;
 
 /// A number at a place of a sweep.
@@ -59,6 +59,6 @@ pub(crate) fn sweep_figure(points: &[SweepPoint]) -> Option<Figure> {
         2 | 4 => 2,
         _ => 3,
     };
-    let keys = drawn.iter().map(|&key| Key::labelled(series[key])).collect();
+    let keys = drawn.iter().map(|&key| series[key].clone()).collect();
     (!panels.is_empty()).then_some(Figure { panels, keys, columns })
 }

@@ -111,12 +111,20 @@ impl<const D: usize> Datum<D> {
         Datum::Polynomial { value: Arc::new(value), degree }
     }
     /// The value at a point.
+    #[inline(always)]
     pub fn at(&self, x: &Point<D>) -> f64 {
         match self {
             Datum::Constant(c) => *c,
             Datum::Function(value)
             | Datum::Polynomial { value, .. }
             | Datum::Piecewise { value, .. } => value(x),
+        }
+    }
+    /// The value of a constant.
+    pub(crate) fn constant(&self) -> Option<f64> {
+        match self {
+            Datum::Constant(c) => Some(*c),
+            _ => None,
         }
     }
     /// The degree of a polynomial, where it is known.

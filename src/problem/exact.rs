@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::datum::{Field, VectorField};
+use super::datum::{Datum, Field, VectorField};
 use crate::real::Point;
 
 /// The exact solution, for error norms, and for Dirichlet and Neumann data where the problem has
@@ -12,7 +12,7 @@ use crate::real::Point;
 #[non_exhaustive]
 pub struct Exact<const D: usize> {
     /// The solution.
-    pub value: Field<D>,
+    pub value: Datum<D>,
     /// The gradient of the solution.
     pub gradient: VectorField<D>,
     /// Density of the multiplier: with obstacles `lambda = -div(alpha grad u) + c u - f` per unit
@@ -44,7 +44,7 @@ impl<const D: usize> Exact<D> {
         gradient: impl Fn(&Point<D>) -> Point<D> + Send + Sync + 'static,
     ) -> Self {
         Self {
-            value: Arc::new(value),
+            value: Datum::Function(Arc::new(value)),
             gradient: Arc::new(gradient),
             multiplier: None,
             contact: None,

@@ -17,6 +17,7 @@
 
 mod datum;
 mod exact;
+mod given;
 mod named;
 mod on_mesh;
 
@@ -25,8 +26,8 @@ pub(crate) use datum::BoundaryField;
 pub(crate) use datum::Field;
 pub use datum::{BoundaryFlux, Datum};
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
-pub(crate) use named::NamedData;
-pub(crate) use on_mesh::{DataByGroup, DataOnMesh, DatumRef};
+pub use given::Given;
+pub(crate) use on_mesh::{DataByGroup, DataOnMesh};
 
 use std::fmt;
 use std::sync::Arc;
@@ -40,25 +41,23 @@ use crate::real::Point;
 #[non_exhaustive]
 pub struct Problem<const D: usize> {
     /// The load `f` per unit volume.
-    pub source: Option<Datum<D>>,
+    pub source: Given<Datum<D>>,
     /// Dirichlet data `u_D`; zero where absent.
-    pub dirichlet: Option<Datum<D>>,
+    pub dirichlet: Given<Datum<D>>,
     /// Neumann data `q = alpha du/dn`; zero where absent.
-    pub neumann: Option<BoundaryFlux<D>>,
+    pub neumann: Given<BoundaryFlux<D>>,
     /// The diffusion coefficient; one where absent. Elements of degree one take its value at the barycentre
     /// of each cell, others its values at the points of rules in the cells in which it varies, see
     /// [`Problem::coefficient`].
-    pub coefficient: Option<Datum<D>>,
+    pub coefficient: Given<Datum<D>>,
     /// The reaction coefficient `c >= 0`.
-    pub reaction: Option<Datum<D>>,
+    pub reaction: Given<Datum<D>>,
     /// Obstacle from below.
-    pub lower: Option<Datum<D>>,
+    pub lower: Given<Datum<D>>,
     /// Obstacle from above.
-    pub upper: Option<Datum<D>>,
+    pub upper: Given<Datum<D>>,
     /// Signorini gap `g` on the contact part.
-    pub gap: Option<Datum<D>>,
-    /// Data for named regions and boundary groups, which take precedence over those without a name.
-    pub(crate) named: NamedData<D>,
+    pub gap: Given<Datum<D>>,
     /// Where obstacles and gap bind; at the [`Nodes`] of the element where absent.
     pub constraint_set: Option<Arc<dyn ConstraintSet>>,
     /// The degree of the polynomials that all data given as functions are in each cell, where it is
@@ -73,52 +72,37 @@ pub struct Problem<const D: usize> {
 /// Lists the data that are present.
 impl<const D: usize> fmt::Debug for Problem<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            source,
-            dirichlet,
-            neumann,
-            coefficient,
-            reaction,
-            lower,
-            upper,
-            gap,
-            named,
-            constraint_set,
-            data_degree,
-            exact,
-            reference_energy,
-        } = self;
         let mut out = f.debug_struct("Problem");
-        for (name, datum) in [
-            ("source", source),
-            ("reaction", reaction),
-            ("dirichlet", dirichlet),
-            ("coefficient", coefficient),
-            ("lower", lower),
-            ("upper", upper),
-            ("gap", gap),
+        for (name, given) in [
+            ("source", &self.source),
+            ("reaction", &self.reaction),
+            ("dirichlet", &self.dirichlet),
+            ("coefficient", &self.coefficient),
+            ("lower", &self.lower),
+            ("upper", &self.upper),
+            ("gap", &self.gap),
         ] {
-            if let Some(datum) = datum {
+            if let Some(datum) = &given.everywhere {
                 out.field(name, datum);
             }
         }
-        if let Some(flux) = neumann {
+        if let Some(flux) = &self.neumann.everywhere {
             out.field("neumann", flux);
         }
-        let names: Vec<&str> = named.names().map(|(name, _)| name).collect();
+        let names: Vec<&str> = self.region_names().chain(self.boundary_names()).collect();
         if !names.is_empty() {
             out.field("named", &names);
         }
-        if let Some(set) = constraint_set {
+        if let Some(set) = &self.constraint_set {
             out.field("constraint_set", &set.name());
         }
-        if let Some(degree) = data_degree {
+        if let Some(degree) = &self.data_degree {
             out.field("data_degree", degree);
         }
-        if let Some(exact) = exact {
+        if let Some(exact) = &self.exact {
             out.field("exact", exact);
         }
-        if let Some(energy) = reference_energy {
+        if let Some(energy) = &self.reference_energy {
             out.field("reference_energy", energy);
         }
         out.finish()
@@ -133,13 +117,13 @@ impl<const D: usize> Problem<D> {
     /// Sets a constant load.
     #[must_use]
     pub fn constant_source(mut self, f: f64) -> Self {
-        self.source = Some(Datum::Constant(f));
+        self.source.everywhere = Some(Datum::Constant(f));
         self
     }
     /// Sets a load that is a smooth function of space.
     #[must_use]
     pub fn source(mut self, f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.source = Some(Datum::Function(Arc::new(f)));
+        self.source.everywhere = Some(Datum::Function(Arc::new(f)));
         self
     }
     /// Sets a load that may jump, or have a kink, where `level` changes its sign: a rule across a jump
@@ -159,7 +143,7 @@ impl<const D: usize> Problem<D> {
     /// let away = |x: &Point<1>| (x[0] - 0.5).abs() - 0.3;
     /// let load = move |x: &Point<1>| if away(x) > 0.0 { -16.0 } else { 8.0 };
     /// let problem = Problem::new().piecewise_source(load, away);
-    /// # assert!(problem.source.is_some());
+    /// # assert!(problem.source.is_given());
     /// ```
     #[must_use]
     pub fn piecewise_source(
@@ -167,13 +151,13 @@ impl<const D: usize> Problem<D> {
         f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
         level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.source = Some(Datum::piecewise(f, level));
+        self.source.everywhere = Some(Datum::piecewise(f, level));
         self
     }
     /// Sets Dirichlet data.
     #[must_use]
     pub fn dirichlet(mut self, u: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.dirichlet = Some(u.into());
+        self.dirichlet.everywhere = Some(u.into());
         self
     }
     /// Sets Neumann data, a function of the point and the outward normal.
@@ -182,7 +166,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         q: impl Fn(&Point<D>, &Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.neumann = Some(BoundaryFlux::Function(Arc::new(q)));
+        self.neumann.everywhere = Some(BoundaryFlux::Function(Arc::new(q)));
         self
     }
     /// Sets the diffusion coefficient.
@@ -194,7 +178,7 @@ impl<const D: usize> Problem<D> {
     /// jumps within them no element reaches more than the order 1/2 in H1.
     #[must_use]
     pub fn coefficient(mut self, alpha: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.coefficient = Some(alpha.into());
+        self.coefficient.everywhere = Some(alpha.into());
         self
     }
     /// Sets a diffusion coefficient that jumps where `level` changes its sign. Schemes evaluate the coefficient at the
@@ -207,14 +191,14 @@ impl<const D: usize> Problem<D> {
         alpha: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
         level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.coefficient = Some(Datum::piecewise(alpha, level));
+        self.coefficient.everywhere = Some(Datum::piecewise(alpha, level));
         self
     }
     /// Sets the reaction coefficient: a number, a closure whose argument is written with its
     /// type, `|x: &Point<2>| ..`, or [`Datum::piecewise`].
     #[must_use]
     pub fn reaction(mut self, c: impl Into<Datum<D>>) -> Self {
-        self.reaction = Some(c.into());
+        self.reaction.everywhere = Some(c.into());
         self
     }
     /// Sets an obstacle from below.
@@ -223,7 +207,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.lower = Some(psi.into());
+        self.lower.everywhere = Some(psi.into());
         self
     }
     /// Sets an obstacle from above.
@@ -232,13 +216,13 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.upper = Some(psi.into());
+        self.upper.everywhere = Some(psi.into());
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact part.
     #[must_use]
     pub fn signorini(mut self, gap: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.gap = Some(gap.into());
+        self.gap.everywhere = Some(gap.into());
         self
     }
     /// Sets the constraint set: where obstacles and gap bind. A [`Study`](crate::study::Study) may
@@ -280,7 +264,7 @@ impl<const D: usize> Problem<D> {
             other => other,
         };
         for datum in [&mut self.lower, &mut self.upper, &mut self.gap] {
-            *datum = datum.take().map(of_degree);
+            datum.everywhere = datum.everywhere.take().map(of_degree);
         }
         self
     }
@@ -313,29 +297,16 @@ impl<const D: usize> Problem<D> {
     }
     /// The Dirichlet value at a point.
     pub fn dirichlet_at(&self, x: &Point<D>) -> f64 {
-        match (&self.dirichlet, &self.exact) {
-            (Some(u), _) => u.at(x),
-            (None, Some(exact)) => (exact.value)(x),
-            (None, None) => 0.0,
-        }
+        let exact = self.exact.as_ref().map(|exact| &exact.value);
+        self.dirichlet.everywhere.as_ref().or(exact).map_or(0.0, |u| u.at(x))
     }
     /// Whether the problem has an obstacle in the domain.
     pub fn has_obstacle(&self) -> bool {
-        self.lower.is_some()
-            || self.upper.is_some()
-            || !(self.named.lower.is_empty() && self.named.upper.is_empty())
+        self.lower.is_given() || self.upper.is_given()
     }
     /// Whether the problem has a Signorini condition on some part of the boundary.
     pub fn has_gap(&self) -> bool {
-        self.gap.is_some() || !self.named.gap.is_empty()
-    }
-    /// Whether the problem has a diffusion coefficient other than one.
-    pub fn has_coefficient(&self) -> bool {
-        self.coefficient.is_some() || !self.named.coefficient.is_empty()
-    }
-    /// Whether the problem has a reaction term in some region.
-    pub fn has_reaction(&self) -> bool {
-        self.reaction.is_some() || !self.named.reaction.is_empty()
+        self.gap.is_given()
     }
     /// Whether the problem has an inequality constraint.
     pub fn is_constrained(&self) -> bool {
@@ -343,11 +314,11 @@ impl<const D: usize> Problem<D> {
     }
     /// Whether Dirichlet data are given, by themselves or by the exact solution.
     pub fn has_dirichlet_data(&self) -> bool {
-        self.dirichlet.is_some() || self.exact.is_some() || !self.named.dirichlet.is_empty()
+        self.dirichlet.is_given() || self.exact.is_some()
     }
     /// Whether Neumann data are given, by themselves or by the exact solution.
     pub fn has_neumann_data(&self) -> bool {
-        self.neumann.is_some() || self.exact.is_some() || !self.named.neumann.is_empty()
+        self.neumann.is_given() || self.exact.is_some()
     }
 }
 
@@ -365,6 +336,6 @@ mod tests {
         let expected =
             "Problem { source: Constant(-1.0), reaction: Function(..), lower: Function(..) }";
         assert_eq!(format!("{problem:?}"), expected);
-        assert_eq!(problem.reaction.map(|c| c.at(&Point::from([3.0, 4.0]))), Some(3.0));
+        assert_eq!(problem.reaction.everywhere.map(|c| c.at(&Point::from([3.0, 4.0]))), Some(3.0));
     }
 }

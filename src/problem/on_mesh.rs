@@ -1,50 +1,10 @@
 //! The data of a problem on a mesh: found by region and boundary group once, then by number.
 
-use super::Problem;
-use super::datum::{BoundaryFlux, Datum, Field};
+use super::datum::{BoundaryFlux, Datum};
+use super::{Given, Problem};
 use crate::error::Error;
 use crate::input::{excerpt, excerpts};
-use crate::mesh::{BoundaryGroup, BoundaryPart, Mesh, MeshError};
-use crate::real::Point;
-
-/// A datum, whether it was given as such or as a function.
-#[derive(Clone, Copy)]
-pub(crate) enum DatumRef<'a, const D: usize> {
-    Datum(&'a Datum<D>),
-    Function(&'a Field<D>),
-}
-
-impl<'a, const D: usize> DatumRef<'a, D> {
-    /// The value at a point.
-    #[inline(always)]
-    pub fn at(self, x: &Point<D>) -> f64 {
-        match self {
-            Self::Datum(datum) => datum.at(x),
-            Self::Function(function) => function(x),
-        }
-    }
-    /// The value of a constant.
-    pub fn constant(self) -> Option<f64> {
-        match self {
-            Self::Datum(&Datum::Constant(c)) => Some(c),
-            _ => None,
-        }
-    }
-    /// The degree of a polynomial, where it is known.
-    pub fn degree(self) -> Option<usize> {
-        match self {
-            Self::Datum(datum) => datum.degree(),
-            Self::Function(_) => None,
-        }
-    }
-    /// The function whose zero set divides cells, if there is one.
-    pub fn level(self) -> Option<&'a Field<D>> {
-        match self {
-            Self::Datum(datum) => datum.level(),
-            Self::Function(_) => None,
-        }
-    }
-}
+use crate::mesh::{BoundaryCondition, BoundaryGroup, Mesh, MeshError};
 
 /// What is given in each region, or on each boundary group.
 #[derive(Clone)]
@@ -55,17 +15,21 @@ pub(crate) struct ByGroup<F> {
     by_group: Vec<Option<F>>,
 }
 
-impl<F: Copy> ByGroup<F> {
-    /// For each group the first datum with one of its names, or the datum without a name.
-    fn new<'n>(everywhere: Option<F>, named: &[(&'n str, F)], groups: &[&'n [String]]) -> Self {
-        let of = |names: &[String]| {
-            let first = named.iter().find(|(name, _)| names.iter().any(|n| n == name));
-            first.map(|(_, datum)| *datum).or(everywhere)
-        };
-        let groups = if named.is_empty() { &[] } else { groups };
-        let by_group = groups.iter().map(|names| of(names)).collect();
-        Self { everywhere, by_group }
+impl<'a, F> ByGroup<&'a F> {
+    /// A datum of a problem in regions, or on boundary groups, with these names.
+    fn new(given: &'a Given<F>, groups: &[&[String]]) -> Self {
+        let groups = if given.named.is_empty() { &[] } else { groups };
+        let by_group = groups.iter().map(|names| given.of(names)).collect();
+        Self { everywhere: given.everywhere.as_ref(), by_group }
     }
+    /// The same with a datum for groups that have none.
+    fn or(self, other: Option<&'a F>) -> Self {
+        let by_group = self.by_group.into_iter().map(|datum| datum.or(other)).collect();
+        Self { everywhere: self.everywhere.or(other), by_group }
+    }
+}
+
+impl<F: Copy> ByGroup<F> {
     /// The datum of a group.
     #[inline(always)]
     pub fn of(&self, group: usize) -> Option<F> {
@@ -98,7 +62,7 @@ impl<F: Copy> ByGroup<F> {
 }
 
 /// Data that are functions of space.
-pub(crate) type DataByGroup<'a, const D: usize> = ByGroup<DatumRef<'a, D>>;
+pub(crate) type DataByGroup<'a, const D: usize> = ByGroup<&'a Datum<D>>;
 
 /// The data of a problem on a mesh.
 #[derive(Clone)]
@@ -134,10 +98,10 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
         boundary: &[BoundaryGroup],
         inside: &[String],
     ) -> Result<Self, Error> {
-        let named = &problem.named;
         let regions: Vec<&[String]> = regions.iter().map(|names| &names[..]).collect();
         let groups: Vec<&[String]> = boundary.iter().map(|group| &group.names[..]).collect();
-        for (name, is_boundary) in named.names() {
+        let on_regions = problem.region_names().map(|name| (name, false));
+        for (name, is_boundary) in on_regions.chain(problem.boundary_names().map(|n| (n, true))) {
             let all = if is_boundary { &groups } else { &regions };
             if !all.iter().any(|names| names.iter().any(|n| n == name)) {
                 let is_inside = is_boundary && inside.iter().any(|n| n == name);
@@ -145,41 +109,34 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
             }
         }
         for group in boundary {
-            let given = group.names.iter().find_map(|n| Some((n, named.part_of(n)?)));
-            match (given, group.part) {
+            let given = group.names.iter().find_map(|n| Some((n, problem.part_of(n)?)));
+            match (given, group.condition) {
                 (Some((name, given)), Some(part)) if given != part => {
                     let (group, given, part) = (excerpt(name), given.name(), part.name());
                     return Err(Error::UnboundBoundary { group, given, part });
                 }
-                (None, Some(BoundaryPart::Contact))
-                    if problem.gap.is_none() && problem.has_gap() =>
+                (None, Some(BoundaryCondition::Contact))
+                    if problem.gap.everywhere.is_none() && problem.gap.is_given() =>
                 {
                     return Err(MeshError::undecided(&group.names).into());
                 }
                 _ => {}
             }
         }
-        let datum = |f: &'a Option<Datum<D>>| f.as_ref().map(DatumRef::Datum);
-        let exact = problem.exact.as_ref().map(|exact| DatumRef::Function(&exact.value));
-        let list = |data: &'a [(String, Datum<D>)]| -> Vec<(&'a str, DatumRef<'a, D>)> {
-            data.iter().map(|(name, datum)| (&name[..], DatumRef::Datum(datum))).collect()
-        };
-        let in_regions = |everywhere, data| ByGroup::new(everywhere, &list(data), &regions);
-        let on_groups = |everywhere, data| ByGroup::new(everywhere, &list(data), &groups);
-        let fluxes: Vec<_> = named.neumann.iter().map(|(name, flux)| (&name[..], flux)).collect();
+        let in_regions = |given| ByGroup::new(given, &regions);
+        let exact = problem.exact.as_ref().map(|exact| &exact.value);
         let rank = |names: &[String]| {
-            let given = named.dirichlet.iter().position(|(name, _)| names.contains(name));
-            given.unwrap_or(named.dirichlet.len())
+            problem.dirichlet.position(names).unwrap_or(problem.dirichlet.named.len())
         };
         Ok(Self {
-            coefficient: in_regions(datum(&problem.coefficient), &named.coefficient),
-            source: in_regions(datum(&problem.source), &named.source),
-            reaction: in_regions(datum(&problem.reaction), &named.reaction),
-            lower: in_regions(datum(&problem.lower), &named.lower),
-            upper: in_regions(datum(&problem.upper), &named.upper),
-            dirichlet: on_groups(datum(&problem.dirichlet).or(exact), &named.dirichlet),
-            gap: on_groups(datum(&problem.gap), &named.gap),
-            neumann: ByGroup::new(problem.neumann.as_ref(), &fluxes, &groups),
+            coefficient: in_regions(&problem.coefficient),
+            source: in_regions(&problem.source),
+            reaction: in_regions(&problem.reaction),
+            lower: in_regions(&problem.lower),
+            upper: in_regions(&problem.upper),
+            dirichlet: ByGroup::new(&problem.dirichlet, &groups).or(exact),
+            gap: ByGroup::new(&problem.gap, &groups),
+            neumann: ByGroup::new(&problem.neumann, &groups),
             dirichlet_rank: groups.iter().map(|names| rank(names)).collect(),
         })
     }

@@ -1,4 +1,4 @@
-//! Problems of one's own from a TOML file: mesh or box, data by name as numbers or expressions.
+//! Problems of one's own from a TOML file, as scenes: mesh or box, data by name as numbers or expressions.
 //!
 //! ```toml
 //! name = "plate"
@@ -37,14 +37,14 @@
 //! have `+ - * / ^`, comparisons, `&& || !`, the constants `pi` and `e`, and functions of which an error
 //! message lists the names; `if(condition, yes, no)` among them.
 
+mod contents;
 mod data;
 mod error;
 mod expression;
-mod own_problem;
 mod table;
 
+pub use contents::ProblemFile;
 pub use error::{ProblemFileError, ProblemFileErrorKind};
-pub use own_problem::{AnyOwnProblem, Geometry, OwnProblem};
 
 use std::path::Path;
 
@@ -55,7 +55,7 @@ use table::Source;
 ///
 /// # Errors
 /// Every [`ProblemFileError`].
-pub fn read(path: &Path) -> Result<AnyOwnProblem, ProblemFileError> {
+pub fn read(path: &Path) -> Result<ProblemFile, ProblemFileError> {
     let unreadable =
         |error| ProblemFileError::of_file(path, ProblemFileErrorKind::Unreadable, error);
     let text = String::from_utf8(read_file(path).map_err(unreadable)?)
@@ -63,9 +63,9 @@ pub fn read(path: &Path) -> Result<AnyOwnProblem, ProblemFileError> {
     let source = Source { path, text: &text };
     let root = source.root()?;
     let place = source.place(&root)?;
-    Ok(match place.dimension() {
-        1 => AnyOwnProblem::One(data::problem(&source, &root, &place)?),
-        2 => AnyOwnProblem::Two(data::problem(&source, &root, &place)?),
-        _ => AnyOwnProblem::Three(data::problem(&source, &root, &place)?),
-    })
+    match place.dimension() {
+        1 => data::problem::<1>(&source, &root, &place),
+        2 => data::problem::<2>(&source, &root, &place),
+        _ => data::problem::<3>(&source, &root, &place),
+    }
 }

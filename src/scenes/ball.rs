@@ -59,7 +59,7 @@ pub fn disc_2d() -> Scene<2> {
     let dome = Dome { radius: 0.5, skirt: 0.45, contact: A_ON_DISC };
     let summary = "circular membrane, no load, the obstacle is a ball; curved boundary";
     let outside = |r: f64| -r.ln();
-    let problem = Problem { dirichlet: Some(Datum::Constant(0.0)), ..Problem::new() };
+    let problem = Problem { dirichlet: Datum::Constant(0.0).into(), ..Problem::new() };
     over(dome, "disc-2d", summary, Domain::Disc { radius: 1.0 }, problem, outside)
 }
 
@@ -84,6 +84,11 @@ impl Dome {
     }
 }
 
+/// `r^D`, as a product: the compiler rounds `powi` of a constant otherwise than `powi` of a variable.
+fn power<const D: usize>(r: f64) -> f64 {
+    (1..D).fold(r, |product, _| product * r)
+}
+
 /// The scene whose solution is the dome on contact and a multiple of `outside` beyond, a harmonic
 /// function with the derivative `-r^(1-D)`.
 fn over<const D: usize>(
@@ -96,18 +101,14 @@ fn over<const D: usize>(
 ) -> Scene<D> {
     let a = dome.contact;
     let below_top = move |s: f64| dome.radius * dome.radius - s;
-    let amplitude = a.powi(D as i32) / below_top(a * a).sqrt();
+    let amplitude = power::<D>(a) / below_top(a * a).sqrt();
     let value = move |x: &Point<D>| {
         let r = x.norm();
         if r <= a { dome.height(r) } else { amplitude * outside(r) }
     };
     let gradient = move |x: &Point<D>| {
         let s = x.norm_squared();
-        if s <= a * a {
-            -x / below_top(s).sqrt()
-        } else {
-            x * (-amplitude / s.sqrt().powi(D as i32))
-        }
+        if s <= a * a { -x / below_top(s).sqrt() } else { x * (-amplitude / power::<D>(s.sqrt())) }
     };
     let multiplier = move |x: &Point<D>| {
         let s = x.norm_squared();

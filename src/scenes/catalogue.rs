@@ -80,8 +80,8 @@ pub fn by_name(name: &str) -> Option<Entry> {
     catalogue().into_iter().find(|entry| entry.name == name)
 }
 
-/// A scene of any dimension.
-#[derive(Debug)]
+/// A scene of any dimension; [`in_its_dimension`](crate::in_its_dimension) names it in its own.
+#[derive(Clone, Debug)]
 pub enum AnyScene {
     /// In one dimension.
     One(Scene<1>),
@@ -89,6 +89,28 @@ pub enum AnyScene {
     Two(Scene<2>),
     /// In three dimensions.
     Three(Scene<3>),
+}
+
+/// The value of an expression for a scene in its dimension, which is known at run time alone.
+///
+/// ```
+/// use unilateral::{in_its_dimension, scenes};
+///
+/// let cells = |name: &str| {
+///     let scene = scenes::by_name(name)?.make(&scenes::Parameters::new()).ok()?;
+///     Some(in_its_dimension!(scene, |scene| scene.domain.cells(4)))
+/// };
+/// assert_eq!([cells("radial-1d"), cells("radial-2d")], [Some(4.0), Some(32.0)]);
+/// ```
+#[macro_export]
+macro_rules! in_its_dimension {
+    ($any:expr, |$scene:ident| $value:expr) => {
+        match $any {
+            $crate::scenes::AnyScene::One($scene) => $value,
+            $crate::scenes::AnyScene::Two($scene) => $value,
+            $crate::scenes::AnyScene::Three($scene) => $value,
+        }
+    };
 }
 
 impl From<Scene<1>> for AnyScene {

@@ -2,7 +2,7 @@
 
 use super::free_boundary;
 use super::scene::Scene;
-use crate::mesh::{BoundaryPart, BoxDomain};
+use crate::mesh::{BoundaryCondition, BoxDomain};
 use crate::problem::{BoundaryFlux, Exact, Problem};
 use crate::real::Point;
 use crate::scheme::Regularity;
@@ -52,8 +52,8 @@ pub fn radial<const D: usize>(scale: f64) -> Scene<D> {
 /// A quarter of `radial-2d`: `(0, 3/2)^2` with no flux through the sides on the axes of symmetry.
 pub fn radial_quarter_2d() -> Scene<2> {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.5))
-        .side(0, 0, BoundaryPart::Neumann)
-        .side(1, 0, BoundaryPart::Neumann);
+        .side(0, 0, BoundaryCondition::Neumann)
+        .side(1, 0, BoundaryCondition::Neumann);
     let mut scene = radial::<2>(1.0);
     if let Some(contact) = scene.problem.exact.as_mut().and_then(|exact| exact.contact.as_mut()) {
         contact.free_boundary.retain(|x| x.min() >= 0.0);
@@ -62,7 +62,7 @@ pub fn radial_quarter_2d() -> Scene<2> {
         name: "radial-quarter-2d".into(),
         summary: "a quarter of radial-2d, with Neumann sides on the axes of symmetry",
         domain: domain.into(),
-        problem: Problem { neumann: Some(BoundaryFlux::Constant(0.0)), ..scene.problem },
+        problem: Problem { neumann: BoundaryFlux::Constant(0.0).into(), ..scene.problem },
         regularity: scene.regularity,
     }
 }

@@ -1,6 +1,6 @@
 //! A scene: a named inequality on a domain.
 
-use crate::mesh::Domain;
+use crate::mesh::{Domain, Mesh, MeshError};
 use crate::problem::Problem;
 use crate::scheme::Regularity;
 
@@ -12,7 +12,7 @@ pub struct Scene<const D: usize> {
     pub name: String,
     /// One line for lists.
     pub summary: &'static str,
-    /// The built-in domain.
+    /// The domain: built in, or a mesh.
     pub domain: Domain<D>,
     /// The data.
     pub problem: Problem<D>,
@@ -26,6 +26,24 @@ impl<const D: usize> Scene<D> {
     pub fn new(name: impl Into<String>, domain: impl Into<Domain<D>>, problem: Problem<D>) -> Self {
         let (name, domain, regularity) = (name.into(), domain.into(), Regularity::finite_energy());
         Self { name, summary: "", domain, problem, regularity }
+    }
+    /// A problem of one's own on a mesh and its refinements. The data of the problem give the boundary its parts
+    /// ([`Problem::bind_boundary`]).
+    ///
+    /// # Errors
+    /// [`MeshError::GroupWithTwoConditions`] where two data claim one boundary group.
+    pub fn of_problem(
+        name: impl Into<String>,
+        problem: Problem<D>,
+        mesh: Mesh<D>,
+    ) -> Result<Self, MeshError> {
+        Ok(Self::new(name, problem.bind_boundary(mesh)?, problem))
+    }
+    /// The same inequality on another domain, such as a mesh.
+    #[must_use]
+    pub fn domain(mut self, domain: impl Into<Domain<D>>) -> Self {
+        self.domain = domain.into();
+        self
     }
     /// Sets the line for lists.
     #[must_use]

@@ -1,7 +1,7 @@
 //! Signorini conditions at the ends of a string.
 
 use super::scene::Scene;
-use crate::mesh::{BoundaryPart, BoxDomain};
+use crate::mesh::{BoundaryCondition, BoxDomain};
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
 use crate::scheme::Regularity;
@@ -26,8 +26,8 @@ pub fn signorini_reaction_1d() -> Scene<1> {
         name: "signorini-reaction-1d".into(),
         summary: "a string with reaction, Signorini at both ends: one in contact, one open",
         domain: BoxDomain::centred(1.0)
-            .side(0, 0, BoundaryPart::Contact)
-            .side(0, 1, BoundaryPart::Contact)
+            .side(0, 0, BoundaryCondition::Contact)
+            .side(0, 1, BoundaryCondition::Contact)
             .into(),
         problem: Problem::new()
             .source(|x| x[0].sin())
@@ -96,7 +96,7 @@ fn supported(
         name: name.into(),
         summary,
         domain: BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0))
-            .side(0, 1, BoundaryPart::Contact)
+            .side(0, 1, BoundaryCondition::Contact)
             .into(),
         problem: Problem::new()
             .constant_source(load)

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::scene::Scene;
-use crate::mesh::{BoundaryPart, BoxDomain};
+use crate::mesh::{BoundaryCondition, BoxDomain};
 use crate::problem::Problem;
 use crate::real::Point;
 use crate::scheme::Regularity;
@@ -39,9 +39,9 @@ pub fn spiral_2d() -> Scene<2> {
 /// Where contact changes the solution has the generic singularity: `H^s` for `s < 5/2`.
 pub fn signorini_sine_2d() -> Scene<2> {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(0, 0, BoundaryPart::Neumann)
-        .side(0, 1, BoundaryPart::Neumann)
-        .side(1, 0, BoundaryPart::Contact);
+        .side(0, 0, BoundaryCondition::Neumann)
+        .side(0, 1, BoundaryCondition::Neumann)
+        .side(1, 0, BoundaryCondition::Contact);
     Scene {
         name: "signorini-sine-2d".into(),
         summary: "Signorini with a load that pulls and pushes; no closed solution",

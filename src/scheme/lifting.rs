@@ -1,12 +1,9 @@
 //! The methods whose penalty is made of lifts of jumps.
 
-use std::sync::Arc;
-
 use super::{
-    ExpectedOrders, Scheme, SchemeOptions, Setting, broken_energy_order, name_of_degree,
-    with_duality,
+    BrokenScheme, ExpectedOrders, SchemeOptions, Setting, broken_energy_order, with_duality,
 };
-use crate::element::{Broken, Element, P1};
+use crate::element::Element;
 use crate::facet::{FacetForm, FacetLifts, Lifts};
 use crate::mesh::Mesh;
 
@@ -17,57 +14,43 @@ use crate::mesh::Mesh;
 /// Turbomachinery (1997), 99-108.
 /// Orders: F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733 for obstacles and
 /// IMA J. Numer. Anal. 31 (2011), 1754-1772 for Signorini.
-#[derive(Clone, Debug)]
-pub struct Br2<const D: usize> {
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Br2 {
     /// The factor of the penalty; where absent three halves of the number of facets of a cell,
     /// above which the form is coercive.
     pub eta: Option<f64>,
     /// The degree of the lifts.
     pub lifts: Lifts,
-    /// The element, which is broken.
-    pub element: Arc<dyn Element<D>>,
 }
 
-impl<const D: usize> Default for Br2<D> {
-    fn default() -> Self {
-        Self { eta: None, lifts: Lifts::Reduced, element: Arc::new(Broken(P1)) }
-    }
-}
-
-/// The factor of the penalty over the number of facets of a cell.
-const MARGIN: f64 = 1.5;
-
-impl<const D: usize> Br2<D> {
-    /// The scheme by name: with what the options give.
-    pub(super) fn with_options(options: &SchemeOptions) -> Self {
-        let eta = options.factor.map(|factor| factor * (D + 1) as f64);
-        Self { eta, lifts: options.lifts.unwrap_or_default(), ..Self::default() }
-    }
-    /// The scheme on the broken version of another element: `Br2::default().on(P2)`.
-    #[must_use]
-    pub fn on(self, element: impl Element<D> + 'static) -> Self {
-        Self { element: Arc::new(Broken(element)), ..self }
+impl Br2 {
+    fn eta(&self, dimension: usize) -> f64 {
+        self.eta.unwrap_or(1.5 * (dimension + 1) as f64)
     }
 }
 
-impl<const D: usize> Scheme<D> for Br2<D> {
-    fn name(&self) -> &str {
-        name_of_degree!("br2", self.element.degree())
+impl BrokenScheme for Br2 {
+    fn name_on_linears(&self) -> &'static str {
+        "br2"
     }
-    fn element(&self) -> Arc<dyn Element<D>> {
-        self.element.clone()
+    fn form_on<const D: usize>(
+        &self,
+        element: &dyn Element<D>,
+        _: &Mesh<D>,
+    ) -> Box<dyn FacetForm<D>> {
+        let lift_degree = self.lifts.degree(element.basis_degree());
+        Box::new(FacetLifts { eta: self.eta(D), lift_degree, with_all_lifts: false })
     }
-    fn choices(&self) -> SchemeOptions {
-        let factor = self.eta.map(|eta| eta / (D + 1) as f64).filter(|&factor| factor != MARGIN);
-        SchemeOptions { factor, lifts: self.lifts.unless_default(), ..SchemeOptions::default() }
+    fn options(&self, dimension: usize) -> SchemeOptions {
+        let factor = Some(self.eta(dimension) / (dimension + 1) as f64);
+        SchemeOptions { factor, lifts: Some(self.lifts), ..SchemeOptions::default() }
     }
-    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
-        let eta = self.eta.unwrap_or(MARGIN * (D + 1) as f64);
-        let lift_degree = self.lifts.degree(self.element.basis_degree());
-        Box::new(FacetLifts { eta, lift_degree, with_all_lifts: false })
+    fn with_options(self, options: &SchemeOptions, dimension: usize) -> Self {
+        let eta = options.factor.map(|factor| factor * (dimension + 1) as f64).or(self.eta);
+        Self { eta, lifts: options.lifts.unwrap_or(self.lifts) }
     }
-    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(broken_energy_order(setting, self.element.degree()), setting)
+    fn orders_of_degree(&self, degree: usize, setting: &Setting) -> ExpectedOrders {
+        with_duality(broken_energy_order(setting, degree), setting)
     }
 }
 
@@ -79,52 +62,41 @@ impl<const D: usize> Scheme<D> for Br2<D> {
 /// Differential Equations 16 (2000), 365-378.
 /// Orders: F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733 for obstacles and
 /// IMA J. Numer. Anal. 31 (2011), 1754-1772 for Signorini.
-#[derive(Clone, Debug)]
-pub struct Bmmpr<const D: usize> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bmmpr {
     /// The factor of the penalty; by default one.
     pub eta: f64,
     /// The degree of the lifts.
     pub lifts: Lifts,
-    /// The element, which is broken.
-    pub element: Arc<dyn Element<D>>,
 }
 
-impl<const D: usize> Default for Bmmpr<D> {
+impl Default for Bmmpr {
     fn default() -> Self {
-        Self { eta: 1.0, lifts: Lifts::Reduced, element: Arc::new(Broken(P1)) }
+        Self { eta: 1.0, lifts: Lifts::Reduced }
     }
 }
 
-impl<const D: usize> Bmmpr<D> {
-    /// The scheme by name: with what the options give.
-    pub(super) fn with_options(options: &SchemeOptions) -> Self {
-        let default = Self::default();
-        let eta = options.factor.unwrap_or(default.eta);
-        Self { eta, lifts: options.lifts.unwrap_or_default(), ..default }
+impl BrokenScheme for Bmmpr {
+    fn name_on_linears(&self) -> &'static str {
+        "bmmpr"
     }
-    /// The scheme on the broken version of another element: `Bmmpr::default().on(P2)`.
-    #[must_use]
-    pub fn on(self, element: impl Element<D> + 'static) -> Self {
-        Self { element: Arc::new(Broken(element)), ..self }
-    }
-}
-
-impl<const D: usize> Scheme<D> for Bmmpr<D> {
-    fn name(&self) -> &str {
-        name_of_degree!("bmmpr", self.element.degree())
-    }
-    fn element(&self) -> Arc<dyn Element<D>> {
-        self.element.clone()
-    }
-    fn choices(&self) -> SchemeOptions {
-        let factor = Some(self.eta).filter(|&eta| eta != Self::default().eta);
-        SchemeOptions { factor, lifts: self.lifts.unless_default(), ..SchemeOptions::default() }
-    }
-    fn form(&self, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
-        let lift_degree = self.lifts.degree(self.element.basis_degree());
+    fn form_on<const D: usize>(
+        &self,
+        element: &dyn Element<D>,
+        _: &Mesh<D>,
+    ) -> Box<dyn FacetForm<D>> {
+        let lift_degree = self.lifts.degree(element.basis_degree());
         Box::new(FacetLifts { eta: self.eta, lift_degree, with_all_lifts: true })
     }
-    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(broken_energy_order(setting, self.element.degree()), setting)
+    fn options(&self, _: usize) -> SchemeOptions {
+        let (factor, lifts) = (Some(self.eta), Some(self.lifts));
+        SchemeOptions { factor, lifts, ..SchemeOptions::default() }
+    }
+    fn with_options(self, options: &SchemeOptions, _: usize) -> Self {
+        let eta = options.factor.unwrap_or(self.eta);
+        Self { eta, lifts: options.lifts.unwrap_or(self.lifts) }
+    }
+    fn orders_of_degree(&self, degree: usize, setting: &Setting) -> ExpectedOrders {
+        with_duality(broken_energy_order(setting, degree), setting)
     }
 }

@@ -1,6 +1,7 @@
 //! Schemes: an element, a facet form and a way to impose Dirichlet data. Nothing else: where an
 //! inequality binds is for the [constraint set](crate::constraint).
 
+mod broken;
 mod conforming;
 mod crouzeix_raviart;
 mod definition;
@@ -12,13 +13,14 @@ mod named_scheme;
 mod options;
 mod wopsip;
 
+pub use broken::{BrokenScheme, OnElement};
 pub use conforming::{ConformingP1, ConformingP2};
 pub use crouzeix_raviart::NonconformingP1;
 pub use definition::Scheme;
 pub use interior_penalty::{Iipg, InteriorPenaltyMethod, Nipg, Sipg};
-pub use ldg::{Ldg, LocalFluxes};
+pub use ldg::Ldg;
 pub use lifting::{Bmmpr, Br2};
-pub use named_scheme::{NamedScheme, SchemeNameError};
+pub use named_scheme::{NamedScheme, SchemeNameError, SchemeNameErrorKind};
 pub use options::SchemeOptions;
 pub use wopsip::{Eta, Wopsip};
 
@@ -30,95 +32,77 @@ use crate::element::P2;
 use crate::instances::compiled;
 use energy_order::{broken_energy_order, energy_order, with_duality};
 
-/// The name of a scheme on an element of this degree: the name itself for linears, with `-p2` for
-/// quadratics, and so on up to the largest degree that an element can have.
-macro_rules! name_of_degree {
-    ($name:literal, $degree:expr) => {
-        match $degree {
-            2 => concat!($name, "-p2"),
-            3 => concat!($name, "-p3"),
-            4 => concat!($name, "-p4"),
-            5 => concat!($name, "-p5"),
-            6 => concat!($name, "-p6"),
-            7 => concat!($name, "-p7"),
-            8 => concat!($name, "-p8"),
-            9 => concat!($name, "-p9"),
-            _ => $name,
-        }
-    };
-}
-use name_of_degree;
-
-/// Makes of one list the names with their summaries, the keys of each, and the function that finds a
-/// scheme.
+/// Makes of two lists the names with their summaries, the keys of each, and the function that finds a
+/// scheme. A [`BrokenScheme`] has a second name, on quadratics, with a note to its summary.
 macro_rules! schemes_by_name {
-    ($options:ident: $($name:literal [$($key:literal),*], $summary:literal => $scheme:expr;)*) => {
+    (
+        $($name:literal, $summary:literal => $scheme:expr;)*
+        broken:
+        $($broken:literal [$($key:literal),*], $on_linears:literal, $note:literal => $method:expr;)*
+    ) => {
         /// Names of the schemes, with one line each.
-        pub const SCHEMES: &[(&str, &str)] = &[$(($name, $summary)),*];
+        pub const SCHEMES: &[(&str, &str)] = &[
+            $(($name, $summary),)*
+            $(($broken, $on_linears),)*
+            $((concat!($broken, "-p2"), concat!($broken, " on broken quadratics", $note)),)*
+        ];
 
         /// The keys that the scheme of this name takes, of those that [`SchemeOptions`] has as fields;
         /// none for an unknown name.
         pub fn keys_of_scheme(name: &str) -> &'static [&'static str] {
-            match name {
-                $($name => &[$($key),*],)*
+            match name.strip_suffix("-p2").unwrap_or(name) {
+                $($broken => &[$($key),*],)*
                 _ => &[],
             }
         }
 
         fn made<const D: usize>(
             name: &str,
-            $options: &SchemeOptions,
+            options: &SchemeOptions,
         ) -> Option<Box<dyn Scheme<D>>> {
             match name {
-                $($name => Some(Box::new($scheme)),)*
+                $($name => return Some(Box::new($scheme)),)*
+                _ => {}
+            }
+            match (name.strip_suffix("-p2"), name) {
+                $(
+                    (None, $broken) => Some(Box::new($method.with_options(options, D))),
+                    (Some($broken), _) => Some(Box::new($method.with_options(options, D).on(P2))),
+                )*
                 _ => None,
             }
         }
     };
 }
 
-// A scheme gets its name by one entry here: name, keys, summary, constructor from the options.
-schemes_by_name! { options:
-    "p1" [], "conforming linear elements" => ConformingP1;
-    "p2" [], "conforming quadratic elements" => ConformingP2;
-    "cr" [], "Crouzeix-Raviart elements, bounds on facet means" => NonconformingP1;
-    "sipg" ["factor", "sigma"], "symmetric interior penalty on broken linears"
-        => Sipg::with_options(options);
-    "nipg" ["factor", "sigma"], "non-symmetric interior penalty on broken linears"
-        => Nipg::with_options(options);
-    "iipg" ["factor", "sigma"], "incomplete interior penalty on broken linears"
-        => Iipg::with_options(options);
+// A scheme gets its name by one entry here: name, keys, summary, note on quadratics, the default scheme.
+schemes_by_name! {
+    "p1", "conforming linear elements" => ConformingP1;
+    "p2", "conforming quadratic elements" => ConformingP2;
+    "cr", "Crouzeix-Raviart elements, bounds on facet means" => NonconformingP1;
+    broken:
+    "sipg" ["factor", "sigma"], "symmetric interior penalty on broken linears", ""
+        => Sipg::default();
+    "nipg" ["factor", "sigma"], "non-symmetric interior penalty on broken linears", ""
+        => Nipg::default();
+    "iipg" ["factor", "sigma"], "incomplete interior penalty on broken linears", ""
+        => Iipg::default();
     "ldg" ["sigma", "lifts"],
-        "local discontinuous Galerkin on broken linears, mean fluxes, lifts of degree k-1"
-        => Ldg::with_options(options, false);
+        "local discontinuous Galerkin on broken linears, mean fluxes, lifts of degree k-1", ""
+        => Ldg::default();
     "ldg-switch" ["sigma", "lifts"],
-        "local discontinuous Galerkin on broken linears, one-sided fluxes, lifts of degree k-1"
-        => Ldg::with_options(options, true);
+        "local discontinuous Galerkin on broken linears, one-sided fluxes, lifts of degree k-1", ""
+        => Ldg { switch: true, ..Ldg::default() };
     "br2" ["factor", "lifts"],
-        "second method of Bassi and Rebay on broken linears, lifts of degree k-1"
-        => Br2::with_options(options);
+        "second method of Bassi and Rebay on broken linears, lifts of degree k-1", ""
+        => Br2::default();
     "bmmpr" ["factor", "lifts"],
-        "method of Brezzi, Manzini, Marini, Pietra and Russo on broken linears, lifts of degree k-1"
-        => Bmmpr::with_options(options);
+        "method of Brezzi, Manzini, Marini, Pietra and Russo on broken linears, lifts of degree k-1", ""
+        => Bmmpr::default();
     "wopsip" ["factor", "eta", "weight"],
-        "weakly over-penalised symmetric interior penalty on broken linears"
-        => Wopsip::with_options(options);
-    "sipg-p2" ["factor", "sigma"], "sipg on broken quadratics"
-        => Sipg::with_options(options).on(P2);
-    "nipg-p2" ["factor", "sigma"], "nipg on broken quadratics"
-        => Nipg::with_options(options).on(P2);
-    "iipg-p2" ["factor", "sigma"], "iipg on broken quadratics"
-        => Iipg::with_options(options).on(P2);
-    "ldg-p2" ["sigma", "lifts"], "ldg on broken quadratics"
-        => Ldg::with_options(options, false).on(P2);
-    "ldg-switch-p2" ["sigma", "lifts"], "ldg-switch on broken quadratics"
-        => Ldg::with_options(options, true).on(P2);
-    "br2-p2" ["factor", "lifts"], "br2 on broken quadratics"
-        => Br2::with_options(options).on(P2);
-    "bmmpr-p2" ["factor", "lifts"], "bmmpr on broken quadratics"
-        => Bmmpr::with_options(options).on(P2);
-    "wopsip-p2" ["factor", "eta", "weight"], "wopsip on broken quadratics, moments of degree one: has digits in f64 to level 64 by default, to 8 with eta=1e8"
-        => Wopsip::with_options(options).on(P2);
+        "weakly over-penalised symmetric interior penalty on broken linears",
+        ", moments of degree one: has digits in f64 to level 64 by default, to 8 with eta=1e8"
+        => Wopsip::default();
 }
 
 /// The scheme of this name.

@@ -28,64 +28,39 @@ pub struct NamedScheme {
     shows_all: bool,
 }
 
-/// What is wrong with a scheme as a user wrote it.
+/// Why a scheme as a user wrote it cannot be made: what is wrong, where, and what may stand there.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
 #[non_exhaustive]
-pub enum SchemeNameError {
+pub struct SchemeNameError {
+    /// What is wrong.
+    pub kind: SchemeNameErrorKind,
+    message: String,
+}
+
+/// What is wrong with a scheme as a user wrote it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SchemeNameErrorKind {
     /// No scheme has the name.
-    #[error("unknown scheme {:?}; there are: {}", excerpt(name), names(SCHEMES))]
-    Unknown {
-        /// What was written before colon and `@`.
-        name: String,
-    },
+    Unknown,
     /// No constraint set has the name after the colon.
-    #[error("{}: there is no placement {:?}; there are: {}", excerpt(text), excerpt(placement), names(&CONSTRAINT_SETS))]
-    UnknownPlacement {
-        /// What was written.
-        text: String,
-        /// The name after the colon.
-        placement: String,
-    },
+    UnknownPlacement,
     /// The element of the scheme has no values that the constraint set binds.
-    #[error("{}: the element of the scheme has no such values; it has: {allowed}", excerpt(text))]
-    UnfitPlacement {
-        /// What was written.
-        text: String,
-        /// The constraint sets that bind values of the element.
-        allowed: String,
-    },
+    UnfitPlacement,
     /// The scheme does not take the key.
-    #[error("{}: {name} does not take {:?}; it takes: {allowed}", excerpt(text), excerpt(key))]
-    UnknownKey {
-        /// What was written.
-        text: String,
-        /// Name of the scheme.
-        name: &'static str,
-        /// The key.
-        key: String,
-        /// The keys that the scheme takes.
-        allowed: String,
-    },
+    UnknownKey,
     /// A value of a key is out of its range.
-    #[error("{}: {key} = {}: {allowed}", excerpt(text), excerpt(value))]
-    Value {
-        /// What was written.
-        text: String,
-        /// The key.
-        key: String,
-        /// The value.
-        value: String,
-        /// The values allowed.
-        allowed: String,
-    },
+    Value,
     /// Two keys choose the same thing.
-    #[error("{}: the keys {keys} choose the same penalty; give one of them", excerpt(text))]
-    Twice {
-        /// What was written.
-        text: String,
-        /// The keys.
-        keys: String,
-    },
+    Twice,
+}
+
+impl SchemeNameErrorKind {
+    /// The error of this kind in what was written.
+    fn of(self, text: &str, what: impl fmt::Display) -> SchemeNameError {
+        SchemeNameError { kind: self, message: format!("{}: {what}", excerpt(text)) }
+    }
 }
 
 fn names(known: &[(&str, &str)]) -> String {
@@ -105,7 +80,9 @@ impl FromStr for NamedScheme {
             None => (head, None),
         };
         let Some(&(name, _)) = SCHEMES.iter().find(|known| known.0 == name) else {
-            return Err(SchemeNameError::Unknown { name: name.to_owned() });
+            let message =
+                format!("unknown scheme {:?}; there are: {}", excerpt(name), names(SCHEMES));
+            return Err(SchemeNameError { kind: SchemeNameErrorKind::Unknown, message });
         };
         let mut scheme = Self::plain(name);
         if let Some(placement) = placement {
@@ -219,40 +196,40 @@ impl NamedScheme {
             constraint_set_by_name(name).is_some_and(|set| scheme.constraint_on(&set).is_some())
         };
         match CONSTRAINT_SETS.iter().find(|set| set.0 == placement) {
-            None => Err(SchemeNameError::UnknownPlacement {
-                text: text.to_owned(),
-                placement: placement.to_owned(),
-            }),
+            None => {
+                let (unknown, known) = (excerpt(placement), names(&CONSTRAINT_SETS));
+                let what = format!("there is no placement {unknown:?}; there are: {known}");
+                Err(SchemeNameErrorKind::UnknownPlacement.of(text, what))
+            }
             Some(set) if fits(set.0) => Ok(set.0),
             Some(_) => {
                 let sets: Vec<_> = CONSTRAINT_SETS.into_iter().filter(|set| fits(set.0)).collect();
-                Err(SchemeNameError::UnfitPlacement {
-                    text: text.to_owned(),
-                    allowed: names(&sets),
-                })
+                let allowed = names(&sets);
+                let what =
+                    format!("the element of the scheme has no such values; it has: {allowed}");
+                Err(SchemeNameErrorKind::UnfitPlacement.of(text, what))
             }
         }
     }
     /// Takes `KEY=VALUE`.
     fn choose(&mut self, text: &str, choice: &str) -> Result<(), SchemeNameError> {
-        let (name, takes, text) = (self.name, keys_of_scheme(self.name), text.to_owned());
+        let (name, takes) = (self.name, keys_of_scheme(self.name));
         let (key, value) = choice.split_once('=').unwrap_or((choice, ""));
         if !takes.contains(&key) {
             let allowed = if takes.is_empty() { "no key".to_owned() } else { takes.join(", ") };
-            return Err(SchemeNameError::UnknownKey { text, name, key: key.to_owned(), allowed });
+            let what = format!("{name} does not take {:?}; it takes: {allowed}", excerpt(key));
+            return Err(SchemeNameErrorKind::UnknownKey.of(text, what));
         }
         let is_penalty = |key: &str| ["factor", "eta", "sigma"].contains(&key);
-        let before = self.options.entries().map(|entry| entry.0);
-        if let Some(before) =
-            before.into_iter().find(|b| *b == key || is_penalty(b) && is_penalty(key))
-        {
-            return Err(SchemeNameError::Twice { text, keys: format!("{before} and {key}") });
+        let is_same = |set: &&str| *set == key || is_penalty(set) && is_penalty(key);
+        let before = self.options.entries().map(|entry| entry.0).find(is_same);
+        if let Some(before) = before {
+            let what =
+                format!("the keys {before} and {key} choose the same penalty; give one of them");
+            return Err(SchemeNameErrorKind::Twice.of(text, what));
         }
-        self.options.set(key, value).map_err(|allowed| SchemeNameError::Value {
-            text,
-            key: key.to_owned(),
-            value: value.to_owned(),
-            allowed,
+        self.options.set(key, value).map_err(|allowed| {
+            SchemeNameErrorKind::Value.of(text, format!("{key} = {}: {allowed}", excerpt(value)))
         })
     }
 }

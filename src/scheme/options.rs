@@ -58,6 +58,19 @@ impl SchemeOptions {
         ];
         entries.into_iter().filter_map(|(key, value)| Some((key, value?)))
     }
+    /// What is set otherwise than in another choice.
+    pub(super) fn unlike(&self, other: &Self) -> Self {
+        fn of<T: PartialEq>(own: Option<T>, other: Option<T>) -> Option<T> {
+            if own == other { None } else { own }
+        }
+        Self {
+            factor: of(self.factor, other.factor),
+            eta: of(self.eta, other.eta),
+            sigma: of(self.sigma, other.sigma),
+            weight: of(self.weight, other.weight),
+            lifts: of(self.lifts, other.lifts),
+        }
+    }
     /// Whether a penalty is chosen.
     pub(super) fn has_penalty(&self) -> bool {
         self.factor.or(self.eta).or(self.sigma).is_some()

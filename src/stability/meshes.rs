@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, BoxDomain, Mesh, TaggedFacet};
+use crate::mesh::{BoundaryCondition, BoxDomain, Mesh, TaggedFacet};
 use crate::real::Point;
 
 /// The unit square in `n` times `n ratio` rectangles, each cut in two.
@@ -21,7 +21,7 @@ pub(crate) fn moved<const D: usize>(
         let mut vertices = [0; D];
         let around = mesh.facet_vertices(f.cell as usize, f.local as usize);
         vertices.iter_mut().zip(around).for_each(|(place, v)| *place = v);
-        TaggedFacet { vertices, part: f.part }
+        TaggedFacet { vertices, condition: f.condition }
     };
     let boundary: Vec<TaggedFacet<D>> = mesh.boundary().iter().map(tagged).collect();
     let vertices = mesh.vertices().iter().map(to).collect();
@@ -50,7 +50,7 @@ pub(crate) fn clamped(vertices: Vec<Point<3>>, cells: Vec<u32>) -> Result<Mesh<3
     let mut boundary: Vec<TaggedFacet<3>> = seen
         .into_iter()
         .filter(|&(_, count)| count == 1)
-        .map(|(vertices, _)| TaggedFacet { vertices, part: BoundaryPart::Dirichlet })
+        .map(|(vertices, _)| TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet })
         .collect();
     boundary.sort_unstable_by_key(|f| f.vertices);
     Ok(Mesh::new(vertices, cells, &boundary)?)

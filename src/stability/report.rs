@@ -11,15 +11,13 @@ use super::summary::{by_criterion, by_scheme, criteria, missed, robust, safe_ran
 use crate::error::Error;
 use crate::files::replace_text;
 #[cfg(feature = "plot")]
-use crate::output::html::HtmlPage;
-use crate::output::latex::latex_files;
-use crate::output::table::{Cell, markdown};
-use crate::output::{Provenance, Table, csv};
+use crate::output::html::{HtmlPage, Section};
+use crate::output::{Provenance, csv};
 #[cfg(feature = "plot")]
 use crate::plot::Figure;
 use crate::study::Program;
 #[cfg(feature = "plot")]
-use crate::study::row::distinct;
+use crate::table::{Cell, Table, WIDTH, latex_document, markdown};
 
 /// Notes before the tables.
 const READING: [&str; 3] = [
@@ -104,7 +102,7 @@ impl StabilityReport {
             text += &format!("Not run to the end: {failure}.\n");
         }
         for table in self.verdict_tables() {
-            text += &format!("\n{}", table.to_text());
+            text += &format!("\n{}", table.to_text(WIDTH));
         }
         text
     }
@@ -174,7 +172,7 @@ impl StabilityReport {
 
     /// Tables for a terminal.
     pub fn to_text(&self) -> String {
-        self.document(&self.tables(), Table::to_text, |line| format!("{line}\n"))
+        self.document(&self.tables(), |table| table.to_text(WIDTH), |line| format!("{line}\n"))
     }
 
     /// Tables, provenance and notes in Markdown.
@@ -195,14 +193,12 @@ impl StabilityReport {
         format!("# Stability\n\n{}", self.document(tables, Table::to_markdown, line))
     }
 
-    /// Files in LaTeX, for `\input`, by name and text: `stability.tex` with provenance, notes, verdicts, what
-    /// was missed and the criteria, and every table, those of the rows too, alone; see
+    /// Provenance, notes, verdicts, what was missed and the criteria in LaTeX, for `\input`; see
     /// [`LATEX_PACKAGES`](crate::output::LATEX_PACKAGES).
-    pub fn to_latex(&self) -> Vec<(String, String)> {
+    pub fn to_latex(&self) -> String {
         let mut summary = self.verdict_tables();
         summary.push(criteria(&self.rows));
-        let further: Vec<Table> = self.case_tables().collect();
-        latex_files("stability", &self.paragraphs(), &summary, &further)
+        latex_document(&self.paragraphs(), &summary)
     }
 
     /// The sweeps of every case over a parameter, drawn, each with the name of its file.
@@ -219,14 +215,33 @@ impl StabilityReport {
     #[cfg(feature = "plot")]
     pub fn write_figures(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
         let figures = self.figures();
-        let series = distinct(figures.iter().flat_map(|(_, f)| f.labels()).cloned());
-        let mut page = HtmlPage::of_tables("Stability", self.paragraphs(), &series, &self.tables());
         let mut written = Vec::new();
+        let mut pictures = Vec::new();
         for (name, figure) in &figures {
-            let path = directory.join(format!("{name}.svg"));
-            written.push(replace_text(&path, &figure.to_svg())?);
-            page.draw(name, figure);
+            let file = format!("{name}.svg");
+            written.push(replace_text(&directory.join(&file), &figure.to_svg())?);
+            pictures.push((name.clone(), file));
         }
+        let mut paragraphs = self.paragraphs().into_iter();
+        let page = HtmlPage {
+            title: "Stability".to_owned(),
+            lead: paragraphs.next().expect("the heading is the first paragraph"),
+            summary: self.verdict_tables(),
+            sections: vec![
+                Section {
+                    title: "Reading".to_owned(),
+                    paragraphs: paragraphs.collect(),
+                    ..Section::default()
+                },
+                Section { title: "Sweeps".to_owned(), pictures, ..Section::default() },
+                Section {
+                    title: "Cases".to_owned(),
+                    tables: [criteria(&self.rows)].into_iter().chain(self.case_tables()).collect(),
+                    ..Section::default()
+                },
+            ],
+            ..HtmlPage::default()
+        };
         written.push(replace_text(&directory.join("stability.html"), &page.to_html())?);
         Ok(written)
     }
@@ -278,8 +293,8 @@ impl StabilityReport {
         )
     }
 
-    /// Writes `stability.json`, `.csv`, `.txt`, `.md` and the files of [`Self::to_latex`] into a directory,
-    /// which is made if need be. Each file takes the place of an earlier one only when it is whole.
+    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be. Each file takes
+    /// the place of an earlier one only when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
@@ -287,11 +302,9 @@ impl StabilityReport {
         let files = [
             ("stability.json", self.to_json()),
             ("stability.csv", self.to_csv()),
-            ("stability.txt", self.to_text()),
             ("stability.md", self.to_markdown()),
+            ("stability.tex", self.to_latex()),
         ];
-        let mut files: Vec<_> = files.map(|(name, text)| (name.to_owned(), text)).into();
-        files.extend(self.to_latex());
         files.iter().map(|(name, text)| replace_text(&directory.join(name), text)).collect()
     }
 }

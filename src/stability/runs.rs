@@ -59,7 +59,7 @@ pub(crate) fn row_on<const D: usize>(
     choice: &Choice,
 ) -> Result<Row, Error> {
     scene.problem = choice.constrain(scene.problem);
-    let study = Study::<D>::new(scene).on_mesh(mesh).boxed_scheme(choice.make());
+    let study = Study::<D>::new(scene.domain(mesh)).boxed_scheme(choice.make());
     Ok(study.solver(solver()).levels([0]).run()?.rows.swap_remove(0))
 }
 
@@ -137,22 +137,7 @@ pub(crate) fn free_matrix<const D: usize>(
     choice: &Choice,
 ) -> Result<SparseMatrix<f64>, Error> {
     let inequality = choice.inequality(problem, mesh)?;
-    let is_free = |i: usize| inequality.bounds[i].fixed_value().is_none();
-    let mut number = vec![u32::MAX; inequality.size()];
-    let free: Vec<usize> = (0..inequality.size()).filter(|&i| is_free(i)).collect();
-    free.iter().enumerate().for_each(|(k, &i)| number[i] = k as u32);
-    let mut part = SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
-    for &i in &free {
-        let (columns, values) = inequality.matrix.row(i);
-        for (&j, &a) in columns.iter().zip(values) {
-            if number[j as usize] != u32::MAX {
-                part.columns.push(number[j as usize]);
-                part.values.push(a);
-            }
-        }
-        part.row_starts.push(part.columns.len() as u32);
-    }
-    Ok(part)
+    Ok(inequality.matrix.submatrix(&inequality.free_unknowns()))
 }
 
 /// `-Laplace u = f` in the unit box with `u` the product of `sin(pi x_k)`.

@@ -2,9 +2,8 @@
 
 use super::criteria::{CRITERIA, Criterion};
 use super::row::{StabilityRow, Verdict, factor_in_words, short};
-use crate::output::Table;
-use crate::output::table::Cell;
 use crate::study::row::distinct;
+use crate::table::{Cell, Table};
 
 fn count<'r>(rows: impl Iterator<Item = &'r StabilityRow>, verdict: Verdict) -> usize {
     rows.filter(|row| row.verdict == verdict).count()

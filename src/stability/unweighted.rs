@@ -10,7 +10,7 @@ use crate::scheme::{Scheme, Wopsip};
 /// WOPSIP with the penalty `eta / h_F^3` for every coefficient, for comparison with the default:
 /// the scheme fails for coefficients that are not of size one.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct UnweightedWopsip<const D: usize>(pub Wopsip<D>);
+pub(crate) struct UnweightedWopsip(pub Wopsip);
 
 /// The form of [`UnweightedWopsip`].
 struct UnweightedPenalty<const D: usize>(Box<dyn FacetForm<D>>);
@@ -33,7 +33,7 @@ impl<const D: usize> FacetForm<D> for UnweightedPenalty<D> {
     }
 }
 
-impl<const D: usize> Scheme<D> for UnweightedWopsip<D> {
+impl<const D: usize> Scheme<D> for UnweightedWopsip {
     fn name(&self) -> &str {
         "wopsip"
     }

@@ -3,14 +3,14 @@
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, BoxDomain, Mesh, describe_point};
-use crate::problem::{DataOnMesh, Datum, NamedData, Problem};
+use crate::mesh::{BoundaryCondition, BoxDomain, Domain, Mesh, describe_point};
+use crate::problem::{DataOnMesh, Given, Problem};
 use crate::real::Point;
 use crate::scenes::Scene;
 use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 
-/// Checks that a mesh is compatible with a scene. Returns the barycentre of a facet on which the
-/// exact solution of the scene breaks the contact condition, or none.
+/// Checks that a scene fits its domain. Returns the barycentre of a facet of a mesh on which the exact solution of the
+/// scene breaks the contact condition, or none.
 ///
 /// Dirichlet and Neumann data of a scene with an exact solution come from that solution wherever
 /// the mesh has such parts, so it stays the solution on any domain where it is smooth enough. Only
@@ -19,12 +19,12 @@ use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 /// # Errors
 /// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part, or if the data of
 /// the scene are no data on the mesh: not finite, or without an admissible value.
-pub fn check_fit<const D: usize>(
-    scene: &Scene<D>,
-    mesh: &Mesh<D>,
-) -> Result<Option<String>, Error> {
+pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Error> {
+    let Domain::Mesh(mesh) = &scene.domain else {
+        return check_contact(scene).map(|()| None);
+    };
     mesh.check_boundary_parts()?;
-    check_contact(scene, mesh.has_part(BoundaryPart::Contact))?;
+    check_contact(scene)?;
     check_data(scene, mesh)?;
     Ok(first_failure(scene, mesh))
 }
@@ -62,17 +62,13 @@ pub(super) fn check_scheme<const D: usize>(
     quadrature: DataQuadrature,
 ) -> Result<(), Error> {
     // bounds without names, which the cube does not have
-    let zero = |is_given: bool, old: Option<Datum<D>>| old.or(is_given.then_some(0.0.into()));
-    let (lower, gap) = (!problem.named.lower.is_empty(), !problem.named.gap.is_empty());
-    let upper = !problem.named.upper.is_empty();
-    let problem = Problem {
-        coefficient: None,
-        lower: zero(lower, problem.lower),
-        upper: zero(upper, problem.upper),
-        gap: zero(gap, problem.gap),
-        named: NamedData::default(),
-        ..problem
-    };
+    let mut problem = problem;
+    for bound in [&mut problem.lower, &mut problem.upper, &mut problem.gap] {
+        if bound.everywhere.is_none() && bound.is_given() {
+            bound.everywhere = Some(0.0.into());
+        }
+    }
+    let problem = Problem { coefficient: Given::default(), ..problem.in_group(&[], &[]) };
     let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::<D>::kuhn_box(&cube, [1; D])?;
     match scheme.discretise(&problem, &mesh, quadrature) {
@@ -115,17 +111,12 @@ fn first_twice<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
     })
 }
 
-/// Checks that the built-in domain of a scene has the parts its problem needs.
-///
-/// # Errors
-/// [`Error::UnfitMesh`].
-pub(crate) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
-    check_contact(scene, scene.domain.has_part(BoundaryPart::Contact))
-}
-
-/// Checks that there is a contact part if and only if there is a Signorini condition.
-fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), Error> {
-    let why = match (scene.problem.has_gap(), contact) {
+/// Checks that the domain has a contact part if and only if there is a Signorini condition.
+fn check_contact<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
+    let why = match (
+        scene.problem.has_gap(),
+        scene.domain.has_condition(BoundaryCondition::Contact),
+    ) {
         (true, false) => {
             "the problem has a Signorini condition, but the mesh has no contact part: no group named \"contact\" or with a gap"
         }
@@ -142,7 +133,7 @@ fn first_failure<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Option<Str
     let data = DataOnMesh::new(&scene.problem, mesh).ok()?;
     let exact = scene.problem.exact.as_ref()?;
     let slack = 1e3 * f64::EPSILON;
-    for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+    for facet in mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
         let (cell, local) = (facet.cell as usize, facet.local as usize);
         let x = mesh.facet_barycentre(cell, local);
         let normal = mesh.geometry(cell).normal(local);
@@ -150,7 +141,7 @@ fn first_failure<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Option<Str
         let middle = mesh.barycentre(cell);
         let alpha = data.coefficient.of(mesh.region(cell)).map_or(1.0, |a| a.at(&middle));
         let gradient = (exact.gradient)(&x);
-        let opening = (exact.value)(&x) - gap.at(&x);
+        let opening = exact.value.at(&x) - gap.at(&x);
         let pressure = alpha * gradient.dot(&normal);
         let size = 1.0 + opening.abs() + alpha * gradient.norm();
         // the smaller of two non-negative numbers must vanish

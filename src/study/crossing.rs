@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::assemble::DataQuadrature;
 use crate::assemble::cut_simplices::in_space;
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, BoxDomain, Edges, Mesh, describe_point, edge_vertices};
+use crate::mesh::{BoundaryCondition, BoxDomain, Edges, Mesh, describe_point, edge_vertices};
 use crate::parallel::cells;
 use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::facet_to_cell;
@@ -125,7 +125,7 @@ impl Points {
             seen
         });
         let mut seen = seen.into_iter().fold(Seen::NOTHING, Seen::merged);
-        for f in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+        for f in mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
             let place = (f.cell as usize, usize::from(f.local));
             on_mesh.compare_on(place, usize::from(f.group), &self.on_facets, &mut seen);
         }
@@ -203,7 +203,7 @@ impl<const D: usize> OnMesh<'_, '_, D> {
                 add(cell, k, lower.map(|psi| psi.at(&x)), upper.map(|psi| psi.at(&x)));
             }
         }
-        for f in self.mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+        for f in self.mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
             let Some(gap) = data.gap.of(usize::from(f.group)) else { continue };
             let (cell, local) = (f.cell as usize, usize::from(f.local));
             let corners = self.mesh.corners(cell);

@@ -1,6 +1,9 @@
 //! Limits of figures that have no exact value, from three levels.
 
-use super::row::{Row, distinct};
+use std::borrow::Borrow;
+
+use super::row::Row;
+use super::series::{Meshes, Series, Variant, series_of};
 use crate::measure::Rounding;
 
 /// The limit of a figure as the mesh size tends to zero.
@@ -73,17 +76,12 @@ pub struct Extrapolated {
 }
 
 /// The limits of energy, contact measure and resultant of every series with three levels that converged,
-/// from the three finest of them, none of figures that are all rounding. Rows of one scene, label, constraint set and
-/// solver are a series. Adaptive meshes have no limits: their sizes are not those of one family.
+/// from the three finest of them, none of figures that are all rounding. Adaptive meshes have no limits: their sizes are
+/// not those of one family.
 #[must_use]
-pub fn extrapolate(rows: &[Row]) -> Vec<Extrapolated> {
-    let key = |r: &Row| [&r.scene, &r.label, &r.constraint, &r.solver].map(String::clone);
-    let of_series = |series: [String; 4]| {
-        let mut levels: Vec<&Row> = rows
-            .iter()
-            .filter(|r| key(r) == series && r.converged() && r.theta.is_none())
-            .collect();
-        levels.sort_by(|a, b| b.mesh_size.total_cmp(&a.mesh_size));
+pub fn extrapolate<R: Borrow<Row>>(rows: &[R]) -> Vec<Extrapolated> {
+    let of_series = |series: Series<'_, R>| {
+        let levels: Vec<&Row> = series.plain_rows().filter(|r| r.converged()).collect();
         let three: &[&Row; 3] = levels.last_chunk()?;
         let of = |figure: fn(&Row) -> Option<f64>, rounding: fn(Rounding) -> f64| {
             let [a, b, c] = three.map(figure);
@@ -100,7 +98,7 @@ pub fn extrapolate(rows: &[Row]) -> Vec<Extrapolated> {
                 false => limit(figures, three.map(|r| r.mesh_size)),
             }
         };
-        let [scene, label, _, solver] = series;
+        let Variant { scene, label, solver, .. } = series.variant;
         Some(Extrapolated {
             scene,
             label,
@@ -110,7 +108,8 @@ pub fn extrapolate(rows: &[Row]) -> Vec<Extrapolated> {
             resultant: of(|r| r.resultant, |rounding| rounding.force),
         })
     };
-    distinct(rows.iter().map(key)).into_iter().filter_map(of_series).collect()
+    let uniform = series_of(rows).into_iter().filter(|s| s.variant.meshes == Meshes::Uniform);
+    uniform.filter_map(of_series).collect()
 }
 
 #[cfg(test)]

@@ -10,16 +10,15 @@ mod file_name;
 #[cfg(feature = "report")]
 mod journal;
 mod memory;
-mod orders;
+pub(crate) mod orders;
 mod part_figures;
-pub(crate) mod rates;
 mod reference;
-pub(crate) mod remarks;
 pub(crate) mod report;
 pub(crate) mod row;
 mod runner;
+pub(crate) mod series;
 mod setting;
-pub(crate) mod table;
+pub(crate) mod tables;
 
 pub use crate::nested::Phase;
 pub use compatibility::check_fit;
@@ -37,3 +36,4 @@ pub use part_figures::{PartFigures, PartSeconds};
 pub use report::{Program, Report};
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
 pub use runner::{PartChecks, Progress, Study};
+pub use series::{Meshes, Series, Variant};

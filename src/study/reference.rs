@@ -43,13 +43,13 @@ impl<const D: usize> Reference<'_, D> {
     ///
     /// # Errors
     /// [`Error::Parameter`].
-    pub fn check(&self, domain: Option<&Domain<D>>, levels: &[usize]) -> Result<(), Error> {
+    pub fn check(&self, domain: &Domain<D>, levels: &[usize]) -> Result<(), Error> {
         let refuse = |allowed: String| {
             let (parameter, value) = ("level of the reference", self.level.to_string());
             Err(Error::Parameter { parameter, value, allowed })
         };
         let finest = levels.iter().copied().max().unwrap_or(0);
-        let Some(domain) = domain else {
+        if domain.is_mesh() {
             let least = finest + REFINEMENTS;
             return match self.level >= least {
                 true => Ok(()),
@@ -57,7 +57,7 @@ impl<const D: usize> Reference<'_, D> {
                     "at least {least}, {REFINEMENTS} refinements finer than the finest level"
                 )),
             };
-        };
+        }
         if matches!(domain, Domain::Disc { .. }) {
             return refuse(
                 "none: meshes of a disc are refined towards the circle and are not nested"

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::extrapolate::{Extrapolated, extrapolate};
 use super::row::Row;
+use super::series::{Series, series_of};
 
 /// The program that made a report, and its settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,6 +25,9 @@ pub struct Program {
     pub target_cpu: String,
     /// What else the rows depend on and do not say, by name: parameters of scenes, a mesh file.
     pub request: BTreeMap<String, String>,
+    /// The command that makes the report again, for its page; files of rows do not have it.
+    #[cfg_attr(feature = "report", serde(skip))]
+    pub command: Option<String>,
 }
 
 impl Program {
@@ -39,12 +43,24 @@ impl Program {
             repeat,
             target_cpu: target_cpu(),
             request: BTreeMap::new(),
+            command: None,
         }
     }
     /// States something else on which the rows depend.
     #[must_use]
     pub fn with_request(mut self, name: &str, value: impl ToString) -> Self {
         self.request.insert(name.to_owned(), value.to_string());
+        self
+    }
+    /// States the command that makes the report again, by its words.
+    #[must_use]
+    pub fn with_command(mut self, words: impl Iterator<Item = String>) -> Self {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,@+".contains(c);
+        let quoted = |word: String| match !word.is_empty() && word.chars().all(is_plain) {
+            true => word,
+            false => format!("'{}'", word.replace('\'', "'\\''")),
+        };
+        self.command = Some(words.map(quoted).collect::<Vec<_>>().join(" "));
         self
     }
 }
@@ -100,9 +116,27 @@ impl Report {
         text.push('\n');
         text
     }
+    /// The series of the report, in the order in which they first occur: the rows of one scheme with one solver on one
+    /// scene, those of uniform and of adaptive meshes apart. Tables, orders, limits and plots go by them.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let study = || Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1);
+    /// let mut report = study().levels([8, 4]).run()?;
+    /// report.rows.extend(study().adaptive(Adaptivity::default().steps(2)).run()?.rows);
+    /// let series = report.series();
+    /// assert_eq!([&series[0].name[..], &series[1].name[..]], ["p1, uniform", "p1, adaptive"]);
+    /// assert_eq!([series[0].rows[0].level, series[1].rows.len()], [4, 3]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn series(&self) -> Vec<Series<'_>> {
+        series_of(&self.rows)
+    }
     /// The limits of energy, contact measure and resultant of every series with three levels that converged,
-    /// from the three finest of them. Rows of one scene, label, constraint set and solver are a series.
-    /// Adaptive meshes have no limits: their sizes are not those of one family.
+    /// from the three finest of them. Adaptive meshes have no limits: their sizes are not those of one family.
     ///
     /// A limit is that of three figures, coarsest mesh first, whose error is `C h^p`: Richardson extrapolation
     /// with the order that the figures themselves show. None where they do not tend to a limit like a power of

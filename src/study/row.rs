@@ -106,7 +106,7 @@ pub struct Row {
     /// `cell-means`, or the name of a constraint set of one's own.
     pub constraint: String,
     /// Scheme, constraint set and choices without what is default, as
-    /// [`NamedScheme`](crate::scheme::NamedScheme) reads it: what distinguishes the series of a report.
+    /// [`NamedScheme`](crate::scheme::NamedScheme) reads it: what distinguishes the schemes of a report.
     pub label: String,
     /// Subdivisions of the shortest side, or number of refinements of a mesh file or of adaptive refinement.
     pub level: usize,
@@ -123,6 +123,9 @@ pub struct Row {
     pub solver: String,
     /// Linear solver inside it.
     pub linear: String,
+    /// The linear solver asked for, in reports that set several side by side; other rows do not have the key.
+    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub linear_asked: Option<String>,
     /// Number of cells.
     pub cells: usize,
     /// Number of unknowns before Dirichlet values are eliminated; none if the data ended the assembly
@@ -205,6 +208,7 @@ impl Row {
             parameters: PenaltyParameters::default(),
             solver: String::new(),
             linear: String::new(),
+            linear_asked: None,
             cells: 0,
             unknowns: None,
             nonzeros: None,
@@ -351,11 +355,6 @@ impl Row {
     pub fn converged(&self) -> bool {
         self.status == Outcome::Converged
     }
-}
-
-/// Sorts rows by their levels.
-pub(crate) fn sort_by_level(rows: &mut [&Row]) {
-    rows.sort_by_key(|row| row.level);
 }
 
 /// Each item once, in order of first occurrence.

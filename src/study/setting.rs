@@ -1,22 +1,22 @@
 //! The assumptions of the proofs of orders.
 
-use crate::mesh::{BoundaryPart, Domain};
+use crate::mesh::{BoundaryCondition, Domain};
 use crate::scenes::Scene;
 use crate::scheme::Setting;
 
-/// The setting of a scene on its own domain, or on a mesh in place of it.
-pub(super) fn setting<const D: usize>(scene: &Scene<D>, on_mesh: bool) -> Setting {
+/// The setting of a scene; of a mesh it is not known whether its domain is convex.
+pub(super) fn setting<const D: usize>(scene: &Scene<D>) -> Setting {
     let Scene { problem, domain, .. } = scene;
-    let is_convex = !matches!(domain, Domain::LShape { .. });
-    let all_dirichlet =
-        ![BoundaryPart::Neumann, BoundaryPart::Contact].iter().any(|&p| domain.has_part(p));
+    let is_convex = !matches!(domain, Domain::LShape { .. } | Domain::Mesh(_));
+    let all_dirichlet = ![BoundaryCondition::Neumann, BoundaryCondition::Contact]
+        .iter()
+        .any(|&p| domain.has_condition(p));
     Setting {
         dimension: D,
         obstacle: problem.has_obstacle(),
         contact: problem.has_gap(),
         regularity: scene.regularity,
-        coefficient: problem.has_coefficient(),
-        regular_dual: !problem.has_coefficient()
-            && (D == 1 || !on_mesh && is_convex && all_dirichlet),
+        coefficient: problem.coefficient.is_given(),
+        regular_dual: !problem.coefficient.is_given() && (D == 1 || is_convex && all_dirichlet),
     }
 }

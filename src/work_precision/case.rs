@@ -44,11 +44,6 @@ pub(crate) fn run_alone<const D: usize>(study: &Study<'_, D>) -> Result<Vec<(Row
     Ok(rows.into_iter().map(of).collect())
 }
 
-/// The resident set of the process, where the system tells.
-pub(crate) fn resident_memory_bytes() -> Option<u64> {
-    peak_memory_bytes().filter(|_| reset_peak_memory()).and_then(|_| peak_memory_bytes())
-}
-
 /// Resets the peak of the resident set that the kernel records; `true` if it was reset. Linux only.
 fn reset_peak_memory() -> bool {
     cfg!(target_os = "linux") && std::fs::write("/proc/self/clear_refs", "5").is_ok()

@@ -1,36 +1,16 @@
 //! Measured rows with the times of several runs, and failures.
 
+use std::borrow::{Borrow, BorrowMut};
+
 use serde::Serialize;
 
 use crate::measure::ErrorNorm;
 use crate::study::row::distinct;
-use crate::study::{Row, Seconds};
-
-/// A scheme on a scene with constraint set, linear solver and precision: one curve of a plot.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Variant {
-    /// Name of the scene.
-    pub scene: String,
-    /// Name of the scheme.
-    pub scheme: String,
-    /// Where the inequality is imposed.
-    pub constraint: String,
-    /// Scheme, constraint set and choices without what is default.
-    pub label: String,
-    /// The linear solver asked for: `direct`, `iterative` or `by-size`.
-    pub linear_asked: String,
-    /// Scalar of assembly and solve: `f64` or `f32`.
-    pub precision: String,
-    /// The meshes: `uniform` or `adaptive`.
-    pub meshes: String,
-}
-
-/// The meshes of a variant by name.
-pub(super) const UNIFORM: &str = "uniform";
-pub(super) const ADAPTIVE: &str = "adaptive";
+use crate::study::series::series_of;
+use crate::study::{Meshes, Row, Seconds, Variant};
 
 /// A variant on a level, or on all its adaptive meshes: the unit of a run.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Case {
     /// The variant.
     #[serde(flatten)]
@@ -43,7 +23,7 @@ pub struct Case {
 impl Case {
     /// Whether the case is all steps of a variant on adaptive meshes.
     pub fn is_adaptive(&self) -> bool {
-        self.variant.meshes == ADAPTIVE
+        self.variant.meshes.is_adaptive()
     }
 }
 
@@ -83,15 +63,11 @@ impl Phases {
 /// A row with the times of all its runs. Its `seconds` are those of the fastest run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// Counts, errors and certificate. `peak_memory_bytes` is that of this case.
+    /// Counts, errors and certificate. `peak_memory_bytes` is the peak of the process during this case.
     #[serde(flatten)]
     pub row: Row,
-    /// Scalar of assembly and solve.
-    pub precision: String,
-    /// The linear solver asked for; `linear` is the one that was used.
-    pub linear_asked: String,
-    /// The meshes: `uniform` or `adaptive`.
-    pub meshes: String,
+    /// The meshes.
+    pub meshes: Meshes,
     /// Number of runs so far.
     pub runs: usize,
     /// The run with the smallest total.
@@ -109,12 +85,10 @@ pub struct Measured {
 
 impl Measured {
     /// The result of a first run.
-    pub fn new(row: Row, phases: Phases, case: &Case) -> Self {
+    pub fn new(row: Row, phases: Phases) -> Self {
         Measured {
+            meshes: Meshes::of(&row),
             row,
-            precision: case.variant.precision.clone(),
-            linear_asked: case.variant.linear_asked.clone(),
-            meshes: case.variant.meshes.clone(),
             runs: 1,
             smallest: phases,
             median: phases,
@@ -150,15 +124,7 @@ impl Measured {
 
     /// The variant it belongs to.
     pub fn variant(&self) -> Variant {
-        Variant {
-            scene: self.row.scene.clone(),
-            scheme: self.row.scheme.clone(),
-            constraint: self.row.constraint.clone(),
-            label: self.row.label.clone(),
-            linear_asked: self.linear_asked.clone(),
-            precision: self.precision.clone(),
-            meshes: self.meshes.clone(),
-        }
+        Variant::of(&self.row)
     }
 
     /// The seconds of the fastest run that lead to an error in this norm: those of the run, and for the bound of a
@@ -176,8 +142,20 @@ impl Measured {
     }
 }
 
+impl Borrow<Row> for Measured {
+    fn borrow(&self) -> &Row {
+        &self.row
+    }
+}
+
+impl BorrowMut<Row> for Measured {
+    fn borrow_mut(&mut self) -> &mut Row {
+        &mut self.row
+    }
+}
+
 /// A case without a solution, and the reason.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Failure {
     /// The case.
@@ -195,32 +173,6 @@ impl Failure {
     }
 }
 
-impl Variant {
-    /// Whether the other one is this scheme with these choices, perhaps on another scene.
-    pub(super) fn differs_in_scene_only(&self, other: &Variant) -> bool {
-        let of =
-            |v: &Variant| [&v.label, &v.linear_asked, &v.precision, &v.meshes].map(String::clone);
-        of(self) == of(other)
-    }
-
-    /// The name of the variant among others of a report: the label of the scheme, and the linear solver,
-    /// the precision and the meshes where they vary.
-    pub fn name_among(&self, all: &[Variant]) -> String {
-        let varies = |part: fn(&Variant) -> &str| all.iter().any(|v| part(v) != part(self));
-        let mut label = self.label.clone();
-        if varies(|v| &v.linear_asked) {
-            label += &format!(", {}", self.linear_asked);
-        }
-        if varies(|v| &v.precision) {
-            label += &format!(", {}", self.precision);
-        }
-        if varies(|v| &v.meshes) {
-            label += &format!(", {}", self.meshes);
-        }
-        label
-    }
-}
-
 /// The scenes of rows and failures, in the order in which they first occur.
 pub(crate) fn scenes<'a>(rows: &'a [Measured], failures: &'a [Failure]) -> Vec<&'a str> {
     let of_rows = rows.iter().map(|m| m.row.scene.as_str());
@@ -229,5 +181,5 @@ pub(crate) fn scenes<'a>(rows: &'a [Measured], failures: &'a [Failure]) -> Vec<&
 
 /// The variants of rows, in the order in which they first occur.
 pub(crate) fn variants(rows: &[Measured]) -> Vec<Variant> {
-    distinct(rows.iter().map(Measured::variant))
+    series_of(rows).into_iter().map(|series| series.variant).collect()
 }

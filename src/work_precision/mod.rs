@@ -1,6 +1,5 @@
-//! Work against precision: schemes, linear solvers, precisions and levels under one clock.
+//! Work against precision: schemes, linear solvers and levels under one clock.
 
-mod baseline;
 mod case;
 #[cfg(feature = "plot")]
 mod figures;
@@ -13,8 +12,8 @@ mod verdict;
 mod work_at_error;
 
 pub use crate::real::Precision;
-pub use baseline::{Changes, changes};
-pub use measured::{Case, Failure, Measured, Phases, Variant};
+pub use crate::study::Variant;
+pub use measured::{Case, Failure, Measured, Phases};
 pub use report::WorkReport;
 pub use work_at_error::{Standing, WorkAtError};
 
@@ -26,9 +25,7 @@ use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::linear::LinearMethod;
-use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::Adaptivity;
-use crate::problem::Problem;
 use crate::scenes::Scene;
 use crate::scheme::{NamedScheme, Scheme};
 use case::Candidate;
@@ -55,7 +52,7 @@ pub enum WorkProgress<'a> {
 /// use unilateral::prelude::*;
 /// use unilateral::work_precision::WorkPrecision;
 /// # fn main() -> Result<(), unilateral::error::Error> {
-/// let report = WorkPrecision::<2>::new(|| scenes::radial(1.0))
+/// let report = WorkPrecision::<2>::new(scenes::radial(1.0))
 ///     .scheme(ConformingP1)
 ///     .scheme(Wopsip::default())
 ///     .levels([4, 8])
@@ -67,32 +64,27 @@ pub enum WorkProgress<'a> {
 /// # }
 /// ```
 pub struct WorkPrecision<'a, const D: usize> {
-    scene: Box<dyn Fn() -> Scene<D> + 'a>,
+    scene: Scene<D>,
     candidates: Vec<Candidate<'a, D>>,
     linear: Vec<LinearMethod>,
-    precisions: Vec<Precision>,
+    precision: Precision,
     levels: Vec<usize>,
     adaptive: Option<Adaptivity>,
-    mesh: Option<Mesh<D>>,
     /// The scheme and the level of the solution against which errors are.
     reference: Option<(Candidate<'a, D>, usize)>,
     rounds: usize,
     limit: f64,
     subject: String,
     directory: Option<PathBuf>,
-    memory: Option<MemoryOf<'a>>,
-    empty_memory: Option<u64>,
     observer: Box<dyn Fn(WorkProgress<'_>) + 'a>,
 }
-
-/// Measures the peak of memory of a case.
-type MemoryOf<'a> = Box<dyn Fn(&Case) -> Option<u64> + 'a>;
 
 impl<const D: usize> fmt::Debug for WorkPrecision<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("WorkPrecision")
+            .field("scene", &self.scene.name)
             .field("linear", &self.linear)
-            .field("precisions", &self.precisions)
+            .field("precision", &self.precision)
             .field("levels", &self.levels)
             .field("adaptive", &self.adaptive)
             .field("rounds", &self.rounds)
@@ -104,37 +96,23 @@ impl<const D: usize> fmt::Debug for WorkPrecision<'_, D> {
 }
 
 impl<'a, const D: usize> WorkPrecision<'a, D> {
-    /// A study of the scene this makes, without schemes or levels yet.
+    /// A study of a scene, without schemes or levels yet.
     #[must_use]
-    pub fn new(scene: impl Fn() -> Scene<D> + 'a) -> Self {
+    pub fn new(scene: Scene<D>) -> Self {
         Self {
-            scene: Box::new(scene),
+            scene,
             candidates: Vec::new(),
             linear: vec![LinearMethod::BySize],
-            precisions: vec![Precision::Double],
+            precision: Precision::Double,
             levels: Vec::new(),
             adaptive: None,
-            mesh: None,
             reference: None,
             rounds: 3,
             limit: f64::INFINITY,
             subject: String::new(),
             directory: None,
-            memory: None,
-            empty_memory: None,
             observer: Box::new(|_| {}),
         }
-    }
-    /// A study of a problem of one's own on a mesh and its refinements, as
-    /// [`Study::of_problem`](crate::study::Study::of_problem) makes it. Without a reference it has no errors.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] where two data claim one boundary group.
-    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<D>) -> Result<Self, Error> {
-        let mesh = problem.bind_boundary(mesh)?;
-        // the domain of a scene is not used where there is a mesh
-        let scene = Scene::new(name, BoxDomain::centred(1.0), problem);
-        Ok(Self::new(move || scene.clone()).on_mesh(mesh))
     }
     /// Takes errors against the solution of this scheme on a level, as
     /// [`Study::reference`](crate::study::Study::reference) does, for cases over `f64`. Every case is solved once
@@ -179,13 +157,13 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.linear = linear.into_iter().collect();
         self
     }
-    /// Sets the precisions of solves; `f64` otherwise.
+    /// Sets the precision of solves; `f64` otherwise.
     #[must_use]
-    pub fn precisions(mut self, precisions: impl IntoIterator<Item = Precision>) -> Self {
-        self.precisions = precisions.into_iter().collect();
+    pub fn precision(mut self, precision: Precision) -> Self {
+        self.precision = precision;
         self
     }
-    /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
+    /// Sets the levels: subdivisions of the shortest side, or refinements of a domain that is a mesh.
     #[must_use]
     pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
         self.levels = levels.into_iter().collect();
@@ -199,12 +177,6 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     #[must_use]
     pub fn adaptive(mut self, adaptivity: Adaptivity) -> Self {
         self.adaptive = Some(adaptivity);
-        self
-    }
-    /// Runs on this mesh and refinements of it instead of the scene's own domain.
-    #[must_use]
-    pub fn on_mesh(mut self, mesh: Mesh<D>) -> Self {
-        self.mesh = Some(mesh);
         self
     }
     /// Sets how often each case runs, at least once; three times otherwise.
@@ -230,19 +202,6 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     #[must_use]
     pub fn write_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
-        self
-    }
-    /// Sets a function that measures the peak of memory of a case; it is called once for each case.
-    /// The default is the peak of this process during the run, with all its other memory.
-    #[must_use]
-    pub fn memory(mut self, memory: impl Fn(&Case) -> Option<u64> + 'a) -> Self {
-        self.memory = Some(Box::new(memory));
-        self
-    }
-    /// States the peak of memory of a run without a case, where [`Self::memory`] measures other processes.
-    #[must_use]
-    pub fn empty_memory(mut self, bytes: Option<u64>) -> Self {
-        self.empty_memory = bytes;
         self
     }
     /// Sets a function that receives the progress of the study.

@@ -6,24 +6,23 @@ use serde_json::json;
 
 #[cfg(feature = "plot")]
 use super::figures::figures;
-use super::measured::{Failure, Measured, Variant, scenes, variants};
+use super::measured::{Failure, Measured, scenes, variants};
 use super::tables::{details, summary};
 use super::verdict::verdict;
 use super::work_at_error::{WorkAtError, work_at_errors};
 use crate::error::Error;
 use crate::files::replace_text;
-use crate::output::html::HtmlPage;
-use crate::output::latex::latex_files;
-use crate::output::table::markdown;
-use crate::output::{Provenance, Table, csv};
-use crate::study::Program;
+use crate::output::html::{HtmlPage, Section};
+use crate::output::{Provenance, csv};
 use crate::study::row::distinct;
+use crate::study::{Program, Variant};
+use crate::table::{Table, WIDTH, latex_document, markdown};
 
 /// The results of a work-precision study on any number of scenes.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct WorkReport {
-    /// The program; `precision` lists all precisions, `repeat` is the number of rounds.
+    /// The program; `repeat` is the number of rounds.
     pub program: Program,
     /// Time and machine.
     pub provenance: Provenance,
@@ -32,10 +31,6 @@ pub struct WorkReport {
     pub setting: String,
     /// The label of the scheme that verdicts compare with the others.
     pub subject: String,
-    /// Peak of memory of a run without a case: of the process before the first one, or what
-    /// [`WorkPrecision::empty_memory`](super::WorkPrecision::empty_memory) states. Plots show memory above
-    /// it.
-    pub empty_memory_bytes: Option<u64>,
     /// One row for every scene, variant and level that gave one.
     pub rows: Vec<Measured>,
     /// Cases that were not run or ended in an error.
@@ -50,13 +45,12 @@ impl WorkReport {
             provenance: Provenance::now(rounds),
             setting: String::new(),
             subject: String::new(),
-            empty_memory_bytes: None,
             rows: Vec::new(),
             refused: Vec::new(),
         }
     }
 
-    /// Time, unknowns and memory at given errors.
+    /// Time, unknowns and entries at given errors.
     pub fn reach(&self) -> Vec<WorkAtError> {
         work_at_errors(&self.rows, &self.refused)
     }
@@ -99,14 +93,13 @@ impl WorkReport {
         [self.detail_tables(), self.summary_tables()].concat()
     }
 
-    /// The report as JSON: `program`, `provenance`, `setting`, `empty_memory_bytes`, `rows`, `failures`, `reach` and
+    /// The report as JSON: `program`, `provenance`, `setting`, `rows`, `failures`, `reach` and
     /// `verdicts`. What does not apply is null.
     pub fn to_json(&self) -> String {
         let value = json!({
             "program": self.program,
             "provenance": self.provenance,
             "setting": self.setting,
-            "empty_memory_bytes": self.empty_memory_bytes,
             "rows": self.rows,
             "failures": self.failures(),
             "reach": self.reach(),
@@ -127,7 +120,7 @@ impl WorkReport {
 
     /// Tables for a terminal, between provenance and verdicts.
     pub fn to_text(&self) -> String {
-        self.document(Table::to_text, |line| format!("{line}\n"))
+        self.document(|table| table.to_text(WIDTH), |line| format!("{line}\n"))
     }
 
     /// Tables, provenance and verdicts in Markdown.
@@ -135,11 +128,10 @@ impl WorkReport {
         self.document(Table::to_markdown, |line| format!("{}\n\n", markdown(line)))
     }
 
-    /// Files in LaTeX, for `\input`, by name and text: `report.tex` with provenance, verdicts and the
-    /// tables of the summary, and every table alone; see
+    /// Provenance, verdicts and the tables of the summary in LaTeX, for `\input`; see
     /// [`LATEX_PACKAGES`](crate::output::LATEX_PACKAGES).
-    pub fn to_latex(&self) -> Vec<(String, String)> {
-        latex_files("report", &self.paragraphs(), &self.summary_tables(), &self.detail_tables())
+    pub fn to_latex(&self) -> String {
+        latex_document(&self.paragraphs(), &self.summary_tables())
     }
 
     fn paragraphs(&self) -> Vec<String> {
@@ -148,20 +140,25 @@ impl WorkReport {
 
     /// The report as one page, with its figures.
     fn page(&self) -> String {
-        let variants = self.variants();
-        let series: Vec<String> = variants.iter().map(|v| v.name_among(&variants)).collect();
-        let tables = [self.summary_tables(), self.detail_tables()].concat();
-        let title = "Work against precision";
         #[cfg_attr(not(feature = "plot"), expect(unused_mut))]
-        let mut page =
-            HtmlPage::of_tables(title, self.paragraphs(), &distinct(series.into_iter()), &tables);
+        let mut plots = Vec::new();
         #[cfg(feature = "plot")]
         for scene in self.scenes() {
-            for (name, figure) in figures(&self.rows, scene, self.empty_memory_bytes) {
-                page.draw(&name, &figure);
+            for (name, figure) in figures(&self.rows, scene) {
+                plots.push((name, figure.to_svg()));
             }
         }
-        page.to_html()
+        let section =
+            |title: &str, tables| Section { title: title.to_owned(), tables, ..Section::default() };
+        HtmlPage {
+            title: "Work against precision".to_owned(),
+            lead: self.verdicts().join(" "),
+            plots,
+            summary: self.summary_tables(),
+            sections: vec![section("All runs", self.detail_tables())],
+            provenance: vec![self.heading()],
+        }
+        .to_html()
     }
 
     fn document(&self, table: fn(&Table) -> String, line: impl Fn(&str) -> String) -> String {
@@ -198,38 +195,33 @@ impl WorkReport {
         text
     }
 
-    /// Writes `report.json`, `report.csv`, `reach.csv`, `report.txt`, `report.md`, `report.tex` and, if the
-    /// report is complete, the further files of [`Self::to_latex`] and `report.html` into a directory, which
-    /// is made if need be. Each file takes the place of an earlier one only when it is whole.
+    /// Writes `report.json`, `report.csv`, `reach.csv`, `report.md`, `report.tex` and, if the report is complete,
+    /// `report.html` into a directory, which is made if need be. Each file takes the place of an earlier one
+    /// only when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     pub fn write_data(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
-        let files = [
+        let mut files = vec![
             ("report.json", self.to_json()),
             ("report.csv", self.to_csv()),
             ("reach.csv", self.reach_csv()),
-            ("report.txt", self.to_text()),
             ("report.md", self.to_markdown()),
+            ("report.tex", self.to_latex()),
         ];
-        let mut files: Vec<_> = files.map(|(name, text)| (name.to_owned(), text)).into();
-        // the titles of tables change while errors are added
-        let is_kept = |name: &str| self.provenance.complete || name == "report.tex";
-        files.extend(self.to_latex().into_iter().filter(|(name, _)| is_kept(name)));
         if self.provenance.complete {
-            files.push(("report.html".to_owned(), self.page()));
+            files.push(("report.html", self.page()));
         }
         files.iter().map(|(name, text)| replace_text(&directory.join(name), text)).collect()
     }
 
-    /// Writes the errors of a scene against time, unknowns and memory as `SCENE-time.svg`,
-    /// `SCENE-unknowns.svg` and `SCENE-memory.svg`.
+    /// Writes the errors of a scene against time and unknowns as `SCENE-time.svg` and `SCENE-unknowns.svg`.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     #[cfg(feature = "plot")]
     pub fn write_figures(&self, directory: &Path, scene: &str) -> Result<Vec<PathBuf>, Error> {
-        let figures = figures(&self.rows, scene, self.empty_memory_bytes).into_iter();
+        let figures = figures(&self.rows, scene).into_iter();
         figures
             .map(|(name, figure)| {
                 replace_text(&directory.join(format!("{name}.svg")), &figure.to_svg())

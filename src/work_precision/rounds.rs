@@ -2,15 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use super::case::{resident_memory_bytes, run_alone};
-use super::measured::{Failure, Measured};
+use super::case::run_alone;
+use super::measured::{Case, Failure, Measured};
 use super::report::WorkReport;
 use super::slots::Slot;
 use super::{WorkPrecision, WorkProgress};
 use crate::error::Error;
-use crate::real::Precision;
-use crate::study::Row;
-use crate::study::row::distinct;
+use crate::study::{Row, fill_orders};
 
 /// The least time between two writes of finished rows within a round.
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
@@ -19,14 +17,7 @@ impl<const D: usize> WorkPrecision<'_, D> {
     pub(super) fn run_cases(&self, report: &mut WorkReport) -> Result<(), Error> {
         let mut slots = self.slots()?;
         report.subject.clone_from(&self.subject);
-        let of_this_process = || resident_memory_bytes().filter(|_| self.memory.is_none());
-        report.empty_memory_bytes = self.empty_memory.or_else(of_this_process);
-        for precision in self.precisions.iter().map(|p| p.name()) {
-            if !report.program.precision.split(", ").any(|p| p == precision) {
-                let comma = if report.program.precision.is_empty() { "" } else { ", " };
-                report.program.precision += &format!("{comma}{precision}");
-            }
-        }
+        report.program.precision = self.precision.name().to_owned();
         let measured = match self.study_against_reference()? {
             Some(study) => study.run()?.rows,
             None => Vec::new(),
@@ -94,46 +85,14 @@ impl<const D: usize> WorkPrecision<'_, D> {
             }
             Ok(rows) => {
                 for (step, (row, phases)) in rows.into_iter().enumerate() {
-                    let row = self.completed(row, slot, step, against_reference);
+                    let row = completed(row, &slot.case, against_reference);
                     match slot.measured.get_mut(step) {
                         Some(measured) => measured.add(&row, phases),
-                        None => slot.measured.push(Measured::new(row, phases, &slot.case)),
+                        None => slot.measured.push(Measured::new(row, phases)),
                     }
                 }
             }
         }
-    }
-
-    /// The row of a run with its peak of memory, and its errors where they are against a reference.
-    fn completed(
-        &self,
-        mut row: Row,
-        slot: &Slot<'_, D>,
-        step: usize,
-        against_reference: &[Row],
-    ) -> Row {
-        if slot.case.is_adaptive() {
-            // the peak of one step is not that of a process
-            row.peak_memory_bytes = None;
-            return row;
-        }
-        if let Some(memory) = &self.memory {
-            let known = slot.measured.get(step).map(|m| m.row.peak_memory_bytes);
-            row.peak_memory_bytes = known.unwrap_or_else(|| memory(&slot.case));
-        }
-        let is_same = |other: &&Row| {
-            slot.case.variant.precision == Precision::Double.name()
-                && other.label == row.label
-                && other.level == row.level
-        };
-        if let Some(known) = against_reference.iter().find(is_same) {
-            row.against.clone_from(&known.against);
-            if known.against.is_none() {
-                row.warnings.clone_from(&known.warnings);
-            }
-            (row.error, row.contact) = (known.error, known.contact);
-        }
-        row
     }
 
     /// Puts the results so far into the report, after the rows of other scenes, and writes it.
@@ -155,20 +114,26 @@ impl<const D: usize> WorkPrecision<'_, D> {
     }
 }
 
+/// The row of a run with the linear solver asked for, and with its errors where they are against a reference. An adaptive
+/// step has no peak of its own.
+fn completed(mut row: Row, case: &Case, against_reference: &[Row]) -> Row {
+    row.linear_asked.clone_from(&case.variant.linear_asked);
+    if case.is_adaptive() {
+        row.peak_memory_bytes = None;
+        return row;
+    }
+    let is_same = |other: &&Row| other.label == row.label && other.level == row.level;
+    if let Some(known) = against_reference.iter().find(is_same) {
+        row.against.clone_from(&known.against);
+        if known.against.is_none() {
+            row.warnings.clone_from(&known.warnings);
+        }
+        (row.error, row.contact) = (known.error, known.contact);
+    }
+    row
+}
+
 /// Sorts indices by their keys; not generic, so that the sorting code is compiled once.
 fn sort_by(order: &mut [usize], key: &dyn Fn(usize) -> (bool, usize)) {
     order.sort_by_key(|&k| key(k));
-}
-
-/// Observed orders, variant by variant.
-fn fill_orders(rows: &mut [Measured]) {
-    for variant in distinct(rows.iter().map(Measured::variant)) {
-        let mut own: Vec<&mut Measured> =
-            rows.iter_mut().filter(|m| m.variant() == variant).collect();
-        let mut plain: Vec<_> = own.iter().map(|m| m.row.clone()).collect();
-        crate::study::fill_orders(&mut plain);
-        for (measured, row) in own.iter_mut().zip(plain) {
-            measured.row.order = row.order;
-        }
-    }
 }

@@ -2,13 +2,13 @@
 
 use super::WorkPrecision;
 use super::case::Candidate;
-use super::measured::{ADAPTIVE, Case, Failure, Measured, UNIFORM, Variant};
+use super::measured::{Case, Failure, Measured};
 use crate::error::Error;
 use crate::inequality::{ActiveSet, in_precision};
 use crate::linear::LinearMethod;
 use crate::nested::Adaptivity;
 use crate::real::Precision;
-use crate::study::Study;
+use crate::study::{Meshes, Study, Variant};
 
 /// A case, its study, and its results so far.
 pub(super) struct Slot<'s, const D: usize> {
@@ -27,26 +27,22 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         let mut slots: Vec<Slot<'_, D>> = Vec::new();
         for candidate in &self.candidates {
             for &linear in &self.linear {
-                for &precision in &self.precisions {
-                    let mut coarser = None;
-                    let uniform = self.levels.iter().map(|&level| (level, None));
-                    let adaptive =
-                        self.adaptive.and_then(|of| Some((*self.levels.first()?, Some(of))));
-                    for meshes in uniform.chain(adaptive) {
-                        let slot = self.slot(candidate, linear, precision, meshes);
-                        slot.study.check()?;
-                        if slots.iter().any(|s| s.case == slot.case) {
-                            return Err(Error::equal_schemes(slot.case.variant.label));
-                        }
-                        slots
-                            .push(Slot { coarser: coarser.filter(|_| meshes.1.is_none()), ..slot });
-                        coarser = Some(slots.len() - 1);
+                let mut coarser = None;
+                let uniform = self.levels.iter().map(|&level| (level, None));
+                let adaptive = self.adaptive.and_then(|of| Some((*self.levels.first()?, Some(of))));
+                for meshes in uniform.chain(adaptive) {
+                    let slot = self.slot(candidate, linear, meshes);
+                    slot.study.check()?;
+                    if slots.iter().any(|s| s.case == slot.case) {
+                        return Err(Error::equal_schemes(slot.case.variant.label));
                     }
+                    slots.push(Slot { coarser: coarser.filter(|_| meshes.1.is_none()), ..slot });
+                    coarser = Some(slots.len() - 1);
                 }
             }
         }
         if slots.is_empty() {
-            let needs = "a study needs a scheme, a linear solver, a precision and a level";
+            let needs = "a study needs a scheme, a linear solver and a level";
             return Err(wrong("cases", "none".to_owned(), needs));
         }
         Ok(slots)
@@ -56,31 +52,25 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         &'s self,
         candidate: &Candidate<'s, D>,
         linear: LinearMethod,
-        precision: Precision,
         meshes: (usize, Option<Adaptivity>),
     ) -> Slot<'s, D> {
         let Candidate { scheme, set, shown } = candidate.clone();
         let (level, adaptivity) = meshes;
-        let scene = (self.scene)();
+        let scene = self.scene.clone();
         let name = LinearMethod::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
         let in_force = set.as_deref().unwrap_or(scene.problem.constraint_set());
-        let constraint = scheme.constraint_on(in_force);
+        let solver = in_precision(self.precision, ActiveSet::default().linear(linear));
         let variant = Variant {
             scene: scene.name.clone(),
-            scheme: scheme.name().to_owned(),
-            constraint: constraint.unwrap_or_else(|| in_force.name().to_owned()),
             label: scheme.label_with(in_force, shown),
-            linear_asked: name.to_owned(),
-            precision: precision.name().to_owned(),
-            meshes: if adaptivity.is_some() { ADAPTIVE } else { UNIFORM }.to_owned(),
+            solver: solver.name().to_owned(),
+            linear_asked: Some(name.to_owned()),
+            meshes: adaptivity.map_or(Meshes::Uniform, |of| Meshes::Adaptive { theta: of.theta }),
         };
         let mut study = Study::<D>::new(scene)
-            .boxed_solver(in_precision(precision, ActiveSet::default().linear(linear)))
+            .boxed_solver(solver)
             .shared_scheme(scheme, set, shown)
             .levels([level]);
-        if let Some(mesh) = &self.mesh {
-            study = study.on_mesh(mesh.clone());
-        }
         if let Some(adaptivity) = adaptivity {
             study = study.adaptive(adaptivity);
         }
@@ -93,15 +83,12 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// reference is asked for.
     pub(super) fn study_against_reference(&self) -> Result<Option<Study<'_, D>>, Error> {
         let Some((reference, level)) = &self.reference else { return Ok(None) };
-        let mut study = Study::<D>::new((self.scene)()).levels(self.levels.iter().copied());
-        if let Some(mesh) = &self.mesh {
-            study = study.on_mesh(mesh.clone());
-        }
+        let mut study = Study::<D>::new(self.scene.clone()).levels(self.levels.iter().copied());
         for candidate in &self.candidates {
             let Candidate { scheme, set, shown } = candidate.clone();
             study = study.shared_scheme(scheme, set, shown);
         }
-        if self.precisions.contains(&Precision::Single) {
+        if self.precision == Precision::Single {
             let allowed = "against a reference every scheme is measured in f64: leave f32 out";
             return Err(wrong("precision", Precision::Single.name().to_owned(), allowed));
         }

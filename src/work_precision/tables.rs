@@ -1,13 +1,13 @@
 //! The tables of a report: for every scene what was run, where the time went, what it costs to reach one
 //! error, and how long it takes to reach others.
 
-use super::measured::{Failure, Measured, Phases, Variant, scenes, variants};
+use super::measured::{Failure, Measured, Phases, scenes, variants};
 use super::verdict::at_common_error;
 use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
-use crate::output::Table;
-use crate::output::table::Cell;
+use crate::study::Variant;
 use crate::study::row::distinct;
+use crate::table::{Cell, Table};
 
 /// Columns of errors that fit into a line.
 const MOST_ERRORS: usize = 5;
@@ -114,7 +114,7 @@ fn reached(norm: ErrorNorm, value: Option<f64>) -> String {
     }
 }
 
-/// Time, unknowns, stored entries and memory at one error.
+/// Time, unknowns and stored entries at one error.
 fn costs(scene: &str, reach: &[&WorkAtError], variants: &[Variant]) -> Option<Table> {
     let (error, norm) = reach.first().map(|r| (r.error, r.norm))?;
     let whole = |x: Option<f64>| Cell::whole(x.map(|x| x.round() as usize));
@@ -125,12 +125,11 @@ fn costs(scene: &str, reach: &[&WorkAtError], variants: &[Variant]) -> Option<Ta
             decimals(r.median_over_least),
             whole(r.unknowns),
             whole(r.entries),
-            megabytes(r.memory_bytes),
         ]
     };
     Some(Table {
         title: format!("{scene}: costs at an {}", reached(norm, Some(error))),
-        columns: head(&["scheme", "seconds", SPREAD, "unknowns", "entries", "MB"]),
+        columns: head(&["scheme", "seconds", SPREAD, "unknowns", "entries"]),
         rows: reach.iter().map(line).collect(),
         remarks: vec![WHAT_SPREAD_IS.to_owned()],
     })

@@ -1,8 +1,8 @@
 //! One sentence for a scene, made from the figures.
 
-use super::measured::{ADAPTIVE, Variant};
 use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
+use crate::study::Variant;
 
 /// What variants take in a scene at the smallest error that the most of them reach: in L2, and by the bound where
 /// meshes are adaptive or no error is known. Empty without errors and bounds.
@@ -11,7 +11,7 @@ pub(crate) fn at_common_error<'a>(reach: &'a [WorkAtError], scene: &str) -> Vec<
         reach.iter().filter(|r| r.variant.scene == scene).collect();
     let in_l2 = |r: &&WorkAtError| r.norm == ErrorNorm::L2;
     let by_bound =
-        !of_scene.iter().any(in_l2) || of_scene.iter().any(|r| r.variant.meshes == ADAPTIVE);
+        !of_scene.iter().any(in_l2) || of_scene.iter().any(|r| r.variant.meshes.is_adaptive());
     let norm = if by_bound { ErrorNorm::Bound } else { ErrorNorm::L2 };
     of_scene.retain(|r| r.norm == norm);
     let reached =

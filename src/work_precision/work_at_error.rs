@@ -1,10 +1,12 @@
-//! Time, unknowns and memory at a given error, interpolated between the levels that were run.
+//! Time, unknowns and entries at a given error, interpolated between the levels that were run.
 
 use serde::Serialize;
 
-use super::measured::{Failure, Measured, Variant};
+use super::measured::{Failure, Measured};
 use crate::measure::ErrorNorm;
+use crate::study::Variant;
 use crate::study::row::distinct;
+use crate::study::series::series_of;
 
 /// The error of a row in a norm; none where the run did not converge.
 fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
@@ -23,7 +25,7 @@ fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
 pub struct WorkPoint {
     /// The error; none where the run failed.
     pub error: Option<f64>,
-    /// Seconds, unknowns or bytes.
+    /// Seconds, unknowns or entries.
     pub work: f64,
 }
 
@@ -64,7 +66,7 @@ pub enum Standing {
     Unknown,
 }
 
-/// Time, unknowns, entries and memory with which a variant reaches an error.
+/// Time, unknowns and entries with which a variant reaches an error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct WorkAtError {
@@ -90,8 +92,6 @@ pub struct WorkAtError {
     pub unknowns: Option<f64>,
     /// Entries stored in the matrix.
     pub entries: Option<f64>,
-    /// Peak of memory.
-    pub memory_bytes: Option<f64>,
 }
 
 /// All variants of the report at all errors worth comparing at: for every scene and norm the numbers 1,
@@ -118,15 +118,9 @@ pub(crate) fn work_at_errors(rows: &[Measured], refused: &[Failure]) -> Vec<Work
 }
 
 /// The levels of every variant of a scene, in order.
-pub(crate) fn curves<'a>(rows: &'a [Measured], scene: &str) -> Vec<(Variant, Vec<&'a Measured>)> {
-    let of_scene = || rows.iter().filter(|m| m.row.scene == scene);
-    let variants = distinct(of_scene().map(Measured::variant));
-    let levels = |variant: Variant| {
-        let mut levels: Vec<&Measured> = of_scene().filter(|m| m.variant() == variant).collect();
-        levels.sort_by_key(|m| m.row.level);
-        (variant, levels)
-    };
-    variants.into_iter().map(levels).collect()
+fn curves<'a>(rows: &'a [Measured], scene: &str) -> Vec<(Variant, Vec<&'a Measured>)> {
+    let of_scene = series_of(rows).into_iter().filter(|of| of.variant.scene == scene);
+    of_scene.map(|of| (of.variant, of.rows)).collect()
 }
 
 type Curves<'a> = [(Variant, Vec<&'a Measured>)];
@@ -174,7 +168,6 @@ fn work_of_variants_at(
             ratio: seconds.map(|s| s / best),
             unknowns: at(levels, &|m| m.row.unknowns.map(|n| n as f64)),
             entries: at(levels, &|m| m.row.nonzeros.map(|n| n as f64)),
-            memory_bytes: at(levels, &|m| m.row.peak_memory_bytes.map(|b| b as f64)),
         }
     };
     curves.iter().zip(seconds).map(of).collect()

@@ -188,9 +188,9 @@ fn multipliers_of_cubics_balance_the_load() {
     let solution = ActiveSet::default().solve(&inequality);
     let in_contact = solution.contact.iter().filter(|&&c| c == Contact::Lower).count();
     assert!(in_contact > inequality.size() / 3, "{in_contact} of {}", inequality.size());
-    for (k, support) in inequality.supports.iter().enumerate() {
+    for (k, location) in inequality.locations.iter().enumerate() {
         // an unknown at a third of an edge counts the nearer end twice
-        let vertices = support.vertices();
+        let vertices = location.vertices();
         let sum = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum::<Point<2>>();
         let node = sum / vertices.len() as f64;
         assert!([1, 3].contains(&vertices.len()), "unknown {k} at {node}: {vertices:?}");

@@ -27,7 +27,7 @@ fn right_side<const D: usize>(
     let density = exact.multiplier.as_ref().unwrap();
     let degree = if D < 3 { 13 } else { 7 };
     let rule = Rule::new(D, degree);
-    let source = |x: &Point<D>| problem.source.as_ref().map_or(0.0, |f| f.at(x));
+    let source = |x: &Point<D>| problem.source.everywhere.as_ref().map_or(0.0, |f| f.at(x));
     let mut sum = 0.0;
     for cell in 0..mesh.n_cells() {
         let geometry = mesh.geometry(cell);
@@ -50,10 +50,10 @@ fn right_side<const D: usize>(
                     (x - mesh.vertices()[corners[k]]) * (flux[k] / (D as f64 * geometry.volume))
                 })
                 .sum();
-            let u = (exact.value)(x);
-            let alpha = problem.coefficient.as_ref().map_or(1.0, |f| f.at(x));
+            let u = exact.value.at(x);
+            let alpha = problem.coefficient.everywhere.as_ref().map_or(1.0, |f| f.at(x));
             for (psi, sign) in [(&problem.lower, 1.0), (&problem.upper, -1.0)] {
-                let Some(psi) = psi else { continue };
+                let Some(psi) = &psi.everywhere else { continue };
                 if sign * (psi.at(x) - v) > 0.0 {
                     v = psi.at(x);
                     gradient = Point::from_fn(|k, _| {
@@ -75,9 +75,9 @@ fn right_side<const D: usize>(
         }
     }
     let rule = Rule::new(D - 1, degree);
-    for f in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+    for f in mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
         let (cell, local) = (f.cell as usize, f.local as usize);
-        let gap = problem.gap.as_ref().unwrap();
+        let gap = problem.gap.everywhere.as_ref().unwrap();
         let measure = mesh.geometry(cell).facet_measure(local);
         let force = pair.flux.through(cell, local) / measure;
         let corners: Vec<usize> = mesh.facet_vertices(cell, local).map(|v| v as usize).collect();
@@ -87,7 +87,7 @@ fn right_side<const D: usize>(
             let interpolated: f64 = (0..D).map(|k| pair.function[corners[k]] * point[k]).sum();
             let v = interpolated.max(gap.at(&x));
             let weight = weight * measure;
-            sum += weight * force * ((exact.value)(&x) - gap.at(&x));
+            sum += weight * force * (exact.value.at(&x) - gap.at(&x));
             sum += weight * density(&x) * (v - gap.at(&x));
         }
     }
@@ -185,11 +185,12 @@ fn a_vertex_with_two_fans_has_balanced_fluxes() {
             cells.extend([a, number(i + 1, j), b, a, number(i, j + 1), b]);
         }
         for k in 0..n {
-            let mut add = |vertices: [u32; 2], part| boundary.push(TaggedFacet { vertices, part });
+            let mut add =
+                |vertices: [u32; 2], condition| boundary.push(TaggedFacet { vertices, condition });
             for transposed in [false, true] {
                 let number = |i, j| if transposed { number(j, i) } else { number(i, j) };
-                add([number(k, 0), number(k + 1, 0)], BoundaryPart::Neumann);
-                add([number(k, n), number(k + 1, n)], BoundaryPart::Dirichlet);
+                add([number(k, 0), number(k + 1, 0)], BoundaryCondition::Neumann);
+                add([number(k, n), number(k + 1, n)], BoundaryCondition::Dirichlet);
             }
         }
     }
@@ -297,7 +298,7 @@ pub fn change_flux<const D: usize>(
             add(flux, (cell, local), change);
             add(flux, (other as usize, usize::from(there)), -change);
         }
-        Neighbour::Boundary(BoundaryPart::Dirichlet) => add(flux, (cell, local), change),
+        Neighbour::Boundary(BoundaryCondition::Dirichlet) => add(flux, (cell, local), change),
         _ => {}
     }
 }

@@ -94,7 +94,7 @@ fn quadratics_deep_in_contact() {
 /// A strip in contact along its lower side, pulled down with very different forces.
 fn strip(gap: impl Fn(f64) -> f64 + Send + Sync + 'static) -> (Problem<2>, Mesh<2>) {
     let box_ = BoxDomain::dirichlet(Point::zeros(), Point::<2>::new(6.0, 1.0));
-    let box_ = box_.side(1, 0, BoundaryPart::Contact).side(1, 1, BoundaryPart::Neumann);
+    let box_ = box_.side(1, 0, BoundaryCondition::Contact).side(1, 1, BoundaryCondition::Neumann);
     let forces = [-1.0, -10.0, -0.72, 0.114, -0.03, 0.0];
     let problem = Problem::new()
         .neumann(move |x, _| forces[(x[0] as usize).min(5)])
@@ -118,7 +118,7 @@ fn forces_on_contact_facets_are_not_negative() {
     let contact: Vec<(usize, usize)> = mesh
         .boundary()
         .iter()
-        .filter(|f| f.part == BoundaryPart::Contact)
+        .filter(|f| f.condition == BoundaryCondition::Contact)
         .map(|f| (f.cell as usize, usize::from(f.local)))
         .collect();
     for &(cell, local) in &contact {
@@ -147,8 +147,8 @@ fn forces_on_contact_facets_are_not_negative() {
 #[test]
 fn the_force_of_a_vertex_is_where_its_gap_binds() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(0, 1, BoundaryPart::Contact)
-        .side(1, 0, BoundaryPart::Contact);
+        .side(0, 1, BoundaryCondition::Contact)
+        .side(1, 0, BoundaryCondition::Contact);
     let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
     let total = |depth: f64, name: &str| {
         let named: NamedScheme = name.parse().unwrap();

@@ -47,12 +47,12 @@ fn random_problem<const D: usize>(random: &mut Random) -> (Problem<D>, BoxDomain
     if between(0.0, 1.0) < 0.5 {
         let flux = between(-1.0, 1.0);
         problem = problem.neumann(move |_, _| flux);
-        domain = domain.side(0, 1, BoundaryPart::Neumann);
+        domain = domain.side(0, 1, BoundaryCondition::Neumann);
     }
     if D > 1 && between(0.0, 1.0) < 0.5 {
         let (slope, gap) = (plane(a, 0.0), between(0.01, 0.1));
         problem = problem.signorini(move |x| slope(x) - 0.1 - gap);
-        domain = domain.side(D - 1, 0, BoundaryPart::Contact);
+        domain = domain.side(D - 1, 0, BoundaryCondition::Contact);
     }
     (problem, domain)
 }
@@ -204,7 +204,7 @@ fn bound_of_zero_by<const D: usize>(
 #[test]
 fn oscillation_alone_is_the_error() {
     let side = |part| BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(0, 1, part);
-    let mesh = Mesh::<1>::kuhn_box(&side(BoundaryPart::Neumann), [4]).unwrap();
+    let mesh = Mesh::<1>::kuhn_box(&side(BoundaryCondition::Neumann), [4]).unwrap();
     let wave = |x: &Point<1>| (4.0 * std::f64::consts::PI * x[0]).cos();
     let alpha = |x: &Point<1>| if x[0] < 0.25 { 0.1 } else { 5.0 };
     let problem = Problem::new().source(wave).coefficient(alpha);
@@ -280,7 +280,7 @@ fn forces_of_quadratics_have_one_sign() {
 #[test]
 fn a_contact_force_counts_with_the_distance_from_the_gap() {
     let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let interval = interval.side(0, 1, BoundaryPart::Contact);
+    let interval = interval.side(0, 1, BoundaryCondition::Contact);
     let mesh = Mesh::<1>::kuhn_box(&interval, [1]).unwrap();
     let problem = Problem::new().signorini(|_| -1.0).coefficient(|_| 4.0);
     let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
@@ -306,15 +306,18 @@ fn a_contact_force_counts_with_the_distance_from_the_gap() {
 #[test]
 fn contact_forces_of_quadratics_have_one_sign() {
     use std::f64::consts::PI;
-    let square =
-        BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(1, 0, BoundaryPart::Contact);
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(
+        1,
+        0,
+        BoundaryCondition::Contact,
+    );
     let mesh = Mesh::<2>::kuhn_box(&square, [1, 1]).unwrap();
     let problem = Problem::new().signorini(|x| -x[0]).polynomial_data(1);
     let solved = solve(&problem, &mesh, &ConformingP2).unwrap();
     let mut pair = solved.primal_dual_pair().unwrap();
     pair.function.fill(0.0);
     pair.flux = Flux::zero(1, mesh.n_cells());
-    let f = mesh.boundary().iter().find(|f| f.part == BoundaryPart::Contact).unwrap();
+    let f = mesh.boundary().iter().find(|f| f.condition == BoundaryCondition::Contact).unwrap();
     let (cell, local) = (f.cell as usize, usize::from(f.local));
     for (k, &v) in mesh.cell(cell).iter().enumerate().filter(|(k, _)| *k != local) {
         pair.flux.add_density(cell, local, k, 4.0 * mesh.vertices()[v as usize][0] - 1.0);
@@ -338,8 +341,8 @@ fn contact_forces_of_quadratics_have_one_sign() {
 #[test]
 fn a_large_reaction_makes_oscillation_smaller() {
     let free = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(0, 0, BoundaryPart::Neumann)
-        .side(0, 1, BoundaryPart::Neumann);
+        .side(0, 0, BoundaryCondition::Neumann)
+        .side(0, 1, BoundaryCondition::Neumann);
     let mesh = Mesh::<1>::kuhn_box(&free, [4]).unwrap();
     let wave = |x: &Point<1>| (4.0 * std::f64::consts::PI * x[0]).cos();
     let square = (4.0 * std::f64::consts::PI).powi(2);
@@ -358,8 +361,11 @@ fn a_large_reaction_makes_oscillation_smaller() {
 #[test]
 fn a_neumann_datum_counts_by_the_trace_inequality() {
     use std::f64::consts::PI;
-    let square =
-        BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(1, 0, BoundaryPart::Neumann);
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(
+        1,
+        0,
+        BoundaryCondition::Neumann,
+    );
     let mesh = Mesh::<2>::kuhn_box(&square, [1, 1]).unwrap();
     let problem = Problem::new().coefficient(|_| 4.0).neumann(|x, _| x[0] - 0.5);
     // one facet of length one, a cell of measure one half and of diameter the root of two
@@ -378,8 +384,8 @@ fn a_neumann_datum_counts_by_the_trace_inequality() {
 #[test]
 fn values_count_with_the_reaction() {
     let free = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(0, 0, BoundaryPart::Neumann)
-        .side(0, 1, BoundaryPart::Neumann);
+        .side(0, 0, BoundaryCondition::Neumann)
+        .side(0, 1, BoundaryCondition::Neumann);
     let mesh = Mesh::<1>::kuhn_box(&free, [4]).unwrap();
     let problem = Problem::new().constant_source(6.0).reaction(3.0);
     let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
@@ -400,8 +406,8 @@ fn values_count_with_the_reaction() {
 fn a_reaction_of_degree_two_counts_by_its_least_bernstein_coefficient() {
     use std::f64::consts::PI;
     let free = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(0, 0, BoundaryPart::Neumann)
-        .side(0, 1, BoundaryPart::Neumann);
+        .side(0, 0, BoundaryCondition::Neumann)
+        .side(0, 1, BoundaryCondition::Neumann);
     let mesh = Mesh::<1>::kuhn_box(&free, [1]).unwrap();
     let problem = |least: f64| {
         let reaction = move |x: &Point<1>| 1600.0 * (x[0] - 0.25).powi(2) + 300.0 + least;

@@ -9,11 +9,9 @@ use unilateral::quadrature::VertexRule;
 
 /// The interval (0, 1) with Neumann data at both ends.
 fn free_interval() -> BoxDomain<1> {
-    BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(0, 0, BoundaryPart::Neumann).side(
-        0,
-        1,
-        BoundaryPart::Neumann,
-    )
+    BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+        .side(0, 0, BoundaryCondition::Neumann)
+        .side(0, 1, BoundaryCondition::Neumann)
 }
 
 /// On one cell P1 has the constant one as its solution, whose flux vanishes: the bound is oscillation alone. Twice the
@@ -95,8 +93,8 @@ fn an_obstacle_of_degree_two_is_exceeded_in_a_corner() {
 fn open_contact_facets_have_a_bound() {
     let mut checks = Checks::default();
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(1, 0, BoundaryPart::Contact)
-        .side(0, 1, BoundaryPart::Neumann);
+        .side(1, 0, BoundaryCondition::Contact)
+        .side(0, 1, BoundaryCondition::Neumann);
     for gap in [-5.0, -0.02] {
         let problem = Problem::new().constant_source(1.0).signorini(move |_| gap);
         for (n, name) in
@@ -115,8 +113,8 @@ fn open_contact_facets_have_a_bound() {
 #[test]
 fn facet_rules_are_held_against_stated_degrees() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(1, 0, BoundaryPart::Contact)
-        .side(0, 1, BoundaryPart::Neumann);
+        .side(1, 0, BoundaryCondition::Contact)
+        .side(0, 1, BoundaryCondition::Neumann);
     let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
     let problem = Problem::new()
         .constant_source(-1.0)
@@ -140,18 +138,18 @@ fn facet_rules_are_held_against_stated_degrees() {
 #[test]
 fn rules_follow_the_degrees_of_data() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(1, 0, BoundaryPart::Contact)
-        .side(0, 1, BoundaryPart::Neumann);
+        .side(1, 0, BoundaryCondition::Contact)
+        .side(0, 1, BoundaryCondition::Neumann);
     let mesh = Mesh::<2>::kuhn_box(&square, [2, 2]).unwrap();
     let source = |x: &Point<2>| 40.0 * x[0].powi(12) - 20.0 * x[1].powi(11);
     let flux = |x: &Point<2>, _: &Point<2>| 10.0 * x[1].powi(12);
     let gap = |x: &Point<2>| -0.1 + 0.1 * x[0].powi(2);
     let functions = Problem::new().source(source).neumann(flux).signorini(gap);
     let mut polynomials = functions.clone();
-    polynomials.source = Some(Datum::polynomial(12, source));
-    polynomials.neumann =
+    polynomials.source.everywhere = Some(Datum::polynomial(12, source));
+    polynomials.neumann.everywhere =
         Some(BoundaryFlux::Polynomial { value: std::sync::Arc::new(flux), degree: 12 });
-    polynomials.gap = Some(Datum::polynomial(2, gap));
+    polynomials.gap.everywhere = Some(Datum::polynomial(2, gap));
     for name in ["p1", "sipg", "p2"] {
         let scheme: NamedScheme = name.parse().unwrap();
         let scheme = scheme.make();
@@ -190,8 +188,11 @@ fn rules_follow_the_degree_of_the_reaction() {
 /// that touches zero between the ends exceeds zero by its Bernstein coefficient there.
 #[test]
 fn a_gap_of_degree_two_is_held_against_the_quadratic_on_facets() {
-    let cube =
-        BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(2, 0, BoundaryPart::Contact);
+    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(
+        2,
+        0,
+        BoundaryCondition::Contact,
+    );
     let mesh = Mesh::<3>::kuhn_box(&cube, [1; 3]).unwrap();
     for (depth, expected) in [(0.0, vec![Unproven::Obstacle]), (0.3, vec![])] {
         let problem = Problem::new()
@@ -208,8 +209,8 @@ fn a_gap_of_degree_two_is_held_against_the_quadratic_on_facets() {
 fn every_datum_is_held_against_what_a_bound_needs() {
     use Unproven::{Boundary, Obstacle, Quadrature};
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(1, 0, BoundaryPart::Contact)
-        .side(0, 1, BoundaryPart::Neumann);
+        .side(1, 0, BoundaryCondition::Contact)
+        .side(0, 1, BoundaryCondition::Neumann);
     let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
     let x = |x: &Point<2>| x[0];
     let constant =

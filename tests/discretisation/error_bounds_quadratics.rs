@@ -87,7 +87,7 @@ fn equation() -> Scene<2> {
         .source(move |x| 0.5 * value(x))
         .dirichlet(value)
         .solved_by(Exact::new(value, gradient));
-    own_scene("equation", square.side(0, 1, BoundaryPart::Neumann), problem)
+    own_scene("equation", square.side(0, 1, BoundaryCondition::Neumann), problem)
 }
 
 /// The bound of smooth solutions has order two, that under an obstacle three halves.

@@ -182,7 +182,7 @@ fn wrong_names_are_refused() {
     );
     let twice = Problem::new().signorini_on("left", 2.0).neumann_on("left", |_, _| 0.0);
     let error = twice.bind_boundary(mesh.clone()).unwrap_err();
-    assert!(matches!(&error, MeshError::GroupInTwoParts { .. }), "{error}");
+    assert!(matches!(&error, MeshError::GroupWithTwoConditions { .. }), "{error}");
 }
 
 #[test]
@@ -192,20 +192,21 @@ fn a_problem_gives_the_boundary_its_parts() {
         .signorini_on("bottom", |x: &Point<2>| 0.1 * x[0] - 0.1)
         .neumann_on("left", |x, n| x[1] * n[0]);
     let mesh = problem.bind_boundary(divided::<2>(8)).unwrap();
-    let part = |BoundaryGroup { names, part, .. }: &BoundaryGroup| (names[0].clone(), *part);
+    let part =
+        |BoundaryGroup { names, condition, .. }: &BoundaryGroup| (names[0].clone(), *condition);
     let parts: Vec<_> = mesh.boundary_groups().iter().map(part).collect();
     let expected = [
-        ("left", BoundaryPart::Neumann),
-        ("right", BoundaryPart::Dirichlet),
-        ("bottom", BoundaryPart::Contact),
-        ("top", BoundaryPart::Dirichlet),
+        ("left", BoundaryCondition::Neumann),
+        ("right", BoundaryCondition::Dirichlet),
+        ("bottom", BoundaryCondition::Contact),
+        ("top", BoundaryCondition::Dirichlet),
     ];
     assert!(parts.iter().zip(expected).all(|(a, b)| a.0 == b.0 && a.1 == Some(b.1)), "{parts:?}");
     // as by a domain with these sides and functions for whole parts
-    let domain = BoxDomain::<2>::centred(1.0).side(0, 0, BoundaryPart::Neumann).side(
+    let domain = BoxDomain::<2>::centred(1.0).side(0, 0, BoundaryCondition::Neumann).side(
         1,
         0,
-        BoundaryPart::Contact,
+        BoundaryCondition::Contact,
     );
     let plain = Problem::new()
         .constant_source(-4.0)

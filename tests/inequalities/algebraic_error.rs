@@ -11,11 +11,12 @@ use std::sync::Mutex;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};
 use unilateral::constraint::constraint_set_by_name;
 use unilateral::error::Error;
+use unilateral::in_its_dimension;
 use unilateral::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
 use unilateral::linear::CoarseSpaces;
 use unilateral::prelude::*;
 use unilateral::problem::Exact;
-use unilateral::scenes::{self, AnyScene, Parameters, Scene, catalogue};
+use unilateral::scenes::{self, Parameters, Scene, catalogue};
 use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
 
 /// Largest distance from the discrete solution, as a share of the discretisation error.
@@ -242,11 +243,8 @@ fn choices() -> Vec<Choice<'static>> {
 /// What default solves left on levels of a scene of the catalogue.
 fn left_on(name: &str, choice: Choice<'_>, levels: &[usize]) -> Vec<Left> {
     let entry = scenes::by_name(name).unwrap();
-    match entry.make(&Parameters::default()).unwrap() {
-        AnyScene::One(scene) => left_by(scene, choice, levels),
-        AnyScene::Two(scene) => left_by(scene, choice, levels),
-        AnyScene::Three(scene) => left_by(scene, choice, levels),
-    }
+    let scene = entry.make(&Parameters::default()).unwrap();
+    in_its_dimension!(scene, |scene| left_by(scene, choice, levels))
 }
 
 /// Whether a variable of the environment names this, or is absent.

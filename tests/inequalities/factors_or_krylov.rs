@@ -2,10 +2,11 @@
 
 use unilateral::algebra::{Contact, Inequality};
 use unilateral::assemble::DataQuadrature;
+use unilateral::in_its_dimension;
 use unilateral::inequality::{ActiveSet, InequalitySolver, Solution};
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
-use unilateral::scenes::{AnyScene, Scene, catalogue};
+use unilateral::scenes::{Scene, catalogue};
 use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 /// The band in which states may differ: the tolerance of the linear systems of a Krylov method.
@@ -61,19 +62,13 @@ fn check_catalogue(schemes: &[&str], levels: [usize; 3]) {
     for entry in catalogue() {
         let level = levels[entry.dimension - 1];
         let scene = entry.make(&Default::default()).unwrap();
-        let is_strict = match &scene {
-            AnyScene::One(scene) => scene.regularity.strictly_complementary,
-            AnyScene::Two(scene) => scene.regularity.strictly_complementary,
-            AnyScene::Three(scene) => scene.regularity.strictly_complementary,
-        };
+        let is_strict = in_its_dimension!(&scene, |scene| scene.regularity.strictly_complementary);
         if !is_strict {
             continue;
         }
-        let in_contact = schemes.iter().map(|scheme| match &scene {
-            AnyScene::One(scene) => check(scene, scheme, level),
-            AnyScene::Two(scene) => check(scene, scheme, level),
-            AnyScene::Three(scene) => check(scene, scheme, level),
-        });
+        let in_contact = schemes
+            .iter()
+            .map(|scheme| in_its_dimension!(&scene, |scene| check(scene, scheme, level)));
         scenes_in_contact += usize::from(in_contact.sum::<usize>() > 0);
     }
     assert!(scenes_in_contact > 20, "{scenes_in_contact} scenes");

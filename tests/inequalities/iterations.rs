@@ -74,7 +74,7 @@ fn few_iterations_on_one_mesh<const D: usize>(scene: impl Fn() -> Scene<D>, leve
     for level in levels {
         let mesh = scene().domain.mesh(level).unwrap();
         assert!(mesh.vertices().len() > 10_000, "multigrid begins there");
-        let study = Study::<D>::new(scene()).on_mesh(mesh).levels([0]).scheme(ConformingP1);
+        let study = Study::<D>::new(scene().domain(mesh)).levels([0]).scheme(ConformingP1);
         let study = if level == levels[0] { study.scheme(Sipg::default()) } else { study };
         for row in &study.run().unwrap().rows {
             checks.certified(row, 1e-9);
@@ -212,7 +212,7 @@ fn large_penalties() {
 fn a_huge_penalty_is_solved_like_a_moderate_one() {
     let errors = [1e4, 1e10].map(|eta| {
         let eta = Eta::Absolute(eta);
-        let scheme = Wopsip { eta, weight: WeightRule::Isotropic, ..Wopsip::default() };
+        let scheme = Wopsip { eta, weight: WeightRule::Isotropic };
         let study = Study::<2>::new(scenes::signorini_2d()).scheme(scheme).levels([128]);
         let row = study.run().unwrap().rows.remove(0);
         assert!(row.converged(), "{eta:?}");
@@ -227,7 +227,8 @@ fn a_huge_penalty_is_solved_like_a_moderate_one() {
 /// A body held by contact alone, at one point: a start without contact must not end as singular.
 #[test]
 fn a_body_held_at_one_point_is_not_singular() {
-    let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
+    let sides =
+        [[BoundaryCondition::Neumann; 2], [BoundaryCondition::Contact, BoundaryCondition::Neumann]];
     let domain = BoxDomain::new(Point::from([-1.0, 0.0]), Point::from([1.0, 1.0]), sides);
     let scene = || {
         let problem =

@@ -201,9 +201,8 @@ fn what_cannot_be_solved_is_named() {
     let mut wrong = grid(40, 0.1);
     wrong.load[5] = f64::NAN;
     assert_eq!(outcome(&wrong), Outcome::NotFinite);
-    let whole = grid(40, 0.1);
-    let few = whole.supports[..3].to_vec();
-    let wrong = whole.with_supports(few);
+    let mut wrong = grid(40, 0.1);
+    wrong.locations.truncate(3);
     let solution = with(LinearMethod::Iterative).solve(&wrong);
     assert_eq!(solution.outcome, Outcome::Malformed);
 }

@@ -195,11 +195,11 @@ fn without_coercivity_there_is_a_reason() {
         assert!(solution.algebraic_bound.is_none() && solution.linear <= 30, "{what}");
     };
     for sigma in [0.01, 0.1, 0.3] {
-        let scheme = Iipg { penalty: PenaltyRule::Diameter(sigma), ..Iipg::default() };
+        let scheme = Iipg { penalty: PenaltyRule::Diameter(sigma) };
         named(&inequality(&scene, &scheme, 32), &format!("iipg {sigma}"));
     }
     // without penalty the symmetric part of NIPG couples no cells
-    let scheme = Nipg { penalty: PenaltyRule::Diameter(0.0), ..Nipg::default() };
+    let scheme = Nipg { penalty: PenaltyRule::Diameter(0.0) };
     let mesh = scene.domain.mesh(4).unwrap();
     let refused = Discretisation::new(&scheme, &scene.problem, &mesh, DataQuadrature::default());
     assert!(matches!(refused, Err(Error::Parameter { .. })), "{:?}", refused.err());

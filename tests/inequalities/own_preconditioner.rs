@@ -111,7 +111,8 @@ fn blocks(s: f64) -> Inequality<f64> {
 #[test]
 fn on_parts_values_without_a_bound_on_their_error_have_not_converged() {
     for (s, outcome) in [(0.5, Outcome::Converged), (0.99999, Outcome::Stalled)] {
-        let given = blocks(s).with_distribution(Arc::new(OnePart));
+        let mut given = blocks(s);
+        given.distribution = Some(Arc::new(OnePart));
         let solution = ActiveSet::default().with_preconditioners(Jacobi).solve(&given);
         assert!(certify(&given, &solution.values).largest() <= 1e-9);
         assert_eq!(solution.outcome, outcome);

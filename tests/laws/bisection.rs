@@ -4,7 +4,7 @@ use crate::support::meshes::{Random, Raw, mixed_box};
 use proptest::prelude::*;
 use std::path::Path;
 use unilateral::mesh::{
-    BisectedMesh, Bisection, BoundaryFacet, BoundaryPart, BoxDomain, GroupedFacet, MeshError,
+    BisectedMesh, Bisection, BoundaryCondition, BoundaryFacet, BoxDomain, GroupedFacet, MeshError,
     TaggedFacet, gmsh,
 };
 use unilateral::prelude::*;
@@ -36,14 +36,14 @@ fn barycentric<const D: usize>(mesh: &Mesh<D>, cell: usize, x: &Point<D>) -> Vec
 fn check_conformity<const D: usize>(mesh: &Mesh<D>) {
     let facet = |f: &BoundaryFacet| {
         let v: Vec<u32> = mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
-        TaggedFacet { vertices: std::array::from_fn(|k| v[k]), part: f.part }
+        TaggedFacet { vertices: std::array::from_fn(|k| v[k]), condition: f.condition }
     };
     let boundary: Vec<_> = mesh.boundary().iter().map(facet).collect();
     let again = Mesh::<D>::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &boundary).unwrap();
     assert_eq!(again.vertices(), mesh.vertices(), "every vertex is used");
     assert_eq!(again.cells(), mesh.cells());
     let parts = |mesh: &Mesh<D>| -> Vec<_> {
-        mesh.boundary().iter().map(|f| (f.cell, f.local, f.part)).collect()
+        mesh.boundary().iter().map(|f| (f.cell, f.local, f.condition)).collect()
     };
     assert_eq!(parts(&again), parts(mesh));
     assert_eq!(again.is_supported(), mesh.is_supported());
@@ -226,7 +226,9 @@ fn names_are_inherited() {
         let named = ["steel", "rubber"].map(|name| vec![name.to_owned()]).to_vec();
         let mesh = mesh.with_regions(named, regions).unwrap();
         let mesh = mesh
-            .with_boundary_parts(&|name| (name == "inlet").then_some(BoundaryPart::Contact))
+            .with_boundary_conditions(&|name| {
+                (name == "inlet").then_some(BoundaryCondition::Contact)
+            })
             .unwrap();
         let mut refined = BisectedMesh::new(mesh);
         for _ in 0..4 {
@@ -242,7 +244,7 @@ fn names_are_inherited() {
             let x = mesh.facet_barycentre(f.cell as usize, f.local as usize)[0];
             let names = &mesh.boundary_groups()[usize::from(f.group)].names;
             assert_eq!(names, &[if x < 1e-9 { "inlet" } else { "wall" }]);
-            assert_eq!(f.part == BoundaryPart::Contact, x < 1e-9);
+            assert_eq!(f.condition == BoundaryCondition::Contact, x < 1e-9);
         }
     }
     check::<1>();

@@ -4,7 +4,7 @@ use crate::support::meshes::{Random, Raw, mixed_box};
 use proptest::prelude::*;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{
-    BoundaryPart, Edges, Facets, Mesh, MeshError, Neighbour, Neighbours, TaggedFacet,
+    BoundaryCondition, Edges, Facets, Mesh, MeshError, Neighbour, Neighbours, TaggedFacet,
 };
 use unilateral::prelude::*;
 
@@ -36,10 +36,12 @@ fn check_topology<const D: usize>(mesh: &Mesh<D>) {
         }
     }
     assert_eq!(2 * facets.interior().len() + mesh.boundary().len(), mesh.cells().len());
-    for part in [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact] {
+    for part in
+        [BoundaryCondition::Dirichlet, BoundaryCondition::Neumann, BoundaryCondition::Contact]
+    {
         assert_eq!(
             facets.part(part).len(),
-            mesh.boundary().iter().filter(|f| f.part == part).count()
+            mesh.boundary().iter().filter(|f| f.condition == part).count()
         );
         for f in facets.part(part) {
             let (c, i) = facets.here(f);
@@ -160,8 +162,8 @@ fn refinement_keeps_the_parts_of_the_boundary() {
                 let x = mesh.facet_barycentre(f.cell as usize, f.local as usize);
                 let sides = (0..D).flat_map(|k| [(k, 0, x[k]), (k, 1, 1.0 - x[k])]);
                 let (axis, end, _) = sides.min_by(|a, b| a.2.total_cmp(&b.2)).unwrap();
-                assert_eq!(f.part, domain.sides[axis][end], "{x}");
-                seen[f.part as usize] += 1;
+                assert_eq!(f.condition, domain.sides[axis][end], "{x}");
+                seen[f.condition as usize] += 1;
             }
             assert_eq!(seen.iter().filter(|&&n| n > 0).count(), if D > 1 { 3 } else { 2 });
         }
@@ -176,7 +178,7 @@ fn boxes_have_the_stated_cells_and_sides() {
     let domain = BoxDomain::dirichlet(Point::from([-1.0, 0.0]), Point::from([1.0, 1.0])).side(
         1,
         0,
-        BoundaryPart::Contact,
+        BoundaryCondition::Contact,
     );
     assert_eq!(domain.counts(8), [16, 8]);
     let mesh = Mesh::<2>::kuhn_box(&domain, domain.counts(8)).unwrap();
@@ -184,7 +186,7 @@ fn boxes_have_the_stated_cells_and_sides() {
     assert_eq!((mesh.n_cells(), mesh.vertices().len()), (256, 153));
     for f in mesh.boundary() {
         let on_floor = mesh.facet_barycentre(f.cell as usize, f.local as usize)[1] == 0.0;
-        assert_eq!(on_floor, f.part == BoundaryPart::Contact);
+        assert_eq!(on_floor, f.condition == BoundaryCondition::Contact);
     }
     // every diagonal runs from the lower left to the upper right corner
     for c in 0..mesh.n_cells() {
@@ -318,19 +320,19 @@ fn wrong_boundaries() {
     );
     assert!(error.to_string().contains("dirichlet, neumann, contact"));
     let mut raw = square();
-    raw.boundary.push(TaggedFacet { part: BoundaryPart::Contact, ..raw.boundary[0] });
+    raw.boundary.push(TaggedFacet { condition: BoundaryCondition::Contact, ..raw.boundary[0] });
     assert!(matches!(
         refused(&raw),
         MeshError::FacetInTwoParts { first: "dirichlet", second: "contact", tag: 4, .. }
     ));
     let mut raw = square();
-    raw.boundary.push(TaggedFacet { vertices: [0, 3], part: BoundaryPart::Dirichlet });
+    raw.boundary.push(TaggedFacet { vertices: [0, 3], condition: BoundaryCondition::Dirichlet });
     assert!(matches!(
         refused(&raw),
         MeshError::NotABoundaryFacet { why: "lies between two cells", .. }
     ));
     let mut raw = square();
-    raw.boundary.push(TaggedFacet { vertices: [1, 2], part: BoundaryPart::Dirichlet });
+    raw.boundary.push(TaggedFacet { vertices: [1, 2], condition: BoundaryCondition::Dirichlet });
     assert!(matches!(
         refused(&raw),
         MeshError::NotABoundaryFacet { why: "belongs to no cell", .. }
@@ -354,13 +356,13 @@ fn a_component_that_nothing_holds() {
         .iter()
         .map(|f| TaggedFacet {
             vertices: f.vertices.map(|v| v + shift),
-            part: BoundaryPart::Neumann,
+            condition: BoundaryCondition::Neumann,
         })
         .collect();
     raw.boundary.extend(boundary);
     let mut held = raw.boundary.clone();
     assert!(!raw.mesh().is_supported());
-    held[5].part = BoundaryPart::Dirichlet;
+    held[5].condition = BoundaryCondition::Dirichlet;
     let mesh = Mesh::<2>::new(raw.vertices.clone(), raw.cells.clone(), &held).unwrap();
     assert!(mesh.is_supported());
 }

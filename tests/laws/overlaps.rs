@@ -1,7 +1,7 @@
 //! Meshes that fold or lie on themselves.
 
 use crate::support::meshes::{Random, Raw, mixed_box};
-use unilateral::mesh::{BoundaryPart, BoxDomain, Mesh, MeshError, TaggedFacet};
+use unilateral::mesh::{BoundaryCondition, BoxDomain, Mesh, MeshError, TaggedFacet};
 use unilateral::prelude::*;
 
 fn boxes<const D: usize>(n: usize) -> Raw<D> {
@@ -20,10 +20,10 @@ fn both<const D: usize>(mut first: Raw<D>, second: &Raw<D>) -> Raw<D> {
     first.vertices.extend(&second.vertices);
     first.cells.extend(second.cells.iter().map(|v| v + shift));
     first.boundary.extend(
-        second
-            .boundary
-            .iter()
-            .map(|f| TaggedFacet { vertices: f.vertices.map(|v| v + shift), part: f.part }),
+        second.boundary.iter().map(|f| TaggedFacet {
+            vertices: f.vertices.map(|v| v + shift),
+            condition: f.condition,
+        }),
     );
     first
 }
@@ -80,9 +80,9 @@ fn a_vertex_beyond_its_star_folds_the_mesh() {
 fn two_cells_on_one_side_of_their_facet() {
     let mesh = |x: f64, order: [u32; 3]| {
         let vertices = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.4], [x, 0.5]].map(Point::<2>::from);
-        let part = BoundaryPart::Dirichlet;
+        let condition = BoundaryCondition::Dirichlet;
         let boundary =
-            [[0, 2], [1, 2], [0, 3], [1, 3]].map(|vertices| TaggedFacet { vertices, part });
+            [[0, 2], [1, 2], [0, 3], [1, 3]].map(|vertices| TaggedFacet { vertices, condition });
         let cells = [&[0, 1, 2], &order[..]].concat();
         Mesh::<2>::new(vertices.to_vec(), cells, &boundary)
     };
@@ -128,7 +128,7 @@ fn a_star_of_two_turns() {
         let cells = (0..10).flat_map(|k| [0, k + 1, (k + 1) % 10 + 1]).collect();
         let outer = |k: u32| TaggedFacet {
             vertices: [k + 1, (k + 1) % 10 + 1],
-            part: BoundaryPart::Dirichlet,
+            condition: BoundaryCondition::Dirichlet,
         };
         Raw { vertices, cells, boundary: (0..10).map(outer).collect() }
     };

@@ -32,7 +32,7 @@ fn meshes_follow_the_bound_by_keys() {
     let options = format!("--scene signorini-harmonic-3d --scheme p1 --levels 2 --adaptive {keys}");
     let output = scratch.run(&options);
     assert_eq!(output.status.code(), Some(0));
-    assert!(stdout(&output).contains(" step "), "{}", stdout(&output));
+    assert!(stdout(&output).contains("bound (order)"), "{}", stdout(&output));
     let report = scratch.report(&options);
     let rows = rows(&report);
     assert!(rows.len() > 1 && rows.len() <= 4);

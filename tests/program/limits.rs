@@ -29,10 +29,6 @@ fn devices_and_pipes_are_not_read() {
     for path in ["/dev/zero", "/dev/urandom", &pipe] {
         refused(&scratch, &["--mesh", path], &["cannot read", path, "not a regular file"]);
     }
-    let mut baseline = Command::new(env!("CARGO_BIN_EXE_unilateral"));
-    let output = baseline.args(["work-precision", "--against", "/dev/zero"]).output().unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("not a regular file"), "{}", stderr(&output));
 }
 
 #[test]
@@ -73,7 +69,6 @@ fn messages_quote_foreign_text_in_part_only() {
             ("compare", "--levels"),
             ("work-precision", "--scene"),
             ("work-precision", "--scheme"),
-            ("work-precision", "--against"),
             ("work-precision", "--subject"),
             ("stability", "--case"),
             ("stability", "--scheme"),

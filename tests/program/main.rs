@@ -19,6 +19,7 @@ mod one_run;
 mod output;
 mod over_processes;
 mod own_problems;
+mod readme;
 mod requests;
 mod rows;
 mod run;

@@ -113,7 +113,7 @@ fn a_file_that_cannot_be_written_costs_no_row() {
     assert!(message.contains("warning: no picture of radial-1d-cr: cannot write"), "{message}");
     // all rows are printed, and the report is not complete
     assert!(stdout(&output).contains("The incomplete report is in"), "{}", stdout(&output));
-    assert!(stdout(&output).contains("radial-2d: "), "{}", stdout(&output));
+    assert!(stdout(&output).contains("radial-2d, level 8"), "{}", stdout(&output));
     let rows = Report::read(scratch.0.join("out")).unwrap().rows;
     assert_eq!(rows.iter().filter(|row| row.converged()).count(), 8, "{message}");
     assert!(Path::new(&scratch.path("out/radial-1d-cr.vtu")).is_file());

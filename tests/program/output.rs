@@ -159,7 +159,12 @@ fn all_commands_take_schemes_with_choices() {
     let out = scratch.path("work");
     let options = format!("--scene radial-2d --scheme {written} --levels 4 --rounds 1 --out {out}");
     let text = run("work-precision", &options);
-    assert!(labels.iter().all(|label| text.contains(label)), "{text}");
+    // a label that is too long for its column is broken
+    assert!(labels[..2].iter().all(|label| text.contains(label)), "{text}");
+    assert!(
+        text.contains("wopsip@factor=10,weight=") && text.contains("\nanisotropic\n"),
+        "{text}"
+    );
 
     let out = scratch.path("pictures");
     run("pictures", &format!("--level 4 --scheme {} --out {out}", labels[2]));

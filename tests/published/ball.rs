@@ -33,7 +33,7 @@ fn ball_obstacle_of_petsc() {
         let solution = ActiveSet::default().solve(&inequality);
         assert_eq!(solution.outcome, Outcome::Converged);
         let nodes = mesh.vertices().iter().zip(&solution.values);
-        let errors: Vec<f64> = nodes.map(|(x, u)| (u - (exact.value)(x)).abs()).collect();
+        let errors: Vec<f64> = nodes.map(|(x, u)| (u - exact.value.at(x)).abs()).collect();
         let ours = errors.iter().sum::<f64>() / errors.len() as f64;
         checks.printed(&format!("N = {points}, mean"), ours, mean, 0.5);
         let ours = errors.iter().copied().fold(0.0, f64::max);

@@ -31,7 +31,7 @@ pub fn column<const D: usize>(name: &str) -> Boxed<D> {
 /// The penalty part of WOPSIP's energy norm, where coefficient and reaction are numbers.
 fn jump_norm<const D: usize>(problem: &Problem<D>, error: &Errors) -> f64 {
     let [l2, h1, energy] = [error.l2, error.h1, error.energy].map(Option::unwrap);
-    let reaction = match problem.reaction {
+    let reaction = match problem.reaction.everywhere {
         None => 0.0,
         Some(Datum::Constant(c)) => c,
         Some(_) => unreachable!("no table has such a reaction"),

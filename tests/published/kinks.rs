@@ -36,7 +36,7 @@ fn norms_on_halves(scene: &Scene<2>, level: usize) -> [f64; 2] {
                     std::array::from_fn(|k| (0..3).map(|j| point[j] * half[j][k]).sum());
                 let x = mesh.point(cell, &at);
                 let value: f64 = at.iter().zip(values).map(|(b, u)| b * u).sum();
-                l2 += weight * volume * (value - (exact.value)(&x)).powi(2);
+                l2 += weight * volume * (value - exact.value.at(&x)).powi(2);
                 h1 += weight * volume * (gradient - (exact.gradient)(&x)).norm_squared();
             }
         }

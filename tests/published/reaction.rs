@@ -68,7 +68,7 @@ fn smooth_load() {
             (0..=512).map(move |k| {
                 let t = f64::from(k) / 512.0;
                 let u = ends[0] * (1.0 - t) + ends[1] * t;
-                (u - (exact.value)(&mesh.point(cell, &[1.0 - t, t]))).abs()
+                (u - exact.value.at(&mesh.point(cell, &[1.0 - t, t]))).abs()
             })
         });
         let largest = largest.fold(0.0, f64::max);

@@ -24,7 +24,7 @@ fn refined(coarse: &[Contact]) -> Vec<Contact> {
 fn nodal_errors(checks: &mut Checks, scene: &Scene<1>) -> Vec<f64> {
     let problem = &scene.problem;
     let exact = problem.exact.as_ref().unwrap();
-    let load = problem.source.as_ref().unwrap();
+    let load = problem.source.everywhere.as_ref().unwrap();
     let mut start = Vec::new();
     (2..=14)
         .map(|j| {
@@ -47,7 +47,7 @@ fn nodal_errors(checks: &mut Checks, scene: &Scene<1>) -> Vec<f64> {
                 format!("{}, J = {j}: {outcome} after {outer} steps", scene.name)
             });
             let nodes = mesh.vertices().iter().zip(&solution.values);
-            let squares: f64 = nodes.map(|(x, u)| (u - (exact.value)(x)).powi(2)).sum();
+            let squares: f64 = nodes.map(|(x, u)| (u - exact.value.at(x)).powi(2)).sum();
             // the ends, which are pinned, count as touching: contact reaches them
             let touch = |(state, bound): (Contact, &Bound<f64>)| match bound {
                 Bound::Fixed(_) => Contact::Lower,

@@ -9,7 +9,7 @@ const SCHEMES: &str = "p1 p2 cr sipg wopsip wopsip:facet-means nipg ldg sipg-p2 
 /// A square that a load presses onto an obstacle at -0.1, with a contact side below.
 fn square(gap: f64, n: usize) -> (Problem<2>, Mesh<2>) {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let domain = domain.side(1, 0, BoundaryPart::Contact);
+    let domain = domain.side(1, 0, BoundaryCondition::Contact);
     let problem = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.1);
     (problem.signorini(move |_| gap), Mesh::kuhn_box(&domain, [n, n]).unwrap())
 }
@@ -56,8 +56,8 @@ fn multipliers_belong_to_the_datum_of_the_bound() {
 #[test]
 fn a_vertex_of_two_groups_is_divided_by_their_facets() {
     let corner = Point::<2>::new(1.0, 2.0);
-    let sides = [(0, 0, BoundaryPart::Contact), (1, 0, BoundaryPart::Contact)];
-    let others = [(0, 1, BoundaryPart::Neumann), (1, 1, BoundaryPart::Neumann)];
+    let sides = [(0, 0, BoundaryCondition::Contact), (1, 0, BoundaryCondition::Contact)];
+    let others = [(0, 1, BoundaryCondition::Neumann), (1, 1, BoundaryCondition::Neumann)];
     let domain = BoxDomain::dirichlet(Point::zeros(), corner);
     let domain = sides.iter().chain(&others).fold(domain, |d, &(k, s, part)| d.side(k, s, part));
     let mesh = Mesh::<2>::kuhn_box(&domain, [1, 1]).unwrap();

@@ -1,7 +1,7 @@
 //! Studies on meshes that follow the error bound.
 
 use super::scratch::Scratch;
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::study::{Program, fill_orders};
@@ -37,7 +37,7 @@ fn a_row_is_a_step_with_the_times_of_all_before() {
         assert_eq!(rows[0].order.bound, None);
     }
     assert!(report.extrapolated().is_empty());
-    let table = report.to_string();
+    let table = report.details_to_text();
     assert!(table.contains(" step ") && table.contains(" total"), "{table}");
     // beside uniform rows of the same scheme
     let uniform = study(scenes::hertz_2d()).levels([4, 8]).run().unwrap().rows;
@@ -130,8 +130,8 @@ fn what_an_adaptive_study_cannot_have_is_refused_before_work() {
     assert_eq!(rows[0].cells, 128);
     let mesh = scenes::radial::<2>(1.0).domain.mesh(6).unwrap();
     let own = Problem::new().constant_source(-1.0).obstacle_below(|_| -0.05);
-    assert!(mesh.has_part(BoundaryPart::Dirichlet));
-    let own = Study::<2>::of_problem("own", own, mesh).unwrap().scheme(Sipg::default());
+    assert!(mesh.has_condition(BoundaryCondition::Dirichlet));
+    let own = Study::<2>::new(Scene::new("own", mesh, own)).scheme(Sipg::default());
     let rows = own.adaptive(adaptivity).run().unwrap().rows;
     assert!(rows[0].cells == 72 && rows[1].bound.total < rows[0].bound.total);
 }

@@ -2,17 +2,18 @@
 
 use super::scratch::Scratch;
 use std::path::{Path, PathBuf};
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryCondition, Domain, Mesh};
 use unilateral::prelude::*;
-use unilateral::problem_file::{AnyOwnProblem, Geometry, OwnProblem, ProblemFileError, read};
+use unilateral::problem_file::{ProblemFileError, read};
+use unilateral::scenes::AnyScene;
 
 /// A problem in the plane.
-fn problem(folder: &Scratch, text: &str) -> Result<OwnProblem<2>, ProblemFileError> {
+fn problem(folder: &Scratch, text: &str) -> Result<Scene<2>, ProblemFileError> {
     std::fs::create_dir_all(&folder.0).unwrap();
     let path = folder.0.join("problem.toml");
     std::fs::write(&path, text).unwrap();
-    match read(&path)? {
-        AnyOwnProblem::Two(own) => Ok(own),
+    match read(&path)?.scene {
+        AnyScene::Two(own) => Ok(own),
         _ => panic!("a problem in the plane"),
     }
 }
@@ -28,16 +29,16 @@ fn groups_without_a_table_have_what_is_given_by_default() {
     let folder = Scratch::new("boundary-default");
     let left = "[boundary.left]\nkind = \"dirichlet\"\n";
     let own = problem(&folder, &format!("box = [[0, 0], [1, 1]]\n{DEFAULT}{left}")).unwrap();
-    let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
-    let (fixed, free) = (BoundaryPart::Dirichlet, BoundaryPart::Neumann);
+    let Domain::Box(domain) = &own.domain else { panic!("a box") };
+    let (fixed, free) = (BoundaryCondition::Dirichlet, BoundaryCondition::Neumann);
     assert_eq!(domain.sides, [[fixed, free], [free, free]]);
     let mesh = mesh_file("holes.msh");
     let outer = "[boundary.outer]\nkind = \"dirichlet\"\n";
     let of_mesh = format!("mesh = {:?}\n{outer}", mesh.display().to_string());
     let own = problem(&folder, &format!("{of_mesh}{DEFAULT}")).unwrap();
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+    let mesh = own.domain.mesh(0).unwrap();
     let groups = mesh.boundary_groups().iter();
-    let mut parts: Vec<_> = groups.map(|g| (g.names.join(" "), g.part)).collect();
+    let mut parts: Vec<_> = groups.map(|g| (g.names.join(" "), g.condition)).collect();
     parts.sort_by(|a, b| a.0.cmp(&b.0));
     assert_eq!(parts, [("bore".to_owned(), Some(free)), ("outer".to_owned(), Some(fixed))]);
 
@@ -56,11 +57,10 @@ fn a_default_reaches_groups_that_share_facets() {
     let of_kind = |kind: &str| {
         let given = format!("[boundary.default]\nkind = \"{kind}\"\n");
         let own = problem(&folder, &format!("mesh = {mesh:?}\n{foot}{given}"));
-        let own = own.map_err(|error| error.to_string())?;
-        own.mesh().map_err(|error| error.to_string())
+        own.map(|own| own.domain.mesh(0).unwrap()).map_err(|error| error.to_string())
     };
-    let mesh = of_kind("contact").unwrap().unwrap().mesh;
-    assert!(mesh.boundary().iter().all(|facet| facet.part == BoundaryPart::Contact));
+    let mesh = of_kind("contact").unwrap();
+    assert!(mesh.boundary().iter().all(|facet| facet.condition == BoundaryCondition::Contact));
     let message = of_kind("dirichlet").map(|_| ()).unwrap_err();
     assert!(message.contains("share facets"), "{message}");
 }
@@ -73,7 +73,7 @@ fn gaps_may_use_normals_far_from_the_origin() {
     let contact = "[boundary.rim]\nkind = \"contact\"\ngap = \"-0.1 + 0.05 * nx\"\n";
     let text = format!("mesh = {mesh:?}\n{contact}[source]\ndefault = -8\n");
     let own = problem(&folder, &text).unwrap();
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+    let mesh = own.domain.mesh(0).unwrap();
     assert!(solve(&own.problem, &mesh, &ConformingP1).unwrap().converged());
 }
 
@@ -88,7 +88,7 @@ fn gaps_may_use_the_normal_of_a_side() {
         let rest = rest.replace("\"x\"", "0");
         let own = problem(&folder, &format!("box = [[0, 0], [1, 1]]\n{contact}{rest}{source}"));
         let own = own.unwrap();
-        let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+        let Domain::Box(domain) = &own.domain else { panic!("a box") };
         let mesh = Mesh::<2>::kuhn_box(domain, [8, 8]).unwrap();
         let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
         assert!(solved.converged() && solved.active() > Some(0));
@@ -109,7 +109,7 @@ fn gaps_may_use_the_normals_of_a_curved_boundary() {
         mesh.display().to_string()
     );
     let own = problem(&folder, &text).unwrap();
-    let mut mesh = own.mesh().unwrap().unwrap().mesh;
+    let mut mesh = own.domain.mesh(0).unwrap();
     let mut normals = Vec::new();
     for level in 0..2 {
         let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();

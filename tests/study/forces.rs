@@ -14,14 +14,14 @@ const SCENES: [fn() -> Scene<2>; 5] = [
     || scenes::contrast::<2>(1e6),
 ];
 
-fn rows(scene: Scene<2>, scheme: Wopsip<2>, on_means: bool, levels: &[usize]) -> Vec<Row> {
+fn rows(scene: Scene<2>, scheme: Wopsip, on_means: bool, levels: &[usize]) -> Vec<Row> {
     rows_in(Precision::Double, scene, (scheme, on_means), levels)
 }
 
 fn rows_in(
     precision: Precision,
     scene: Scene<2>,
-    (scheme, on_means): (Wopsip<2>, bool),
+    (scheme, on_means): (Wopsip, bool),
     levels: &[usize],
 ) -> Vec<Row> {
     let study = Study::<2>::new(scene).levels(levels.iter().copied());

@@ -19,6 +19,7 @@ mod report;
 mod rows;
 mod scenes;
 mod scratch;
+mod series;
 mod stability;
 mod tables;
 mod totals;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use unilateral::measure::Fields;
 use unilateral::mesh::BoxDomain;
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::paraview::{VtuFile, write_pvd};
 use unilateral::plot::{Picture, Slice};
 use unilateral::prelude::*;
@@ -32,7 +32,7 @@ fn picture<const D: usize>(
 }
 
 fn cube<const D: usize>(n: usize) -> Mesh<D> {
-    let sides = [[BoundaryPart::Dirichlet; 2]; D];
+    let sides = [[BoundaryCondition::Dirichlet; 2]; D];
     let domain = BoxDomain::new(Point::zeros(), Point::repeat(1.0), sides);
     Mesh::kuhn_box(&domain, [n; D]).unwrap()
 }
@@ -214,7 +214,7 @@ fn density_and_midpoints_are_those_of_the_solution() {
     for (k, u) in fields.midpoints.iter().enumerate() {
         let cell = mesh.cell(k / edges.len());
         let ends = edges[k % edges.len()].map(|v| mesh.vertices()[cell[v] as usize]);
-        let error = (u - exact(&(0.5 * (ends[0] + ends[1])))).abs();
+        let error = (u - exact.at(&(0.5 * (ends[0] + ends[1])))).abs();
         assert!(error < 5e-3, "{error}");
     }
 }

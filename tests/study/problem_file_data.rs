@@ -4,9 +4,10 @@ use std::path::Path;
 
 use super::problem_files::{BOX, SIDES};
 use super::scratch::Scratch;
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::prelude::*;
-use unilateral::problem_file::{AnyOwnProblem, read};
+use unilateral::problem_file::read;
+use unilateral::scenes::AnyScene;
 
 /// Which data must have values at vertices: those that nodes or gradients read there, and no others.
 #[test]
@@ -70,13 +71,13 @@ fn a_default_is_not_asked_in_named_regions() {
     };
     let error = problem(&format!("default = \"{hole}\"\n")).unwrap_err();
     assert!(error.contains("coefficient.default is 0 at (0."), "{error}");
-    let AnyOwnProblem::Two(own) =
-        problem(&format!("default = \"{hole}\"\ninclusion = 7\n")).unwrap()
+    let AnyScene::Two(own) =
+        problem(&format!("default = \"{hole}\"\ninclusion = 7\n")).unwrap().scene
     else {
         panic!("in the plane")
     };
     // twice the energy of the first coordinate is the integral of the coefficient
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+    let mesh = own.domain.mesh(0).unwrap();
     let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default()).unwrap();
     let slope: Vec<f64> = mesh.vertices().iter().map(|x| x[0]).collect();
     let stiff = |c: &usize| mesh.regions()[mesh.region(*c)].contains(&"inclusion".to_owned());
@@ -128,8 +129,8 @@ fn tables_of_a_file_become_the_data_of_their_name() {
             [boundary.ends]\nkind = \"contact\"\ngap = -1\n{more}"
         );
         std::fs::write(&path, text).unwrap();
-        let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
-        let mesh = own.mesh().unwrap().unwrap().mesh;
+        let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("in the plane") };
+        let mesh = own.domain.mesh(0).unwrap();
         (own.problem, mesh)
     };
     let (with_coefficient, mesh) = problem("[coefficient]\ninclusion = 2\nmatrix = 3\n");
@@ -139,7 +140,7 @@ fn tables_of_a_file_become_the_data_of_their_name() {
         let is_matrix = mesh.regions()[mesh.region(cell)].contains(&"matrix".to_owned());
         volumes[usize::from(is_matrix)] += mesh.geometry(cell).volume;
     }
-    let neumann = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Neumann);
+    let neumann = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Neumann);
     let measure = |cell: u32, local: u8| mesh.geometry(cell as usize).facet_measure(local.into());
     let length: f64 = neumann.map(|f| measure(f.cell, f.local)).sum();
     fn of<'a>(problem: &'a Problem<2>, mesh: &'a Mesh<2>) -> Discretisation<'a, 2> {

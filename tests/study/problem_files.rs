@@ -2,19 +2,20 @@
 
 use super::scratch::Scratch;
 use std::path::Path;
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryCondition, Domain, Mesh};
 use unilateral::prelude::*;
-use unilateral::problem_file::{AnyOwnProblem, Geometry, OwnProblem, read};
+use unilateral::problem_file::read;
+use unilateral::scenes::AnyScene;
 
-fn example(name: &str) -> AnyOwnProblem {
+fn example(name: &str) -> AnyScene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems");
-    read(&folder.join(name)).unwrap()
+    read(&folder.join(name)).unwrap().scene
 }
 
 /// Solves a problem on its mesh and one refinement of it with several schemes; the sums of the multipliers
 /// of each.
-fn solve_all<const D: usize>(own: &OwnProblem<D>) -> Vec<f64> {
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+fn solve_all<const D: usize>(own: &Scene<D>) -> Vec<f64> {
+    let mesh = own.domain.mesh(0).unwrap();
     let meshes = Hierarchy::refine(&mesh, 1).unwrap();
     let mut forces = Vec::new();
     for name in ["p1", "cr", "sipg", "nipg", "wopsip", "wopsip:facet-means", "p2", "br2"] {
@@ -31,9 +32,9 @@ fn solve_all<const D: usize>(own: &OwnProblem<D>) -> Vec<f64> {
 
 #[test]
 fn the_plate_has_its_materials_on_every_level() {
-    let AnyOwnProblem::Two(own) = example("plate.toml") else { panic!("a problem in the plane") };
+    let AnyScene::Two(own) = example("plate.toml") else { panic!("a problem in the plane") };
     assert_eq!(own.name, "plate");
-    let mut mesh = own.mesh().unwrap().unwrap().mesh;
+    let mut mesh = own.domain.mesh(0).unwrap();
     let stiff = mesh.regions().iter().position(|names| names == &["inclusion"]).unwrap();
     let cells = |mesh: &Mesh<2>| -> Vec<bool> {
         (0..mesh.n_cells()).map(|c| mesh.region(c) == stiff).collect()
@@ -61,9 +62,12 @@ fn the_plate_has_its_materials_on_every_level() {
 
 #[test]
 fn the_foot_carries_the_load_of_the_bracket() {
-    let AnyOwnProblem::Three(own) = example("bracket.toml") else { panic!("a problem in space") };
-    let mesh = own.mesh().unwrap().unwrap().mesh;
-    assert!(mesh.has_part(BoundaryPart::Contact) && !mesh.has_part(BoundaryPart::Dirichlet));
+    let AnyScene::Three(own) = example("bracket.toml") else { panic!("a problem in space") };
+    let mesh = own.domain.mesh(0).unwrap();
+    assert!(
+        mesh.has_condition(BoundaryCondition::Contact)
+            && !mesh.has_condition(BoundaryCondition::Dirichlet)
+    );
     // weight, and the traction on the head, whose mean over the head is -2
     let load = -(0.6 * 0.3 + 0.3 * 0.6 * 0.9) - 2.0 * 0.3 * 0.6;
     for force in solve_all(&own) {
@@ -73,10 +77,8 @@ fn the_foot_carries_the_load_of_the_bracket() {
 
 #[test]
 fn the_membrane_touches_both_obstacles() {
-    let AnyOwnProblem::Two(own) = example("membrane.toml") else {
-        panic!("a problem in the plane")
-    };
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+    let AnyScene::Two(own) = example("membrane.toml") else { panic!("a problem in the plane") };
+    let mesh = own.domain.mesh(0).unwrap();
     let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
     let multiplier = solved.multiplier().unwrap();
     assert!(multiplier.iter().any(|&m| m > 0.0) && multiplier.iter().any(|&m| m < 0.0));
@@ -96,10 +98,10 @@ fn a_box_has_sides_and_an_exact_solution() {
     let path = folder.0.join("harmonic.toml");
     let exact = "[exact]\nvalue = \"x * y\"\ngradient = [\"y\", \"x\"]\n";
     std::fs::write(&path, format!("{BOX}{SIDES}{exact}[reaction]\ndefault = 0\n")).unwrap();
-    let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("a problem in the plane") };
+    let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("a problem in the plane") };
     assert_eq!(own.name, "harmonic");
-    let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
-    assert_eq!(domain.sides[1], [BoundaryPart::Contact, BoundaryPart::Neumann]);
+    let Domain::Box(domain) = &own.domain else { panic!("a box") };
+    assert_eq!(domain.sides[1], [BoundaryCondition::Contact, BoundaryCondition::Neumann]);
     let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
     let solved = solve(&own.problem, &mesh, &ConformingP2).unwrap();
     assert!(
@@ -109,8 +111,8 @@ fn a_box_has_sides_and_an_exact_solution() {
     let flux = "[boundary.bottom]\nkind = \"neumann\"\nflux = \"x * ny\"\n";
     let sides = SIDES.split("[boundary.bottom]").next().unwrap();
     std::fs::write(&path, format!("{BOX}{sides}{flux}{exact}")).unwrap();
-    let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("a problem in the plane") };
-    let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+    let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("a problem in the plane") };
+    let Domain::Box(domain) = &own.domain else { panic!("a box") };
     let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
     let solved = solve(&own.problem, &mesh, &ConformingP2).unwrap();
     assert!(solved.errors().unwrap().l2.unwrap() < 1e-12);
@@ -124,8 +126,8 @@ fn branches_that_are_not_taken_do_not_count() {
     let path = folder.0.join("branches.toml");
     let load = "[source]\ndefault = \"if(x > 0 && log(x) < 0, -sqrt(x), -8)\"\n";
     std::fs::write(&path, format!("{BOX}{load}{SIDES}")).unwrap();
-    let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("a problem in the plane") };
-    let at = |x: f64| own.problem.source.as_ref().unwrap().at(&Point::from([x, 0.5]));
+    let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("a problem in the plane") };
+    let at = |x: f64| own.problem.source.everywhere.as_ref().unwrap().at(&Point::from([x, 0.5]));
     assert_eq!([at(-0.5), at(0.25)], [-8.0, -0.5]);
 }
 
@@ -146,8 +148,8 @@ fn bounds_on_constant_data_are_guaranteed() {
         [("1", true), ("\"1\"", true), ("\"2 * pi - 1\"", true), ("\"1 + sin(x)\"", false)]
     {
         std::fs::write(&path, format!("{BOX}{data}{}", sides(flux))).unwrap();
-        let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
-        let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+        let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("in the plane") };
+        let Domain::Box(domain) = &own.domain else { panic!("a box") };
         let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
         let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
         assert!(solved.active() > Some(0));
@@ -184,8 +186,8 @@ fn bounds_on_polynomial_data_are_guaranteed() {
             [boundary.top]\nkind = \"neumann\"\n[boundary.bottom]\nkind = \"neumann\"\n"
         );
         std::fs::write(&path, text).unwrap();
-        let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
-        let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+        let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("in the plane") };
+        let Domain::Box(domain) = &own.domain else { panic!("a box") };
         let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
         [&ConformingP1 as &dyn Scheme<2>, &ConformingP2]
             .map(|scheme| solve(&own.problem, &mesh, scheme).unwrap().bound().unwrap().unproven)
@@ -240,8 +242,8 @@ fn stated_solutions_are_held_against_the_data() {
             gradient = [\"if(x < 0.5, 2 * x, 1)\", \"0\"]\n"
         );
         std::fs::write(&path, text).unwrap();
-        let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
-        let Geometry::Box(domain) = own.geometry else { panic!("a box") };
+        let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("in the plane") };
+        let Domain::Box(domain) = own.domain else { panic!("a box") };
         let scene = scenes::Scene::new(own.name, domain, own.problem);
         let study = Study::<2>::new(scene).scheme(ConformingP1).levels([8]);
         study.run().unwrap().rows.remove(0).warnings
@@ -270,8 +272,8 @@ fn a_source_that_jumps_says_where() {
     let ends = "[boundary.left]\nkind = \"dirichlet\"\n[boundary.right]\nkind = \"dirichlet\"\n";
     let load = "[source]\ndefault = { value = \"if(x < 0.3, 1, -1)\", level = \"x - 0.3\" }\n";
     std::fs::write(&path, format!("box = [[0], [1]]\n{ends}{load}")).unwrap();
-    let AnyOwnProblem::One(own) = read(&path).unwrap() else { panic!("a problem on an interval") };
-    let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+    let AnyScene::One(own) = read(&path).unwrap().scene else { panic!("a problem on an interval") };
+    let Domain::Box(domain) = &own.domain else { panic!("a box") };
     let mesh = Mesh::<1>::kuhn_box(domain, [7]).unwrap();
     let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default()).unwrap();
     // hat functions sum to one: the integral of the load

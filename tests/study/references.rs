@@ -1,7 +1,7 @@
 //! Rows measured against a fine solution.
 
 use unilateral::error::Error;
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::prelude::*;
 use unilateral::scenes::{AnyScene, Parameters, Scene};
 use unilateral::study::Row;
@@ -123,7 +123,7 @@ fn a_constant_multiplier_is_the_same_on_a_finer_mesh() {
     let free = [(0, 0), (0, 1), (1, 0), (1, 1)]
         .into_iter()
         .fold(BoxDomain::<2>::centred(1.0), |domain, (axis, end)| {
-            domain.side(axis, end, BoundaryPart::Neumann)
+            domain.side(axis, end, BoundaryCondition::Neumann)
         });
     let mesh = Mesh::<2>::kuhn_box(&free, [2, 3]).unwrap();
     let meshes = Hierarchy::refine(&mesh, 2).unwrap();
@@ -169,23 +169,22 @@ fn a_problem_of_ones_own_needs_a_name_and_a_mesh() {
         .constant_source(-4.0)
         .signorini_on("bottom", -0.1)
         .neumann_on("left", |_, _| 0.0);
-    let report = Study::of_problem("own", problem, mesh)
-        .unwrap()
+    let report = Study::new(Scene::of_problem("own", problem, mesh).unwrap())
         .scheme(ConformingP1)
         .scheme(Sipg::default())
         .levels([0, 1, 2])
         .reference(ConformingP2, 4)
         .run()
         .unwrap();
-    assert!(report.to_string().contains("errors against p2 at level 4"));
+    assert!(report.details_to_text().contains("errors against p2 at level 4"));
     for row in &report.rows {
         assert!(row.converged());
         assert!(row.active > Some(0) && row.resultant > Some(0.0));
         assert!(row.level == 0 || (0.7..1.2).contains(&row.order.h1.unwrap()), "{:?}", row.order);
     }
     let first = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [4, 4]).unwrap();
-    assert!(first.has_part(BoundaryPart::Dirichlet));
-    let early = Study::of_problem("own", Problem::new(), first).unwrap().scheme(ConformingP1);
+    assert!(first.has_condition(BoundaryCondition::Dirichlet));
+    let early = Study::new(Scene::new("own", first, Problem::new())).scheme(ConformingP1);
     let error = early.levels([0, 1]).reference(ConformingP2, 2).check().unwrap_err();
     assert!(error.to_string().contains("at least 3"), "{error}");
 }

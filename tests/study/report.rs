@@ -80,7 +80,7 @@ fn what_does_not_apply_or_is_not_finite_is_null() {
     // Nor do plots and tables stumble over it.
     let scratch = Scratch::new("nan");
     report.write(&scratch.0).unwrap();
-    assert!(report.to_string().contains("NaN"), "a table must not hide a NaN");
+    assert!(report.details_to_text().contains("NaN"), "a table must not hide a NaN");
 }
 
 /// Cells of comma-separated values, by the rules and not by our writer.
@@ -161,14 +161,12 @@ fn all_files_are_written_and_plots_show_what_they_should() {
         "report.csv",
         "report.md",
         "report.tex",
-        "table-radial-2d.tex",
-        "table-signorini-2d.tex",
         "convergence.svg",
         "work_precision.svg",
         "report.html",
     ];
     assert_eq!(names, expected);
-    for (svg, x) in [(&written[6], "mesh size h"), (&written[7], "time in s")] {
+    for (svg, x) in [(&written[4], "mesh size h"), (&written[5], "time in s")] {
         let text = std::fs::read_to_string(svg).unwrap();
         let labels = ["L2 error", "radial-2d", "signorini-2d", "p1", "sipg", "wopsip"];
         let notes = ["did not converge", "no exact solution: no errors"];
@@ -229,8 +227,7 @@ fn plots_show_promised_orders_and_no_single_points() {
 fn a_report_of_one_row_or_none_is_written_too() {
     for rows in [vec![row("radial-1d", "p1", 4)], Vec::new()] {
         let scratch = Scratch::new(&format!("few-{}", rows.len()));
-        let tables = rows.len();
-        assert_eq!(report(rows).write(&scratch.0).unwrap().len(), 7 + tables);
+        assert_eq!(report(rows).write(&scratch.0).unwrap().len(), 7);
     }
 }
 
@@ -242,51 +239,59 @@ fn open_elements(html: &str, name: &str) -> isize {
 }
 
 #[test]
-fn the_page_has_every_number_and_needs_no_network() {
+fn the_page_begins_with_how_the_comparison_ended_and_needs_no_network() {
     let scratch = Scratch::new("page");
     let mut rows = rows();
     rows[4].label = "a<b & \"c\"".into();
     rows[0].error.l2 = Some(1.234_567_891_2e-3);
     std::fs::create_dir_all(&scratch.0).unwrap();
-    std::fs::write(scratch.0.join("radial-2d-p1.svg"), "<svg id=\"picture\"></svg>\n").unwrap();
-    let report = report(rows);
+    std::fs::write(scratch.0.join("radial-2d-p1.svg"), "<svg></svg>\n").unwrap();
+    let mut report = report(rows);
+    let words = ["unilateral", "--scheme", "p1,sipg", "my file.toml"];
+    report.program = report.program.with_command(words.into_iter().map(str::to_owned));
     report.write(&scratch.0).unwrap();
     let html = scratch.read("report.html");
-    for foreign in ["<script", "http:", "https:", "@import", "url(", "src="] {
+    for foreign in ["<script", "http:", "https:", "@import", "url("] {
         let found = html.replace("http://www.w3.org/2000/svg", "").contains(foreign);
         assert!(!found, "{foreign}");
     }
-    for name in
-        ["svg", "g", "table", "tr", "td", "th", "label", "fieldset", "figure", "div", "text"]
-    {
+    for name in ["svg", "g", "table", "tr", "td", "th", "section", "figure", "div", "text"] {
         assert_eq!(open_elements(&html, name), 0, "{name}");
     }
-    assert_eq!(html.matches("<svg").count(), 3, "two plots and a picture");
-    assert!(html.contains("id=\"picture\""));
-    // a number is written short, with all its digits beside it
-    assert!(html.contains("title=\"0.0012345678912\">1.235e-3</td>"));
+    let (first, rest) = html.split_once("</section>").unwrap();
+    assert!(first.contains(&format!("all {} runs converged.", report.rows.len())), "{first}");
+    assert_eq!((first.matches("<svg").count(), rest.matches("<svg").count()), (2, 0));
+    assert!(first.matches("<th scope=\"col\"").count() <= 8 * 2, "{first}");
+    assert!(first.contains("class=\"n best\">"), "{first}");
     assert!(html.contains("a&lt;b &amp; &quot;c&quot;") && !html.contains("a<b"));
-    // every value of every row is there, in full
-    let csv = read_csv(&report.to_csv());
-    let cells =
-        csv[1..].iter().flat_map(|line| line[3..].iter()).filter(|c| c.parse::<f64>().is_ok());
-    for cell in cells {
-        assert!(
-            html.contains(&format!(">{cell}<")) || html.contains(&format!("\"{cell}\"")),
-            "{cell}"
-        );
+    // pictures lie beside the page
+    for picture in ["radial-2d-p1.svg", "convergence.svg", "work_precision.svg"] {
+        assert!(rest.contains(&format!("<img src=\"{picture}\"")), "{picture}");
+        assert!(scratch.0.join(picture).exists(), "{picture}");
     }
-    // boxes for every series and every column, and rules that heed them
-    for (k, label) in [(0, "p1"), (1, "sipg"), (3, "wopsip")] {
-        assert!(html.contains(&format!("id=\"show-s{k}\" autocomplete=\"off\" checked> {label}")));
-        assert!(
-            html.contains(&format!("body:has(#show-s{k}:not(:checked)) .s{k}{{display:none}}"))
-        );
-        assert!(
-            html.contains(&format!("<tr class=\"s{k}\">"))
-                && html.contains(&format!("<g class=\"s{k}\">"))
-        );
-    }
+    assert!(rest.contains("unilateral --scheme p1,sipg 'my file.toml'"), "{rest}");
+    assert!(html.len() < 300_000, "{} bytes", html.len());
+}
+
+#[test]
+fn the_summary_says_which_runs_did_not_converge_and_marks_the_best_of_the_others() {
+    let mut rows = rows();
+    let last = rows.iter().rposition(|row| row.scene == rows[0].scene).unwrap();
+    rows[last].status = Outcome::Stalled;
+    rows[last].message = Some("nothing moved".into());
+    rows[last].error.l2 = Some(1e-9);
+    rows[last - 3].error.l2 = Some(5e-4);
+    let (name, level) = (rows[last].label.clone(), rows[last].level);
+    let (scene, n) = (rows[last].scene.clone(), rows.len());
+    let text = report(rows).summary_to_text(100);
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains(&format!(": 1 of {n} runs did not converge: {name} on {scene} at {level}.")),
+        "{text}"
+    );
+    assert!(words.contains("stalled: nothing moved"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    assert!(!text.contains("\u{2022} 1.00e-9") && text.contains("\u{2022} 5.00e-4"), "{text}");
 }
 
 /// Width and height that a PNG file states.
@@ -297,7 +302,7 @@ fn png_size(path: &Path) -> (u32, u32) {
     (number(16), number(20))
 }
 
-/// A browser shows the page, with a series and without it. `UNILATERAL_CHROMIUM` names the browser,
+/// A browser shows the first screen of the page, light and dark. `UNILATERAL_CHROMIUM` names the browser,
 /// `UNILATERAL_KEEP` a directory that keeps the photographs.
 #[test]
 #[ignore = "needs chromium"]
@@ -310,28 +315,24 @@ fn needs_chromium_to_photograph_the_page() {
     report.write(&scratch.0).unwrap();
     let keep = std::env::var_os("UNILATERAL_KEEP").map_or(scratch.0.clone(), Into::into);
     let browser = std::env::var("UNILATERAL_CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
-    let html = scratch.read("report.html");
-    let without = html.replace("id=\"show-s1\" autocomplete=\"off\" checked", "id=\"show-s1\"");
-    assert_ne!(html, without);
-    let photograph = |name: &str, html: &str| {
-        let page = scratch.0.join(format!("{name}.html"));
-        std::fs::write(&page, html).unwrap();
+    let photograph = |name: &str, scheme: u8| {
         let picture = keep.join(format!("{name}.png"));
         let output = std::process::Command::new(&browser)
             .args(["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"])
-            .args(["--window-size=1300,1600", "--virtual-time-budget=5000"])
+            .args(["--window-size=1280,800", "--virtual-time-budget=5000"])
+            .arg(format!("--blink-settings=preferredColorScheme={scheme}"))
             .arg(format!("--screenshot={}", picture.display()))
-            .arg(format!("file://{}", page.display()))
+            .arg(format!("file://{}", scratch.0.join("report.html").display()))
             .output()
             .unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{said}");
-        assert_eq!(png_size(&picture), (1300, 1600), "{said}");
+        assert_eq!(png_size(&picture), (1280, 800), "{said}");
         std::fs::read(picture).unwrap()
     };
-    let all = photograph("all", &html);
-    assert!(all.len() > 40_000, "{} bytes are a blank page", all.len());
-    assert_ne!(all, photograph("without", &without), "the series is switched off");
+    let [dark, light] = [photograph("dark", 0), photograph("light", 1)];
+    assert!(light.len() > 40_000, "{} bytes are a blank page", light.len());
+    assert_ne!(light, dark);
 }
 
 #[test]
@@ -371,15 +372,15 @@ fn bounds_are_guaranteed_or_name_what_is_not_proven() {
     old.as_object_mut().unwrap().shift_remove("bound");
     let read: Row = serde_json::from_value(old).unwrap();
     assert!(read.bound.discrete.is_none() && read.error == rows[0].error);
-    let text = report(rows.clone()).to_string();
+    let text = report(rows.clone()).details_to_text();
     assert!(text.contains(" effect. ") && text.contains(" 1.75* "), "{text}");
     assert!(text.contains("* bound with terms that are not proven: quadrature, algebra"), "{text}");
     // beside a bound stands the norm that it bounds, where that is not the H1 seminorm
     rows.iter_mut().for_each(|row| row.bound.effectivity = None);
-    let text = report(rows.clone()).to_string();
+    let text = report(rows.clone()).details_to_text();
     assert!(text.contains("  5.0e-1 ") && text.contains(" 2.5e-1* "), "{text}");
     assert!(text.contains("H1 order") && !text.contains("energy norm"), "{text}");
     rows[0].error.broken_energy = rows[0].error.h1.map(|h1| 2.0 * h1);
-    let text = report(rows).to_string();
+    let text = report(rows).details_to_text();
     assert!(!text.contains("H1 order") && text.contains(" energy norm "), "{text}");
 }

@@ -20,7 +20,7 @@ fn orders_are_taken_within_a_scheme_and_between_runs_that_converged() {
     ];
     rows[4].status = Outcome::Cycling;
     rows[5].order.l2 = Some(7.0);
-    rows[7].constraint = "facet-means".into();
+    rows[7].label = "p1:facet-means".into();
     fill_orders(&mut rows);
     let orders: Vec<_> = rows.iter().map(|r| r.order.l2).collect();
     let close = |x: Option<f64>, y: f64| (x.unwrap() - y).abs() < 1e-12;
@@ -63,7 +63,7 @@ wopsip 16 6.25e-2     1536     3       -     -       -     -     16 2.5e-15 2.0e
     still changed; raise it, or use another solver
   warning, wopsip: eta below its bound
 ";
-    assert_eq!(report(rows).to_string(), expected);
+    assert_eq!(report(rows).details_to_text(), expected);
 }
 
 #[test]
@@ -74,12 +74,12 @@ fn tables_leave_out_what_says_nothing_and_have_a_line_for_every_label() {
         row.error = Errors::default();
         row.expected_order = ExpectedOrders::none();
     }
-    let text = report(rows).to_string();
+    let text = report(rows).details_to_text();
     assert!(!text.contains("L2") && !text.contains("order"), "{text}");
     assert!(text.contains("\nsipg ") && text.contains("\nsipg:facet-means "), "{text}");
-    let widest = report(rows::rows()).to_string().lines().map(str::len).max().unwrap();
+    let widest = report(rows::rows()).details_to_text().lines().map(str::len).max().unwrap();
     assert!(widest <= 100, "{widest}");
-    assert_eq!(report(Vec::new()).to_string(), "");
+    assert_eq!(report(Vec::new()).details_to_text(), "");
 }
 
 /// Rows of four levels in the order of their errors: 2 in L2, 1 in H1, which is what is promised.

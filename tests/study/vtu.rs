@@ -5,11 +5,12 @@ use std::path::Path;
 
 use flate2::read::ZlibDecoder;
 use unilateral::element::{Element, P2};
-use unilateral::mesh::{BoundaryPart, BoxDomain, Domain, GroupedFacet, Mesh};
+use unilateral::mesh::{BoundaryCondition, BoxDomain, Domain, GroupedFacet, Mesh};
 use unilateral::paraview::{FieldScalar, VtuFile};
 use unilateral::prelude::*;
-use unilateral::problem_file::{self, AnyOwnProblem};
+use unilateral::problem_file;
 use unilateral::real::Point;
+use unilateral::scenes::AnyScene;
 use unilateral::scenes::Scene;
 use unilateral::study::file_name;
 
@@ -290,7 +291,7 @@ fn quadratics_are_written_as_quadratics() {
         assert!((value - expected).abs() < 1e-12);
     }
     for (x, (u, error)) in points.iter().zip(u.iter().zip(&error)) {
-        let expected = u - (exact.value)(&Point::from([x[0], x[1]]));
+        let expected = u - exact.value.at(&Point::from([x[0], x[1]]));
         assert!((error - expected).abs() < 1e-14);
     }
 }
@@ -310,7 +311,8 @@ fn integrates<const D: usize>(scene: &Scene<D>, scheme: &dyn Scheme<D>, level: u
     let Domain::Box(domain) = &scene.domain else { panic!("a box") };
     let sides = domain.sides.iter().flatten();
     let names = sides.zip(["left", "right", "bottom", "top", "back", "front"]);
-    let contact_side = names.filter(|(side, _)| **side == BoundaryPart::Contact).map(|(_, n)| n);
+    let contact_side =
+        names.filter(|(side, _)| **side == BoundaryCondition::Contact).map(|(_, n)| n);
     let members: Vec<Vec<usize>> = contact_side.map(|n| grid.integers("CellData", n)).collect();
     let (mut total, mut touching) = (0.0, 0);
     for (c, cell) in grid.cells().iter().enumerate() {
@@ -397,7 +399,7 @@ fn the_error_is_the_difference_from_a_reference() {
     let largest = error.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
     assert!(largest > 1e-2, "{largest}");
     for ((x, u), error) in points.chunks(3).zip(u).zip(error) {
-        let from_exact = u - (exact.value)(&Point::from([x[0], x[1]]));
+        let from_exact = u - exact.value.at(&Point::from([x[0], x[1]]));
         assert!((error - from_exact).abs() < 0.02 * largest, "{x:?}: {error} {from_exact}");
     }
 }
@@ -406,8 +408,10 @@ fn the_error_is_the_difference_from_a_reference() {
 #[test]
 fn points_keep_their_places_far_from_the_origin() {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/problems/utm.toml");
-    let AnyOwnProblem::Two(own) = problem_file::read(&own).unwrap() else { panic!("in the plane") };
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+    let AnyScene::Two(own) = problem_file::read(&own).unwrap().scene else {
+        panic!("in the plane")
+    };
+    let mesh = own.domain.mesh(0).unwrap();
     let meshes = Hierarchy::refine(&mesh, 3).unwrap();
     let solved = solve(&own.problem, &meshes, &ConformingP1).unwrap();
     let scratch = Scratch::new("vtu-utm");
@@ -425,8 +429,10 @@ fn points_keep_their_places_far_from_the_origin() {
 #[test]
 fn groups_are_arrays_of_small_integers() {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.toml");
-    let AnyOwnProblem::Two(own) = problem_file::read(&own).unwrap() else { panic!("in the plane") };
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+    let AnyScene::Two(own) = problem_file::read(&own).unwrap().scene else {
+        panic!("in the plane")
+    };
+    let mesh = own.domain.mesh(0).unwrap();
     let scratch = Scratch::new("vtu-groups");
     let path = scratch.0.join("fields.vtu");
     let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();

@@ -5,7 +5,8 @@ use std::process::Command;
 
 use unilateral::paraview::FieldScalar;
 use unilateral::prelude::*;
-use unilateral::problem_file::{self, AnyOwnProblem};
+use unilateral::problem_file;
+use unilateral::scenes::AnyScene;
 use unilateral::scenes::Scene;
 
 use crate::scratch::Scratch;
@@ -70,7 +71,7 @@ fn put<const D: usize>(
         let solved =
             solve(problem, meshes, &*scheme.parse::<NamedScheme>().unwrap().make()).unwrap();
         assert!(solved.converged(), "{name} {scheme}: {}", solved.outcome());
-        let force = match problem.gap.is_some() {
+        let force = match problem.gap.is_given() {
             true => solved.multiplier().unwrap().iter().sum(),
             false => f64::NAN,
         };
@@ -94,8 +95,8 @@ fn put_scene<const D: usize>(
 
 fn put_file(arguments: &mut Vec<String>, folder: &Path, path: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    let AnyOwnProblem::Two(own) = problem_file::read(&path).unwrap() else { panic!("plane") };
-    let mesh = own.mesh().unwrap().unwrap().mesh;
+    let AnyScene::Two(own) = problem_file::read(&path).unwrap().scene else { panic!("plane") };
+    let mesh = own.domain.mesh(0).unwrap();
     let meshes = Hierarchy::refine(&mesh, 1).unwrap();
     put(arguments, folder, (&own.name, &own.problem), &meshes);
 }

@@ -1,7 +1,7 @@
 //! Box meshes with moved vertices, in any numbering.
 
 use unilateral::mesh::BoxDomain;
-use unilateral::mesh::{BoundaryPart, Mesh, TaggedFacet};
+use unilateral::mesh::{BoundaryCondition, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 
 /// A small generator of pseudo-random numbers, so that a failure can be repeated.
@@ -27,9 +27,12 @@ impl Random {
 /// The unit box, Dirichlet but for Neumann at the upper end of the first axis and contact at the
 /// lower end of the last one (where there are two axes).
 pub fn mixed_box<const D: usize>() -> BoxDomain<D> {
-    let b =
-        BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(0, 1, BoundaryPart::Neumann);
-    if D > 1 { b.side(D - 1, 0, BoundaryPart::Contact) } else { b }
+    let b = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(
+        0,
+        1,
+        BoundaryCondition::Neumann,
+    );
+    if D > 1 { b.side(D - 1, 0, BoundaryCondition::Contact) } else { b }
 }
 
 /// The raw lists of a box mesh whose inner vertices are moved a little.
@@ -58,7 +61,7 @@ impl<const D: usize> Raw<D> {
             .iter()
             .map(|f| {
                 let v: Vec<u32> = mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
-                TaggedFacet { vertices: std::array::from_fn(|k| v[k]), part: f.part }
+                TaggedFacet { vertices: std::array::from_fn(|k| v[k]), condition: f.condition }
             })
             .collect();
         Self { vertices, cells: mesh.cells().to_vec(), boundary }
@@ -94,7 +97,7 @@ impl<const D: usize> Raw<D> {
             .iter()
             .map(|f| TaggedFacet {
                 vertices: f.vertices.map(|v| p[v as usize] as u32),
-                part: f.part,
+                condition: f.condition,
             })
             .collect();
         Self { vertices, cells, boundary }

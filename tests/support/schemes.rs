@@ -28,11 +28,11 @@ impl<const D: usize> Deref for Entry<D> {
 }
 
 /// Interior penalty with `sigma / h_F`.
-pub fn sipg<const D: usize>(sigma: f64) -> Sipg<D> {
-    Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() }
+pub fn sipg(sigma: f64) -> Sipg {
+    Sipg { penalty: PenaltyRule::Diameter(sigma) }
 }
 
 /// Over-penalty with `eta / h_F^3`.
-pub fn wopsip<const D: usize>(eta: f64) -> Wopsip<D> {
+pub fn wopsip(eta: f64) -> Wopsip {
     Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() }
 }

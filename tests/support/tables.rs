@@ -53,8 +53,8 @@ pub fn solve_by_rule<const D: usize>(
     let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
     let quadrature = DataQuadrature::default().cell(degree).facet(degree);
     let mut problem = scene.problem.clone();
-    if let Some(Datum::Piecewise { value, .. }) = problem.source {
-        problem.source = Some(Datum::Function(value));
+    if let Some(Datum::Piecewise { value, .. }) = problem.source.everywhere {
+        problem.source.everywhere = Some(Datum::Function(value));
     }
     let mut nested = NestedIteration::new(&problem, &meshes).quadrature(quadrature);
     let solved = nested.solve(scheme).unwrap();
@@ -81,7 +81,7 @@ pub fn norms_by_rule<const D: usize>(
             let point: Vec<f64> = (0..=D).map(|k| point[D - k]).collect();
             let x = mesh.point(cell, &point);
             let value: f64 = point.iter().zip(values).map(|(b, u)| b * u).sum();
-            l2 += weight * geometry.volume * (value - (exact.value)(&x)).powi(2);
+            l2 += weight * geometry.volume * (value - exact.value.at(&x)).powi(2);
             h1 += weight * geometry.volume * (gradient - (exact.gradient)(&x)).norm_squared();
         }
     }

@@ -1,15 +1,16 @@
 //! Integrals over simplices that the zero set of a function cuts.
 //!
 //! A cut simplex is bisected a few times, so that a zero set that meets an edge twice is seen. A second rule leaves out
-//! bisections of parts on which the function is nearly linear. Each part that is still cut is divided at the zeros on
+//! bisections of pieces on which the function is nearly linear. Each piece that is still cut is divided at the zeros on
 //! its edges. The facets between the zeros replace the zero set, which is exact for planes. What lies between these
 //! facets and a curved zero set changes sides by a rule on the facets: along a direction across a facet, the distance
-//! to the zero set times the difference of the integrand there. On a sphere that leaves a wrong volume whose mean thickness is 1e-5 to 1e-3 of `h^2`.
+//! to the zero set times the difference of the integrand there. On a sphere that leaves a wrong volume whose mean
+//! thickness is 1e-5 to 1e-3 of `h^2`.
 
 #[cfg(test)]
 mod tests;
 
-use crate::arrays::{map_entries, tabulate};
+use crate::arrays::{array_of, map_entries};
 use crate::mesh::Mesh;
 use crate::problem::Field;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule, facet_to_cell};
@@ -19,9 +20,9 @@ use crate::real::Point;
 /// its weight.
 pub(crate) type Visit<'v, const D: usize> = &'v mut dyn FnMut(&[f64; 4], &Point<D>, f64);
 
-/// A part of a simplex, by barycentric coordinates in it.
+/// A piece of a simplex, by barycentric coordinates in it.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct Piece {
     corners: [[f64; 4]; 4],
     /// Share of the measure of the whole simplex.
     share: f64,
@@ -29,10 +30,10 @@ struct Part {
 }
 
 /// How often a simplex is bisected, by dimension: a zero set that meets a segment twice is seen if
-/// the two points lie further apart than the parts are wide.
+/// the two points lie further apart than the pieces are wide.
 const BISECTIONS: [usize; 4] = [0, 3, 4, 3];
 
-/// A function counts as linear on a part if its values at the middles of edges differ from the means of those at the
+/// A function counts as linear on a piece if its values at the middles of edges differ from the means of those at the
 /// ends by at most this share of the differences between corners, by dimension. Bisections divide the deviation of the
 /// zero set from a plane by four in space, and by sixteen in the plane, where they cost less.
 const NEARLY_LINEAR: [f64; 4] = [0.0, 0.0, 0.01, 0.03];
@@ -40,33 +41,33 @@ const NEARLY_LINEAR: [f64; 4] = [0.0, 0.0, 0.01, 0.03];
 /// Steps after which the search for a zero on a segment ends.
 const MOST_STEPS: usize = 100;
 
-/// The largest degree of the rule on parts. The square of an error of linears has a leading part of degree four.
+/// The largest degree of the rule on pieces. The square of an error of linears has a leading part of degree four.
 const MOST_IN_PARTS: usize = 5;
 
-/// The share of the way across a part by which the two sides of the zero set are told apart.
+/// The share of the way across a piece by which the two sides of the zero set are told apart.
 const BESIDE: f64 = 1e-7;
 
 /// A quadrature rule on simplices of one dimension that the zero set of a function may cut.
 pub(crate) struct CutRule {
     dimension: usize,
     whole: Rule,
-    part: Rule,
+    piece: Rule,
     /// The rule on facets between zeros.
     facet: Rule,
-    /// Whether parts are bisected also where their zero set is nearly plane.
+    /// Whether pieces are bisected also where their zero set is nearly plane.
     bisects_always: bool,
 }
 
 impl CutRule {
-    /// A rule of this degree; on the parts of a cut simplex of degree five if that is less.
+    /// A rule of this degree; on the pieces of a cut simplex of degree five if that is less.
     pub fn new(dimension: usize, degree: usize) -> Self {
-        let in_parts = degree.min(MOST_IN_PARTS);
-        let [whole, part] = [degree, in_parts].map(|degree| rule(dimension, degree));
-        let facet = rule(dimension.saturating_sub(1), in_parts);
-        Self { dimension, whole, part, facet, bisects_always: true }
+        let in_pieces = degree.min(MOST_IN_PARTS);
+        let [whole, piece] = [degree, in_pieces].map(|degree| rule(dimension, degree));
+        let facet = rule(dimension.saturating_sub(1), in_pieces);
+        Self { dimension, whole, piece, facet, bisects_always: true }
     }
 
-    /// The rule without bisection of parts on which the function is nearly linear, for integrands that are smooth on
+    /// The rule without bisection of pieces on which the function is nearly linear, for integrands that are smooth on
     /// both sides of the zero set. The rule has a tenth of the points.
     #[must_use]
     pub fn without_needless_bisections(self) -> Self {
@@ -106,7 +107,7 @@ impl CutRule {
         level: &Field<D>,
         visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
-        self.visit_part(&self.whole(), corners, level, visit);
+        self.visit_piece(&self.whole(), corners, level, visit);
     }
 
     /// Whether the function is positive on a simplex, as far as its values at corners, middles of edges and barycentre
@@ -125,51 +126,51 @@ impl CutRule {
         self.whole.iter().for_each(|(point, weight)| visit(point, weight));
     }
 
-    fn whole(&self) -> Part {
-        let corners = tabulate(|i| tabulate(|k| f64::from(u8::from(i == k))));
-        Part { corners, share: 1.0, bisections: 0 }
+    fn whole(&self) -> Piece {
+        let corners = array_of(|i| array_of(|k| f64::from(u8::from(i == k))));
+        Piece { corners, share: 1.0, bisections: 0 }
     }
 
-    fn visit_uncut(&self, part: &Part, visit: &mut dyn FnMut(&[f64; 4], f64)) {
-        let rule = if part.share == 1.0 { &self.whole } else { &self.part };
-        rule.iter().for_each(|(point, weight)| visit(&part.point(point), weight * part.share));
+    fn visit_uncut(&self, piece: &Piece, visit: &mut dyn FnMut(&[f64; 4], f64)) {
+        let rule = if piece.share == 1.0 { &self.whole } else { &self.piece };
+        rule.iter().for_each(|(point, weight)| visit(&piece.point(point), weight * piece.share));
     }
 
-    fn visit_part<const D: usize>(
+    fn visit_piece<const D: usize>(
         &self,
-        part: &Part,
+        piece: &Piece,
         corners: &[Point<D>; 4],
         level: &Field<D>,
         visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
-        if !self.is_cut(part, corners, level) {
-            self.visit_uncut(part, visit);
-        } else if part.bisections < BISECTIONS[self.dimension]
-            && (self.bisects_always || !self.is_nearly_linear(part, corners, level))
+        if !self.is_cut(piece, corners, level) {
+            self.visit_uncut(piece, visit);
+        } else if piece.bisections < BISECTIONS[self.dimension]
+            && (self.bisects_always || !self.is_nearly_linear(piece, corners, level))
         {
-            for half in self.halves(part, corners) {
-                self.visit_part(&half, corners, level, visit);
+            for half in self.halves(piece, corners) {
+                self.visit_piece(&half, corners, level, visit);
             }
         } else {
             let sign = |c: &[f64; 4]| if level(&in_space(c, corners)) > 0.0 { 1 } else { -1 };
-            self.divide(part, part.corners.map(|c| sign(&c)), corners, level, visit);
+            self.divide(piece, piece.corners.map(|c| sign(&c)), corners, level, visit);
         }
     }
 
     /// Whether the sign of the function differs between corners, middles of edges and barycentre of a
-    /// part: a change of sign between these points is not detected.
+    /// piece: a change of sign between these points is not detected.
     fn is_cut<const D: usize>(
         &self,
-        part: &Part,
+        piece: &Piece,
         corners: &[Point<D>; 4],
         level: &Field<D>,
     ) -> bool {
         let is_positive = |b: &[f64; 4]| level(&in_space(b, corners)) > 0.0;
         let mut middle = [0.0; 4];
         middle[..=self.dimension].fill(1.0 / (self.dimension + 1) as f64);
-        let at_middle = is_positive(&part.point(&middle));
+        let at_middle = is_positive(&piece.point(&middle));
         let differs = |b: &[f64; 4]| is_positive(b) != at_middle;
-        let own = &part.corners[..=self.dimension];
+        let own = &piece.corners[..=self.dimension];
         own.iter().any(differs)
             || own
                 .iter()
@@ -177,17 +178,17 @@ impl CutRule {
                 .any(|(i, p)| own[..i].iter().any(|q| differs(&between(p, q, 0.5))))
     }
 
-    /// Whether the function is linear on a part but for [`NEARLY_LINEAR`], as far as its values at corners and middles
+    /// Whether the function is linear on a piece but for [`NEARLY_LINEAR`], as far as its values at corners and middles
     /// of edges tell. Its zero set is then nearly plane.
     fn is_nearly_linear<const D: usize>(
         &self,
-        part: &Part,
+        piece: &Piece,
         corners: &[Point<D>; 4],
         level: &Field<D>,
     ) -> bool {
-        let own = &part.corners[..=self.dimension];
+        let own = &piece.corners[..=self.dimension];
         let at = |b: &[f64; 4]| level(&in_space(b, corners));
-        let values = part.corners.map(|c| at(&c));
+        let values = piece.corners.map(|c| at(&c));
         let values = &values[..=self.dimension];
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -201,8 +202,8 @@ impl CutRule {
     }
 
     /// The two halves on both sides of the middle of the longest edge.
-    fn halves<const D: usize>(&self, part: &Part, corners: &[Point<D>; 4]) -> [Part; 2] {
-        let points = part.corners.map(|c| in_space(&c, corners));
+    fn halves<const D: usize>(&self, piece: &Piece, corners: &[Point<D>; 4]) -> [Piece; 2] {
+        let points = piece.corners.map(|c| in_space(&c, corners));
         let mut longest = (0, 0, -1.0);
         for i in 0..=self.dimension {
             for j in 0..i {
@@ -213,20 +214,20 @@ impl CutRule {
             }
         }
         let (i, j, _) = longest;
-        let middle = between(&part.corners[i], &part.corners[j], 0.5);
+        let middle = between(&piece.corners[i], &piece.corners[j], 0.5);
         map_entries([i, j], |replaced| {
-            let mut half = Part { share: 0.5 * part.share, ..*part };
+            let mut half = Piece { share: 0.5 * piece.share, ..*piece };
             half.bisections += 1;
             half.corners[replaced] = middle;
             half
         })
     }
 
-    /// The rule on the parts into which the zeros of the function on the edges of `part` divide `part`.
-    /// `signs` are the signs of the function at the corners of `part`, zero at corners that are zeros.
+    /// The rule on the pieces into which the zeros of the function on the edges of `piece` divide `piece`.
+    /// `signs` are the signs of the function at the corners of `piece`, zero at corners that are zeros.
     fn divide<const D: usize>(
         &self,
-        part: &Part,
+        piece: &Piece,
         signs: [i8; 4],
         corners: &[Point<D>; 4],
         level: &Field<D>,
@@ -237,9 +238,9 @@ impl CutRule {
         let (positive, negative) = (of_sign(1), of_sign(-1));
         let (Some(i), Some(j)) = (positive, negative) else {
             let Some(apex) = positive.or(negative) else { return };
-            let corner = part.corners[apex];
-            // a point beyond a curved zero set moves back to the side of its part
-            self.visit_uncut(part, &mut |point, weight| {
+            let corner = piece.corners[apex];
+            // a point beyond a curved zero set moves back to the side of its piece
+            self.visit_uncut(piece, &mut |point, weight| {
                 let to = |r: f64| between(point, &corner, r);
                 let at = |r: f64| level(&in_space(&to(r), corners));
                 let is_beyond = (at(0.0) > 0.0) != positive.is_some();
@@ -248,15 +249,15 @@ impl CutRule {
             });
             let zeros = own.iter().filter(|s| **s == 0).count();
             if positive.is_some() && zeros == self.dimension {
-                self.correct(part, apex, corners, level, visit);
+                self.correct(piece, apex, corners, level, visit);
             }
             return;
         };
-        let (from, to) = (part.corners[j], part.corners[i]);
+        let (from, to) = (piece.corners[j], piece.corners[i]);
         let r = zero_between(|r| level(&in_space(&between(&from, &to, r), corners)));
         let r = r.unwrap_or(0.5);
         for (replaced, share) in [(i, r), (j, 1.0 - r)] {
-            let mut divided = Part { share: share * part.share, ..*part };
+            let mut divided = Piece { share: share * piece.share, ..*piece };
             let mut signs = signs;
             divided.corners[replaced] = between(&from, &to, r);
             signs[replaced] = 0;
@@ -269,7 +270,7 @@ impl CutRule {
     /// facet to the zero set as the weight of one point and its negative as that of the other.
     fn correct<const D: usize>(
         &self,
-        part: &Part,
+        piece: &Piece,
         apex: usize,
         corners: &[Point<D>; 4],
         level: &Field<D>,
@@ -279,30 +280,30 @@ impl CutRule {
             return;
         }
         for (point, weight) in self.facet.iter() {
-            let on_facet = part.point(&facet_to_cell(point, apex));
+            let on_facet = piece.point(&facet_to_cell(point, apex));
             // twice as far on the side of the corner and beyond
-            let end = |r: f64| between(&on_facet, &part.corners[apex], r);
+            let end = |r: f64| between(&on_facet, &piece.corners[apex], r);
             let along = |r: f64| level(&in_space(&end(2.0 * r - 1.0), corners));
             let Some(zero) = zero_between(along) else { continue };
             let distance = 2.0 * zero - 1.0;
-            // a facet moved by the whole way to the corner sweeps D times the part
-            let weight = weight * distance * self.dimension as f64 * part.share;
+            // a facet moved by the whole way to the corner sweeps D times the piece
+            let weight = weight * distance * self.dimension as f64 * piece.share;
             visit(&end(distance - BESIDE), weight);
             visit(&end(distance + BESIDE), -weight);
         }
     }
 }
 
-impl Part {
-    /// A point of the part, or of one of its faces, in barycentric coordinates of the whole.
+impl Piece {
+    /// A point of the piece, or of one of its faces, in barycentric coordinates of the whole.
     fn point(&self, barycentric: &[f64; 4]) -> [f64; 4] {
-        tabulate(|k| (0..4).map(|i| barycentric[i] * self.corners[i][k]).sum())
+        array_of(|k| (0..4).map(|i| barycentric[i] * self.corners[i][k]).sum())
     }
 }
 
 /// The point `(1 - r) p + r q`.
 fn between(p: &[f64; 4], q: &[f64; 4], r: f64) -> [f64; 4] {
-    tabulate(|k| (1.0 - r) * p[k] + r * q[k])
+    array_of(|k| (1.0 - r) * p[k] + r * q[k])
 }
 
 /// The rule with fewest points of this degree.

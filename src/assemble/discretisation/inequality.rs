@@ -9,7 +9,7 @@ use crate::instances::compiled;
 use crate::parallel::once;
 
 impl<const D: usize> Discretisation<'_, D> {
-    /// The inequality: matrix, load, bounds, supports.
+    /// The inequality: matrix, load, bounds, locations.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
@@ -44,7 +44,7 @@ impl<const D: usize> Discretisation<'_, D> {
             symmetric: self.form.is_symmetric(),
             load,
             bounds,
-            supports: self.supports(),
+            locations: self.locations(),
             conforming_linear: self.space.is_conforming_linear(),
             start: Start::Cold,
             penalised,

@@ -4,9 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use super::Discretisation;
 use crate::assemble::data_quadrature::DataQuadrature;
-use crate::assemble::local::MAX_FLUX_MOMENTS;
 use crate::assemble::shared_rows::SharedRows;
 use crate::assemble::space::Space;
+use crate::assemble::trace::MAX_FLUX_MOMENTS;
 use crate::element::{Element, MAX_BASIS};
 use crate::error::Error;
 use crate::facet::{DirichletBy, FacetForm};

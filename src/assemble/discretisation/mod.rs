@@ -18,7 +18,7 @@ use super::shared_rows::SharedRows;
 use super::space::Space;
 use super::space::contradictions::Contradictions;
 use super::space::metric::Metrics;
-use crate::algebra::{SparseMatrix, Support};
+use crate::algebra::{DofLocation, SparseMatrix};
 use crate::facet::FacetForm;
 use crate::instances::compiled;
 use crate::mesh::Mesh;
@@ -114,10 +114,10 @@ impl<'a, const D: usize> Discretisation<'a, D> {
         self.fill(&mut matrix);
         matrix
     }
-    /// The support of each unknown.
-    pub fn supports(&self) -> Vec<Support> {
-        compiled!(const D: fn(&Discretisation<'_, D>) -> Vec<Support>
-                = |of| of.space.supports()
+    /// The location of each unknown.
+    pub fn locations(&self) -> Vec<DofLocation> {
+        compiled!(const D: fn(&Discretisation<'_, D>) -> Vec<DofLocation>
+                = |of| of.space.locations()
         )(self)
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.

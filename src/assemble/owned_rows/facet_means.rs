@@ -1,18 +1,18 @@
 //! Rows of discontinuous linear functions with facet means as unknowns, where a form acts on means of jumps only.
 //!
 //! The mean over a facet is one unknown of each of the two cells of the facet. The row of an unknown therefore has the
-//! entries of the cell that owns the unknown and one entry of the cell across: the four rows of a tetrahedron have 20
-//! entries, where dense blocks have 80.
+//! entries of the cell that owns the unknown and one entry of the other cell of the facet: the four rows of a
+//! tetrahedron have 20 entries, where dense blocks have 80.
 
 use super::rows_by_cell::{self, for_each_cell};
 use crate::algebra::SparseMatrix;
 use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetCoefficients;
-use crate::assemble::local::zero_local;
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::Metrics;
+use crate::assemble::stiffness::zero_local;
 use crate::facet::{FacetForm, FacetKind};
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::mesh::{BoundaryCondition, Neighbour};
 
 /// Whether the unknowns are facet means of linear functions and the form acts on means of jumps only, without higher
 /// moments, fluxes and lifts.
@@ -35,13 +35,13 @@ pub(super) fn pattern<const D: usize>(space: &Space<'_, D>) -> SparseMatrix<f64>
     rows_by_cell::pattern(space.mesh.n_cells(), D + 1, lengths, |cell, mut rows| {
         let own = std::array::from_fn(|j| (cell * (D + 1) + j) as u32);
         for local in 0..=D {
-            let across = match neighbours.across(cell, local) {
+            let other = match neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local } => {
                     Some((other * (D as u32 + 1) + u32::from(local), (other as usize) < cell))
                 }
                 Neighbour::Boundary(_) | Neighbour::Cut => None,
             };
-            rows = write_row::<_, D>(rows, &own, across);
+            rows = write_row::<_, D>(rows, &own, other);
         }
     })
 }
@@ -68,13 +68,13 @@ pub(super) fn fill<const D: usize>(
             }
         }
         for (local, mut own) in own.into_iter().enumerate().take(D + 1) {
-            let place = (cell, local);
+            let facet = (cell, local);
             let (here, kind) = match neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local: other_local } => {
-                    (place.min((other as usize, other_local as usize)), FacetKind::Interior)
+                    (facet.min((other as usize, other_local as usize)), FacetKind::Interior)
                 }
-                Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
-                    (place, FacetKind::Dirichlet)
+                Neighbour::Boundary(BoundaryCondition::Dirichlet) if !space.pins => {
+                    (facet, FacetKind::Dirichlet)
                 }
                 Neighbour::Boundary(_) | Neighbour::Cut => {
                     rows = write_row::<_, D>(rows, &own, None);
@@ -82,27 +82,27 @@ pub(super) fn fill<const D: usize>(
                 }
             };
             count::facets(1);
-            let weight = weights.at::<D>(here, here == place, kind);
+            let weight = weights.at::<D>(here, here == facet, kind);
             let penalty = weight.coefficients.jump_jump.at(weight.penalty * moment_weight);
             let jumps = metric.measures[local] * penalty;
             own[local] += jumps;
             let is_interior = matches!(kind, FacetKind::Interior);
-            let across = is_interior.then_some((-jumps, here != place));
-            rows = write_row::<_, D>(rows, &own, across);
+            let other = is_interior.then_some((-jumps, here != facet));
+            rows = write_row::<_, D>(rows, &own, other);
         }
     });
 }
 
-/// Writes the first of the rows: the entries in the columns of the cell itself, and the entry in a column of the cell
-/// across, which precedes them if the flag is set. Returns the remaining rows.
+/// Writes the first of the rows: the entries in the columns of the cell itself, and the entry in a column of the other
+/// cell, which precedes them if the flag is set. Returns the remaining rows.
 #[inline(always)]
 fn write_row<'r, V: Copy, const D: usize>(
     rows: &'r mut [V],
     own: &[V; 4],
-    across: Option<(V, bool)>,
+    other: Option<(V, bool)>,
 ) -> &'r mut [V] {
-    let (row, rest) = rows.split_at_mut(D + 1 + usize::from(across.is_some()));
-    match (across, row) {
+    let (row, rest) = rows.split_at_mut(D + 1 + usize::from(other.is_some()));
+    match (other, row) {
         (Some((entry, true)), [place, row @ ..]) | (Some((entry, false)), [row @ .., place]) => {
             *place = entry;
             row.copy_from_slice(&own[..=D]);

@@ -15,25 +15,28 @@
 //! still: the form is coercive for every penalty.
 
 use super::Coupled;
-use crate::assemble::local::{flux_weight, view};
+use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, Metrics};
-use crate::assemble::space::tables::{BasisAt, FacetTable};
-use crate::assemble::space::{Place, Space};
+use crate::assemble::space::tables::FacetDatum;
+use crate::assemble::space::tables::FacetTable;
+use crate::assemble::trace::flux_weight;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::HalfFacet;
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 
 /// Most moments a lift is made of: quadratics on a triangle.
 pub(crate) const MAX_MOMENTS: usize = 6;
 
-type Moments = [[f64; MAX_MOMENTS]; MAX_BASIS];
-type Product = [[f64; MAX_MOMENTS]; MAX_MOMENTS];
+/// The moments of a jump on a facet.
+type Moments = [f64; MAX_MOMENTS];
+/// By two moments a number.
+type Product = [Moments; MAX_MOMENTS];
 
 /// Lifts on the reference cell.
-pub(crate) struct LiftTable {
+struct LiftTable {
     /// Moments of the basis, of degree up to that of lifts.
-    pub facets: FacetTable,
+    facets: FacetTable,
     /// Number of moments on a facet.
     moments: usize,
     /// For two facets, the products of the lifts of their moments, per measures and volume.
@@ -42,7 +45,7 @@ pub(crate) struct LiftTable {
 
 impl LiftTable {
     /// The lifts of this degree of a space of degree one or two.
-    pub fn new<const D: usize>(space: &Space<'_, D>, degree: usize) -> Self {
+    fn new<const D: usize>(space: &Space<'_, D>, degree: usize) -> Self {
         let mut products = [[[[0.0; MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
         let tests: Vec<Vec<Vec<f64>>> = (0..D + 1).map(|l| tests(D, degree, l)).collect();
         for l in 0..=D {
@@ -75,26 +78,19 @@ fn tests(dimension: usize, degree: usize, local: usize) -> Vec<Vec<f64>> {
     (0..on_facet.len()).map(|m| (0..in_cell.len()).map(|q| mean(m, q)).collect()).collect()
 }
 
-/// Moments of a weight times a function with these moments.
-fn weigh(products: &Product, moments: &[f64; MAX_MOMENTS]) -> [f64; MAX_MOMENTS] {
-    let sum =
-        |row: &[f64; MAX_MOMENTS]| row.iter().zip(moments).fold(0.0, |sum, (&p, &m)| sum + p * m);
-    std::array::from_fn(|k| sum(&products[k]))
-}
-
 /// The lifts of a discretisation.
 pub(crate) struct Lifting<'s, 'a, const D: usize> {
-    pub space: &'s Space<'a, D>,
-    pub form: &'s dyn FacetForm<D>,
-    pub metrics: &'s Metrics,
-    pub table: &'s LiftTable,
+    space: &'s Space<'a, D>,
+    form: &'s dyn FacetForm<D>,
+    metrics: &'s Metrics,
+    table: LiftTable,
 }
 
 /// A facet of a centre whose jump is lifted.
 struct JumpFacet {
     local: usize,
-    /// The cell across and the facet's number in it; none on the boundary.
-    across: Option<(usize, usize)>,
+    /// The facet seen from the other cell; none on the boundary.
+    other: Option<HalfFacet>,
     /// The weight of the centre's normal derivative in the flux; one where the coefficient varies in one
     /// of the cells.
     flux_weight: f64,
@@ -102,200 +98,193 @@ struct JumpFacet {
     products: Option<Product>,
 }
 
-impl<const D: usize> Lifting<'_, '_, D> {
+impl JumpFacet {
+    /// What is lifted of a jump with these moments: they are those of the weight times the jump where the coefficient
+    /// varies.
+    fn weighted(&self, moments: &Moments) -> Moments {
+        let Some(products) = &self.products else { return *moments };
+        let sum = |row: &Moments| row.iter().zip(moments).fold(0.0, |sum, (&p, &m)| sum + p * m);
+        std::array::from_fn(|k| sum(&products[k]))
+    }
+    /// What is lifted of a datum, of whose moments lifts take the first.
+    fn weighted_datum(&self, datum: &[f64]) -> Moments {
+        self.weighted(&std::array::from_fn(|k| datum.get(k).copied().unwrap_or(0.0)))
+    }
+}
+
+/// A cell to which the jumps on its facets are lifted.
+struct Centre<const D: usize> {
+    cell: usize,
+    metric: CellMetric<D>,
+    /// By number, the facets on whose jumps a form acts.
+    facets: [Option<JumpFacet>; 4],
+}
+
+impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
+    /// The lifts of a form, with the metrics of all cells.
+    pub fn new(space: &'s Space<'a, D>, form: &'s dyn FacetForm<D>, metrics: &'s Metrics) -> Self {
+        let table = LiftTable::new(space, form.lift_degree(space.basis_degree));
+        Self { space, form, metrics, table }
+    }
+
     /// Adds the products to the rows of a cell.
-    pub fn add(&self, neighbours: &Neighbours, cell: usize, coupled: &Coupled, rows: &mut [f64]) {
-        self.add_centre(neighbours, cell, None, coupled, rows);
+    pub fn add(&self, cell: usize, coupled: &Coupled, rows: &mut [f64]) {
+        self.add_centre(cell, None, coupled, rows);
         for local in 0..=D {
-            if let Neighbour::Cell { cell: other, local: other_local } =
-                neighbours.across(cell, local)
-            {
-                let shared = Some((other_local as usize, local));
-                self.add_centre(neighbours, other as usize, shared, coupled, rows);
+            let facet = self.space.form_facet((cell, local));
+            if let Some((centre, shared)) = facet.and_then(|facet| facet.other((cell, local))) {
+                self.add_centre(centre, Some((shared, local)), coupled, rows);
             }
         }
     }
 
     /// Adds what one centre contributes to the rows of a cell: the cell itself, or a neighbour that
-    /// shares one facet with the cell, with the number of this facet there and here.
+    /// shares one facet with the cell, with the number of this facet in the centre and in the cell.
     fn add_centre(
         &self,
-        neighbours: &Neighbours,
         centre: usize,
         shared: Option<(usize, usize)>,
         coupled: &Coupled,
         rows: &mut [f64],
     ) {
-        let metric = self.metrics.at::<D>(centre);
-        let facets_with_jumps: [Option<JumpFacet>; 4] = std::array::from_fn(|l| {
-            if l <= D { self.jump_facet(neighbours, centre, &metric, l) } else { None }
-        });
+        let centre = self.centre(centre);
         let n = self.space.per_cell();
         let row = rows.len() / n;
-        for test in facets_with_jumps.iter().flatten() {
+        for test in centre.facets.iter().flatten() {
             let (sign, local) = match shared {
                 None => (1.0, test.local),
-                Some((there, here)) if there == test.local => (-1.0, here),
+                Some((in_centre, in_cell)) if in_centre == test.local => (-1.0, in_cell),
                 Some(_) => continue,
             };
-            let tested = self.moments(local, test);
-            for trial in facets_with_jumps.iter().flatten() {
-                let scale = sign * self.scale(centre, &metric, test, trial);
-                let weighted = self.weighted(&tested, test.local, trial.local, scale);
-                let columns = self.moments(trial.local, trial);
-                let start = coupled.position(centre) * n;
-                self.add_block(&weighted, &columns, 1.0, start, row, rows);
-                if let Some((other, other_local)) = trial.across {
-                    let columns = self.moments(other_local, trial);
-                    let start = coupled.position(other) * n;
-                    self.add_block(&weighted, &columns, -1.0, start, row, rows);
+            let tested = self.functions(local, test);
+            for trial in centre.facets.iter().flatten() {
+                let scale = sign * self.scale(&centre, test, trial);
+                let lifted = self.lifted(&tested, [test, trial], scale);
+                let mut add = |(cell, local): HalfFacet, sign| {
+                    let trials = self.functions(local, trial);
+                    let start = coupled.position(cell) * n;
+                    self.add_products(&lifted, &trials[..n], sign, (start, row), rows);
+                };
+                add((centre.cell, trial.local), 1.0);
+                if let Some(other) = trial.other {
+                    add(other, -1.0);
                 }
             }
         }
+    }
+
+    /// A cell with the facets on whose jumps the form acts.
+    fn centre(&self, cell: usize) -> Centre<D> {
+        let facet = |local| if local <= D { self.jump_facet((cell, local)) } else { None };
+        Centre { cell, metric: self.metrics.at(cell), facets: std::array::from_fn(facet) }
+    }
+
+    /// A facet of a centre, if the form acts on its jumps.
+    fn jump_facet(&self, own: HalfFacet) -> Option<JumpFacet> {
+        let facet = self.space.form_facet(own)?;
+        let (is_here, other) = (facet.here == own, facet.other(own));
+        let view = self.space.facet_view(facet, Some(self.metrics));
+        let average_weight = self.form.average_weight(&view);
+        let flux_weight = flux_weight(&view, average_weight, is_here);
+        // on the boundary it is not read
+        let own_weight = if is_here { average_weight } else { 1.0 - average_weight };
+        let product = self.space.flux_products(own, other, own_weight);
+        let products = product.map(|of| std::array::from_fn(|k| std::array::from_fn(|l| of(k, l))));
+        let flux_weight = if products.is_some() { 1.0 } else { flux_weight };
+        Some(JumpFacet { local: own.1, other, flux_weight, products })
     }
 
     /// `D^2 w w' / alpha int grad lambda . grad lambda'`.
-    fn scale(
-        &self,
-        centre: usize,
-        metric: &CellMetric<D>,
-        test: &JumpFacet,
-        trial: &JumpFacet,
-    ) -> f64 {
-        let product = metric.products[test.local][trial.local];
+    fn scale(&self, centre: &Centre<D>, test: &JumpFacet, trial: &JumpFacet) -> f64 {
+        let product = centre.metric.products[test.local][trial.local];
         ((D * D) as f64) * test.flux_weight * trial.flux_weight * product
-            / self.space.extreme_coefficients((centre, test.local))[1]
+            / self.space.extreme_coefficients((centre.cell, test.local))[1]
     }
 
-    /// Facet `local` of a centre, if a form acts on its jumps.
-    fn jump_facet(
-        &self,
-        neighbours: &Neighbours,
-        centre: usize,
-        metric: &CellMetric<D>,
-        local: usize,
-    ) -> Option<JumpFacet> {
-        let mesh = self.space.mesh;
-        let me = self.space.side(centre, local, metric);
-        match neighbours.across(centre, local) {
-            Neighbour::Cell { cell, local: other_local } => {
-                let (cell, other_local) = (cell as usize, other_local as usize);
-                let metric = self.metrics.at(cell);
-                let other = self.space.side(cell, other_local, &metric);
-                let is_here = centre < cell;
-                let (here, there) = if is_here { (&me, &other) } else { (&other, &me) };
-                let facet = view(mesh, here, Some(there));
-                let average_weight = self.form.average_weight(&facet);
-                let flux_weight = flux_weight(&facet, average_weight, is_here);
-                let own = if is_here { average_weight } else { 1.0 - average_weight };
-                let across = Some((cell, other_local));
-                Some(self.with_products((centre, local), across, flux_weight, own))
-            }
-            Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                let weight = me.coefficient;
-                Some(self.with_products((centre, local), None, weight, 1.0))
-            }
-            Neighbour::Boundary(_) | Neighbour::Cut => None,
-        }
-    }
-
-    /// A facet of a centre, with the products of moments where the coefficient varies.
-    fn with_products(
-        &self,
-        (centre, local): Place,
-        across: Option<Place>,
-        flux_weight: f64,
-        own_weight: f64,
-    ) -> JumpFacet {
-        if !self.space.varies_at((centre, local), across) {
-            return JumpFacet { local, across, flux_weight, products: None };
-        }
-        let product = |k, l| self.space.flux_product((centre, local), across, own_weight, (k, l));
-        let or_zero = |k, l| product(k, l).unwrap_or(0.0);
-        let products = std::array::from_fn(|k| std::array::from_fn(|l| or_zero(k, l)));
-        JumpFacet { local, across, flux_weight: 1.0, products: Some(products) }
-    }
-
-    /// The moments on facet `local` of a cell, which is this facet of a centre, of what is lifted.
-    fn moments(&self, local: usize, facet: &JumpFacet) -> Moments {
+    /// What is lifted of the functions of a cell, which sees a facet of a centre as its facet `local`.
+    fn functions(&self, local: usize, facet: &JumpFacet) -> [Moments; MAX_BASIS] {
         let mut moments = [[0.0; MAX_MOMENTS]; MAX_BASIS];
         for (m, basis) in self.table.facets.on(local).iter().enumerate() {
-            let basis: &BasisAt = basis;
-            for i in 0..self.space.per_cell() {
-                moments[i][m] = basis.values[i];
+            for (moments, &value) in moments.iter_mut().zip(&basis.values) {
+                moments[m] = value;
             }
         }
-        match &facet.products {
-            Some(products) => moments.map(|moments| weigh(products, &moments)),
-            None => moments,
+        for moments in &mut moments[..self.space.per_cell()] {
+            *moments = facet.weighted(moments);
         }
+        moments
     }
 
-    /// The moments of test functions times the products with the moments of another facet.
-    fn weighted(&self, tested: &Moments, test: usize, trial: usize, scale: f64) -> Moments {
-        let products = &self.table.products[test][trial];
-        let mut weighted = [[0.0; MAX_MOMENTS]; MAX_BASIS];
+    /// By what the moments of a trial jump are multiplied in its products with test functions.
+    fn lifted(
+        &self,
+        tested: &[Moments; MAX_BASIS],
+        [test, trial]: [&JumpFacet; 2],
+        scale: f64,
+    ) -> [Moments; MAX_BASIS] {
+        let products = &self.table.products[test.local][trial.local];
+        let mut lifted = [[0.0; MAX_MOMENTS]; MAX_BASIS];
         for i in 0..self.space.per_cell() {
             for n in 0..self.table.moments {
                 for m in 0..self.table.moments {
-                    weighted[i][n] += scale * tested[i][m] * products[m][n];
+                    lifted[i][n] += scale * tested[i][m] * products[m][n];
                 }
             }
         }
-        weighted
+        lifted
     }
 
-    fn add_block(
+    /// Adds the products of test functions with some trial jumps to a block of rows of this length.
+    fn add_products(
         &self,
-        tests: &Moments,
-        trials: &Moments,
+        lifted: &[Moments; MAX_BASIS],
+        trials: &[Moments],
         sign: f64,
-        start: usize,
-        row: usize,
+        (start, row): (usize, usize),
         rows: &mut [f64],
     ) {
-        let n = self.space.per_cell();
-        for i in 0..n {
-            let out = &mut rows[i * row + start..i * row + start + n];
-            for j in 0..n {
+        for (i, lifted) in lifted.iter().enumerate().take(self.space.per_cell()) {
+            let out = &mut rows[i * row + start..][..trials.len()];
+            for (out, trial) in out.iter_mut().zip(trials) {
                 for m in 0..self.table.moments {
-                    out[j] += sign * tests[i][m] * trials[j][m];
+                    *out += sign * lifted[m] * trial[m];
                 }
             }
         }
     }
 
-    /// Adds to the load what a Dirichlet datum on a facet of the centre lifts to: the number of the
-    /// facet and the moments of the datum, of which lifts take the first.
-    pub fn add_load(
-        &self,
-        neighbours: &Neighbours,
-        centre: usize,
-        (datum_local, moments): &(usize, Vec<f64>),
-        load: &mut [f64],
-    ) {
-        let metric = self.metrics.at::<D>(centre);
-        let Some(datum) = self.jump_facet(neighbours, centre, &metric, *datum_local) else {
-            return;
-        };
-        let lifted = lifted_moments(&datum, moments);
-        for local in 0..=D {
-            let Some(test) = self.jump_facet(neighbours, centre, &metric, local) else { continue };
-            let scale = self.scale(centre, &metric, &test, &datum);
-            let mut add = |cell: usize, local: usize, sign: f64| {
-                let tested = self.moments(local, &test);
-                let weighted = self.weighted(&tested, test.local, *datum_local, scale);
-                let n = self.space.per_cell();
-                let out = &mut load[cell * n..(cell + 1) * n];
-                for (out, weighted) in out.iter_mut().zip(&weighted) {
-                    for (w, &moment) in weighted.iter().zip(&lifted) {
-                        *out += sign * *w * moment;
-                    }
-                }
+    /// Adds to the load, by cell, the products of functions with a Dirichlet datum on a facet of the centre.
+    pub fn add_load(&self, datum: &FacetDatum, load: &mut [f64]) {
+        let (cell, local) = datum.facet;
+        let centre = self.centre(cell);
+        let trial = centre.facets[local].as_ref().expect("the form acts where there is a datum");
+        let weighted = trial.weighted_datum(&datum.moments);
+        for test in centre.facets.iter().flatten() {
+            let scale = self.scale(&centre, test, trial);
+            let mut add = |(cell, local): HalfFacet, sign| {
+                let lifted = self.lifted(&self.functions(local, test), [test, trial], scale);
+                let start = cell * self.space.per_cell();
+                self.add_products(&lifted, &[weighted], sign, (start, 1), load);
             };
-            add(centre, local, 1.0);
-            if let Some((other, other_local)) = test.across {
-                add(other, other_local, -1.0);
+            add((cell, test.local), 1.0);
+            if let Some(other) = test.other {
+                add(other, -1.0);
+            }
+        }
+    }
+
+    /// Adds the product of the lifts of two jumps on facets of a centre.
+    fn add_product(
+        &self,
+        centre: &Centre<D>,
+        (test, tested): (&JumpFacet, &Moments),
+        (trial, jump): (&JumpFacet, &Moments),
+        sum: &mut f64,
+    ) {
+        let scale = self.scale(centre, test, trial);
+        for (row, &tested) in self.table.products[test.local][trial.local].iter().zip(tested) {
+            for (&product, &jump) in row.iter().zip(jump) {
+                *sum += scale * tested * product * jump;
             }
         }
     }
@@ -305,68 +294,34 @@ impl<const D: usize> Lifting<'_, '_, D> {
     /// seen from the centre.
     pub fn products_with_moments(
         &self,
-        neighbours: &Neighbours,
         centre: usize,
-        jumps: &[[f64; MAX_MOMENTS]; 4],
+        jumps: &[Moments; 4],
         kept: usize,
     ) -> [[f64; 3]; 4] {
-        let metric = self.metrics.at::<D>(centre);
-        let facets: [Option<JumpFacet>; 4] = std::array::from_fn(|local| match local <= D {
-            true => self.jump_facet(neighbours, centre, &metric, local),
-            false => None,
-        });
-        let weighted = |facet: &JumpFacet, moments: &[f64; MAX_MOMENTS]| match &facet.products {
-            Some(products) => weigh(products, moments),
-            None => *moments,
-        };
+        let centre = self.centre(centre);
         let mut sums = [[0.0; 3]; 4];
-        for test in facets.iter().flatten() {
-            for trial in facets.iter().flatten() {
-                let jump = weighted(trial, &jumps[trial.local]);
-                let products = &self.table.products[test.local][trial.local];
-                let scale = self.scale(centre, &metric, test, trial);
+        for test in centre.facets.iter().flatten() {
+            for trial in centre.facets.iter().flatten() {
+                let jump = trial.weighted(&jumps[trial.local]);
                 for (k, sum) in sums[test.local].iter_mut().enumerate().take(kept) {
-                    let mut moment = [0.0; MAX_MOMENTS];
-                    moment[k] = 1.0;
-                    let tested = weighted(test, &moment);
-                    for (row, &tested) in products.iter().zip(&tested) {
-                        for (&product, &jump) in row.iter().zip(&jump) {
-                            *sum += scale * tested * product * jump;
-                        }
-                    }
+                    let tested = test.weighted(&std::array::from_fn(|m| f64::from(m == k)));
+                    self.add_product(&centre, (test, &tested), (trial, &jump), sum);
                 }
             }
         }
         sums
     }
 
-    /// The product of the lifts of Dirichlet data on two facets of a centre, each given by the number of
-    /// the facet and the moments of the datum, of which lifts take the first.
-    pub fn product_of_data(
-        &self,
-        neighbours: &Neighbours,
-        centre: usize,
-        (first, first_moments): &(usize, Vec<f64>),
-        (second, second_moments): &(usize, Vec<f64>),
-    ) -> f64 {
-        let metric = self.metrics.at::<D>(centre);
-        let facet = |local| self.jump_facet(neighbours, centre, &metric, local);
-        let (Some(a), Some(b)) = (facet(*first), facet(*second)) else { return 0.0 };
-        let scale = self.scale(centre, &metric, &a, &b);
-        let (a, b) = (lifted_moments(&a, first_moments), lifted_moments(&b, second_moments));
+    /// The product of the lifts of Dirichlet data on two facets of a centre.
+    pub fn product_of_data(&self, first: &FacetDatum, second: &FacetDatum) -> f64 {
+        let centre = self.centre(first.facet.0);
+        let [test, trial] = [first, second].map(|datum| {
+            let facet = centre.facets[datum.facet.1].as_ref();
+            let facet = facet.expect("the form acts where there is a datum");
+            (facet, facet.weighted_datum(&datum.moments))
+        });
         let mut sum = 0.0;
-        for (products, &a) in self.table.products[*first][*second].iter().zip(&a) {
-            for (&product, &b) in products.iter().zip(&b) {
-                sum += scale * a * product * b;
-            }
-        }
+        self.add_product(&centre, (test.0, &test.1), (trial.0, &trial.1), &mut sum);
         sum
     }
-}
-
-/// The moments of a Dirichlet datum of which lifts are made, weighted where the coefficient varies.
-fn lifted_moments(facet: &JumpFacet, moments: &[f64]) -> [f64; MAX_MOMENTS] {
-    let mut lifted = [0.0; MAX_MOMENTS];
-    lifted.iter_mut().zip(moments).for_each(|(to, &from)| *to = from);
-    facet.products.as_ref().map_or(lifted, |products| weigh(products, &lifted))
 }

@@ -8,12 +8,12 @@
 use super::Filling;
 use super::rows::Rows;
 use super::rows_by_cell::for_each_cell;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetWeight;
 use crate::assemble::space::metric::CellMetric;
 use crate::facet::FacetKind;
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::mesh::{BoundaryCondition, Neighbour};
 
 /// Constants of the reference cell, of which dimension `D` uses the first `D + 1` facets.
 struct Reference<const N: usize> {
@@ -21,8 +21,8 @@ struct Reference<const N: usize> {
     gradient: f64,
     /// By facet: products of jumps.
     own: [[[f64; N]; N]; 4],
-    /// By facet and by the number that the cell across has for it.
-    across: [[[[f64; N]; N]; 4]; 4],
+    /// By facet and by the number that the other cell has for it.
+    other: [[[[f64; N]; N]; 4]; 4],
     /// By facet: means of the basis functions.
     means: [[f64; N]; 4],
 }
@@ -67,13 +67,13 @@ impl<const D: usize> Filling<'_, '_, D> {
     }
 
     fn reference<const N: usize>(&self) -> Reference<N> {
-        let of = |m: &[[f64; _]; _]| tabulate(|i| tabulate(|j| m[i][j]));
+        let of = |m: &[[f64; _]; _]| array_of(|i| array_of(|j| m[i][j]));
         let facet = |local: usize| local.min(D);
         Reference {
             gradient: self.gradient.unwrap_or(1.0),
-            own: tabulate(|l| of(&self.jumps.own(facet(l))[0])),
-            across: tabulate(|l| tabulate(|m| of(&self.jumps.across(facet(l), facet(m))[0]))),
-            means: tabulate(|l| tabulate(|i| self.facets.on(facet(l))[0].values[i])),
+            own: array_of(|l| of(&self.jumps.own(facet(l))[0])),
+            other: array_of(|l| array_of(|m| of(&self.jumps.other(facet(l), facet(m))[0]))),
+            means: array_of(|l| array_of(|i| self.facets.on(facet(l))[0].values[i])),
         }
     }
 
@@ -103,7 +103,7 @@ impl<const D: usize> Filling<'_, '_, D> {
                     let weight = self.weights.at::<D>(here, from_here, FacetKind::Interior);
                     let facet =
                         self.add_linear::<N, FLUX>(reference, &metric, local, &weight, &mut own);
-                    let products = &reference.across[local][other_local & 3];
+                    let products = &reference.other[local][other_local & 3];
                     let means = &reference.means[other_local & 3];
                     let mut flux = [0.0; N];
                     if FLUX {
@@ -113,7 +113,7 @@ impl<const D: usize> Filling<'_, '_, D> {
                         flux = std::array::from_fn(|i| scale * row[i]);
                     }
                     for i in 0..N {
-                        let out = rows.block::<N>(rows.across[local], i);
+                        let out = rows.block::<N>(rows.others[local], i);
                         for j in 0..N {
                             let jumps = facet.jump_jump * products[i][j];
                             out[j] = if FLUX {
@@ -124,7 +124,7 @@ impl<const D: usize> Filling<'_, '_, D> {
                         }
                     }
                 }
-                Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
+                Neighbour::Boundary(BoundaryCondition::Dirichlet) if !self.space.pins => {
                     let weight = self.weights.at::<D>((cell, local), true, FacetKind::Dirichlet);
                     self.add_linear::<N, FLUX>(reference, &metric, local, &weight, &mut own);
                 }

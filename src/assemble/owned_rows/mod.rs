@@ -19,20 +19,21 @@ use std::iter::repeat_n;
 
 use super::facet_coefficients::FacetCoefficients;
 use super::jump_products::JumpProducts;
-use super::local::{MAX_FLUX_MOMENTS, StiffnessTable, zero_local};
 use super::space::Space;
 use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
+use super::stiffness::{StiffnessTable, zero_local};
+use super::trace::MAX_FLUX_MOMENTS;
 use crate::algebra::SparseMatrix;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
 use crate::mesh::{Neighbour, Neighbours};
-use lifted::{LiftTable, Lifting};
+use lifted::Lifting;
 use rows_by_cell::for_each_cell;
 
 /// The cells coupled to a cell, itself included, ascending.
 pub(crate) struct Coupled {
-    /// At most the cell, its neighbours and theirs.
+    /// At most the cell, its neighbours and the neighbours of these.
     cells: [u32; 17],
     n: usize,
 }
@@ -180,10 +181,9 @@ pub(crate) fn fill<const D: usize>(
         _ => filling.fill::<MAX_BASIS, MAX_FLUX_MOMENTS>(row_starts, values),
     }
     if form.is_lifted() {
-        let table = LiftTable::new(space, form.lift_degree(space.basis_degree));
-        let lifting = Lifting { space, form, metrics, table: &table };
+        let lifting = Lifting::new(space, form, metrics);
         filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
-            lifting.add(filling.neighbours, cell, coupled, rows);
+            lifting.add(cell, coupled, rows);
         });
     }
     if let Some(reaction) = &space.reaction {

@@ -6,12 +6,11 @@ use super::rows_by_cell::for_each_cell;
 use super::{Coupled, Filling};
 use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetWeight;
-use crate::assemble::space::Place;
 use crate::assemble::space::metric::CellMetric;
 use crate::assemble::space::tables::Derivatives;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetKind;
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour};
 
 /// A dense block of the rows of a cell, of which small elements use the upper left corner.
 type Block<const N: usize> = [[f64; N]; N];
@@ -25,15 +24,15 @@ pub(crate) struct Rows<'r> {
     /// Entries of each.
     length: usize,
     entries: &'r mut [f64],
-    /// The place among the coupled cells of those across each facet, and of the cell itself.
-    pub across: [usize; 4],
+    /// The place among the coupled cells of the other cell of each facet, and of the cell itself.
+    pub others: [usize; 4],
     pub own: usize,
 }
 
 impl<'r> Rows<'r> {
     #[inline(always)]
-    pub fn new(n: usize, entries: &'r mut [f64], (across, own): ([usize; 4], usize)) -> Self {
-        Self { n, length: entries.len() / n, entries, across, own }
+    pub fn new(n: usize, entries: &'r mut [f64], (others, own): ([usize; 4], usize)) -> Self {
+        Self { n, length: entries.len() / n, entries, others, own }
     }
     /// Row `i` of the block of the coupled cell at a place, for a cell of `N` functions.
     #[inline(always)]
@@ -65,7 +64,7 @@ struct Own<'f, const D: usize> {
 ///
 /// Jumps and fluxes both flip their sign with the direction of the normal, so their products do not.
 struct OnFacet<'f, const D: usize, const N: usize, const M: usize> {
-    me: Own<'f, D>,
+    own: Own<'f, D>,
     weight: FacetWeight<'f>,
     /// What multiplies the products of jumps of the first class.
     jump_jump: f64,
@@ -93,33 +92,33 @@ impl<const D: usize> Filling<'_, '_, D> {
         });
     }
 
-    /// The positions of the cells across each facet among the coupled cells, and that of the cell
+    /// The positions of the other cells of all facets among the coupled cells, and that of the cell
     /// itself.
     #[inline(always)]
     pub(crate) fn positions(&self, cell: usize) -> ([usize; 4], usize) {
-        let across = |local| match self.neighbours.across(cell, local) {
+        let other = |local| match self.neighbours.across(cell, local) {
             Neighbour::Cell { cell, .. } => cell,
             Neighbour::Boundary(_) | Neighbour::Cut => u32::MAX,
         };
         let mut cells = [u32::MAX; 4];
         for local in 0..=D {
-            cells[local] = across(local);
+            cells[local] = other(local);
         }
         if self.lifted {
             let coupled = Coupled::of::<D>(self.neighbours, cell, true);
             // behind a facet of the boundary is no cell, and its entry is not read
-            let across = cells.map(|other| match other {
+            let others = cells.map(|other| match other {
                 u32::MAX => usize::MAX,
                 other => coupled.position(other as usize),
             });
-            return (across, coupled.position(cell));
+            return (others, coupled.position(cell));
         }
         // ranks by comparison of all pairs, without branches
-        let me = cell as u32;
+        let own = cell as u32;
         let below = |than: u32| {
-            (0..D + 1).fold(usize::from(me < than), |n, k| n + usize::from(cells[k] < than))
+            (0..D + 1).fold(usize::from(own < than), |n, k| n + usize::from(cells[k] < than))
         };
-        (cells.map(below), below(me))
+        (cells.map(below), below(own))
     }
 
     /// Writes the rows of a cell: its stiffness and the form on its facets.
@@ -127,29 +126,29 @@ impl<const D: usize> Filling<'_, '_, D> {
     fn write_cell<const N: usize, const M: usize>(&self, cell: usize, mut rows: Rows<'_>) {
         let metric = self.metrics.at(cell);
         let coefficient = self.space.alpha(cell);
-        let mut own: Block<N> = match self.space.varying_in(cell) {
+        let mut block_of_own: Block<N> = match self.space.varying_in(cell) {
             None => block(|i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j)),
             Some((varying, values)) => block(|i, j| varying.stiffness::<D>(values, &metric, i, j)),
         };
         for local in 0..=D {
-            let me = Own { cell, local, metric: &metric };
+            let own = Own { cell, local, metric: &metric };
             match self.neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local: other_local } => {
-                    let there = (other as usize, other_local as usize);
-                    let from_here = cell < there.0;
-                    let here = if from_here { (cell, local) } else { there };
+                    let other = (other as usize, other_local as usize);
+                    let from_here = cell < other.0;
+                    let here = if from_here { (cell, local) } else { other };
                     let weight = self.weights.at::<D>(here, from_here, FacetKind::Interior);
-                    let facet = self.add_facet::<N, M>(me, Some(there), weight, &mut own);
-                    self.write_across::<N, M>(&facet, there, &mut rows);
+                    let facet = self.add_facet::<N, M>(own, Some(other), weight, &mut block_of_own);
+                    self.write_other::<N, M>(&facet, other, &mut rows);
                 }
-                Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
+                Neighbour::Boundary(BoundaryCondition::Dirichlet) if !self.space.pins => {
                     let weight = self.weights.at::<D>((cell, local), true, FacetKind::Dirichlet);
-                    self.add_facet::<N, M>(me, None, weight, &mut own);
+                    self.add_facet::<N, M>(own, None, weight, &mut block_of_own);
                 }
                 Neighbour::Boundary(_) | Neighbour::Cut => {}
             }
         }
-        for (i, row) in own.iter().enumerate() {
+        for (i, row) in block_of_own.iter().enumerate() {
             rows.write(rows.own, i, row);
         }
     }
@@ -158,39 +157,40 @@ impl<const D: usize> Filling<'_, '_, D> {
     #[inline(always)]
     fn add_facet<'f, const N: usize, const M: usize>(
         &'f self,
-        me: Own<'f, D>,
-        there: Option<Place>,
+        own: Own<'f, D>,
+        other: Option<HalfFacet>,
         weight: FacetWeight<'f>,
-        own: &mut Block<N>,
+        block_of_own: &mut Block<N>,
     ) -> OnFacet<'f, D, N, M> {
         count::facets(1);
         let form = weight.coefficients;
-        let measure = me.metric.measures[me.local];
-        let jump_jump = self.jump_scale(&me, &weight, self.jumps.weights[0]);
+        let measure = own.metric.measures[own.local];
+        let jump_jump = self.jump_scale(&own, &weight, self.jumps.weights[0]);
         let zero = [[0.0; N]; M];
-        let mut facet = OnFacet { me, weight, jump_jump, by_flux: zero, by_jump: zero };
+        let mut facet = OnFacet { own, weight, jump_jump, by_flux: zero, by_jump: zero };
         let mut flux = zero;
-        let moments = self.facets.on(me.local);
+        let moments = self.facets.on(own.local);
         for k in 0..self.n_fluxes::<M>() {
             let penalty = weight.penalty * self.flux_moments[k];
             let flux_flux = form.flux_flux.at(penalty) / measure;
             let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
-            let mine = &moments[k];
-            let products = &me.metric.products[me.local];
+            let basis = &moments[k];
+            let products = &own.metric.products[own.local];
             let own_weight = weight.own_flux_weight;
-            flux[k] = match self.space.flux_derivatives((me.cell, me.local), there, own_weight, k) {
-                None => self.flux::<N>(&mine.derivatives, products, own_weight),
+            flux[k] = match self.space.flux_derivatives((own.cell, own.local), other, own_weight, k)
+            {
+                None => self.flux::<N>(&basis.derivatives, products, own_weight),
                 Some(weighted) => self.flux::<N>(&weighted, products, 1.0),
             };
             facet.by_flux[k] =
-                std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[k][i]);
+                std::array::from_fn(|i| jump_flux * basis.values[i] + flux_flux * flux[k][i]);
             facet.by_jump[k] = flux[k].map(|flux| flux_jump * flux);
         }
-        let products = self.jumps.own(me.local);
+        let products = self.jumps.own(own.local);
         for i in 0..N {
             let mut row: [f64; N] = std::array::from_fn(|j| jump_jump * products[0][i][j]);
             for class in 1..products.len() {
-                let scale = self.jump_scale(&me, &weight, self.jumps.weights[class]);
+                let scale = self.jump_scale(&own, &weight, self.jumps.weights[class]);
                 for j in 0..N {
                     row[j] += scale * products[class][i][j];
                 }
@@ -203,41 +203,40 @@ impl<const D: usize> Filling<'_, '_, D> {
                 }
             }
             for j in 0..N {
-                own[i][j] += row[j];
+                block_of_own[i][j] += row[j];
             }
         }
         facet
     }
 
-    /// Writes what the form makes of a facet to the columns of the cell across, which has the facet
+    /// Writes what the form makes of a facet to the columns of the other cell, which has the facet
     /// under another number.
     #[inline(always)]
-    fn write_across<const N: usize, const M: usize>(
+    fn write_other<const N: usize, const M: usize>(
         &self,
         facet: &OnFacet<'_, D, N, M>,
-        there: Place,
+        other: HalfFacet,
         rows: &mut Rows<'_>,
     ) {
-        let Own { cell, local, .. } = facet.me;
-        let (other, other_local) = there;
+        let Own { cell, local, .. } = facet.own;
         let mut flux = [[0.0; N]; M];
-        let moments = self.facets.on(other_local);
+        let moments = self.facets.on(other.1);
         if self.n_fluxes::<M>() > 0 {
-            let of_theirs = self.metrics.products_of::<D>(other, other_local);
+            let products = self.metrics.products_of::<D>(other.0, other.1);
             for k in 0..self.n_fluxes::<M>() {
                 let weight = facet.weight.other_flux_weight;
-                let weighted = self.space.flux_derivatives(there, Some((cell, local)), weight, k);
+                let weighted = self.space.flux_derivatives(other, Some((cell, local)), weight, k);
                 flux[k] = match weighted {
-                    None => self.flux::<N>(&moments[k].derivatives, &of_theirs, -weight),
-                    Some(weighted) => self.flux::<N>(&weighted, &of_theirs, -1.0),
+                    None => self.flux::<N>(&moments[k].derivatives, &products, -weight),
+                    Some(weighted) => self.flux::<N>(&weighted, &products, -1.0),
                 };
             }
         }
-        let products = self.jumps.across(local, other_local);
+        let products = self.jumps.other(local, other.1);
         for i in 0..N {
             let mut row: [f64; N] = std::array::from_fn(|j| -facet.jump_jump * products[0][i][j]);
             for class in 1..products.len() {
-                let scale = self.jump_scale(&facet.me, &facet.weight, self.jumps.weights[class]);
+                let scale = self.jump_scale(&facet.own, &facet.weight, self.jumps.weights[class]);
                 for j in 0..N {
                     row[j] -= scale * products[class][i][j];
                 }
@@ -249,7 +248,7 @@ impl<const D: usize> Filling<'_, '_, D> {
                     row[j] += by_flux * flux[k][j] - by_jump * values[j];
                 }
             }
-            rows.write(rows.across[local], i, &row);
+            rows.write(rows.others[local], i, &row);
         }
     }
 
@@ -261,8 +260,8 @@ impl<const D: usize> Filling<'_, '_, D> {
 
     /// What multiplies the products of jumps of a class.
     #[inline(always)]
-    fn jump_scale(&self, me: &Own<'_, D>, weight: &FacetWeight<'_>, class: f64) -> f64 {
-        me.metric.measures[me.local] * weight.coefficients.jump_jump.at(weight.penalty * class)
+    fn jump_scale(&self, own: &Own<'_, D>, weight: &FacetWeight<'_>, class: f64) -> f64 {
+        own.metric.measures[own.local] * weight.coefficients.jump_jump.at(weight.penalty * class)
     }
 
     /// The fluxes of the basis functions of a cell through one of its facets, of one moment: their

@@ -1,9 +1,9 @@
 //! The matrix of one cell, as a list.
 
 use super::unknowns::CellUnknowns;
-use crate::assemble::local::{Local, zero_local};
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, shape};
+use crate::assemble::stiffness::{Local, zero_local};
 use crate::element::MAX_BASIS;
 
 /// The upper triangle of a cell's matrix, by rows; a power of two holds the largest.
@@ -29,8 +29,6 @@ pub(crate) struct CellMatrices<'s, 'a, const D: usize> {
     pairs: [Triangle; PAIRS],
     /// For entry `(i, j)`, at `N i + j`, where it is in the triangle.
     places: [u8; MAX_BASIS * MAX_BASIS],
-    /// If basis function `i` is `c` times barycentric coordinate `i` but for a constant: `c^2`.
-    square: Option<f64>,
 }
 
 impl<'s, 'a, const D: usize> CellMatrices<'s, 'a, D> {
@@ -39,32 +37,26 @@ impl<'s, 'a, const D: usize> CellMatrices<'s, 'a, D> {
         let n = space.per_cell();
         let table = space.stiffness_table();
         let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
-        let is_linear = space.basis_degree == 1 && n == D + 1;
-        let mut square = is_linear.then(|| table.entry::<D>(&unit(0, 1), 0, 1));
         let mut pairs = [[zero; TRIANGLE]; PAIRS];
         let mut places = [0; MAX_BASIS * MAX_BASIS];
         for (pair, (k, l)) in pairs_of::<D>().enumerate() {
             let mut place = 0;
             for i in 0..n {
                 for j in i..n {
-                    let entry = table.entry::<D>(&unit(k, l), i, j);
-                    pairs[pair][place] = entry;
+                    pairs[pair][place] = table.entry::<D>(&unit(k, l), i, j);
                     places[i * n + j] = place as u8;
                     places[j * n + i] = place as u8;
                     place += 1;
-                    let alone = if (i, j) == (k, l) { square } else { Some(zero) };
-                    if i != j && Some(entry) != alone {
-                        square = None;
-                    }
                 }
             }
         }
-        Self { space, pairs, places, square }
+        Self { space, pairs, places }
     }
 
     /// The square by which products of gradients make the whole matrix, if they do.
     pub fn only_gradients(&self) -> Option<f64> {
-        self.square.filter(|_| self.space.reaction.is_none())
+        let factor = self.space.gradient_factor().filter(|_| self.space.reaction.is_none());
+        factor.map(|factor| factor * factor)
     }
 
     /// Writes the stiffness of a cell in which the coefficient varies.

@@ -6,12 +6,12 @@ use std::sync::atomic::Ordering;
 use crate::parallel::for_each_item;
 
 use super::cells::{CellMatrices, CellMatrix, General, Gradients};
-use super::partition::{Location, Rows, partition};
 use super::pattern::{EntryPositions, LONGEST};
-use super::unknowns::{ANY, CellUnknowns};
+use super::unknowns::{ANY, CellUnknowns, Rows};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
 use crate::assemble::space::dofs::{Dofs, KINDS};
+use crate::mesh::incidence::{Columns, Overlap, partition};
 
 /// The rows of one kind in a subset, and their values.
 struct Target<'v> {
@@ -53,7 +53,7 @@ fn fill_with<const D: usize, const N: usize>(
     let cells = CellMatrices::new(space);
     let unknowns = CellUnknowns::<D, N>::new(dofs);
     let filling = Filling { dofs, row_starts, columns, positions, cells, unknowns };
-    let subsets = partition(dofs);
+    let subsets = partition(dofs.kinds());
     let targets = targets(&subsets, row_starts, values);
     for_each_item(targets, &|k, targets| filling.fill_subset(&subsets[k], targets));
 }
@@ -138,11 +138,11 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
     fn block<M: CellMatrix>(
         &self,
         cells: Range<usize>,
-        location: Location,
+        location: Overlap,
         targets: &mut [Target<'_>; KINDS],
         matrices: M,
     ) {
-        if location == Location::Inside {
+        if location == Overlap::Inside {
             self.add::<M, true>(cells, targets, matrices);
         } else {
             self.add::<M, false>(cells, targets, matrices);
@@ -193,12 +193,17 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
     }
 }
 
-/// Adds to a row too long for the positions noted, by searching its columns.
+/// Adds the entries of some unknowns to a row whose positions are not noted, by searching its columns.
 #[cold]
 #[inline(never)]
-fn add_by_search(out: &mut [f64], columns: &[u32], unknowns: &[u32], entry: &dyn Fn(usize) -> f64) {
+pub(super) fn add_by_search(
+    out: &mut [f64],
+    columns: &[u32],
+    unknowns: &[u32],
+    entry: &dyn Fn(usize) -> f64,
+) {
     for (j, unknown) in unknowns.iter().enumerate() {
-        let at = columns.binary_search(unknown).expect("the pattern has the entries of its cells");
+        let at = columns.binary_search(unknown).expect("the pattern has all that is added to it");
         out[at] += entry(j);
     }
 }

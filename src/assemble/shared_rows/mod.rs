@@ -2,14 +2,13 @@
 //!
 //! Without a form on facets each cell adds its matrix to the positions in its rows that were noted
 //! when the pattern was made: see [`pattern`](pattern::pattern) and [`fill`](fill::fill). With one, which
-//! is rare here, rows gather from the matrices of [`patches`].
+//! is rare here, see [`with_facets`].
 
 mod cells;
 mod fill;
-pub(crate) mod partition;
-mod patches;
 pub(crate) mod pattern;
 mod unknowns;
+mod with_facets;
 
 use std::sync::OnceLock;
 
@@ -33,7 +32,7 @@ impl SharedRows {
         form: &dyn FacetForm<D>,
     ) -> SparseMatrix<f64> {
         if form.couples() {
-            return patches::pattern(space, form);
+            return with_facets::pattern(space);
         }
         let (matrix, positions) = pattern::pattern::<D>(&space.dofs);
         // a space has one pattern: another thread that was first has set the same positions
@@ -49,7 +48,7 @@ impl SharedRows {
         matrix: &mut SparseMatrix<f64>,
     ) {
         if form.couples() {
-            return patches::fill(space, form, matrix);
+            return with_facets::fill(space, form, matrix);
         }
         let positions = once(&self.positions, || pattern::pattern::<D>(&space.dofs).1);
         fill::fill(space, positions, matrix);

@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::parallel::{for_each_item, map_indices};
 
-use super::partition::{Blocks, Rows, partition};
-use super::unknowns::{ANY, CellUnknowns};
+use super::unknowns::{ANY, CellUnknowns, Rows};
 use crate::algebra::SparseMatrix;
-use crate::arrays::map_entries;
 use crate::assemble::space::dofs::{Dofs, KINDS};
 use crate::memory::in_large_pages;
+use crate::mesh::incidence::{Blocks, Incidence, Stars, partition};
+use crate::mesh::neighbour_numbers::{LANES, NeighbourNumbers, rank};
 
 /// Where each cell adds its matrix: made with the pattern, kept for every filling of it.
 pub(crate) struct EntryPositions {
@@ -21,7 +21,7 @@ pub(crate) struct EntryPositions {
     /// positions in its own rows.
     pub in_rows: Vec<AtomicU8>,
     /// The cells in blocks.
-    pub blocks: Blocks,
+    pub blocks: Blocks<KINDS>,
     /// Entries of the pattern.
     pub nonzeros: usize,
 }
@@ -57,10 +57,18 @@ fn pattern_with<const D: usize, const N: usize>(
     dofs: &Dofs<'_>,
 ) -> (SparseMatrix<f64>, EntryPositions) {
     let of_cell = CellUnknowns::<D, N>::new(dofs);
-    let blocks = Blocks::new(dofs, |i| of_cell.kind(i));
-    let in_rows = zeros(dofs.n_cells() * of_cell.count() * of_cell.count());
-    let builder = PatternBuilder { dofs, of_cell, blocks: &blocks, in_rows: &in_rows };
-    let subsets = partition(dofs);
+    let consecutive: Vec<u32>;
+    let table = match dofs.table() {
+        Some(table) => table,
+        None => {
+            consecutive = (0..dofs.size() as u32).collect();
+            &consecutive
+        }
+    };
+    let in_rows = zeros(table.len() * of_cell.count());
+    let incidence = Incidence::new(table, of_cell);
+    let builder = PatternBuilder { size: dofs.size(), incidence, in_rows: &in_rows };
+    let subsets = partition(dofs.kinds());
     let build = |k: usize| builder.rows(&subsets[k]);
     let mut made: Vec<PatternOfSubset> = map_indices(subsets.len(), &build);
     let row_starts = row_starts(dofs.size(), &made);
@@ -68,6 +76,7 @@ fn pattern_with<const D: usize, const N: usize>(
     let nonzeros = columns.len();
     let values = in_large_pages(vec![0.0; nonzeros]);
     let matrix = SparseMatrix { row_starts, columns, values };
+    let blocks = builder.incidence.blocks;
     (matrix, EntryPositions { in_rows, blocks, nonzeros })
 }
 
@@ -125,9 +134,9 @@ fn join(row_starts: &[u32], made: &[PatternOfSubset]) -> Vec<u32> {
 
 /// Builds the pattern of the rows of a subset.
 struct PatternBuilder<'m, const D: usize, const N: usize> {
-    dofs: &'m Dofs<'m>,
-    of_cell: CellUnknowns<D, N>,
-    blocks: &'m Blocks,
+    /// Number of unknowns.
+    size: usize,
+    incidence: Incidence<'m, CellUnknowns<D, N>, KINDS>,
     in_rows: &'m [AtomicU8],
 }
 
@@ -138,14 +147,16 @@ impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
     #[inline(never)]
     fn rows(&self, subset: &Rows) -> PatternOfSubset {
         let mut stars = Stars::default();
-        let mut row = Row { seen: in_large_pages(vec![0; self.dofs.size()]), ..Row::default() };
+        let mut last = in_large_pages(vec![0; self.size]);
+        let mut neighbours = NeighbourNumbers::new(&mut last);
+        let mut row = Row::default();
         let mut made = self.room_for(subset);
-        for part in self.blocks.parts_of(subset) {
-            self.find_stars(&part, &mut stars);
+        for part in self.incidence.blocks.parts_of(subset) {
+            self.incidence.find_stars(&part, &mut stars);
             let mut k = 0;
             for (rows, made) in part.iter().zip(&mut made) {
                 for _ in rows.clone() {
-                    self.row(stars.of_row(k), &mut row, made);
+                    self.row(stars.of(k), &mut neighbours, &mut row, made);
                     k += 1;
                 }
             }
@@ -157,85 +168,38 @@ impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
     /// Room for the pattern of a subset: about as many entries as the cells' matrices have, of which those that
     /// are not used are never touched.
     fn room_for(&self, subset: &Rows) -> PatternOfSubset {
-        let entries = |rows: &Range<u32>| self.in_rows.len() / self.dofs.size() * rows.len();
+        let entries = |rows: &Range<u32>| self.in_rows.len() / self.size * rows.len();
         subset.each_ref().map(|rows| PatternOfRows {
             columns: in_large_pages(Vec::with_capacity(entries(rows))),
             lengths: in_large_pages(Vec::with_capacity(rows.len())),
         })
     }
 
-    /// Finds the star of each row of a part: a counting sort.
-    #[inline(always)]
-    fn find_stars(&self, part: &Rows, stars: &mut Stars) {
-        let mut n_rows = 0;
-        let offsets = map_entries(part.each_ref(), |rows| {
-            n_rows += rows.len();
-            n_rows - rows.len()
-        });
-        let Stars { starts, slots } = stars;
-        // counts stand two entries on; summed they are starts one entry on; filling moves them to
-        // their own entries
-        starts.clear();
-        starts.resize(n_rows + 2, 0);
-        self.visit(part, &offsets, |row, _| starts[row + 2] += 1);
-        for row in 0..n_rows {
-            starts[row + 2] += starts[row + 1];
-        }
-        slots.clear();
-        slots.resize(starts[n_rows + 1] as usize, 0);
-        self.visit(part, &offsets, |row, slot| {
-            let at = &mut starts[row + 1];
-            slots[*at as usize] = slot as u32;
-            *at += 1;
-        });
-    }
-
-    /// Calls a function with each row of a part and each cell that has it: the cell times `N` plus
-    /// the number of the unknown in it.
-    #[inline(always)]
-    fn visit(&self, part: &Rows, offsets: &[usize; KINDS], mut visit: impl FnMut(usize, usize)) {
-        let n = self.of_cell.count();
-        let mut numbers = Vec::new();
-        for (cells, ..) in self.blocks.of(part) {
-            let first = cells.start;
-            let unknowns = self.dofs.of_cells(cells, &mut numbers);
-            for (c, unknowns) in unknowns.chunks_exact(n).enumerate() {
-                for i in 0..n {
-                    let kind = self.of_cell.kind(i);
-                    let row = unknowns[i].wrapping_sub(part[kind].start);
-                    if (row as usize) < part[kind].len() {
-                        visit(offsets[kind] + row as usize, (first + c) * n + i);
-                    }
-                }
-            }
-        }
-    }
-
     /// Makes a row from its star, and the positions of the star's cells in it.
     #[inline(always)]
-    fn row(&self, star: &[u32], row: &mut Row, made: &mut PatternOfRows) {
-        let per_cell = self.of_cell.count();
+    fn row(
+        &self,
+        star: &[u32],
+        neighbours: &mut NeighbourNumbers<'_>,
+        row: &mut Row,
+        made: &mut PatternOfRows,
+    ) {
+        let (table, per_cell) = (self.incidence.table, self.incidence.columns.count());
         row.make_room(star.len() * per_cell);
-        let Row { seen, columns, numbers, ranks, base } = row;
-        let table = self.dofs.table();
-        let mut n = 0_u32;
-        for (&slot, numbers) in star.iter().zip(numbers.chunks_exact_mut(per_cell)) {
-            let first = slot as usize / per_cell * per_cell;
-            let unknowns = table.map(|t| &t[first..first + per_cell]);
+        let Row { columns, numbers, ranks } = row;
+        let columns = &mut columns[..];
+        neighbours.next_vertex();
+        for (&place, numbers) in star.iter().zip(numbers.chunks_exact_mut(per_cell)) {
+            let first = place as usize / per_cell * per_cell;
+            let unknowns = &table[first..first + per_cell];
             for j in 0..per_cell {
-                let column = unknowns.map_or((first + j) as u32, |u| u[j]);
-                let seen = &mut seen[column as usize];
-                let is_new = *seen <= *base;
-                let number = if is_new { n } else { *seen - *base - 1 };
-                *seen = *base + number + 1;
+                let number = neighbours.get_or_push(unknowns[j]);
                 numbers[j] = number;
-                columns[n as usize] = column;
-                n += u32::from(is_new);
+                columns[number as usize] = unknowns[j];
             }
         }
-        *base += n;
-        let n = n as usize;
-        rank(&mut columns[..n.next_multiple_of(LANES)], n, ranks);
+        let n = neighbours.count();
+        rank(columns, n, ranks);
         let start = made.columns.len();
         made.columns.resize(start + n, 0);
         let out = &mut made.columns[start..];
@@ -243,8 +207,8 @@ impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
             out[rank as usize] = column;
         }
         made.lengths.push(n as u32);
-        for (&slot, numbers) in star.iter().zip(numbers.chunks_exact(per_cell)) {
-            let positions = &self.in_rows[slot as usize * per_cell..][..per_cell];
+        for (&place, numbers) in star.iter().zip(numbers.chunks_exact(per_cell)) {
+            let positions = &self.in_rows[place as usize * per_cell..][..per_cell];
             for (position, &number) in positions.iter().zip(numbers) {
                 position.store(ranks[number as usize] as u8, Ordering::Relaxed);
             }
@@ -252,28 +216,9 @@ impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
     }
 }
 
-/// The stars of rows: the cells that have a row's unknown.
-#[derive(Default)]
-struct Stars {
-    starts: Vec<u32>,
-    /// Each cell times `N` plus the number of the row's unknown in it.
-    slots: Vec<u32>,
-}
-
-impl Stars {
-    #[inline(always)]
-    fn of_row(&self, k: usize) -> &[u32] {
-        &self.slots[self.starts[k] as usize..self.starts[k + 1] as usize]
-    }
-}
-
 /// A row in the making.
 #[derive(Default)]
 struct Row {
-    /// For each column one more than the running number that it got in the last row that has it.
-    seen: Vec<u32>,
-    /// Running number of the first column of this row.
-    base: u32,
     /// The columns in the order of their numbers.
     columns: Vec<u32>,
     /// For each unknown of each cell the number of its column.
@@ -290,38 +235,5 @@ impl Row {
             self.ranks.resize(most + LANES, 0);
             self.numbers.resize(most, 0);
         }
-    }
-}
-
-/// Columns compared at once.
-const LANES: usize = 8;
-
-/// Longest row ranked by comparing all pairs, which vectorises; longer ones are sorted.
-const ALL_PAIRS: usize = 128;
-
-/// The position of each of the first `n` columns in their sorted order; the others are overwritten.
-#[inline(always)]
-fn rank(columns: &mut [u32], n: usize, ranks: &mut [u32]) {
-    if n > ALL_PAIRS {
-        return sort(&columns[..n], ranks);
-    }
-    columns[n..].fill(u32::MAX);
-    for (ranks, own) in ranks.chunks_exact_mut(LANES).zip(columns.chunks_exact(LANES)) {
-        let mut below = [0_u32; LANES];
-        for &other in &columns[..n] {
-            for k in 0..LANES {
-                below[k] += u32::from(other < own[k]);
-            }
-        }
-        ranks.copy_from_slice(&below);
-    }
-}
-
-#[cold]
-fn sort(columns: &[u32], ranks: &mut [u32]) {
-    let mut order: Vec<u32> = (0..columns.len() as u32).collect();
-    order.sort_unstable_by_key(|&k| columns[k as usize]);
-    for (rank, k) in order.into_iter().enumerate() {
-        ranks[k as usize] = rank as u32;
     }
 }

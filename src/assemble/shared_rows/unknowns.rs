@@ -2,6 +2,10 @@
 
 use crate::assemble::space::dofs::{Dofs, KINDS};
 use crate::element::MAX_BASIS;
+use crate::mesh::incidence::{Columns, Ranges};
+
+/// A range of rows for each kind of owner.
+pub(super) type Rows = Ranges<KINDS>;
 
 /// In place of a constant number of unknowns: the number is known at run time only.
 pub(super) const ANY: usize = 0;
@@ -29,9 +33,20 @@ impl<const D: usize, const N: usize> CellUnknowns<D, N> {
     pub fn count(&self) -> usize {
         if const { N == ANY } { self.count } else { N }
     }
+}
+
+impl<const D: usize, const N: usize> Columns for CellUnknowns<D, N> {
+    #[inline(always)]
+    fn width(&self) -> usize {
+        self.count()
+    }
+    #[inline(always)]
+    fn inverted(&self) -> usize {
+        self.count()
+    }
     /// Which kind owns unknown `i`.
     #[inline(always)]
-    pub fn kind(&self, i: usize) -> usize {
+    fn kind(&self, i: usize) -> usize {
         let kind = match const { N == ANY } {
             true => self.kinds[i],
             false if i <= D => self.kinds[0],
@@ -39,6 +54,10 @@ impl<const D: usize, const N: usize> CellUnknowns<D, N> {
         };
         // the remainder saves a comparison with the length wherever kinds are indices
         usize::from(kind) % KINDS
+    }
+    #[inline(always)]
+    fn place(&self, cell: usize, i: usize) -> usize {
+        cell * self.count() + i
     }
 }
 

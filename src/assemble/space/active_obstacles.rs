@@ -9,9 +9,9 @@ use std::ops::Range;
 use super::{Space, Terms};
 use crate::algebra::{Bound, Contact};
 use crate::constraint::BoundBy;
-use crate::mesh::BoundaryPart;
+use crate::mesh::BoundaryCondition;
 use crate::parallel::cells;
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 
 /// A datum gives a bound if they differ by at most this many units of rounding.
 const ROUNDINGS: f64 = 16.0;
@@ -107,7 +107,7 @@ impl<const D: usize> Space<'_, D> {
         state: Option<Contact>,
     ) -> bool {
         let region = self.mesh.region(cell);
-        let gives = |psi: Option<DatumRef<'_, D>>, bound: Option<f64>| {
+        let gives = |psi: Option<&Datum<D>>, bound: Option<f64>| {
             let Some((psi, bound)) = psi.zip(bound) else { return false };
             let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), "obstacle", psi);
             value.is_ok_and(|value| is_bound(value, bound))
@@ -119,7 +119,7 @@ impl<const D: usize> Space<'_, D> {
     /// By unknown whether no gap binds it.
     fn unknowns_without_gap(&self) -> Vec<bool> {
         let mut without = vec![true; self.dofs.size()];
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             if self.data.gap.of(group).is_some() {
                 let bounded = self.bounded_nodes_on(local);
                 bounded.for_each(|(i, _)| without[self.dofs.of(cell, i)] = false);

@@ -4,20 +4,20 @@ use std::ops::Range;
 use std::sync::Mutex;
 
 use super::contradictions::{BoundedNode, Contradiction, DIRICHLET};
-use super::{Space, Terms, data};
+use super::{Space, Terms, checks};
 use crate::algebra::Bound;
 use crate::assemble::count;
 use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::vectors::collect;
 use crate::parallel::{cells, lock};
-use crate::problem::DatumRef;
+use crate::problem::Datum;
 use crate::real::Point;
 
 /// Sorts facets by the ranks of their groups; not generic, so that the sorting code is compiled once.
-fn sort_by_rank(facets: &mut [((usize, usize), usize)], ranks: &[usize]) {
+fn sort_by_rank(facets: &mut [(HalfFacet, usize)], ranks: &[usize]) {
     facets.sort_by_key(|&(_, group)| ranks[group]);
 }
 
@@ -100,7 +100,7 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<(), Error> {
         count::bounds(1);
         let (region, node) = (self.mesh.region(cell), &self.nodes[i]);
-        let at = |psi: Option<DatumRef<'_, D>>| {
+        let at = |psi: Option<&Datum<D>>| {
             let value = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
             psi.map(value).transpose()
         };
@@ -121,13 +121,14 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let given = self.dirichlet_groups();
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             // a function that jumps along the boundary, down to the Dirichlet data, has no finite energy
             for (k, v) in self.mesh.facet_vertices(cell, local).enumerate() {
                 let Some(dirichlet) = given[v as usize] else { continue };
                 let x = self.mesh.vertices()[v as usize];
-                let datum = data::finite(self.dirichlet_at(dirichlet, &x), "dirichlet", &x, cell)?;
+                let datum =
+                    checks::finite(self.dirichlet_at(dirichlet, &x), "dirichlet", &x, cell)?;
                 // the node at the vertex, where the element has one, else one of the facet
                 let node = self.nodes_on(local).take(k + 1).last();
                 let unknown = node.map_or(0, |i| self.dofs.of(cell, i));
@@ -157,13 +158,13 @@ impl<const D: usize> Space<'_, D> {
         terms: &Terms,
         (cell, node): (usize, &Node),
         name: &'static str,
-        datum: DatumRef<'_, D>,
+        datum: &Datum<D>,
     ) -> Result<f64, Error> {
         match by {
             BoundBy::Functional => self.at_node(terms, cell, name, &|x| datum.at(x)),
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
-                data::finite(datum.at(&x), name, &x, cell)
+                checks::finite(datum.at(&x), name, &x, cell)
             }
         }
     }
@@ -176,7 +177,7 @@ impl<const D: usize> Space<'_, D> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let zero = !self.problem.has_dirichlet_data();
         let (lowers, uppers) = (&self.data.lower, &self.data.upper);
-        let mut facets: Vec<_> = self.grouped_facets_of(BoundaryPart::Dirichlet).collect();
+        let mut facets: Vec<_> = self.grouped_facets_of(BoundaryCondition::Dirichlet).collect();
         // the first facet decides on an unknown
         sort_by_rank(&mut facets, &self.data.dirichlet_rank);
         for ((cell, local), group) in facets {
@@ -187,7 +188,9 @@ impl<const D: usize> Space<'_, D> {
                 if let Bound::Fixed(_) = bounds[unknown] {
                     continue;
                 }
-                let at = |name, datum: Datum<'_, D>| self.at_node(&terms[i], cell, name, datum);
+                let at = |name, datum: &dyn Fn(&Point<D>) -> f64| {
+                    self.at_node(&terms[i], cell, name, datum)
+                };
                 let value = if zero { 0.0 } else { at("dirichlet", &datum)? };
                 let node = BoundedNode { unknown, cell, x: self.node_point(cell, &self.nodes[i]) };
                 // obstacles must leave room for the datum; a mean is compared with a mean: over a
@@ -213,21 +216,18 @@ impl<const D: usize> Space<'_, D> {
         terms: &Terms,
         cell: usize,
         name: &'static str,
-        datum: Datum<'_, D>,
+        datum: &dyn Fn(&Point<D>) -> f64,
     ) -> Result<f64, Error> {
         let at = |(point, weight): &([f64; 4], f64)| {
             if name == "dirichlet" {
                 count::dirichlet(1);
             }
             let x = self.cell_point(point, cell);
-            Ok(weight * data::finite(datum(&x), name, &x, cell)?)
+            Ok(weight * checks::finite(datum(&x), name, &x, cell)?)
         };
         terms.iter().map(at).sum()
     }
 }
-
-/// A function of space.
-type Datum<'f, const D: usize> = &'f dyn Fn(&Point<D>) -> f64;
 
 /// The bound between two values, of which each may be absent.
 fn between<const D: usize>(

@@ -9,20 +9,16 @@
 //! cell in which the samples differ by more than a factor of ten every element takes the value at the
 //! barycentre.
 
-use super::data::coefficient_at;
+use super::checks::coefficient_at;
 use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable, Derivatives};
 use crate::arrays::map_entries;
-use crate::assemble::local::StiffnessTable;
+use crate::assemble::stiffness::StiffnessTable;
 use crate::element::{Element, MAX_BASIS};
 use crate::error::Error;
-use crate::mesh::Mesh;
+use crate::mesh::{HalfFacet, Mesh};
 use crate::problem::DataByGroup;
 use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule, facet_to_cell};
-use crate::real::Point;
-
-/// A cell and the number of a facet in it.
-pub(crate) type Place = (usize, usize);
 
 /// Samples that differ from the value at the barycentre by no more than this, in units of rounding, are
 /// those of a constant.
@@ -80,8 +76,7 @@ impl VaryingCoefficient {
         let mut starts = vec![CONSTANT; mesh.n_cells()];
         let mut values: Vec<f64> = Vec::new();
         for (cell, start) in starts.iter_mut().enumerate() {
-            let corners = mesh.cell(cell).iter().map(|&v| mesh.vertices()[v as usize]);
-            let corners: [Point<D>; 4] = padded(corners);
+            let corners = mesh.corners(cell);
             let first = values.len();
             for point in &points {
                 let x = corners.iter().zip(point).map(|(corner, &b)| corner * b).sum();
@@ -151,15 +146,15 @@ impl VaryingCoefficient {
     }
     /// The values on a facet from its cell, if the coefficient varies in the cell.
     #[inline(always)]
-    pub fn on_facet(&self, (cell, local): Place) -> Option<&[f64]> {
+    pub fn on_facet(&self, (cell, local): HalfFacet) -> Option<&[f64]> {
         let n = self.facet_weights.len();
         self.of_cell(cell).map(|values| &values[self.stiffness.len() + local * n..][..n])
     }
     /// The largest value on a facet and the least in its cell, at the points of the rules, if the
     /// coefficient varies in the cell.
-    pub fn extremes(&self, place: Place) -> Option<[f64; 2]> {
-        let largest = self.on_facet(place)?.iter().fold(0.0, |a, &b| if b > a { b } else { a });
-        let values = self.in_cell(place.0)?;
+    pub fn extremes(&self, own: HalfFacet) -> Option<[f64; 2]> {
+        let largest = self.on_facet(own)?.iter().fold(0.0, |a, &b| if b > a { b } else { a });
+        let values = self.in_cell(own.0)?;
         let least = values.iter().fold(values[0], |a, &b| if b < a { b } else { a });
         Some([largest, least])
     }
@@ -229,11 +224,4 @@ fn sampled_points(dimension: usize, cell_rule: &Rule, facet_rule: &Rule) -> Vec<
         }
     }
     points
-}
-
-/// The points, with zeros after them.
-fn padded<const D: usize>(points: impl Iterator<Item = Point<D>>) -> [Point<D>; 4] {
-    let mut all = [Point::zeros(); 4];
-    all.iter_mut().zip(points).for_each(|(to, from)| *to = from);
-    all
 }

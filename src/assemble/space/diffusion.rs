@@ -1,8 +1,9 @@
 //! The diffusion coefficient in cells and on facets, and what it makes of derivatives in a flux.
 
 use super::Space;
-use super::coefficient::{Place, VaryingCoefficient};
+use super::coefficient::VaryingCoefficient;
 use super::tables::Derivatives;
+use crate::mesh::HalfFacet;
 use crate::real::Point;
 
 impl<const D: usize> Space<'_, D> {
@@ -31,12 +32,12 @@ impl<const D: usize> Space<'_, D> {
     /// The largest value of the coefficient on a facet from its cell, and the least in the cell, at the
     /// points that the element sees.
     #[inline(always)]
-    pub fn extreme_coefficients(&self, (cell, local): Place) -> [f64; 2] {
+    pub fn extreme_coefficients(&self, (cell, local): HalfFacet) -> [f64; 2] {
         let extremes = self.varying.as_ref().and_then(|varying| varying.extremes((cell, local)));
         extremes.unwrap_or([self.alpha(cell); 2])
     }
     /// Whether the coefficient varies in one of the cells of a facet.
-    pub fn varies_at(&self, own: Place, other: Option<Place>) -> bool {
+    pub fn varies_at(&self, own: HalfFacet, other: Option<HalfFacet>) -> bool {
         let varies = |cell| self.varying_in(cell).is_some();
         varies(own.0) || other.is_some_and(|(cell, _)| varies(cell))
     }
@@ -46,14 +47,14 @@ impl<const D: usize> Space<'_, D> {
     #[inline(always)]
     fn flux_weights(
         &self,
-        own: Place,
-        other: Option<Place>,
+        own: HalfFacet,
+        other: Option<HalfFacet>,
         own_weight: f64,
     ) -> Option<(&VaryingCoefficient, impl Fn(usize) -> f64)> {
         let varying = self.varying.as_ref().filter(|_| self.varies_at(own, other))?;
-        let at = move |place: Place, q: usize| match varying.on_facet(place) {
+        let at = move |facet: HalfFacet, q: usize| match varying.on_facet(facet) {
             Some(values) => values[q],
-            None => self.alpha(place.0),
+            None => self.alpha(facet.0),
         };
         let weight = move |q: usize| {
             let a = at(own, q);
@@ -68,24 +69,23 @@ impl<const D: usize> Space<'_, D> {
     #[inline(always)]
     pub fn flux_derivatives(
         &self,
-        own: Place,
-        other: Option<Place>,
+        own: HalfFacet,
+        other: Option<HalfFacet>,
         own_weight: f64,
         k: usize,
     ) -> Option<Derivatives> {
         let (varying, weight) = self.flux_weights(own, other, own_weight)?;
         Some(varying.weighted_derivatives(own.1, k, weight))
     }
-    /// The products of two moments on a facet with the weight of a cell in the flux, where the
-    /// coefficient varies in one of the two cells.
-    pub fn flux_product(
+    /// By two moments on a facet, their product with the weight of a cell in the flux, where the coefficient varies in
+    /// one of the two cells.
+    pub fn flux_products(
         &self,
-        own: Place,
-        other: Option<Place>,
+        own: HalfFacet,
+        other: Option<HalfFacet>,
         own_weight: f64,
-        (k, l): (usize, usize),
-    ) -> Option<f64> {
+    ) -> Option<impl Fn(usize, usize) -> f64> {
         let (varying, weight) = self.flux_weights(own, other, own_weight)?;
-        Some(varying.weighted_product(k, l, weight))
+        Some(move |k, l| varying.weighted_product(k, l, &weight))
     }
 }

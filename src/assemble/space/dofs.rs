@@ -15,7 +15,6 @@ pub(crate) struct Dofs<'a> {
     layout: Layout,
     table: Option<Cow<'a, [u32]>>,
     per_cell: usize,
-    n_cells: usize,
     /// The unknowns of vertices, edges, facets and cells, in this order.
     kinds: [Range<u32>; KINDS],
 }
@@ -42,14 +41,14 @@ struct Owners<'a> {
 }
 
 impl<'a> Dofs<'a> {
-    /// The numbering of a layout; facets that own unknowns are told by `neighbours`.
+    /// The numbering of a layout; facets that own unknowns are found by `neighbours`.
     pub fn new<const D: usize>(
         layout: Layout,
         mesh: &'a Mesh<D>,
         neighbours: Option<&Neighbours>,
     ) -> Self {
         let (per_cell, n_cells) = (layout.per_cell(D), mesh.n_cells());
-        let mut dofs = Self { layout, table: None, per_cell, n_cells, kinds: Default::default() };
+        let mut dofs = Self { layout, table: None, per_cell, kinds: Default::default() };
         if layout.is_broken() {
             dofs.kinds = ranges([0, 0, 0, per_cell * n_cells]);
             return dofs;
@@ -90,10 +89,6 @@ impl<'a> Dofs<'a> {
     /// Unknowns of a cell.
     pub(crate) fn per_cell(&self) -> usize {
         self.per_cell
-    }
-    /// Number of cells.
-    pub(crate) fn n_cells(&self) -> usize {
-        self.n_cells
     }
     /// The unknowns of each kind of owner.
     pub(crate) fn kinds(&self) -> &[Range<u32>; KINDS] {

@@ -2,10 +2,12 @@
 
 use std::convert::Infallible;
 
-use crate::arrays::map_entries;
+use super::tables::Derivatives;
+use crate::assemble::count;
+use crate::element::MAX_BASIS;
 use crate::facet::Side;
 use crate::memory::in_large_pages;
-use crate::mesh::Mesh;
+use crate::mesh::{FACTORIAL, HalfFacet, Mesh, cofactors, cross, dot, with_zeros};
 use crate::parallel::cells;
 
 /// Products of gradients of a cell's barycentric coordinates, and its measures: all that enters the
@@ -58,6 +60,35 @@ impl<const D: usize> CellMetric<D> {
     pub fn surface(&self) -> f64 {
         (0..D + 1).fold(0.0, |s, i| s + self.measures[i])
     }
+    /// The measure of facet `local` of the cell, and the cell as the facet sees it, with the largest coefficient on
+    /// the facet and the least in the cell.
+    #[inline(always)]
+    pub fn side(&self, local: usize, [coefficient, least_coefficient]: [f64; 2]) -> (f64, Side) {
+        let (volume, measure) = (self.volume, self.measures[local]);
+        let height = (D as f64) * volume / measure;
+        let surface = self.surface();
+        (measure, Side { coefficient, least_coefficient, volume, surface, height })
+    }
+    /// The derivatives of the first `n` basis functions along the outward normal of facet `local`, of one moment and
+    /// times the measure of the facet and a factor; the other entries are zero and never read.
+    #[inline(always)]
+    pub fn normal_derivatives(
+        &self,
+        local: usize,
+        derivatives: &Derivatives,
+        n: usize,
+        factor: f64,
+    ) -> [f64; MAX_BASIS] {
+        count::normal_derivatives(n);
+        let products = &self.products[local];
+        let scale = (-(D as f64)) * factor;
+        let mut out = [0.0; MAX_BASIS];
+        for (out, derivatives) in out.iter_mut().zip(derivatives).take(n) {
+            let sum = |sum, k: usize| sum + derivatives[k] * products[k];
+            *out = scale * (1..=D).fold(derivatives[0] * products[0], sum);
+        }
+        out
+    }
     #[inline(always)]
     fn write(&self, out: &mut [f64]) {
         out[0] = self.volume;
@@ -96,6 +127,7 @@ pub(crate) fn shape<const D: usize>(
 ) -> (f64, [[f64; 4]; 4]) {
     let zero = 0.0;
     let corners = mesh.cell(cell);
+    // loops over numbers: differences of points in place of these take half as long again
     let mut edges = [[zero; 3]; 3];
     let origin = &mesh.vertices()[corners[0] as usize];
     for k in 0..D {
@@ -104,13 +136,7 @@ pub(crate) fn shape<const D: usize>(
             edges[k][axis] = corner[axis] - origin[axis];
         }
     }
-    let [a, b, c] = edges;
-    let normals = match D {
-        1 => [[1.0, zero, zero], [zero; 3], [zero; 3]],
-        2 => [[b[1], -b[0], zero], [-a[1], a[0], zero], [zero; 3]],
-        _ => [cross(b, c), cross(c, a), cross(a, b)],
-    };
-    let determinant = dot::<D>(a, normals[0]);
+    let (normals, determinant) = cofactors::<D>(edges);
     let size = if determinant < zero { -determinant } else { determinant };
     let scale = if size == zero { zero } else { scale / (size * FACTORIAL[D]) };
     let mut products = [[zero; 4]; 4];
@@ -163,32 +189,14 @@ const PAIR: [[[usize; 4]; 4]; 4] = {
 #[inline(always)]
 fn first_facet<const D: usize>(mesh: &Mesh<D>, cell: usize) -> f64 {
     let corners = mesh.cell(cell);
-    let edge = |k: usize| {
-        let mut edge = [0.0; 3];
-        let ends = map_entries([corners[1], corners[k.min(D)]], |v| &mesh.vertices()[v as usize]);
-        for axis in 0..D {
-            edge[axis] = ends[1][axis] - ends[0][axis];
-        }
-        edge
-    };
+    let corner = |k: usize| mesh.vertices()[corners[k.min(D)] as usize];
+    let edge = |k: usize| with_zeros(corner(k) - corner(1));
     let length = |a: [f64; 3]| nalgebra::ComplexField::sqrt(dot::<3>(a, a));
     match D {
         1 => 1.0,
         2 => length(edge(2)),
         _ => 0.5 * length(cross(edge(2), edge(3))),
     }
-}
-
-const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
-
-#[inline(always)]
-fn dot<const D: usize>(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
-}
-
-#[inline(always)]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The metrics of all cells, computed once: each is read by the cell and by its neighbours.
@@ -216,12 +224,16 @@ impl Metrics {
         let n = CellMetric::<D>::KEPT;
         CellMetric::read(&self.kept[cell * n..(cell + 1) * n])
     }
-    /// The measure of facet `local` of a cell, and the cell as the facet sees it, with the largest
-    /// coefficient on the facet and the least in the cell.
+    /// The measure of a facet.
+    #[inline(always)]
+    pub fn measure<const D: usize>(&self, (cell, local): HalfFacet) -> f64 {
+        self.kept[cell * CellMetric::<D>::KEPT + 1 + local]
+    }
+    /// [`CellMetric::side`], without the products of gradients.
     #[inline(always)]
     pub fn side<const D: usize>(
         &self,
-        (cell, local): (usize, usize),
+        (cell, local): HalfFacet,
         [coefficient, least_coefficient]: [f64; 2],
     ) -> (f64, Side) {
         let kept = &self.kept[cell * CellMetric::<D>::KEPT..][..D + 2];
@@ -236,11 +248,11 @@ impl Metrics {
         let n = CellMetric::<D>::KEPT;
         let kept = &self.kept[cell * n + D + 2..(cell + 1) * n];
         // by products with zeros and ones: facets come in no order that branches could foresee
-        let (supports, others) = (&PAIR[D][local & 3], &OTHERS[local & 3]);
+        let (locations, others) = (&PAIR[D][local & 3], &OTHERS[local & 3]);
         let mut row = [0.0; 4];
         let mut sum = 0.0;
         for k in 0..=D {
-            row[k] = others[k] * kept[supports[k]];
+            row[k] = others[k] * kept[locations[k]];
             sum -= row[k];
         }
         for k in 0..=D {
@@ -253,7 +265,7 @@ impl Metrics {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{BoundaryPart, TaggedFacet};
+    use crate::mesh::{BoundaryCondition, TaggedFacet};
     use crate::real::Point;
 
     #[test]
@@ -261,7 +273,7 @@ mod tests {
         for short in [1e-3, 1e-6, 1e-9] {
             let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, short]].map(Point::<2>::from);
             let sides = [[0, 1], [0, 2], [1, 2]]
-                .map(|vertices| TaggedFacet { vertices, part: BoundaryPart::Dirichlet });
+                .map(|vertices| TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet });
             let mesh = Mesh::new(vertices.to_vec(), vec![0, 1, 2], &sides).expect("one cell");
             let metric: CellMetric<2> = CellMetric::of(&mesh, 0);
             let exact = [short, (1.0 + short * short).sqrt(), 1.0];

@@ -8,40 +8,42 @@
 //! | `tables` | basis functions and their derivatives at the points of a rule, moments on facets |
 //! | `metric` | the geometry of cells as forms need it |
 //! | `dofs` | the numbers of the unknowns of a cell |
-//! | `data` | data at the points of a rule |
+//! | `form_facets` | the facets that carry the facet form, and their cells |
+//! | `checks` | data that must be finite, coefficients that must be positive |
 //! | `coefficient` | a coefficient that varies in cells |
 //! | `diffusion` | the coefficient in a cell, on a facet and in a flux |
 //! | `reaction_term` | the reaction term of the matrix |
 //! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
 //! | `active_obstacles` | where obstacles give the bound that is active |
-//! | `supports`, `node_vertices` | the supports of basis functions, by the vertices that stand for a node |
+//! | `locations`, `node_vertices` | the locations of unknowns, by the vertices that stand for a node |
 
 pub(crate) mod active_obstacles;
 mod bounds;
+pub(crate) mod checks;
 mod coefficient;
 pub(crate) mod contradictions;
-pub(crate) mod data;
 mod diffusion;
 pub(crate) mod dofs;
+pub(crate) mod form_facets;
+mod locations;
 pub(crate) mod metric;
 mod node_vertices;
 pub(crate) mod reaction_term;
-mod supports;
 pub(crate) mod tables;
 
 use std::sync::{Arc, OnceLock};
 
-use super::local::{CellSide, StiffnessTable};
+use super::stiffness::{Local, StiffnessTable, zero_local};
 use super::{DataQuadrature, count};
 use crate::constraint::{BoundBy, in_basis_of, offered};
 use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
-use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours};
+use crate::mesh::{BoundaryCondition, BoundaryFacet, HalfFacet, Mesh, Neighbours};
 use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::Point;
+pub(crate) use coefficient::INWARD;
 use coefficient::VaryingCoefficient;
-pub(crate) use coefficient::{INWARD, Place};
 use dofs::Dofs;
 use metric::CellMetric;
 use node_vertices::NodeVertices;
@@ -127,7 +129,7 @@ impl<'a, const D: usize> Space<'a, D> {
                 Some(ReactionTerm::new(data.reaction.clone(), rule, degree, element.clone()))
             }
         };
-        let coefficients = data::coefficients(&data.coefficient, mesh)?;
+        let coefficients = checks::coefficients(&data.coefficient, mesh)?;
         let varying = match &coefficients {
             Some(constants) if basis_degree > 1 => {
                 VaryingCoefficient::new(&data.coefficient, mesh, constants, &*element)?
@@ -190,17 +192,6 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn per_cell(&self) -> usize {
         self.nodes.len()
     }
-    /// A cell seen from one of its facets.
-    #[inline(always)]
-    pub fn side<'g>(
-        &self,
-        cell: usize,
-        local: usize,
-        metric: &'g CellMetric<D>,
-    ) -> CellSide<'g, D> {
-        let [coefficient, least_coefficient] = self.extreme_coefficients((cell, local));
-        CellSide { cell, local, metric, coefficient, least_coefficient }
-    }
     /// The basis at a point of the cell.
     pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt {
         BasisAt::new(&*self.element, point)
@@ -218,10 +209,23 @@ impl<'a, const D: usize> Space<'a, D> {
     }
     /// The stiffness of the reference element.
     pub fn stiffness_table(&self) -> StiffnessTable {
-        StiffnessTable::new(
-            D,
-            &self.cell_table(Rule::new(D, 2 * self.basis_degree.saturating_sub(1))),
-        )
+        let degree = 2 * self.basis_degree.saturating_sub(1);
+        StiffnessTable::new(D, &self.cell_table(Rule::new(D, degree)))
+    }
+    /// The entries `(alpha grad phi_j, grad phi_i)` over a cell, from the table of the reference element. The loops
+    /// over cells that fill a matrix make the same numbers in place.
+    pub fn stiffness(&self, table: &StiffnessTable, cell: usize, metric: &CellMetric<D>) -> Local {
+        let (n, alpha, varying) = (self.per_cell(), self.alpha(cell), self.varying_in(cell));
+        let mut out = zero_local();
+        for (i, row) in out.iter_mut().enumerate().take(n) {
+            for (j, entry) in row.iter_mut().enumerate().take(n) {
+                *entry = match varying {
+                    None => alpha * table.entry(metric, i, j),
+                    Some((varying, values)) => varying.stiffness(values, metric, i, j),
+                };
+            }
+        }
+        out
     }
     /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
     pub fn is_conforming_linear(&self) -> bool {
@@ -243,15 +247,22 @@ impl<'a, const D: usize> Space<'a, D> {
         }
         local
     }
-    /// The boundary facets of a part: cell and number in the cell.
-    pub fn facets_of(&self, part: BoundaryPart) -> impl Iterator<Item = Place> {
-        self.grouped_facets_of(part).map(|(place, _)| place)
+    /// The boundary facets of a part, by cell and number in the cell.
+    pub fn facets_of(&self, part: BoundaryCondition) -> impl Iterator<Item = HalfFacet> {
+        self.grouped_facets_of(part).map(|(facet, _)| facet)
     }
     /// The boundary facets of a part with the numbers of their groups.
-    pub fn grouped_facets_of(&self, part: BoundaryPart) -> impl Iterator<Item = (Place, usize)> {
-        let of_part = move |f: &&BoundaryFacet| f.part == part;
+    pub fn grouped_facets_of(
+        &self,
+        condition: BoundaryCondition,
+    ) -> impl Iterator<Item = (HalfFacet, usize)> {
+        let of_part = move |f: &&BoundaryFacet| f.condition == condition;
         let facet = |f: &BoundaryFacet| ((f.cell as usize, f.local as usize), usize::from(f.group));
         self.mesh.boundary().iter().filter(of_part).map(facet)
+    }
+    /// The number of the group of a boundary facet.
+    pub fn group_of(&self, (cell, local): HalfFacet) -> usize {
+        self.mesh.boundary_group(cell, local).expect("a boundary facet has a group")
     }
     /// The Dirichlet value at a point of a boundary group.
     pub fn dirichlet_at(&self, group: usize, x: &Point<D>) -> f64 {
@@ -262,7 +273,7 @@ impl<'a, const D: usize> Space<'a, D> {
         CellMetric::of(self.mesh, cell)
     }
     /// The measure of a facet.
-    pub fn facet_measure(&self, (cell, local): Place) -> f64 {
+    pub fn facet_measure(&self, (cell, local): HalfFacet) -> f64 {
         self.mesh.geometry(cell).facet_measure(local)
     }
     /// A point of a facet in space.

@@ -1,6 +1,6 @@
 //! The vertices of a cell that stand for a node.
 
-use crate::algebra::Support;
+use crate::algebra::DofLocation;
 
 /// One to four vertices of a cell, ascending, each as often as it counts in their barycentre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,10 +34,10 @@ impl NodeVertices {
         found
     }
 
-    /// The support of a basis function with this node, in a cell with these vertices.
+    /// The location of a basis function with this node, in a cell with these vertices.
     #[inline(always)]
-    pub fn support(&self, owner: Option<u32>, vertices: &[u32]) -> Support {
+    pub fn location(&self, owner: Option<u32>, vertices: &[u32]) -> DofLocation {
         let own = self.vertices.map(|k| vertices[usize::from(k)]);
-        Support::new(owner, &own[..self.n])
+        DofLocation::new(owner, &own[..self.n])
     }
 }

@@ -1,16 +1,16 @@
 //! The reaction term in the matrix of a cell.
 
-use super::data::finite;
+use super::checks::finite;
 use std::sync::Arc;
 
 use super::tables::{BasisAt, CellTable};
 use crate::assemble::count;
 use crate::assemble::cut_simplices::{CutRule, Visit};
-use crate::assemble::local::Local;
+use crate::assemble::stiffness::Local;
 use crate::element::Element;
 use crate::error::Error;
 use crate::mesh::Mesh;
-use crate::problem::{DataByGroup, DatumRef};
+use crate::problem::{DataByGroup, Datum};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -99,7 +99,7 @@ impl<'a, const D: usize> ReactionTerm<'a, D> {
     /// space, and with their weights.
     fn visit_cut(
         &self,
-        datum: DatumRef<'_, D>,
+        datum: &Datum<D>,
         mesh: &Mesh<D>,
         cell: usize,
         visit: Visit<'_, D>,

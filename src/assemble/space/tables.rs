@@ -1,6 +1,7 @@
 //! Basis functions tabulated once per assembly: the small arrays that hot loops read.
 
 use crate::element::{Element, MAX_BASIS};
+use crate::mesh::HalfFacet;
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 
 /// Derivatives of all basis functions along barycentric coordinates.
@@ -96,4 +97,11 @@ impl BasisAt {
     pub fn value(&self, coefficients: &[f64; MAX_BASIS]) -> f64 {
         coefficients.iter().zip(&self.values).map(|(c, v)| c * v).sum()
     }
+}
+
+/// A facet on which the form imposes data.
+pub(crate) struct FacetDatum {
+    pub facet: HalfFacet,
+    /// The moments of the datum on the facet.
+    pub moments: Vec<f64>,
 }

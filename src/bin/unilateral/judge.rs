@@ -9,19 +9,17 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 use unilateral::exchange::read_vector;
+use unilateral::in_its_dimension;
 use unilateral::inequality::{ActiveSet, in_precision};
-use unilateral::mesh::BoundaryPart;
-use unilateral::mesh::gmsh::GmshFile;
-use unilateral::problem_file::{self, AnyOwnProblem};
+use unilateral::mesh::BoundaryCondition;
 use unilateral::real::Precision;
-use unilateral::scenes::{self, AnyScene, Parameters};
+use unilateral::scenes::{self, Parameters, Scene};
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Program, Report, Row, RowKey, file_name};
+use unilateral::study::{Program, Report, Row, RowKey, Study, file_name};
 
 use crate::compare;
 use crate::mesh_file::MeshFile;
-use crate::posed::Posed;
-use crate::shared::{Request, cannot_write, each_once, print, read, write};
+use crate::shared::{Request, cannot_write, each_once, print, problem, read, write};
 
 /// Judges a vector that another program found for an inequality of `compare --dump`
 #[derive(Args, Debug)]
@@ -51,7 +49,7 @@ pub fn write_requests(
     let files = [absolute(&options.mesh.path), absolute(&options.problem)];
     let [mesh, problem] = files.map(|file| file.map_err(|e| format!("cannot find a file: {e}")));
     let (mesh, problem) = (mesh?, problem?);
-    let part = |(name, part): &(String, BoundaryPart)| (name.clone(), part.name());
+    let part = |(name, part): &(String, BoundaryCondition)| (name.clone(), part.name());
     let boundary: BTreeMap<String, &str> = options.mesh.boundary.iter().map(part).collect();
     // the meshes of a reference are refined from that of the coarsest level
     let coarsest = keys.iter().map(|key| key.level).min();
@@ -97,19 +95,6 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
         }
     };
     let values = read_vector(&options.vector).map_err(|e| e.to_string())?;
-    let mut mesh = None;
-    if let Some(file) = request["mesh"].as_str() {
-        let file = found_beside(&options.directory, file);
-        let parts = request["boundary"].as_object().into_iter().flatten();
-        let part = |(name, part): (&String, &Value)| {
-            Some((name.clone(), BoundaryPart::from_name(part.as_str()?)?))
-        };
-        let options =
-            MeshFile { path: Some(file.clone()), boundary: parts.filter_map(part).collect() };
-        let contents = options.read()?.expect("a file with a path has contents");
-        is_unchanged(0, &file, contents.fingerprint())?;
-        mesh = Some((options, contents));
-    }
     let reference = match &request["reference"] {
         Value::Null => None,
         reference => {
@@ -125,18 +110,14 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
         name => name.as_str().and_then(Precision::by_name).ok_or_else(|| wrong("precision"))?,
     };
     let of = (&scheme, levels, reference.as_ref(), precision);
-    let row = match request["problem"].as_str() {
+    let scene = match request["problem"].as_str() {
         Some(path) => {
             let path = found_beside(&options.directory, path);
-            let own = problem_file::read(&path).map_err(|e| e.to_string())?;
-            for (place, (_, fingerprint)) in own.fingerprints().into_iter().enumerate() {
+            let read = problem(&path, &|_| {})?;
+            for (place, (_, fingerprint)) in read.fingerprints.into_iter().enumerate() {
                 is_unchanged(place, &path, fingerprint)?;
             }
-            match own {
-                AnyOwnProblem::One(own) => row::<1>(own.into(), of, mesh, &values),
-                AnyOwnProblem::Two(own) => row::<2>(own.into(), of, mesh, &values),
-                AnyOwnProblem::Three(own) => row::<3>(own.into(), of, mesh, &values),
-            }
+            read.scene
         }
         None => {
             let entry = scenes::by_name(text("scene")?).ok_or_else(|| wrong("scene"))?;
@@ -145,13 +126,25 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
                 .with_scale(number("scale", entry.accepts.scale))
                 .with_contrast(number("contrast", entry.accepts.contrast))
                 .with_load(number("load", entry.accepts.load));
-            match entry.make(&parameters).map_err(|e| e.to_string())? {
-                AnyScene::One(scene) => row::<1>(scene.into(), of, mesh, &values),
-                AnyScene::Two(scene) => row::<2>(scene.into(), of, mesh, &values),
-                AnyScene::Three(scene) => row::<3>(scene.into(), of, mesh, &values),
-            }
+            entry.make(&parameters).map_err(|e| e.to_string())?
         }
-    }?;
+    };
+    let scene = match request["mesh"].as_str() {
+        None => scene,
+        Some(file) => {
+            let file = found_beside(&options.directory, file);
+            let parts = request["boundary"].as_object().into_iter().flatten();
+            let part = |(name, part): (&String, &Value)| {
+                Some((name.clone(), BoundaryCondition::from_name(part.as_str()?)?))
+            };
+            let boundary = parts.filter_map(part).collect();
+            let mesh = MeshFile { path: Some(file.clone()), boundary };
+            let contents = mesh.read()?.expect("a file with a path has contents");
+            is_unchanged(0, &file, contents.fingerprint())?;
+            mesh.under(scene, Some(&contents), &|_| {})?
+        }
+    };
+    let row = in_its_dimension!(scene, |scene| row(scene, of, &values))?;
     let is_within = row.converged();
     let program = Program::new("judge", precision.name(), rayon::current_num_threads(), 1);
     let report = Report::new(program, vec![row]);
@@ -184,17 +177,13 @@ fn found_beside(folder: &Path, file: &str) -> PathBuf {
 type Judged<'a> = (&'a NamedScheme, [usize; 2], Option<&'a (NamedScheme, usize)>, Precision);
 
 fn row<const D: usize>(
-    posed: Posed<D>,
+    scene: Scene<D>,
     (scheme, levels, reference, precision): Judged<'_>,
-    mesh: Option<(MeshFile, GmshFile)>,
     values: &[f64],
 ) -> Request<Row> {
-    let study = posed.study(&|_| {})?;
     let solver = in_precision(precision, ActiveSet::default());
-    let mut study = study.named_scheme(scheme).boxed_solver(solver).levels(each_once(&levels));
-    if let Some((options, file)) = mesh {
-        study = study.on_mesh(options.mesh(&file, &|_| {})?);
-    }
+    let study = Study::new(scene).named_scheme(scheme);
+    let mut study = study.boxed_solver(solver).levels(each_once(&levels));
     if let Some((scheme, level)) = reference {
         study = study.named_reference(scheme, *level);
     }

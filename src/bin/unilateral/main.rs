@@ -11,7 +11,6 @@ mod mesh_file;
 mod one_run;
 mod orders;
 mod pictures;
-mod posed;
 mod shared;
 mod stability;
 mod work_precision;

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use unilateral::in_its_dimension;
 use unilateral::input::{excerpt, excerpts};
 use unilateral::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile, GmshWarning};
-use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
+use unilateral::mesh::{BoundaryCondition, Mesh, MeshError};
+use unilateral::scenes::AnyScene;
 
 use crate::shared::Request;
 
@@ -17,7 +19,7 @@ pub struct MeshFile {
     pub path: Option<PathBuf>,
     /// The parts of other groups of the mesh, as bore=neumann
     #[arg(long, value_delimiter = ',', value_name = "NAME=PART[,...]", requires = "mesh", value_parser = boundary)]
-    pub boundary: Vec<(String, BoundaryPart)>,
+    pub boundary: Vec<(String, BoundaryCondition)>,
 }
 
 impl MeshFile {
@@ -27,13 +29,19 @@ impl MeshFile {
         self.path.as_ref().map(read).transpose()
     }
 
-    /// The mesh, where there is a file; warnings of the file go to `warn`.
-    pub fn read_mesh<const D: usize>(&self, warn: &dyn Fn(String)) -> Request<Option<Mesh<D>>> {
-        self.read()?.map(|file| self.mesh(&file, warn)).transpose()
+    /// A scene on the mesh of the contents of the file, where there is one; warnings go to `warn`.
+    pub fn under(
+        &self,
+        scene: AnyScene,
+        file: Option<&GmshFile>,
+        warn: &dyn Fn(String),
+    ) -> Request<AnyScene> {
+        let Some(file) = file else { return Ok(scene) };
+        Ok(in_its_dimension!(scene, |scene| scene.domain(self.mesh(file, warn)?).into()))
     }
 
     /// The mesh of the contents of the file; warnings go to `warn`.
-    pub fn mesh<const D: usize>(&self, file: &GmshFile, warn: &dyn Fn(String)) -> Request<Mesh<D>> {
+    fn mesh<const D: usize>(&self, file: &GmshFile, warn: &dyn Fn(String)) -> Request<Mesh<D>> {
         let path = self.path.as_deref().expect("a file that has been read has a path");
         let read = file.mesh::<D>().map_err(|e| cannot_mesh(path, &e))?;
         warn_of(&read.warnings, path, warn);
@@ -60,7 +68,7 @@ pub fn warn_of(warnings: &[GmshWarning], path: &Path, warn: &dyn Fn(String)) {
 pub fn with_parts<const D: usize>(
     mesh: Mesh<D>,
     path: &Path,
-    boundary: &[(String, BoundaryPart)],
+    boundary: &[(String, BoundaryCondition)],
 ) -> Request<Mesh<D>> {
     let file = path.display();
     let groups: Vec<&str> =
@@ -78,7 +86,7 @@ pub fn with_parts<const D: usize>(
         let given = boundary.iter().find(|(group, _)| group == name);
         given.map(|(_, part)| *part)
     };
-    let mesh = mesh.with_boundary_parts(&part_of).map_err(|e| format!("{file}: {e}"))?;
+    let mesh = mesh.with_boundary_conditions(&part_of).map_err(|e| format!("{file}: {e}"))?;
     mesh.check_boundary_parts().map_err(|e| match e {
         MeshError::UndecidedGroup { group, .. } => format!(
             "{file}: nothing says what holds on boundary group {group}: \
@@ -90,9 +98,9 @@ pub fn with_parts<const D: usize>(
 }
 
 /// A boundary group and its part.
-pub fn boundary(text: &str) -> Request<(String, BoundaryPart)> {
+pub fn boundary(text: &str) -> Request<(String, BoundaryCondition)> {
     let found = text.rsplit_once('=');
     let found =
-        found.and_then(|(name, part)| Some((name.to_owned(), BoundaryPart::from_name(part)?)));
+        found.and_then(|(name, part)| Some((name.to_owned(), BoundaryCondition::from_name(part)?)));
     found.ok_or_else(|| "expected NAME=dirichlet, NAME=neumann or NAME=contact".to_owned())
 }

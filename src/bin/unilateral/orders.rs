@@ -12,9 +12,10 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use unilateral::in_its_dimension;
 use unilateral::input::excerpt;
 use unilateral::prelude::{Report, Study};
-use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
+use unilateral::scenes::{Parameters, Scene, catalogue};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{ObservedOrders, Program, Row, orders_summary, orders_table};
 
@@ -71,11 +72,8 @@ fn make(options: &Options, schemes: &[NamedScheme]) -> Result<(), Box<dyn Error>
             if schemes.is_empty() {
                 continue;
             }
-            rows.extend(match entry.make(&Parameters::default())? {
-                AnyScene::One(scene) => study(scene, &schemes, degree, quick)?,
-                AnyScene::Two(scene) => study(scene, &schemes, degree, quick)?,
-                AnyScene::Three(scene) => study(scene, &schemes, degree, quick)?,
-            });
+            let scene = entry.make(&Parameters::default())?;
+            rows.extend(in_its_dimension!(scene, |scene| study(scene, &schemes, degree, quick))?);
         }
         save(options, &rows)?;
     }

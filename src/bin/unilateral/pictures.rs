@@ -9,18 +9,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 use unilateral::error::Error;
+use unilateral::in_its_dimension;
 use unilateral::nested::{Adaptivity, Solved};
 use unilateral::plot::{Picture, Slice};
-use unilateral::problem_file::{self, AnyOwnProblem};
-use unilateral::scenes::AnyScene;
+use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Row, Study, file_name};
 
 use crate::adaptive::adaptivity;
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
-use crate::posed::Posed;
-use crate::shared::{Failure, Request, end_at_interrupt, fields_with_bound, print, scene, warn};
+use crate::shared::{Failure, end_at_interrupt, fields_with_bound, print, problem, scene, warn};
 
 /// Draws the solution of a scheme on a scene, or on a problem of your own
 #[derive(Args, Debug)]
@@ -60,36 +59,27 @@ pub struct Options {
 
 /// Whether every solve converged.
 pub fn run(options: &Options) -> Result<bool, Failure> {
-    if let Some(path) = &options.problem {
-        return match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) => draw::<1>(options, own.into()),
-            AnyOwnProblem::Two(own) => draw::<2>(options, own.into()),
-            AnyOwnProblem::Three(own) => draw::<3>(options, own.into()),
-        };
-    }
-    match scene(&options.scene)? {
-        AnyScene::One(scene) => draw::<1>(options, scene.into()),
-        AnyScene::Two(scene) => draw::<2>(options, scene.into()),
-        AnyScene::Three(scene) => draw::<3>(options, scene.into()),
-    }
+    let warn = |warning: String| warn(&warning);
+    let scene = match &options.problem {
+        Some(path) => problem(path, &warn)?.scene,
+        None => {
+            let scene = scene(&options.scene)?;
+            options.mesh.under(scene, options.mesh.read()?.as_ref(), &warn)?
+        }
+    };
+    in_its_dimension!(scene, |scene| draw(options, scene))
 }
 
 /// Draws one level, and writes the fields of the series.
-fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Failure> {
-    let warn = |warning: String| warn(&warning);
-    let mesh = options.mesh.read_mesh(&warn)?;
-    let study = |warn: &dyn Fn(String)| -> Request<Study<'_, D>> {
-        let study = posed.clone().study(warn)?.named_scheme(&options.scheme);
-        let study = match options.adaptive {
+fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Result<bool, Failure> {
+    let study = || {
+        let study = Study::new(scene.clone()).named_scheme(&options.scheme);
+        match options.adaptive {
             Some(adaptivity) => study.adaptive(adaptivity),
             None => study,
-        };
-        Ok(match mesh.clone() {
-            Some(mesh) => study.on_mesh(mesh),
-            None => study,
-        })
+        }
     };
-    let default = match mesh.is_some() || posed.has_mesh() {
+    let default = match scene.domain.is_mesh() {
         true => 0,
         false if options.adaptive.is_some() => 4,
         false if D == 3 => 8,
@@ -103,15 +93,15 @@ fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Fail
     };
     let written = RefCell::new(Vec::new());
     let level = options.level.unwrap_or(default);
-    let picture = study(&warn)?.levels([level]).each_solution(|label, level, solved| {
-        let stem = file_name(&format!("{}-{label}-{level}", posed.name()));
+    let picture = study().levels([level]).each_solution(|label, level, solved| {
+        let stem = file_name(&format!("{}-{label}-{level}", scene.name));
         let unit = if options.adaptive.is_some() { "step" } else { "level" };
-        let title = format!("{}: {label}, {unit} {level}", posed.name());
+        let title = format!("{}: {label}, {unit} {level}", scene.name);
         written.borrow_mut().extend(draw_one(options, &title, &stem, solved, slice)?);
         Ok(())
     });
     picture.check().and_then(|()| picture.check_memory()).map_err(|e| e.to_string())?;
-    let series = study(&|_| {})?.levels(options.series.clone()).fields_to(&options.out);
+    let series = study().levels(options.series.clone()).fields_to(&options.out);
     let series = series.fields_of_all_levels();
     if !options.series.is_empty() {
         series.check().and_then(|()| series.check_memory()).map_err(|e| e.to_string())?;
@@ -126,7 +116,7 @@ fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Fail
     if !options.series.is_empty() {
         rows.extend(series.run().map_err(Failure::of_work)?.rows);
         let label = rows.first().map_or("", |row| &row.label);
-        let list = file_name(&format!("{}-{label}.pvd", posed.name()));
+        let list = file_name(&format!("{}-{label}.pvd", scene.name));
         written.borrow_mut().push(options.out.join(list));
     }
     for path in written.borrow().iter() {

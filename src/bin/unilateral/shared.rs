@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use unilateral::input::{beginning, excerpt, read_file};
 use unilateral::measure::Fields;
 use unilateral::nested::Solved;
+use unilateral::problem_file::{self, ProblemFile};
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
@@ -72,6 +73,11 @@ pub fn print(text: &str) -> Request<()> {
     print_to(std::io::stdout(), text)
 }
 
+/// Characters in a line of the terminal; a hundred where there is none.
+pub fn terminal_width() -> usize {
+    console::Term::stdout().size_checked().map_or(100, |(_, columns)| columns.into())
+}
+
 /// Prints to a stream; a closed pipe is no error.
 pub fn print_to(mut stream: impl Write, text: &str) -> Request<()> {
     match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
@@ -133,6 +139,13 @@ pub fn scene(name: &str) -> Request<AnyScene> {
         format!("there is no scene {}; there are: {}", excerpt(name), names.join(", "))
     })?;
     entry.make(&Parameters::default()).map_err(|e| e.to_string())
+}
+
+/// A problem of a file as a scene; warnings of its mesh file go to `warn`.
+pub fn problem(path: &Path, warn: &dyn Fn(String)) -> Request<ProblemFile> {
+    let read = problem_file::read(path).map_err(|e| e.to_string())?;
+    read.warnings.iter().for_each(|warning| warn(format!("warning: {warning}")));
+    Ok(read)
 }
 
 /// The schemes of an option whose value was cut at commas, or the default ones.

@@ -12,12 +12,12 @@
 
 use super::cells_of_quadratics::CellsOfQuadratics;
 use crate::arrays::map_entries;
-use crate::assemble::space::{Place, Space};
+use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
 use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::vertices_of;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
 use crate::quadrature::facet_to_cell;
 
 /// Visits of each pair of vertices of each facet.
@@ -29,7 +29,7 @@ const LONGEST: usize = 3;
 /// A contact facet.
 struct ContactFacet {
     /// The cell among those of the exchange, and the number of the facet in it.
-    at: Place,
+    at: HalfFacet,
     /// The mean distances from the gap times barycentric coordinates.
     gaps: [f64; 4],
     /// By how much a force of the other sign counts: the factor of the root of the sum of the squares of its values at
@@ -39,7 +39,7 @@ struct ContactFacet {
     has_one_sign: bool,
 }
 
-/// Sorts facets by their places. Not in the function that calls it, so that this is compiled once.
+/// Sorts facets by cell and number. Not in the function that calls it, so that this is compiled once.
 fn sort(facets: &mut [ContactFacet]) {
     facets.sort_unstable_by_key(|facet| facet.at);
 }
@@ -58,14 +58,14 @@ struct Around<'f> {
 
 impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Adds to the density of a facet at a vertex, and keeps the divergence.
-    fn add_to_force(&mut self, (k, local): Place, vertex: usize, change: f64) {
+    fn add_to_force(&mut self, (k, local): HalfFacet, vertex: usize, change: f64) {
         let cell = self.cells[k].number;
         self.flux.add_density(cell, local, vertex, change);
         self.flux.add_inner(cell, vertex, -change);
     }
 
     /// The density of a facet at a vertex.
-    fn force(&self, (k, local): Place, vertex: usize) -> f64 {
+    fn force(&self, (k, local): HalfFacet, vertex: usize) -> f64 {
         self.flux.density(self.cells[k].number, local, vertex)
     }
 
@@ -135,7 +135,8 @@ impl<const D: usize> Space<'_, D> {
         neighbours: &Neighbours,
         flux: &mut Flux<D>,
     ) {
-        let facets: Vec<(Place, usize)> = self.grouped_facets_of(BoundaryPart::Contact).collect();
+        let facets: Vec<(HalfFacet, usize)> =
+            self.grouped_facets_of(BoundaryCondition::Contact).collect();
         let mut touches = vec![false; self.mesh.vertices().len()];
         for ((cell, local), _) in &facets {
             self.mesh.facet_vertices(*cell, *local).for_each(|v| touches[v as usize] = true);
@@ -143,23 +144,23 @@ impl<const D: usize> Space<'_, D> {
         let touches = |cell: &usize| self.mesh.cell(*cell).iter().any(|&v| touches[v as usize]);
         let numbers: Vec<usize> = (0..self.mesh.n_cells()).filter(touches).collect();
         let mut cells = self.cells_with_products(&numbers, |_| [0.0; 4], function, flux);
-        let in_contact = |&(place, group): &(Place, usize)| {
+        let in_contact = |&(facet, group): &(HalfFacet, usize)| {
             let gap = self.data.gap.of(group)?;
-            let admissible = self.admissible_in(function, place.0);
+            let admissible = self.admissible_in(function, facet.0);
             let mut gaps = [0.0; 4];
             for (point, weight) in self.facet_rule.iter() {
-                let x = self.facet_point(point, place.0, place.1);
-                let point = facet_to_cell(point, place.1);
+                let x = self.facet_point(point, facet.0, facet.1);
+                let point = facet_to_cell(point, facet.1);
                 let distance = (admissible.at(&point, &x).0 - gap.at(&x)).max(0.0);
                 gaps.iter_mut().zip(&point).for_each(|(gap, b)| *gap += weight * distance * b);
             }
-            let alpha = self.alpha(place.0);
-            let measure = self.facet_measure(place);
+            let alpha = self.alpha(facet.0);
+            let measure = self.facet_measure(facet);
             let square = (measure * alpha * (D * (D + 1)) as f64).recip();
             Some(ContactFacet {
-                at: (numbers.binary_search(&place.0).ok()?, place.1),
+                at: (numbers.binary_search(&facet.0).ok()?, facet.1),
                 gaps,
-                variation: self.constant_of_trace(place) * square.sqrt(),
+                variation: self.constant_of_trace(facet) * square.sqrt(),
                 has_one_sign: false,
             })
         };
@@ -193,7 +194,7 @@ impl<const D: usize> Space<'_, D> {
         cells: &mut CellsOfQuadratics<'_, D>,
         around: &Around<'_>,
         chain: &mut [(usize, usize, f64); 2 * LONGEST],
-        ((k, entered), length): (Place, usize),
+        ((k, entered), length): (HalfFacet, usize),
     ) {
         let Around { facets, here, numbers, neighbours, vertex } = *around;
         let corner = |cell: usize| self.mesh.cell(cell).iter().position(|&v| v == vertex);

@@ -3,14 +3,14 @@
 use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, visit_steps};
 use crate::algebra::Contact;
 use crate::assemble::cut_simplices::in_space;
+use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, Neighbours};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbours};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -91,7 +91,7 @@ impl<const D: usize> Space<'_, D> {
         if self.broken {
             return multipliers.chunks_exact(n).map(|m| m.iter().sum()).collect();
         }
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+        for (cell, local) in self.facets_of(BoundaryCondition::Dirichlet) {
             self.nodes_on(local).for_each(|i| multipliers[self.dofs.of(cell, i)] = 0.0);
         }
         let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
@@ -143,10 +143,10 @@ impl<const D: usize> Space<'_, D> {
         let square: f64 = cells.iter().map(CellOfLinears::square).sum();
         visit_steps(&steps, (cells.len(), square), SWEEPS, |step| match step {
             ExchangeStep::Between(at) => {
-                exchange_between(&mut cells, at.map(FacetOfCell::place), flux)
+                exchange_between(&mut cells, at.map(FacetOfCell::half), flux)
             }
             ExchangeStep::WithDirichlet(facet) => {
-                let (k, local) = facet.place();
+                let (k, local) = facet.half();
                 exchange_with_dirichlet(&mut cells[k], local, flux)
             }
             ExchangeStep::Inside(_) => 0.0,
@@ -200,7 +200,7 @@ impl<const D: usize> Space<'_, D> {
 /// bound falls.
 fn exchange_between<const D: usize>(
     cells: &mut [CellOfLinears<D>],
-    [(here, local), (there, across)]: [Place; 2],
+    [(here, local), (there, across)]: [HalfFacet; 2],
     flux: &mut Flux<D>,
 ) -> f64 {
     let [of_here, of_there] = [&cells[here], &cells[there]];

@@ -20,10 +20,10 @@ mod forces;
 mod linears;
 mod quadratics;
 
-use crate::assemble::space::{Place, Space};
+use crate::assemble::space::Space;
 use crate::measure::Counts;
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
 
 /// Multipliers below this share of the largest one are rounding.
 const ROUNDING: f64 = 1e-10;
@@ -40,7 +40,7 @@ struct FacetOfCell {
 }
 
 impl FacetOfCell {
-    fn place(self) -> Place {
+    fn half(self) -> HalfFacet {
         (self.cell as usize, self.local.into())
     }
 }
@@ -140,7 +140,7 @@ impl<const D: usize> Space<'_, D> {
                             ]));
                         }
                     }
-                    Neighbour::Boundary(BoundaryPart::Dirichlet) => {
+                    Neighbour::Boundary(BoundaryCondition::Dirichlet) => {
                         steps.push(ExchangeStep::WithDirichlet(facet));
                     }
                     Neighbour::Boundary(_) | Neighbour::Cut => {}

@@ -7,13 +7,13 @@
 
 use super::cells_of_quadratics::{CellOfQuadratics, CellsOfQuadratics};
 use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, visit_steps};
-use crate::arrays::{map_entries, tabulate};
-use crate::assemble::space::{Place, Space};
+use crate::arrays::{array_of, map_entries};
+use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
 use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
-use crate::mesh::Neighbours;
+use crate::mesh::{HalfFacet, Neighbours};
 
 /// Most visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
 const SWEEPS: usize = 8;
@@ -44,7 +44,7 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
 
     /// Exchanges multipliers of two cells at a vertex of their facet, by its numbers in the two cells. The result, here and
     /// below, is by how much the square of the bound falls.
-    fn exchange_between(&mut self, at: [Place; 2], vertex: [usize; 2]) -> f64 {
+    fn exchange_between(&mut self, at: [HalfFacet; 2], vertex: [usize; 2]) -> f64 {
         let [here, there] = at.map(|(k, _)| &self.cells[k]);
         let sign = (here.sum() + there.sum()).signum();
         let obstacle = usize::from(sign < 0.0);
@@ -68,7 +68,7 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
     }
 
     /// Exchanges the multiplier of a cell at a vertex of a Dirichlet facet.
-    fn exchange_with_dirichlet(&mut self, (k, local): Place, vertex: usize) -> f64 {
+    fn exchange_with_dirichlet(&mut self, (k, local): HalfFacet, vertex: usize) -> f64 {
         let cell = &self.cells[k];
         let sign = cell.sum().signum();
         if !(cell.has_one_sign && cell.is_given[usize::from(sign < 0.0)]) {
@@ -129,14 +129,14 @@ impl<const D: usize> Space<'_, D> {
         let square: f64 = (0..numbers.len()).map(|k| cells.square(k)).sum();
         visit_steps(&steps, (numbers.len(), square), SWEEPS, |step| match step {
             ExchangeStep::Between(facets) => {
-                let at = facets.map(FacetOfCell::place);
+                let at = facets.map(FacetOfCell::half);
                 let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
                 let across = |v: u32| other.iter().position(|&w| w == v);
                 let common = vertices_of::<D>(at[0].1).filter_map(|j| Some([j, across(cell[j])?]));
                 common.map(|vertex| cells.exchange_between(at, vertex)).sum()
             }
             ExchangeStep::WithDirichlet(facet) => {
-                let at = facet.place();
+                let at = facet.half();
                 vertices_of::<D>(at.1).map(|j| cells.exchange_with_dirichlet(at, j)).sum()
             }
             ExchangeStep::Inside(k) => {
@@ -161,7 +161,7 @@ impl<const D: usize> Space<'_, D> {
             }
             let sum: f64 = means.iter().sum();
             let value = |k: usize| (d + 1.0) * ((d + 2.0) * means[k] - sum);
-            tabulate(|k| if k <= D { value(k) } else { 0.0 })
+            array_of(|k| if k <= D { value(k) } else { 0.0 })
         };
         (0..self.mesh.n_cells()).map(of_cell).collect()
     }

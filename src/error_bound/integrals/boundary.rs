@@ -4,10 +4,10 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use super::cell_flux::share_of_one_sign;
-use crate::assemble::space::{Place, Space};
+use crate::assemble::space::Space;
 use crate::error_bound::quadratics::vertices_of;
 use crate::error_bound::{NoBound, PrimalDualPair};
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::{Rule, facet_to_cell};
 
 /// A negative contact force below this share of the largest one is rounding.
@@ -68,10 +68,10 @@ impl<const D: usize> Space<'_, D> {
     /// The constant of the trace inequality on a facet: for `w` with mean zero in a cell the divergence theorem for
     /// `w^2 (x - a_F)` and the inequality of Payne and Weinberger give
     /// `|w|_F^2 <= |F| / |K| (1/pi^2 + 2/(pi D)) h_K^2 |grad w|_K^2`.
-    pub(in crate::error_bound) fn constant_of_trace(&self, place: Place) -> f64 {
-        let volume = self.mesh.geometry(place.0).volume;
-        let square = self.facet_measure(place) / volume * (1.0 / (PI * PI) + 2.0 / (PI * D as f64));
-        square.sqrt() * self.mesh.cell_diameter(place.0)
+    pub(in crate::error_bound) fn constant_of_trace(&self, facet: HalfFacet) -> f64 {
+        let volume = self.mesh.geometry(facet.0).volume;
+        let square = self.facet_measure(facet) / volume * (1.0 / (PI * PI) + 2.0 / (PI * D as f64));
+        square.sqrt() * self.mesh.cell_diameter(facet.0)
     }
 
     /// The rule for the square of Neumann data less the flux, and for contact forces times distances from the gap:
@@ -94,7 +94,7 @@ impl<const D: usize> Space<'_, D> {
         let n_cells = self.mesh.n_cells();
         let zeros = |is_needed: bool| vec![0.0; if is_needed { n_cells } else { 0 }];
         let has_fluxes =
-            self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
+            self.problem.has_neumann_data() && self.mesh.has_condition(BoundaryCondition::Neumann);
         let has_gap = self.problem.has_gap();
         let rule = self.rule_of_facets(pair.degree);
         let mut terms = BoundaryTerms {
@@ -102,37 +102,37 @@ impl<const D: usize> Space<'_, D> {
             contact: zeros(has_gap),
         };
         if has_fluxes {
-            for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-                let measure = self.facet_measure(place);
-                let flux = self.flux_on(pair, place);
+            for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
+                let measure = self.facet_measure(facet);
+                let flux = self.flux_on(pair, facet);
                 let mut square = 0.0;
                 for (point, weight) in rule.iter() {
-                    let datum = self.neumann_at(place, group, point)?;
-                    let flux = flux.scale * flux.at(&facet_to_cell(point, place.1)) / measure;
+                    let datum = self.neumann_at(facet, group, point)?;
+                    let flux = flux.scale * flux.at(&facet_to_cell(point, facet.1)) / measure;
                     square += weight * measure * (datum - flux).powi(2);
                 }
-                terms.traces[place.0] += self.constant_of_trace(place) * square.sqrt();
+                terms.traces[facet.0] += self.constant_of_trace(facet) * square.sqrt();
             }
         }
         let (mut least, mut largest) = (0.0_f64, 0.0_f64);
-        for (place, group) in self.grouped_facets_of(BoundaryPart::Contact) {
+        for (facet, group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
-            let admissible = self.admissible_in(pair, place.0);
-            let flux = self.flux_on(pair, place);
+            let admissible = self.admissible_in(pair, facet.0);
+            let flux = self.flux_on(pair, facet);
             let integral = flux.integral(D);
             (least, largest) = (least.min(integral), largest.max(integral));
             let (force, left) = flux.limited(D);
             let mut sum = 0.0;
             for (point, weight) in rule.iter() {
-                let x = self.facet_point(point, place.0, place.1);
-                let point = facet_to_cell(point, place.1);
+                let x = self.facet_point(point, facet.0, facet.1);
+                let point = facet_to_cell(point, facet.1);
                 let (value, _) = admissible.at(&point, &x);
                 sum += weight * force.at(&point) * (value - gap.at(&x)).max(0.0);
             }
-            terms.contact[place.0] += force.scale * sum;
+            terms.contact[facet.0] += force.scale * sum;
             if pair.degree > 1 {
-                let measure = self.facet_measure(place);
-                terms.traces[place.0] += self.constant_of_trace(place) * (left / measure).sqrt();
+                let measure = self.facet_measure(facet);
+                terms.traces[facet.0] += self.constant_of_trace(facet) * (left / measure).sqrt();
             }
         }
         match -least > FORCE_ROUNDING * largest {
@@ -142,7 +142,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The flux of a pair through a facet.
-    fn flux_on(&self, pair: &PrimalDualPair<D>, (cell, local): Place) -> FacetFlux {
+    fn flux_on(&self, pair: &PrimalDualPair<D>, (cell, local): HalfFacet) -> FacetFlux {
         if pair.flux.degree() == 0 {
             return FacetFlux { scale: pair.flux.through(cell, local), values: None, local };
         }

@@ -38,7 +38,7 @@ use crate::assemble::space::tables::{BasisAt, CellTable};
 use crate::element::MAX_BASIS;
 use crate::measure::Admissible;
 use crate::mesh::edge_vertices;
-use crate::problem::{DatumRef, Field};
+use crate::problem::{Datum, Field};
 use crate::real::Point;
 
 /// What one cell adds to the bound.
@@ -83,9 +83,9 @@ struct CellInputs<'a, const D: usize> {
     values: [f64; MAX_BASIS],
     /// The gradient of the discrete function, where it is linear.
     slope: Option<Point<D>>,
-    coefficient: Option<DatumRef<'a, D>>,
-    reaction: Option<DatumRef<'a, D>>,
-    source: Option<DatumRef<'a, D>>,
+    coefficient: Option<&'a Datum<D>>,
+    reaction: Option<&'a Datum<D>>,
+    source: Option<&'a Datum<D>>,
     volume: f64,
 }
 
@@ -225,7 +225,7 @@ impl<const D: usize> Space<'_, D> {
         table: &CellTable,
     ) -> Option<CellIntegrals> {
         let constant_of =
-            |datum: Option<DatumRef<'_, D>>, absent| datum.map_or(Some(absent), |d| d.constant());
+            |datum: Option<&Datum<D>>, absent| datum.map_or(Some(absent), |d| d.constant());
         let alpha = constant_of(data.coefficient, 1.0)?;
         let load = constant_of(data.source, 0.0)?;
         let slope = data.slope.filter(|_| data.reaction.is_none())?;
@@ -351,7 +351,7 @@ impl<const D: usize> Space<'_, D> {
 
     /// The least value of a datum at vertices and midpoints of edges and, for a datum of degree two, its least Bernstein
     /// coefficient, which is a bound from below.
-    fn least_values(&self, cell: usize, datum: DatumRef<'_, D>) -> [f64; 2] {
+    fn least_values(&self, cell: usize, datum: &Datum<D>) -> [f64; 2] {
         if let Some(constant) = datum.constant() {
             return [constant; 2];
         }

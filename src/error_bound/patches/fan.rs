@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
+use super::corner_fluxes::CornerFluxes;
 use super::corners::Corner;
 use super::linear::LinearCells;
-use super::parts::Parts;
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::mesh::{BoundaryCondition, Neighbour};
 use crate::parallel::cells;
 
 /// A cell of a fan, between two facets at its vertex.
@@ -18,7 +18,7 @@ pub(super) struct CellOfFan {
 
 impl<const D: usize> LinearCells<'_, '_, D> {
     /// Sets the parts of those of these vertices whose cells form one fan, and returns the others.
-    pub(super) fn set_fans(&self, vertices: &[u32], parts: &Parts) -> Vec<u32> {
+    pub(super) fn set_fans(&self, vertices: &[u32], parts: &CornerFluxes) -> Vec<u32> {
         let others = cells::map(vertices.len(), &|range: Range<usize>| {
             let mut fan = Vec::new();
             let set = |corner: Corner, k: usize, number: f64| parts.set(corner, k, number);
@@ -56,7 +56,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
         let given = |of: &CellOfFan, side: usize| {
             let local = of.sides[side];
             match self.neighbours.across(of.corner.cell(), usize::from(local)) {
-                Neighbour::Boundary(BoundaryPart::Dirichlet) | Neighbour::Cell { .. } => None,
+                Neighbour::Boundary(BoundaryCondition::Dirichlet) | Neighbour::Cell { .. } => None,
                 Neighbour::Boundary(_) | Neighbour::Cut => Some(-0.5 * normal((of.corner, local))),
             }
         };

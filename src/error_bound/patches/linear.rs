@@ -10,7 +10,7 @@ use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::error_bound::NoBound;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, Neighbours};
+use crate::mesh::{BoundaryCondition, Neighbours};
 use crate::parallel::cells;
 use crate::real::Point;
 
@@ -69,7 +69,7 @@ impl<const D: usize> Space<'_, D> {
             data[force.cell * stride + D + 2 + force.node] -= force.value;
         }
         let mut pressures = self.multipliers_of_obstacles(residual, forces);
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+        for (cell, local) in self.facets_of(BoundaryCondition::Dirichlet) {
             self.mesh.facet_vertices(cell, local).for_each(|v| pressures[v as usize] = 0.0);
         }
         let mut cells = LinearCells {

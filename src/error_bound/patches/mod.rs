@@ -30,10 +30,10 @@
 //! | `linear`, `quadratic` | the cells of linears and quadratics |
 //! | `corners`, `parts` | the cells around each vertex, and the numbers there |
 
+mod corner_fluxes;
 mod corners;
 mod fan;
 mod linear;
-mod parts;
 mod patch;
 mod patch_cells;
 mod quadratic;
@@ -43,9 +43,9 @@ mod tests;
 use std::convert::Infallible;
 use std::ops::Range;
 
+use corner_fluxes::CornerFluxes;
 use corners::Corner;
 use linear::LinearCells;
-use parts::Parts;
 use patch::Patch;
 use patch_cells::PatchCells;
 
@@ -55,7 +55,7 @@ use super::quadratics::CellLoads;
 use super::{NoBound, PrimalDualPair};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::mesh::{BoundaryPart, Neighbours};
+use crate::mesh::{BoundaryCondition, Neighbours};
 use crate::parallel::cells;
 
 /// Number of cells whose parts are kept at a time. The parts of a tetrahedron are twelve numbers, the flux is four.
@@ -96,7 +96,7 @@ impl<const D: usize> Space<'_, D> {
         neighbours: &Neighbours,
         length: usize,
     ) -> Flux<D> {
-        let mut parts = Parts::new(D * C::PER_FACET, D + 1);
+        let mut parts = CornerFluxes::new(D * C::PER_FACET, D + 1);
         let mut corners = None;
         let mut flux = Flux::zero(C::DEGREE, self.mesh.n_cells());
         for (cells, mut vertices) in self.ranges_with_vertices(length) {
@@ -134,7 +134,8 @@ impl<const D: usize> Space<'_, D> {
             let numbers = flux.of_cells_mut(cells.clone());
             let Ok(()) = cells::for_each(n_cells, &|c| c * per_cell, numbers, &fill);
         }
-        for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
+        for f in self.mesh.boundary().iter().filter(|f| f.condition != BoundaryCondition::Dirichlet)
+        {
             flux.set_zero_on(f.cell as usize, f.local.into());
         }
         flux

@@ -14,7 +14,7 @@
 
 use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::{BoundaryCondition, Neighbour, Neighbours};
 
 /// Pivots up to this share of the diagonal are zero: in a patch without Dirichlet facets multipliers are
 /// determined up to a constant.
@@ -125,7 +125,7 @@ impl<const N: usize> Patch<N> {
                     self.multipliers.push(here + there);
                 }
             }
-            Neighbour::Boundary(BoundaryPart::Dirichlet) => known.fill(Number::Free),
+            Neighbour::Boundary(BoundaryCondition::Dirichlet) => known.fill(Number::Free),
             Neighbour::Boundary(_) | Neighbour::Cut => {
                 let given = of.given(corner, facet);
                 for (known, (given, normal)) in known.iter_mut().zip(given.iter().zip(normal)) {

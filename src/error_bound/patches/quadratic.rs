@@ -13,10 +13,10 @@ use std::ops::Range;
 
 use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
-use crate::arrays::tabulate;
-use crate::assemble::local::StiffnessTable;
+use crate::arrays::array_of;
 use crate::assemble::space::tables::BasisAt;
-use crate::assemble::space::{INWARD, Place, Space};
+use crate::assemble::space::{INWARD, Space};
+use crate::assemble::stiffness::StiffnessTable;
 use crate::element::Node;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{
@@ -24,7 +24,7 @@ use crate::error_bound::quadratics::{
 };
 use crate::error_bound::shared_multipliers::SharedNodes;
 use crate::measure::Admissible;
-use crate::mesh::{Neighbour, Neighbours, edge_vertices};
+use crate::mesh::{HalfFacet, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
 use crate::real::Point;
 
@@ -46,11 +46,11 @@ pub(super) struct QuadraticCells<'s, 'a, const D: usize> {
     space: &'s Space<'a, D>,
     cells: Vec<KnownOfCell>,
     /// The products of Neumann data and contact forces, by facet; sorted.
-    given: Vec<&'s (Place, Products)>,
+    given: Vec<&'s (HalfFacet, Products)>,
 }
 
 /// Sorts products by the places of their facets. Not in the function that calls it, so that this is compiled once.
-fn sort(given: &mut [&(Place, Products)]) {
+fn sort(given: &mut [&(HalfFacet, Products)]) {
     given.sort_unstable_by_key(|(place, _)| *place);
 }
 
@@ -168,7 +168,7 @@ impl<const D: usize> Space<'_, D> {
             let slope = |m: usize| -> f64 {
                 local.iter().zip(&basis.derivatives).take(n).map(|(u, d)| u * d[m]).sum()
             };
-            let slopes: [f64; 4] = tabulate(|m| if m <= D { slope(m) } else { 0.0 });
+            let slopes: [f64; 4] = array_of(|m| if m <= D { slope(m) } else { 0.0 });
             let vertex = Node::vertex(k).centre(D);
             let (_, mut difference) = admissible.at(&vertex, &Point::zeros());
             for (gradient, slope) in admissible.gradients.iter().zip(&slopes) {
@@ -260,7 +260,7 @@ fn divergence_products<const D: usize>(points: &[Point<D>; 4], tested: &[f64; 4]
     let d = D as f64;
     let sum: Point<D> = points[..=D].iter().sum();
     let total: f64 = tested[..=D].iter().sum();
-    tabulate(|k| {
+    array_of(|k| {
         let mut product = Point::zeros();
         for j in 0..=D {
             let inner = d * ((d + 2.0) * tested[j] - total);
@@ -275,7 +275,7 @@ fn divergence_products<const D: usize>(points: &[Point<D>; 4], tested: &[f64; 4]
 /// `lambda_j` times a vector, for each vertex `j` of a cell.
 fn target_products<const D: usize>(own: usize, differences: &[[f64; 3]; 4]) -> [Point<D>; 4] {
     let d = D as f64;
-    tabulate(|j| {
+    array_of(|j| {
         let mut target = Point::zeros();
         for (k, difference) in differences.iter().enumerate().take(D + 1) {
             let product = triple(D, [j, own, k]) / d;

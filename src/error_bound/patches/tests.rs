@@ -10,7 +10,7 @@ use crate::scheme::{ConformingP1, ConformingP2};
 /// Boxes with sides of different lengths; one side is not of the Dirichlet part.
 fn mesh<const D: usize>(n: usize) -> Mesh<D> {
     let far = Point::from_fn(|k, _| [1.0, 0.7, 1.9][k]);
-    let domain = BoxDomain::dirichlet(Point::zeros(), far).side(1, 0, BoundaryPart::Neumann);
+    let domain = BoxDomain::dirichlet(Point::zeros(), far).side(1, 0, BoundaryCondition::Neumann);
     Mesh::kuhn_box(&domain, [n; D]).unwrap()
 }
 

@@ -149,7 +149,7 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// Replaces the values by the nearest admissible ones; returns whether one changed.
     pub fn project_onto_bounds(&mut self) -> bool {
         let bounds = &self.inequality.bounds;
-        let n_changed = sum_chunks(&mut self.values, |range, values| {
+        let n_changed = sum_chunks(&mut self.values, 1, |range, values| {
             let mut n_changed = 0.0;
             for (value, bound) in values.iter_mut().zip(&bounds[range]) {
                 let nearest = bound.nearest(*value);

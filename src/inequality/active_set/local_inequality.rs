@@ -2,7 +2,7 @@
 
 use super::iterate::Iterate;
 use super::settings::ActiveSet;
-use crate::algebra::{Bound, Inequality, SparseMatrix, Start, Submatrix};
+use crate::algebra::{Bound, Inequality, SparseMatrix, Start};
 use crate::inequality::{InequalitySolver, Outcome};
 use crate::linear::LinearMethod;
 use crate::real::Real;
@@ -36,9 +36,7 @@ pub(super) fn solve_locally<T: Real>(
     if unknowns.len() as f64 > MAX_SHARE * values.len() as f64 {
         return false;
     }
-    let Submatrix { row_starts, columns, values: entries } =
-        Submatrix::new(&inequality.matrix, &unknowns);
-    let matrix = SparseMatrix { row_starts, columns, values: entries };
+    let matrix = inequality.matrix.submatrix(&unknowns);
     // the unknowns of the local inequality are corrections of values: its load is the residual
     let load = unknowns.iter().map(|&i| T::lit(residual[i as usize])).collect();
     let bounds =

@@ -1,6 +1,6 @@
 //! The linear systems of the interior point method: `A + D` with a nonnegative diagonal `D`.
 
-use crate::algebra::{Inequality, PenalisedMatrix, Submatrix};
+use crate::algebra::{Inequality, PenalisedMatrix, SparseMatrix};
 use crate::inequality::certificate::positive_diagonal;
 use crate::linear::direct::{
     CondensedFactors, FactorError, Factors, StaticCondensation, SymbolicFactor, add_to_diagonal,
@@ -32,13 +32,13 @@ pub(crate) struct NewtonSystem<'h, 'a, T> {
 /// The lower triangle of a symmetric `A` and the symbolic analysis of its factors, which are the same
 /// for every `D`.
 struct LowerTriangle<T> {
-    matrix: Submatrix<T>,
+    matrix: SparseMatrix<T>,
     analysis: SymbolicFactor,
 }
 
 impl<T: Real> LowerTriangle<T> {
     fn new(inequality: &Inequality<T>, free: &[u32]) -> Result<Self, FactorError> {
-        let matrix = Submatrix::lower_triangle(&inequality.matrix, free);
+        let matrix = inequality.matrix.lower_triangle(free);
         let analysis = SymbolicFactor::new(&matrix, None)?;
         Ok(Self { matrix, analysis })
     }
@@ -106,7 +106,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
             add_to_diagonal(&mut matrix, &self.free, diagonal)?;
             Factors::cholesky(&mut matrix, &triangle.analysis)?
         } else {
-            let mut matrix = Submatrix::new(&self.inequality.matrix, &self.free);
+            let mut matrix = self.inequality.matrix.submatrix(&self.free);
             add_to_diagonal(&mut matrix, &self.free, diagonal)?;
             Factors::lu(&matrix)?
         };

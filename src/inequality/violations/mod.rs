@@ -8,7 +8,7 @@ use super::contact_forces::BalancedNodes;
 use super::scales::{Scales, Sums};
 use super::validation::data_are_in_range;
 use crate::algebra::{Distribution, Inequality, PenalisedMatrix};
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::instances::compiled;
 use crate::parallel::vectors::{collect, map_chunks};
 use crate::real::{Precision, Real, maximum};
@@ -194,7 +194,7 @@ impl Violations {
             scales: one.scales.merge(two.scales),
             feasibility: maximum(one.feasibility, two.feasibility),
             jump_residual: maximum(one.jump_residual, two.jump_residual),
-            squares: tabulate(|k| one.squares[k] + two.squares[k]),
+            squares: array_of(|k| one.squares[k] + two.squares[k]),
             diagonal_sum: one.diagonal_sum + two.diagonal_sum,
             epsilon: one.epsilon.max(two.epsilon),
         }

@@ -1,7 +1,7 @@
 //! Means and jumps over facets in place of the values on either side.
 
-use crate::algebra::SparseMatrix;
-use crate::mesh::{BoundaryPart, Facets, Mesh, Neighbours};
+use crate::algebra::{RectangularMatrix, SparseMatrix, galerkin_product};
+use crate::mesh::{BoundaryCondition, Facets, Mesh, Neighbours};
 
 /// The change of variables that takes facet means of a broken space apart into their mean and
 /// their jump: a sparse matrix `E` with at most two entries in each row.
@@ -18,56 +18,39 @@ use crate::mesh::{BoundaryPart, Facets, Mesh, Neighbours};
 /// preconditioners: S. C. Brenner, L. Owens, L.-Y. Sung, ETNA 30 (2008), 107-127.
 #[derive(Clone, Debug)]
 pub struct MeanJump {
-    /// The entries of each row of `E`: column and weight.
-    rows: Vec<Row>,
+    /// `E`.
+    change: RectangularMatrix<f64>,
     /// Number of means.
     means: usize,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    first: (u32, f64),
-    second: Option<(u32, f64)>,
-}
-
-impl Row {
-    const ABSENT: Self = Self { first: (u32::MAX, 0.0), second: None };
-
-    fn entries(self) -> impl Iterator<Item = (u32, f64)> {
-        std::iter::once(self.first).chain(self.second)
-    }
-}
-
 impl MeanJump {
-    /// The change of variables on a mesh.
+    /// The change of variables on a mesh. A facet beyond which the cells of another part lie has a mean only.
     pub fn new<const D: usize>(mesh: &Mesh<D>) -> Self {
         let facets = Facets::new(mesh, &Neighbours::new(mesh));
-        let [dirichlet, neumann, contact] =
-            [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact]
-                .map(|part| facets.part(part));
-        let interior = facets.interior();
-        let means = interior.len() + neumann.len() + contact.len();
-        let mut rows = vec![Row::ABSENT; mesh.cells().len()];
-        let unknown = |(cell, local): (usize, usize)| cell * (D + 1) + local;
-        for (k, facet) in interior.clone().enumerate() {
-            let (mean, jump) = ((k as u32, 1.0), (means + k) as u32);
-            rows[unknown(facets.here(facet))] = Row { first: mean, second: Some((jump, 0.5)) };
-            rows[unknown(facets.there(facet))] = Row { first: mean, second: Some((jump, -0.5)) };
-        }
-        for (k, facet) in neumann.chain(contact).enumerate() {
-            let first = ((interior.len() + k) as u32, 1.0);
-            rows[unknown(facets.here(facet))] = Row { first, second: None };
-        }
-        for (k, facet) in dirichlet.enumerate() {
-            let first = ((means + interior.len() + k) as u32, 1.0);
-            rows[unknown(facets.here(facet))] = Row { first, second: None };
-        }
-        Self { rows, means }
+        let numbers = facets.numbers::<D>(mesh.n_cells());
+        // interior facets are numbered first, Dirichlet ones next
+        let (interior, dirichlet) = (facets.interior(), facets.part(BoundaryCondition::Dirichlet));
+        let means = facets.len() - dirichlet.len();
+        let change = RectangularMatrix::by_rows(0..numbers.len(), |unknown, columns, values| {
+            let facet = numbers[unknown] as usize;
+            if interior.contains(&facet) {
+                let is_here = facets.here(facet) == (unknown / (D + 1), unknown % (D + 1));
+                columns.extend([facet as u32, (means + facet) as u32]);
+                values.extend([1.0, if is_here { 0.5 } else { -0.5 }]);
+            } else {
+                let is_jump = dirichlet.contains(&facet);
+                let column = if is_jump { means + facet } else { facet - dirichlet.len() };
+                columns.push(column as u32);
+                values.push(1.0);
+            }
+        });
+        Self { change, means }
     }
 
     /// Number of unknowns, the same before and after.
     pub fn size(&self) -> usize {
-        self.rows.len()
+        self.change.n_rows()
     }
     /// Number of means: they come first, the jumps follow.
     pub fn means(&self) -> usize {
@@ -78,22 +61,15 @@ impl MeanJump {
     /// # Panics
     /// If `y` is shorter than [`MeanJump::size`].
     pub fn expand(&self, y: &[f64]) -> Vec<f64> {
-        let value =
-            |row: &Row| row.entries().fold(0.0, |s, (j, weight)| s + weight * y[j as usize]);
-        self.rows.iter().map(value).collect()
+        (0..self.size()).map(|i| self.change.row_dot(i, y)).collect()
     }
     /// `E^T r`: a load on facet means of each cell as one on means and jumps.
     ///
     /// # Panics
     /// If `r` is shorter than [`MeanJump::size`].
     pub fn gather(&self, r: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; self.size()];
-        for (row, &r) in self.rows.iter().zip(r) {
-            for (j, weight) in row.entries() {
-                out[j as usize] += weight * r;
-            }
-        }
-        out
+        let transpose = self.change.transpose(self.size());
+        (0..self.size()).map(|i| transpose.row_dot(i, r)).collect()
     }
     /// `E^T A E`.
     ///
@@ -101,43 +77,6 @@ impl MeanJump {
     /// If the matrix has another size than [`MeanJump::size`].
     pub fn transform(&self, matrix: &SparseMatrix<f64>) -> SparseMatrix<f64> {
         assert_eq!(matrix.size(), self.size(), "a matrix of this mesh's broken linears");
-        let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.size()];
-        for (i, left) in self.rows.iter().enumerate() {
-            let (columns, values) = matrix.row(i);
-            for (&j, &a) in columns.iter().zip(values) {
-                for (row, w) in left.entries() {
-                    for (column, x) in self.rows[j as usize].entries() {
-                        rows[row as usize].push((column, (w * x) * a));
-                    }
-                }
-            }
-        }
-        let mut out = SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
-        for mut row in rows {
-            row.sort_by_key(|&(column, _)| column);
-            for equal in row.chunk_by(|a, b| a.0 == b.0) {
-                out.columns.push(equal[0].0);
-                out.values.push(equal.iter().fold(0.0, |s, &(_, a)| s + a));
-            }
-            out.row_starts.push(out.columns.len() as u32);
-        }
-        out
-    }
-    /// The block diagonal of a matrix in means and jumps: all of it among means, its diagonal
-    /// among jumps.
-    pub fn block_diagonal(&self, transformed: &SparseMatrix<f64>) -> SparseMatrix<f64> {
-        let mut out = SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
-        for i in 0..transformed.size() {
-            let (columns, values) = transformed.row(i);
-            for (&j, &a) in columns.iter().zip(values) {
-                let among_means = i < self.means && (j as usize) < self.means;
-                if among_means || i == j as usize {
-                    out.columns.push(j);
-                    out.values.push(a);
-                }
-            }
-            out.row_starts.push(out.columns.len() as u32);
-        }
-        out
+        galerkin_product(matrix, &self.change, self.size())
     }
 }

@@ -8,7 +8,7 @@ use faer::sparse::linalg::amd;
 use super::error::{FactorError, out_of_memory};
 use super::factors::Factors;
 use super::symbolic_factor::transpose_view;
-use crate::algebra::{NO_INDEX, SparseMatrix, Submatrix};
+use crate::algebra::{NO_INDEX, SparseMatrix};
 use crate::parallel::once;
 use crate::real::Real;
 
@@ -55,7 +55,7 @@ fn minimum_degree<T: Real>(
     matrix: &SparseMatrix<T>,
     free: &[u32],
 ) -> Result<Vec<u32>, FactorError> {
-    let lower = Submatrix::lower_triangle(matrix, free);
+    let lower = matrix.lower_triangle(free);
     let pattern = transpose_view(&lower);
     let n = free.len();
     let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);

@@ -13,7 +13,7 @@ use faer::{Conj, MatMut, Par, Side};
 
 use super::error::{FactorError, out_of_memory};
 use super::symbolic_factor::{SymbolicFactor, transpose_view};
-use crate::algebra::{SparseMatrix, Submatrix};
+use crate::algebra::SparseMatrix;
 use crate::instances::compiled;
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::pseudorandom_signs;
@@ -67,11 +67,11 @@ impl<T: Real> Factors<T> {
         free: &[u32],
     ) -> Result<Self, FactorError> {
         if symmetric {
-            let mut lower = Submatrix::lower_triangle(matrix, free);
+            let mut lower = matrix.lower_triangle(free);
             let symbolic = SymbolicFactor::new(&lower, None)?;
             Self::cholesky(&mut lower, &symbolic)
         } else {
-            Self::lu(&Submatrix::new(matrix, free))
+            Self::lu(&matrix.submatrix(free))
         }
     }
 
@@ -99,7 +99,7 @@ impl<T: Real> Factors<T> {
         order: Vec<u32>,
         shift: &[f64],
     ) -> Result<Self, FactorError> {
-        let mut lower = Submatrix::lower_triangle(matrix, free);
+        let mut lower = matrix.lower_triangle(free);
         add_to_diagonal(&mut lower, free, shift)?;
         let symbolic = SymbolicFactor::new(&lower, Some(order))?;
         Self::cholesky(&mut lower, &symbolic)
@@ -111,7 +111,7 @@ impl<T: Real> Factors<T> {
     /// # Errors
     /// See [`FactorError`].
     pub(crate) fn cholesky(
-        lower: &mut Submatrix<T>,
+        lower: &mut SparseMatrix<T>,
         symbolic: &SymbolicFactor,
     ) -> Result<Self, FactorError> {
         if lower.size() == 0 {
@@ -165,7 +165,10 @@ impl<T: Real> Factors<T> {
     /// # Errors
     /// [`FactorError::NotPositive`] if a pivot is not positive, also for a singular matrix; else
     /// [`FactorError::Singular`] if the matrix is not regular; or [`FactorError::OutOfMemory`].
-    fn try_cholesky(lower: &Submatrix<T>, symbolic: &SymbolicFactor) -> Result<Self, FactorError> {
+    fn try_cholesky(
+        lower: &SparseMatrix<T>,
+        symbolic: &SymbolicFactor,
+    ) -> Result<Self, FactorError> {
         let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
         let mut values = zero_values(&symbolic)?;
         let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
@@ -190,7 +193,7 @@ impl<T: Real> Factors<T> {
     ///
     /// # Errors
     /// See [`FactorError`].
-    pub(crate) fn lu(matrix: &Submatrix<T>) -> Result<Self, FactorError> {
+    pub(crate) fn lu(matrix: &SparseMatrix<T>) -> Result<Self, FactorError> {
         if matrix.size() == 0 {
             return Ok(Self { size: 0, factorisation: Factorisation::Empty });
         }
@@ -240,7 +243,7 @@ impl<T: Real> Factors<T> {
 /// # Errors
 /// [`FactorError::NotPositive`] if a row to which a positive number is added stores no diagonal entry.
 pub(crate) fn add_to_diagonal<T: Real>(
-    submatrix: &mut Submatrix<T>,
+    submatrix: &mut SparseMatrix<T>,
     free: &[u32],
     diagonal: &[f64],
 ) -> Result<(), FactorError> {
@@ -254,7 +257,7 @@ pub(crate) fn add_to_diagonal<T: Real>(
 }
 
 /// The sum of the absolute values of each row of a matrix, of which only the lower triangle is given if it is symmetric.
-fn row_norms<T: Real>(matrix: &Submatrix<T>, symmetric: bool) -> Vec<f64> {
+fn row_norms<T: Real>(matrix: &SparseMatrix<T>, symmetric: bool) -> Vec<f64> {
     let mut norms = vec![0.0; matrix.size()];
     for i in 0..matrix.size() {
         let (columns, values) = matrix.row(i);
@@ -316,7 +319,7 @@ fn has_cholesky_factor<T: Real>(
 /// [`FactorError::OutOfMemory`]. Changes the diagonal of `lower`. The increase is large compared with rounding errors
 /// and small compared with the negative eigenvalues that a matrix has if a penalty is too small.
 fn indefinite_or_singular<T: Real>(
-    lower: &mut Submatrix<T>,
+    lower: &mut SparseMatrix<T>,
     symbolic: &SymbolicFactor,
 ) -> FactorError {
     let mut is_zero = vec![false; lower.size()];

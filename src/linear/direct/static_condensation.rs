@@ -32,7 +32,7 @@ use super::elimination_order::OrderedMatrix;
 use super::error::FactorError;
 use super::factors::Factors;
 use super::symbolic_factor::SymbolicFactor;
-use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix, Submatrix};
+use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix};
 use crate::parallel::once;
 use crate::real::Real;
 
@@ -206,9 +206,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     ) -> Result<CondensedFactors<T>, FactorError> {
         match &self.reduced {
             ReducedMatrix::FacetMeans { pattern, symbolic } => {
-                let (inverses, schur_complement) =
-                    self.condense(is_free, shift, pattern.clone())?;
-                let mut lower = Submatrix::from(schur_complement);
+                let (inverses, mut lower) = self.condense(is_free, shift, pattern.clone())?;
                 let symbolic = match symbolic.get() {
                     Some(symbolic) => symbolic,
                     None => {

@@ -10,7 +10,7 @@ use faer::sparse::linalg::cholesky::{
 };
 
 use super::error::{FactorError, out_of_memory};
-use crate::algebra::Submatrix;
+use crate::algebra::SparseMatrix;
 use crate::real::Real;
 
 /// The pattern of the Cholesky factor of a symmetric matrix, for an order of elimination.
@@ -27,7 +27,7 @@ impl SymbolicFactor {
     /// # Panics
     /// If `order` is not a permutation of the rows.
     pub fn new<T: Real>(
-        lower: &Submatrix<T>,
+        lower: &SparseMatrix<T>,
         order: Option<Vec<u32>>,
     ) -> Result<Self, FactorError> {
         let order = order.map(|order| {
@@ -56,7 +56,7 @@ impl SymbolicFactor {
 
 /// A view of the transpose in compressed column storage: the row arrays of the matrix are the
 /// column arrays of its transpose.
-pub(crate) fn transpose_view<T>(matrix: &Submatrix<T>) -> SparseColMatRef<'_, u32, T> {
+pub(crate) fn transpose_view<T>(matrix: &SparseMatrix<T>) -> SparseColMatRef<'_, u32, T> {
     let n = matrix.size();
     let pattern = faer::sparse::SymbolicSparseColMatRef::new_checked(
         n,

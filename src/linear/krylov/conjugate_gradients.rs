@@ -5,9 +5,7 @@ use super::product::Product;
 use super::stopping::{KrylovRun, StopReason, StoppingRule};
 use crate::algebra::{Distribution, sum_over_parts};
 use crate::linear::precondition::Preconditioner;
-use crate::parallel::vectors::{
-    dot, for_each_chunk, sum_chunks_of_groups, sum_chunks_of_two, zeros,
-};
+use crate::parallel::vectors::{dot, for_each_chunk, sum_chunks, sum_chunks_of_two, zeros};
 use crate::real::Real;
 
 /// Conjugate gradients for a symmetric matrix, with vectors that are allocated once.
@@ -102,9 +100,8 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
             distribution.update(&mut self.p);
         }
         let (matrix, p) = (&self.matrix, &self.p);
-        let own = sum_chunks_of_groups(&mut self.q, matrix.group(), |range, q| {
-            matrix.rows(range, fixed, p, q)
-        });
+        let own =
+            sum_chunks(&mut self.q, matrix.group(), |range, q| matrix.rows(range, fixed, p, q));
         sum_over_parts(self.distribution, own)
     }
 
@@ -130,7 +127,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
     /// `x = x + alpha p` and `r = r - alpha q`.
     fn update_iterate(&mut self, alpha: T, x: &mut [T], r: &mut [T]) {
         let (p, q) = (&self.p, &self.q);
-        sum_chunks_of_two(x, r, |range, x, r| {
+        sum_chunks_of_two(x, r, 1, |range, x, r| {
             let directions = p[range.clone()].iter().zip(&q[range]);
             for ((x, r), (&p, &q)) in x.iter_mut().zip(r).zip(directions) {
                 *x += alpha * p;

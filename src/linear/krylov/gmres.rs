@@ -176,7 +176,7 @@ impl<'m, T: Real> Gmres<'m, T> {
     ) {
         let directions = &self.directions;
         let change = &mut self.basis[0];
-        sum_chunks_of_two(change, x, |range, change, x| {
+        sum_chunks_of_two(change, x, 1, |range, change, x| {
             change.fill(T::lit(0.0));
             for (&weight, direction) in weights.iter().zip(directions) {
                 let weight = T::lit(weight);

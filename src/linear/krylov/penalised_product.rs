@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::algebra::{NO_INDEX, PenalisedMatrix, SidePenalties, Support};
+use crate::algebra::{NO_INDEX, PenalisedMatrix, SidePenalties};
 use crate::real::Real;
 
 /// The matrix `K + M^T S M` of discontinuous linear functions, without assembled entries. A product reads for each
@@ -21,8 +21,8 @@ pub(crate) struct PenalisedProduct<'m, T> {
 
 impl<'m, T: Real> PenalisedProduct<'m, T> {
     /// The product with a penalised matrix; `None` if [`SidePenalties::new`] returns `None`.
-    pub fn new(penalised: &'m PenalisedMatrix<T>, supports: &[Support]) -> Option<Self> {
-        let mut penalties = SidePenalties::new(penalised, supports)?;
+    pub fn new(penalised: &'m PenalisedMatrix<T>) -> Option<Self> {
+        let mut penalties = SidePenalties::new(penalised)?;
         if !penalties.are_means {
             let vertices = (penalties.cell_size - 1) as f64;
             let scale = T::lit(1.0 / (vertices * vertices));
@@ -117,11 +117,11 @@ fn means<T: Real, const N: usize, const ARE_MEANS: bool>(values: &[T; N]) -> [T;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::JumpTerm;
+    use crate::algebra::{JumpTerm, MeanJumps};
 
     /// Two cells of `n` unknowns with a common facet, facet 0 of the first and facet 1 of the second, and Dirichlet
     /// data on facet 2 of the first.
-    fn two_cells(n: usize, are_means: bool) -> (PenalisedMatrix<f64>, Vec<Support>) {
+    fn two_cells(n: usize, are_means: bool) -> PenalisedMatrix<f64> {
         const NONE: u32 = JumpTerm::<f64>::NO_UNKNOWN;
         let on_facet = |facet: usize| -> Vec<u32> {
             let unknowns = 0..n as u32;
@@ -138,24 +138,22 @@ mod tests {
             let (i, j) = (k / n, k % n);
             1.0 / (1 + i % n + j) as f64 + if i % n == j { i as f64 } else { 0.0 }
         };
-        let penalised = PenalisedMatrix {
+        PenalisedMatrix {
             block_size: n,
             blocks: (0..2 * n * n).map(entry).collect(),
             term_starts: vec![0, half, 2 * half],
             terms,
             weights: vec![7.0, 3.0],
             jump_data: vec![0.0; 2],
-        };
-        let vertices = if are_means { n - 1 } else { 1 };
-        let support = |i: usize| Support::new(Some((i / n) as u32), &[0, 1, 2][..vertices]);
-        (penalised, (0..2 * n).map(support).collect())
+            mean_jumps: Some(MeanJumps { are_means, sides: vec![[0, n as u32 + 1], [2, NONE]] }),
+        }
     }
 
     #[test]
     fn the_product_is_that_of_the_sum() {
         for (n, are_means) in [(3, true), (3, false), (4, true), (4, false)] {
-            let (penalised, supports) = two_cells(n, are_means);
-            let product = PenalisedProduct::new(&penalised, &supports).unwrap();
+            let penalised = two_cells(n, are_means);
+            let product = PenalisedProduct::new(&penalised).unwrap();
             let mut fixed = vec![false; 2 * n];
             fixed[1] = true;
             let value = |i: usize| if fixed[i] { 0.0 } else { (1.3 * i as f64).cos() };

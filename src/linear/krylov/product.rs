@@ -17,9 +17,8 @@ pub(crate) enum Product<'m, T> {
 impl<'m, T: Real> Product<'m, T> {
     /// The matrix of an inequality.
     pub fn of(inequality: &'m Inequality<T>) -> Self {
-        let Inequality { matrix, penalised, supports, .. } = inequality;
-        let penalised = penalised.as_ref();
-        let product = penalised.and_then(|sum| PenalisedProduct::new(sum, supports));
+        let Inequality { matrix, penalised, .. } = inequality;
+        let product = penalised.as_ref().and_then(PenalisedProduct::new);
         product.map_or(Self::Assembled(matrix), Self::Penalised)
     }
 

@@ -39,17 +39,17 @@ impl<T: Real> PreconditionerFamily<T> for BuiltInPreconditioners {
             }
             CoarseSpaces::SameMesh(level) => level,
         };
-        let supports = &inequality.supports;
+        let locations = &inequality.locations;
         if let Some(penalised) = &inequality.penalised
-            && let Some(splitting) = MeanJumpSplitting::new(matrix, penalised, supports, level)
+            && let Some(splitting) = MeanJumpSplitting::new(matrix, penalised, locations, level)
         {
             return Some(Box::new(splitting));
         }
         // 1: cells share unknowns
-        let cell_size = unknowns_per_cell(supports).filter(|size| {
+        let cell_size = unknowns_per_cell(locations).filter(|size| {
             [1, 2, 3, 4, 6, 10].contains(size) && matrix.size().is_multiple_of(*size)
         })?;
-        let prolongation = Prolongation::to_element(supports, level.size())?;
+        let prolongation = Prolongation::to_element(locations, level.size())?;
         let matrix = Cow::Borrowed(matrix);
         Some(Box::new(Multigrid::of_element(matrix, prolongation, level, cell_size)))
     }

@@ -17,8 +17,7 @@ use crate::algebra::dense::invert_positive_definite;
 use crate::linear::direct::FactorError;
 use crate::parallel::for_each_item;
 use crate::parallel::vectors::{
-    chunk_of_groups, for_each_chunk_of_groups, map_chunks_of_groups, sum_chunks_of_groups_of_two,
-    zeros,
+    chunk_of_groups, for_each_chunk_of_groups, map_chunks_of_groups, sum_chunks_of_two, zeros,
 };
 use crate::real::Real;
 
@@ -225,7 +224,7 @@ impl<const N: usize> CellSmoother for CellGaussSeidel<N> {
     }
 
     fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
-        sum_chunks_of_groups_of_two(x, r, N, |range, x, r| {
+        sum_chunks_of_two(x, r, N, |range, x, r| {
             let chunk = &self.chunks[range.start / chunk_of_groups(N)];
             let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
             let inverses = &self.inverses[range.start / N..range.end / N];
@@ -263,7 +262,7 @@ impl<const N: usize> CellSmoother for CellGaussSeidel<N> {
                 subtract_product(a, &old[*other as usize], &mut blocks[usize::from(*cell)]);
             }
         });
-        sum_chunks_of_groups_of_two(x, r, N, |range, x, r| {
+        sum_chunks_of_two(x, r, N, |range, x, r| {
             let chunk = &self.chunks[range.start / chunk_of_groups(N)];
             let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
             let inverses = &self.inverses[range.start / N..range.end / N];

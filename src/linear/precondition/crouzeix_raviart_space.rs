@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::facet_mean_form::stiffness;
 use super::prolongation::Prolongation;
 use crate::algebra::{
-    NO_INDEX, PenalisedMatrix, RectangularMatrix, SidePenalties, SparseMatrix, Support,
+    DofLocation, NO_INDEX, PenalisedMatrix, RectangularMatrix, SidePenalties, SparseMatrix,
     sort_by_column,
 };
 use crate::memory::in_large_pages;
@@ -110,11 +110,11 @@ impl CrouzeixRaviartSpace {
     }
 
     /// The prolongation of conforming linear functions, whose mean on a facet is that of its vertex values;
-    /// `None` if a vertex of a support is not less than `n_vertices`.
+    /// `None` if a vertex of a location is not less than `n_vertices`.
     pub fn prolongation<T: Real>(
         &self,
         penalties: &SidePenalties<T>,
-        supports: &[Support],
+        locations: &[DofLocation],
         n_vertices: usize,
     ) -> Option<Prolongation<T>> {
         let size = penalties.cell_size;
@@ -123,12 +123,12 @@ impl CrouzeixRaviartSpace {
         let vertices = collect(n * length, |k| {
             let (side, place) = (self.sides_of_facet[k / length][0] as usize, k % length);
             if penalties.are_means {
-                return supports[side].vertices()[place];
+                return locations[side].vertices()[place];
             }
             // all vertices of the cell but the one opposite the facet
             let opposite = side % size;
             let local = place + usize::from(place >= opposite);
-            supports[side - opposite + local].vertices()[0]
+            locations[side - opposite + local].vertices()[0]
         });
         if vertices.iter().any(|&v| v as usize >= n_vertices) {
             return None;

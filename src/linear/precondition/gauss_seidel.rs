@@ -205,7 +205,7 @@ impl GaussSeidel {
 
     /// A forward iteration from zero: sets `x`, and `r = b - A x` on free unknowns, zero on fixed ones.
     pub fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
-        sum_chunks_of_two(x, r, |range, x, r| {
+        sum_chunks_of_two(x, r, 1, |range, x, r| {
             let chunk = &self.chunks[range.start / CHUNK];
             let equations = b[range.clone()].iter().zip(&self.inverse_diagonal[range]);
             for (k, (&b, &inverse)) in equations.enumerate() {
@@ -239,7 +239,7 @@ impl GaussSeidel {
                 r[usize::from(k)] -= a * old[j as usize];
             }
         });
-        sum_chunks_of_two(x, r, |range, x, r| {
+        sum_chunks_of_two(x, r, 1, |range, x, r| {
             let chunk = &self.chunks[range.start / CHUNK];
             for (k, &inverse) in self.inverse_diagonal[range].iter().enumerate().rev() {
                 let first = r[k] + chunk.added.get(k).map_or(0.0, |added| added * x[k]);

@@ -14,7 +14,7 @@ use super::facet_mean_form::diagonal;
 use super::mixed_block::{BlockFactors, BlockSolver, MixedBlock};
 use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
-use crate::algebra::{NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix, Support};
+use crate::algebra::{DofLocation, NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix};
 use crate::linear::direct::FactorError;
 use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups};
 use crate::real::Real;
@@ -36,8 +36,8 @@ pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     space: CrouzeixRaviartSpace,
     /// The preconditioner of the stiffness on Crouzeix-Raviart functions.
     facet_means_solver: Box<dyn FacetMeansSolver<T> + 'a>,
-    /// The support of each unknown.
-    supports: &'a [Support],
+    /// The location of each unknown.
+    locations: &'a [DofLocation],
     /// Whether an unknown is fixed.
     fixed: Vec<bool>,
     /// Whether the values on each side are free.
@@ -100,39 +100,45 @@ impl<T: Real> FacetMeansSolver<T> for Multigrid<'_, T> {
 }
 
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
-    /// The preconditioner of `matrix`, which contains the assembled entries of `penalised`; `None` if the unknowns
-    /// are not those of discontinuous linear functions, if cells are coupled by more than facet means, or if
-    /// a support has a vertex that `level` does not have.
+    /// The preconditioner of `matrix`, which contains the assembled entries of `penalised`; `None` if `penalised` is no
+    /// penalty on jumps of means of discontinuous linear functions alone, or if
+    /// a location has a vertex that `level` does not have.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
         penalised: &PenalisedMatrix<T>,
-        supports: &'a [Support],
+        locations: &'a [DofLocation],
         level: &'a P1Level<T>,
     ) -> Option<Self> {
         let multigrid = |penalties: &SidePenalties<T>, space: &CrouzeixRaviartSpace| {
-            let prolongation = space.prolongation(penalties, supports, level.size())?;
+            let prolongation = space.prolongation(penalties, locations, level.size())?;
             let stiffness = Cow::Owned(space.matrix(penalties, penalised));
             let multigrid = Multigrid::of_element(stiffness, prolongation, level, 1);
             Some(Box::new(multigrid) as Box<dyn FacetMeansSolver<T> + 'a>)
         };
         let factors = Box::new(BlockFactors::new());
-        Self::with_solvers(matrix, penalised, (supports, level.size()), multigrid, factors)
+        Self::with_solvers(matrix, penalised, (locations, level.size()), multigrid, factors)
     }
 
     /// The preconditioner with given solvers for Crouzeix-Raviart functions and for the mixed block; all vertices
-    /// of supports must be less than `n_vertices`. `None` as for [`MeanJumpSplitting::new`], or if there is no solver
+    /// of locations must be less than `n_vertices`. `None` as for [`MeanJumpSplitting::new`], or if there is no solver
     /// for Crouzeix-Raviart functions.
     pub fn with_solvers(
         matrix: &'a SparseMatrix<T>,
         penalised: &PenalisedMatrix<T>,
-        (supports, n_vertices): (&'a [Support], usize),
+        (locations, n_vertices): (&'a [DofLocation], usize),
         facet_means_solver: impl FnOnce(
             &SidePenalties<T>,
             &CrouzeixRaviartSpace,
         ) -> Option<Box<dyn FacetMeansSolver<T> + 'a>>,
         block_solver: Box<dyn BlockSolver<T> + 'a>,
     ) -> Option<Self> {
-        let penalties = SidePenalties::new(penalised, supports)?;
+        let penalties = SidePenalties::new(penalised)?;
+        // the vertices of the facet of a mean, or the vertex of a value
+        let length = if penalties.are_means { penalties.cell_size - 1 } else { 1 };
+        let has_length = |location: &DofLocation| location.vertices().len() == length;
+        if locations.len() != penalised.size() || !locations.iter().all(has_length) {
+            return None;
+        }
         let diagonal = diagonal(penalised, &penalties);
         let zero = T::lit(0.0);
         let n = matrix.size();
@@ -147,7 +153,7 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
             diagonal,
             space,
             facet_means_solver,
-            supports,
+            locations,
             fixed: vec![false; n],
             states: vec![SideState::Free; n],
             fixed_facets: vec![true; n_facets],
@@ -275,7 +281,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         self.fixed_vertices.fill(false);
         if !self.penalties.are_means {
             for i in (0..fixed.len()).filter(|&i| fixed[i]) {
-                for &v in self.supports[i].vertices() {
+                for &v in self.locations[i].vertices() {
                     self.fixed_vertices[v as usize] = true;
                 }
             }

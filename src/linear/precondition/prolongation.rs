@@ -1,6 +1,6 @@
 //! Prolongations from coarse to fine functions, and their transposes.
 
-use crate::algebra::{RectangularMatrix, Support, sort_by_column};
+use crate::algebra::{DofLocation, RectangularMatrix, sort_by_column};
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
@@ -98,10 +98,10 @@ impl<T: Real> Prolongation<T> {
     }
 
     /// The prolongation of conforming linear functions to the unknowns of another element, each of which
-    /// is the mean of the values at the vertices of its support; `None` if a support is empty or has a
+    /// is the mean of the values at the vertices of its location; `None` if a location is empty or has a
     /// vertex that is not less than `n_vertices`.
-    pub(crate) fn to_element(supports: &[Support], n_vertices: usize) -> Option<Self> {
-        let rows = rows_of_means(supports.iter().map(Support::vertices), n_vertices)?;
+    pub(crate) fn to_element(locations: &[DofLocation], n_vertices: usize) -> Option<Self> {
+        let rows = rows_of_means(locations.iter().map(DofLocation::vertices), n_vertices)?;
         Some(Self::from_weights(rows, n_vertices))
     }
 
@@ -310,10 +310,10 @@ mod tests {
 
     /// Values at one vertex each, and a mean over two vertices.
     #[test]
-    fn unknowns_of_an_element_are_means_over_the_vertices_of_their_supports() {
+    fn unknowns_of_an_element_are_means_over_the_vertices_of_their_locations() {
         let vertices: [&[u32]; 6] = [&[3], &[1], &[0], &[3], &[3], &[0, 1]];
-        let supports: Vec<Support> = vertices.map(|v| Support::new(Some(0), v)).to_vec();
-        let prolongation = Prolongation::<f64>::to_element(&supports, 4).unwrap();
+        let locations: Vec<DofLocation> = vertices.map(|v| DofLocation::new(Some(0), v)).to_vec();
+        let prolongation = Prolongation::<f64>::to_element(&locations, 4).unwrap();
         assert_eq!((prolongation.n_fine(), prolongation.n_coarse()), (6, 4));
         let mut coarse = [0.0; 4];
         prolongation.restrict(&[1.0, 2.0, 4.0, 8.0, 16.0, 32.0], &mut coarse);
@@ -325,6 +325,6 @@ mod tests {
         let mut fixed = [false; 4];
         prolongation.fix_covered(&[true, true, false, true, true, true], &mut fixed);
         assert_eq!(fixed, [false, true, true, true]);
-        assert!(Prolongation::<f64>::to_element(&supports, 3).is_none());
+        assert!(Prolongation::<f64>::to_element(&locations, 3).is_none());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::cell_gauss_seidel::{CellGaussSeidel, CellSmoother};
 use super::gauss_seidel::GaussSeidel;
-use crate::algebra::{SparseMatrix, Support};
+use crate::algebra::{DofLocation, SparseMatrix};
 use crate::element::MAX_BASIS;
 use crate::linear::direct::FactorError;
 use crate::real::Real;
@@ -77,22 +77,22 @@ impl Smoother {
     }
 }
 
-/// The number of unknowns of a cell, from the supports of all unknowns: one if no unknown belongs to a single cell.
+/// The number of unknowns of a cell, from the locations of all unknowns: one if no unknown belongs to a single cell.
 /// If every unknown belongs to a cell: the number `n` of unknowns at the beginning of the list that belong to the cell
 /// of the first unknown, provided that `n` is at most [`MAX_BASIS`] and the list consists of groups of `n` consecutive
 /// unknowns, each group with one cell. `None` for every other list, and for the empty list.
 ///
 /// The function does not check that two groups belong to different cells.
-pub(crate) fn unknowns_per_cell(supports: &[Support]) -> Option<usize> {
-    let first = supports.first()?.cell();
+pub(crate) fn unknowns_per_cell(locations: &[DofLocation]) -> Option<usize> {
+    let first = locations.first()?.cell();
     if first.is_none() {
-        return supports.iter().all(|p| p.cell().is_none()).then_some(1);
+        return locations.iter().all(|p| p.cell().is_none()).then_some(1);
     }
-    let size = supports.iter().take_while(|p| p.cell() == first).count();
-    let is_one_cell = |chunk: &[Support]| {
+    let size = locations.iter().take_while(|p| p.cell() == first).count();
+    let is_one_cell = |chunk: &[DofLocation]| {
         chunk.len() == size
             && chunk[0].cell().is_some()
             && chunk.iter().all(|p| p.cell() == chunk[0].cell())
     };
-    (size <= MAX_BASIS && supports.chunks(size).all(is_one_cell)).then_some(size)
+    (size <= MAX_BASIS && locations.chunks(size).all(is_one_cell)).then_some(size)
 }

@@ -1,7 +1,7 @@
 //! Mesh entities that can be in contact.
 
 /// A cell, or a facet by its number in a cell.
-pub(crate) type Place = (usize, Option<usize>);
+pub(crate) type CellOrFacet = (usize, Option<usize>);
 
 /// A mesh entity that can be in contact: a cell under an obstacle, or a facet of the contact
 /// boundary.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::entity::ContactEntity;
 use crate::assemble::cut_simplices::{CutRule, in_space};
-use crate::assemble::space::{Space, data};
+use crate::assemble::space::{Space, checks};
 use crate::error::Error;
 use crate::parallel::cells;
 use crate::problem::Exact;
@@ -82,7 +82,7 @@ impl<const D: usize> Space<'_, D> {
             },
         }
         if let Some((density, x)) = not_finite {
-            data::finite(density, "exact multiplier", &x, entity.cell)?;
+            checks::finite(density, "exact multiplier", &x, entity.cell)?;
         }
         Ok(found)
     }

@@ -1,6 +1,6 @@
 //! Errors of multipliers and contact sets, in terms that do not depend on the unknowns of a scheme.
 //!
-//! The functions use the supports of unknowns only (a vertex, a facet, an edge), so that schemes
+//! The functions use the locations of unknowns only (a vertex, a facet, an edge), so that schemes
 //! with different unknowns can be compared.
 
 mod contact_set;
@@ -11,7 +11,7 @@ mod entity;
 mod exact_contact;
 mod free_boundary;
 mod multiplier_density;
-mod multiplier_parts;
+mod multiplier_shares;
 mod nodal_multipliers;
 mod point_grid;
 
@@ -28,7 +28,7 @@ use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::BoundaryPart;
+use crate::mesh::BoundaryCondition;
 use crate::parallel::cells;
 use crate::real::Point;
 use entity::ContactEntity;
@@ -207,7 +207,7 @@ impl<const D: usize> Space<'_, D> {
                 .map(|cell| ContactEntity { cell, facet: None })
                 .collect();
         }
-        let contact = self.facets_of(BoundaryPart::Contact);
+        let contact = self.facets_of(BoundaryCondition::Contact);
         contact.map(|(cell, local)| ContactEntity { cell, facet: Some(local) }).collect()
     }
 
@@ -215,7 +215,7 @@ impl<const D: usize> Space<'_, D> {
     pub(crate) fn dirichlet_groups(&self) -> Vec<Option<usize>> {
         let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
         let rank = |group: usize| self.data.dirichlet_rank[group];
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Dirichlet) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
             for v in self.mesh.facet_vertices(cell, local) {
                 let old = &mut given[v as usize];
                 *old = old.filter(|&old| rank(old) <= rank(group)).or(Some(group));
@@ -248,19 +248,19 @@ impl<const D: usize> Space<'_, D> {
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Vec<bool> {
-        // the supports where some unknown is in contact: vertices, and others sorted by their vertices
+        // the locations where some unknown is in contact: vertices, and others sorted by their vertices
         let touches = |&k: &usize| solution.contact[k] != Contact::Inactive;
         let mut vertices = vec![false; self.mesh.vertices().len()];
-        let mut supports: Vec<&[u32]> = Vec::new();
+        let mut locations: Vec<&[u32]> = Vec::new();
         for k in (0..inequality.size()).filter(touches) {
-            match inequality.supports[k].vertices() {
+            match inequality.locations[k].vertices() {
                 _ if !inequality.bounds[k].is_inequality() => {}
                 &[v] => vertices[v as usize] = true,
-                several => supports.push(several),
+                several => locations.push(several),
             }
         }
-        supports.sort_unstable();
-        supports.dedup();
+        locations.sort_unstable();
+        locations.dedup();
         let given = self.dirichlet_groups();
         let mut largest = [solution.values.iter().map(|u| u.abs()).fold(0.0, f64::max)];
         if let Some(distribution) = inequality.distribution() {
@@ -268,16 +268,16 @@ impl<const D: usize> Space<'_, D> {
         }
         let slack = largest[0] * TOUCHING.max(64.0 * solution.precision.epsilon());
         let support_touches = |entity: ContactEntity, unknown: usize| {
-            let support = inequality.supports[unknown].vertices();
-            let groups = support.iter().map(|&v| given[v as usize]);
+            let location = inequality.locations[unknown].vertices();
+            let groups = location.iter().map(|&v| given[v as usize]);
             let rank = |group: &usize| self.data.dirichlet_rank[*group];
             let group = groups.clone().flatten().min_by_key(rank);
             if let Some(group) = group.filter(|_| groups.clone().all(|g| g.is_some())) {
-                self.datum_touches(entity, group, support, slack)
+                self.datum_touches(entity, group, location, slack)
             } else {
-                match support {
+                match location {
                     &[v] => vertices[v as usize],
-                    several => supports.binary_search(&several).is_ok(),
+                    several => locations.binary_search(&several).is_ok(),
                 }
             }
         };
@@ -292,17 +292,17 @@ impl<const D: usize> Space<'_, D> {
         cells::map(entities.len(), &states).concat()
     }
 
-    /// Whether the Dirichlet datum of a boundary group at the barycentre of a support differs from a bound
+    /// Whether the Dirichlet datum of a boundary group at the barycentre of a location differs from a bound
     /// on an entity by at most the slack.
     fn datum_touches(
         &self,
         entity: ContactEntity,
         group: usize,
-        support: &[u32],
+        location: &[u32],
         slack: f64,
     ) -> bool {
         let corner = |&v: &u32| self.mesh.vertices()[v as usize];
-        let x = support.iter().map(corner).sum::<Point<D>>() / support.len() as f64;
+        let x = location.iter().map(corner).sum::<Point<D>>() / location.len() as f64;
         let region = self.mesh.region(entity.cell);
         let contact = entity.facet.and_then(|local| self.mesh.boundary_group(entity.cell, local));
         let gap = contact.and_then(|group| self.data.gap.of(group));

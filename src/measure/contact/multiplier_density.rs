@@ -42,7 +42,7 @@ impl<const D: usize> Space<'_, D> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
         let of_unknowns = self.nodal_multipliers(inequality, solution)?;
         for (unknown, multiplier) in of_unknowns.iter().enumerate().filter(|(_, m)| **m != 0.0) {
-            let around = inequality.supports[unknown].vertices();
+            let around = inequality.locations[unknown].vertices();
             let share = multiplier / around.len() as f64;
             around.iter().for_each(|&v| multipliers[v as usize] += share);
         }

@@ -1,9 +1,9 @@
 //! The multipliers of unknowns that are shown: contact forces where they are known.
 
-use crate::algebra::{Inequality, Support};
+use crate::algebra::{DofLocation, Inequality};
 use crate::assemble::space::Space;
 use crate::inequality::{ContactForces, Solution};
-use crate::mesh::BoundaryPart;
+use crate::mesh::BoundaryCondition;
 use crate::parallel::vectors::collect;
 
 impl<const D: usize> Space<'_, D> {
@@ -17,7 +17,7 @@ impl<const D: usize> Space<'_, D> {
         solution: &Solution<f64>,
     ) -> Option<Vec<f64>> {
         let forces = ContactForces::of(inequality, solution);
-        let on_data = self.on_weak_data(&inequality.supports);
+        let on_data = self.on_weak_data(&inequality.locations);
         let counts = |i: usize| !on_data.get(i).is_some_and(|&is_left_out| is_left_out);
         let have_digits = forces.have_digits(inequality, solution, counts);
         let value = |i: usize| if counts(i) { forces.values[i] } else { 0.0 };
@@ -25,22 +25,22 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// By unknown whether its node is on a facet with weakly imposed Dirichlet data; empty without such data.
-    fn on_weak_data(&self, supports: &[Support]) -> Vec<bool> {
-        if self.pins || !self.mesh.has_part(BoundaryPart::Dirichlet) {
+    fn on_weak_data(&self, locations: &[DofLocation]) -> Vec<bool> {
+        if self.pins || !self.mesh.has_condition(BoundaryCondition::Dirichlet) {
             return Vec::new();
         }
         let mut vertices = vec![false; self.mesh.vertices().len()];
         let mut others: Vec<&[u32]> = Vec::new();
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+        for (cell, local) in self.facets_of(BoundaryCondition::Dirichlet) {
             for i in self.nodes_on(local) {
-                match supports[self.dofs.of(cell, i)].vertices() {
+                match locations[self.dofs.of(cell, i)].vertices() {
                     &[v] => vertices[v as usize] = true,
                     several => others.push(several),
                 }
             }
         }
         others.sort_unstable();
-        collect(supports.len(), |i| match supports[i].vertices() {
+        collect(locations.len(), |i| match locations[i].vertices() {
             &[v] => vertices[v as usize],
             several => others.binary_search(&several).is_ok(),
         })

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::instances::compiled;
-use crate::mesh::boundary::{BoundaryFacet, BoundaryPart};
+use crate::mesh::boundary::{BoundaryCondition, BoundaryFacet};
 use crate::mesh::error::MeshError;
 use crate::mesh::groups::Groups;
 use crate::mesh::simplicial::Mesh;
@@ -26,18 +26,18 @@ pub struct BoxDomain<const D: usize> {
     /// Highest corner.
     pub upper: Point<D>,
     /// Part of the sides `x_k = lower_k` and `x_k = upper_k`, for each axis `k`.
-    pub sides: [[BoundaryPart; 2]; D],
+    pub sides: [[BoundaryCondition; 2]; D],
 }
 
 impl<const D: usize> BoxDomain<D> {
     /// The box between two corners, with the part of the sides `x_k = lower_k` and `x_k = upper_k`
     /// for each axis `k`.
-    pub fn new(lower: Point<D>, upper: Point<D>, sides: [[BoundaryPart; 2]; D]) -> Self {
+    pub fn new(lower: Point<D>, upper: Point<D>, sides: [[BoundaryCondition; 2]; D]) -> Self {
         Self { lower, upper, sides }
     }
     /// The box with Dirichlet data on every side.
     pub fn dirichlet(lower: Point<D>, upper: Point<D>) -> Self {
-        Self::new(lower, upper, [[BoundaryPart::Dirichlet; 2]; D])
+        Self::new(lower, upper, [[BoundaryCondition::Dirichlet; 2]; D])
     }
     /// The cube `(-half, half)^D` with Dirichlet data on every side.
     pub fn centred(half: f64) -> Self {
@@ -45,7 +45,7 @@ impl<const D: usize> BoxDomain<D> {
     }
     /// Sets the part of one side (`end` 0 for the lower, 1 for the upper one).
     #[must_use]
-    pub fn side(mut self, axis: usize, end: usize, part: BoundaryPart) -> Self {
+    pub fn side(mut self, axis: usize, end: usize, part: BoundaryCondition) -> Self {
         self.sides[axis][end] = part;
         self
     }
@@ -54,7 +54,7 @@ impl<const D: usize> BoxDomain<D> {
     pub fn above_contact() -> Self {
         let mut lower = Point::repeat(-1.0);
         lower[D - 1] = 0.0;
-        Self::dirichlet(lower, Point::repeat(1.0)).side(D - 1, 0, BoundaryPart::Contact)
+        Self::dirichlet(lower, Point::repeat(1.0)).side(D - 1, 0, BoundaryCondition::Contact)
     }
 }
 
@@ -73,7 +73,7 @@ fn paths<const D: usize>() -> Vec<[usize; D]> {
             })
             .collect();
     }
-    paths.into_iter().map(|p| tabulate(|k| p[k])).collect()
+    paths.into_iter().map(|p| array_of(|k| p[k])).collect()
 }
 
 impl<const D: usize> BoxDomain<D> {
@@ -82,7 +82,7 @@ impl<const D: usize> BoxDomain<D> {
     pub fn counts(&self, level: usize) -> [usize; D] {
         let side = |k: usize| self.upper[k] - self.lower[k];
         let shortest = (0..D).map(side).fold(f64::INFINITY, f64::min);
-        tabulate(|k| (side(k) / shortest * level as f64).round() as usize)
+        array_of(|k| (side(k) / shortest * level as f64).round() as usize)
     }
 }
 
@@ -136,7 +136,7 @@ impl<const D: usize> Mesh<D> {
             .map(|v| Point::from_fn(|k, _| coordinate(k, v / strides[k] % (counts[k] + 1))))
             .collect();
         let (cells, boundary) = cells_and_boundary(domain, counts, strides, &paths);
-        let is_supported = boundary.iter().any(|f| f.part == BoundaryPart::Dirichlet);
+        let is_supported = boundary.iter().any(|f| f.condition == BoundaryCondition::Dirichlet);
         let side = |k: usize| (SIDES[k].to_owned(), domain.sides[k / 2][k % 2]);
         let groups = Arc::new(Groups::of_boundary((0..2 * D).map(side)));
         let cell_regions = Vec::new();
@@ -170,7 +170,7 @@ fn cells_and_boundary<const D: usize>(
             let facet = |local: usize, axis: usize, end: usize| BoundaryFacet {
                 cell,
                 local: local as u8,
-                part: domain.sides[axis][end],
+                condition: domain.sides[axis][end],
                 group: (2 * axis + end) as u16,
             };
             if index[first] + 1 == counts[first] {

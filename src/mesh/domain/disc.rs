@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_3;
 
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::instances::compiled;
-use crate::mesh::boundary::BoundaryPart;
+use crate::mesh::boundary::BoundaryCondition;
 use crate::mesh::error::MeshError;
 use crate::mesh::part::extent::Extent;
 use crate::mesh::refine::Refinement;
@@ -50,8 +50,8 @@ impl<const D: usize> Mesh<D> {
         }
         let boundary: Vec<_> = (0..6 * n)
             .map(|j| TaggedFacet {
-                vertices: tabulate(|end| number(n, j + end)),
-                part: BoundaryPart::Dirichlet,
+                vertices: array_of(|end| number(n, j + end)),
+                condition: BoundaryCondition::Dirichlet,
             })
             .collect();
         Self::new(vertices, cells, &boundary)

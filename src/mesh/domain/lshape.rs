@@ -1,9 +1,9 @@
 //! The L-shaped domain.
 
 use super::disc::check_shape;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::instances::compiled;
-use crate::mesh::boundary::BoundaryPart;
+use crate::mesh::boundary::BoundaryCondition;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::TaggedFacet;
@@ -39,8 +39,8 @@ impl<const D: usize> Mesh<D> {
         }
         let mut boundary = Vec::with_capacity(8 * n);
         let mut side = |a: u32, b: u32| {
-            let vertices = tabulate(|k| if k == 0 { a } else { b });
-            boundary.push(TaggedFacet { vertices, part: BoundaryPart::Dirichlet });
+            let vertices = array_of(|k| if k == 0 { a } else { b });
+            boundary.push(TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet });
         };
         for k in 0..2 * n {
             // the grid lines of the sides that face right and down: the quadrant moves half of each inwards

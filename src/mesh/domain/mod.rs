@@ -1,4 +1,4 @@
-//! Built-in domains.
+//! Domains: built in, or the mesh of a file.
 
 mod boxes;
 mod disc;
@@ -8,16 +8,16 @@ pub use boxes::BoxDomain;
 #[cfg(feature = "problem-files")]
 pub(crate) use boxes::SIDES;
 
-use super::boundary::BoundaryPart;
+use super::boundary::BoundaryCondition;
 use super::error::MeshError;
 use super::part::{Layers, Part};
 use super::refine::Refinement;
 use super::simplicial::Mesh;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::instances::compiled;
 use crate::real::Point;
 
-/// A built-in domain. All the boundary of an L-shape and of a disc is Dirichlet.
+/// A domain. All the boundary of an L-shape and of a disc is Dirichlet.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Domain<const D: usize> {
@@ -33,6 +33,8 @@ pub enum Domain<const D: usize> {
         /// The radius.
         radius: f64,
     },
+    /// A mesh, which covers its domain: level `n` is its `n`-th uniform refinement.
+    Mesh(Mesh<D>),
 }
 
 impl<const D: usize> From<BoxDomain<D>> for Domain<D> {
@@ -41,37 +43,62 @@ impl<const D: usize> From<BoxDomain<D>> for Domain<D> {
     }
 }
 
+impl<const D: usize> From<Mesh<D>> for Domain<D> {
+    fn from(mesh: Mesh<D>) -> Self {
+        Domain::Mesh(mesh)
+    }
+}
+
 impl<const D: usize> Domain<D> {
+    /// Whether the domain is a mesh, so that levels count refinements, from 0.
+    pub fn is_mesh(&self) -> bool {
+        matches!(self, Domain::Mesh(_))
+    }
     /// The smallest box that contains the domain; for a box that box, with the parts of its sides.
     pub fn bounding_box(&self) -> BoxDomain<D> {
         match *self {
+            Domain::Mesh(ref mesh) => {
+                let corners = |of: fn(&Point<D>, &Point<D>) -> Point<D>| {
+                    mesh.vertices().iter().copied().reduce(|a, b| of(&a, &b))
+                };
+                let (lower, upper) = (corners(Point::inf), corners(Point::sup));
+                BoxDomain::dirichlet(
+                    lower.unwrap_or_else(Point::zeros),
+                    upper.unwrap_or_else(Point::zeros),
+                )
+            }
             Domain::Box(ref domain) => domain.clone(),
             Domain::LShape { half } => BoxDomain::centred(half),
             Domain::Disc { radius } => BoxDomain::centred(radius),
         }
     }
-    /// The length that a level subdivides: the shortest side, or the radius of a disc.
+    /// The length that a level subdivides: the shortest side, or the radius of a disc; of a mesh the largest cell
+    /// diameter, which each level halves.
     pub fn length(&self) -> f64 {
         match *self {
+            Domain::Mesh(ref mesh) => mesh.mesh_size(),
             Domain::Box(ref domain) => (domain.upper - domain.lower).min(),
             Domain::LShape { half } => half,
             Domain::Disc { radius } => radius,
         }
     }
-    /// A lower bound of the distance from a point along any axis to the boundary; negative outside.
+    /// A lower bound of the distance from a point along any axis to the boundary; negative outside. On a mesh none is
+    /// computed: negative infinity.
     pub fn depth(&self, x: &Point<D>) -> f64 {
         let in_box = |b: &BoxDomain<D>| (x - b.lower).min().min((b.upper - x).min());
         match self {
             Domain::Box(domain) => in_box(domain),
             Domain::LShape { .. } => in_box(&self.bounding_box()).min((-x[0]).max(x[1 % D])),
             Domain::Disc { radius } => radius - x.norm(),
+            Domain::Mesh(_) => f64::NEG_INFINITY,
         }
     }
     /// Whether the boundary has a facet in this part.
-    pub fn has_part(&self, part: BoundaryPart) -> bool {
+    pub fn has_condition(&self, part: BoundaryCondition) -> bool {
         match self {
             Domain::Box(domain) => domain.sides.iter().flatten().any(|&side| side == part),
-            _ => part == BoundaryPart::Dirichlet,
+            Domain::Mesh(mesh) => mesh.has_condition(part),
+            _ => part == BoundaryCondition::Dirichlet,
         }
     }
 
@@ -84,6 +111,7 @@ impl<const D: usize> Domain<D> {
             }
             // six triangles around the centre, two in each of three squares
             Domain::LShape { .. } | Domain::Disc { .. } => 6.0 * (level as f64).powi(2),
+            Domain::Mesh(mesh) => mesh.n_cells() as f64 * 2_f64.powi(D as i32).powf(level as f64),
         }
     }
     /// Approximate lengths of the cells of a level along each axis.
@@ -91,19 +119,23 @@ impl<const D: usize> Domain<D> {
         match self {
             Domain::Box(domain) => {
                 let counts = domain.counts(level);
-                tabulate(|k| (domain.upper[k] - domain.lower[k]) / counts[k] as f64)
+                array_of(|k| (domain.upper[k] - domain.lower[k]) / counts[k] as f64)
             }
+            Domain::Mesh(_) => [self.length() / 2_f64.powf(level as f64); D],
             _ => [self.length() / level as f64; D],
         }
     }
     /// The mesh with `level` subdivisions of [`Domain::length`]. Up to numbering, the mesh of an even
-    /// level is [`Domain::refine`] of the mesh of half the level.
+    /// level is [`Domain::refine`] of the mesh of half the level. Of a mesh the refinement with the number `level`.
     ///
     /// # Errors
     /// [`MeshError::Parameter`] for a level of zero, for a domain without volume and for one that does
     /// not exist in this dimension; [`MeshError::TooLarge`] if there would be too many cells.
     pub fn mesh(&self, level: usize) -> Result<Mesh<D>, MeshError> {
         match *self {
+            Domain::Mesh(ref mesh) => {
+                (0..level).try_fold(mesh.clone(), |mesh, _| Ok(mesh.refine()?.0))
+            }
             Domain::Box(ref domain) => Mesh::kuhn_box(domain, domain.counts(level)),
             Domain::LShape { half } => Mesh::l_shape(half, level),
             Domain::Disc { radius } => Mesh::disc(radius, level),

@@ -4,7 +4,7 @@ use super::contents::{Contents, Membership, Simplices};
 use super::element_types::SIMPLICES;
 use super::error::{GmshError, GmshErrorKind, GmshWarning};
 use super::node_index::NodeIndex;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::input::excerpt;
 use crate::mesh::error::MeshError;
 use crate::mesh::overlap::lie_on_others;
@@ -284,7 +284,7 @@ fn warnings<const D: usize>(contents: &Contents, mesh: &Mesh<D>) -> Vec<GmshWarn
     let mut warnings: Vec<GmshWarning> = straightened(D).chain(straightened(D - 1)).collect();
     let facets = mesh.boundary().iter().map(|f| {
         let mut vertices = mesh.facet_vertices(f.cell as usize, usize::from(f.local));
-        tabulate(|_| vertices.next().expect("a facet has as many vertices as dimensions"))
+        array_of(|_| vertices.next().expect("a facet has as many vertices as dimensions"))
     });
     let points: Vec<Point<D>> = mesh.vertices().to_vec();
     let coincident = lie_on_others(&points, &facets.collect::<Vec<[u32; D]>>());

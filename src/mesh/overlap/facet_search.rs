@@ -1,14 +1,14 @@
 //! Search for the facets that a point lies in, and for facets of the boundary that lie on each other: between parts
 //! of a domain that were meshed apart, each with nodes of its own, or at a slit.
 
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::real::Point;
 
 /// Points of facets that lie on each other are nearer than this share of the extent of all facets.
 const COINCIDENT: f64 = 1e-8;
 
 /// A place of a grid, whose boxes have two to the first number as their size.
-type Place<const D: usize> = (i32, [i64; D]);
+type GridBox<const D: usize> = (i32, [i64; D]);
 
 /// Facets by place: each is listed for the boxes that it touches of the grid whose boxes are as large as it is,
 /// which are few, whatever the sizes of the others.
@@ -19,7 +19,7 @@ pub(crate) struct FacetSearch<const D: usize> {
     /// minus the share.
     near: f64,
     share: f64,
-    places: Vec<(Place<D>, usize)>,
+    places: Vec<(GridBox<D>, usize)>,
     sizes: Vec<i32>,
 }
 
@@ -39,7 +39,7 @@ impl<const D: usize> FacetSearch<D> {
             let ends = [least.add_scalar(-near), most.add_scalar(near)];
             let ends = ends.map(|end| found.place(&end, size));
             for corner in 0..1 << D {
-                found.places.push(((size, tabulate(|k| ends[corner >> k & 1][k])), number));
+                found.places.push(((size, array_of(|k| ends[corner >> k & 1][k])), number));
             }
         }
         found.places.sort_unstable();
@@ -51,7 +51,7 @@ impl<const D: usize> FacetSearch<D> {
 
     /// The box of a point in the grid of a size.
     fn place(&self, x: &Point<D>, size: i32) -> [i64; D] {
-        tabulate(|k| ((x[k] - self.lower[k]) / f64::from(size).exp2()).floor() as i64)
+        array_of(|k| ((x[k] - self.lower[k]) / f64::from(size).exp2()).floor() as i64)
     }
 
     /// The facets that a point lies in.
@@ -85,7 +85,7 @@ pub(in crate::mesh) fn lie_on_others<const D: usize>(
     vertices: &[Point<D>],
     facets: &[[u32; D]],
 ) -> Vec<bool> {
-    let corners = facets.iter().map(|facet| tabulate(|k| vertices[facet[k] as usize]));
+    let corners = facets.iter().map(|facet| array_of(|k| vertices[facet[k] as usize]));
     let search = FacetSearch::new(corners.collect(), COINCIDENT);
     let lies_on_other = |facet: usize| {
         let middle = search.corners[facet].iter().sum::<Point<D>>() / D as f64;

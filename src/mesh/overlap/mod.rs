@@ -10,7 +10,7 @@ use super::boundary::BoundaryFacet;
 use super::error::MeshError;
 use super::facets::{Neighbour, Neighbours};
 use super::geometry::{CellGeometry, describe_point};
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::real::Point;
 
 /// Refuses two cells on the same side of the facet that they share. `is_positive` has the sign of the
@@ -66,7 +66,7 @@ pub(super) fn check_overlaps<const D: usize>(
     let geometry = |c: usize| CellGeometry::new(|k| vertices[cell(c)[k] as usize]);
     let corners = |f: &BoundaryFacet| -> [Point<D>; D] {
         let (cell, local) = (cell(f.cell as usize), f.local as usize);
-        tabulate(|k| sheared(&vertices[cell[k + usize::from(k >= local)] as usize]))
+        array_of(|k| sheared(&vertices[cell[k + usize::from(k >= local)] as usize]))
     };
     let facets: Vec<_> = boundary.iter().map(corners).collect();
     let direction = Point::<D>::from_fn(|k, _| DIRECTION[k]);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::instances::compiled;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
@@ -29,7 +29,7 @@ impl<const D: usize> Mesh<D> {
         }
         let barycentre = |cell: usize| {
             let x = self.barycentre(cell);
-            tabulate(|k| x[k])
+            array_of(|k| x[k])
         };
         let barycentres: Vec<[f64; D]> = (0..n_cells).map(barycentre).collect();
         let mut cells: Vec<u32> = (0..n_cells as u32).collect();

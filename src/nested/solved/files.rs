@@ -138,7 +138,7 @@ impl<const D: usize> Solved<'_, D> {
                 file =
                     file.error_from_in_cells(move |cell, x| reference.value_within(own, cell, x));
             }
-            (None, Some(exact)) => file = file.error_from(&*exact.value),
+            (None, Some(exact)) => file = file.error_from_in_cells(|_, x| exact.value.at(x)),
             (None, None) => {}
         }
         if problem.has_obstacle() {

@@ -1,7 +1,7 @@
 //! A triangle cut along the levels of a linear function on it.
 
 use super::section::PlanePoint;
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 
 /// A point with the value of the function there.
 type Valued = (PlanePoint, f64);
@@ -47,7 +47,7 @@ fn keep(polygon: &[Valued], measure: impl Fn(f64) -> f64) -> Vec<Valued> {
 
 fn crossing(a: Valued, b: Valued, level: f64) -> PlanePoint {
     let share = (level - a.1) / (b.1 - a.1);
-    tabulate(|k| a.0[k] + share * (b.0[k] - a.0[k]))
+    array_of(|k| a.0[k] + share * (b.0[k] - a.0[k]))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::section::{Corner, PlanePoint, Section, View};
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 
 /// An edge of sections, and the cells beside it with the edge's ends in each.
 pub(crate) struct Edge {
@@ -43,7 +43,7 @@ pub(crate) fn mean_jump<const D: usize>(view: &View<'_, D>, edge: &Edge) -> Opti
     let [one, other] = &edge.sides[..] else { return None };
     // Simpson's rule is exact for quadratics
     let mean = |side: &Side| {
-        let middle = tabulate(|k| 0.5 * (side.ends[0][k] + side.ends[1][k]));
+        let middle = array_of(|k| 0.5 * (side.ends[0][k] + side.ends[1][k]));
         let at = |barycentric| view.value(side.cell, barycentric);
         (at(&side.ends[0]) + 4.0 * at(&middle) + at(&side.ends[1])) / 6.0
     };

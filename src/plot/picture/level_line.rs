@@ -1,7 +1,7 @@
 //! The line on which a function changes sign.
 
 use super::section::{Corner, PlanePoint, Section};
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 
 /// Sections are cut into parts no longer than this share of the picture.
 const FINEST: f64 = 1.0 / 120.0;
@@ -84,8 +84,8 @@ fn change(
 fn between(a: Corner, b: Corner, share: f64) -> Corner {
     let mix = |x: f64, y: f64| (1.0 - share) * x + share * y;
     Corner {
-        at: tabulate(|k| mix(a.at[k], b.at[k])),
-        barycentric: tabulate(|k| mix(a.barycentric[k], b.barycentric[k])),
+        at: array_of(|k| mix(a.at[k], b.at[k])),
+        barycentric: array_of(|k| mix(a.barycentric[k], b.barycentric[k])),
     }
 }
 

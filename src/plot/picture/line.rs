@@ -5,7 +5,7 @@ use super::graph::Graph;
 use crate::arrays::map_entries;
 use crate::measure::Fields;
 use crate::mesh::Mesh;
-use crate::problem::{DataOnMesh, DatumRef, Problem};
+use crate::problem::{DataOnMesh, Datum, Problem};
 use crate::real::Point;
 
 /// Parts of a cell on which given functions are drawn as linear.
@@ -57,9 +57,9 @@ impl<'a, const D: usize> Line<'a, D> {
     }
 
     /// Segments of data that are given, by cell.
-    fn given(
+    fn given<'d>(
         &self,
-        of: &dyn Fn(usize) -> Option<DatumRef<'a, D>>,
+        of: &dyn Fn(usize) -> Option<&'d Datum<D>>,
         stroke: Stroke,
     ) -> Vec<(Stroke, [[f64; 2]; 2])> {
         let mut lines = Vec::new();
@@ -159,9 +159,8 @@ impl<'a, const D: usize> Line<'a, D> {
         }
         let exact = self.problem.exact.as_ref();
         if let Some(multiplier) = exact.and_then(|e| e.multiplier.as_ref()) {
-            graph
-                .lines
-                .extend(self.given(&|_| Some(DatumRef::Function(multiplier)), Stroke::Exact));
+            let density = Datum::Function(multiplier.clone());
+            graph.lines.extend(self.given(&|_| Some(&density), Stroke::Exact));
             graph.legend.push((Symbol::Line(Stroke::Exact), "exact density".to_owned()));
         }
         self.mark_contact(&mut graph);

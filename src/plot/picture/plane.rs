@@ -10,7 +10,7 @@ use super::panel::Panel;
 use super::section::{PlanePoint, Section, Slice, View};
 use super::trace;
 use crate::measure::Fields;
-use crate::mesh::{BoundaryPart, Mesh};
+use crate::mesh::{BoundaryCondition, Mesh};
 use crate::plot::pen::PAPER;
 use crate::plot::style::INK;
 use crate::problem::{ContactSet, Problem};
@@ -190,7 +190,7 @@ impl<'a, const D: usize> Plane<'a, D> {
     /// Whether the slice runs along the contact boundary.
     fn is_along_contact(&self) -> bool {
         let contact = self.view.mesh.boundary().iter();
-        let mut contact = contact.filter(|f| f.part == BoundaryPart::Contact);
+        let mut contact = contact.filter(|f| f.condition == BoundaryCondition::Contact);
         contact.any(|f| self.view.lies_in_slice(f.cell as usize, usize::from(f.local)))
     }
 
@@ -291,7 +291,9 @@ impl<'a, const D: usize> Plane<'a, D> {
         let mut map = self.map("multiplier");
         let density = &self.view.fields.discrete_contact.density;
         let mut facets = Vec::new();
-        for f in self.view.mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+        for f in
+            self.view.mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact)
+        {
             let (cell, local) = (f.cell as usize, usize::from(f.local));
             let ends = self.view.mesh.facet_vertices(cell, local);
             let values: Vec<f64> = ends.filter_map(|v| density[v as usize]).collect();
@@ -360,7 +362,7 @@ fn shade(map: &mut Map, name: &str, triangles: &[[(PlanePoint, f64); 3]], with_l
 /// plane, otherwise through the middle across the last coordinate.
 pub(crate) fn default_slice<const D: usize>(problem: &Problem<D>, mesh: &Mesh<D>) -> Slice {
     let corners = || {
-        let contact = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact);
+        let contact = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact);
         let vertices = contact.flat_map(|f| mesh.facet_vertices(f.cell as usize, f.local.into()));
         vertices.map(|v| &mesh.vertices()[v as usize])
     };

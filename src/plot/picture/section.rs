@@ -1,7 +1,7 @@
 //! The part of the plane that a picture shows: cells of a mesh in the plane, or the sections of
 //! cells in space by a coordinate plane.
 
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
 use crate::real::Point;
@@ -220,7 +220,7 @@ fn triangles(section: Section) -> impl Iterator<Item = Section> {
 }
 
 fn unit_corners<const D: usize>() -> Vec<[f64; 4]> {
-    (0..D + 1).map(|k| tabulate(|i| f64::from(u8::from(i == k)))).collect()
+    (0..D + 1).map(|k| array_of(|i| f64::from(u8::from(i == k)))).collect()
 }
 
 /// The simplex, or the parts between its vertices and the midpoints of its edges.
@@ -229,7 +229,7 @@ fn parts<const D: usize>(quadratic: bool) -> Vec<Vec<[f64; 4]>> {
     if !quadratic {
         return vec![v];
     }
-    let middle = |i: usize, j: usize| tabulate(|k| 0.5 * (v[i][k] + v[j][k]));
+    let middle = |i: usize, j: usize| array_of(|k| 0.5 * (v[i][k] + v[j][k]));
     let mut parts: Vec<Vec<[f64; 4]>> = (0..D + 1)
         .map(|i| (0..D + 1).map(|j| if i == j { v[i] } else { middle(i, j) }).collect())
         .collect();

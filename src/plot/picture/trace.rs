@@ -4,7 +4,7 @@ use super::axes::{CONTACT, Stroke, Symbol};
 use super::graph::Graph;
 use crate::arrays::map_entries;
 use crate::measure::Fields;
-use crate::mesh::{BoundaryPart, Mesh};
+use crate::mesh::{BoundaryCondition, Mesh};
 use crate::problem::Problem;
 use crate::real::Point;
 
@@ -20,7 +20,7 @@ pub(crate) struct Sample<const D: usize> {
 
 /// The facets of the contact boundary: cell, number in it, vertices.
 fn facets<const D: usize>(mesh: &Mesh<D>) -> Vec<(usize, usize, Vec<u32>)> {
-    let contact = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact);
+    let contact = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact);
     contact
         .map(|f| {
             let (cell, local) = (f.cell as usize, usize::from(f.local));

@@ -1,7 +1,7 @@
 //! Names and values of a problem file, held against the mesh.
 
 use crate::input::{excerpt, excerpts};
-use crate::mesh::BoundaryPart;
+use crate::mesh::BoundaryCondition;
 use crate::mesh::{Mesh, describe_point};
 use crate::problem::{BoundaryFlux, Problem};
 use crate::problem_file::error::{ProblemFileError, ProblemFileErrorKind};
@@ -82,7 +82,7 @@ pub(super) struct Checks<'s, 't, const D: usize> {
     pub problem: &'s Problem<D>,
     pub entries: &'s [Entry<D>],
     /// The boundary groups that the file names.
-    pub parts: &'s [(String, BoundaryPart)],
+    pub parts: &'s [(String, BoundaryCondition)],
     /// Where the file has the gradient of the exact solution.
     pub gradient_offset: usize,
 }
@@ -135,7 +135,7 @@ impl<const D: usize> Checks<'_, '_, D> {
         for cell in 0..mesh.n_cells() {
             let x = mesh.barycentre(cell);
             let step = DIFFERENCE * mesh.cell_diameter(cell);
-            let (value, gradient) = ((exact.value)(&x), (exact.gradient)(&x));
+            let (value, gradient) = (exact.value.at(&x), (exact.gradient)(&x));
             // what rounding does to a quotient
             let rounding = 8.0 * f64::EPSILON * value.abs() / step;
             let tolerance = AGREEMENT * gradient.norm() + rounding;
@@ -143,7 +143,7 @@ impl<const D: usize> Checks<'_, '_, D> {
                 let quotient = |step: f64| {
                     let mut beside = x;
                     beside[k] += step;
-                    ((exact.value)(&beside) - value) / step
+                    (exact.value.at(&beside) - value) / step
                 };
                 let (one, other) = (quotient(-step), quotient(step));
                 let (least, most) = (one.min(other) - tolerance, one.max(other) + tolerance);

@@ -4,15 +4,16 @@ mod check;
 
 use toml::de::DeTable;
 
+use super::contents::ProblemFile;
 use super::error::{ProblemFileError, ProblemFileErrorKind};
-use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
-use crate::arrays::tabulate;
+use crate::arrays::array_of;
 use crate::error::Error;
 use crate::input::{beginning, fingerprint};
-use crate::mesh::{BoundaryFacet, BoundaryPart, BoxDomain, Mesh, SIDES};
-use crate::problem::{Datum, Problem};
+use crate::mesh::{BoundaryCondition, BoundaryFacet, BoxDomain, Domain, Mesh, MeshError, SIDES};
+use crate::problem::{Datum, Given, Problem};
 use crate::real::Point;
+use crate::scenes::{AnyScene, Scene};
 use check::{Allowed, Checks, Entry};
 
 const KEYS: [&str; 9] =
@@ -38,7 +39,7 @@ struct Builder<'s, 't, const D: usize> {
     source: &'s Source<'t>,
     problem: Problem<D>,
     entries: Vec<Entry<D>>,
-    parts: Vec<(String, BoundaryPart)>,
+    parts: Vec<(String, BoundaryCondition)>,
     /// What is given on boundary groups without a table of their own.
     on_other_groups: Option<OnGroup>,
     /// The gaps of the problem, in their order.
@@ -51,7 +52,7 @@ struct Builder<'s, 't, const D: usize> {
 
 /// What a file gives on a boundary group.
 struct OnGroup {
-    part: BoundaryPart,
+    condition: BoundaryCondition,
     formula: Formula,
     /// Its name in the file.
     datum: String,
@@ -61,12 +62,12 @@ struct OnGroup {
 type Done<V = ()> = Result<V, ProblemFileError>;
 
 impl<'t, const D: usize> Builder<'_, 't, D> {
-    /// Reads a table of data by region; `set` puts one into the problem.
+    /// Reads a table of data by region; `of` is where the problem has them.
     fn by_region(
         &mut self,
         (name, value): (&str, &Value<'t>),
         (allowed, at_vertices): (Allowed, bool),
-        set: fn(Problem<D>, Option<&str>, Datum<D>) -> Problem<D>,
+        of: fn(&mut Problem<D>) -> &mut Given<Datum<D>>,
     ) -> Done {
         let table = self.source.table(name, value)?;
         let groups: Vec<String> = table.keys().map(|key| key.get_ref().to_string()).collect();
@@ -89,7 +90,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             };
             let region = (group != DEFAULT).then_some(&group[..]);
             let given = piecewise(&formula, level.as_ref().map(|(level, _)| level));
-            self.problem = set(std::mem::take(&mut self.problem), region, given);
+            of(&mut self.problem).give(region, given);
             let entry = |what: &str, offset, (allowed, at_vertices), formula: &Formula| Entry {
                 datum: format!("{name}.{group}{what}"),
                 group: region.map(str::to_owned),
@@ -114,16 +115,10 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         self.source.allow(table, &["lower", "upper"])?;
         let how = (Allowed::Finite, true);
         if let Some(value) = table.get("lower") {
-            self.by_region(("obstacle.lower", value), how, |p, region, psi| match region {
-                Some(region) => p.obstacle_below_in(region, psi),
-                None => Problem { lower: Some(psi), ..p },
-            })?;
+            self.by_region(("obstacle.lower", value), how, |p| &mut p.lower)?;
         }
         if let Some(value) = table.get("upper") {
-            self.by_region(("obstacle.upper", value), how, |p, region, psi| match region {
-                Some(region) => p.obstacle_above_in(region, psi),
-                None => Problem { upper: Some(psi), ..p },
-            })?;
+            self.by_region(("obstacle.upper", value), how, |p| &mut p.upper)?;
         }
         Ok(())
     }
@@ -148,17 +143,17 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let Some(kind) = table.get("kind") else {
             return Err(self.source.missing(offset, "kind", kinds));
         };
-        let part = BoundaryPart::from_name(self.source.string("kind", kind)?)
+        let part = BoundaryCondition::from_name(self.source.string("kind", kind)?)
             .ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?;
-        if BoundaryPart::from_name(group).is_some_and(|named| named != part) {
+        if BoundaryCondition::from_name(group).is_some_and(|named| named != part) {
             let expected =
                 "what the name of the group says: dirichlet, neumann and contact fix their kind";
             return Err(self.source.wrong_type("kind", kind, expected));
         }
         let (name, takes_normal) = match part {
-            BoundaryPart::Dirichlet => ("value", false),
-            BoundaryPart::Neumann => ("flux", true),
-            BoundaryPart::Contact => ("gap", true),
+            BoundaryCondition::Dirichlet => ("value", false),
+            BoundaryCondition::Neumann => ("flux", true),
+            BoundaryCondition::Contact => ("gap", true),
         };
         self.source.allow(table, &["kind", name])?;
         let variables = match takes_normal {
@@ -167,36 +162,33 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         };
         let formula = match table.get(name) {
             Some(value) => self.source.formula(name, value, &variables)?,
-            None if self.has_exact && part != BoundaryPart::Contact => {
+            None if self.has_exact && part != BoundaryCondition::Contact => {
                 let purpose = "the exact solution does not stand for data that are left out";
                 return Err(self.source.missing(offset, name, purpose));
             }
             None => Formula::Number(0.0),
         };
-        Ok(OnGroup { part, formula, datum: format!("boundary.{group}.{name}"), offset })
+        Ok(OnGroup { condition: part, formula, datum: format!("boundary.{group}.{name}"), offset })
     }
 
     /// Puts what is given on a boundary group into the problem.
     fn put_on(&mut self, group: &str, given: &OnGroup) {
-        let OnGroup { part, formula, datum, offset } = given;
-        let mut problem = std::mem::take(&mut self.problem);
-        self.problem = match part {
-            BoundaryPart::Dirichlet => problem.dirichlet_on(group, formula.datum()),
-            BoundaryPart::Contact => {
+        let OnGroup { condition: part, formula, datum, offset } = given;
+        let (problem, name) = (&mut self.problem, Some(group));
+        match part {
+            BoundaryCondition::Dirichlet => problem.dirichlet.give(name, formula.datum()),
+            BoundaryCondition::Neumann => problem.neumann.give(name, formula.flux()),
+            BoundaryCondition::Contact => {
                 self.gaps.push(formula.clone());
-                problem.signorini_on(group, formula.datum())
+                problem.gap.give(name, formula.datum());
             }
-            BoundaryPart::Neumann => {
-                problem.named.neumann.push((group.to_owned(), formula.flux()));
-                problem
-            }
-        };
+        }
         self.entries.push(Entry {
             datum: datum.clone(),
             group: Some(group.to_owned()),
             is_boundary: true,
             others: Vec::new(),
-            at_vertices: *part != BoundaryPart::Neumann,
+            at_vertices: *part != BoundaryCondition::Neumann,
             offset: *offset,
             allowed: Allowed::Finite,
             value: formula.flux(),
@@ -214,7 +206,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let (with_table, without): (Vec<_>, Vec<_>) = groups.iter().partition(|g| has_table(g));
         for names in without {
             let of_part = |name: &&String| {
-                BoundaryPart::from_name(name).is_none_or(|part| part == given.part)
+                BoundaryCondition::from_name(name).is_none_or(|part| part == given.condition)
             };
             let is_own = |name: &&String| !with_table.iter().any(|group| group.contains(name));
             let own = names.iter().filter(of_part).find(is_own);
@@ -228,13 +220,13 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
 
     /// Gives gaps that depend on the normal those of the facets of their groups.
     fn put_normals(&mut self, mesh: &Mesh<D>) {
-        for ((group, datum), formula) in self.problem.named.gap.iter_mut().zip(&self.gaps) {
+        for ((group, datum), formula) in self.problem.gap.named.iter_mut().zip(&self.gaps) {
             let groups = mesh.boundary_groups();
             let is_meant = |f: &&BoundaryFacet| groups[usize::from(f.group)].names.contains(group);
             let facets = mesh.boundary().iter().filter(is_meant).map(|f| {
                 let (cell, local) = (f.cell as usize, usize::from(f.local));
                 let vertices: Vec<u32> = mesh.facet_vertices(cell, local).collect();
-                let corners = tabulate(|k| mesh.vertices()[vertices[k] as usize]);
+                let corners = array_of(|k| mesh.vertices()[vertices[k] as usize]);
                 (corners, mesh.geometry(cell).normal(local))
             });
             *datum = formula.datum_on(facets.collect());
@@ -282,7 +274,10 @@ pub(super) fn problem<'t, const D: usize>(
     source: &Source<'t>,
     root: &DeTable<'t>,
     place: &Place,
-) -> Done<OwnProblem<D>> {
+) -> Done<ProblemFile>
+where
+    AnyScene: From<Scene<D>>,
+{
     source.allow(root, &KEYS)?;
     let name = match root.get("name") {
         Some(name) => source.string("name", name)?.into(),
@@ -304,28 +299,15 @@ pub(super) fn problem<'t, const D: usize>(
         match &**key.get_ref() {
             "coefficient" => {
                 let how = (Allowed::Positive, false);
-                builder.by_region(
-                    ("coefficient", value),
-                    how,
-                    |p, region, alpha| match region {
-                        Some(region) => p.coefficient_in(region, alpha),
-                        None => Problem { coefficient: Some(alpha), ..p },
-                    },
-                )?;
+                builder.by_region(("coefficient", value), how, |p| &mut p.coefficient)?;
             }
             "source" => {
                 let how = (Allowed::Finite, false);
-                builder.by_region(("source", value), how, |p, region, f| match region {
-                    Some(region) => p.source_in(region, f),
-                    None => Problem { source: Some(f), ..p },
-                })?;
+                builder.by_region(("source", value), how, |p| &mut p.source)?;
             }
             "reaction" => {
                 let how = (Allowed::NotNegative, false);
-                builder.by_region(("reaction", value), how, |p, region, c| match region {
-                    Some(region) => p.reaction_in(region, c),
-                    None => p.reaction(c),
-                })?;
+                builder.by_region(("reaction", value), how, |p| &mut p.reaction)?;
             }
             "obstacle" => builder.obstacles(value)?,
             "boundary" => builder.boundary(value)?,
@@ -333,13 +315,16 @@ pub(super) fn problem<'t, const D: usize>(
             _ => {}
         }
     }
-    let geometry = match place {
+    let mut fingerprints = vec![("problem", fingerprint(source.text.as_bytes()))];
+    let mut warnings = Vec::new();
+    let domain: Domain<D> = match place {
         Place::File { path, file, offset } => {
             let read = file.mesh::<D>().map_err(|e| source.mesh_error(*offset, path, e))?;
             let groups = read.mesh.boundary_groups().iter().map(|group| group.names.clone());
             builder.complete(&groups.collect::<Vec<_>>());
-            let fingerprint = file.fingerprint();
-            Geometry::File { path: path.clone(), fingerprint, read: Box::new(read) }
+            fingerprints.push(("mesh", file.fingerprint()));
+            warnings.extend(read.warnings.iter().map(|w| format!("{}: {w}", path.display())));
+            read.mesh.into()
         }
         Place::Box { corners } => {
             let [lower, upper] = [0, 1].map(|k| Point::<D>::from_fn(|axis, _| corners[k][axis]));
@@ -351,19 +336,25 @@ pub(super) fn problem<'t, const D: usize>(
                     domain = domain.side(side / 2, side % 2, *part);
                 }
             }
-            Geometry::Box(domain)
+            domain.into()
         }
     };
-    let fingerprint = fingerprint(source.text.as_bytes());
-    let mut own = OwnProblem { name, fingerprint, problem: builder.problem.clone(), geometry };
     let failed =
         |error: Error| ProblemFileError::of_file(source.path, ProblemFileErrorKind::Problem, error);
-    let mesh = own.sample_mesh().map_err(failed)?;
+    let mesh = sample_mesh(&domain).map_err(|error| failed(error.into()))?;
     builder.put_normals(&mesh);
-    own.problem.clone_from(&builder.problem);
-    let Builder { problem, entries, parts, gradient_offset, .. } = &builder;
-    let gradient_offset = *gradient_offset;
-    Checks { source, problem, entries, parts, gradient_offset }.run(&mesh)?;
-    own.problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
-    Ok(own)
+    let Builder { problem, entries, parts, gradient_offset, .. } = builder;
+    Checks { source, problem: &problem, entries: &entries, parts: &parts, gradient_offset }
+        .run(&mesh)?;
+    let mesh = problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
+    let domain = if domain.is_mesh() { mesh.into() } else { domain };
+    Ok(ProblemFile { scene: Scene::new(name, domain, problem).into(), fingerprints, warnings })
+}
+
+/// A mesh to hold the data against, of a box one with few cells, whatever its sides.
+fn sample_mesh<const D: usize>(domain: &Domain<D>) -> Result<Mesh<D>, MeshError> {
+    match domain {
+        Domain::Box(domain) => Mesh::kuhn_box(domain, domain.counts(4).map(|n| n.min(64))),
+        other => other.mesh(0),
+    }
 }

@@ -4,7 +4,7 @@ use super::evaluator::Evaluator;
 use super::samples::{BoundaryPoint, boundary};
 use super::stated;
 use super::violation::{Condition, Violation};
-use crate::mesh::{BoundaryPart, Domain};
+use crate::mesh::{BoundaryCondition, Domain};
 
 /// Error allowed in boundary conditions, relative to the scales of value and flux.
 const EXACT: f64 = 1e-8;
@@ -30,22 +30,22 @@ pub(super) fn check<const D: usize>(
 /// The condition at a point of the boundary, up to this share of the scales of value and flux.
 pub(super) fn check_at<const D: usize>(
     evaluator: &Evaluator<'_, D>,
-    &BoundaryPoint { x, normal, part }: &BoundaryPoint<D>,
+    &BoundaryPoint { x, normal, condition }: &BoundaryPoint<D>,
     exact: f64,
 ) -> Result<(), Violation> {
     let (value, flux) = (exact * evaluator.scales.value, exact * evaluator.scales.flux);
     let problem = evaluator.problem;
     let outflow = evaluator.flux(&x).dot(&normal);
-    match (part, &problem.neumann, &problem.gap) {
-        (BoundaryPart::Dirichlet, _, _) => {
+    match (condition, &problem.neumann.everywhere, &problem.gap.everywhere) {
+        (BoundaryCondition::Dirichlet, _, _) => {
             let error = (problem.dirichlet_at(&x) - evaluator.value(&x)).abs();
             evaluator.require(Condition::Dirichlet, &x, error, value)?;
         }
-        (BoundaryPart::Neumann, Some(q), _) => {
+        (BoundaryCondition::Neumann, Some(q), _) => {
             let error = (q.at(&x, &normal) - outflow).abs();
             evaluator.require(Condition::Neumann, &x, error, flux)?;
         }
-        (BoundaryPart::Contact, _, Some(g)) => {
+        (BoundaryCondition::Contact, _, Some(g)) => {
             let above = evaluator.value(&x) - g.at(&x);
             evaluator.require(Condition::Gap, &x, -above, value)?;
             evaluator.require(Condition::ContactFlux, &x, -outflow, flux)?;

@@ -2,7 +2,7 @@
 
 use super::samples::{BoundaryPoint, boundary, lattice};
 use super::violation::{Condition, Violation};
-use crate::mesh::BoundaryPart;
+use crate::mesh::BoundaryCondition;
 use crate::real::Point;
 use crate::scenes::scene::Scene;
 
@@ -16,19 +16,19 @@ pub(super) fn check<const D: usize>(
     for x in inside.iter().copied().chain(lattice(domain)) {
         check_at(scene, &x)?;
     }
-    for BoundaryPoint { x, normal, part } in boundary(domain, samples) {
+    for BoundaryPoint { x, normal, condition } in boundary(domain, samples) {
         check_at(scene, &x)?;
-        match part {
-            BoundaryPart::Dirichlet => check_dirichlet(scene, &x)?,
-            BoundaryPart::Contact if scene.problem.gap.is_none() => {
+        match condition {
+            BoundaryCondition::Dirichlet => check_dirichlet(scene, &x)?,
+            BoundaryCondition::Contact if !scene.problem.has_gap() => {
                 return Err(Violation::new(&scene.name, Condition::GapGiven, &x, f64::NAN, 0.0));
             }
-            BoundaryPart::Neumann => {
-                if let Some(q) = &scene.problem.neumann {
+            BoundaryCondition::Neumann => {
+                if let Some(q) = &scene.problem.neumann.everywhere {
                     finite(scene, "neumann", &x, q.at(&x, &normal))?;
                 }
             }
-            BoundaryPart::Contact => {}
+            BoundaryCondition::Contact => {}
         }
     }
     Ok(())
@@ -56,18 +56,18 @@ fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<D>) -> Result<(), Violat
         ("source", &problem.source),
         ("reaction", &problem.reaction),
     ] {
-        if let Some(datum) = datum {
+        if let Some(datum) = &datum.everywhere {
             finite(scene, name, x, datum.at(x))?;
         }
     }
     if let Some(exact) = &problem.exact {
-        finite(scene, "solution", x, (exact.value)(x))?;
+        finite(scene, "solution", x, exact.value.at(x))?;
         for &component in &(exact.gradient)(x) {
             finite(scene, "gradient", x, component)?;
         }
     }
-    let alpha = problem.coefficient.as_ref().map_or(1.0, |alpha| alpha.at(x));
-    let reaction = problem.reaction.as_ref().map_or(0.0, |c| c.at(x));
+    let alpha = problem.coefficient.everywhere.as_ref().map_or(1.0, |alpha| alpha.at(x));
+    let reaction = problem.reaction.everywhere.as_ref().map_or(0.0, |c| c.at(x));
     for (value, passes) in [(alpha, alpha > 0.0), (reaction, reaction >= 0.0)] {
         if !passes {
             return Err(Violation::new(&scene.name, Condition::Ellipticity, x, value, 0.0));
@@ -86,8 +86,8 @@ fn check_dirichlet<const D: usize>(scene: &Scene<D>, x: &Point<D>) -> Result<(),
 }
 
 fn bounds<const D: usize>(scene: &Scene<D>, x: &Point<D>) -> (f64, f64) {
-    let lower = scene.problem.lower.as_ref().map_or(f64::NEG_INFINITY, |psi| psi.at(x));
-    let upper = scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi.at(x));
+    let lower = scene.problem.lower.everywhere.as_ref().map_or(f64::NEG_INFINITY, |psi| psi.at(x));
+    let upper = scene.problem.upper.everywhere.as_ref().map_or(f64::INFINITY, |psi| psi.at(x));
     (lower, upper)
 }
 

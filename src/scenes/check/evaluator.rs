@@ -70,31 +70,39 @@ impl<'a, const D: usize> Evaluator<'a, D> {
         evaluator
     }
     pub fn value(&self, x: &Point<D>) -> f64 {
-        (self.exact.value)(x)
+        self.exact.value.at(x)
     }
     pub fn gradient(&self, x: &Point<D>) -> Point<D> {
         (self.exact.gradient)(x)
     }
     pub fn coefficient(&self, x: &Point<D>) -> f64 {
-        self.problem.coefficient.as_ref().map_or(1.0, |alpha| alpha.at(x))
+        self.problem.coefficient.everywhere.as_ref().map_or(1.0, |alpha| alpha.at(x))
     }
     /// `alpha grad u`.
     pub fn flux(&self, x: &Point<D>) -> Point<D> {
         self.gradient(x) * self.coefficient(x)
     }
     pub fn source(&self, x: &Point<D>) -> f64 {
-        self.problem.source.as_ref().map_or(0.0, |f| f.at(x))
+        self.problem.source.everywhere.as_ref().map_or(0.0, |f| f.at(x))
     }
     pub fn reaction(&self, x: &Point<D>) -> f64 {
-        self.problem.reaction.as_ref().map_or(0.0, |c| c.at(x))
+        self.problem.reaction.everywhere.as_ref().map_or(0.0, |c| c.at(x))
     }
     /// `u - psi_lower`, infinite without obstacle.
     pub fn above_lower(&self, x: &Point<D>) -> f64 {
-        self.problem.lower.as_ref().map_or(f64::INFINITY, |psi| self.value(x) - psi.at(x))
+        self.problem
+            .lower
+            .everywhere
+            .as_ref()
+            .map_or(f64::INFINITY, |psi| self.value(x) - psi.at(x))
     }
     /// `psi_upper - u`, infinite without obstacle.
     pub fn below_upper(&self, x: &Point<D>) -> f64 {
-        self.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi.at(x) - self.value(x))
+        self.problem
+            .upper
+            .everywhere
+            .as_ref()
+            .map_or(f64::INFINITY, |psi| psi.at(x) - self.value(x))
     }
     /// A violation unless `by <= allowed`; a violation if `by` is not a number.
     pub fn require(

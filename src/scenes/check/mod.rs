@@ -21,6 +21,7 @@ pub(crate) use on_mesh::check_exact_on;
 pub use violation::{Condition, Violation};
 
 use super::scene::Scene;
+use crate::mesh::Domain;
 use crate::real::Point;
 use evaluator::Evaluator;
 
@@ -42,6 +43,9 @@ use evaluator::Evaluator;
 /// differences agree. A point where they never agree lies on an interface or at a singularity and is
 /// skipped. If more than a quarter of the points are skipped, [`Condition::Resolution`] fails.
 ///
+/// On a domain that is a mesh the conditions on the solution are tested at barycentres of cells and of facets of the
+/// boundary.
+///
 /// Tolerances are relative to the largest values met, `1e-6` for the multiplier and the gradient
 /// and `1e-8` for the rest. Errors confined to regions without sample points are not detected.
 ///
@@ -49,6 +53,9 @@ use evaluator::Evaluator;
 ///
 /// The first [`Violation`] found.
 pub fn check_scene<const D: usize>(scene: &Scene<D>, samples: usize) -> Result<(), Violation> {
+    if let Domain::Mesh(mesh) = &scene.domain {
+        return check_exact_on(&scene.name, &scene.problem, mesh);
+    }
     let samples = samples.max(2);
     let inside = samples::inside(&scene.domain, samples);
     data::check(scene, &inside, samples)?;

@@ -56,7 +56,11 @@ pub(crate) fn check_exact_on<const D: usize>(
         let evaluator = Evaluator { name, problem, exact, scales };
         let x = mesh.facet_barycentre(cell, local);
         let normal = mesh.geometry(cell).normal(local);
-        boundary::check_at(&evaluator, &BoundaryPoint { x, normal, part: facet.part }, ROUNDED)?;
+        boundary::check_at(
+            &evaluator,
+            &BoundaryPoint { x, normal, condition: facet.condition },
+            ROUNDED,
+        )?;
     }
     Ok(())
 }

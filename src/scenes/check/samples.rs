@@ -1,6 +1,6 @@
 //! Sample points of a domain and its boundary.
 
-use crate::mesh::{BoundaryPart, BoxDomain, Domain};
+use crate::mesh::{BoundaryCondition, BoundaryFacet, BoxDomain, Domain, Mesh};
 use crate::real::Point;
 
 /// Quasi-random points of a box: the additive recurrence `x_n = 1/2 + n theta mod 1`, where
@@ -51,12 +51,12 @@ pub(super) struct BoundaryPoint<const D: usize> {
     /// The outward unit normal there.
     pub normal: Point<D>,
     /// The part of the boundary.
-    pub part: BoundaryPart,
+    pub condition: BoundaryCondition,
 }
 
 impl<const D: usize> BoundaryPoint<D> {
     fn dirichlet(x: Point<D>, normal: Point<D>) -> Self {
-        Self { x, normal, part: BoundaryPart::Dirichlet }
+        Self { x, normal, condition: BoundaryCondition::Dirichlet }
     }
     /// Points that differ from this one by rounding: a few units in the last place inside and outside,
     /// and with `-0.0` in place of `0.0`.
@@ -85,7 +85,15 @@ pub(super) fn boundary<const D: usize>(
             .take(2 * samples)
             .map(|x| BoundaryPoint::dirichlet(x.normalize() * radius, x.normalize()))
             .collect(),
+        Domain::Mesh(ref mesh) => mesh.boundary().iter().map(|f| on_facet(mesh, f)).collect(),
     }
+}
+
+/// The barycentre of a facet of the boundary of a mesh.
+fn on_facet<const D: usize>(mesh: &Mesh<D>, facet: &BoundaryFacet) -> BoundaryPoint<D> {
+    let (cell, local) = (facet.cell as usize, facet.local as usize);
+    let (x, normal) = (mesh.facet_barycentre(cell, local), mesh.geometry(cell).normal(local));
+    BoundaryPoint { x, normal, condition: facet.condition }
 }
 
 /// Points projected onto every side of a box.
@@ -98,7 +106,7 @@ fn on_sides<const D: usize>(
         in_box(domain.clone()).take(samples).map(move |mut x| {
             x[axis] = level;
             let normal = Point::from_fn(|k, _| if k == axis { sign } else { 0.0 });
-            BoundaryPoint { x, normal, part: domain.sides[axis][end] }
+            BoundaryPoint { x, normal, condition: domain.sides[axis][end] }
         })
     })
 }
@@ -120,5 +128,6 @@ pub(super) fn sees<const D: usize>(domain: &Domain<D>, a: &Point<D>, b: &Point<D
         // both halves of the L-shape are convex
         Domain::LShape { .. } => a[0].max(b[0]) < 0.0 || a[1 % D].min(b[1 % D]) > 0.0,
         Domain::Box(_) | Domain::Disc { .. } => true,
+        Domain::Mesh(_) => false,
     }
 }

@@ -1,7 +1,7 @@
 //! The end of contact at a vertex and off all vertices.
 
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
 use crate::nested::Hierarchy;
 use crate::real::Point;
 use crate::scenes;
@@ -88,7 +88,7 @@ fn largest_on_contact(
     let found = solved(&problem, &meshes, choice, true)?;
     let Some(fields) = found.fields() else { return Ok(None) };
     let mut largest = 0.0_f64;
-    for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+    for facet in mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
         let (cell, local) = (facet.cell as usize, facet.local as usize);
         let ends: Vec<(f64, f64)> = (0..3)
             .filter(|&k| k != local)
@@ -112,10 +112,9 @@ fn junction(choice: &Choice, sink: Sink<'_>) -> Result<(), Error> {
     let lower = Point::<2>::new(-1.1, 0.0);
     let domain = BoxDomain { lower, ..BoxDomain::above_contact() };
     let mesh: Mesh<2> = Mesh::kuhn_box(&domain, [20, 10])?;
-    let mut scene = scenes::signorini_2d();
+    let mut scene = scenes::signorini_2d().domain(mesh);
     scene.problem = choice.constrain(scene.problem);
-    let study = Study::<2>::new(scene).on_mesh(mesh);
-    let study = study.boxed_scheme(choice.make()).solver(solver());
+    let study = Study::<2>::new(scene).boxed_scheme(choice.make()).solver(solver());
     let (told, how) = match study.levels([0]).run() {
         Err(why) => (true, why.to_string()),
         Ok(report) => {

@@ -145,8 +145,8 @@ fn share_inside(
         return Ok(None);
     }
     let (mut inside, mut touching) = (0_u32, 0_u32);
-    for (k, support) in inequality.supports.iter().enumerate() {
-        let vertices = support.vertices();
+    for (k, location) in inequality.locations.iter().enumerate() {
+        let vertices = location.vertices();
         let sum: Point<2> = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum();
         if inequality.bounds[k].is_inequality() && (sum / vertices.len() as f64).norm() < radius {
             inside += 1;

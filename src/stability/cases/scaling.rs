@@ -86,7 +86,7 @@ fn coefficient(
     let (at_one, _) = values(&scenes::radial(1.0), choice, level)?;
     for &factor in factors {
         let mut scene = scenes::radial::<2>(1.0);
-        scene.problem.source = Some(Datum::Constant(-2.0 * factor));
+        scene.problem.source.everywhere = Some(Datum::Constant(-2.0 * factor));
         scene.problem = scene.problem.coefficient(move |_| factor);
         let (here, how) = values(&scene, choice, level)?;
         sink(

@@ -7,7 +7,7 @@ use crate::measure::{ErrorNorm, Errors, FittedOrder, fit_order};
 use crate::readable_debug::debug_by_display;
 use crate::scheme::ExpectedOrders;
 use crate::study::report::Report;
-use crate::study::row::{Orders, Row, distinct, sort_by_level};
+use crate::study::row::{Orders, Row};
 
 /// An error of this share of the mesh size, of solutions whose size is one, is rounding.
 const ROUNDING: f64 = 1e-8;
@@ -213,10 +213,8 @@ impl ObservedOrders {
         PROMISED.into_iter().filter_map(miss).collect()
     }
 
-    /// The observed orders of the rows of one scheme on one scene.
-    fn of(rows: &[&Row]) -> Option<Self> {
-        let mut sorted = rows.to_vec();
-        sort_by_level(&mut sorted);
+    /// The observed orders of a series, whose rows go from coarse to fine.
+    fn of(mut sorted: Vec<&Row>) -> Option<Self> {
         let failed = sorted.iter().filter(|row| !row.converged());
         let failures = failed.map(|row| (row.level, row.status)).collect();
         let finest = *sorted.last()?;
@@ -253,19 +251,9 @@ impl ObservedOrders {
 }
 
 impl Report {
-    /// Observed orders of every scheme on every scene, in the order of the rows. A scheme counts
-    /// once for every placement of bounds, every penalty and every solver.
+    /// Observed orders of every [series](Report::series).
     pub fn observed_orders(&self) -> Vec<ObservedOrders> {
-        let key = |row: &Row| {
-            let Row { scene, label, constraint, parameters, solver, .. } = row.clone();
-            (scene, label, constraint, parameters, solver)
-        };
-        let keys = distinct(self.rows.iter().map(key));
-        let rows_of = |wanted| self.rows.iter().filter(|row| key(row) == wanted).collect();
-        keys.into_iter()
-            .map(rows_of)
-            .filter_map(|rows: Vec<&Row>| ObservedOrders::of(&rows))
-            .collect()
+        self.series().into_iter().filter_map(|series| ObservedOrders::of(series.rows)).collect()
     }
 
     /// Tests every promise of theory. An order is fitted over the levels on which a scheme converged on a

@@ -1,39 +1,27 @@
 //! Observed orders of convergence.
 
+use std::borrow::BorrowMut;
+
 use crate::measure::observed_order;
 use crate::study::row::{Orders, Row};
+use crate::study::series::series_of;
 
-/// Fills in the order of every row against the previous level: the row with the next smaller level
-/// of the same scene, label, constraint and solver. It is that in the mesh size; on adaptive meshes `-D` times the
-/// slope in unknowns.
+/// Fills in the order of every row against the previous level: the row with the next smaller level of its series. It is
+/// that in the mesh size; on adaptive meshes `-D` times the slope in unknowns.
 ///
 /// The order is none if one of the two rows did not converge, or has no error or one that is rounding. Rows further
 /// back are never used, since the table would not show it.
-pub fn fill_orders(rows: &mut [Row]) {
-    let orders: Vec<Orders> = rows
-        .iter()
-        .map(|row| previous(rows, row).map_or_else(Orders::default, |coarse| order(coarse, row)))
-        .collect();
+pub fn fill_orders<R: BorrowMut<Row>>(rows: &mut [R]) {
+    let series = series_of(&*rows);
+    let previous = |row: &Row| {
+        let own = series.iter().find(|series| series.variant.has(row))?;
+        own.plain_rows().rev().find(|other| other.level < row.level)
+    };
+    let of = |row: &Row| previous(row).map_or_else(Orders::default, |coarse| order(coarse, row));
+    let orders: Vec<Orders> = rows.iter().map(|row| of(row.borrow())).collect();
     for (row, order) in rows.iter_mut().zip(orders) {
-        row.order = order;
+        row.borrow_mut().order = order;
     }
-}
-
-/// The row one level coarser, with the same penalty.
-fn previous<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
-    rows.iter()
-        .filter(|r| {
-            r.scene == row.scene
-                && r.label == row.label
-                && r.constraint == row.constraint
-                && r.solver == row.solver
-        })
-        // a scheme of one's own with another penalty is another scheme; the dimensionless factor of
-        // one rule resolves to the same number on all levels of a domain, but not on adaptive meshes
-        .filter(|r| r.parameters == row.parameters || r.theta.is_some())
-        .filter(|r| r.theta == row.theta)
-        .filter(|r| r.level < row.level)
-        .max_by_key(|r| r.level)
 }
 
 /// The orders of two rows.

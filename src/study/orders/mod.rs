@@ -2,6 +2,7 @@
 
 mod check;
 mod fill;
+pub(crate) mod rates;
 mod table;
 
 pub use check::{ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed};

@@ -4,7 +4,7 @@ use super::{Progress, Study};
 use crate::error::Error;
 use crate::mesh::{Domain, Mesh};
 use crate::nested::{AdaptiveIteration, AdaptiveMeshes, AdaptiveStep, Adaptivity};
-use crate::nested::{NestedIteration, Phase};
+use crate::nested::{Hierarchy, NestedIteration, Phase, check_level};
 use crate::scheme::ExpectedOrders;
 use crate::study::memory::memory_of_process;
 use crate::study::reference::Measured;
@@ -41,11 +41,11 @@ impl<const D: usize> Study<'_, D> {
 
     /// The level of the first mesh of adaptive refinement.
     pub(super) fn first_level(&self) -> usize {
-        let default = if self.mesh.is_some() { 0 } else { FIRST_LEVEL };
+        let default = if self.scene.domain.is_mesh() { 0 } else { FIRST_LEVEL };
         self.levels.first().copied().unwrap_or(default)
     }
     fn first_mesh(&self) -> Result<Mesh<D>, Error> {
-        let hierarchy = self.coarsest().build(self.first_level())?;
+        let hierarchy = Hierarchy::of_domain(&self.scene.domain, self.first_level())?;
         Ok(hierarchy.finest().clone())
     }
 
@@ -64,11 +64,11 @@ impl<const D: usize> Study<'_, D> {
             let allowed = "none: a reference needs uniform refinements of all meshes";
             return refuse("level of the reference", reference.level.to_string(), allowed);
         }
-        if self.mesh.is_none() && matches!(self.scene.domain, Domain::Disc { .. }) {
+        if matches!(self.scene.domain, Domain::Disc { .. }) {
             let allowed = "one with a polygon as its boundary: bisection does not follow a circle";
             return refuse("domain of an adaptive study", "a disc".to_owned(), allowed);
         }
-        self.coarsest().check(self.first_level())?;
+        check_level(&self.scene.domain, self.first_level())?;
         for entry in &self.entries {
             self.check_level(&*entry.scheme, self.first_level(), memory_of_process())?;
         }

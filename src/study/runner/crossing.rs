@@ -29,7 +29,7 @@ impl<const D: usize> Study<'_, D> {
     /// The points of all schemes at which bounds are compared; none where no bounds can cross.
     pub(super) fn points_of_bounds(&self) -> Result<Option<Points>, Error> {
         let problem = &self.scene.problem;
-        if problem.upper.is_none() && problem.named.upper.is_empty() {
+        if !problem.upper.is_given() {
             return Ok(None);
         }
         let without_data =

@@ -30,7 +30,7 @@ impl<const D: usize> Study<'_, D> {
             let most = self
                 .adaptive
                 .map_or(0.0, |of| of.unknowns as f64 / unknowns_about(D, scheme.layout(), 1.0));
-            let bytes = self.memory_of(scheme, self.coarsest().cells(level).max(most));
+            let bytes = self.memory_of(scheme, self.scene.domain.cells(level).max(most));
             MemoryEstimate { bytes, scheme: scheme.name().to_owned(), level }
         };
         let runs = self.entries.iter().map(|entry| run(&*entry.scheme, level));
@@ -80,7 +80,7 @@ impl<const D: usize> Study<'_, D> {
         available: Option<u64>,
     ) -> Result<(), Error> {
         let run = || format!("scheme {}, level {level}", scheme.name());
-        let bytes = self.memory_of(scheme, self.coarsest().cells(level));
+        let bytes = self.memory_of(scheme, self.scene.domain.cells(level));
         shortage(bytes, available, run, self.remedy())
     }
     /// Checks that a scheme on the next mesh of adaptive refinement fits into the memory.

@@ -20,13 +20,12 @@ use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, StepCounter};
 use crate::instances::compiled;
-use crate::mesh::{BoxDomain, Mesh};
-use crate::nested::{Adaptivity, Coarsest, Hierarchy, NestedIteration, Phase, Solved};
+use crate::nested::{Adaptivity, Hierarchy, NestedIteration, Phase, Solved, check_level};
 use crate::problem::Problem;
 use crate::real::Precision;
 use crate::scenes::Scene;
 use crate::scheme::{Scheme, SchemeOptions};
-use crate::study::compatibility::{check_domain, check_fit, check_names, check_scheme};
+use crate::study::compatibility::{check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
 #[cfg(feature = "report")]
@@ -71,8 +70,7 @@ pub struct Study<'a, const D: usize> {
     entries: Vec<Entry<'a, D>>,
     levels: Vec<usize>,
     adaptive: Option<Adaptivity>,
-    mesh: Option<Mesh<D>>,
-    /// The result of [`check_fit`] for the given mesh, once known.
+    /// The result of [`check_fit`], once known.
     fit: OnceCell<Option<String>>,
     /// Why a stated solution does not solve the problem, or none, as the first row found it.
     not_exact: OnceCell<Option<String>>,
@@ -146,7 +144,6 @@ impl<'a, const D: usize> Study<'a, D> {
             entries: Vec::new(),
             levels: Vec::new(),
             adaptive: None,
-            mesh: None,
             fit: OnceCell::new(),
             not_exact: OnceCell::new(),
             reference: None,
@@ -164,19 +161,8 @@ impl<'a, const D: usize> Study<'a, D> {
             observer: Box::new(|_| {}),
         }
     }
-    /// A study of a problem of one's own on a mesh and its refinements. The data of the problem give the
-    /// boundary its parts ([`Problem::bind_boundary`]).
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] where two data claim one boundary group.
-    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<D>) -> Result<Self, Error> {
-        let mesh = problem.bind_boundary(mesh)?;
-        // the domain of a scene is not used where there is a mesh
-        let domain = BoxDomain::centred(1.0);
-        Ok(Self::new(Scene::new(name, domain, problem)).on_mesh(mesh))
-    }
 
-    /// Checks schemes, levels and mesh without assembly.
+    /// Checks schemes, levels and domain, without assembly on a built-in one.
     ///
     /// # Errors
     /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero, [`Error::EqualNames`],
@@ -187,8 +173,8 @@ impl<'a, const D: usize> Study<'a, D> {
         )(self)
     }
 
-    /// Checks schemes, levels and mesh. Returns the point at which the exact solution of the scene
-    /// breaks the contact condition of a given mesh.
+    /// Checks schemes, levels and domain. Returns the point at which the exact solution of the scene
+    /// breaks the contact condition of a mesh.
     fn where_exact_fails(&self) -> Result<Option<String>, Error> {
         let levels = self.levels.len() + usize::from(self.adaptive.is_some());
         let lengths = [("schemes", self.entries.len()), ("levels", levels)];
@@ -207,24 +193,21 @@ impl<'a, const D: usize> Study<'a, D> {
                 allowed: "one precision for all solvers of a study".to_owned(),
             });
         }
-        self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
+        let domain = &self.scene.domain;
+        self.levels.iter().try_for_each(|&level| check_level(domain, level))?;
         for (entry, problem) in self.entries.iter().zip(problems) {
             check_scheme(&*entry.scheme, problem, self.quadrature)?;
         }
         if let Some(adaptivity) = &self.adaptive {
             self.check_adaptive(adaptivity)?;
         } else if let Some(reference) = &self.reference {
-            let domain = self.mesh.is_none().then_some(&self.scene.domain);
             reference.check(domain, &self.levels)?;
-            self.coarsest().check(reference.level)?;
+            check_level(domain, reference.level)?;
             self.check_level(&*reference.scheme, reference.level, memory_of_process())?;
         }
-        let Some(mesh) = &self.mesh else {
-            return check_domain(&self.scene).map(|()| None);
-        };
-        // `check` and `run` need the fit, which assembles load and bounds on the mesh
+        // `check` and `run` need the fit, which assembles load and bounds on a mesh
         if self.fit.get().is_none() {
-            let _ = self.fit.set(check_fit(&self.scene, mesh)?);
+            let _ = self.fit.set(check_fit(&self.scene)?);
         }
         Ok(self.fit.get().cloned().flatten())
     }
@@ -363,7 +346,7 @@ impl<'a, const D: usize> Study<'a, D> {
             unreachable!("checked above")
         };
         let problem = entry.problem(&self.scene.problem);
-        let hierarchy = self.coarsest().build(level)?;
+        let hierarchy = Hierarchy::of_domain(&self.scene.domain, level)?;
         let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
         let measured = Measured { failure: failure.as_deref(), reference: None };
         let (row, solved) = self.row(&mut nested, (entry, &problem), level, measured)?;
@@ -380,20 +363,13 @@ impl<'a, const D: usize> Study<'a, D> {
                     let fits = |of: &Entry<'_, D>| self.check_level(&*of.scheme, level, available);
                     self.entries.iter().any(|entry| fits(entry).is_ok())
                 });
-                self.coarsest().build_all(&levels)
+                Hierarchy::all_of_domain(&self.scene.domain, &levels)
             }
             Some(reference) => {
                 let coarsest = self.levels.iter().copied().min().unwrap_or(1);
-                Ok(vec![self.coarsest().build_from(reference.level, coarsest)?])
+                let domain = &self.scene.domain;
+                Ok(vec![Hierarchy::of_domain_from(domain, reference.level, coarsest)?])
             }
-        }
-    }
-
-    /// From which the meshes of all levels are refined.
-    fn coarsest(&self) -> Coarsest<'_, D> {
-        match &self.mesh {
-            Some(mesh) => Coarsest::Mesh(mesh),
-            None => Coarsest::Domain(&self.scene.domain),
         }
     }
 

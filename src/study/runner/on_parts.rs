@@ -8,7 +8,7 @@ use crate::distributed::{Differences, Process, SolverOnParts};
 use crate::error::{Error, write_error};
 use crate::inequality::Outcome;
 use crate::mesh::{Layers, Mesh};
-use crate::nested::{Coarsest, Hierarchy, NestedIteration, Solved};
+use crate::nested::{Hierarchy, NestedIteration, Solved};
 use crate::problem::Problem;
 use crate::processes::{ExchangeError, agree};
 use crate::real::Precision;
@@ -115,7 +115,10 @@ impl<const D: usize> Study<'_, D> {
             Layers::across_vertices(layers.unwrap_or(1).max(1))
         };
         let process = (process.number, &process.exchange);
-        Coarsest::all_by(&self.levels, |level| self.coarsest().build_parts(level, layers, process))
+        let domain = &self.scene.domain;
+        Hierarchy::all_by(&self.levels, |level| {
+            Hierarchy::of_domain_in_parts(domain, level, layers, process)
+        })
     }
 
     /// The row of a run that failed, in all parts.
@@ -197,7 +200,7 @@ impl<const D: usize> Study<'_, D> {
     ) -> Result<Row, Error> {
         let mut parts = part_figures(solved, process)?;
         if checks.verify {
-            let whole = self.coarsest().build(level);
+            let whole = Hierarchy::of_domain(&self.scene.domain, level);
             let whole = agree(whole, &*process.exchange)?;
             let (scheme, whole) = (&*entry.scheme, whole.finest());
             parts.differences =

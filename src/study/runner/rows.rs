@@ -45,7 +45,7 @@ impl<const D: usize> Study<'_, D> {
         // meshes that did not fit in the beginning were not built
         let available = available.and_then(|bytes| Some(bytes.min(memory_of_process()?)));
         if let Err(error) = self.check_level(&*of.0.scheme, level, available) {
-            let cells = self.coarsest().cells(level);
+            let cells = self.scene.domain.cells(level);
             return Ok((self.row_without_memory(of, (level, cells), solver, error)?, None));
         }
         match crossing {
@@ -237,10 +237,10 @@ impl<const D: usize> Study<'_, D> {
         failure: Option<&str>,
     ) -> Row {
         let (scheme, set) = (&*entry.scheme, problem.constraint_set());
-        let kind = match self.mesh {
+        let kind = match self.scene.domain.is_mesh() {
             _ if self.adaptive.is_some() => "steps",
-            Some(_) => "refinements",
-            None => "subdivisions",
+            true => "refinements",
+            false => "subdivisions",
         };
         Row {
             level_kind: Some(kind.to_owned()),
@@ -259,9 +259,7 @@ impl<const D: usize> Study<'_, D> {
         failure: Option<&str>,
     ) -> ExpectedOrders {
         match (failure, &self.scene.problem.exact) {
-            (None, Some(_)) => {
-                scheme.expected_orders_on(set, &setting(&self.scene, self.mesh.is_some()))
-            }
+            (None, Some(_)) => scheme.expected_orders_on(set, &setting(&self.scene)),
             _ => ExpectedOrders::default(),
         }
     }

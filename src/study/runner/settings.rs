@@ -1,6 +1,5 @@
 //! The settings of a study.
 
-use std::cell::OnceCell;
 #[cfg(feature = "report")]
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -10,7 +9,6 @@ use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, StepCounter};
-use crate::mesh::Mesh;
 use crate::nested::Solved;
 #[cfg(feature = "report")]
 use crate::paraview::FieldScalar;
@@ -97,17 +95,10 @@ impl<'a, const D: usize> Study<'a, D> {
         self.entries.push(Entry { scheme, set, shown });
         self
     }
-    /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
+    /// Sets the levels: subdivisions of the shortest side, or refinements of a domain that is a mesh.
     #[must_use]
     pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
         self.levels = levels.into_iter().collect();
-        self
-    }
-    /// Runs on this mesh and refinements of it instead of the scene's own domain.
-    #[must_use]
-    pub fn on_mesh(mut self, mesh: Mesh<D>) -> Self {
-        self.mesh = Some(mesh);
-        (self.fit, self.not_exact) = (OnceCell::new(), OnceCell::new());
         self
     }
     /// Adds a solver of the inequality; without one, the active set method runs. Several solvers stand

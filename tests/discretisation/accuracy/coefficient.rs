@@ -112,8 +112,8 @@ fn layers() -> Scene<2> {
         (1.0 + x[0]) * sin * x[1].sin() - along
     };
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-        .side(0, 0, BoundaryPart::Neumann)
-        .side(0, 1, BoundaryPart::Neumann);
+        .side(0, 0, BoundaryCondition::Neumann)
+        .side(0, 1, BoundaryCondition::Neumann);
     let problem = Problem::new().piecewise_source(load, |x| x[1] - 0.5);
     Scene::new("layers", domain, problem.coefficient(alpha).exact(value, gradient))
 }

@@ -69,7 +69,7 @@ fn integral<const D: usize>(scheme: &dyn Scheme<D>, n: usize, load: Datum<D>) ->
     let domain = BoxDomain::dirichlet(Point::repeat(-1.0), Point::repeat(1.0));
     let mesh = Mesh::<D>::kuhn_box(&domain, [n; D]).unwrap();
     let mut problem = Problem::new();
-    problem.source = Some(load);
+    problem.source.everywhere = Some(load);
     let discretisation =
         Discretisation::new(scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
     discretisation.load().unwrap().iter().sum()

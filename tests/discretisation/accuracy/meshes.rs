@@ -19,7 +19,7 @@ fn rows_on<const D: usize>(
     schemes: Vec<Entry<D>>,
     refinements: impl IntoIterator<Item = usize>,
 ) -> Vec<Row> {
-    let study = Study::<D>::new(scene).on_mesh(mesh).levels(refinements);
+    let study = Study::<D>::new(scene.domain(mesh)).levels(refinements);
     let add =
         |study: Study<'static, D>, entry: Entry<D>| study.boxed_scheme_on(entry.scheme, entry.set);
     schemes.into_iter().fold(study, add).run().unwrap().rows
@@ -48,7 +48,11 @@ fn check_pair(checks: &mut Checks, coarse: &Row, fine: &Row, halvings: usize) {
 
 /// Runs every scheme on two refinements of a mesh in the plane.
 fn on(mesh: Mesh<2>, scene: Scene<2>, levels: [usize; 2]) {
-    assert_eq!(check_fit(&scene, &mesh).unwrap(), None, "the exact solution does not hold");
+    assert_eq!(
+        check_fit(&scene.clone().domain(mesh.clone())).unwrap(),
+        None,
+        "the exact solution does not hold"
+    );
     let mut checks = Checks::default();
     for pair in rows_on(mesh, scene, all_schemes(), levels).chunks(2) {
         check_pair(&mut checks, &pair[0], &pair[1], levels[1] - levels[0]);
@@ -60,7 +64,11 @@ fn on(mesh: Mesh<2>, scene: Scene<2>, levels: [usize; 2]) {
 
 /// Runs schemes on a mesh in space and its refinement.
 fn on_refined(mesh: &Mesh<3>, build: fn() -> Scene<3>, schemes: fn() -> Vec<Entry<3>>) {
-    assert_eq!(check_fit(&build(), mesh).unwrap(), None, "the exact solution does not hold");
+    assert_eq!(
+        check_fit(&build().domain(mesh.clone())).unwrap(),
+        None,
+        "the exact solution does not hold"
+    );
     let mut checks = Checks::default();
     let coarse = rows_on(mesh.clone(), build(), schemes(), [0]);
     let fine = rows_on(mesh.refine().unwrap().0, build(), schemes(), [0]);
@@ -87,7 +95,7 @@ fn turned(mesh: &Mesh<3>) -> Mesh<3> {
     let vertices = mesh.vertices().iter().map(|x| Point::<3>::new(x[0], x[2], x[1])).collect();
     let facet = |f: &BoundaryFacet| {
         let v: Vec<u32> = mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
-        TaggedFacet { vertices: [v[0], v[1], v[2]], part: f.part }
+        TaggedFacet { vertices: [v[0], v[1], v[2]], condition: f.condition }
     };
     let boundary: Vec<TaggedFacet<3>> = mesh.boundary().iter().map(facet).collect();
     Mesh::new(vertices, mesh.cells().to_vec(), &boundary).unwrap()
@@ -101,7 +109,7 @@ fn radial_in_space() -> Scene<3> {
 fn block() -> Mesh<3> {
     let mesh = mesh_of_folder("block.msh");
     // contact of the file is at y = 0, of the scene at z = 0: the gap contradicts the Dirichlet data
-    let error = check_fit(&scenes::signorini_harmonic::<3>(), &mesh).unwrap_err();
+    let error = check_fit(&scenes::signorini_harmonic::<3>().domain(mesh.clone())).unwrap_err();
     assert!(error.to_string().contains("no admissible value"), "{error}");
     turned(&mesh)
 }

@@ -5,7 +5,7 @@ use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
 use crate::support::scheme_lists::all_schemes;
 use std::f64::consts::PI;
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
@@ -175,7 +175,7 @@ fn mixed<const D: usize>() -> Scene<D> {
     for axis in 0..D {
         for end in 0..2 {
             if (axis, end) != (0, 0) {
-                domain = domain.side(axis, end, BoundaryPart::Neumann);
+                domain = domain.side(axis, end, BoundaryCondition::Neumann);
             }
         }
     }

@@ -62,7 +62,7 @@ fn own_sets_stand_beside_those_of_the_library() {
     let promised: Vec<_> = fine.iter().map(|row| row.expected_order.h1.is_some()).collect();
     assert_eq!(promised, [true, false, false, false, true]);
     // the heading may be cut anywhere
-    let table = report.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    let table = report.details_to_text().split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(table.contains("expected order H1 1 (sipg cr)"), "{table}");
     // fewer bounds leave a function that is nowhere above the one with more in energy
     let energy = |k: usize| fine[k].objective.unwrap();
@@ -80,7 +80,7 @@ fn a_set_of_the_problem_is_that_of_an_entry() {
     assert_eq!(by_problem.constraint, "facet-means");
     assert_eq!(by_problem.error, by_entry.error);
     let mesh = scene.domain.mesh(8).unwrap();
-    let on_mesh = Study::new(scene.clone()).on_mesh(mesh).scheme(Wopsip::default()).levels([0]);
+    let on_mesh = Study::new(scene.clone().domain(mesh)).scheme(Wopsip::default()).levels([0]);
     let on_mesh = on_mesh.run().unwrap().rows.remove(0).error.l2.unwrap();
     assert!((on_mesh / by_entry.error.l2.unwrap() - 1.0).abs() < 1e-10);
     let replaced = run(Study::new(scene).scheme_on(Wopsip::default(), Nodes));

@@ -8,7 +8,7 @@ use crate::support::scheme_lists::consistent_schemes;
 use crate::support::schemes::wopsip;
 use crate::support::tables::jump_norm;
 use unilateral::mesh::BoxDomain;
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::prelude::*;
 
 fn unit_box<const D: usize>() -> BoxDomain<D> {
@@ -133,8 +133,11 @@ fn reproduces<const D: usize>(
 /// All linear problems on a mesh. Where it has a contact part, the gap is the solution itself.
 fn all_linear<const D: usize>(checks: &mut Checks, on: &str, mesh: &Mesh<D>, tolerance: f64) {
     for (name, problem) in linear_problems() {
-        let problem =
-            if mesh.has_part(BoundaryPart::Contact) { problem.signorini(linear) } else { problem };
+        let problem = if mesh.has_condition(BoundaryCondition::Contact) {
+            problem.signorini(linear)
+        } else {
+            problem
+        };
         reproduces(checks, &format!("{on}, {name}"), &problem, mesh, tolerance);
     }
 }
@@ -192,7 +195,7 @@ mod needs_meshes {
             let mesh = mesh_of_folder::<D>(name);
             // the first three: boundary data, coefficient, reaction
             for (what, problem) in linear_problems().into_iter().take(3) {
-                let contact = mesh.has_part(BoundaryPart::Contact);
+                let contact = mesh.has_condition(BoundaryCondition::Contact);
                 let problem = if contact { problem.signorini(linear) } else { problem };
                 reproduces(checks, &format!("{name}, {what}"), &problem, &mesh, 1e-11);
             }

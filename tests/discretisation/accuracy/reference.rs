@@ -38,11 +38,9 @@ fn scheme(reference: &Value) -> Option<Box<dyn Scheme<2>>> {
         "cr" => Box::new(NonconformingP1),
         "sipg" => {
             let sigma = reference["sigma"].as_f64().unwrap();
-            Box::new(Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() })
+            Box::new(Sipg { penalty: PenaltyRule::Diameter(sigma) })
         }
-        "wopsip" => {
-            Box::new(Wopsip { eta: eta(), weight: WeightRule::Isotropic, ..Wopsip::default() })
-        }
+        "wopsip" => Box::new(Wopsip { eta: eta(), weight: WeightRule::Isotropic }),
         _ => return None,
     })
 }

@@ -19,9 +19,13 @@ fn rows<const D: usize>(study: Study<'static, D>) -> Vec<Row> {
 /// domain with about as many cells.
 fn like_a_box<const D: usize>(name: &str, scene: fn() -> Scene<D>, level: usize, factor: f64) {
     let mesh = small_mesh::<D>(name);
-    assert_eq!(check_fit(&scene(), &mesh).unwrap(), None, "the exact solution does not hold");
+    assert_eq!(
+        check_fit(&scene().domain(mesh.clone())).unwrap(),
+        None,
+        "the exact solution does not hold"
+    );
     let mut checks = Checks::default();
-    let found = rows(Study::new(scene()).on_mesh(mesh).levels([0]));
+    let found = rows(Study::new(scene().domain(mesh)).levels([0]));
     let boxes = rows(Study::new(scene()).levels([level]));
     assert_eq!(found.len(), SCHEMES.len());
     for (row, like) in found.iter().zip(&boxes) {

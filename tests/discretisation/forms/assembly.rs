@@ -8,7 +8,7 @@ use crate::support::meshes::{Random, Raw, mixed_box};
 use std::collections::BTreeMap;
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::facet::{InteriorPenalty, OverPenalty, Symmetry, proven_bound};
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::scheme::ConformingP2;
@@ -95,7 +95,8 @@ impl<const D: usize> Slow<'_, D> {
     }
     fn is_dirichlet(&self, c: usize, k: usize) -> bool {
         self.mesh.boundary().iter().any(|f| {
-            (f.cell as usize, f.local as usize) == (c, k) && f.part == BoundaryPart::Dirichlet
+            (f.cell as usize, f.local as usize) == (c, k)
+                && f.condition == BoundaryCondition::Dirichlet
         })
     }
     /// sigma [u][v] - {d_n u}[v] + theta {d_n v}[u], or eta h^-3 P[u] P[v], over one facet.
@@ -208,8 +209,8 @@ fn check<const D: usize>(
     let scheme = Any { element, form };
     let space = Discretisation::new(&scheme, &problem, mesh, DataQuadrature::default()).unwrap();
     let matrix = space.matrix();
-    // unknowns of each cell, from their supports
-    let supports = space.supports();
+    // unknowns of each cell, from their locations
+    let locations = space.locations();
     let find = |c: usize, i: usize| {
         let piece = basis(i);
         let node: Vec<u32> = if layout.vertex == 1 || (layout.is_broken() && piece[i] == 1.0) {
@@ -218,8 +219,8 @@ fn check<const D: usize>(
             mesh.facet_vertices(c, i).collect()
         };
         let owner = layout.is_broken().then_some(c as u32);
-        (0..supports.len())
-            .find(|&k| supports[k].cell() == owner && supports[k].vertices() == node)
+        (0..locations.len())
+            .find(|&k| locations[k].cell() == owner && locations[k].vertices() == node)
             .unwrap()
     };
     let dofs: Vec<Vec<usize>> =
@@ -464,7 +465,7 @@ fn the_same_bits_for_any_number_of_threads() {
                 assert_eq!(one.matrix, many.matrix, "{} with {threads} threads", scheme.name());
                 assert_eq!(one.load, many.load);
                 assert_eq!(one.bounds, many.bounds);
-                assert_eq!(one.supports, many.supports);
+                assert_eq!(one.locations, many.locations);
             }
         }
     }
@@ -518,7 +519,8 @@ fn refilling_a_pattern_gives_the_same_matrix() {
 #[test]
 fn continuous_functions_have_no_jump_and_constants_no_energy() {
     // pure Neumann and contact boundary: the form of a constant vanishes for every scheme
-    let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
+    let sides =
+        [[BoundaryCondition::Neumann; 2], [BoundaryCondition::Contact, BoundaryCondition::Neumann]];
     let domain = unilateral::mesh::BoxDomain::<2>::new(Point::zeros(), Point::repeat(1.0), sides);
     let mesh = Raw::<2>::jittered(&domain, 4, 0.4, &mut Random(9)).mesh();
     let problem = Problem::<2>::new();
@@ -544,7 +546,7 @@ fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
     let mesh = Mesh::<2>::kuhn_box(&mixed_box(), [4, 4]).unwrap();
     let problem = Problem::<2>::new();
     let below_bound = |sigma| {
-        let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() };
+        let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma) };
         Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default())
             .unwrap()
             .penalty_below_bound()

@@ -31,7 +31,7 @@ fn check<const D: usize>(mesh: &Mesh<D>, schemes: &[Box<dyn Scheme<D>>]) {
             Discretisation::new(&**scheme, &problem, mesh, DataQuadrature::default()).unwrap();
         let inequality = discretisation.inequality().unwrap();
         let node = |i: usize| {
-            let vertices = inequality.supports[i].vertices();
+            let vertices = inequality.locations[i].vertices();
             let sum: Point<D> = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum();
             sum / vertices.len() as f64
         };
@@ -59,12 +59,12 @@ fn schemes<const D: usize>() -> Vec<Box<dyn Scheme<D>>> {
 #[test]
 fn the_energy_with_data_does_not_contain_the_penalty() {
     let mut one = BoxDomain::<1>::dirichlet(Point::zeros(), Point::repeat(1.0));
-    one = one.side(0, 1, BoundaryPart::Neumann);
+    one = one.side(0, 1, BoundaryCondition::Neumann);
     check(&Mesh::kuhn_box(&one, [5]).unwrap(), &schemes());
     let mut two = BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
-    two = two.side(0, 1, BoundaryPart::Neumann);
+    two = two.side(0, 1, BoundaryCondition::Neumann);
     check(&Mesh::kuhn_box(&two, [3, 4]).unwrap(), &schemes());
     let mut three = BoxDomain::<3>::dirichlet(Point::zeros(), Point::repeat(1.0));
-    three = three.side(2, 0, BoundaryPart::Neumann);
+    three = three.side(2, 0, BoundaryCondition::Neumann);
     check(&Mesh::kuhn_box(&three, [2, 2, 2]).unwrap(), &schemes());
 }

@@ -4,7 +4,7 @@
 use crate::support::meshes::{Random, Raw, mixed_box};
 use nalgebra::{DMatrix, DVector};
 use unilateral::assemble::{DataQuadrature, Discretisation};
-use unilateral::mesh::{BoundaryPart, Mesh, TaggedFacet};
+use unilateral::mesh::{BoundaryCondition, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 
@@ -215,7 +215,8 @@ fn facets<const D: usize>(mesh: &Mesh<D>) -> Vec<Sides> {
     }
     let dirichlet = |sides: &Sides| {
         mesh.boundary().iter().any(|f| {
-            (f.cell as usize, f.local as usize) == sides[0] && f.part == BoundaryPart::Dirichlet
+            (f.cell as usize, f.local as usize) == sides[0]
+                && f.condition == BoundaryCondition::Dirichlet
         })
     };
     all.into_values().filter(|sides| sides.len() == 2 || dirichlet(sides)).collect()
@@ -274,18 +275,18 @@ fn check_on<const D: usize>(
 fn every_method<const D: usize, E: Element<D> + Copy + 'static>(element: E, n: usize) {
     let mean = |_: &Point<D>| 0.5;
     for lifts in [Lifts::Reduced, Lifts::Full] {
-        let br2 = Br2 { eta: Some(4.5), lifts, ..Default::default() }.on(element);
+        let br2 = Br2 { eta: Some(4.5), lifts }.on(element);
         check(Method::Br2(4.5), (&br2, lifts), n, &mean);
-        let bmmpr = Bmmpr { eta: 0.7, lifts, ..Default::default() }.on(element);
+        let bmmpr = Bmmpr { eta: 0.7, lifts }.on(element);
         check(Method::Bmmpr(0.7), (&bmmpr, lifts), n, &mean);
-        let ldg = Ldg { eta: 1.3, switch: false, lifts, ..Default::default() }.on(element);
+        let ldg = Ldg { eta: 1.3, switch: false, lifts }.on(element);
         check(Method::Ldg(1.3), (&ldg, lifts), n, &mean);
         // the direction is part of the scheme's definition
         let direction = [1.0, 0.377, 0.142];
         let one_sided = |normal: &Point<D>| {
             f64::from(normal.iter().zip(direction).map(|(n, d)| n * d).sum::<f64>() > 0.0)
         };
-        let switched = Ldg { eta: 1.0, switch: true, lifts, ..Default::default() }.on(element);
+        let switched = Ldg { eta: 1.0, switch: true, lifts }.on(element);
         check(Method::Ldg(1.0), (&switched, lifts), n, &one_sided);
     }
 }
@@ -313,7 +314,10 @@ fn cut_at_barycentre<const D: usize>() -> Mesh<D> {
     let cells = (0..=D).flat_map(|k| others(k).chain([D as u32 + 1])).collect();
     let side = |k: usize| {
         let v: Vec<u32> = others(k).collect();
-        TaggedFacet { vertices: std::array::from_fn(|i| v[i]), part: BoundaryPart::Dirichlet }
+        TaggedFacet {
+            vertices: std::array::from_fn(|i| v[i]),
+            condition: BoundaryCondition::Dirichlet,
+        }
     };
     Mesh::new(vertices, cells, &(0..=D).map(side).collect::<Vec<_>>()).unwrap()
 }
@@ -324,7 +328,7 @@ fn cells_that_are_all_neighbours_of_each_other() {
         let mesh = cut_at_barycentre::<D>();
         let mean = |_: &Point<D>| 0.5;
         for lifts in [Lifts::Reduced, Lifts::Full] {
-            let bmmpr = Bmmpr { eta: 0.7, lifts, ..Default::default() };
+            let bmmpr = Bmmpr { eta: 0.7, lifts };
             check_on(&mesh, Method::Bmmpr(0.7), (&bmmpr, lifts), &mean);
             check_on(&mesh, Method::Bmmpr(0.7), (&bmmpr.on(P2), lifts), &mean);
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use unilateral::algebra::Inequality;
 use unilateral::facet::FacetKind;
 use unilateral::kit::check_scheme;
-use unilateral::mesh::{BoundaryPart, BoxDomain, Mesh};
+use unilateral::mesh::{BoundaryCondition, BoxDomain, Mesh};
 use unilateral::prelude::*;
 
 /// Nothing or an over-penalty between cells, Nitsche's method on the Dirichlet boundary.
@@ -138,7 +138,7 @@ fn same_matrix_and_load(a: &Inequality<f64>, b: &Inequality<f64>) {
 #[test]
 fn a_formula_may_differ_from_facet_to_facet() {
     fn check<const D: usize, E: Element<D> + Copy + 'static>(element: E) {
-        let sides = [[BoundaryPart::Dirichlet, BoundaryPart::Neumann]; D];
+        let sides = [[BoundaryCondition::Dirichlet, BoundaryCondition::Neumann]; D];
         let mut upper = Point::repeat(1.0);
         upper[0] = 1.7;
         let mesh =
@@ -147,7 +147,7 @@ fn a_formula_may_differ_from_facet_to_facet() {
             .coefficient(|x: &Point<D>| 1.0 + 3.0 * x[0])
             .exact(|x: &Point<D>| x[0] * x[D - 1], |_| Point::repeat(1.0));
         let penalty = PenaltyRule::Diameter(30.0);
-        let known = Sipg { penalty, ..Sipg::default() }.on(element);
+        let known = Sipg { penalty }.on(element);
         let known = Discretisation::new(&known, &problem, &mesh, Default::default()).unwrap();
         let own = SipgByFormula(element);
         let own = Discretisation::new(&own, &problem, &mesh, Default::default()).unwrap();

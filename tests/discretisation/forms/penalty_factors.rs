@@ -15,11 +15,11 @@ fn with_factor<const D: usize>(x: f64) -> Schemes<D> {
     let over = |eta| Wopsip { eta, ..Wopsip::default() };
     let anisotropic = Wopsip { weight: WeightRule::Anisotropic, ..over(Eta::Absolute(x)) };
     vec![
-        ("margin", Box::new(Sipg { penalty: proven, ..Sipg::default() })),
-        ("margin", Box::new(Iipg { penalty: proven, ..Iipg::default() }.on(P2))),
-        ("sigma", Box::new(Sipg { penalty: diameter, ..Sipg::default() })),
-        ("sigma", Box::new(Iipg { penalty: diameter, ..Iipg::default() })),
-        ("sigma", Box::new(Nipg { penalty: diameter, ..Nipg::default() }.on(P2))),
+        ("margin", Box::new(Sipg { penalty: proven })),
+        ("margin", Box::new(Iipg { penalty: proven }.on(P2))),
+        ("sigma", Box::new(Sipg { penalty: diameter })),
+        ("sigma", Box::new(Iipg { penalty: diameter })),
+        ("sigma", Box::new(Nipg { penalty: diameter }.on(P2))),
         ("sigma", Box::new(Ldg { eta: x, ..Ldg::default() })),
         ("eta", Box::new(Br2 { eta: Some(x), ..Br2::default() })),
         ("eta", Box::new(Bmmpr { eta: x, ..Bmmpr::default() }.on(P2))),
@@ -72,7 +72,7 @@ fn what_is_no_penalty_is_refused() {
 #[test]
 fn single_precision_refuses_a_penalty_that_leaves_no_digit_of_the_stiffness() {
     let row = |precision| {
-        let sipg = Sipg { penalty: PenaltyRule::Diameter(1e9), ..Sipg::default() };
+        let sipg = Sipg { penalty: PenaltyRule::Diameter(1e9) };
         let study = Study::<2>::new(scenes::radial(1.0)).scheme(sipg).levels([4]);
         let study = study.boxed_solver(in_precision(precision, ActiveSet::default()));
         study.run().unwrap().rows.remove(0)
@@ -138,7 +138,7 @@ fn large_penalties_are_proven_coercive() {
 fn without_a_penalty_nothing_is_proven() {
     let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
     let is_proven = |penalty| {
-        let scheme = Nipg { penalty, ..Nipg::default() };
+        let scheme = Nipg { penalty };
         Scheme::<2>::form(&scheme, &mesh).theory().is_coercive
     };
     for rule in [PenaltyRule::Diameter, |factor| PenaltyRule::Proven(factor - 1.0)] {

@@ -82,7 +82,7 @@ fn rows_of_facet_means_have_one_entry_of_another_cell() {
     fn check<const D: usize>(checks: &mut Checks) {
         let mesh = cube::<D>(2);
         let inequality = assemble(&wopsip(3.0), &Problem::new().on(FacetMeans), &mesh);
-        let means = |i: usize| inequality.supports[i].vertices().to_vec();
+        let means = |i: usize| inequality.locations[i].vertices().to_vec();
         let mut across = 0;
         for i in 0..inequality.size() {
             let (columns, _) = inequality.matrix.row(i);
@@ -127,7 +127,7 @@ fn sine_on_a_line(precision: Precision, level: u32, is_old: bool) -> (Outcome, f
     let mesh = cube::<1>(1 << level);
     let inequality = assemble(&wopsip(1.0), &problem, &mesh);
     let solution = solution(precision, &inequality, is_old);
-    let at = |k: usize| mesh.vertices()[inequality.supports[k].vertices()[0] as usize][0];
+    let at = |k: usize| mesh.vertices()[inequality.locations[k].vertices()[0] as usize][0];
     let error = |k: usize| (solution.values[k] - (PI * at(k)).sin()).abs();
     (solution.outcome, (0..inequality.size()).map(error).fold(0.0, f64::max))
 }
@@ -218,7 +218,7 @@ fn rounding_is_small_for_every_factor() {
     for eta in FACTORS {
         let w = wopsip(eta);
         type Pair<'s> = (&'s dyn Scheme<2>, bool);
-        let p2 = w.clone().on(P2);
+        let p2 = w.on(P2);
         let pairs: [(Pair<'_>, &[Scene<2>; 2], usize); 3] = [
             ((&w, true), &in_units, 32),
             ((&w, true), &on_means, 32),
@@ -272,7 +272,7 @@ fn graded(scene: &Scene<2>, level: usize, power: i32) -> Mesh<2> {
         .map(|f| {
             let mut ends = mesh.facet_vertices(f.cell as usize, f.local as usize);
             let vertices = [ends.next().unwrap(), ends.next().unwrap()];
-            TaggedFacet { vertices, part: f.part }
+            TaggedFacet { vertices, condition: f.condition }
         })
         .collect();
     Mesh::new(vertices.collect(), mesh.cells().to_vec(), &boundary).unwrap()

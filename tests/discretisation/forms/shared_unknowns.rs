@@ -3,7 +3,7 @@
 
 use crate::support::meshes::{Random, Raw, mixed_box};
 use unilateral::assemble::{DataQuadrature, Discretisation};
-use unilateral::mesh::{BoundaryPart, Mesh, TaggedFacet};
+use unilateral::mesh::{BoundaryCondition, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::scheme::ConformingP2;
 
@@ -44,8 +44,8 @@ fn fan(n: u32) -> Mesh<2> {
     let vertices = std::iter::once(Point::from([0.0, 0.0])).chain(rim).collect();
     let rims = (0..n).map(|k| [k + 1, (k + 1) % n + 1]);
     let cells = rims.clone().flat_map(|[a, b]| [0, a, b]).collect();
-    let part = BoundaryPart::Dirichlet;
-    let boundary: Vec<_> = rims.map(|vertices| TaggedFacet { vertices, part }).collect();
+    let part = BoundaryCondition::Dirichlet;
+    let boundary: Vec<_> = rims.map(|vertices| TaggedFacet { vertices, condition: part }).collect();
     Mesh::new(vertices, cells, &boundary).unwrap()
 }
 

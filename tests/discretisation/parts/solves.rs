@@ -191,7 +191,7 @@ fn data_that_vanish_in_one_part_are_in_range() {
     scene.problem = scene
         .problem
         .source(|x| -100.0 * (-2000.0 * (x - Point::from([-1.4, -1.4])).norm_squared()).exp());
-    scene.problem.lower = None;
+    scene.problem.lower.everywhere = None;
     scene.problem.exact = None;
     scene.problem = scene.problem.dirichlet(|_| 0.0);
     for row in on_parts(&scene, (&["p1", "sipg"], &[8]), 4).remove(0) {

@@ -1,6 +1,6 @@
 //! What can go wrong in a solve has a name, and the certificate sees it.
 
-use super::cold;
+use super::{cold, solve_from};
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Start};
 use unilateral::inequality::{
@@ -21,10 +21,11 @@ fn indefinite_matrix_is_not_coercive() {
         assert!(solution.values.iter().all(|u| u.is_finite()));
         // from contact everywhere no iterate shows it
         let start = Start::Contact(vec![Contact::Lower; n * n]);
-        let warm = problem.clone().with_start(start);
-        assert_eq!(ActiveSet::default().solve(&warm).outcome, Outcome::NotCoercive);
-        let trusted = ActiveSet::default().solve(&warm.with_definite_matrix());
-        assert_eq!(trusted.outcome, Outcome::Converged);
+        let mut warm = problem.clone();
+        warm.start = start;
+        assert_eq!(cold(&warm).outcome, Outcome::NotCoercive);
+        warm.is_definite = true;
+        assert_eq!(cold(&warm).outcome, Outcome::Converged);
         let mut unsymmetric = problem.clone();
         unsymmetric.symmetric = false;
         assert_eq!(cold(&unsymmetric).outcome, Outcome::NotCoercive);
@@ -124,7 +125,7 @@ fn bad_input_is_named() {
         assert_eq!(certify(&problem, &[0.0; 25]).largest(), f64::INFINITY);
     }
     let start = Start::Contact(vec![Contact::Upper; 3]);
-    let solution = ActiveSet::default().solve(&good.clone().with_start(start));
+    let solution = solve_from(&good, start);
     assert_eq!(solution.outcome, Outcome::Converged);
     assert!(certify(&good, &solution.values).largest() < 1e-9);
 }

@@ -64,7 +64,7 @@ fn scenes_of_all_kinds() -> Vec<Scene<2>> {
     ]
 }
 
-fn wopsip<const D: usize>(eta: f64) -> Wopsip<D> {
+fn wopsip(eta: f64) -> Wopsip {
     Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() }
 }
 
@@ -133,7 +133,7 @@ fn all_schemes_agree_with_the_oracle() {
 }
 
 /// Converged, certified, and with at most so many steps.
-fn converges<const D: usize>(scene: Scene<D>, scheme: Wopsip<D>, level: usize, most: usize) {
+fn converges<const D: usize>(scene: Scene<D>, scheme: Wopsip, level: usize, most: usize) {
     let eta = scheme.eta;
     let report = Study::<D>::new(scene).scheme(scheme).levels([level]).run().unwrap();
     let row = &report.rows[0];
@@ -323,7 +323,7 @@ fn what_has_no_solution_is_named() {
     wrong_number.load[3] = f64::NAN;
     let mut no_room = good.clone();
     no_room.bounds[5] = Bound::Both(1.0, 0.0);
-    let weak = Sipg { penalty: PenaltyRule::Diameter(0.5), ..Sipg::default() };
+    let weak = Sipg { penalty: PenaltyRule::Diameter(0.5) };
     let indefinite = of(&scenes::ball_2d(), &weak, 4);
     let mut floating =
         inequality(sparse(&[vec![1.0, -1.0], vec![-1.0, 1.0]]), &[1.0, 1.0], vec![Bound::Free; 2]);

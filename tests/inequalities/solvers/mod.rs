@@ -25,6 +25,12 @@ fn cold(inequality: &Inequality<f64>) -> Solution<f64> {
     ActiveSet::default().solve(inequality)
 }
 
+fn solve_from(inequality: &Inequality<f64>, start: Start) -> Solution<f64> {
+    let mut inequality = inequality.clone();
+    inequality.start = start;
+    cold(&inequality)
+}
+
 /// Solves from everywhere, asserts convergence and certificate, and the same solution each time.
 #[track_caller]
 fn solve_from_everywhere(inequality: &Inequality<f64>) -> Solution<f64> {
@@ -33,8 +39,7 @@ fn solve_from_everywhere(inequality: &Inequality<f64>) -> Solution<f64> {
     let alternating =
         (0..n).map(|i| if i % 2 == 0 { Contact::Lower } else { Contact::Upper }).collect();
     for start in [vec![Contact::Lower; n], vec![Contact::Upper; n], alternating] {
-        let other =
-            ActiveSet::default().solve(&inequality.clone().with_start(Start::Contact(start)));
+        let other = solve_from(inequality, Start::Contact(start));
         assert_eq!(other.outcome, Outcome::Converged);
         let scale = 1.0 + distance(&solution.values, &vec![0.0; n]);
         assert!(distance(&other.values, &solution.values) < 1e-9 * scale);
@@ -134,7 +139,7 @@ fn cycle_of_a_matrix_without_symmetry_is_resolved() {
     for first in [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0]] {
         let start = first.map(|c| if c == 1 { Contact::Lower } else { Contact::Inactive });
         let start = Start::Contact(start.to_vec());
-        let solution = ActiveSet::default().solve(&problem.clone().with_start(start));
+        let solution = solve_from(&problem, start);
         assert!(solution.stages.len() > 1);
         assert_solved(&problem, &solution);
         assert!(distance(&solution.values, &[1.0 / 3.0; 3]) < 1e-15);
@@ -259,8 +264,7 @@ fn body_held_by_the_obstacle_alone() {
 fn warm_start_needs_one_step() {
     let problem = membrane(30, 10.0, |_, _| -0.3);
     let solution = cold(&problem);
-    let again =
-        ActiveSet::default().solve(&problem.clone().with_start(Start::Contact(solution.contact)));
+    let again = solve_from(&problem, Start::Contact(solution.contact));
     assert_eq!((again.outcome, again.outer), (Outcome::Converged, 1));
     assert!(distance(&again.values, &solution.values) < 1e-14);
 }

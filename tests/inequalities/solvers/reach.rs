@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use unilateral::constraint::constraint_set_by_name;
+use unilateral::in_its_dimension;
 use unilateral::prelude::*;
-use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
+use unilateral::scenes::{Parameters, Scene, catalogue};
 use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
 use unilateral::study::Row;
 
@@ -73,11 +74,8 @@ fn reach() {
         let chosen = choices.iter().filter(|choice| is_asked("SCHEMES", choice.0));
         for (k, &choice) in chosen.enumerate() {
             let levels = levels(entry.dimension);
-            let found = match entry.make(&Parameters::default()).unwrap() {
-                AnyScene::One(scene) => rows(scene, choice, &levels),
-                AnyScene::Two(scene) => rows(scene, choice, &levels),
-                AnyScene::Three(scene) => rows(scene, choice, &levels),
-            };
+            let scene = entry.make(&Parameters::default()).unwrap();
+            let found = in_its_dimension!(scene, |scene| rows(scene, choice, &levels));
             let eta = choice.1.map_or("default".into(), |eta| format!("{eta:e}"));
             let label = format!("{} | {} | {eta}", choice.0, choice.2);
             for row in &found {

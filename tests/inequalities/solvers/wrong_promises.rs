@@ -1,8 +1,8 @@
 //! Inequalities that are not what they are declared to be.
 
-use super::cold;
+use super::{cold, solve_from};
 use crate::problems::*;
-use unilateral::algebra::{Bound, Contact, Inequality, Start, Support};
+use unilateral::algebra::{Bound, Contact, DofLocation, Inequality, Start};
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, certify};
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
@@ -72,10 +72,10 @@ fn a_negative_reaction_converges_while_the_form_is_coercive() {
 }
 
 #[test]
-fn supports_out_of_range_are_refused_before_arrays_are_made() {
+fn locations_out_of_range_are_refused_before_arrays_are_made() {
     let good = || membrane(3, 1.0, |_, _| -0.01);
-    let supports = |last: u32, n: usize| -> Vec<Support> {
-        (0..n as u32).map(|i| Support::new(None, &[if i == 8 { last } else { i }])).collect()
+    let locations = |last: u32, n: usize| -> Vec<DofLocation> {
+        (0..n as u32).map(|i| DofLocation::new(None, &[if i == 8 { last } else { i }])).collect()
     };
     let iterative = ActiveSet::default().linear(LinearMethod::Iterative);
     let outcome = |problem: &Inequality<f64>| {
@@ -83,14 +83,19 @@ fn supports_out_of_range_are_refused_before_arrays_are_made() {
         assert_eq!(outcomes[0], outcomes[1]);
         outcomes[0]
     };
-    assert_eq!(outcome(&good().with_supports(supports(8, 9))), Outcome::Converged);
+    let with_locations = |locations| {
+        let mut problem = good();
+        problem.locations = locations;
+        problem
+    };
+    assert_eq!(outcome(&with_locations(locations(8, 9))), Outcome::Converged);
     for last in [36, 4_000_000_000, u32::MAX - 1] {
-        let problem = good().with_supports(supports(last, 9));
+        let problem = with_locations(locations(last, 9));
         assert!(!problem.is_well_formed());
         assert_eq!(outcome(&problem), Outcome::Malformed, "vertex {last}");
         assert_eq!(certify(&problem, &[0.0; 9]).largest(), f64::INFINITY);
     }
-    assert_eq!(outcome(&good().with_supports(supports(8, 8))), Outcome::Malformed);
+    assert_eq!(outcome(&with_locations(locations(8, 8))), Outcome::Malformed);
 }
 
 /// A start in contact everywhere must not hide that nothing was factored.
@@ -98,7 +103,7 @@ fn supports_out_of_range_are_refused_before_arrays_are_made() {
 fn a_start_in_contact_gives_the_answer_of_a_cold_one() {
     let problem = membrane(12, 3.0, |_, _| -0.05);
     let start = Start::Contact(vec![Contact::Lower; 144]);
-    let warm = ActiveSet::default().solve(&problem.clone().with_start(start));
+    let warm = solve_from(&problem, start);
     assert_eq!(warm.outcome, Outcome::Converged);
     assert!(distance(&warm.values, &cold(&problem).values) < 1e-12);
     assert_honest(&problem, &warm.values, "warm");

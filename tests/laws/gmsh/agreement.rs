@@ -195,7 +195,7 @@ mod needs_meshes_and_time {
                 .map(|f| {
                     let v: Vec<u32> =
                         mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
-                    unilateral::mesh::TaggedFacet { vertices: [v[0], v[1]], part: f.part }
+                    unilateral::mesh::TaggedFacet { vertices: [v[0], v[1]], condition: f.condition }
                 })
                 .collect();
             let (new, _) = time(&|| {

@@ -4,7 +4,7 @@ use super::files::{INTERVAL, SQUARE, SQUARE_V2, TETRAHEDRON};
 use super::writer::{FORMS, Sample, interval, square, tetrahedron};
 use unilateral::mesh::gmsh;
 use unilateral::mesh::gmsh::{GmshFile, GmshMesh, GmshWarning};
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryCondition, Mesh};
 
 pub fn parse<const D: usize>(bytes: &[u8]) -> GmshMesh<D> {
     GmshFile::parse(bytes).and_then(|file| file.mesh()).unwrap_or_else(|e| panic!("{e}"))
@@ -30,8 +30,8 @@ pub fn volume<const D: usize>(mesh: &Mesh<D>) -> f64 {
 
 /// Number of facets of each part: dirichlet, neumann, contact.
 pub fn parts<const D: usize>(mesh: &Mesh<D>) -> [usize; 3] {
-    [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact]
-        .map(|part| mesh.boundary().iter().filter(|f| f.part == part).count())
+    [BoundaryCondition::Dirichlet, BoundaryCondition::Neumann, BoundaryCondition::Contact]
+        .map(|part| mesh.boundary().iter().filter(|f| f.condition == part).count())
 }
 
 /// Every form of a sample reads to the same mesh.

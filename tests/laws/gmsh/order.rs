@@ -53,7 +53,7 @@ fn is_the_same_in_any_order<const D: usize>(mesh: &Mesh<D>) {
         assert!(one.mesh.vertices() == other.mesh.vertices(), "vertices, {seed}");
         assert!(one.mesh.cells() == other.mesh.cells(), "cells, {seed}");
         for (f, g) in one.mesh.boundary().iter().zip(other.mesh.boundary()) {
-            assert_eq!((f.cell, f.local, f.part), (g.cell, g.local, g.part));
+            assert_eq!((f.cell, f.local, f.condition), (g.cell, g.local, g.condition));
             let names = |mesh: &Mesh<D>, group: u16| {
                 mesh.boundary_groups()[usize::from(group)].names.clone()
             };

@@ -16,9 +16,7 @@ fn orders_asked_for_follow_from_what_is_declared() {
     let sipg = check_orders::<2>(&Sipg::default()).unwrap();
     assert_eq!((sipg.l2_expected, sipg.h1_expected), (Some(2.0), 1.0));
     assert!(sipg.l2 > 1.75 && sipg.h1 > 0.75, "{sipg:?}");
-    let incomplete =
-        check_orders::<2>(&Iipg { penalty: PenaltyRule::Diameter(10.0), ..Iipg::default() })
-            .unwrap();
+    let incomplete = check_orders::<2>(&Iipg { penalty: PenaltyRule::Diameter(10.0) }).unwrap();
     assert_eq!(incomplete.l2_expected, None);
     let wopsip = check_orders::<2>(&Wopsip::default()).unwrap();
     // not consistent, but its own proof of duality exists
@@ -35,9 +33,7 @@ fn declarations_are_reported_with_what_was_measured() {
     assert!(sipg.declared && sipg.error < 1e-13, "{sipg:?}");
     let means = check_scheme_on::<1>(&Wopsip::default(), FacetMeans).unwrap();
     assert!(!means.consistency.declared, "the basis does not change consistency");
-    let incomplete =
-        check_symmetry::<3>(&Iipg { penalty: PenaltyRule::Diameter(10.0), ..Iipg::default() })
-            .unwrap();
+    let incomplete = check_symmetry::<3>(&Iipg { penalty: PenaltyRule::Diameter(10.0) }).unwrap();
     assert!(!incomplete.declared && incomplete.difference > 1e-2, "{incomplete:?}");
 }
 
@@ -106,10 +102,10 @@ fn a_spectrum_that_is_not_reached_is_an_error() {
 fn means_and_jumps() {
     fn on<const D: usize>() {
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-            .side(0, 1, unilateral::mesh::BoundaryPart::Neumann)
-            .side(D - 1, 0, unilateral::mesh::BoundaryPart::Contact);
+            .side(0, 1, unilateral::mesh::BoundaryCondition::Neumann)
+            .side(D - 1, 0, unilateral::mesh::BoundaryCondition::Contact);
         let mesh = Mesh::<D>::kuhn_box(&domain, [3; D]).unwrap();
-        let assemble = |scheme: &Wopsip<D>| {
+        let assemble = |scheme: &Wopsip| {
             let problem = Problem::new().on(FacetMeans);
             let quadrature = Default::default();
             let discretisation =
@@ -127,8 +123,9 @@ fn means_and_jumps() {
         let c = change.expand(&y);
         let inner = |c: &[f64]| c.iter().filter(|&&c| c == 1.0).count();
         let dirichlet = mesh.boundary().iter();
-        let dirichlet =
-            dirichlet.filter(|f| f.part == unilateral::mesh::BoundaryPart::Dirichlet).count();
+        let dirichlet = dirichlet
+            .filter(|f| f.condition == unilateral::mesh::BoundaryCondition::Dirichlet)
+            .count();
         assert_eq!(inner(&c), change.size() - dirichlet);
         // E^T A E applied in one go and step by step
         let mut random = 1_u64;

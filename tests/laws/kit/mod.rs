@@ -36,7 +36,7 @@ schemes! {
     conforming: ConformingP1;
     crouzeix_raviart: NonconformingP1;
     sipg: Sipg::default();
-    sipg_by_diameter: Sipg { penalty: PenaltyRule::Diameter(10.0), ..Sipg::default() };
+    sipg_by_diameter: Sipg { penalty: PenaltyRule::Diameter(10.0) };
     sipg_on_means: Sipg::default(), FacetMeans;
     nipg: Nipg::default();
     iipg: Iipg::default();

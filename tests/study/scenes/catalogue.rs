@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use unilateral::error::Error;
+use unilateral::in_its_dimension;
 use unilateral::scenes::{AnyScene, Entry, Parameters, Scene, by_name, catalogue, radial};
 
 use super::{check_any, source};
@@ -91,11 +92,8 @@ fn every_scene_says_what_it_can_be_held_to() {
         scene.problem.exact.is_some() != scene.problem.reference_energy.is_some()
     }
     for entry in catalogue() {
-        let known = match entry.make(&Parameters::default()).unwrap() {
-            AnyScene::One(scene) => known(&scene),
-            AnyScene::Two(scene) => known(&scene),
-            AnyScene::Three(scene) => known(&scene),
-        };
+        let scene = entry.make(&Parameters::default()).unwrap();
+        let known = in_its_dimension!(scene, |scene| known(&scene));
         assert!(known, "{}", entry.name);
     }
 }
@@ -148,7 +146,7 @@ fn a_parameter_that_a_scene_does_not_take_is_refused() {
 fn entries_outside_the_catalogue_hand_their_parameter_on() {
     let loaded = Entry::with_load(-2.0, |load| {
         let mut scene = radial::<1>(1.0);
-        scene.problem.source = Some(load.into());
+        scene.problem.source.everywhere = Some(load.into());
         scene
     });
     assert!(loaded.accepts.load && !loaded.accepts.scale);

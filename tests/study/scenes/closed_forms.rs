@@ -1,6 +1,6 @@
 //! Closed forms, constants and rounding.
 
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::scenes::{Scene, ball_2d, hertz_2d, radial, signorini_2d, signorini_harmonic};
 
 use super::{assert_close, gradient, source, value};
@@ -67,7 +67,7 @@ fn the_contact_disc_of_the_ball_has_the_radius_of_its_equation() {
 #[test]
 fn the_obstacle_of_the_ball_is_finite_and_continuously_differentiable() {
     let scene = ball_2d();
-    let psi = scene.problem.lower.as_ref().unwrap();
+    let psi = scene.problem.lower.everywhere.as_ref().unwrap();
     let at = |r: f64| psi.at(&Point::from([r, 0.0]));
     let h = 1e-6;
     assert_close((at(0.9) - at(0.9 - h)) / h, (at(0.9 + h) - at(0.9)) / h, 1e-4);
@@ -105,7 +105,7 @@ fn the_harmonic_signorini_solution_is_the_same_in_two_and_three_dimensions() {
         let [along, across] = gradient(&plane, [x, z]);
         assert_eq!(gradient(&space, [x, 0.7, z]), [along, 0.0, across]);
     }
-    assert!(plane.problem.source.is_none() && space.problem.source.is_none());
+    assert!(plane.problem.source.everywhere.is_none() && space.problem.source.everywhere.is_none());
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn tips_are_finite_and_rounding_does_not_cross_the_branch_cut() {
 #[test]
 fn zero_in_contact_is_exact_on_the_contact_side() {
     for scene in [signorini_2d(), signorini_harmonic::<2>()] {
-        assert_eq!(scene.domain.bounding_box().sides[1][0], BoundaryPart::Contact);
+        assert_eq!(scene.domain.bounding_box().sides[1][0], BoundaryCondition::Contact);
         for x in [-0.9, -0.5, -1e-9] {
             assert_eq!(value(&scene, [x, 0.0]), 0.0);
             assert_eq!(gradient(&scene, [-x, 0.0])[1], 0.0);

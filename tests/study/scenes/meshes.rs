@@ -3,10 +3,10 @@
 use std::collections::HashSet;
 
 use unilateral::error::Error;
-use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
+use unilateral::mesh::{BoundaryCondition, Mesh, MeshError};
 use unilateral::mesh::{BoxDomain, Domain};
 use unilateral::real::Point;
-use unilateral::scenes::{disc_2d, lshape_2d, radial, spiral_2d};
+use unilateral::scenes::{Scene, disc_2d, lshape_2d, radial, spiral_2d};
 use unilateral::scheme::ConformingP1;
 use unilateral::study::Study;
 
@@ -44,7 +44,7 @@ fn the_l_shape_has_its_area_and_its_corner() {
         assert!((area(&mesh) - 12.0).abs() < 1e-12);
         assert!(mesh.vertices().contains(&Point::zeros()));
         assert!(mesh.vertices().iter().all(|x| x[0] <= 0.0 || x[1] >= 0.0));
-        assert!(mesh.boundary().iter().all(|f| f.part == BoundaryPart::Dirichlet));
+        assert!(mesh.boundary().iter().all(|f| f.condition == BoundaryCondition::Dirichlet));
         assert!(mesh.is_supported());
     }
 }
@@ -129,8 +129,8 @@ fn studies_run_on_both_shapes_from_coarser_levels() {
 fn a_mesh_on_which_an_obstacle_leaves_no_room_for_the_datum_does_not_fit() {
     let unit = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::<2>::kuhn_box(&unit, [4, 4]).unwrap();
-    let check = |scene| {
-        Study::<2>::new(scene).scheme(ConformingP1).levels([0]).on_mesh(mesh.clone()).check()
+    let check = |scene: Scene<2>| {
+        Study::<2>::new(scene.domain(mesh.clone())).scheme(ConformingP1).levels([0]).check()
     };
     let Err(Error::UnfitMesh { scene, why }) = check(spiral_2d()) else { panic!("it fits") };
     assert_eq!(scene, "spiral-2d");

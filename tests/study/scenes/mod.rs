@@ -1,5 +1,6 @@
 //! The catalogue: every scene solves its inequality, and the check that says so can say no.
 
+use unilateral::in_its_dimension;
 use unilateral::problem::Exact;
 use unilateral::real::Point;
 use unilateral::scenes::check::Violation;
@@ -15,11 +16,7 @@ mod values;
 const SAMPLES: usize = 1000;
 
 fn check_any(scene: &AnyScene) -> Result<(), Violation> {
-    match scene {
-        AnyScene::One(scene) => check_scene(scene, SAMPLES),
-        AnyScene::Two(scene) => check_scene(scene, SAMPLES),
-        AnyScene::Three(scene) => check_scene(scene, SAMPLES),
-    }
+    in_its_dimension!(scene, |scene| check_scene(scene, SAMPLES))
 }
 
 fn exact<const D: usize>(scene: &Scene<D>) -> &Exact<D> {
@@ -27,7 +24,7 @@ fn exact<const D: usize>(scene: &Scene<D>) -> &Exact<D> {
 }
 
 fn value<const D: usize>(scene: &Scene<D>, x: [f64; D]) -> f64 {
-    (exact(scene).value)(&Point::from(x))
+    exact(scene).value.at(&Point::from(x))
 }
 
 fn gradient<const D: usize>(scene: &Scene<D>, x: [f64; D]) -> [f64; D] {
@@ -35,7 +32,7 @@ fn gradient<const D: usize>(scene: &Scene<D>, x: [f64; D]) -> [f64; D] {
 }
 
 fn source<const D: usize>(scene: &Scene<D>, x: [f64; D]) -> f64 {
-    scene.problem.source.as_ref().map_or(0.0, |f| f.at(&Point::from(x)))
+    scene.problem.source.everywhere.as_ref().map_or(0.0, |f| f.at(&Point::from(x)))
 }
 
 /// Equal to the digits a table prints.

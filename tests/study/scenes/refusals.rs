@@ -1,6 +1,6 @@
 //! The check says no.
 
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::mesh::BoxDomain;
 use unilateral::problem::{Exact, Problem};
 use unilateral::real::Point;
@@ -18,7 +18,7 @@ fn refused<const D: usize>(scene: &Scene<D>) -> Condition {
 #[test]
 fn the_check_refuses_a_load_of_the_wrong_sign() {
     let mut scene = radial::<2>(1.0);
-    scene.problem.source = Some(2.0.into());
+    scene.problem.source.everywhere = Some(2.0.into());
     let condition = refused(&scene);
     assert!(matches!(condition, Condition::Equation | Condition::MultiplierSign), "{condition}");
 }
@@ -26,7 +26,7 @@ fn the_check_refuses_a_load_of_the_wrong_sign() {
 #[test]
 fn the_check_refuses_a_load_that_is_slightly_off() {
     let mut scene = signorini_2d();
-    let f = scene.problem.source.take().unwrap();
+    let f = scene.problem.source.everywhere.take().unwrap();
     scene.problem = scene.problem.source(move |x| f.at(x) + 1e-4);
     assert_eq!(refused(&scene), Condition::Equation);
 }
@@ -42,7 +42,7 @@ fn the_check_refuses_a_multiplier_of_the_wrong_sign() {
 fn the_check_refuses_a_wrong_gradient() {
     let mut scene = hertz_2d();
     let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
-    scene.problem = scene.problem.exact(move |x| value(x), move |x| gradient(x) * (1.0 + 1e-4));
+    scene.problem = scene.problem.exact(move |x| value.at(x), move |x| gradient(x) * (1.0 + 1e-4));
     assert_eq!(refused(&scene), Condition::Gradient);
 }
 
@@ -62,7 +62,7 @@ fn the_check_refuses_wrong_boundary_data() {
     scene.problem = scene.problem.dirichlet(|x| (2.0 / x.norm()).ln());
     assert_eq!(refused(&scene), Condition::Dirichlet);
     let mut scene = radial::<2>(1.0);
-    scene.domain = BoxDomain::centred(1.5).side(0, 1, BoundaryPart::Neumann).into();
+    scene.domain = BoxDomain::centred(1.5).side(0, 1, BoundaryCondition::Neumann).into();
     scene.problem = scene.problem.neumann(|_, _| 0.0);
     assert_eq!(refused(&scene), Condition::Neumann);
 }
@@ -76,11 +76,11 @@ fn the_check_refuses_broken_signorini_conditions() {
     scene.problem = scene.problem.signorini(|x| -1e-3 - x[0] * x[0] / 2.0);
     assert_eq!(refused(&scene), Condition::ContactComplementarity);
     let mut scene = hertz_2d();
-    scene.domain = BoxDomain::above_contact().side(1, 1, BoundaryPart::Contact).into();
+    scene.domain = BoxDomain::above_contact().side(1, 1, BoundaryCondition::Contact).into();
     scene.problem = scene.problem.signorini(|_| -10.0);
     assert!(matches!(refused(&scene), Condition::ContactFlux | Condition::ContactComplementarity));
     let mut scene = hertz_2d();
-    scene.problem.gap = None;
+    scene.problem.gap.everywhere = None;
     assert_eq!(refused(&scene), Condition::GapGiven);
 }
 
@@ -107,7 +107,7 @@ fn the_check_refuses_data_that_are_not_finite() {
     let mut scene = radial::<3>(1.0);
     let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
     scene.problem =
-        scene.problem.exact(move |x| value(x), move |x| gradient(x) + x * (0.0 / x.norm()));
+        scene.problem.exact(move |x| value.at(x), move |x| gradient(x) + x * (0.0 / x.norm()));
     let violation = check_scene(&scene, 300).unwrap_err();
     assert_eq!(violation.condition, Condition::Finite("gradient"));
     assert_eq!(violation.at, [0.0; 3]);
@@ -149,14 +149,14 @@ fn the_check_refuses_a_jump_of_the_value() {
     let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
     scene.problem = scene
         .problem
-        .exact(move |x| value(x) + f64::from(u8::from(x.norm() > 1.0)), move |x| gradient(x));
+        .exact(move |x| value.at(x) + f64::from(u8::from(x.norm() > 1.0)), move |x| gradient(x));
     assert_eq!(refused(&scene), Condition::Continuity);
 }
 
 #[test]
 fn a_violation_says_what_where_and_by_how_much() {
     let mut scene = radial::<2>(1.0);
-    scene.problem.source = Some(2.0.into());
+    scene.problem.source.everywhere = Some(2.0.into());
     let text = check_scene(&scene, 300).unwrap_err().to_string();
     for part in ["radial-2d", "not fulfilled", "at [", "off by", "allowed"] {
         assert!(text.contains(part), "{text}");

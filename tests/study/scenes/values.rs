@@ -1,6 +1,6 @@
 //! Check values, from an independent program with symbolic derivatives.
 
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::real::Point;
 use unilateral::scenes::{
     Scene, ball_2d, ball_3d, biactive_half_2d, biactive_ring_2d, bilateral_1d, cone, contrast,
@@ -186,7 +186,7 @@ fn contact_changes_where_the_name_says() {
         (hertz_2d(), vec![-0.5, 0.5]),
         (signorini_harmonic::<2>(), vec![0.0]),
     ] {
-        assert_eq!(scene.domain.bounding_box().sides[1][0], BoundaryPart::Contact);
+        assert_eq!(scene.domain.bounding_box().sides[1][0], BoundaryCondition::Contact);
         let contact = exact(&scene).contact.as_ref().unwrap();
         let found: Vec<f64> = contact.free_boundary.iter().map(|x| x[0]).collect();
         for (found, expected) in found.iter().zip(&expected) {

@@ -10,11 +10,9 @@ use serde_json::Value;
 use synthetic::{measured, synthetic};
 use unilateral::inequality::Outcome;
 use unilateral::measure::ErrorNorm;
-use unilateral::output::Table;
 use unilateral::prelude::*;
 use unilateral::work_precision::{
-    Failure, Measured, Phases, Precision, Standing, WorkAtError, WorkPrecision, WorkProgress,
-    WorkReport, changes,
+    Failure, Measured, Phases, Standing, WorkAtError, WorkPrecision, WorkProgress, WorkReport,
 };
 
 fn close(a: f64, b: f64) -> bool {
@@ -106,7 +104,7 @@ fn errors_without_a_time_say_why() {
 }
 
 #[test]
-fn costs_at_an_error_are_time_entries_and_memory() {
+fn costs_at_an_error_are_time_unknowns_and_entries() {
     let mut report = synthetic();
     for m in &mut report.rows {
         let row = m.row.clone();
@@ -114,12 +112,13 @@ fn costs_at_an_error_are_time_entries_and_memory() {
         m.add(&row, Phases { solve: total, total, ..Phases::default() });
     }
     let tables = report.tables();
-    let costs = tables.iter().map(Table::to_text).find(|t| t.contains("costs")).unwrap();
+    let costs =
+        tables.iter().map(|table| table.to_text(100)).find(|t| t.contains("costs")).unwrap();
     let lines: Vec<&str> = costs.lines().collect();
     assert_eq!(lines[0], "radial-2d: costs at an error of 5e-3 in L2");
-    // level 200^(1/2): 6 unknowns, 70 entries and 1 MB to its square
+    // level 200^(1/2): 6 unknowns and 70 entries to its square
     let p1: Vec<&str> = lines[2].split_whitespace().collect();
-    assert_eq!(p1, ["p1", "2.83e-3", "(1.00)", "1.25", "1200", "14000", "200"]);
+    assert_eq!(p1, ["p1", "2.83e-3", "(1.00)", "1.25", "1200", "14000"]);
     assert!(report.to_text().contains("is up to 1.25 times the least"));
 }
 
@@ -155,7 +154,7 @@ fn smallest_and_median_are_those_of_all_runs() {
 }
 
 fn tiny<'a>() -> WorkPrecision<'a, 2> {
-    WorkPrecision::<2>::new(|| scenes::radial(1.0)).scheme(ConformingP1).scheme(Wopsip::default())
+    WorkPrecision::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).scheme(Wopsip::default())
 }
 
 #[test]
@@ -193,20 +192,18 @@ fn a_tiny_study_measures_every_variant_alike() {
             unilateral::linear::LinearMethod::Direct,
             unilateral::linear::LinearMethod::Iterative,
         ])
-        .precisions([Precision::Double, Precision::Single])
         .levels([8, 4])
         .rounds(3)
-        .memory(|case| Some(case.level as u64))
         .run()
         .unwrap();
-    assert_eq!(report.rows.len(), 3 * 2 * 2 * 2);
+    assert_eq!(report.rows.len(), 3 * 2 * 2);
     assert_eq!(report.failures(), []);
-    assert_eq!(report.program.precision, "f64, f32");
+    assert_eq!(report.program.precision, "f64");
     let labels: Vec<String> =
         report.variants().iter().map(|v| v.name_among(&report.variants())).collect();
-    assert_eq!(labels.len(), 12);
-    assert_eq!(labels[0], "p1, direct, f64");
-    assert_eq!(labels[11], "wopsip:facet-means, iterative, f32");
+    assert_eq!(labels.len(), 6);
+    assert_eq!(labels[0], "p1, direct");
+    assert_eq!(labels[5], "wopsip:facet-means, iterative");
     for m in &report.rows {
         assert_eq!(m.runs, 3);
         assert!(m.smallest.total > 0.0 && m.smallest.total <= m.median.total);
@@ -216,9 +213,7 @@ fn a_tiny_study_measures_every_variant_alike() {
             // WOPSIP starts from P1, P1 on the coarsest level from nothing
             assert_eq!(p.coarse > 0.0, m.row.scheme != "p1" || m.row.level == 8, "{p:?}");
         }
-        assert_eq!(m.row.peak_memory_bytes, Some(m.row.level as u64));
-        let is_single = m.precision == "f32";
-        assert!(m.row.certificate.residual < if is_single { 1e-4 } else { 1e-9 });
+        assert!(m.row.certificate.residual < 1e-9);
         // the same counts and errors as a study of this scheme alone
         assert_eq!(m.row.order.l2.is_some(), m.row.level == 8);
     }
@@ -245,7 +240,7 @@ fn adaptive_meshes_stand_beside_uniform_ones() {
     let study = || tiny().levels([4, 8]).adaptive(adaptivity).rounds(2);
     assert_eq!(study().check().unwrap().len(), 2 * 3);
     let scratch = Scratch::new("work-adaptive");
-    let report = study().memory(|_| Some(1)).write_to(&scratch.0).run().unwrap();
+    let report = study().write_to(&scratch.0).run().unwrap();
     assert_eq!(report.failures(), []);
     assert_eq!(report.rows.len(), 2 * (2 + 4));
     let names: Vec<String> =
@@ -258,7 +253,7 @@ fn adaptive_meshes_stand_beside_uniform_ones() {
         .adaptive(adaptivity)
         .run()
         .unwrap();
-    let adaptive = || report.rows.iter().filter(|m| m.meshes == "adaptive");
+    let adaptive = || report.rows.iter().filter(|m| m.meshes.is_adaptive());
     assert_eq!(adaptive().count(), alone.rows.len());
     for (m, row) in adaptive().zip(&alone.rows) {
         assert_eq!((m.row.level, m.row.error, &m.row.bound), (row.level, row.error, &row.bound));
@@ -267,7 +262,7 @@ fn adaptive_meshes_stand_beside_uniform_ones() {
         let sum = p.mesh + p.assemble + p.solve + p.bound.unwrap();
         assert!((sum - p.total).abs() <= 1e-9 && m.seconds_to(ErrorNorm::Bound) == p.total);
     }
-    for m in report.rows.iter().filter(|m| m.meshes == "uniform") {
+    for m in report.rows.iter().filter(|m| !m.meshes.is_adaptive()) {
         let with_bound = m.smallest.total + m.smallest.bound.unwrap();
         assert_eq!(m.seconds_to(ErrorNorm::Bound), with_bound);
         assert_eq!(m.seconds_to(ErrorNorm::H1), m.smallest.total);
@@ -289,9 +284,6 @@ fn adaptive_meshes_stand_beside_uniform_ones() {
     let rows: Value = serde_json::from_str(&scratch.read("report.json")).unwrap();
     assert_eq!(rows["rows"][2]["meshes"], "adaptive");
     assert!(scratch.read("radial-2d-time.svg").contains("time in s, bound included"));
-    // the report is its own baseline
-    let changes = changes(&report.to_json(), &report).unwrap();
-    assert_eq!((changes.compared, changes.changed.len()), (12, 0));
 }
 
 #[test]

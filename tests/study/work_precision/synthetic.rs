@@ -1,20 +1,12 @@
 //! Reports of work against precision to test with.
 
 use crate::rows::row;
-use unilateral::work_precision::{Case, Measured, Phases, Variant, WorkReport};
+use unilateral::work_precision::{Measured, Phases, WorkReport};
 
 /// A run of a scheme whose L2 error is `h^2` and whose time is `factor n^3`.
 pub fn measured(scheme: &str, level: usize, factor: f64) -> Measured {
-    let variant = Variant {
-        scene: "radial-2d".into(),
-        scheme: scheme.into(),
-        constraint: "vertices".into(),
-        label: scheme.into(),
-        linear_asked: "direct".into(),
-        precision: "f64".into(),
-        meshes: "uniform".into(),
-    };
     let mut row = row("radial-2d", scheme, level);
+    row.linear_asked = Some("direct".into());
     let n = level as f64;
     row.error.l2 = Some(n.powi(-2));
     row.peak_memory_bytes = Some(1_000_000 * (level * level) as u64);
@@ -27,7 +19,7 @@ pub fn measured(scheme: &str, level: usize, factor: f64) -> Measured {
         bound: None,
         total,
     };
-    Measured::new(row, phases, &Case { variant, level })
+    Measured::new(row, phases)
 }
 
 /// P1 takes `n^3` microseconds, SIPG three times and WOPSIP four and a half times that; WOPSIP was

@@ -19,13 +19,17 @@ use watcher::Watcher;
 use crate::judge::write_requests;
 use crate::one_run::take_directory;
 use crate::shared::{
-    ORDER_TOLERANCE, Request, check_writable, complain, print, print_to, use_threads, warn, write,
+    ORDER_TOLERANCE, Request, check_writable, complain, print, print_to, problem, terminal_width,
+    use_threads, warn, write,
 };
 
+use std::path::Path;
+
+use unilateral::in_its_dimension;
 use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
 use unilateral::mesh::gmsh::GmshFile;
-use unilateral::problem_file::{self, AnyOwnProblem};
+use unilateral::problem_file::ProblemFile;
 use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::orders_table;
@@ -44,8 +48,8 @@ pub fn run(options: &Options) -> Request<bool> {
     let copy = options.clone();
     let resumes = options.adaptive.is_none() && options.dump.is_none();
     let interrupt = Interrupt::install(resumes, move |report| write_all(&copy, report))?;
-    let chosen = Chosen::new(options)?;
-    chosen.run(options, &interrupt)
+    let watcher = Watcher::new(options);
+    Chosen::new(options, &watcher)?.run(options, &watcher, &interrupt)
 }
 
 /// How many processes the launcher of an MPI job has started; one without a launcher.
@@ -68,7 +72,9 @@ fn run_over_processes(_: &Options) -> Request<bool> {
 /// The program, with all that its rows depend on and do not say.
 fn program(options: &Options, files: &[(&str, String)]) -> Program {
     let threads = rayon::current_num_threads();
-    let mut program = Program::new("compare", &options.precision, threads, options.repeat);
+    let words = std::env::args().skip(1);
+    let mut program = Program::new("compare", &options.precision, threads, options.repeat)
+        .with_command(std::iter::once("unilateral".to_owned()).chain(words));
     for (name, value) in
         [("scale", options.scale), ("contrast", options.contrast), ("load", options.load)]
     {
@@ -99,50 +105,48 @@ fn program(options: &Options, files: &[(&str, String)]) -> Program {
 
 /// What the options ask for, with every name found.
 struct Chosen {
+    /// The scenes, on the mesh of the command line if there is one, or the problem of a file.
     scenes: Vec<AnyScene>,
     schemes: Vec<NamedScheme>,
     solvers: Vec<String>,
-    mesh: Option<GmshFile>,
-    /// A problem of a file, in place of scenes.
-    own: Option<AnyOwnProblem>,
+    /// The names and fingerprints of the files that have been read.
+    fingerprints: Vec<(&'static str, String)>,
 }
 
 impl Chosen {
-    fn new(options: &Options) -> Request<Self> {
+    fn new(options: &Options, watcher: &Watcher) -> Request<Self> {
+        let warn = |warning| watcher.warn_once(warning);
         let mesh = options.mesh.read()?;
         let schemes = choose_schemes(options)?;
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
-        let own = match &options.problem {
-            None => None,
-            Some(path) => {
-                if !path.exists() {
-                    let path = excerpt(path.as_os_str().as_encoded_bytes());
-                    return Err(format!("there is no file {path}; scenes are named by --scene"));
-                }
-                let parameters = [
-                    ("scale", options.scale),
-                    ("contrast", options.contrast),
-                    ("load", options.load),
-                ];
-                if let Some((name, x)) = parameters.iter().find_map(|(n, x)| Some((n, (*x)?))) {
-                    let path = path.display();
-                    return Err(format!("--{name} {x:?}: a parameter of scenes; {path} has none"));
-                }
-                Some(problem_file::read(path).map_err(|e| e.to_string())?)
-            }
-        };
-        let scenes = match own {
-            Some(_) => Vec::new(),
-            None => Self::scenes(options, mesh.as_ref().map(GmshFile::dimension))?,
-        };
-        Ok(Self { scenes, schemes, solvers, mesh, own })
+        if let Some(path) = &options.problem {
+            Self::check_problem(options, path)?;
+            let ProblemFile { scene, fingerprints, .. } = problem(path, &warn)?;
+            return Ok(Self { scenes: vec![scene], schemes, solvers, fingerprints });
+        }
+        let scenes = Self::scenes(options, mesh.as_ref().map(GmshFile::dimension))?;
+        let on_mesh = |scene| options.mesh.under(scene, mesh.as_ref(), &warn);
+        let scenes = scenes.into_iter().map(on_mesh).collect::<Request<_>>()?;
+        let fingerprints = mesh.iter().map(|file| ("mesh", file.fingerprint())).collect();
+        Ok(Self { scenes, schemes, solvers, fingerprints })
     }
 
-    /// The names and fingerprints of the files that have been read.
-    fn fingerprints(&self) -> Vec<(&'static str, String)> {
-        let of_mesh = self.mesh.iter().map(|file| ("mesh", file.fingerprint()));
-        of_mesh.chain(self.own.iter().flat_map(AnyOwnProblem::fingerprints)).collect()
+    /// Refuses a problem file that is not there, and parameters of scenes beside one.
+    fn check_problem(options: &Options, path: &Path) -> Request<()> {
+        if !path.exists() {
+            let path = excerpt(path.as_os_str().as_encoded_bytes());
+            return Err(format!("there is no file {path}; scenes are named by --scene"));
+        }
+        let parameters =
+            [("scale", options.scale), ("contrast", options.contrast), ("load", options.load)];
+        match parameters.iter().find_map(|(n, x)| Some((n, (*x)?))) {
+            None => Ok(()),
+            Some((name, x)) => {
+                let path = path.display();
+                Err(format!("--{name} {x:?}: a parameter of scenes; {path} has none"))
+            }
+        }
     }
 
     fn scenes(options: &Options, mesh: Option<usize>) -> Request<Vec<AnyScene>> {
@@ -189,30 +193,13 @@ impl Chosen {
 
     /// Whether every row converged. Nothing runs and nothing is written before everything has been
     /// checked; afterwards no finished row is lost.
-    fn run(self, options: &Options, interrupt: &Interrupt) -> Request<bool> {
-        let files = self.fingerprints();
-        let Self { scenes, schemes, solvers, mesh, own } = self;
+    fn run(self, options: &Options, watcher: &Watcher, interrupt: &Interrupt) -> Request<bool> {
+        let Self { scenes, schemes, solvers, fingerprints: files } = self;
         let names = (&schemes[..], &solvers[..]);
-        let watcher = Watcher::new(options);
         let mut runs = Vec::new();
         for scene in scenes {
-            let mesh = mesh.as_ref();
-            runs.extend(match scene {
-                AnyScene::One(of) => prepare::<1>(of.into(), options, names, mesh, &watcher)?,
-                AnyScene::Two(of) => prepare::<2>(of.into(), options, names, mesh, &watcher)?,
-                AnyScene::Three(of) => prepare::<3>(of.into(), options, names, mesh, &watcher)?,
-            });
-        }
-        // the runs have the meshes they need
-        drop(mesh);
-        if let Some(own) = own {
-            runs.extend(match own {
-                AnyOwnProblem::One(of) => prepare::<1>(of.into(), options, names, None, &watcher)?,
-                AnyOwnProblem::Two(of) => prepare::<2>(of.into(), options, names, None, &watcher)?,
-                AnyOwnProblem::Three(of) => {
-                    prepare::<3>(of.into(), options, names, None, &watcher)?
-                }
-            });
+            let run = in_its_dimension!(scene, |scene| prepare(scene, options, names, watcher));
+            runs.extend(run?);
         }
         if runs.is_empty() {
             return Err("no scene fits the mesh; name one to be told why".to_owned());
@@ -318,7 +305,11 @@ fn show(options: &Options, report: &Report) -> Request<()> {
     }
     let (out, is_whole) = (options.out.display(), report.complete);
     let files = if is_whole { "Report, plots and fields are" } else { "The incomplete report is" };
-    let text = format!("{report}\nTimes are in seconds. {files} in {out}\n");
+    let details =
+        if options.details { format!("\n{}", report.details_to_text()) } else { String::new() };
+    let more = if options.details { "" } else { "; --details shows all levels" };
+    let summary = report.summary_to_text(terminal_width());
+    let text = format!("{summary}{details}\nTimes are in seconds{more}. {files} in {out}\n");
     match options.json.as_deref().is_some_and(|path| path.as_os_str() == "-") {
         true => print_to(std::io::stderr(), &text),
         false => print(&text),

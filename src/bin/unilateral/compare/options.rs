@@ -107,6 +107,9 @@ pub struct Options {
     /// Over the processes of mpirun: compare all rows with those of the whole mesh, bit for bit
     #[arg(long)]
     pub verify: bool,
+    /// After the summary also the tables of all levels
+    #[arg(long)]
+    pub details: bool,
     /// No progress, no tables
     #[arg(long)]
     pub quiet: bool,

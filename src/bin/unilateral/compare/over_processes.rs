@@ -4,10 +4,10 @@
 
 use unilateral::distributed::Process;
 use unilateral::distributed::petsc::Processes;
-use unilateral::mesh::gmsh::GmshFile;
+use unilateral::in_its_dimension;
 use unilateral::paraview::FieldScalar;
 use unilateral::processes::{ExchangeError, agree};
-use unilateral::scenes::AnyScene;
+use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, PartChecks, Report, Row, Study};
 
@@ -15,7 +15,6 @@ use super::options::{Options, check_numbers};
 use super::prepare::{default_levels, place};
 use super::watcher::Watcher;
 use super::{Chosen, check_output, processes_of_job, program, write_all};
-use crate::posed::Posed;
 use crate::shared::{Request, complain, each_once, use_threads};
 
 /// Whether every row converged: the same in all processes. The first one has said what went wrong.
@@ -40,9 +39,8 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
     let mut quiet = options.clone();
     quiet.quiet |= !is_first;
     let watcher = Watcher::new(&quiet);
-    let chosen = agreed(Chosen::new(options), process)?;
-    let files = chosen.fingerprints();
-    let Chosen { scenes, schemes, mesh, own, .. } = chosen;
+    let chosen = agreed(Chosen::new(options, &watcher), process)?;
+    let Chosen { scenes, schemes, fingerprints: files, .. } = chosen;
     check_equal(&format!("{options:?} {files:?}"), process)?;
     let program = program(options, &files)
         .with_request("processes", process.count())
@@ -54,24 +52,13 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
     let journal = agreed(is_first.then(new_journal).transpose(), process)?;
     let all = AllRuns { options, schemes: &schemes, process, watcher: &watcher };
     let (mut rows, mut messages) = (Vec::new(), Vec::new());
-    let (journal, mesh) = (journal.as_ref(), mesh.as_ref());
+    let journal = journal.as_ref();
     let mut add = |found: Result<Vec<Row>, String>| match found {
         Ok(found) => rows.extend(found),
         Err(why) => messages.push(why),
     };
     for scene in scenes {
-        add(match scene {
-            AnyScene::One(of) => all.run(of.into(), mesh, journal),
-            AnyScene::Two(of) => all.run(of.into(), mesh, journal),
-            AnyScene::Three(of) => all.run(of.into(), mesh, journal),
-        });
-    }
-    use unilateral::problem_file::AnyOwnProblem;
-    match own {
-        None => {}
-        Some(AnyOwnProblem::One(of)) => add(all.run(of.into(), None, journal)),
-        Some(AnyOwnProblem::Two(of)) => add(all.run(of.into(), None, journal)),
-        Some(AnyOwnProblem::Three(of)) => add(all.run(of.into(), None, journal)),
+        add(in_its_dimension!(scene, |scene| all.run(scene, journal)));
     }
     watcher.clear();
     let report = Report::new(program, rows);
@@ -130,32 +117,21 @@ struct AllRuns<'r> {
 
 impl AllRuns<'_> {
     /// The rows of one scene or problem.
-    fn run<const D: usize>(
-        &self,
-        posed: Posed<D>,
-        mesh: Option<&GmshFile>,
-        journal: Option<&Journal>,
-    ) -> Request<Vec<Row>> {
+    fn run<const D: usize>(&self, scene: Scene<D>, journal: Option<&Journal>) -> Request<Vec<Row>> {
         let Self { options, schemes, process, watcher } = *self;
-        let name = posed.name().to_owned();
-        let has_mesh = mesh.is_some() || posed.has_mesh();
+        let place = place(options, &scene.name);
+        let has_mesh = scene.domain.is_mesh();
         let levels = match &options.levels[..] {
             [] => default_levels(D, has_mesh),
             some => each_once(some),
         };
-        let warn = |warning| watcher.warn_once(warning);
         let mut study =
-            posed.study(&warn)?.levels(levels).observer(|progress| watcher.tell(&progress));
+            Study::new(scene).levels(levels).observer(|progress| watcher.tell(&progress));
         study = schemes.iter().fold(study, Study::named_scheme);
         if !options.no_fields {
             let is_double = options.fields == "f64";
             let scalar = if is_double { FieldScalar::Double } else { FieldScalar::Single };
             study = study.fields_to(&options.out).field_scalar(scalar);
-        }
-        let mut place = place(options, &name);
-        if let (Some(file), Some(path)) = (mesh, &options.mesh.path) {
-            place = format!("{}, {place}", path.display());
-            study = study.on_mesh(options.mesh.mesh(file, &warn)?);
         }
         study.check().map_err(|e| format!("{place}: {e}"))?;
         watcher.expect(D, has_mesh, study.keys().iter().map(|key| key.level));

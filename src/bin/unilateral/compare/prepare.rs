@@ -6,17 +6,16 @@ use std::path::Path;
 
 use super::options::Options;
 use super::watcher::Watcher;
-use crate::posed::Posed;
 use crate::shared::{Request, each_once, fields_with_bound};
 
 use unilateral::error::Error;
 use unilateral::inequality::solver_by_name;
 use unilateral::linear::LinearMethod;
-use unilateral::mesh::gmsh::GmshFile;
 use unilateral::nested::Solved;
 use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
 use unilateral::real::Precision;
+use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, Row, RowKey, Study, file_name};
 
@@ -35,14 +34,13 @@ const MOST_CELLS: usize = 5000;
 
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
 pub fn prepare<'a, const D: usize>(
-    posed: Posed<D>,
+    scene: Scene<D>,
     options: &'a Options,
     (schemes, solvers): (&[NamedScheme], &[String]),
-    mesh: Option<&GmshFile>,
     watcher: &'a Watcher,
 ) -> Request<Option<Run<'a>>> {
-    let name = posed.name().to_owned();
-    let has_mesh = mesh.is_some() || posed.has_mesh();
+    let name = scene.name.clone();
+    let has_mesh = scene.domain.is_mesh();
     let levels = match &options.levels[..] {
         [] if options.adaptive.is_some() => Vec::new(),
         [] => default_levels(D, has_mesh),
@@ -53,8 +51,7 @@ pub fn prepare<'a, const D: usize>(
         Some(_) => LinearMethod::Iterative,
         None => LinearMethod::BySize,
     };
-    let mut study = posed
-        .study(&|warning| watcher.warn_once(warning))?
+    let mut study = Study::new(scene)
         .levels(levels)
         .repeat(options.repeat)
         .steps(watcher.steps())
@@ -97,11 +94,7 @@ pub fn prepare<'a, const D: usize>(
     if let Some((scheme, level)) = &options.reference {
         study = study.named_reference(scheme, *level);
     }
-    let mut place = place(options, &name);
-    if let (Some(file), Some(path)) = (mesh, &options.mesh.path) {
-        place = format!("{}, {place}", path.display());
-        study = study.on_mesh(options.mesh.mesh(file, &|warning| watcher.warn_once(warning))?);
-    }
+    let place = place(options, &name);
     match study.check() {
         Err(Error::UnfitMesh { .. }) if !options.scenes_are_named() => return Ok(None),
         other => other.and_then(|()| study.check_memory()).map_err(|e| format!("{place}: {e}"))?,
@@ -115,11 +108,12 @@ pub fn prepare<'a, const D: usize>(
     Ok(Some(Run { keys, place, run: Box::new(run) }))
 }
 
-/// What a message is about: the file of a problem, or a scene.
+/// What a message is about: the file of a problem, or a scene, perhaps on the mesh of a file.
 pub fn place(options: &Options, name: &str) -> String {
-    match &options.problem {
-        Some(path) => path.display().to_string(),
-        None => format!("scene {name}"),
+    match (&options.problem, &options.mesh.path) {
+        (Some(path), _) => path.display().to_string(),
+        (None, Some(mesh)) => format!("{}, scene {name}", mesh.display()),
+        (None, None) => format!("scene {name}"),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoundaryCondition;
 use unilateral::stability::{Effort, STABILITY_CASES};
 
 use crate::mesh_file::boundary;
@@ -23,7 +23,7 @@ pub struct Options {
     pub meshes: Vec<PathBuf>,
     /// The parts of other groups of these meshes than dirichlet, neumann and contact, as bore=neumann
     #[arg(long, value_delimiter = ',', value_name = "NAME=PART[,...]", requires = "meshes", value_parser = boundary)]
-    pub boundary: Vec<(String, BoundaryPart)>,
+    pub boundary: Vec<(String, BoundaryCondition)>,
     /// Coarse meshes and few places of each sweep: within a minute
     #[arg(long)]
     quick: bool,

@@ -32,9 +32,9 @@ pub struct Options {
     /// Linear solvers: direct, iterative, by-size
     #[arg(long, value_delimiter = ',', value_parser = LinearMethod::NAMES.map(|l| l.0), default_value = "by-size")]
     linear: Vec<String>,
-    /// Scalars
-    #[arg(long, value_delimiter = ',', value_parser = Precision::NAMES.map(|p| p.0), default_value = "f64")]
-    precision: Vec<String>,
+    /// Scalar of the solve
+    #[arg(long, value_parser = Precision::NAMES.map(|p| p.0), default_value = "f64")]
+    precision: String,
     #[command(flatten)]
     pub mesh: MeshFile,
     /// Take errors against one fine solution in place of the exact one, by p2 where no scheme is named
@@ -68,21 +68,9 @@ pub struct Options {
     /// Where the report goes
     #[arg(long, value_name = "DIR", default_value = "target/work_precision")]
     pub out: PathBuf,
-    /// Also write the report here, as a baseline for --against
-    #[arg(long, value_name = "FILE")]
-    pub save: Option<PathBuf>,
-    /// Print what changed in counts and errors since this report
-    #[arg(long, value_name = "FILE")]
-    pub against: Option<PathBuf>,
     /// No progress, no tables
     #[arg(long)]
     pub quiet: bool,
-    /// Run one case and print the memory it took
-    #[arg(long, hide = true)]
-    pub peak: bool,
-    /// With --peak: run no case
-    #[arg(long, hide = true, requires = "peak")]
-    pub empty: bool,
 }
 
 impl Options {
@@ -130,9 +118,8 @@ impl Options {
         self.linear.iter().filter_map(of).collect()
     }
 
-    pub fn precisions(&self) -> Vec<Precision> {
-        let of = |name: &String| Precision::by_name(name);
-        let known = self.precision.iter().map(of).collect::<Option<Vec<_>>>();
+    pub fn precision(&self) -> Precision {
+        let known = Precision::by_name(&self.precision);
         known.expect("the command line takes the names of precisions alone")
     }
 

@@ -166,7 +166,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
     /// Whether each cell owns more unknowns than linear functions on a tetrahedron have: broken quadratics in the plane
     /// and in space.
     fn has_more_unknowns_than_linears(&self) -> bool {
-        unknowns_per_cell(&self.inequality.supports).is_some_and(|n| n > MAX_LINEAR_BASIS)
+        unknowns_per_cell(&self.inequality.locations).is_some_and(|n| n > MAX_LINEAR_BASIS)
     }
 
     /// The relative tolerance of accurate solutions by Krylov methods; that of the initial guess if it is larger.

@@ -11,7 +11,7 @@ use unilateral::algebra::{Contact, Start};
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
 use unilateral::mesh::BoxDomain;
-use unilateral::mesh::{BoundaryPart, Edges, Mesh, TaggedFacet};
+use unilateral::mesh::{BoundaryCondition, Edges, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::real::Precision;
@@ -19,7 +19,7 @@ use unilateral::scenes::Scene;
 use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 /// Symmetric interior penalty on broken quadratics.
-fn broken<const D: usize>() -> Sipg<D> {
+fn broken<const D: usize>() -> OnElement<Sipg, D> {
     Sipg::default().on(P2)
 }
 
@@ -49,7 +49,7 @@ fn h1_as_tables(scene: &Scene<2>, set: impl ConstraintSet + 'static, level: usiz
     let space = Discretisation::new(&ConformingP2, &problem, mesh, quadrature).unwrap();
     let mut inequality = space.inequality().unwrap();
     let in_contact = |&v: &u32| start[v as usize] == Contact::Lower;
-    let states = inequality.supports.iter().map(|place| {
+    let states = inequality.locations.iter().map(|place| {
         if place.vertices().iter().all(in_contact) { Contact::Lower } else { Contact::Inactive }
     });
     inequality.start = Start::Contact(states.collect());
@@ -154,8 +154,8 @@ fn smooth<const D: usize>() -> Scene<D> {
         .reaction(|x: &Point<D>| 1.0 + x[0])
         .exact(value, gradient);
     let mut domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    domain.sides = [[BoundaryPart::Neumann; 2]; D];
-    own_scene("smooth", domain.side(0, 0, BoundaryPart::Dirichlet), problem)
+    domain.sides = [[BoundaryCondition::Neumann; 2]; D];
+    own_scene("smooth", domain.side(0, 0, BoundaryCondition::Dirichlet), problem)
 }
 
 /// Orders two and three where no inequality binds. The four are one space; with midpoints or cell
@@ -190,8 +190,11 @@ fn without_contact<const D: usize>(mesh: Mesh<D>) -> Mesh<D> {
     let boundary = mesh.boundary().iter().map(|f| {
         let mut vertices = mesh.facet_vertices(f.cell as usize, f.local as usize);
         let vertices = std::array::from_fn(|_| vertices.next().unwrap());
-        let contact = f.part == BoundaryPart::Contact;
-        TaggedFacet { vertices, part: if contact { BoundaryPart::Dirichlet } else { f.part } }
+        let contact = f.condition == BoundaryCondition::Contact;
+        TaggedFacet {
+            vertices,
+            condition: if contact { BoundaryCondition::Dirichlet } else { f.condition },
+        }
     });
     let boundary: Vec<_> = boundary.collect();
     Mesh::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &boundary).unwrap()
@@ -269,7 +272,7 @@ fn numbering_does_not_matter() {
                 let sum = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum::<Point<2>>();
                 sum / vertices.len() as f64
             };
-            let keys = inequality.supports.iter().zip(&solution.values).map(|(place, &u)| {
+            let keys = inequality.locations.iter().zip(&solution.values).map(|(place, &u)| {
                 let cell = place.cell().map_or(Point::zeros(), |c| mesh.barycentre(c as usize));
                 let key = [cell, barycentre(place.vertices())];
                 (key.map(|x| [x[0], x[1]].map(|t| (t * 1e9).round() as i64)), u)

@@ -16,8 +16,8 @@ fn bounds<const D: usize, S: Scheme<D>>(
 ) -> Result<Vec<(usize, Bound<f64>)>, Error> {
     let problem = problem.clone().on(set);
     let space = Discretisation::new(scheme, &problem, mesh, DataQuadrature::default())?;
-    let supports = space.supports();
-    Ok(supports.iter().map(|p| p.vertices().len()).zip(space.bounds()?).collect())
+    let locations = space.locations();
+    Ok(locations.iter().map(|p| p.vertices().len()).zip(space.bounds()?).collect())
 }
 
 /// Which unknowns are bound, by the number of vertices of their place.

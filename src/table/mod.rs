@@ -1,4 +1,17 @@
-//! Tables, as text and in Markdown.
+//! Tables, as text for a terminal, in Markdown and in LaTeX.
+
+#[cfg(feature = "report")]
+mod latex;
+mod text;
+
+#[cfg(feature = "report")]
+pub use latex::LATEX_PACKAGES;
+#[cfg(feature = "report")]
+pub(crate) use latex::latex_document;
+pub(crate) use text::wrapped;
+
+/// Characters in a line where the width of the terminal is not known.
+pub(crate) const WIDTH: usize = 100;
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -7,6 +20,8 @@ pub(crate) enum Cell {
     Words(String),
     /// A number, perhaps with a power of ten as in `1.37e-2`, and a remark in parentheses.
     Number(String, Option<String>),
+    /// The best number of its column, which each format marks in its way.
+    Best(String, Option<String>),
     /// A value that does not apply.
     Nothing,
 }
@@ -22,61 +37,45 @@ pub struct Table {
 }
 
 impl Cell {
+    /// A number of things.
+    #[cfg(feature = "report")]
     pub(crate) fn whole(x: Option<usize>) -> Self {
         x.map_or(Cell::Nothing, |x| Cell::Number(x.to_string(), None))
     }
     /// Three digits.
+    #[cfg(feature = "report")]
     pub(crate) fn scientific(x: Option<f64>) -> Self {
         x.map_or(Cell::Nothing, |x| Cell::Number(format!("{x:.2e}"), None))
     }
 
-    pub(super) fn plain(&self) -> String {
+    /// The text of the cell, without a mark.
+    pub(crate) fn plain(&self) -> String {
         match self {
-            Cell::Words(text) | Cell::Number(text, None) => text.clone(),
-            Cell::Number(text, Some(remark)) => format!("{text} ({remark})"),
+            Cell::Words(text) | Cell::Number(text, None) | Cell::Best(text, None) => text.clone(),
+            Cell::Number(text, Some(remark)) | Cell::Best(text, Some(remark)) => {
+                format!("{text} ({remark})")
+            }
             Cell::Nothing => "-".to_owned(),
         }
     }
 }
 
 impl Table {
-    pub(super) fn is_left(&self, column: usize) -> bool {
+    /// Whether a column is one of words.
+    pub(crate) fn is_left(&self, column: usize) -> bool {
         self.rows.iter().any(|row| matches!(row[column], Cell::Words(_)))
     }
 
     /// The title as a name of files and labels: letters and digits, and `-` for all else.
+    #[cfg(feature = "report")]
     pub fn slug(&self) -> String {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
         let text: String = self.title.chars().map(plain).collect();
         text.split_whitespace().collect::<Vec<_>>().join("-")
     }
 
-    /// Aligned columns for a terminal.
-    pub fn to_text(&self) -> String {
-        let cells: Vec<Vec<String>> = std::iter::once(self.columns.clone())
-            .chain(self.rows.iter().map(|row| row.iter().map(Cell::plain).collect()))
-            .collect();
-        let width = |k: usize| cells.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
-        let mut text = format!("{}\n", self.title);
-        for row in &cells {
-            let mut line = String::new();
-            for (k, (cell, width)) in row.iter().zip(&widths).enumerate() {
-                line += &match self.is_left(k) {
-                    true => format!("{cell:<width$}  "),
-                    false => format!("{cell:>width$}  "),
-                };
-            }
-            text += line.trim_end();
-            text.push('\n');
-        }
-        for remark in &self.remarks {
-            text += &format!("  {remark}\n");
-        }
-        text
-    }
-
-    /// A heading, a table with bars, and a list of remarks.
+    /// A heading, a table with bars, and a list of remarks; the best number of a column is bold.
+    #[cfg(feature = "report")]
     pub fn to_markdown(&self) -> String {
         let line = |cells: &mut dyn Iterator<Item = String>| {
             format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
@@ -85,8 +84,12 @@ impl Table {
         text += &line(&mut self.columns.iter().map(|c| markdown(c)));
         let rule = |k| if self.is_left(k) { ":--" } else { "--:" }.to_owned();
         text += &line(&mut (0..self.columns.len()).map(rule));
+        let cell = |cell: &Cell| match cell {
+            Cell::Best(..) => format!("**{}**", markdown(&cell.plain())),
+            _ => markdown(&cell.plain()),
+        };
         for row in &self.rows {
-            text += &line(&mut row.iter().map(|cell| markdown(&cell.plain())));
+            text += &line(&mut row.iter().map(cell));
         }
         for (k, remark) in self.remarks.iter().enumerate() {
             text += if k == 0 { "\n" } else { "" };
@@ -97,6 +100,7 @@ impl Table {
 }
 
 /// A text with the markup characters of Markdown escaped.
+#[cfg(feature = "report")]
 pub(crate) fn markdown(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {
@@ -108,26 +112,54 @@ pub(crate) fn markdown(text: &str) -> String {
     escaped
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "report"))]
 mod tests {
     use super::{Cell, Table, markdown};
 
     #[test]
-    fn words_stand_left_and_numbers_right() {
+    fn words_stand_left_numbers_right_and_the_best_is_marked() {
         let table = Table {
             title: "t".into(),
             columns: vec!["scheme".into(), "n".into()],
             rows: vec![
                 vec![Cell::Words("p1".into()), Cell::whole(Some(8))],
                 vec![Cell::Words("wopsip".into()), Cell::Nothing],
-                vec![Cell::Words("cr".into()), Cell::Number("1e-3".into(), Some("1.5".into()))],
+                vec![Cell::Words("cr".into()), Cell::Best("1e-3".into(), Some("1.5".into()))],
             ],
             remarks: vec!["100% of _all_".into()],
         };
-        let text = "t\nscheme           n\np1               8\nwopsip           -\n\
-                    cr      1e-3 (1.5)\n  100% of _all_\n";
-        assert_eq!(table.to_text(), text);
-        assert!(table.to_markdown().contains("| :-- | --: |\n| p1 | 8 |\n| wopsip | - |\n"));
+        let text = "t\nscheme             n\np1                 8\nwopsip             -\n\
+                    cr      \u{2022} 1e-3 (1.5)\n  100% of _all_\n";
+        assert_eq!(table.to_text(100), text);
+        let markdown_text = table.to_markdown();
+        assert!(markdown_text.contains("| :-- | --: |\n| p1 | 8 |\n| wopsip | - |\n"));
+        assert!(markdown_text.contains("| cr | **1e-3 (1.5)** |\n"));
         assert_eq!(markdown("a|b_c*d"), "a\\|b\\_c\\*d");
+    }
+
+    #[test]
+    fn columns_of_words_are_broken_where_lines_are_too_long() {
+        let row = |label: &str, status: &str| {
+            vec![Cell::Words(label.into()), Cell::whole(Some(123_456)), Cell::Words(status.into())]
+        };
+        let table = Table {
+            title: "t".into(),
+            columns: ["scheme", "unknowns", "status"].map(str::to_owned).into(),
+            rows: vec![
+                row("p1", "converged"),
+                row("wopsip:facet-means@factor=10", "stalled: the residual fell no more"),
+            ],
+            remarks: vec![],
+        };
+        let expected = "t
+scheme        unknowns status
+p1              123456 converged
+wopsip:facet-   123456
+means@factor=
+10
+    stalled: the residual fell
+    no more
+";
+        assert_eq!(table.to_text(32), expected);
     }
 }

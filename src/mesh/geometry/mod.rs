@@ -1,7 +1,11 @@
 //! The affine geometry of one cell.
 
+pub(super) mod simplex;
+
 use super::simplicial::Mesh;
+use crate::arrays::array_of;
 use crate::real::Point;
+use simplex::{FACTORIAL, cofactors, longest_edge, with_zeros};
 
 /// Volume of a cell and gradients of its barycentric coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -22,32 +26,14 @@ impl<const D: usize> CellGeometry<D> {
         const { assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only") }
         let origin = corner(0);
         let edge = |k: usize| corner(k + 1) - origin;
-        let mut gradients = [Point::zeros(); 4];
+        let edges = array_of(|k| if k < D { with_zeros(edge(k)) } else { [0.0; 3] });
+        let (normals, determinant) = cofactors::<D>(edges);
         let zero = 0.0;
-        let determinant;
-        match D {
-            1 => {
-                determinant = edge(0)[0];
-                gradients[1][0] = 1.0;
-            }
-            2 => {
-                let (a, b) = (edge(0), edge(1));
-                determinant = a[0] * b[1] - a[1] * b[0];
-                (gradients[1][0], gradients[1][1]) = (b[1], -b[0]);
-                (gradients[2][0], gradients[2][1]) = (-a[1], a[0]);
-            }
-            _ => {
-                let (a, b, c) = (edge(0), edge(1), edge(2));
-                gradients[1] = cross(&b, &c);
-                gradients[2] = cross(&c, &a);
-                gradients[3] = cross(&a, &b);
-                determinant = a.dot(&gradients[1]);
-            }
-        }
+        let mut gradients = [Point::zeros(); 4];
         let inverse = if determinant == zero { zero } else { 1.0 / determinant };
         for k in 1..=D {
-            gradients[k] *= inverse;
-            let gradient = gradients[k];
+            let gradient = Point::from_fn(|axis, _| normals[k - 1][axis]) * inverse;
+            gradients[k] = gradient;
             gradients[0] -= gradient;
         }
         let magnitude = if determinant < zero { -determinant } else { determinant };
@@ -57,7 +43,7 @@ impl<const D: usize> CellGeometry<D> {
 
     /// Whether the determinant of the edges from corner 0 to the others is positive.
     #[inline(always)]
-    pub(super) fn is_positive(&self) -> bool {
+    pub(crate) fn is_positive(&self) -> bool {
         self.is_positive
     }
 
@@ -86,15 +72,6 @@ impl<const D: usize> CellGeometry<D> {
     pub fn surface(&self) -> f64 {
         (0..D + 1).fold(0.0, |s, i| s + self.facet_measure(i))
     }
-}
-
-const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
-
-/// The vector product; meaningful for `D = 3` only.
-#[inline(always)]
-fn cross<const D: usize>(a: &Point<D>, b: &Point<D>) -> Point<D> {
-    let at = |v: &Point<D>, k: usize| v[k % D.max(1)];
-    Point::from_fn(|k, _| at(a, k + 1) * at(b, k + 2) - at(a, k + 2) * at(b, k + 1))
 }
 
 impl<const D: usize> Mesh<D> {
@@ -134,17 +111,7 @@ impl<const D: usize> Mesh<D> {
     #[inline(always)]
     pub fn facet_diameter(&self, c: usize, local: usize) -> f64 {
         let cell = self.cell(c);
-        let mut largest = 0.0;
-        for i in 0..=D {
-            for j in 0..i {
-                if i != local && j != local {
-                    let edge = self.vertices[cell[i] as usize] - self.vertices[cell[j] as usize];
-                    let square = edge.norm_squared();
-                    largest = if square > largest { square } else { largest };
-                }
-            }
-        }
-        nalgebra::ComplexField::sqrt(largest)
+        longest_edge(|k| self.vertices[cell[k] as usize], Some(local))
     }
 }
 

@@ -1,34 +1,34 @@
-//! The supports of basis functions: for each node, the vertices of a cell whose barycentre is the node.
+//! The locations of unknowns: for each node, the vertices of a cell whose barycentre is the node.
 
 use super::Space;
-use crate::algebra::Support;
+use crate::algebra::DofLocation;
 use crate::element::Entity;
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::collect;
 
 impl<const D: usize> Space<'_, D> {
-    /// The support of each unknown.
-    pub fn supports(&self) -> Vec<Support> {
+    /// The location of each unknown.
+    pub fn locations(&self) -> Vec<DofLocation> {
         let n = self.dofs.size();
         if self.broken {
             let per_cell = self.per_cell() as u32;
             return collect(n, |unknown| {
                 let (cell, node) = (unknown as u32 / per_cell, unknown as u32 % per_cell);
                 let node = &self.node_vertices[node as usize];
-                node.support(Some(cell), self.mesh.cell(cell as usize))
+                node.location(Some(cell), self.mesh.cell(cell as usize))
             });
         }
         if self.nodes.iter().all(|node| matches!(node.entity(), Entity::Vertex(_))) {
             // unknowns are numbered like the vertices that own them
-            return collect(n, |vertex| Support::new(None, &[vertex as u32]));
+            return collect(n, |vertex| DofLocation::new(None, &[vertex as u32]));
         }
-        let mut supports = in_large_pages(vec![Support::new(None, &[]); n]);
+        let mut locations = in_large_pages(vec![DofLocation::new(None, &[]); n]);
         for cell in 0..self.mesh.n_cells() {
             let vertices = self.mesh.cell(cell);
             for (i, node) in self.node_vertices.iter().enumerate() {
-                supports[self.dofs.of(cell, i)] = node.support(None, vertices);
+                locations[self.dofs.of(cell, i)] = node.location(None, vertices);
             }
         }
-        supports
+        locations
     }
 }

@@ -1,16 +1,14 @@
 //! What adaptive steps came to, in one line for each series: rates, effectivities, times.
 
-use super::row::{Row, distinct};
 use crate::measure::fit_order;
+use crate::study::row::Row;
+use crate::study::series::{Series, series_of};
 
 /// The orders of bound and error over the last half of the steps of each adaptive series, by least squares, the
 /// range of effectivities, and the time of all steps over that of the last one.
 pub(crate) fn rates(rows: &[&Row]) -> Vec<String> {
-    let key = |row: &Row| [&row.label, &row.constraint, &row.solver].map(String::clone);
-    let adaptive: Vec<&Row> = rows.iter().copied().filter(|row| row.theta.is_some()).collect();
-    let of_series = |series: [String; 3]| {
-        let steps: Vec<&Row> =
-            adaptive.iter().copied().filter(|row| key(row) == series && row.converged()).collect();
+    let of_series = |series: Series<'_, &Row>| {
+        let steps: Vec<&Row> = series.plain_rows().filter(|r| r.converged()).collect();
         let ([.., before, last], half) = (&steps[..], &steps[steps.len() / 2..]) else {
             return None;
         };
@@ -41,7 +39,8 @@ pub(crate) fn rates(rows: &[&Row]) -> Vec<String> {
         if step > 0.0 {
             words.push(format!("all steps take {:.1} times the last", all / step));
         }
-        Some(format!("{}: {}", series[0], words.join("; ")))
+        Some(format!("{}: {}", series.name, words.join("; ")))
     };
-    distinct(adaptive.iter().map(|row| key(row))).into_iter().filter_map(of_series).collect()
+    let adaptive = series_of(rows).into_iter().filter(|s| s.variant.meshes.is_adaptive());
+    adaptive.filter_map(of_series).collect()
 }

@@ -1,6 +1,6 @@
 //! What a report says below its tables.
 
-use super::row::{Row, distinct};
+use crate::study::row::{Row, distinct};
 
 /// Why a row did not converge.
 pub(crate) fn failure(row: &Row) -> String {

@@ -1,4 +1,4 @@
-//! Data of the problem as the assembler meets them: evaluated in `f64`, checked, rounded once.
+//! Checks of the data of the problem: each number is finite, a coefficient is positive.
 
 use crate::assemble::count;
 use crate::error::Error;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::corners::Corner;
 
 /// The fluxes of the corners of the cells that are kept, `per_corner` numbers each.
-pub(super) struct Parts {
+pub(super) struct CornerFluxes {
     kept: Range<usize>,
     per_corner: usize,
     per_cell: usize,
@@ -14,7 +14,7 @@ pub(super) struct Parts {
     bits: Vec<AtomicU64>,
 }
 
-impl Parts {
+impl CornerFluxes {
     pub fn new(per_corner: usize, n_corners: usize) -> Self {
         Self { kept: 0..0, per_corner, per_cell: per_corner * n_corners, bits: Vec::new() }
     }

@@ -3,7 +3,7 @@
 use super::bodies::FreeBodies;
 use super::space::Space;
 use crate::algebra::{Inequality, NO_INDEX};
-use crate::mesh::{Components, Neighbour};
+use crate::mesh::Components;
 
 impl<const D: usize> Space<'_, D> {
     /// Sets bodies and kernel of an inequality with a load. For each connected component of the space without a cell
@@ -58,13 +58,10 @@ impl<const D: usize> Space<'_, D> {
         for cell in 0..self.mesh.n_cells() {
             let first = self.dofs.of(cell, 0);
             (1..self.per_cell()).for_each(|i| components.join(first, self.dofs.of(cell, i)));
-            if let (true, Some(neighbours)) = (couples, &self.neighbours) {
-                for local in 0..=D {
-                    if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local) {
-                        components.join(first, self.dofs.of(other as usize, 0));
-                    }
-                }
-            }
+        }
+        let facets = couples.then(|| self.form_facets()).into_iter().flatten();
+        for (here, there) in facets.filter_map(|facet| Some((facet.here, facet.there?))) {
+            components.join(self.dofs.of(here.0, 0), self.dofs.of(there.0, 0));
         }
         components
     }

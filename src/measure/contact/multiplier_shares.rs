@@ -2,18 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use super::entity::{ContactEntity, Place};
+use super::entity::{CellOrFacet, ContactEntity};
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryCondition, HalfFacet};
 
 /// What of the multiplier of an unknown acts on one of several cells or contact facets.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct Share {
     /// The position of the cell or facet in the list of cells or of contact facets.
     place: usize,
     unknown: usize,
@@ -85,12 +85,12 @@ impl<const D: usize> Space<'_, D> {
         }
         let names: Vec<String> =
             (0..self.mesh.boundary_groups().len()).map(|group| self.name_of_gap(group)).collect();
-        let facets: Vec<((usize, usize), usize)> =
-            self.grouped_facets_of(BoundaryPart::Contact).collect();
-        for part in self.parts_of_gaps(&inequality.bounds, &multipliers) {
-            let ((cell, _), group) = facets[part.place];
+        let facets: Vec<(HalfFacet, usize)> =
+            self.grouped_facets_of(BoundaryCondition::Contact).collect();
+        for share in self.shares_of_gaps(&inequality.bounds, &multipliers) {
+            let ((cell, _), group) = facets[share.place];
             if of_cells(cell) {
-                *sums.entry(names[group].clone()).or_default() += part.value;
+                *sums.entry(names[group].clone()).or_default() += share.value;
             }
         }
         Some(sums)
@@ -102,7 +102,7 @@ impl<const D: usize> Space<'_, D> {
         let given = obstacles.into_iter().filter(|(_, data)| data.is_given());
         let mut names: Vec<String> = given.map(|(name, _)| name.to_owned()).collect();
         for (group, of_group) in self.mesh.boundary_groups().iter().enumerate() {
-            let is_contact = of_group.part == Some(BoundaryPart::Contact);
+            let is_contact = of_group.condition == Some(BoundaryCondition::Contact);
             if is_contact && self.data.gap.of(group).is_some() {
                 names.push(self.name_of_gap(group));
             }
@@ -113,9 +113,9 @@ impl<const D: usize> Space<'_, D> {
     /// The name under which the contact force of a boundary group is shown.
     fn name_of_gap(&self, group: usize) -> String {
         let names = &self.mesh.boundary_groups()[group].names;
-        let given = self.problem.named.gap.iter().map(|(name, _)| name);
-        let name = given.chain(names).find(|name| names.contains(name));
-        match name.map(String::as_str) {
+        let given = self.problem.gap.names();
+        let mut given = given.chain(names.iter().map(String::as_str));
+        match given.find(|name| names.iter().any(|n| n == name)) {
             None => "contact".to_owned(),
             Some(name @ ("lower" | "upper")) => format!("{name} (contact)"),
             Some(name) => name.to_owned(),
@@ -133,9 +133,9 @@ impl<const D: usize> Space<'_, D> {
         Some(Multipliers { by_unknown, obstacles })
     }
 
-    /// The parts of the multipliers of obstacles in all cells: that of a shared unknown by volume among the cells whose
-    /// obstacle gives the bound.
-    fn parts_of_obstacles(&self, of: &Multipliers) -> Vec<Part> {
+    /// The shares of the multipliers of obstacles in all cells: that of a shared unknown by volume among the cells
+    /// whose obstacle gives the bound.
+    fn parts_of_obstacles(&self, of: &Multipliers) -> Vec<Share> {
         let n_cells = self.mesh.n_cells();
         let volume = |cell: usize| self.mesh.geometry(cell).volume;
         let acting = |cell: usize| {
@@ -150,25 +150,25 @@ impl<const D: usize> Space<'_, D> {
         for cell in 0..n_cells {
             acting(cell).for_each(|unknown| totals[unknown] += volume(cell));
         }
-        let mut parts = Vec::new();
+        let mut shares = Vec::new();
         for cell in 0..n_cells {
-            parts.extend(acting(cell).map(|unknown| {
+            shares.extend(acting(cell).map(|unknown| {
                 let value = of.by_unknown[unknown] * (volume(cell) / totals[unknown]);
-                Part { place: cell, unknown, value }
+                Share { place: cell, unknown, value }
             }));
         }
-        parts
+        shares
     }
 
-    /// The parts of the multipliers of gaps on all contact facets: by measure among the facets whose gap gives the
+    /// The shares of the multipliers of gaps on all contact facets: by measure among the facets whose gap gives the
     /// bound.
-    fn parts_of_gaps(&self, bounds: &[Bound<f64>], of: &Multipliers) -> Vec<Part> {
+    fn shares_of_gaps(&self, bounds: &[Bound<f64>], of: &Multipliers) -> Vec<Share> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
-        let mut parts = Vec::new();
+        let mut shares = Vec::new();
         // of each unknown whether a gap gives the bound, and the measure of its facets with the best answer
         let mut best = vec![(false, 0.0); if self.problem.has_gap() { bounds.len() } else { 0 }];
-        let mut gives_of_part = Vec::new();
-        let facets = self.grouped_facets_of(BoundaryPart::Contact).enumerate();
+        let mut gives_of_share = Vec::new();
+        let facets = self.grouped_facets_of(BoundaryCondition::Contact).enumerate();
         for (place, ((cell, local), group)) in
             facets.filter(|(_, (_, group))| self.data.gap.of(*group).is_some())
         {
@@ -184,16 +184,16 @@ impl<const D: usize> Space<'_, D> {
                     lower if gives => *lower = (true, measure),
                     _ => {}
                 }
-                parts.push(Part { place, unknown, value: measure });
-                gives_of_part.push(gives);
+                shares.push(Share { place, unknown, value: measure });
+                gives_of_share.push(gives);
             }
         }
-        for (part, gives) in parts.iter_mut().zip(gives_of_part) {
-            let (of_best, all) = best[part.unknown];
-            let share = if gives == of_best { part.value / all } else { 0.0 };
-            part.value = share * of.by_unknown[part.unknown];
+        for (share, gives) in shares.iter_mut().zip(gives_of_share) {
+            let (of_best, all) = best[share.unknown];
+            let fraction = if gives == of_best { share.value / all } else { 0.0 };
+            share.value = fraction * of.by_unknown[share.unknown];
         }
-        parts
+        shares
     }
 
     /// The density of the multipliers of obstacles in each cell, by regions where obstacles have names.
@@ -214,19 +214,19 @@ impl<const D: usize> Space<'_, D> {
         inequality: &Inequality<f64>,
         of: &Multipliers,
     ) -> Vec<f64> {
-        let facets = self.grouped_facets_of(BoundaryPart::Contact);
+        let facets = self.grouped_facets_of(BoundaryCondition::Contact);
         let facets = facets.map(|((cell, local), group)| ((cell, Some(local)), group));
-        let parts = self.parts_of_gaps(&inequality.bounds, of);
-        self.densities(&facets.collect::<Vec<_>>(), &parts, inequality)
+        let shares = self.shares_of_gaps(&inequality.bounds, of);
+        self.densities(&facets.collect::<Vec<_>>(), &shares, inequality)
     }
 
     /// The density of multipliers on cells or on facets, group by group: the mean over their vertices of what acts on
-    /// the group there, each part divided equally among the vertices around its node, over the integrals of the hat
+    /// the group there, each share divided equally among the vertices around its node, over the integrals of the hat
     /// functions on the group.
     fn densities(
         &self,
-        places: &[(Place, usize)],
-        parts: &[Part],
+        places: &[(CellOrFacet, usize)],
+        shares: &[Share],
         inequality: &Inequality<f64>,
     ) -> Vec<f64> {
         let mut groups: Vec<usize> = places.iter().map(|(_, group)| *group).collect();
@@ -239,10 +239,10 @@ impl<const D: usize> Space<'_, D> {
             let entity = |k: usize| ContactEntity { cell: places[k].0.0, facet: places[k].0.1 };
             let entities: Vec<ContactEntity> = of_group.iter().map(|&k| entity(k)).collect();
             let mut at_vertices = vec![0.0; self.mesh.vertices().len()];
-            for part in parts.iter().filter(|part| places[part.place].1 == group) {
-                let around = inequality.supports[part.unknown].vertices();
-                let share = part.value / around.len() as f64;
-                around.iter().for_each(|&v| at_vertices[v as usize] += share);
+            for share in shares.iter().filter(|share| places[share.place].1 == group) {
+                let around = inequality.locations[share.unknown].vertices();
+                let at_vertex = share.value / around.len() as f64;
+                around.iter().for_each(|&v| at_vertices[v as usize] += at_vertex);
             }
             let hats = self.hat_integrals(&entities);
             at_vertices.iter_mut().zip(hats).for_each(|(density, hat)| *density /= hat);

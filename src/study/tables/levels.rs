@@ -1,46 +1,51 @@
-//! Reports as text for a terminal: one table for each scene.
+//! All levels as text for a terminal: one table for each scene.
 
 use std::fmt;
 
-use super::extrapolate::{Limit, extrapolate};
-use super::part_figures::PartFigures;
-use super::rates::rates;
 use super::remarks::{failure, warnings};
-use super::report::Report;
-use super::row::{Row, distinct};
+use crate::study::extrapolate::{Limit, extrapolate};
+use crate::study::orders::rates::rates;
+use crate::study::part_figures::PartFigures;
+use crate::study::row::{Row, distinct};
+use crate::study::series::series_of;
+use crate::table::{WIDTH, wrapped};
 
 /// The cell of a number that does not apply.
 const NONE: &str = "-";
-/// Characters in a line.
-const WIDTH: usize = 100;
-
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_tables(f, &self.rows)
-    }
-}
 
 /// Writes one table for each scene, in the order in which scenes first occur, with a blank line
-/// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
+/// between series; times are in seconds. `certif.` is the largest of the four numbers of the
 /// certificate, `effect.` the error bound over the true error in the broken energy norm, `bound` the bound on that
 /// error, with a mark where a term of it is not proven. A row that did not converge is followed by
 /// the reason. Where no error is known there are columns of error bound, energy, contact measure and
 /// resultant, and their limits below; where errors are known a second table has these, for the finest level
 /// of each series, and the stages that ran.
-fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
+pub(super) fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
     for (i, (scene, rows)) in scenes(rows).into_iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
         }
-        write_scene(f, scene, &rows)?;
+        write_scene(f, &scene, &rows)?;
     }
     Ok(())
 }
 
-/// The rows of each scene, in the order in which scenes first occur.
-pub(crate) fn scenes(rows: &[Row]) -> Vec<(&str, Vec<&Row>)> {
-    let of = |scene| (scene, rows.iter().filter(|r| r.scene == scene).collect());
-    distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().map(of).collect()
+/// The rows of each table with its title: those of a scene, in the order in which scenes first occur. Where a scene has
+/// uniform and adaptive meshes, each kind has its table, since their columns differ.
+pub(crate) fn scenes(rows: &[Row]) -> Vec<(String, Vec<&Row>)> {
+    let of = |scene: &str| {
+        let of_scene = rows.iter().filter(|r| r.scene == scene);
+        let (adaptive, uniform): (Vec<&Row>, Vec<&Row>) = of_scene.partition(|r| r.theta.is_some());
+        match (uniform.is_empty(), adaptive.is_empty()) {
+            (false, false) => vec![
+                (format!("{scene}, uniform meshes"), uniform),
+                (format!("{scene}, adaptive meshes"), adaptive),
+            ],
+            (true, _) => vec![(scene.to_owned(), adaptive)],
+            (_, true) => vec![(scene.to_owned(), uniform)],
+        }
+    };
+    distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().flat_map(of).collect()
 }
 
 /// The table of one scene.
@@ -48,14 +53,13 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     write_wrapped(f, &format!("{scene}: {}", heading(rows)))?;
     let lines = Lines::new(columns(rows), rows);
     lines.write(f, |c| c.name.to_owned())?;
-    let key = |r: &Row| [&r.label, &r.constraint, &r.solver].map(String::clone);
-    let series = distinct(rows.iter().map(|r| key(r)));
+    let series = series_of(rows);
     let mut told = Vec::new();
     for (i, of_series) in series.iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
         }
-        for row in rows.iter().filter(|r| key(r) == *of_series) {
+        for row in of_series.plain_rows() {
             lines.write(f, |c| (c.cell)(row))?;
             if !row.converged() {
                 let message = failure(row);
@@ -76,8 +80,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     for line in rates(rows).iter().chain(&unproven(rows)) {
         write_wrapped(f, &format!("  {line}"))?;
     }
-    let finest = |of_series| rows.iter().rfind(|r| key(r) == of_series).copied();
-    let finest: Vec<&Row> = series.into_iter().filter_map(finest).collect();
+    let finest: Vec<&Row> = series.iter().filter_map(|s| s.plain_rows().next_back()).collect();
     for columns in [totals(rows), of_processes(rows)].into_iter().filter(|c| !c.is_empty()) {
         let lines = Lines::new(columns, &finest);
         writeln!(f)?;
@@ -100,9 +103,8 @@ fn has_errors(rows: &[&Row]) -> bool {
 /// The limits of energy, contact measure and resultant of each series.
 pub(crate) fn limits(rows: &[&Row]) -> Vec<String> {
     let mut lines = Vec::new();
-    let rows: Vec<Row> = rows.iter().map(|&row| row.clone()).collect();
     let has_solvers = rows.iter().any(|r| r.solver != rows[0].solver);
-    for series in extrapolate(&rows) {
+    for series in extrapolate(rows) {
         let limit = |name: &str, limit: Option<Limit>| {
             let Limit { value, order } = limit?;
             let order =
@@ -174,16 +176,7 @@ pub(crate) fn heading(rows: &[&Row]) -> String {
 
 /// Writes text in lines of the width of a table, further lines indented.
 fn write_wrapped(f: &mut impl fmt::Write, text: &str) -> fmt::Result {
-    let mut line = String::new();
-    for word in text.split(' ') {
-        if !line.trim().is_empty() && line.chars().count() + word.chars().count() > WIDTH {
-            writeln!(f, "{}", line.trim_end())?;
-            line = "    ".to_owned();
-        }
-        line += word;
-        line.push(' ');
-    }
-    writeln!(f, "{}", line.trim_end())
+    f.write_str(&wrapped(text, WIDTH, 4))
 }
 
 /// One column of a table.
@@ -383,7 +376,7 @@ fn whole(x: Option<usize>) -> String {
 }
 
 /// Three digits and the power of ten: `1.37e-2`.
-fn scientific(x: Option<f64>) -> String {
+pub(super) fn scientific(x: Option<f64>) -> String {
     match x {
         Some(0.0) => "0".to_owned(),
         Some(x) if x.is_finite() => format!("{x:.2e}"),
@@ -406,7 +399,7 @@ fn fixed(x: Option<f64>) -> String {
 }
 
 /// Seconds in six characters, down to what a clock can tell.
-fn seconds(x: f64) -> String {
+pub(super) fn seconds(x: f64) -> String {
     match x {
         x if x > 0.0 && x < 1e-3 => format!("{x:.1e}"),
         x if x < 10.0 => format!("{x:.4}"),

@@ -1,0 +1,71 @@
+//! The facets that carry the facet form, each with its one or two cells.
+
+use super::Space;
+use super::metric::Metrics;
+use crate::facet::{FacetKind, FacetView};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour};
+
+/// A facet that carries the form: one between two cells, or one with Dirichlet data that the form imposes.
+///
+/// Of two cells the one with the lower number is *here*, the other *there*. The facet is counted with the cell here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FormFacet {
+    /// The facet seen from the cell here.
+    pub here: HalfFacet,
+    /// The facet seen from the cell there; none on the boundary.
+    pub there: Option<HalfFacet>,
+}
+
+impl FormFacet {
+    /// Whether the facet lies between two cells or on the Dirichlet part of the boundary.
+    #[inline(always)]
+    pub fn kind(&self) -> FacetKind {
+        if self.there.is_some() { FacetKind::Interior } else { FacetKind::Dirichlet }
+    }
+    /// The facet seen from the other cell than the one of `own`; none on the boundary.
+    #[inline(always)]
+    pub fn other(&self, own: HalfFacet) -> Option<HalfFacet> {
+        if own == self.here { self.there } else { Some(self.here) }
+    }
+}
+
+impl<'a, const D: usize> Space<'a, D> {
+    /// The facet that a cell sees so, if it carries the form; the cell is here or there.
+    #[inline(always)]
+    pub fn form_facet(&self, own: HalfFacet) -> Option<FormFacet> {
+        match self.coupled_neighbours().across(own.0, own.1) {
+            Neighbour::Cell { cell, local } => {
+                let other = (cell as usize, usize::from(local));
+                Some(FormFacet { here: own.min(other), there: Some(own.max(other)) })
+            }
+            Neighbour::Boundary(BoundaryCondition::Dirichlet) if !self.pins => {
+                Some(FormFacet { here: own, there: None })
+            }
+            Neighbour::Boundary(_) | Neighbour::Cut => None,
+        }
+    }
+    /// The facets that carry the form and are counted with a cell, by their numbers in it.
+    #[inline(always)]
+    pub fn form_facets_of(&self, cell: usize) -> impl Iterator<Item = FormFacet> {
+        let facet = move |local| self.form_facet((cell, local));
+        (0..D + 1).filter_map(facet).filter(move |facet| facet.here.0 == cell)
+    }
+    /// The facets that carry the form, in the order of the cells with which they are counted.
+    pub fn form_facets(&self) -> impl Iterator<Item = FormFacet> {
+        (0..self.mesh.n_cells()).flat_map(|cell| self.form_facets_of(cell))
+    }
+    /// What a form may see of a facet and its cells, with the metrics of all cells if they are kept.
+    #[inline(always)]
+    pub fn facet_view(&self, facet: FormFacet, kept: Option<&Metrics>) -> FacetView<'a, D> {
+        let side = |half: HalfFacet| {
+            let coefficients = self.extreme_coefficients(half);
+            match kept {
+                Some(metrics) => metrics.side::<D>(half, coefficients),
+                None => self.metric(half.0).side(half.1, coefficients),
+            }
+        };
+        let (measure, here) = side(facet.here);
+        let there = facet.there.map(|there| side(there).1);
+        FacetView::new(self.mesh, facet.here, measure, here, there)
+    }
+}

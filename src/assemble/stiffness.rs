@@ -1,0 +1,53 @@
+//! The stiffness of a cell.
+
+use super::space::metric::CellMetric;
+use super::space::tables::CellTable;
+use crate::element::MAX_BASIS;
+
+/// A small dense matrix, of which an element uses the upper left corner.
+pub(crate) type Local = [[f64; MAX_BASIS]; MAX_BASIS];
+
+pub(crate) fn zero_local() -> Local {
+    [[0.0; MAX_BASIS]; MAX_BASIS]
+}
+
+/// The stiffness of the reference element: for each pair `k < l` of barycentric coordinates what
+/// their product of gradients contributes. Pairs are enough, because gradients sum to zero.
+pub(crate) struct StiffnessTable {
+    pairs: Vec<Local>,
+}
+
+impl StiffnessTable {
+    /// From the basis at the points of a rule that integrates products of derivatives.
+    pub fn new(dimension: usize, table: &CellTable) -> Self {
+        let mut pairs = Vec::new();
+        for k in 0..dimension {
+            for l in k + 1..=dimension {
+                let mut pair: Local = zero_local();
+                for (basis, &weight) in table.basis.iter().zip(&table.weights) {
+                    let along = basis.derivatives.map(|d| d[k] - d[l]);
+                    for i in 0..MAX_BASIS {
+                        for j in 0..MAX_BASIS {
+                            pair[i][j] -= weight * along[i] * along[j];
+                        }
+                    }
+                }
+                pairs.push(pair);
+            }
+        }
+        Self { pairs }
+    }
+    /// Entry `(i, j)` of `(grad phi_j, grad phi_i)` over a cell.
+    #[inline(always)]
+    pub fn entry<const D: usize>(&self, metric: &CellMetric<D>, i: usize, j: usize) -> f64 {
+        let mut sum = 0.0;
+        let mut pair = 0;
+        for k in 0..D {
+            for l in k + 1..=D {
+                sum += metric.products[k][l] * self.pairs[pair][i][j];
+                pair += 1;
+            }
+        }
+        sum
+    }
+}

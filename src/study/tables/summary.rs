@@ -1,0 +1,191 @@
+//! The summary of a report: one table for each scene at the finest level of every series, and how the runs ended.
+
+use super::levels::{scenes, scientific, seconds, unproven};
+use super::remarks::warnings;
+use crate::study::row::{Row, distinct};
+use crate::study::series::{Series, series_of};
+use crate::table::{Cell, Table};
+
+/// The name of the column of effectivities.
+const BOUND: &str = "bound/error";
+
+/// A number that is compared, its text and a remark.
+type Figure = (f64, String, Option<String>);
+
+/// A column of the summary.
+struct Column {
+    name: &'static str,
+    cell: fn(&Row) -> Option<Figure>,
+    /// Whether the least number is the best.
+    has_best: bool,
+}
+
+/// One sentence: what was compared and how it ended, with the runs that did not converge.
+pub(crate) fn lead(rows: &[Row]) -> String {
+    let names = |names: Vec<&str>, what: &str| match &names[..] {
+        names if names.len() <= 4 => names.join(", "),
+        names => format!("{} {what}", names.len()),
+    };
+    let schemes = names(distinct(rows.iter().map(|r| r.label.as_str())), "schemes");
+    let scenes = names(distinct(rows.iter().map(|r| r.scene.as_str())), "scenes");
+    let levels = distinct(rows.iter().map(|r| r.level));
+    let levels = match (levels.iter().min(), levels.iter().max()) {
+        (Some(least), Some(most)) if least < most => format!("levels {least} to {most}"),
+        (Some(level), _) => format!("level {level}"),
+        _ => "no level".to_owned(),
+    };
+    let failed: Vec<&Row> = rows.iter().filter(|r| !r.converged()).collect();
+    let end = match failed.len() {
+        0 => format!("all {} runs converged", rows.len()),
+        n => {
+            let name = |r: &&Row| format!("{} on {} at {}", r.label, r.scene, r.level);
+            let named: Vec<String> = failed.iter().take(3).map(name).collect();
+            let more = if n > 3 { format!(" and {} more", n - 3) } else { String::new() };
+            format!("{n} of {} runs did not converge: {}{more}", rows.len(), named.join(", "))
+        }
+    };
+    format!("{schemes} on {scenes}, {levels}: {end}.")
+}
+
+/// The tables of all scenes: at most eight columns, the best number of a column marked.
+pub(crate) fn summaries(rows: &[Row]) -> Vec<Table> {
+    let tables = scenes(rows).into_iter();
+    tables
+        .map(|(title, rows)| summary(&title, rows[0].theta.is_some(), &series_of(&rows)))
+        .collect()
+}
+
+fn summary(title: &str, is_adaptive: bool, series: &[Series<'_, &Row>]) -> Table {
+    let finest: Vec<&Row> =
+        series.iter().filter_map(|series| series.plain_rows().next_back()).collect();
+    let columns = columns(&finest);
+    let best: Vec<Option<f64>> = columns.iter().map(|column| best(column, &finest)).collect();
+    let cell = |column: &Column, best: Option<f64>, row: &Row| match (column.cell)(row) {
+        Some((x, text, remark)) if best == Some(x) && row.converged() => Cell::Best(text, remark),
+        Some((_, text, remark)) => Cell::Number(text, remark),
+        None => Cell::Nothing,
+    };
+    let mut told = Told::default();
+    let line = |(series, row): (&Series<'_, &Row>, &&Row)| {
+        let numbers = columns.iter().zip(&best).map(|(column, &best)| cell(column, best, row));
+        let status = Cell::Words(told.status(row));
+        [Cell::Words(series.name.clone())].into_iter().chain(numbers).chain([status]).collect()
+    };
+    let lines = series.iter().zip(&finest).map(line).collect();
+    let names = columns.iter().map(|column| column.name);
+    let levels = distinct(finest.iter().map(|r| r.level.to_string()));
+    let references = distinct(finest.iter().filter_map(|r| r.reference()));
+    let references = references.iter().map(|reference| format!("; errors against {reference}"));
+    let mut remarks = Vec::new();
+    let mut coarser: Vec<(&str, &Row)> = Vec::new();
+    for series in series {
+        let mut rows = series.plain_rows();
+        rows.next_back();
+        coarser.extend(rows.filter(|row| !row.converged()).map(|row| (&*series.name, row)));
+    }
+    for message in distinct(coarser.iter().map(|(_, row)| told.message(row))) {
+        let of = coarser.iter().filter(|(_, row)| told.message(row) == message);
+        let of: Vec<String> = of.map(|(name, row)| format!("{name} at {}", row.level)).collect();
+        remarks.push(format!("{}: {message}", of.join(", ")));
+    }
+    let warnings = warnings(&finest).into_iter().map(|(labels, text)| format!("{labels}: {text}"));
+    Table {
+        title: format!(
+            "{title}, {} {}{}",
+            if is_adaptive { "step" } else { "level" },
+            levels.join(", "),
+            references.collect::<String>()
+        ),
+        columns: ["scheme"].into_iter().chain(names).chain(["status"]).map(str::to_owned).collect(),
+        rows: lines,
+        remarks: remarks.into_iter().chain(warnings).chain(unproven(&finest)).collect(),
+    }
+}
+
+/// The reasons that a table has given.
+#[derive(Default)]
+struct Told(Vec<String>);
+
+impl Told {
+    /// The status of a row; of one that did not converge with the reason, which is kept.
+    fn status(&mut self, row: &Row) -> String {
+        let message = self.message(row);
+        if !row.converged() {
+            self.0.push(reason(row).to_owned());
+        }
+        message
+    }
+    /// The status, with the reason unless it was given before.
+    fn message(&self, row: &Row) -> String {
+        match row.converged() {
+            true => row.status.to_string(),
+            false if self.0.iter().any(|told| told == reason(row)) => {
+                format!("{}, as above", row.status)
+            }
+            false => format!("{}: {}", row.status, reason(row)),
+        }
+    }
+}
+
+/// Why a row did not converge.
+fn reason(row: &Row) -> &str {
+    row.message.as_deref().unwrap_or(row.status.message())
+}
+
+/// The least number of a column where it is the best and there is a larger one.
+fn best(column: &Column, rows: &[&Row]) -> Option<f64> {
+    let numbers: Vec<f64> = rows
+        .iter()
+        .filter(|row| row.converged())
+        .filter_map(|row| (column.cell)(row))
+        .map(|(x, ..)| x)
+        // a bound below the error is none
+        .filter(|x| x.is_finite() && (column.name != BOUND || *x >= 1.0))
+        .collect();
+    let least = numbers.iter().copied().min_by(f64::total_cmp)?;
+    (column.has_best && numbers.iter().any(|&x| x > least)).then_some(least)
+}
+
+/// The columns between scheme and status: errors and bound where the solution is known, else the figures of the
+/// solution.
+fn columns(rows: &[&Row]) -> Vec<Column> {
+    let any = |cell: fn(&Row) -> Option<f64>| rows.iter().any(|r| cell(r).is_some());
+    let column = |name, has_best, cell| Column { name, cell, has_best };
+    let mut columns =
+        vec![column("unknowns", false, |r| r.unknowns.map(|n| (n as f64, n.to_string(), None)))];
+    let has_errors = any(|r| r.error.l2) || any(|r| r.error.h1);
+    let is_adaptive = rows.iter().any(|r| r.theta.is_some());
+    if is_adaptive && has_errors {
+        columns.push(column("energy norm", true, |r| figure(r.error.broken_energy, None)));
+    } else if has_errors {
+        columns.push(column("L2 (order)", true, |r| figure(r.error.l2, r.order.l2)));
+        columns.push(column("H1 (order)", true, |r| figure(r.error.h1, r.order.h1)));
+    }
+    if any(|r| r.bound.effectivity) && !is_adaptive {
+        columns.push(column(BOUND, true, |r| {
+            let mark = if r.bound.guaranteed == Some(false) { "*" } else { "" };
+            r.bound.effectivity.map(|x| (x, format!("{x:.2}{mark}"), None))
+        }));
+    } else if any(|r| r.bound.discrete) {
+        columns.push(column("bound (order)", true, |r| {
+            let mark = if r.bound.guaranteed == Some(false) { "*" } else { "" };
+            let (x, text, order) = figure(r.bound.discrete, r.order.bound)?;
+            Some((x, text + mark, order))
+        }));
+    }
+    if any(|r| r.contact.contact_area_error) {
+        columns.push(column("contact error", true, |r| figure(r.contact.contact_area_error, None)));
+    } else if !has_errors {
+        columns.push(column("energy", false, |r| r.energy.map(|x| (x, format!("{x:.5e}"), None))));
+        columns.push(column("contact", false, |r| figure(r.contact_measure, None)));
+        columns.push(column("resultant", false, |r| figure(r.resultant, None)));
+    }
+    columns
+        .push(column("seconds", true, |r| Some((r.seconds.total, seconds(r.seconds.total), None))));
+    columns
+}
+
+/// An error in three digits with its order.
+fn figure(x: Option<f64>, order: Option<f64>) -> Option<Figure> {
+    x.map(|x| (x, scientific(Some(x)), order.map(|p| format!("{p:.2}"))))
+}

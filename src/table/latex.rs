@@ -1,0 +1,117 @@
+//! Tables in LaTeX, as a paper prints them.
+
+use super::{Cell, Table};
+
+/// What a document with tables needs in its preamble.
+pub const LATEX_PACKAGES: &str = "\\usepackage{booktabs,siunitx}";
+
+impl Table {
+    /// A `table` with a `tabular` of all columns, the caption and the label `tab:` with the [slug](Self::slug). See
+    /// [`LATEX_PACKAGES`].
+    pub fn to_latex(&self) -> String {
+        let line = |cells: Vec<String>| format!("{} \\\\\n", cells.join(" & "));
+        let kind = |k| if self.is_left(k) { 'l' } else { 'r' };
+        let mut text = format!(
+            "\\begin{{table}}\n\\caption{{{}}}\\label{{tab:{}}}\n\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n",
+            latex(&self.title),
+            self.slug(),
+            (0..self.columns.len()).map(kind).collect::<String>(),
+            line(self.columns.iter().map(|name| latex(name)).collect()),
+        );
+        let cell = |cell: &Cell| match cell {
+            Cell::Words(words) => latex(words),
+            Cell::Number(..) => latex_number(&cell.plain()),
+            Cell::Best(..) => format!("\\textbf{{{}}}", latex_number(&cell.plain())),
+            Cell::Nothing => "--".to_owned(),
+        };
+        for row in &self.rows {
+            text += &line(row.iter().map(cell).collect());
+        }
+        text += "\\bottomrule\n\\end{tabular}\n\\end{table}\n";
+        for remark in &self.remarks {
+            text += &format!("{}\n\n", latex(remark));
+        }
+        text
+    }
+}
+
+/// Paragraphs and tables as one file.
+pub(crate) fn latex_document(paragraphs: &[String], tables: &[Table]) -> String {
+    let mut text = format!("% needs {LATEX_PACKAGES}\n");
+    for paragraph in paragraphs {
+        text += &format!("{}\n\n", latex(paragraph));
+    }
+    tables.iter().for_each(|table| text += &table.to_latex());
+    text
+}
+
+/// A text in which every word that is a number is written by `\num` of the package `siunitx`.
+fn latex_number(text: &str) -> String {
+    let word = |word: &str| {
+        let number = word.trim_start_matches('(').trim_end_matches(')');
+        let is_number = number.ends_with(|c: char| c.is_ascii_digit());
+        match is_number && number.parse::<f64>().is_ok() {
+            true => latex(word).replacen(number, &format!("\\num{{{number}}}"), 1),
+            false => latex(word),
+        }
+    };
+    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// A text with the special characters of LaTeX escaped.
+fn latex(text: &str) -> String {
+    let mut escaped = String::new();
+    for c in text.chars() {
+        match c {
+            '\\' => escaped += "\\textbackslash{}",
+            '~' => escaped += "\\textasciitilde{}",
+            '^' => escaped += "\\textasciicircum{}",
+            '<' => escaped += "\\textless{}",
+            '>' => escaped += "\\textgreater{}",
+            '|' => escaped += "\\textbar{}",
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => {
+                escaped.push('\\');
+                escaped.push(c);
+            }
+            _ => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{latex, latex_number};
+    use crate::table::{Cell, Table};
+
+    #[test]
+    fn special_characters_are_written_as_they_look() {
+        assert_eq!(
+            latex("a_b & 50% {x} \\ ~^"),
+            "a\\_b \\& 50\\% \\{x\\} \\textbackslash{} \\textasciitilde{}\\textasciicircum{}"
+        );
+        assert_eq!(latex("$1 #2"), "\\$1 \\#2");
+        assert_eq!(latex_number("> 1.8e-2 (1.5)"), "\\textgreater{} \\num{1.8e-2} (\\num{1.5})");
+        assert_eq!(latex_number("not run"), "not run");
+    }
+
+    #[test]
+    fn a_table_is_a_tabular_with_a_caption() {
+        let table = Table {
+            title: "Case: one_two".into(),
+            columns: vec!["scheme".into(), "L2".into()],
+            rows: vec![
+                vec![Cell::Words("p1".into()), Cell::Number("1.5e-3".into(), None)],
+                vec![Cell::Words("cr".into()), Cell::Nothing],
+            ],
+            remarks: vec!["50% off".into()],
+        };
+        assert_eq!(
+            table.to_latex(),
+            "\\begin{table}\n\\caption{Case: one\\_two}\\label{tab:case-one-two}\n\
+             \\begin{tabular}{lr}\n\\toprule\nscheme & L2 \\\\\n\\midrule\n\
+             p1 & \\num{1.5e-3} \\\\\ncr & -- \\\\\n\\bottomrule\n\
+             \\end{tabular}\n\\end{table}\n50\\% off\n\n"
+        );
+    }
+}
