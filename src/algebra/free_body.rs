@@ -8,9 +8,8 @@ pub(crate) const RESULTANT_ROUNDING: f64 = 64.0;
 #[non_exhaustive]
 pub struct FreeBody {
     /// The position in [`Inequality::kernel`](super::Inequality::kernel) of the vector whose nonzero entries are the
-    /// unknowns
-    /// of the body; `None` if the body shares unknowns with one that is held, as the two sides of a vertex at which
-    /// bodies touch.
+    /// unknowns of the body; `None` if the body shares unknowns with one that is held, as the two sides of a vertex at
+    /// which bodies touch.
     pub kernel: Option<usize>,
     /// The resultant of the data on the body: the integral of source and Neumann data.
     pub resultant: f64,

@@ -132,11 +132,11 @@ impl<T: Real> SparseMatrix<T> {
             transpose((&self.row_starts, &self.columns, &self.values), self.size());
         Self { row_starts, columns, values }
     }
-    /// `A_II` for the ascending index set `free`, whose positions number rows and columns.
+    /// The submatrix `A_II` for an ascending index set `I = free`: its row and column `k` are those of `free[k]` in `A`.
     pub(crate) fn submatrix(&self, free: &[u32]) -> Self {
         self.extract(free, false)
     }
-    /// The lower triangle of `A_II`, diagonal included, for the ascending index set `free`.
+    /// The lower triangle of the submatrix `A_II`, diagonal included.
     pub(crate) fn lower_triangle(&self, free: &[u32]) -> Self {
         self.extract(free, true)
     }

@@ -139,7 +139,8 @@ impl FacetCoefficients {
         Self { coefficients, is_uniform, entries, stride }
     }
 
-    /// The numbers of a facet that is seen so from the cell here, as that cell asks for them or the one there.
+    /// The numbers of the facet `here`; its flux weights are first that of the cell whose rows are made, the cell here if
+    /// `from_here`, else the cell there.
     #[inline(always)]
     pub fn at<const D: usize>(
         &self,

@@ -81,7 +81,7 @@ impl<const D: usize> Discretisation<'_, D> {
         Ok(fluxes)
     }
 
-    /// By cell, how many facets that carry the form are counted with the cells before it.
+    /// For each cell the number of facets with the form that are counted with the cells before it.
     fn facet_starts(&self) -> Vec<u32> {
         let mut end = 0;
         let start = |cell| {

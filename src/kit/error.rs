@@ -72,7 +72,7 @@ impl KitError {
     }
 }
 
-/// What is wrong with a scheme, an element or a quadrature rule.
+/// A law that a scheme, an element or a quadrature rule breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum KitErrorKind {

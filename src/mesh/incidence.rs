@@ -193,12 +193,12 @@ impl<const K: usize> Blocks<K> {
             n /= 2;
         }
     }
-    /// The blocks that may have numbers of a range: their cells, their location, their hulls.
+    /// The blocks that may have numbers of a range: their cells, their overlap with the range, their hulls.
     pub fn of<'b>(
         &'b self,
         ranges: &'b Ranges<K>,
     ) -> impl Iterator<Item = (Range<usize>, Overlap, &'b Ranges<K>)> {
-        let location = move |hull: &Ranges<K>| {
+        let overlap = move |hull: &Ranges<K>| {
             let pairs = || hull.iter().zip(ranges).filter(|(hull, _)| !hull.is_empty());
             if pairs().all(|(hull, range)| range.start <= hull.start && hull.end <= range.end) {
                 Overlap::Inside
@@ -210,8 +210,8 @@ impl<const K: usize> Blocks<K> {
             }
         };
         let all = self.hulls.iter().enumerate();
-        all.map(move |(block, hull)| (Self::cells(block, self.n_cells), location(hull), hull))
-            .filter(|(_, location, _)| *location != Overlap::Outside)
+        all.map(move |(block, hull)| (Self::cells(block, self.n_cells), overlap(hull), hull))
+            .filter(|(_, overlap, _)| *overlap != Overlap::Outside)
     }
 }
 

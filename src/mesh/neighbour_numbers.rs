@@ -1,7 +1,8 @@
 //! The neighbours of one vertex, or the columns of one row, each once: numbers in the order in which they come, and
 //! ranks in ascending order.
 
-/// Numbers of the neighbours of a current vertex, from zero. Moving to the next vertex takes constant time.
+/// Consecutive numbers of the neighbours of one vertex, the current one, from zero. Moving to the next vertex takes
+/// constant time.
 pub(crate) struct NeighbourNumbers<'n> {
     /// For each neighbour one more than the number of its last pair with a vertex, where numbers run on over all
     /// vertices.
@@ -17,7 +18,7 @@ impl<'n> NeighbourNumbers<'n> {
     pub fn new(last: &'n mut [u32]) -> Self {
         Self { last, base: 0, n: 0 }
     }
-    /// Starts with the next current vertex, of which no neighbour has a number.
+    /// Moves to the next vertex: none of its neighbours has a number.
     #[inline(always)]
     pub fn next_vertex(&mut self) {
         self.base += self.n;

@@ -28,10 +28,7 @@ impl Report {
     /// Two tables for each scene, with the columns of the tables for a terminal: errors and times, then
     /// energy, contact measure, resultant, error bound and stages.
     pub fn tables(&self) -> Vec<Table> {
-        let tables = |(scene, rows): (String, Vec<&Row>)| {
-            [Some(table(&scene, &rows)), second(&scene, &rows)].into_iter().flatten()
-        };
-        scenes(&self.rows).into_iter().flat_map(tables).collect()
+        scenes(&self.rows).iter().flat_map(|(scene, rows)| tables_of(scene, rows)).collect()
     }
 
     /// The tables in Markdown.
@@ -43,10 +40,7 @@ impl Report {
     /// The report as a page, which links the pictures `SCENE-LABEL.svg` that are in the directory.
     pub(super) fn page(&self, directory: &Path) -> HtmlPage {
         let of_scene = |(scene, rows): (String, Vec<&Row>)| Section {
-            tables: [Some(table(&scene, &rows)), second(&scene, &rows)]
-                .into_iter()
-                .flatten()
-                .collect(),
+            tables: tables_of(&scene, &rows),
             pictures: self.pictures(&rows[0].scene, directory),
             title: scene,
             ..Section::default()
@@ -106,7 +100,12 @@ impl Report {
     }
 }
 
-/// The table of a scene.
+/// The tables of a scene.
+fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
+    [Some(table(scene, rows)), second(scene, rows)].into_iter().flatten().collect()
+}
+
+/// The first table of a scene.
 fn table(scene: &str, rows: &[&Row]) -> Table {
     let failed = || rows.iter().filter(|r| !r.converged()).map(|r| (r, failure(r)));
     let remarks = distinct(failed().map(|of| of.1)).into_iter().map(|why| {

@@ -84,7 +84,7 @@ impl Table {
     }
 }
 
-/// A text in lines of this many characters, further lines indented by so many blanks.
+/// A text broken at blanks into lines of at most `width` characters; all lines but the first begin with `indent` blanks.
 pub(crate) fn wrapped(text: &str, width: usize, indent: usize) -> String {
     let mut out = String::new();
     let mut line = String::new();

@@ -253,7 +253,7 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
         }
     }
 
-    /// Adds to the load, by cell, the products of functions with a Dirichlet datum on a facet of the centre.
+    /// Adds to the load by cell the products of the lifts of basis functions with the lift of a Dirichlet datum.
     pub fn add_load(&self, datum: &FacetDatum, load: &mut [f64]) {
         let (cell, local) = datum.facet;
         let centre = self.centre(cell);

@@ -113,7 +113,7 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
     /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
     #[inline(never)]
     fn fill_subset(&self, rows: &Rows, mut targets: [Target<'_>; KINDS]) {
-        for (cells, location, hull) in self.positions.blocks.of(rows) {
+        for (cells, overlap, hull) in self.positions.blocks.of(rows) {
             for (target, hull) in targets.iter_mut().zip(hull) {
                 target.clear_before(hull.end, self.row_starts);
             }
@@ -121,11 +121,11 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
                 // for other elements the loop over products of gradients is not even instantiated
                 Some(square) if const { N == D + 1 } => {
                     let matrices = Gradients::new(&self.cells, square);
-                    self.block(cells, location, &mut targets, matrices);
+                    self.block(cells, overlap, &mut targets, matrices);
                 }
                 _ => {
                     let matrices = General::new(&self.cells, &self.unknowns);
-                    self.block(cells, location, &mut targets, matrices);
+                    self.block(cells, overlap, &mut targets, matrices);
                 }
             }
         }
@@ -138,11 +138,11 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
     fn block<M: CellMatrix>(
         &self,
         cells: Range<usize>,
-        location: Overlap,
+        overlap: Overlap,
         targets: &mut [Target<'_>; KINDS],
         matrices: M,
     ) {
-        if location == Overlap::Inside {
+        if overlap == Overlap::Inside {
             self.add::<M, true>(cells, targets, matrices);
         } else {
             self.add::<M, false>(cells, targets, matrices);

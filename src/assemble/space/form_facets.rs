@@ -30,7 +30,7 @@ impl FormFacet {
 }
 
 impl<'a, const D: usize> Space<'a, D> {
-    /// The facet that a cell sees so, if it carries the form; the cell is here or there.
+    /// The facet of a half-facet if it carries the form; the cell of the half-facet is here or there.
     #[inline(always)]
     pub fn form_facet(&self, own: HalfFacet) -> Option<FormFacet> {
         match self.coupled_neighbours().across(own.0, own.1) {

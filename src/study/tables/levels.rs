@@ -247,7 +247,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
 }
 
 /// A bound, or a ratio of it, with a mark where a term of it is not proven.
-fn marked(row: &Row, bound: String) -> String {
+pub(super) fn marked(row: &Row, bound: String) -> String {
     let is_marked = bound != NONE && row.bound.guaranteed == Some(false);
     if is_marked { bound + "*" } else { bound }
 }
@@ -394,7 +394,7 @@ fn digits(x: Option<f64>, n: usize) -> String {
 }
 
 /// Two digits after the point: `1.98`.
-fn fixed(x: Option<f64>) -> String {
+pub(super) fn fixed(x: Option<f64>) -> String {
     x.map_or_else(|| NONE.to_owned(), |x| format!("{x:.2}"))
 }
 

@@ -2,10 +2,14 @@
 
 use crate::study::row::{Row, distinct};
 
-/// Why a row did not converge.
+/// The reason for which a row did not converge, in one sentence.
+pub(super) fn reason(row: &Row) -> &str {
+    row.message.as_deref().unwrap_or(row.status.message())
+}
+
+/// That a row did not converge, with its status and the reason.
 pub(crate) fn failure(row: &Row) -> String {
-    let message = row.message.as_deref().unwrap_or(row.status.message());
-    format!("did not converge: {}: {message}", row.status)
+    format!("did not converge: {}: {}", row.status, reason(row))
 }
 
 /// Each warning of the rows once, after the labels of its rows.

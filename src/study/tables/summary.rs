@@ -1,7 +1,7 @@
 //! The summary of a report: one table for each scene at the finest level of every series, and how the runs ended.
 
-use super::levels::{scenes, scientific, seconds, unproven};
-use super::remarks::warnings;
+use super::levels::{fixed, marked, scenes, scientific, seconds, unproven};
+use super::remarks::{reason, warnings};
 use crate::study::row::{Row, distinct};
 use crate::study::series::{Series, series_of};
 use crate::table::{Cell, Table};
@@ -127,11 +127,6 @@ impl Told {
     }
 }
 
-/// Why a row did not converge.
-fn reason(row: &Row) -> &str {
-    row.message.as_deref().unwrap_or(row.status.message())
-}
-
 /// The least number of a column where it is the best and there is a larger one.
 fn best(column: &Column, rows: &[&Row]) -> Option<f64> {
     let numbers: Vec<f64> = rows
@@ -163,14 +158,12 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     }
     if any(|r| r.bound.effectivity) && !is_adaptive {
         columns.push(column(BOUND, true, |r| {
-            let mark = if r.bound.guaranteed == Some(false) { "*" } else { "" };
-            r.bound.effectivity.map(|x| (x, format!("{x:.2}{mark}"), None))
+            r.bound.effectivity.map(|x| (x, marked(r, fixed(Some(x))), None))
         }));
     } else if any(|r| r.bound.discrete) {
         columns.push(column("bound (order)", true, |r| {
-            let mark = if r.bound.guaranteed == Some(false) { "*" } else { "" };
             let (x, text, order) = figure(r.bound.discrete, r.order.bound)?;
-            Some((x, text + mark, order))
+            Some((x, marked(r, text), order))
         }));
     }
     if any(|r| r.contact.contact_area_error) {
@@ -187,5 +180,5 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
 
 /// An error in three digits with its order.
 fn figure(x: Option<f64>, order: Option<f64>) -> Option<Figure> {
-    x.map(|x| (x, scientific(Some(x)), order.map(|p| format!("{p:.2}"))))
+    x.map(|x| (x, scientific(Some(x)), order.map(|p| fixed(Some(p)))))
 }
