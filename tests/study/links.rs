@@ -240,7 +240,7 @@ fn attributes<'a>(html: &'a str, name: &'a str) -> impl Iterator<Item = String> 
         let value = html[start + name.len()..].strip_prefix('=')?;
         let value = match value.strip_prefix('"') {
             Some(quoted) => quoted.split_once('"')?.0,
-            None => value.split(|c: char| c.is_whitespace() || c == '>').next()?,
+            None => value.split_whitespace().next()?,
         };
         before.is_whitespace().then(|| value.replace("&amp;", "&").replace("&#38;", "&"))
     })
@@ -258,8 +258,14 @@ fn without_scripts(html: &str) -> String {
         .collect()
 }
 
+/// The tags of a page, one a line: code that a page shows has quoted attributes too, which are none.
+fn tags(html: &str) -> String {
+    let tags = html.split('<').skip(1).map(|rest| rest.split('>').next().unwrap_or_default());
+    tags.collect::<Vec<_>>().join("\n")
+}
+
 fn parse(html: &str) -> Html {
-    let html = without_scripts(html);
+    let html = tags(&without_scripts(html));
     Html {
         links: attributes(&html, "href").chain(attributes(&html, "src")).collect(),
         anchors: attributes(&html, "id").collect(),
