@@ -1,4 +1,4 @@
-//! What theory promises of a scheme, and on what a promise may depend.
+//! The orders that theory promises of a scheme, and the conditions of a promise.
 
 /// Orders that theory promises.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,4 +1,4 @@
-//! What weak Dirichlet data change in the energy of a function.
+//! The part of the energy of a function that weak Dirichlet data add.
 
 /// The quadratic function that turns `u.A u` into the squared energy norm of a scheme with weak
 /// Dirichlet data `u_D`.

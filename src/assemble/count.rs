@@ -1,5 +1,5 @@
-//! Counts of work done, in unit tests only: that what a scheme or a scene does not have is not
-//! computed is shown by counting. In any other build these functions are empty.
+//! Counters of work, in unit tests only. They show that the assembly computes no term that a scheme or a scene does
+//! not have. In any other build these functions are empty.
 
 macro_rules! counters {
     ($($(#[$doc:meta])* $name:ident)*) => {

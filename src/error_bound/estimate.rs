@@ -60,7 +60,7 @@ pub struct ErrorBound {
     /// The distance of `v` from the discrete solution `u_h` in the broken energy norm.
     pub distance: f64,
     /// Bound on the broken energy norm of `u - u_h`: that of the midpoint of function and flux, at most `total +
-    /// distance`. See the guide, [`bound`](crate::guide::bound).
+    /// distance`. See [`docs::bound`](crate::docs::bound).
     pub discrete: f64,
     /// Of what `total` is made.
     pub parts: BoundParts,

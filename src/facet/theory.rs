@@ -1,4 +1,4 @@
-//! What is known of a form besides its formula, for warnings and reports.
+//! Known properties of a form besides its formula, for warnings and reports.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! How far a discrete function lies beyond obstacles and gaps, between its nodes too.
+//! The distance by which a discrete function lies beyond obstacles and gaps, between its nodes too.
 
 use std::ops::Range;
 

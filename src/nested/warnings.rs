@@ -1,4 +1,4 @@
-//! What a solve warns of.
+//! The warnings of a solve.
 
 use super::solved::Solved;
 use crate::algebra::Inequality;

@@ -1,4 +1,4 @@
-//! What parts find each for itself, merged over all parts.
+//! Findings of single parts, merged over all parts.
 
 use super::error::ExchangeError;
 use super::exchange::{Exchange, numbers_of_all};

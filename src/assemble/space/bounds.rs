@@ -1,4 +1,4 @@
-//! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
+//! The bounds of each unknown: Dirichlet values, obstacles, the Signorini condition.
 
 use std::ops::Range;
 use std::sync::Mutex;

@@ -1,4 +1,4 @@
-//! What the patches of linears read of the cells: a flux has one number on each facet, its integral there.
+//! The data of cells for patches of linears: a flux has one number on each facet, its integral there.
 
 use std::convert::Infallible;
 use std::ops::Range;
