@@ -60,6 +60,7 @@ comparison() {
             "$OUT/times-$domain/report.md" | cat -s
         echo
     done
+    cp "$OUT/times-space/radial-3d-time.svg" docs/results/
 }
 
 orders() {

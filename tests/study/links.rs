@@ -22,17 +22,18 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     entries.flat_map(|entry| of(entry.unwrap().path())).collect()
 }
 
-/// The pages that the documentation includes: README and those of the folder `docs` itself.
-fn included() -> Vec<PathBuf> {
-    let docs = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
+/// All pages: those of the folder `docs` with results, README and CHANGELOG.
+fn pages() -> Vec<PathBuf> {
+    let docs = files(&root().join("docs")).into_iter();
     let pages = docs.filter(|path| path.extension().is_some_and(|end| end == "md"));
-    pages.chain([root().join("README.md")]).collect()
+    pages.chain(["README.md", "CHANGELOG.md"].map(|name| root().join(name))).collect()
 }
 
-/// All pages: the included ones, results and CHANGELOG.
-fn pages() -> Vec<PathBuf> {
-    let results = files(&root().join("docs/results"));
-    included().into_iter().chain(results).chain([root().join("CHANGELOG.md")]).collect()
+/// The pages that the documentation of the crate includes.
+fn included() -> Vec<PathBuf> {
+    let is_included =
+        |path: &PathBuf| path.parent() == Some(&root().join("docs")) || path.ends_with("README.md");
+    pages().into_iter().filter(is_included).collect()
 }
 
 /// The path without `.` and `..`.
