@@ -67,7 +67,7 @@ impl Regularity {
     }
 }
 
-/// What a promise of orders may depend on.
+/// The conditions of a promise of orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Setting {

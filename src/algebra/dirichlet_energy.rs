@@ -37,7 +37,7 @@ impl DirichletEnergy {
     }
 }
 
-/// What Dirichlet data contribute to one unknown.
+/// The contribution of Dirichlet data to one unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirichletTerm {
     /// The unknown.

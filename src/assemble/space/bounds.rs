@@ -151,7 +151,7 @@ impl<const D: usize> Space<'_, D> {
         Ok(())
     }
 
-    /// What a datum imposes at a node.
+    /// The bound that a datum imposes at a node.
     pub(super) fn bound(
         &self,
         by: BoundBy,
