@@ -1,4 +1,4 @@
-//! What theory promises of a scheme, and on what a promise may depend.
+//! The orders that theory promises of a scheme, and the conditions of a promise.
 
 /// Orders that theory promises.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,7 +67,7 @@ impl Regularity {
     }
 }
 
-/// What a promise of orders may depend on.
+/// The conditions of a promise of orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Setting {

@@ -1,4 +1,4 @@
-//! What weak Dirichlet data change in the energy of a function.
+//! The part of the energy of a function that weak Dirichlet data add.
 
 /// The quadratic function that turns `u.A u` into the squared energy norm of a scheme with weak
 /// Dirichlet data `u_D`.
@@ -37,7 +37,7 @@ impl DirichletEnergy {
     }
 }
 
-/// What Dirichlet data contribute to one unknown.
+/// The contribution of Dirichlet data to one unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirichletTerm {
     /// The unknown.

@@ -1,4 +1,4 @@
-//! What a facet form comes down to: a few numbers for all facets, a few for each.
+//! The numbers to which a facet form comes down: a few for all facets, a few for each.
 
 use std::convert::Infallible;
 use std::ops::Range;

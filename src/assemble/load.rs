@@ -20,7 +20,7 @@ use crate::parallel::{cells, once};
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
 
-/// What is added to a cell's part of the load.
+/// A term that is added to the load of a cell.
 type OfCell<'w> = &'w (dyn Fn(usize, &mut [f64]) -> Result<(), Error> + Sync);
 
 impl<const D: usize> Space<'_, D> {

@@ -29,7 +29,7 @@ pub enum Unproven {
     /// Obstacles and gaps of a higher degree than `v` in cells, or of degree two where the Bernstein coefficients of
     /// `v` do not exceed theirs: `v` satisfies them at points only.
     Obstacle,
-    /// What the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
+    /// The residual that the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
     /// somewhere.
     Algebra,
 }
@@ -60,7 +60,7 @@ pub struct ErrorBound {
     /// The distance of `v` from the discrete solution `u_h` in the broken energy norm.
     pub distance: f64,
     /// Bound on the broken energy norm of `u - u_h`: that of the midpoint of function and flux, at most `total +
-    /// distance`. See the guide, [`bound`](crate::guide::bound).
+    /// distance`. See [`docs::bound`](crate::docs::bound).
     pub discrete: f64,
     /// Of what `total` is made.
     pub parts: BoundParts,
@@ -206,12 +206,12 @@ impl ErrorBound {
     }
 }
 
-/// What one part of a mesh adds to a bound.
+/// The sums of one part of a mesh for a bound.
 #[derive(Debug)]
 pub(crate) struct PartOfBound<const D: usize> {
     totals: Totals,
     friedrichs: FriedrichsData<D>,
-    /// What each cell adds; zero for cells that do not count.
+    /// The part of each cell; zero for cells that do not count.
     squares: Vec<f64>,
     unproven: Vec<Unproven>,
 }
@@ -245,7 +245,7 @@ impl<const D: usize> Space<'_, D> {
         ErrorBound::new(&totals, of_solver.unwrap_or(0.0), squares, unproven)
     }
 
-    /// What the cells that count add to a bound.
+    /// The sums of the cells that count for a bound.
     fn part_of_bound(
         &self,
         pair: &PrimalDualPair<D>,

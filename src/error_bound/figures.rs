@@ -42,7 +42,7 @@ pub struct BoundFigures {
     pub contact: Option<f64>,
     /// Data oscillation.
     pub oscillation: Option<f64>,
-    /// What the solver left.
+    /// The residual that the solver left.
     pub algebra: Option<f64>,
     /// `discrete` over the error of the discrete solution in the broken energy norm, where it is known and more than
     /// rounding.

@@ -8,7 +8,7 @@
 //! |||u - v|||^2 <= |alpha^-1/2 (alpha grad v - q)|^2 + 2 (mu, distance of v from the obstacle) + 2 int_C s (v - g)
 //! ```
 //!
-//! The theorem with all terms, its proof, its sources and what is guaranteed stand in the guide: [`bound`].
+//! The theorem with all terms, its proof, its sources and what is guaranteed stand in [`docs::bound`](crate::docs::bound).
 //!
 //! | file or folder | content |
 //! |---|---|
@@ -24,8 +24,6 @@
 //! | `guarantee` | which terms are proven |
 //! | `estimate` | the bound from the sums |
 //! | `marking`, `figures` | cells to refine; the figures of a report |
-//!
-//! [`bound`]: crate::guide::bound
 
 mod admissible_function;
 mod contact_forces;

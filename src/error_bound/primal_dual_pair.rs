@@ -50,8 +50,8 @@ impl<const D: usize> Discretisation<'_, D> {
     /// and one; inside cells the divergence balances load and multiplier tested with linear functions.
     ///
     /// Where obstacles bind, multipliers of cells are then exchanged for flux through their facets, and contact forces
-    /// of quadratics between facets, which makes mismatch and complementarity smaller: see the guide,
-    /// [`bound`](crate::guide::bound).
+    /// of quadratics between facets, which makes mismatch and complementarity smaller: see
+    /// [`docs::bound`](crate::docs::bound).
     ///
     /// # Errors
     /// [`NoBound`].

@@ -1,4 +1,4 @@
-//! What is known of a form besides its formula, for warnings and reports.
+//! Known properties of a form besides its formula, for warnings and reports.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use super::{FacetView, PenaltyParameters};
 /// The least penalty weight of a facet with which a form is provably coercive.
 pub type LeastPenalty<'f, const D: usize> = Box<dyn Fn(&FacetView<'_, D>) -> f64 + 'f>;
 
-/// What theory and measurement say of a form: nothing of it enters matrix or load.
+/// Properties of a form by theory and measurement: nothing of it enters matrix or load.
 #[non_exhaustive]
 pub struct FormTheory<'f, const D: usize> {
     /// The factors in force, for reports.

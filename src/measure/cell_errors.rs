@@ -63,7 +63,7 @@ const MEAN_DEGREE: usize = 5;
 /// Whether a cell counts in a sum over cells.
 pub(crate) type Counts<'c> = &'c (dyn Fn(usize) -> bool + Sync);
 
-/// What the errors of all cells read.
+/// The data that the errors of all cells read.
 struct Measure<'m, 'r, 'f, const D: usize> {
     exact: &'m Reference<'r, D>,
     /// The rule of highest degree.
@@ -157,7 +157,7 @@ impl<const D: usize> Space<'_, D> {
         Ok(total)
     }
 
-    /// What the error is integrated with in a cell.
+    /// The data with which the error is integrated in a cell.
     fn integrand_in<'c, 'f: 'c>(
         &'c self,
         of: &'c Measure<'_, '_, 'f, D>,

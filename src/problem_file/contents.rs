@@ -2,7 +2,7 @@
 
 use crate::scenes::AnyScene;
 
-/// What a problem file and its mesh file say.
+/// The contents of a problem file and its mesh file.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ProblemFile {
@@ -11,6 +11,6 @@ pub struct ProblemFile {
     pub scene: AnyScene,
     /// The [`fingerprint`](crate::input::fingerprint)s of the files: `problem`, and `mesh` if there is one.
     pub fingerprints: Vec<(&'static str, String)>,
-    /// What the mesh file has that is not used, after its path.
+    /// Parts of the mesh file that are not used, after its path.
     pub warnings: Vec<String>,
 }

@@ -1,4 +1,4 @@
-//! Whether bounds contradict each other anywhere, with the data of all parts.
+//! A check of bounds with the data of all parts: do they contradict each other anywhere?
 
 use super::agree::agree_on_data;
 use super::error::ExchangeError;

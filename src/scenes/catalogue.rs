@@ -178,7 +178,7 @@ pub struct AcceptedParameters {
     pub load: bool,
 }
 
-/// What makes a scene from its parameters.
+/// The function that makes a scene from its parameters.
 type Builder = Box<dyn Fn(&Parameters) -> AnyScene + Send + Sync>;
 
 /// A registered scene: what lists show of it, and a function that builds it.

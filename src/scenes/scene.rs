@@ -16,7 +16,7 @@ pub struct Scene<const D: usize> {
     pub domain: Domain<D>,
     /// The data.
     pub problem: Problem<D>,
-    /// What is known of the solution's regularity.
+    /// The known regularity of the solution.
     pub regularity: Regularity,
 }
 

@@ -246,7 +246,7 @@ impl StabilityReport {
         Ok(written)
     }
 
-    /// What stands before the tables.
+    /// The paragraphs before the tables.
     fn paragraphs(&self) -> Vec<String> {
         let mut paragraphs = vec![self.heading()];
         paragraphs.extend(READING.map(str::to_owned));

@@ -2,7 +2,7 @@
 
 use super::{Cell, Table};
 
-/// What a document with tables needs in its preamble.
+/// The lines that a document with tables needs in its preamble.
 pub const LATEX_PACKAGES: &str = "\\usepackage{booktabs,siunitx}";
 
 impl Table {

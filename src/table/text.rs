@@ -2,7 +2,7 @@
 
 use super::{Cell, Table};
 
-/// What stands before the best number of a column.
+/// The mark before the best number of a column.
 const BEST: &str = "\u{2022} ";
 
 /// Longer words of a last column stand below their line.

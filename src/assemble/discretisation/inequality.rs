@@ -59,9 +59,9 @@ impl<const D: usize> Discretisation<'_, D> {
     }
     /// The bounds of all unknowns.
     ///
-    /// Obstacles bind the unknowns of the problem's constraint set, the Signorini condition those of
-    /// contact facets on the cell that has the facet; the set says whether a node is bound by the
-    /// value of the datum or by its mean. An unknown pinned by Dirichlet data is not constrained besides.
+    /// Obstacles bind the unknowns of the problem's constraint set. The Signorini condition binds those on contact
+    /// facets, in the cell that has the facet. The set says whether the value of the datum or its mean binds a node. An
+    /// unknown that Dirichlet data fix has no bound.
     ///
     /// # Errors
     /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: see
@@ -81,8 +81,8 @@ impl<const D: usize> Discretisation<'_, D> {
         }
         Ok(bounds)
     }
-    /// Lower bounds above upper ones. They contradict each other if they do so by more than rounding of the
-    /// largest datum, which a [part](crate::mesh::Part) of a mesh need not have.
+    /// Lower bounds that exceed upper ones. Two bounds contradict each other if they differ by more than rounding of the
+    /// largest datum. A [part](crate::mesh::Part) of a mesh need not have this datum.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
@@ -98,7 +98,7 @@ impl<const D: usize> Discretisation<'_, D> {
         let (bounds, found) = self.space.bounds()?;
         Ok(once(&self.contradictions, || Contradictions::new(&bounds, found, self.mesh())))
     }
-    /// The load of all unknowns, that of the assembled matrix, with weak Dirichlet data: see
+    /// The load of the assembled matrix, with weak Dirichlet data, for all unknowns: see
     /// [`Inequality::assembled_load`].
     ///
     /// # Errors

@@ -33,7 +33,7 @@ pub struct Discretisation<'a, const D: usize> {
     pub(crate) space: Space<'a, D>,
     form: Box<dyn FacetForm<D>>,
     shared_rows: SharedRows,
-    /// What facet forms need of cells and facets, computed when first needed.
+    /// The data of cells and facets that facet forms need, computed when first needed.
     prepared: OnceLock<(Metrics, FacetCoefficients)>,
     /// On a part what its bounds, once found, leave to be judged with the data of all parts.
     contradictions: OnceLock<Contradictions<D>>,
@@ -100,7 +100,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
         self.prepared.take();
         self.space.load_by_cell.take();
     }
-    /// What facet forms need of cells and facets. Loops over cells ask for it before they begin.
+    /// The data of cells and facets that facet forms need. Loops over cells ask for them before they begin.
     pub(super) fn prepared(&self) -> &(Metrics, FacetCoefficients) {
         once(&self.prepared, || {
             let metrics = Metrics::of(self.space.mesh);

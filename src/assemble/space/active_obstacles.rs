@@ -1,4 +1,4 @@
-//! Where obstacles give the bound that is active: the multiplier of an unknown belongs to that bound.
+//! The obstacle that gives the active bound of an unknown: the multiplier of the unknown belongs to that bound.
 //!
 //! Of several data that bind an unknown below the largest counts, above the smallest: obstacles of the regions around
 //! it and the gaps of its contact facets. The datum that the bound of the unknown equals is found again here, since

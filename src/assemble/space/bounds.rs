@@ -1,4 +1,4 @@
-//! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
+//! The bounds of each unknown: Dirichlet values, obstacles, the Signorini condition.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -151,7 +151,7 @@ impl<const D: usize> Space<'_, D> {
         Ok(())
     }
 
-    /// What a datum imposes at a node.
+    /// The bound that a datum imposes at a node.
     pub(super) fn bound(
         &self,
         by: BoundBy,

@@ -54,7 +54,7 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn form_facets(&self) -> impl Iterator<Item = FormFacet> {
         (0..self.mesh.n_cells()).flat_map(|cell| self.form_facets_of(cell))
     }
-    /// What a form may see of a facet and its cells, with the metrics of all cells if they are kept.
+    /// The data of a facet and its cells that a form may see, with the metrics of all cells if they are kept.
     #[inline(always)]
     pub fn facet_view(&self, facet: FormFacet, kept: Option<&Metrics>) -> FacetView<'a, D> {
         let side = |half: HalfFacet| {

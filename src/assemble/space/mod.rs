@@ -72,7 +72,7 @@ pub(crate) struct Space<'a, const D: usize> {
     coefficients: Option<Vec<f64>>,
     /// The coefficient in the cells in which it varies, for elements of degree two and more.
     varying: Option<VaryingCoefficient>,
-    /// What each of a cell's unknowns is the value of.
+    /// The functional whose value each unknown of a cell is.
     pub nodes: Vec<Node>,
     /// The vertices that stand for each of a cell's nodes.
     node_vertices: Vec<NodeVertices>,

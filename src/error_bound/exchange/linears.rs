@@ -21,7 +21,7 @@ const SWEEPS: usize = 4;
 /// The degree of the rule for distances from obstacles that are no constants.
 const DEGREE: usize = 2;
 
-/// What the exchange needs of a cell.
+/// The data of a cell that the exchange needs.
 struct CellOfLinears<const D: usize> {
     /// The number of the cell.
     number: usize,
@@ -52,7 +52,7 @@ impl<const D: usize> CellOfLinears<D> {
         ]
     }
 
-    /// What the cell adds to the square of the bound.
+    /// The part of the cell in the square of the bound.
     fn square(&self) -> f64 {
         let mismatch = self.difference.norm_squared() + self.variance * self.sum * self.sum;
         let gap = self.gap(self.multiplier.signum()).unwrap_or(0.0);

@@ -71,7 +71,7 @@ impl Totals {
             largest.map(|x| -x);
     }
 
-    /// What is summed over cells.
+    /// The sums over cells.
     fn sums(&mut self) -> [&mut f64; 7] {
         [
             &mut self.mismatch,

@@ -1,4 +1,4 @@
-//! Where the patches write: the fluxes around each vertex of some cells.
+//! The fluxes around each vertex of some cells, which the patches write.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};

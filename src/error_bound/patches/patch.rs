@@ -20,7 +20,7 @@ use crate::mesh::{BoundaryCondition, Neighbour, Neighbours};
 /// determined up to a constant.
 const ZERO_PIVOT: f64 = 1e-11;
 
-/// What is known of a number of the flux of a cell.
+/// The known data of a number of the flux of a cell.
 #[derive(Clone, Copy)]
 enum Number {
     /// The sum with that on the other side of the facet; the multiplier of this condition.

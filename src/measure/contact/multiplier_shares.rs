@@ -11,7 +11,7 @@ use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryCondition, HalfFacet};
 
-/// What of the multiplier of an unknown acts on one of several cells or contact facets.
+/// The share of the multiplier of an unknown that acts on one of several cells or contact facets.
 #[derive(Clone, Copy, Debug)]
 struct Share {
     /// The position of the cell or facet in the list of cells or of contact facets.

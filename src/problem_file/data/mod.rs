@@ -40,7 +40,7 @@ struct Builder<'s, 't, const D: usize> {
     problem: Problem<D>,
     entries: Vec<Entry<D>>,
     parts: Vec<(String, BoundaryCondition)>,
-    /// What is given on boundary groups without a table of their own.
+    /// The data on boundary groups without a table of their own.
     on_other_groups: Option<OnGroup>,
     /// The gaps of the problem, in their order.
     gaps: Vec<Formula>,
@@ -50,7 +50,7 @@ struct Builder<'s, 't, const D: usize> {
     gradient_offset: usize,
 }
 
-/// What a file gives on a boundary group.
+/// The data of a file on a boundary group.
 struct OnGroup {
     condition: BoundaryCondition,
     formula: Formula,
