@@ -63,6 +63,7 @@ impl PenalisedMatrix<f64> {
             blocks: rounded(&self.blocks),
             term_starts: self.term_starts.clone(),
             terms: collect(self.terms.len(), |k| term(&self.terms[k])),
+            jumps_of_blocks: self.jumps_of_blocks.clone(),
             weights: rounded(&self.weights),
             jump_data: rounded(&self.jump_data),
             mean_jumps: self.mean_jumps.clone(),

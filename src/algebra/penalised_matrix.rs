@@ -1,9 +1,13 @@
 //! The matrix `K + M^T S M` of an over-penalised scheme, kept as that sum.
 
-use crate::parallel::vectors::for_each_chunk;
+use std::ops::Range;
 
 use super::NO_INDEX;
+use super::jumps_of_blocks::JumpsOfBlocks;
 use super::mean_jumps::MeanJumps;
+use crate::parallel::vectors::{
+    all, collect, for_each_chunk, for_each_chunk_of_groups, map_chunks,
+};
 use crate::real::Real;
 
 /// The matrix `A = K + M^T S M`, stored by `K`, `M` and `S`, and the Dirichlet data `g` that it imposes: the load of
@@ -30,6 +34,8 @@ pub struct PenalisedMatrix<T> {
     /// The rows of `M` one after the other. In a row all [`JumpTerm::here`] belong to one block, all
     /// [`JumpTerm::there`] to another.
     pub terms: Vec<JumpTerm<T>>,
+    /// The jumps of each block of `K`, from `terms`.
+    pub jumps_of_blocks: JumpsOfBlocks,
     /// The diagonal of `S`.
     pub weights: Vec<T>,
     /// `g`.
@@ -88,10 +94,13 @@ impl<T: Real> PenalisedMatrix<T> {
             && self.jump_data.len() == n
             && self.term_starts.len() == n + 1
             && self.term_starts.first() == Some(&0)
-            && self.term_starts.windows(2).all(|w| w[0] <= w[1])
+            && all(n, |k| self.term_starts[k] <= self.term_starts[k + 1])
             && self.term_starts[n] as usize == self.terms.len()
-            && self.terms.iter().all(|t| is_valid(t.here) && is_valid(t.there))
-            && self.weights.iter().all(|&s| s > T::lit(0.0))
+            && all(self.terms.len(), |k| {
+                is_valid(self.terms[k].here) && is_valid(self.terms[k].there)
+            })
+            && self.jumps_of_blocks.is_well_formed(size / self.block_size, n)
+            && all(n, |k| self.weights[k] > T::lit(0.0))
             && self.mean_jumps.as_ref().is_none_or(|m| m.is_well_formed(n, size, self.block_size))
     }
 
@@ -163,26 +172,31 @@ impl<T: Real> PenalisedMatrix<T> {
         &self,
         load: &[T],
         u: impl Fn(usize) -> f64 + Sync,
-        jump_multipliers: impl Fn(usize) -> f64,
+        jump_multipliers: impl Fn(usize) -> f64 + Sync,
         r: &mut [f64],
     ) {
-        for_each_chunk(r, |range, r| {
-            for (r, i) in r.iter_mut().zip(range) {
-                *r = load[i].to_f64() - self.stiffness(i, &u);
+        let n = self.block_size;
+        for_each_chunk_of_groups(r, n, |range, r| {
+            for (block, r) in (range.start / n..).zip(r.chunks_exact_mut(n)) {
+                let first = block * n;
+                for (i, r) in (first..).zip(&mut *r) {
+                    *r = load[i].to_f64() - self.stiffness(i, &u);
+                }
+                for &jump in self.jumps_of_blocks.of(block) {
+                    let multiplier = jump_multipliers(jump as usize);
+                    for t in self.terms_of(jump as usize) {
+                        let product = t.weight.to_f64() * multiplier;
+                        // unknowns of other blocks, and none, are beyond the end
+                        if let Some(r) = r.get_mut((t.here as usize).wrapping_sub(first)) {
+                            *r -= product;
+                        }
+                        if let Some(r) = r.get_mut((t.there as usize).wrapping_sub(first)) {
+                            *r += product;
+                        }
+                    }
+                }
             }
         });
-        for jump in 0..self.n_jumps() {
-            let multiplier = jump_multipliers(jump);
-            for t in self.terms_of(jump) {
-                let product = t.weight.to_f64() * multiplier;
-                if t.here != JumpTerm::<T>::NO_UNKNOWN {
-                    r[t.here as usize] -= product;
-                }
-                if t.there != JumpTerm::<T>::NO_UNKNOWN {
-                    r[t.there as usize] += product;
-                }
-            }
-        }
     }
 
     /// The residual `r = b - A u` with a load `c`.
@@ -199,8 +213,8 @@ impl<T: Real> PenalisedMatrix<T> {
     pub fn objective(
         &self,
         load: &[T],
-        u: impl Fn(usize) -> f64,
-        counts: impl Fn(usize) -> bool,
+        u: impl Fn(usize) -> f64 + Sync,
+        counts: impl Fn(usize) -> bool + Sync,
     ) -> f64 {
         let of_unknown = |i: usize| u(i) * (0.5 * self.stiffness(i, &u) - load[i].to_f64());
         let of_jump = |k: usize| {
@@ -208,10 +222,10 @@ impl<T: Real> PenalisedMatrix<T> {
             let jump = self.jump(k, &u) - g;
             0.5 * self.weights[k].to_f64() * (jump * jump - g * g)
         };
-        let is_counted = |&k: &usize| self.first_unknown(k).is_some_and(&counts);
-        let unknowns = (0..load.len()).filter(|&i| counts(i));
-        unknowns.map(of_unknown).sum::<f64>()
-            + (0..self.n_jumps()).filter(is_counted).map(of_jump).sum::<f64>()
+        let is_counted = |k: usize| self.first_unknown(k).is_some_and(&counts);
+        let of_unknowns = collect(load.len(), |i| if counts(i) { of_unknown(i) } else { 0.0 });
+        let of_jumps = collect(self.n_jumps(), |k| if is_counted(k) { of_jump(k) } else { 0.0 });
+        of_unknowns.iter().sum::<f64>() + of_jumps.iter().sum::<f64>()
     }
 
     /// The scale of energies `u.K u + p.(S^-1 p) + Σ |c_i u_i|` with a load `c` and jump multipliers `p`.
@@ -230,13 +244,13 @@ impl<T: Real> PenalisedMatrix<T> {
     /// as jumps, times the Dirichlet data, over the jumps whose first unknown `counts`.
     pub fn work_on_data(
         &self,
-        u: impl Fn(usize) -> f64,
+        u: impl Fn(usize) -> f64 + Sync,
         jump_multipliers: &[T],
-        counts: impl Fn(usize) -> bool,
+        counts: impl Fn(usize) -> bool + Sync,
     ) -> f64 {
         let is_given = jump_multipliers.len() == self.n_jumps();
-        let of_jump = |(k, g): (usize, &T)| {
-            let g = g.to_f64();
+        let of_jump = |k: usize| {
+            let g = self.jump_data[k].to_f64();
             if g == 0.0 || !self.first_unknown(k).is_some_and(&counts) {
                 return 0.0;
             }
@@ -247,7 +261,10 @@ impl<T: Real> PenalisedMatrix<T> {
             };
             multiplier * g
         };
-        self.jump_data.iter().enumerate().map(of_jump).sum()
+        let of_chunk =
+            |jumps: Range<usize>| jumps.map(of_jump).filter(|work| *work != 0.0).collect();
+        let not_zero: Vec<Vec<f64>> = map_chunks(self.n_jumps(), of_chunk);
+        not_zero.iter().flatten().sum()
     }
 
     /// The jump residual `g - M u + S^-1 p`, one entry, for the multiplier `p` of that jump.

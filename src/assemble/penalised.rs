@@ -8,7 +8,7 @@ use super::space::metric::Metrics;
 use super::space::tables::FacetDatum;
 use super::space::tables::FacetTable;
 use super::stiffness::zero_local;
-use crate::algebra::{JumpTerm, MeanJumps, NO_INDEX, PenalisedMatrix};
+use crate::algebra::{JumpTerm, JumpsOfBlocks, MeanJumps, NO_INDEX, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::FacetForm;
 use crate::mesh::HalfFacet;
@@ -40,6 +40,7 @@ pub(crate) fn penalised_matrix<const D: usize>(
         blocks: blocks(space, metrics),
         term_starts: Vec::with_capacity(n_jumps + 1),
         terms: Vec::with_capacity(n_jumps * templates.most_terms()),
+        jumps_of_blocks: JumpsOfBlocks::default(),
         weights: Vec::with_capacity(n_jumps),
         jump_data: Vec::with_capacity(n_jumps),
         mean_jumps: mean_jumps(space, &table),
@@ -64,6 +65,8 @@ pub(crate) fn penalised_matrix<const D: usize>(
             out.weights.push(measure * jump_jump);
         }
     }
+    let blocks = (space.mesh.n_cells(), out.block_size);
+    out.jumps_of_blocks = JumpsOfBlocks::new(blocks, &out.term_starts, &out.terms);
     out
 }
 

@@ -9,8 +9,8 @@ use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
-use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbours};
+use crate::parallel::vectors::collect;
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -128,18 +128,17 @@ impl<const D: usize> Space<'_, D> {
         let presses = |cell: usize| counts(cell) && multipliers[cell].abs() > ROUNDING * largest;
         let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, counts), false);
         let rule = Rule::new(D, DEGREE);
-        let in_contact = |&cell: &usize| {
-            let multiplier = if presses(cell) { multipliers[cell] } else { 0.0 };
-            self.cell_of_linears(cell, function, multiplier, &rule)
-        };
-        let mut cells = in_large_pages(Vec::<CellOfLinears<D>>::with_capacity(numbers.len()));
-        cells.extend(numbers.iter().map(in_contact));
-        for cell in &mut cells {
-            for (flux, at_centre) in flux.of_cell(cell.number).iter().zip(&cell.at_centre) {
+        let before = &*flux;
+        let mut cells = collect(numbers.len(), |k| {
+            let number = numbers[k];
+            let multiplier = if presses(number) { multipliers[number] } else { 0.0 };
+            let mut cell = self.cell_of_linears(number, function, multiplier, &rule);
+            for (flux, at_centre) in before.of_cell(number).iter().zip(&cell.at_centre) {
                 cell.difference += at_centre * *flux;
                 cell.sum += flux;
             }
-        }
+            cell
+        });
         let square: f64 = cells.iter().map(CellOfLinears::square).sum();
         visit_steps(&steps, (cells.len(), square), SWEEPS, |step| match step {
             ExchangeStep::Between(at) => {

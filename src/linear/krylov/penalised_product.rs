@@ -117,7 +117,7 @@ fn means<T: Real, const N: usize, const ARE_MEANS: bool>(values: &[T; N]) -> [T;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::{JumpTerm, MeanJumps};
+    use crate::algebra::{JumpTerm, JumpsOfBlocks, MeanJumps};
 
     /// Two cells of `n` unknowns with a common facet, facet 0 of the first and facet 1 of the second, and Dirichlet
     /// data on facet 2 of the first.
@@ -134,6 +134,7 @@ mod tests {
         let boundary = boundary.map(|here| JumpTerm { here, there: NONE, weight });
         let terms: Vec<_> = interior.chain(boundary).collect();
         let half = terms.len() as u32 / 2;
+        let term_starts = vec![0, half, 2 * half];
         let entry = |k: usize| {
             let (i, j) = (k / n, k % n);
             1.0 / (1 + i % n + j) as f64 + if i % n == j { i as f64 } else { 0.0 }
@@ -141,7 +142,8 @@ mod tests {
         PenalisedMatrix {
             block_size: n,
             blocks: (0..2 * n * n).map(entry).collect(),
-            term_starts: vec![0, half, 2 * half],
+            jumps_of_blocks: JumpsOfBlocks::new((2, n), &term_starts, &terms),
+            term_starts,
             terms,
             weights: vec![7.0, 3.0],
             jump_data: vec![0.0; 2],

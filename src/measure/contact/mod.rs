@@ -30,6 +30,7 @@ use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::BoundaryCondition;
 use crate::parallel::cells;
+use crate::parallel::vectors::collect;
 use crate::real::Point;
 use entity::ContactEntity;
 use exact_contact::ExactContact;
@@ -165,19 +166,21 @@ impl<const D: usize> Space<'_, D> {
             return Ok(errors);
         }
         let on_entities = self.exact_contact(exact, &entities)?;
+        let measures = self.measures_of(&entities);
         if exact.multiplier.is_some() {
-            let found = self.multiplier_errors(&entities, &on_entities, inequality, solution);
+            let of_entities = (&entities[..], &measures[..]);
+            let found = self.multiplier_errors(of_entities, &on_entities, inequality, solution);
             [errors.multiplier_l1, errors.multiplier_l2] =
                 map_entries([0, 1], |k| found.map(|e| e[k]));
         }
         if let Some(set) = &exact.contact {
             let touching = self.in_contact(&entities, inequality, solution);
-            let wrong = |((entity, exact), touches): ((&ContactEntity, &ExactContact), &bool)| {
-                exact.shares[usize::from(!touches)] * self.measure_of(*entity)
+            let wrong = |((measure, exact), touches): ((&f64, &ExactContact), &bool)| {
+                exact.shares[usize::from(!touches)] * measure
             };
             let exact = on_entities.iter().flatten();
-            let area = entities.iter().zip(exact).zip(&touching).map(wrong).sum();
-            errors.contact_area_error = Some(area);
+            errors.contact_area_error =
+                Some(measures.iter().zip(exact).zip(&touching).map(wrong).sum());
             errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
         }
         Ok(errors)
@@ -192,8 +195,9 @@ impl<const D: usize> Space<'_, D> {
         let mut entities = self.problem.is_constrained().then(|| self.entities())?;
         entities.retain(|entity| counts(entity.cell));
         let touching = self.in_contact(&entities, inequality, solution);
-        let in_contact = entities.iter().zip(touching).filter(|(_, touches)| *touches);
-        Some(in_contact.fold(0.0, |sum, (entity, _)| sum + self.measure_of(*entity)))
+        let measures = self.measures_of(&entities);
+        let in_contact = measures.iter().zip(touching).filter(|(_, touches)| *touches);
+        Some(in_contact.fold(0.0, |sum, (measure, _)| sum + measure))
     }
 
     fn entities(&self) -> Vec<ContactEntity> {
@@ -224,12 +228,15 @@ impl<const D: usize> Space<'_, D> {
         given
     }
 
-    fn measure_of(&self, entity: ContactEntity) -> f64 {
-        let geometry = self.mesh.geometry(entity.cell);
-        match entity.facet {
-            None => geometry.volume,
-            Some(local) => geometry.facet_measure(local),
-        }
+    /// The volumes of cells and the areas of facets.
+    fn measures_of(&self, entities: &[ContactEntity]) -> Vec<f64> {
+        collect(entities.len(), |k| {
+            let geometry = self.mesh.geometry(entities[k].cell);
+            match entities[k].facet {
+                None => geometry.volume,
+                Some(local) => geometry.facet_measure(local),
+            }
+        })
     }
 
     /// Corners of an entity in space; one point more than its dimension of them are used.

@@ -244,7 +244,7 @@ impl<const D: usize> Space<'_, D> {
                 let at_vertex = share.value / around.len() as f64;
                 around.iter().for_each(|&v| at_vertices[v as usize] += at_vertex);
             }
-            let hats = self.hat_integrals(&entities);
+            let hats = self.hat_integrals(&entities, &self.measures_of(&entities));
             at_vertices.iter_mut().zip(hats).for_each(|(density, hat)| *density /= hat);
             for (&k, entity) in of_group.iter().zip(&entities) {
                 let corners = entity.corners::<D>().map(|c| self.mesh.cell(entity.cell)[c]);
