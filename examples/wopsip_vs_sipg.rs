@@ -17,7 +17,7 @@ fn compare(scene: scenes::Scene<2>) -> Result<Report, Error> {
 fn main() -> Result<(), Error> {
     // a membrane that is pressed onto an obstacle; the contact set is a disc
     let mut report = compare(scenes::radial(1.0))?;
-    // a body that rests on a part of its boundary
+    // a body that rests on one side
     report.rows.extend(compare(scenes::signorini_2d())?.rows);
     print!("{report}");
     for file in report.write("target/wopsip_vs_sipg")? {

@@ -23,7 +23,7 @@ pub(crate) fn applies<const D: usize>(form: &dyn FacetForm<D>) -> bool {
     !form.uses_flux() && !form.is_lifted() && form.is_symmetric()
 }
 
-/// The parts: stiffness and reaction by cells, jumps of moments over facets with their weights, Dirichlet data.
+/// The terms: stiffness and reaction by cells, jumps of moments over facets with their weights, Dirichlet data.
 pub(crate) fn penalised_matrix<const D: usize>(
     space: &Space<'_, D>,
     form: &dyn FacetForm<D>,

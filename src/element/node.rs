@@ -4,7 +4,7 @@ use crate::arrays::array_of;
 use crate::mesh::edge_vertices;
 use crate::quadrature::{Rule, facet_to_cell};
 
-/// A part of the reference simplex.
+/// A vertex, an edge or a facet of the reference simplex, or the simplex itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entity {
     /// A vertex.

@@ -14,7 +14,7 @@
 //!
 //! The lift `r(v)` of a jump is the piecewise polynomial field, of degree one less than the element
 //! unless the form asks for another, with `int r(v) . tau = - sum_F int_F [v] {tau . n}`, the mean with the average weights of the
-//! flux; `r_F(v)` is the part of one facet.
+//! flux; `r_F(v)` is the lift of one facet.
 
 mod dirichlet;
 mod interior_penalty;
@@ -54,7 +54,7 @@ pub struct Trace {
 ///
 /// From the one formula come the matrix, the load of Dirichlet data (which enter as the trial trace
 /// `{ jump: u_D, flux: 0 }`: wherever `[u]` stands on a Dirichlet facet, `[u] - u_D` is meant) and
-/// the penalty part of the norm (the formula at traces without flux).
+/// the penalty terms of the norm (the formula at traces without flux).
 pub trait FacetForm<const D: usize>: Send + Sync {
     /// Whether there is a form at all, by default true. Without one, facets are not even built.
     fn couples(&self) -> bool {

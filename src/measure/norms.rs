@@ -143,14 +143,14 @@ impl<const D: usize> Space<'_, D> {
             }
             Ok(())
         };
-        let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+        let chunks = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let (mut terms, mut counted) = (Vec::new(), cells.filter(|&cell| counts(cell)));
             counted.try_for_each(|cell| terms_of(cell, &mut terms)).map(|()| terms)
         });
         // added in the order of facets, for every number of threads
         let mut total = 0.0;
-        for part in parts {
-            total = part?.into_iter().fold(total, |sum, term| sum + term);
+        for chunk in chunks {
+            total = chunk?.into_iter().fold(total, |sum, term| sum + term);
         }
         Ok(total)
     }

@@ -115,7 +115,7 @@ impl<const D: usize> Mesh<D> {
     ///
     /// # Errors
     /// [`MeshError::UndecidedGroup`].
-    pub fn check_boundary_parts(&self) -> Result<(), MeshError> {
+    pub fn check_boundary_conditions(&self) -> Result<(), MeshError> {
         match self.groups.boundary.iter().find(|group| group.condition.is_none()) {
             Some(group) => Err(MeshError::undecided(&group.names)),
             None => Ok(()),

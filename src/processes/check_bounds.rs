@@ -9,7 +9,7 @@ use crate::mesh::Part;
 /// Refuses bounds that contradict each other by more than rounding of the largest datum of all parts, as
 /// [`Discretisation::bounds`] does on a whole mesh; all parts call it.
 ///
-/// A gap is compared with Dirichlet data where the two parts of the boundary meet. With
+/// A gap is compared with Dirichlet data where the two boundaries meet. With
 /// [`Layers`](crate::mesh::Layers) across facets a part need not have the cells of both.
 ///
 /// # Errors

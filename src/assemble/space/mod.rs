@@ -247,18 +247,18 @@ impl<'a, const D: usize> Space<'a, D> {
         }
         local
     }
-    /// The boundary facets of a part, by cell and number in the cell.
-    pub fn facets_of(&self, part: BoundaryCondition) -> impl Iterator<Item = HalfFacet> {
-        self.grouped_facets_of(part).map(|(facet, _)| facet)
+    /// The boundary facets with a condition, by cell and number in the cell.
+    pub fn facets_of(&self, condition: BoundaryCondition) -> impl Iterator<Item = HalfFacet> {
+        self.grouped_facets_of(condition).map(|(facet, _)| facet)
     }
-    /// The boundary facets of a part with the numbers of their groups.
+    /// The boundary facets with a condition, with the numbers of their groups.
     pub fn grouped_facets_of(
         &self,
         condition: BoundaryCondition,
     ) -> impl Iterator<Item = (HalfFacet, usize)> {
-        let of_part = move |f: &&BoundaryFacet| f.condition == condition;
+        let is_one = move |f: &&BoundaryFacet| f.condition == condition;
         let facet = |f: &BoundaryFacet| ((f.cell as usize, f.local as usize), usize::from(f.group));
-        self.mesh.boundary().iter().filter(of_part).map(facet)
+        self.mesh.boundary().iter().filter(is_one).map(facet)
     }
     /// The number of the group of a boundary facet.
     pub fn group_of(&self, (cell, local): HalfFacet) -> usize {

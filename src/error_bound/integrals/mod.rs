@@ -69,7 +69,7 @@ pub(super) struct CellTerms {
 }
 
 impl CellTerms {
-    /// What the cell adds to the square of the bound, without the part of the solver.
+    /// What the cell adds to the square of the bound, without the term of the solver.
     pub fn square(&self) -> f64 {
         self.with_oscillation + self.obstacle + self.contact
     }

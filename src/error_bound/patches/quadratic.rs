@@ -1,6 +1,6 @@
 //! What the patches of quadratics read of the cells: a flux has one number for each vertex of a facet.
 //!
-//! In the notation of [`quadratics`](crate::error_bound::quadratics) the part of a vertex is in a cell
+//! In the notation of [`quadratics`](crate::error_bound::quadratics) the flux of a vertex is in a cell
 //!
 //! ```text
 //! p = sum c_Fj lambda_j (a_j - a_F) / (D |K|) + sum_j r_j lambda_j phi_j
@@ -126,9 +126,10 @@ impl<const D: usize> Space<'_, D> {
                     let mut flux = data[cell].normal[facet];
                     if let Neighbour::Cell { cell: other, local } = neighbours.across(cell, facet) {
                         let local = usize::from(local);
-                        let across = &data[other as usize].normal[local];
+                        let normal_there = &data[other as usize].normal[local];
                         let pairs = vertices_of::<D>(facet).zip(vertices_of::<D>(local));
-                        pairs.for_each(|(j, there)| flux[j] = 0.5 * (flux[j] - across[there]));
+                        pairs
+                            .for_each(|(j, there)| flux[j] = 0.5 * (flux[j] - normal_there[there]));
                     }
                     let products = products_on_facet::<D>(&flux, facet);
                     for a in 0..=D {
@@ -271,7 +272,7 @@ fn divergence_products<const D: usize>(points: &[Point<D>; 4], tested: &[f64; 4]
     })
 }
 
-/// The products of what the part of vertex `own` aims at, its hat function times the difference of gradients, with
+/// The products of what the flux of vertex `own` aims at, its hat function times the difference of gradients, with
 /// `lambda_j` times a vector, for each vertex `j` of a cell.
 fn target_products<const D: usize>(own: usize, differences: &[[f64; 3]; 4]) -> [Point<D>; 4] {
     let d = D as f64;

@@ -91,7 +91,7 @@ impl<const D: usize> BisectedMesh<D> {
     /// Divides every marked cell at least once, and of the others those that must be divided for the
     /// mesh to be conforming. Neither the order of marks nor their repetition matters.
     ///
-    /// A division cuts a cell into two of equal volume. Regions, boundary parts and groups are
+    /// A division cuts a cell into two of equal volume. Regions, boundary conditions and groups are
     /// inherited. New vertices are midpoints of edges, on curved boundaries too.
     ///
     /// # Errors

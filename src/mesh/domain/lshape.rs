@@ -24,11 +24,11 @@ impl<const D: usize> Mesh<D> {
     }
     fn cut_l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("L-shape", half, n)?;
-        let across = 2 * n + 1;
-        let vertex = |i: usize, j: usize| (i + j * across) as u32;
+        let per_line = 2 * n + 1;
+        let vertex = |i: usize, j: usize| (i + j * per_line) as u32;
         let at = |i: usize| half * (i as f64 / n as f64 - 1.0);
-        let vertices = (0..across * across)
-            .map(|v| Point::from_fn(|k, _| at(if k == 0 { v % across } else { v / across })))
+        let vertices = (0..per_line * per_line)
+            .map(|v| Point::from_fn(|k, _| at(if k == 0 { v % per_line } else { v / per_line })))
             .collect();
         let mut cells = Vec::with_capacity(18 * n * n);
         for (j, i) in (0..2 * n).flat_map(|j| (0..2 * n).map(move |i| (j, i))) {

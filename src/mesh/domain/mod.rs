@@ -54,7 +54,7 @@ impl<const D: usize> Domain<D> {
     pub fn is_mesh(&self) -> bool {
         matches!(self, Domain::Mesh(_))
     }
-    /// The smallest box that contains the domain; for a box that box, with the parts of its sides.
+    /// The smallest box that contains the domain; for a box that box, with the conditions on its sides.
     pub fn bounding_box(&self) -> BoxDomain<D> {
         match *self {
             Domain::Mesh(ref mesh) => {
@@ -93,12 +93,12 @@ impl<const D: usize> Domain<D> {
             Domain::Mesh(_) => f64::NEG_INFINITY,
         }
     }
-    /// Whether the boundary has a facet in this part.
-    pub fn has_condition(&self, part: BoundaryCondition) -> bool {
+    /// Whether the boundary has a facet with this condition.
+    pub fn has_condition(&self, condition: BoundaryCondition) -> bool {
         match self {
-            Domain::Box(domain) => domain.sides.iter().flatten().any(|&side| side == part),
-            Domain::Mesh(mesh) => mesh.has_condition(part),
-            _ => part == BoundaryCondition::Dirichlet,
+            Domain::Box(domain) => domain.sides.iter().flatten().any(|&side| side == condition),
+            Domain::Mesh(mesh) => mesh.has_condition(condition),
+            _ => condition == BoundaryCondition::Dirichlet,
         }
     }
 

@@ -19,7 +19,7 @@ struct Entity<'m> {
 
 /// A mesh as the text of a Gmsh file. What a [`GmshFile`](super::GmshFile) reads from it has the vertices of the mesh,
 /// bit by bit, its cells, and the names of regions and boundary groups, in the order of every mesh that is read;
-/// the tag of a node is the number of its vertex from one on. The file keeps the part of a boundary group whose name is that of a part; the part of any other group is left to a
+/// the tag of a node is the number of its vertex from one on. The file keeps the condition of a boundary group whose name is that of a condition; the condition of any other group is left to a
 /// problem.
 #[must_use]
 pub fn to_text<const D: usize>(mesh: &Mesh<D>) -> String {
