@@ -17,25 +17,25 @@
 //! flux; `r_F(v)` is the lift of one facet.
 
 mod dirichlet;
+mod facet_lifts;
+mod form_theory;
 mod interior_penalty;
-mod lifting;
 mod local_fluxes;
 mod none;
 mod over_penalty;
 mod parameters;
 mod proven;
-mod theory;
 mod view;
 
 pub use dirichlet::DirichletBy;
+pub use facet_lifts::{FacetLifts, Lifts};
+pub use form_theory::FormTheory;
 pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
-pub use lifting::{FacetLifts, Lifts};
 pub use local_fluxes::LocalFluxes;
 pub use none::NoFacets;
-pub use over_penalty::{OverPenalty, WeightRule};
+pub use over_penalty::{Eta, OverPenalty, WeightRule};
 pub use parameters::PenaltyParameters;
 pub use proven::proven_bound;
-pub use theory::FormTheory;
 pub use view::{FacetKind, FacetView, Side};
 
 /// A moment of the jump and of the mean normal flux of a function on a facet.

@@ -2,7 +2,7 @@
 
 use super::Discretisation;
 use crate::algebra::{Bound, Inequality, Start};
-use crate::assemble::penalised;
+use crate::assemble::penalised_matrix::{keeps_penalty_apart, penalised_matrix};
 use crate::assemble::space::contradictions::Contradictions;
 use crate::error::Error;
 use crate::instances::compiled;
@@ -19,7 +19,7 @@ impl<const D: usize> Discretisation<'_, D> {
         )(self)
     }
     fn assemble(&self) -> Result<Inequality<f64>, Error> {
-        let is_penalised = self.owns_rows() && penalised::applies(self.form());
+        let is_penalised = self.owns_rows() && keeps_penalty_apart(self.form());
         let free = self.space.free_bodies()?;
         // the load of a penalised matrix has no Dirichlet data
         let metrics = || &self.prepared().0;
@@ -30,7 +30,7 @@ impl<const D: usize> Discretisation<'_, D> {
             .then(|| self.space.dirichlet_energy(self.form(), &|| &self.prepared().0, &data));
         let penalised = is_penalised.then(|| {
             let (metrics, weights) = self.prepared();
-            penalised::penalised_matrix(&self.space, self.form(), (metrics, weights), &data)
+            penalised_matrix(&self.space, self.form(), (metrics, weights), &data)
         });
         // the loops that fill the matrix return no error: a reaction term that is not finite is
         // detected here

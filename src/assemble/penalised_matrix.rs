@@ -19,7 +19,7 @@ use crate::parallel::cells;
 const ROUNDING: f64 = 1e-12;
 
 /// Whether all there is of a form is a sum of products of jumps.
-pub(crate) fn applies<const D: usize>(form: &dyn FacetForm<D>) -> bool {
+pub(crate) fn keeps_penalty_apart<const D: usize>(form: &dyn FacetForm<D>) -> bool {
     !form.uses_flux() && !form.is_lifted() && form.is_symmetric()
 }
 
