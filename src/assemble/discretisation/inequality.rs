@@ -3,10 +3,9 @@
 use super::Discretisation;
 use crate::algebra::{Bound, Inequality, Start};
 use crate::assemble::penalised_matrix::{keeps_penalty_apart, penalised_matrix};
-use crate::assemble::space::contradictions::Contradictions;
+use crate::assemble::space::contradictions::{Contradiction, largest_datum, refuse};
 use crate::error::Error;
 use crate::instances::compiled;
-use crate::parallel::once;
 
 impl<const D: usize> Discretisation<'_, D> {
     /// The inequality: matrix, load, bounds, locations.
@@ -73,30 +72,20 @@ impl<const D: usize> Discretisation<'_, D> {
     }
     fn checked_bounds(&self) -> Result<Vec<Bound<f64>>, Error> {
         let (bounds, found) = self.space.bounds()?;
-        if self.mesh().is_part() {
-            once(&self.contradictions, || Contradictions::new(&bounds, found, self.mesh()));
-        } else if !found.is_empty() {
-            let found = Contradictions::new(&bounds, found, self.mesh());
-            found.check(found.size(), &|_| true)?;
+        if !found.is_empty() && !self.mesh().is_part() {
+            refuse(&found, largest_datum(&bounds, &found), self.mesh(), &|_| true)?;
         }
         Ok(bounds)
     }
-    /// Lower bounds above upper ones. They contradict each other if they do so by more than rounding of the
-    /// largest datum, which a [part](crate::mesh::Part) of a mesh need not have.
+    /// Lower bounds above upper ones, and the largest datum: whether they contradict each other depends on the largest
+    /// datum of all [parts](crate::mesh::Part) of a mesh.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    pub(crate) fn contradictions(&self) -> Result<&Contradictions<D>, Error> {
-        compiled!(const D: for<'d> fn(&'d Discretisation<'_, D>) -> Result<&'d Contradictions<D>, Error>
-                = |of| of.find_contradictions()
-        )(self)
-    }
-    fn find_contradictions(&self) -> Result<&Contradictions<D>, Error> {
-        if let Some(found) = self.contradictions.get() {
-            return Ok(found);
-        }
+    pub(crate) fn contradictions(&self) -> Result<(Vec<Contradiction<D>>, f64), Error> {
         let (bounds, found) = self.space.bounds()?;
-        Ok(once(&self.contradictions, || Contradictions::new(&bounds, found, self.mesh())))
+        let size = largest_datum(&bounds, &found);
+        Ok((found, size))
     }
     /// The load of all unknowns, that of the assembled matrix, with weak Dirichlet data: see
     /// [`Inequality::assembled_load`].

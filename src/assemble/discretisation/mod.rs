@@ -16,7 +16,6 @@ use super::owned_rows;
 use super::penalty_below_bound::PenaltyBelowBound;
 use super::shared_rows::SharedRows;
 use super::space::Space;
-use super::space::contradictions::Contradictions;
 use super::space::metric::Metrics;
 use crate::algebra::{DofLocation, SparseMatrix};
 use crate::facet::FacetForm;
@@ -35,8 +34,6 @@ pub struct Discretisation<'a, const D: usize> {
     shared_rows: SharedRows,
     /// What facet forms need of cells and facets, computed when first needed.
     prepared: OnceLock<(Metrics, FacetCoefficients)>,
-    /// On a part what its bounds, once found, leave to be judged with the data of all parts.
-    contradictions: OnceLock<Contradictions<D>>,
 }
 
 impl<'a, const D: usize> Discretisation<'a, D> {

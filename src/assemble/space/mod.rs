@@ -177,8 +177,10 @@ impl<'a, const D: usize> Space<'a, D> {
         if self.problem.is_constrained() && self.bounded_nodes().next().is_none() {
             return refuse("an inequality", self.problem.has_gap());
         }
-        let on_facets = || (0..=D).any(|local| self.bounded_nodes_on(local).next().is_some());
-        if self.problem.has_gap() && !on_facets() {
+        let mut facets = 0..=D;
+        let has_nodes = facets.clone().all(|local| self.nodes_on(local).next().is_some());
+        let binds = facets.any(|local| self.bounded_nodes_on(local).next().is_some());
+        if self.problem.has_gap() && !(has_nodes && binds) {
             return refuse("a Signorini condition", true);
         }
         Ok(())
