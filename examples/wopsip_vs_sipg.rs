@@ -1,6 +1,7 @@
 //! Conforming P1, SIPG and WOPSIP side by side on an obstacle problem and on a Signorini problem.
 //!
-//! The program prints one table for each problem, and writes tables and plots to `target/`.
+//! `cargo run --release --example wopsip_vs_sipg` prints one table for each problem, and writes tables and plots to
+//! `target/`.
 
 use unilateral::prelude::*;
 

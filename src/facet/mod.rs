@@ -104,8 +104,11 @@ pub trait FacetForm<const D: usize>: Send + Sync {
         let _ = moment;
         1.0
     }
-    /// What theory and reports say of the form: parameters in force, the least penalty. By default nothing: the matrix
-    /// is then tested for definiteness before a solve, and reports state no penalty.
+    /// What is known of the form besides its formula; nothing of it enters matrix or load. A form may leave it out: its
+    /// matrix is then tested for definiteness before an inequality is solved, and reports state no penalty factor. A form
+    /// that theory proves coercive says so and saves the test, `FormTheory::new().with_coercivity(true)`; one whose
+    /// penalty must exceed a bound gives the bound, `FormTheory::new().with_least_penalty(|facet| ..)`, and a warning
+    /// says where it is not kept.
     fn theory(&self) -> FormTheory<'_, D> {
         FormTheory::new()
     }
