@@ -165,7 +165,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             why: why.to_string(),
         })
     }
-    /// Tells the observer that a phase begins.
+    /// Calls the observer at the beginning of a phase.
     pub(super) fn enter(&self, phase: Phase) {
         (self.observer)(phase);
     }

@@ -80,7 +80,7 @@ impl CutRule {
         self.is_cut(&self.whole(), &mesh.corners(cell), level)
     }
 
-    /// Visits the points of the rule on a cell if it is cut, and tells whether it is: in barycentric
+    /// Visits the points of the rule on a cell if it is cut, and returns whether it is: in barycentric
     /// coordinates, in space, and with their weights.
     pub fn visit_if_cut<const D: usize>(
         &self,

@@ -65,9 +65,6 @@ impl<const D: usize> BisectedMesh<D> {
     /// An initial mesh. Of edges of equal length the one whose vertices have higher numbers counts as
     /// longer.
     pub fn new(mesh: Mesh<D>) -> Self {
-        compiled!(const D: fn(Mesh<D>) -> BisectedMesh<D> = BisectedMesh::initial)(mesh)
-    }
-    fn initial(mesh: Mesh<D>) -> Self {
         let length = |[a, b]: [u32; 2]| {
             let [x, y] = map_entries([a, b], |v| mesh.vertices[v as usize]);
             (x - y).norm_squared()

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::arrays::array_of;
-use crate::instances::compiled;
 use crate::mesh::boundary::{BoundaryCondition, BoundaryFacet};
 use crate::mesh::error::MeshError;
 use crate::mesh::groups::Groups;
@@ -93,11 +92,6 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Parameter`] for a count of zero or a box without volume, [`MeshError::TooLarge`].
     pub fn kuhn_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
-        compiled!(const D: fn(&BoxDomain<D>, [usize; D]) -> Result<Mesh<D>, MeshError>
-                = Mesh::cut_box
-        )(domain, counts)
-    }
-    fn cut_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
         let wrong = |parameter, value: String, allowed: &str| MeshError::Parameter {
             parameter,
             value,

@@ -2,7 +2,6 @@
 
 use super::disc::check_shape;
 use crate::arrays::array_of;
-use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryCondition;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
@@ -18,11 +17,6 @@ impl<const D: usize> Mesh<D> {
     /// [`MeshError::Parameter`] for `n = 0`, a length that is not positive and finite and a dimension
     /// other than two; [`MeshError::TooLarge`].
     pub fn l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
-        compiled!(const D: fn(f64, usize) -> Result<Mesh<D>, MeshError>
-                = Mesh::cut_l_shape
-        )(half, n)
-    }
-    fn cut_l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("L-shape", half, n)?;
         let per_line = 2 * n + 1;
         let vertex = |i: usize, j: usize| (i + j * per_line) as u32;

@@ -14,7 +14,6 @@ use super::part::{Layers, Part};
 use super::refine::Refinement;
 use super::simplicial::Mesh;
 use crate::arrays::array_of;
-use crate::instances::compiled;
 use crate::real::Point;
 
 /// A domain. All the boundary of an L-shape and of a disc is Dirichlet.
@@ -147,11 +146,6 @@ impl<const D: usize> Domain<D> {
     /// # Errors
     /// [`MeshError::TooLarge`] if there would be too many cells.
     pub fn refine(&self, mesh: &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError> {
-        compiled!(const D: fn(&Domain<D>, &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError>
-                = Domain::refine_mesh
-        )(self, mesh)
-    }
-    fn refine_mesh(&self, mesh: &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError> {
         Ok(match self {
             Domain::Disc { .. } => mesh.refine_disc()?,
             _ => mesh.refine()?,
@@ -167,20 +161,7 @@ impl<const D: usize> Domain<D> {
         part: &Part<D>,
         layers: Layers,
     ) -> Result<(Part<D>, Refinement), MeshError> {
-        compiled!(const D: fn(
-                &Domain<D>,
-                &Part<D>,
-                Layers,
-            ) -> Result<(Part<D>, Refinement), MeshError>
-                = Domain::refine_and_peel
-        )(self, part, layers)
-    }
-    fn refine_and_peel(
-        &self,
-        part: &Part<D>,
-        layers: Layers,
-    ) -> Result<(Part<D>, Refinement), MeshError> {
         part.check_refinement(layers)?;
-        Ok(part.peel(self.refine_mesh(&part.mesh)?, layers))
+        Ok(part.peel(self.refine(&part.mesh)?, layers))
     }
 }
