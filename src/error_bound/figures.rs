@@ -34,7 +34,7 @@ pub struct BoundFigures {
     pub guaranteed: Option<bool>,
     /// The terms that are computed, or neglected, without proof.
     pub unproven: Option<Vec<Unproven>>,
-    /// Share of the square of `total` of the difference of `alpha grad v` and flux; the next four are the other shares.
+    /// The share of the square of `total` that `alpha grad v` less the flux has; the next four are the other shares.
     pub mismatch: Option<f64>,
     /// Complementarity of the obstacles.
     pub obstacle: Option<f64>,

@@ -263,7 +263,7 @@ impl<const D: usize> Space<'_, D> {
         let mut residual = [0.0; 4];
         for (i, residual) in residual.iter_mut().enumerate().take(D + 1) {
             for j in 0..=D {
-                // gradients sum to zero: without the common value of the values a constant adds no rounding
+                // gradients sum to zero: without their common value a constant adds no rounding
                 *residual += scale * metric.products[i][j] * (values[j] - values[0])
                     + products[i][j] * values[j];
             }

@@ -67,7 +67,7 @@ impl<const D: usize> FacetForm<D> for InteriorPenalty {
             PenaltyRule::Diameter(sigma) => (Some(sigma), "sigma / h_F".to_owned()),
         };
         let parameters = PenaltyParameters { sigma, eta: None, rule: Some(rule) };
-        let theory = FormTheory::new().with_parameters(parameters);
+        let theory = FormTheory::default().with_parameters(parameters);
         let theory = match self.rule {
             PenaltyRule::Proven(margin) => theory.with_margin(margin),
             PenaltyRule::Diameter(_) => theory,

@@ -106,11 +106,11 @@ pub trait FacetForm<const D: usize>: Send + Sync {
     }
     /// What is known of the form besides its formula; nothing of it enters matrix or load. A form may leave it out: its
     /// matrix is then tested for definiteness before an inequality is solved, and reports state no penalty factor. A form
-    /// that theory proves coercive says so and saves the test, `FormTheory::new().with_coercivity(true)`; one whose
-    /// penalty must exceed a bound gives the bound, `FormTheory::new().with_least_penalty(|facet| ..)`, and a warning
+    /// that theory proves coercive says so and saves the test, `FormTheory::default().with_coercivity(true)`; one whose
+    /// penalty must exceed a bound gives the bound, `FormTheory::default().with_least_penalty(|facet| ..)`, and a warning
     /// says where it is not kept.
     fn theory(&self) -> FormTheory<'_, D> {
-        FormTheory::new()
+        FormTheory::default()
     }
     /// Whether the formula is the same on all interior facets and the same on all Dirichlet facets,
     /// but for the penalty weight; by default false. It is then read off once for each kind, not once for each facet,

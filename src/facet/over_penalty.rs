@@ -94,7 +94,7 @@ impl<const D: usize> FacetForm<D> for OverPenalty {
             WeightRule::Anisotropic => format!("eta / (h^{} l_F)", 2 * k),
         };
         let eta = Some(self.eta);
-        FormTheory::new()
+        FormTheory::default()
             .with_parameters(PenaltyParameters { sigma: None, eta, rule: Some(rule) })
             .with_coercivity(self.eta > 0.0)
     }

@@ -15,8 +15,8 @@ const RELATIVE_SLACK: f64 = 1e-9;
 
 /// Two values of which the first exceeds the second, by rounding or in earnest.
 ///
-/// Two values that are equal but for rounding may be zero but for rounding, so that only the [largest](largest_datum)
-/// of all data can tell, which a [part](crate::mesh::Part) of a mesh need not have.
+/// Two values that are equal but for rounding may be zero but for rounding, so that the [largest](largest_datum) of all
+/// data decides, which a [part](crate::mesh::Part) of a mesh need not have.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contradiction<const D: usize> {
     pub node: BoundedNode<D>,
