@@ -12,11 +12,6 @@ pub struct ExpectedOrders {
 }
 
 impl ExpectedOrders {
-    /// No promise in any norm.
-    #[must_use]
-    pub const fn none() -> Self {
-        Self { l2: None, h1: None }
-    }
     /// Promises an order in L2.
     #[must_use]
     pub const fn with_l2(self, order: f64) -> Self {

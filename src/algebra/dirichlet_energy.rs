@@ -42,11 +42,11 @@ impl DirichletEnergy {
 pub struct DirichletTerm {
     /// The unknown.
     pub unknown: u32,
-    /// The part of the load that comes from the data.
+    /// The load that comes from the data.
     pub load: f64,
     /// The coefficient `l_i`, twice `load` for a symmetric form.
     pub linear: f64,
-    /// The part of `q`, the form at `(u_D, u_D)`, that counts with the unknown: that of a facet counts with one
+    /// The share of `q`, the form at `(u_D, u_D)`, that counts with the unknown: that of a facet counts with one
     /// unknown of its cell.
     pub constant: f64,
 }

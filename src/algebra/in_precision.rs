@@ -101,7 +101,7 @@ impl Inequality<f64> {
         rounded.bodies.iter_mut().zip(added).for_each(|(body, added)| body.assembled += added);
         rounded
     }
-    /// Whether the range of another precision holds the data: no diagonal entry and no part of a penalty loses its
+    /// Whether the range of another precision holds the data: no diagonal entry and no factor of a penalty loses its
     /// digits by rounding, and neither does the largest entry of the matrix, the load, the bounds and the Dirichlet
     /// data, nor the largest quotient of load and diagonal. `false` for sizes that do not match.
     pub(crate) fn is_in_range_of<T: Real>(&self) -> bool {

@@ -84,7 +84,7 @@ impl<T: Real> PenalisedMatrix<T> {
         self.term_starts.windows(2).all(|w| w[1] - w[0] <= 1)
     }
 
-    /// Whether all parts have consistent sizes for `size` unknowns, and weights are positive.
+    /// Whether all vectors and matrices have consistent sizes for `size` unknowns, and weights are positive.
     pub fn is_well_formed(&self, size: usize) -> bool {
         let n = self.n_jumps();
         let is_valid = |i: u32| i == JumpTerm::<T>::NO_UNKNOWN || (i as usize) < size;

@@ -130,7 +130,7 @@ impl<const D: usize> Space<'_, D> {
         })
     }
 
-    /// Sets the load to zero and calls a function with each cell and its part of the load, in parallel.
+    /// Sets the load to zero and calls a function with each cell and its share of the load, in parallel.
     fn fill_each_cell(&self, load: &mut [f64], work: OfCell<'_>) -> Result<(), Error> {
         let n = self.per_cell();
         let add_cells = |mut cells: Range<usize>, entries: &mut [f64]| {

@@ -1,4 +1,4 @@
-//! The bound of a pair: its parts, and what of it is proven.
+//! The bound of a pair: its terms, and what of it is proven.
 
 use std::ops::Range;
 
@@ -37,7 +37,7 @@ pub enum Unproven {
 /// Shares of the square of a bound; their sum is one, or zero where the bound is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
-pub struct BoundParts {
+pub struct BoundTerms {
     /// The difference of `alpha grad v` and the flux and, with a reaction, of `v` and the discrete solution.
     pub mismatch: f64,
     /// The complementarity of the obstacles.
@@ -63,8 +63,8 @@ pub struct ErrorBound {
     /// distance`. See [`docs::bound`](crate::docs::bound).
     pub discrete: f64,
     /// Of what `total` is made.
-    pub parts: BoundParts,
-    /// The share of each cell in the square of `total`, without the part of the solver.
+    pub terms: BoundTerms,
+    /// The share of each cell in the square of `total`, without the term of the solver.
     pub cells: Vec<f64>,
     /// The terms that are not proven; empty where the bound is guaranteed.
     pub unproven: Vec<Unproven>,
@@ -168,7 +168,7 @@ impl<const D: usize> Discretisation<'_, D> {
 }
 
 impl ErrorBound {
-    /// The bound of these sums, with the part of the solver and the square that each cell adds.
+    /// The bound of these sums, with the term of the solver and the square that each cell adds.
     fn new(
         totals: &Totals,
         of_solver: f64,
@@ -181,7 +181,7 @@ impl ErrorBound {
         if !square.is_finite() || totals.least_coefficient <= 0.0 {
             return Err(NoBound::NotFinite);
         }
-        let share = |part: f64| if square > 0.0 { part / square } else { 0.0 };
+        let share = |term: f64| if square > 0.0 { term / square } else { 0.0 };
         let (total, distance) = (square.sqrt(), totals.distance.sqrt());
         // the radius of the ball around the midpoint that contains the solution, and the distance of the discrete
         // function from the midpoint
@@ -192,7 +192,7 @@ impl ErrorBound {
             distance,
             // the sum is never less but for rounding, and where a rule has weights of both signs
             discrete: discrete.min(total + distance),
-            parts: BoundParts {
+            terms: BoundTerms {
                 mismatch: share(mismatch),
                 obstacle: share(obstacle),
                 contact: share(contact),

@@ -284,7 +284,7 @@ impl<const D: usize> Space<'_, D> {
     /// Whether all data but obstacles and gaps are known to be affine.
     fn has_affine_data(&self) -> bool {
         let data = &self.data;
-        let has = |part| self.mesh.has_condition(part);
+        let has = |condition| self.mesh.has_condition(condition);
         // without Neumann data an exact solution gives the flux
         let is_known = data.neumann.is_given() || self.problem.exact.is_none();
         let flux_is_affine = data.neumann.every(&|flux| self.is_affine_degree(flux.degree()))

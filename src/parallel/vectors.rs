@@ -69,8 +69,8 @@ fn gather<X: Send, R: Send, G: FromIterator<R>>(
 struct Total(f64);
 
 impl FromIterator<f64> for Total {
-    fn from_iter<I: IntoIterator<Item = f64>>(parts: I) -> Self {
-        Self(parts.into_iter().sum())
+    fn from_iter<I: IntoIterator<Item = f64>>(sums: I) -> Self {
+        Self(sums.into_iter().sum())
     }
 }
 

@@ -6,7 +6,7 @@ use crate::scenes::AnyScene;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ProblemFile {
-    /// The problem on its box or on its mesh, whose boundary has the parts that the file says. Its name is that of the
+    /// The problem on its box or on its mesh, with the boundary conditions that the file says. Its name is that of the
     /// file if the file gives none.
     pub scene: AnyScene,
     /// The [`fingerprint`](crate::input::fingerprint)s of the files: `problem`, and `mesh` if there is one.

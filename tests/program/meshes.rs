@@ -49,7 +49,7 @@ fn wrong_meshes_are_refused() {
             "radial-2d",
             "both",
             Square::with(|s| s.elements.push("9 1 2 3 1 1 2")),
-            &["two boundary parts", "dirichlet and neumann"],
+            &["two groups", "dirichlet and neumann", "different boundary conditions"],
         ),
         (
             "radial-2d",

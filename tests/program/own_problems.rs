@@ -157,7 +157,7 @@ fn wrong_problems_and_references_are_refused() {
 }
 
 #[test]
-fn groups_of_a_mesh_are_given_their_part() {
+fn groups_of_a_mesh_are_given_their_condition() {
     let scratch = Scratch::new("boundary");
     let text = Square::with(|s| s.names[0] = "1 1 \"wall\"");
     let mesh = scratch.file("wall.msh", &text);
@@ -179,7 +179,7 @@ fn groups_of_a_mesh_are_given_their_part() {
 }
 
 #[test]
-fn every_command_takes_a_mesh_and_the_parts_of_its_boundary() {
+fn every_command_takes_a_mesh_and_the_conditions_on_its_boundary() {
     let scratch = Scratch::new("commands");
     let text = Square::with(|s| s.names[0] = "1 1 \"wall\"");
     let mesh = scratch.file("wall.msh", &text);

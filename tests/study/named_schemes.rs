@@ -39,7 +39,7 @@ fn labels_leave_out_what_is_default() {
     // a scheme that a program makes has the label that a user would write
     let label = |scheme: &dyn Scheme<3>| scheme.label_on(&Nodes);
     assert_eq!(label(&Sipg { penalty: PenaltyRule::Proven(0.05) }), "sipg@factor=1.05");
-    assert_eq!(label(&Br2 { eta: Some(6.0), lifts: Lifts::Full }.on(P2)), "br2-p2@lifts=full");
+    assert_eq!(label(&Br2 { factor: 1.5, lifts: Lifts::Full }.on(P2)), "br2-p2@lifts=full");
 }
 
 #[test]

@@ -48,8 +48,8 @@ fn tables_are_aligned_and_say_what_failed() {
     rows[3].status = Outcome::IterationLimit;
     rows[3].error = Errors::default();
     rows[3].warnings = vec!["eta below its bound".into()];
-    rows[2].expected_order = ExpectedOrders::none().with_h1(0.5);
-    rows[3].expected_order = ExpectedOrders::none().with_h1(0.5);
+    rows[2].expected_order = ExpectedOrders::default().with_h1(0.5);
+    rows[3].expected_order = ExpectedOrders::default().with_h1(0.5);
     fill_orders(&mut rows);
     let expected = "\
 radial-2d: solver active-set/direct; expected order L2 2 H1 1 (p1), H1 0.5 (wopsip)
@@ -72,7 +72,7 @@ fn tables_leave_out_what_says_nothing_and_have_a_line_for_every_label() {
     rows[1].label += ":facet-means";
     for row in &mut rows {
         row.error = Errors::default();
-        row.expected_order = ExpectedOrders::none();
+        row.expected_order = ExpectedOrders::default();
     }
     let text = report(rows).details_to_text();
     assert!(!text.contains("L2") && !text.contains("order"), "{text}");
@@ -95,7 +95,7 @@ fn with_local_orders(scheme: &str, orders: &[f64]) -> Vec<Row> {
         let mut row = row("radial-2d", scheme, 8 << k);
         error /= 2_f64.powf(*order);
         (row.error.l2, row.error.h1) = (None, Some(error));
-        row.expected_order = ExpectedOrders::none().with_h1(1.5);
+        row.expected_order = ExpectedOrders::default().with_h1(1.5);
         rows.push(row);
     }
     rows
@@ -108,7 +108,7 @@ fn verdicts_do_not_depend_on_the_last_level() {
     let swing = [0.82, 2.20, 0.81, 1.54];
     let verdict = |orders: &[f64], promised: f64| {
         let mut rows = with_local_orders("p2", orders);
-        let promise = ExpectedOrders::none().with_h1(promised);
+        let promise = ExpectedOrders::default().with_h1(promised);
         rows.iter_mut().for_each(|row| row.expected_order = promise);
         report(rows).observed_orders()[0].verdict(ErrorNorm::H1, 0.1)
     };
@@ -143,7 +143,7 @@ fn kept_promises_pass() {
 #[test]
 fn orders_above_the_promise_keep_it() {
     let mut rows = four_levels("p1");
-    rows.iter_mut().for_each(|r| r.expected_order = ExpectedOrders::none().with_h1(0.5));
+    rows.iter_mut().for_each(|r| r.expected_order = ExpectedOrders::default().with_h1(0.5));
     assert_eq!(report(rows).assert_orders(0.0), Ok(()));
 }
 
@@ -177,14 +177,14 @@ fn a_promise_that_cannot_be_tested_is_missed() {
     let expected = "p1 (vertices) on radial-2d: too few levels: 16 to 64 (3) converged with an error \
                     in L2, four are needed, promised 2";
     assert_eq!(missed.0[0].to_string(), expected);
-    rows.iter_mut().for_each(|row| row.expected_order = ExpectedOrders::none());
+    rows.iter_mut().for_each(|row| row.expected_order = ExpectedOrders::default());
     assert_eq!(report(rows).assert_orders(0.1), Ok(()));
 }
 
 #[test]
 fn the_tables_of_orders_give_a_verdict_for_every_scheme() {
     let mut rows: Vec<Row> = ["p1", "sipg", "wopsip"].into_iter().flat_map(four_levels).collect();
-    rows[4..8].iter_mut().for_each(|row| row.expected_order = ExpectedOrders::none());
+    rows[4..8].iter_mut().for_each(|row| row.expected_order = ExpectedOrders::default());
     rows[8..11].iter_mut().for_each(|row| row.status = Outcome::Cycling);
     rows[8..12].iter_mut().for_each(|row| row.constraint = "facet-means".into());
     rows.extend(with_local_orders("cr", &[1.0, 1.0, 1.0]));

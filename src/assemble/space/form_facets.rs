@@ -17,7 +17,7 @@ pub(crate) struct FormFacet {
 }
 
 impl FormFacet {
-    /// Whether the facet lies between two cells or on the Dirichlet part of the boundary.
+    /// Whether the facet lies between two cells or on the Dirichlet boundary.
     #[inline(always)]
     pub fn kind(&self) -> FacetKind {
         if self.there.is_some() { FacetKind::Interior } else { FacetKind::Dirichlet }

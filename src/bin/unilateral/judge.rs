@@ -49,8 +49,9 @@ pub fn write_requests(
     let files = [absolute(&options.mesh.path), absolute(&options.problem)];
     let [mesh, problem] = files.map(|file| file.map_err(|e| format!("cannot find a file: {e}")));
     let (mesh, problem) = (mesh?, problem?);
-    let part = |(name, part): &(String, BoundaryCondition)| (name.clone(), part.name());
-    let boundary: BTreeMap<String, &str> = options.mesh.boundary.iter().map(part).collect();
+    let condition =
+        |(name, condition): &(String, BoundaryCondition)| (name.clone(), condition.name());
+    let boundary: BTreeMap<String, &str> = options.mesh.boundary.iter().map(condition).collect();
     // the meshes of a reference are refined from that of the coarsest level
     let coarsest = keys.iter().map(|key| key.level).min();
     for RowKey { scene, label, level, .. } in keys {
@@ -133,11 +134,11 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
         None => scene,
         Some(file) => {
             let file = found_beside(&options.directory, file);
-            let parts = request["boundary"].as_object().into_iter().flatten();
-            let part = |(name, part): (&String, &Value)| {
-                Some((name.clone(), BoundaryCondition::from_name(part.as_str()?)?))
+            let given = request["boundary"].as_object().into_iter().flatten();
+            let condition = |(name, condition): (&String, &Value)| {
+                Some((name.clone(), BoundaryCondition::from_name(condition.as_str()?)?))
             };
-            let boundary = parts.filter_map(part).collect();
+            let boundary = given.filter_map(condition).collect();
             let mesh = MeshFile { path: Some(file.clone()), boundary };
             let contents = mesh.read()?.expect("a file with a path has contents");
             is_unchanged(0, &file, contents.fingerprint())?;

@@ -74,7 +74,7 @@ impl<const D: usize> CellOfLinears<D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the part that its
+    /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the share that its
     /// flux balances, by volume around a vertex and half on the two sides of a facet, if the cell's obstacle gives the
     /// active bound. The multipliers of inactive
     /// unknowns are set to zero: the residual of an inactive unknown is an algebraic error.
@@ -99,19 +99,20 @@ impl<const D: usize> Space<'_, D> {
         multipliers.iter_mut().filter(is_rounding).for_each(|m| *m = 0.0);
         let by_volume = self.is_conforming_linear();
         let n_cells = self.mesh.n_cells();
-        let part = |cell: usize| if by_volume { self.mesh.geometry(cell).volume } else { 1.0 };
-        let mut parts = vec![0.0; multipliers.len()];
+        let weight = |cell: usize| if by_volume { self.mesh.geometry(cell).volume } else { 1.0 };
+        let mut weights = vec![0.0; multipliers.len()];
         let pressing = |cell: usize| {
             let acting = (0..n).filter(move |&i| obstacles.act_in(cell, i));
             acting.map(move |i| self.dofs.of(cell, i)).filter(|&i| multipliers[i] != 0.0)
         };
         let mut of_cells = vec![0.0; n_cells];
         for cell in (0..n_cells).filter(|&cell| pressing(cell).next().is_some()) {
-            of_cells[cell] = part(cell);
-            pressing(cell).for_each(|i| parts[i] += of_cells[cell]);
+            of_cells[cell] = weight(cell);
+            pressing(cell).for_each(|i| weights[i] += of_cells[cell]);
         }
-        for (cell, of_cell) in of_cells.iter_mut().enumerate().filter(|(_, part)| **part > 0.0) {
-            *of_cell *= pressing(cell).map(|i| multipliers[i] / parts[i]).sum::<f64>();
+        for (cell, of_cell) in of_cells.iter_mut().enumerate().filter(|(_, weight)| **weight > 0.0)
+        {
+            *of_cell *= pressing(cell).map(|i| multipliers[i] / weights[i]).sum::<f64>();
         }
         of_cells
     }
@@ -199,7 +200,7 @@ impl<const D: usize> Space<'_, D> {
 /// bound falls.
 fn exchange_between<const D: usize>(
     cells: &mut [CellOfLinears<D>],
-    [(here, local), (there, across)]: [HalfFacet; 2],
+    [(here, facet_here), (there, facet_there)]: [HalfFacet; 2],
     flux: &mut Flux<D>,
 ) -> f64 {
     let [of_here, of_there] = [&cells[here], &cells[there]];
@@ -207,8 +208,8 @@ fn exchange_between<const D: usize>(
     let gaps = of_here.gap(sign).zip(of_there.gap(sign));
     let gaps = gaps.filter(|_| of_here.multiplier * of_there.multiplier >= 0.0);
     let Some((gap_here, gap_there)) = gaps else { return 0.0 };
-    let [slope, curvature] = of_here.slopes(local);
-    let [slope_there, curvature_there] = of_there.slopes(across);
+    let [slope, curvature] = of_here.slopes(facet_here);
+    let [slope_there, curvature_there] = of_there.slopes(facet_there);
     let slope = slope - slope_there + sign * (gap_there - gap_here);
     let curvature = curvature + curvature_there;
     let (a, b) = (-of_there.multiplier, of_here.multiplier);
@@ -216,8 +217,8 @@ fn exchange_between<const D: usize>(
     if !exchange.is_finite() {
         return 0.0;
     }
-    cells[here].add(local, exchange, flux);
-    cells[there].add(across, -exchange, flux);
+    cells[here].add(facet_here, exchange, flux);
+    cells[there].add(facet_there, -exchange, flux);
     decrease([slope, curvature], exchange)
 }
 

@@ -69,7 +69,7 @@ pub(super) struct CellTerms {
 }
 
 impl CellTerms {
-    /// The part of the cell in the square of the bound, without that of the solver.
+    /// The contribution of the cell to the square of the bound, without the term of the solver.
     pub fn square(&self) -> f64 {
         self.with_oscillation + self.obstacle + self.contact
     }

@@ -115,7 +115,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
         load - pressure * self.carried(corner)
     }
 
-    /// The volume over which a cell carries a part of the multiplier of one of its vertices: its own, or none where
+    /// The volume over which a cell carries a share of the multiplier of one of its vertices: its own, or none where
     /// another obstacle than that of the cell gives the active bound.
     pub fn carried(&self, corner: Corner) -> f64 {
         match self.obstacles.act_in(corner.cell(), corner.own()) {

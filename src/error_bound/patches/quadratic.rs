@@ -127,9 +127,10 @@ impl<const D: usize> Space<'_, D> {
                     let mut flux = data[cell].normal[facet];
                     if let Neighbour::Cell { cell: other, local } = neighbours.across(cell, facet) {
                         let local = usize::from(local);
-                        let across = &data[other as usize].normal[local];
+                        let normal_there = &data[other as usize].normal[local];
                         let pairs = vertices_of::<D>(facet).zip(vertices_of::<D>(local));
-                        pairs.for_each(|(j, there)| flux[j] = 0.5 * (flux[j] - across[there]));
+                        pairs
+                            .for_each(|(j, there)| flux[j] = 0.5 * (flux[j] - normal_there[there]));
                     }
                     let products = products_on_facet::<D>(&flux, facet);
                     for a in 0..=D {

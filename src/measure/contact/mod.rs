@@ -48,7 +48,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// that vertex, whatever the unknowns. Over the integral of `phi` it is a density, and so is
     /// the exact multiplier tested with `phi`. Their difference is measured in L1 and in L2, with
     /// the integral of `phi` as the weight of its vertex (the lumped norms of piecewise linear
-    /// functions), over the vertices off the Dirichlet part. These are weaker than norms of the
+    /// functions), over the vertices off the Dirichlet boundary. These are weaker than norms of the
     /// multiplier itself: nodal multipliers of over-penalised schemes that cancel within a patch
     /// have no effect. In general only the norm dual to the energy norm is bounded by the energy
     /// error (A. Veeser, SIAM J. Numer. Anal. 39 (2001), 146-167). With an obstacle the exact
@@ -59,7 +59,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// *Contact set.* A vertex, edge or facet is in contact if some unknown there is: on both sides
     /// of a facet, in all cells at a vertex. The nodal multipliers of a discontinuous scheme there
     /// need not all have the sign of their sum (those of over-penalised schemes on curved obstacles
-    /// do not). On the Dirichlet part, where some schemes have no unknowns and others satisfy the datum
+    /// do not). On the Dirichlet boundary, where some schemes have no unknowns and others satisfy the datum
     /// approximately, it is in contact if the datum is. A cell, or a facet of the contact boundary,
     /// is in contact if all its unknowns are that have bounds and basis functions with a positive mean over
     /// it (those of quadratics at vertices of triangles and tetrahedra have none); where no unknown has
@@ -125,7 +125,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// where rounding leaves no digit. Nodes with weakly imposed Dirichlet data do not count: where an obstacle
     /// equals the datum, their entries contain the flux through the boundary.
     ///
-    /// Where only contact holds the body, without Dirichlet part and reaction, it is the negative of the
+    /// Where only contact holds the body, without Dirichlet boundary and reaction, it is the negative of the
     /// total load, for every scheme: constants have no energy. It approximates the integral of the
     /// multiplier over domain and contact boundary.
     ///
@@ -215,7 +215,7 @@ impl<const D: usize> Space<'_, D> {
         contact.map(|(cell, local)| ContactEntity { cell, facet: Some(local) }).collect()
     }
 
-    /// For each vertex on the Dirichlet part the boundary group whose datum is given there.
+    /// For each vertex on the Dirichlet boundary the boundary group whose datum is given there.
     pub(crate) fn dirichlet_groups(&self) -> Vec<Option<usize>> {
         let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
         let rank = |group: usize| self.data.dirichlet_rank[group];

@@ -135,7 +135,7 @@ impl<const D: usize> Space<'_, D> {
 
     /// The shares of the multipliers of obstacles in all cells: that of a shared unknown by volume among the cells
     /// whose obstacle gives the bound.
-    fn parts_of_obstacles(&self, of: &Multipliers) -> Vec<Share> {
+    fn shares_of_obstacles(&self, of: &Multipliers) -> Vec<Share> {
         let n_cells = self.mesh.n_cells();
         let volume = |cell: usize| self.mesh.geometry(cell).volume;
         let acting = |cell: usize| {
@@ -205,7 +205,7 @@ impl<const D: usize> Space<'_, D> {
         let by_region = self.data.lower.has_names() || self.data.upper.has_names();
         let group = |cell: usize| if by_region { self.mesh.region(cell) } else { 0 };
         let cells = (0..self.mesh.n_cells()).map(|cell| ((cell, None), group(cell)));
-        self.densities(&cells.collect::<Vec<_>>(), &self.parts_of_obstacles(of), inequality)
+        self.densities(&cells.collect::<Vec<_>>(), &self.shares_of_obstacles(of), inequality)
     }
 
     /// The density of the multipliers of gaps on each contact facet, by groups.

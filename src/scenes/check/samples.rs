@@ -50,7 +50,7 @@ pub(super) struct BoundaryPoint<const D: usize> {
     pub x: Point<D>,
     /// The outward unit normal there.
     pub normal: Point<D>,
-    /// The part of the boundary.
+    /// The boundary condition.
     pub condition: BoundaryCondition,
 }
 

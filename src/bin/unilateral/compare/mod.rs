@@ -94,8 +94,8 @@ fn program(options: &Options, files: &[(&str, String)]) -> Program {
             program = program.with_request("first level", level);
         }
     }
-    for (name, part) in &options.mesh.boundary {
-        program = program.with_request(&format!("boundary {name}"), part.name());
+    for (name, condition) in &options.mesh.boundary {
+        program = program.with_request(&format!("boundary {name}"), condition.name());
     }
     for (name, fingerprint) in files {
         program = program.with_request(name, fingerprint);

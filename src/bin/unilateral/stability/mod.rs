@@ -15,7 +15,7 @@ use std::path::Path;
 
 pub use options::Options;
 
-use crate::mesh_file::{cannot_mesh, warn_of, with_parts};
+use crate::mesh_file::{cannot_mesh, warn_of, with_conditions};
 use crate::one_run::take_directory;
 use crate::shared::{
     Failure, bar, check_writable, end_at_interrupt, print, tick, use_threads, warn, write,
@@ -53,7 +53,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         if !options.quiet {
             warn_of(&read.warnings, path, &|warning| warn(&warning));
         }
-        let mesh = with_parts(read.mesh, path, &options.boundary)?;
+        let mesh = with_conditions(read.mesh, path, &options.boundary)?;
         study = study.mesh(&name_of(path), mesh);
     }
     study.check().map_err(|e| e.to_string())?;

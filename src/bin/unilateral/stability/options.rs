@@ -21,8 +21,8 @@ pub struct Options {
     /// Gmsh files of tetrahedra for the case of slivers
     #[arg(long = "mesh", value_delimiter = ',', value_name = "FILE[,FILE...]")]
     pub meshes: Vec<PathBuf>,
-    /// The parts of other groups of these meshes than dirichlet, neumann and contact, as bore=neumann
-    #[arg(long, value_delimiter = ',', value_name = "NAME=PART[,...]", requires = "meshes", value_parser = boundary)]
+    /// The boundary conditions of other groups of these meshes than dirichlet, neumann and contact, as bore=neumann
+    #[arg(long, value_delimiter = ',', value_name = "NAME=CONDITION[,...]", requires = "meshes", value_parser = boundary)]
     pub boundary: Vec<(String, BoundaryCondition)>,
     /// Coarse meshes and few places of each sweep: within a minute
     #[arg(long)]

@@ -19,11 +19,11 @@ use crate::parallel::cells;
 const ROUNDING: f64 = 1e-12;
 
 /// Whether all there is of a form is a sum of products of jumps.
-pub(crate) fn applies<const D: usize>(form: &dyn FacetForm<D>) -> bool {
+pub(crate) fn keeps_penalty_apart<const D: usize>(form: &dyn FacetForm<D>) -> bool {
     !form.uses_flux() && !form.is_lifted() && form.is_symmetric()
 }
 
-/// The parts: stiffness and reaction by cells, jumps of moments over facets with their weights, Dirichlet data.
+/// The terms: stiffness and reaction by cells, jumps of moments over facets with their weights, Dirichlet data.
 pub(crate) fn penalised_matrix<const D: usize>(
     space: &Space<'_, D>,
     form: &dyn FacetForm<D>,
