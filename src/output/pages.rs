@@ -5,13 +5,11 @@ use std::path::Path;
 use super::html::{HtmlPage, Section};
 #[cfg(feature = "plot")]
 use crate::plot::overview;
-use crate::study::orders::rates::rates;
 use crate::study::row::distinct;
-use crate::study::tables::levels::{Column, columns, heading, limits, scenes, totals, unproven};
-use crate::study::tables::remarks::{failure, warnings};
+use crate::study::tables::levels::{scenes, tables_of};
 use crate::study::tables::summary::{lead, summaries};
 use crate::study::{Program, Report, Row, file_name};
-use crate::table::{Cell, Table};
+use crate::table::Table;
 
 impl Report {
     /// Program and settings in one line.
@@ -23,12 +21,6 @@ impl Report {
         };
         let end = if self.complete { "" } else { "; not complete: the run was interrupted" };
         format!("{name} {version}, {target_cpu}; {threads} threads; {precision}; {times}{end}")
-    }
-
-    /// Two tables for each scene, with the columns of the tables for a terminal: errors and times, then
-    /// energy, contact measure, resultant, error bound and stages.
-    pub fn tables(&self) -> Vec<Table> {
-        scenes(&self.rows).iter().flat_map(|(scene, rows)| tables_of(scene, rows)).collect()
     }
 
     /// The tables in Markdown.
@@ -98,42 +90,4 @@ impl Report {
         }
         pictures
     }
-}
-
-/// The tables of a scene.
-fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
-    [Some(table(scene, rows)), second(scene, rows)].into_iter().flatten().collect()
-}
-
-/// The first table of a scene.
-fn table(scene: &str, rows: &[&Row]) -> Table {
-    let failed = || rows.iter().filter(|r| !r.converged()).map(|r| (r, failure(r)));
-    let remarks = distinct(failed().map(|of| of.1)).into_iter().map(|why| {
-        let of = failed().filter(|of| of.1 == why);
-        let of: Vec<String> = of.map(|(r, _)| format!("{}, level {}", r.label, r.level)).collect();
-        format!("{}: {why}", of.join("; "))
-    });
-    let warnings =
-        warnings(rows).into_iter().map(|(labels, warning)| format!("{labels}: {warning}"));
-    let remarks = [heading(rows)].into_iter().chain(remarks).chain(warnings);
-    let remarks = distinct(remarks.chain(rates(rows)).chain(unproven(rows)));
-    with_columns(scene.to_owned(), &columns(rows), rows, remarks)
-}
-
-/// The second table of a scene, if it says anything.
-fn second(scene: &str, rows: &[&Row]) -> Option<Table> {
-    let columns = totals(rows);
-    let title = format!("{scene}: totals and stages");
-    (!columns.is_empty()).then(|| with_columns(title, &columns, rows, limits(rows)))
-}
-
-fn with_columns(title: String, columns: &[Column], rows: &[&Row], remarks: Vec<String>) -> Table {
-    let cell = |text: String, left: bool| match (left, &text[..]) {
-        (true, _) => Cell::Words(text),
-        (_, "-") => Cell::Nothing,
-        _ => Cell::Number(text, None),
-    };
-    let line = |row: &&Row| columns.iter().map(|c| cell((c.cell)(row), c.left)).collect();
-    let names = columns.iter().map(|c| c.name.to_owned()).collect();
-    Table { title, columns: names, rows: rows.iter().map(line).collect(), remarks }
 }

@@ -2,12 +2,14 @@
 
 #[cfg(feature = "report")]
 mod latex;
+mod number;
 mod text;
 
 #[cfg(feature = "report")]
 pub use latex::LATEX_PACKAGES;
 #[cfg(feature = "report")]
 pub(crate) use latex::latex_document;
+pub(crate) use number::{digits, fixed, seconds};
 pub(crate) use text::wrapped;
 
 /// Characters in a line where the width of the terminal is not known.
@@ -37,15 +39,29 @@ pub struct Table {
 }
 
 impl Cell {
+    /// A number that is written already.
+    pub(crate) fn number(text: Option<String>) -> Self {
+        text.map_or(Cell::Nothing, |text| Cell::Number(text, None))
+    }
     /// A number of things.
-    #[cfg(feature = "report")]
     pub(crate) fn whole(x: Option<usize>) -> Self {
-        x.map_or(Cell::Nothing, |x| Cell::Number(x.to_string(), None))
+        Self::number(x.map(|x| x.to_string()))
     }
     /// Three digits.
-    #[cfg(feature = "report")]
     pub(crate) fn scientific(x: Option<f64>) -> Self {
-        x.map_or(Cell::Nothing, |x| Cell::Number(format!("{x:.2e}"), None))
+        Self::digits(x, 2)
+    }
+    /// So many digits after the point, and the power of ten.
+    pub(crate) fn digits(x: Option<f64>, places: usize) -> Self {
+        Self::number(x.map(|x| digits(x, places)))
+    }
+    /// Two digits after the point.
+    pub(crate) fn fixed(x: Option<f64>) -> Self {
+        Self::number(x.map(fixed))
+    }
+    /// Seconds in six characters.
+    pub(crate) fn seconds(x: f64) -> Self {
+        Self::number(Some(seconds(x)))
     }
 
     /// The text of the cell, without a mark.
@@ -75,7 +91,6 @@ impl Table {
     }
 
     /// A heading, a table with bars, and a list of remarks; the best number of a column is bold.
-    #[cfg(feature = "report")]
     pub fn to_markdown(&self) -> String {
         let line = |cells: &mut dyn Iterator<Item = String>| {
             format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
@@ -100,7 +115,6 @@ impl Table {
 }
 
 /// A text with the markup characters of Markdown escaped.
-#[cfg(feature = "report")]
 pub(crate) fn markdown(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {

@@ -55,10 +55,6 @@ fn head(names: &[&str]) -> Vec<String> {
 fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
     let line = |m: &&Measured| {
         let row = &m.row;
-        let c = &row.certificate;
-        let certificate = [c.feasibility, c.multiplier, c.complementarity, c.residual];
-        // what is not a number counts as larger than any
-        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
         vec![
             Cell::Words(m.variant().name_among(variants)),
             Cell::whole(Some(row.level)),
@@ -69,7 +65,7 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
             Cell::scientific(row.error.h1),
             Cell::scientific(row.error.broken_energy),
             Cell::scientific(row.bound.discrete),
-            Cell::scientific(Some(certificate.into_iter().fold(0.0, worse))),
+            Cell::scientific(Some(row.certificate.largest())),
             Cell::scientific(Some(m.smallest.total)),
             megabytes(row.peak_memory_bytes.map(|b| b as f64)),
         ]
@@ -92,12 +88,7 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
 }
 
 fn megabytes(bytes: Option<f64>) -> Cell {
-    bytes.map_or(Cell::Nothing, |b| Cell::Number(format!("{:.0}", b / 1e6), None))
-}
-
-/// Two decimals.
-fn decimals(x: Option<f64>) -> Cell {
-    x.map_or(Cell::Nothing, |x| Cell::Number(format!("{x:.2}"), None))
+    Cell::number(bytes.map(|b| format!("{:.0}", b / 1e6)))
 }
 
 /// The column of the median over the least time.
@@ -122,7 +113,7 @@ fn costs(scene: &str, reach: &[&WorkAtError], variants: &[Variant]) -> Option<Ta
         vec![
             Cell::Words(r.variant.name_among(variants)),
             time(r),
-            decimals(r.median_over_least),
+            Cell::fixed(r.median_over_least),
             whole(r.unknowns),
             whole(r.entries),
         ]
@@ -163,7 +154,7 @@ fn phases(scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
         ];
         let seconds = [Some(mesh), Some(assemble), Some(coarse), Some(solve), bound, Some(total)];
         cells.extend(seconds.map(Cell::scientific));
-        cells.push(decimals(m.median_over_least));
+        cells.push(Cell::fixed(m.median_over_least));
         cells.push(Cell::whole(Some(m.runs)));
         cells
     };

@@ -118,7 +118,8 @@ fn a_box_of_ones_own() {
     let report = read_json(&scratch.0.join("out/report.json"));
     // on a terminal the second table has the finest level of each series
     let text = String::from_utf8(output.stdout).unwrap();
-    let lines: Vec<&str> = text.lines().skip_while(|line| !line.contains("stages")).collect();
+    let lines: Vec<&str> =
+        text.lines().skip_while(|line| !line.contains("stages (outer)")).collect();
     assert!(
         lines[0].split_whitespace().eq([
             "scheme",

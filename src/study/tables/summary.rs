@@ -1,10 +1,10 @@
 //! The summary of a report: one table for each scene at the finest level of every series, and how the runs ended.
 
-use super::levels::{fixed, marked, scenes, scientific, seconds, unproven};
-use super::remarks::{reason, warnings};
+use super::levels::{marked, scenes, unproven};
+use super::remarks::{Told, warnings};
 use crate::study::row::{Row, distinct};
 use crate::study::series::{Series, series_of};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, digits, fixed, seconds};
 
 /// The name of the column of effectivities.
 const BOUND: &str = "bound/error";
@@ -102,31 +102,6 @@ fn summary(title: &str, is_adaptive: bool, series: &[Series<'_, &Row>]) -> Table
     }
 }
 
-/// The reasons that a table has given.
-#[derive(Default)]
-struct Told(Vec<String>);
-
-impl Told {
-    /// The status of a row; of one that did not converge with the reason, which is kept.
-    fn status(&mut self, row: &Row) -> String {
-        let message = self.message(row);
-        if !row.converged() {
-            self.0.push(reason(row).to_owned());
-        }
-        message
-    }
-    /// The status, with the reason unless it was given before.
-    fn message(&self, row: &Row) -> String {
-        match row.converged() {
-            true => row.status.to_string(),
-            false if self.0.iter().any(|told| told == reason(row)) => {
-                format!("{}, as above", row.status)
-            }
-            false => format!("{}: {}", row.status, reason(row)),
-        }
-    }
-}
-
 /// The least number of a column where it is the best and there is a larger one.
 fn best(column: &Column, rows: &[&Row]) -> Option<f64> {
     let numbers: Vec<f64> = rows
@@ -158,7 +133,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     }
     if any(|r| r.bound.effectivity) && !is_adaptive {
         columns.push(column(BOUND, true, |r| {
-            r.bound.effectivity.map(|x| (x, marked(r, fixed(Some(x))), None))
+            r.bound.effectivity.map(|x| (x, marked(r, fixed(x)), None))
         }));
     } else if any(|r| r.bound.discrete) {
         columns.push(column("bound (order)", true, |r| {
@@ -180,5 +155,5 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
 
 /// An error in three digits with its order.
 fn figure(x: Option<f64>, order: Option<f64>) -> Option<Figure> {
-    x.map(|x| (x, scientific(Some(x)), order.map(|p| fixed(Some(p)))))
+    x.map(|x| (x, digits(x, 2), order.map(fixed)))
 }

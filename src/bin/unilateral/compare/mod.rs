@@ -305,10 +305,13 @@ fn show(options: &Options, report: &Report) -> Request<()> {
     }
     let (out, is_whole) = (options.out.display(), report.complete);
     let files = if is_whole { "Report, plots and fields are" } else { "The incomplete report is" };
-    let details =
-        if options.details { format!("\n{}", report.details_to_text()) } else { String::new() };
+    let width = terminal_width();
+    let details = match options.details {
+        true => format!("\n{}", report.details_to_text(width)),
+        false => String::new(),
+    };
     let more = if options.details { "" } else { "; --details shows all levels" };
-    let summary = report.summary_to_text(terminal_width());
+    let summary = report.summary_to_text(width);
     let text = format!("{summary}{details}\nTimes are in seconds{more}. {files} in {out}\n");
     match options.json.as_deref().is_some_and(|path| path.as_os_str() == "-") {
         true => print_to(std::io::stderr(), &text),
