@@ -176,7 +176,7 @@ impl<'a> Stability<'a> {
             saved?;
             (self.observer)(StabilityProgress::Finished);
         }
-        report.provenance.complete = true;
+        report.complete = true;
         self.save(&report)?;
         #[cfg(feature = "plot")]
         if let Some(directory) = &self.directory {

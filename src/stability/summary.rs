@@ -32,7 +32,7 @@ pub(crate) fn by_scheme(rows: &[StabilityRow]) -> Table {
     let mut columns = vec!["scheme".to_owned(), "penalty".to_owned()];
     columns.extend(Verdict::ALL.map(|v| v.name().to_owned()));
     let rows = choices.into_iter().map(line).collect();
-    Table { title: "Verdicts by scheme and penalty".into(), columns, rows, remarks: Vec::new() }
+    Table { title: "Verdicts by scheme and penalty".into(), columns, rows, ..Table::default() }
 }
 
 /// Verdicts of every criterion.
@@ -54,7 +54,7 @@ pub(crate) fn by_criterion(rows: &[StabilityRow]) -> Table {
     columns.extend(Verdict::ALL.map(|v| v.name().to_owned()));
     columns.push("missed by".to_owned());
     let rows = asked.map(line).collect();
-    Table { title: "Verdicts by criterion".into(), columns, rows, remarks: Vec::new() }
+    Table { title: "Verdicts by criterion".into(), columns, rows, ..Table::default() }
 }
 
 /// Every row that misses its range, with the factor; no table without such rows.
@@ -90,7 +90,7 @@ pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
         title: "What was missed, and by what factor".into(),
         columns: columns.map(str::to_owned).into(),
         rows,
-        remarks: Vec::new(),
+        ..Table::default()
     })
 }
 
@@ -102,7 +102,7 @@ pub(crate) fn criteria(rows: &[StabilityRow]) -> Table {
         title: "The criteria".into(),
         columns: ["criterion", "condition"].map(str::to_owned).into(),
         rows: asked.map(|c| vec![words(c.name), words(c.sentence)]).collect(),
-        remarks: Vec::new(),
+        ..Table::default()
     }
 }
 

@@ -12,6 +12,7 @@ mod journal;
 mod memory;
 pub(crate) mod orders;
 mod part_figures;
+pub(crate) mod program;
 mod reference;
 pub(crate) mod report;
 pub(crate) mod row;
@@ -33,7 +34,8 @@ pub use orders::{
     orders_table,
 };
 pub use part_figures::{PartFigures, PartSeconds};
-pub use report::{Program, Report};
+pub use program::Program;
+pub use report::Report;
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
 pub use runner::{PartChecks, Progress, Study};
 pub use series::{Meshes, Series, Variant};

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome, StageRun, explanation};
-use crate::measure::{ContactErrors, Errors, Penetration, Rounding};
+use crate::measure::{ContactErrors, ErrorNorm, Errors, Penetration, Rounding};
 use crate::nested::{Solved, warnings_of_forces};
 use crate::scheme::ExpectedOrders;
 
@@ -61,6 +61,10 @@ pub struct Seconds {
     pub assemble: f64,
     /// Solve, with the start from coarser levels.
     pub solve: f64,
+    /// The part of the solve that was the start: conforming P1 on coarser levels and, for other schemes, on this
+    /// one. None on adaptive meshes.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub start: Option<f64>,
     /// The error bound. On adaptive meshes with marking and a part of the sum, on uniform ones beside it; none
     /// where there is no bound.
     #[cfg_attr(feature = "report", serde(default))]
@@ -73,7 +77,7 @@ impl Seconds {
     /// Times of mesh, assembly and solve, with their sum.
     #[must_use]
     pub fn new(mesh: f64, assemble: f64, solve: f64) -> Self {
-        Self { mesh, assemble, solve, bound: None, total: mesh + assemble + solve }
+        Self { mesh, assemble, solve, start: None, bound: None, total: mesh + assemble + solve }
     }
 }
 
@@ -181,8 +185,11 @@ pub struct Row {
     pub iterations: Iterations,
     /// The certificate.
     pub certificate: Certificate,
-    /// Wall times.
+    /// Wall times; of several runs those of the fastest.
     pub seconds: Seconds,
+    /// The total seconds of all runs, ascending, where the case ran in several rounds; other rows do not have the key.
+    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub runs: Option<Vec<f64>>,
     /// Largest resident set of the process so far, if the system reports it.
     pub peak_memory_bytes: Option<u64>,
     /// Warnings by type, as text: a penalty below its proven bound, say.
@@ -232,6 +239,7 @@ impl Row {
             iterations: Iterations::default(),
             certificate: Certificate::INVALID,
             seconds: Seconds::default(),
+            runs: None,
             peak_memory_bytes: None,
             warnings: Vec::new(),
             ranks: None,
@@ -275,11 +283,10 @@ impl Row {
             },
             certificate: solved.certificate(),
             rounding: solved.rounding(),
-            seconds: Seconds::new(
-                solved.mesh_seconds,
-                solved.system().assemble_seconds,
-                solve_seconds,
-            ),
+            seconds: Seconds {
+                start: Some(solved.start_seconds),
+                ..Seconds::new(solved.mesh_seconds, solved.system().assemble_seconds, solve_seconds)
+            },
             warnings,
             ..row
         }
@@ -321,6 +328,37 @@ impl Row {
     pub(crate) fn seconds_with_bound(&self) -> f64 {
         let beside = self.seconds.bound.filter(|_| self.theta.is_none());
         self.seconds.total + beside.unwrap_or(0.0)
+    }
+    /// The seconds that lead to an error in this norm: those of the row, and for the bound of a uniform mesh its own
+    /// besides.
+    #[cfg(feature = "report")]
+    pub fn seconds_to(&self, norm: ErrorNorm) -> f64 {
+        match norm {
+            ErrorNorm::Bound => self.seconds_with_bound(),
+            _ => self.seconds.total,
+        }
+    }
+    /// The median of the total seconds of several runs over the least: a measure of the spread that one disturbed
+    /// run does not change. Of two runs in the middle the slower; none for a single run.
+    pub fn median_over_least(&self) -> Option<f64> {
+        let runs = self.runs.as_ref().filter(|runs| runs.len() > 1)?;
+        Some(runs[runs.len() / 2] / runs[0])
+    }
+    /// Adds a further run of the same case. Times may differ, counts may not: if they do, a warning says so.
+    pub fn add_run(&mut self, again: &Self) {
+        let counts = |r: &Self| (r.status, r.unknowns, r.nonzeros, r.iterations.clone(), r.active);
+        let warning = "status or counts differ between runs";
+        if counts(again) != counts(self) && !self.warnings.iter().any(|w| w == warning) {
+            self.warnings.push(warning.to_owned());
+        }
+        let total = again.seconds.total;
+        if total < self.seconds.total {
+            self.seconds = again.seconds;
+        }
+        let runs = self.runs.get_or_insert_default();
+        runs.insert(runs.partition_point(|run| *run <= total), total);
+        let peaks = [self.peak_memory_bytes, again.peak_memory_bytes];
+        self.peak_memory_bytes = peaks.into_iter().flatten().min();
     }
     /// The errors of the row that are more than rounding, each under the name of its order.
     pub(crate) fn errors_above_rounding(&self) -> Orders {

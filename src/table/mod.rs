@@ -30,9 +30,12 @@ pub(crate) enum Cell {
 
 /// A table with a title, and with remarks below. Words are aligned to the left, numbers to the
 /// right.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
+    /// What names the table, also in labels.
     pub(crate) title: String,
+    /// What follows the title and may change from run to run: levels, errors, settings.
+    pub(crate) detail: String,
     pub(crate) columns: Vec<String>,
     pub(crate) rows: Vec<Vec<Cell>>,
     pub(crate) remarks: Vec<String>,
@@ -77,14 +80,19 @@ impl Cell {
 }
 
 impl Table {
+    /// The title with its detail.
+    pub(crate) fn caption(&self) -> String {
+        format!("{}{}", self.title, self.detail)
+    }
+
     /// Whether a column is one of words.
     pub(crate) fn is_left(&self, column: usize) -> bool {
         self.rows.iter().any(|row| matches!(row[column], Cell::Words(_)))
     }
 
-    /// The title as a name of files and labels: letters and digits, and `-` for all else.
+    /// The title as a label: letters and digits, and `-` for all else.
     #[cfg(feature = "report")]
-    pub fn slug(&self) -> String {
+    fn slug(&self) -> String {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
         let text: String = self.title.chars().map(plain).collect();
         text.split_whitespace().collect::<Vec<_>>().join("-")
@@ -95,7 +103,7 @@ impl Table {
         let line = |cells: &mut dyn Iterator<Item = String>| {
             format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
         };
-        let mut text = format!("### {}\n\n", markdown(&self.title));
+        let mut text = format!("### {}\n\n", markdown(&self.caption()));
         text += &line(&mut self.columns.iter().map(|c| markdown(c)));
         let rule = |k| if self.is_left(k) { ":--" } else { "--:" }.to_owned();
         text += &line(&mut (0..self.columns.len()).map(rule));
@@ -141,6 +149,7 @@ mod tests {
                 vec![Cell::Words("cr".into()), Cell::Best("1e-3".into(), Some("1.5".into()))],
             ],
             remarks: vec!["100% of _all_".into()],
+            ..Table::default()
         };
         let text = "t\nscheme             n\np1                 8\nwopsip             -\n\
                     cr      \u{2022} 1e-3 (1.5)\n  100% of _all_\n";
@@ -163,7 +172,7 @@ mod tests {
                 row("p1", "converged"),
                 row("wopsip:facet-means@factor=10", "stalled: the residual fell no more"),
             ],
-            remarks: vec![],
+            ..Table::default()
         };
         let expected = "t
 scheme        unknowns status

@@ -21,7 +21,7 @@ impl Table {
         let cells: Vec<Vec<String>> =
             self.rows.iter().map(|row| row.iter().map(cell).collect()).collect();
         let (widths, gap) = self.widths(&cells, width);
-        let mut text = wrapped(&self.title, width, 4);
+        let mut text = wrapped(&self.caption(), width, 4);
         text += &self.line(&self.columns, &widths, gap);
         let last = self.columns.len() - 1;
         let is_new = |k: usize| k > 0 && self.rows[k][0] != self.rows[k - 1][0];

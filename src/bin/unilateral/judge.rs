@@ -17,21 +17,28 @@ use unilateral::scenes::{self, Parameters, Scene};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Report, Row, RowKey, Study, file_name};
 
+use crate::asked::{OUTPUT, PROBLEM};
 use crate::compare;
 use crate::mesh_file::MeshFile;
 use crate::shared::{Request, cannot_write, each_once, print, problem, read, write};
 
+const EXAMPLES: &str = "\
+Examples:
+  unilateral judge dump/radial-2d-p1-8 solution.npy
+  unilateral judge dump/radial-2d-p1-8 solution.txt --json";
+
 /// Judges a vector that another program found for an inequality of `compare --dump`
 #[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Options {
     /// The folder of the inequality
-    #[arg(value_name = "DIR")]
+    #[arg(help_heading = PROBLEM, value_name = "DIR")]
     directory: PathBuf,
     /// The vector: .npy, or numbers in text
-    #[arg(value_name = "VECTOR")]
+    #[arg(help_heading = PROBLEM, value_name = "VECTOR")]
     vector: PathBuf,
     /// Print the report as JSON
-    #[arg(long)]
+    #[arg(help_heading = OUTPUT, long)]
     json: bool,
 }
 
@@ -46,11 +53,11 @@ pub fn write_requests(
 ) -> Request<()> {
     let Some(directory) = &options.dump else { return Ok(()) };
     let absolute = |path: &Option<PathBuf>| path.as_ref().map(std::path::absolute).transpose();
-    let files = [absolute(&options.mesh.path), absolute(&options.problem)];
+    let files = [absolute(&options.asked.mesh.path), absolute(&options.asked.problem)];
     let [mesh, problem] = files.map(|file| file.map_err(|e| format!("cannot find a file: {e}")));
     let (mesh, problem) = (mesh?, problem?);
     let part = |(name, part): &(String, BoundaryCondition)| (name.clone(), part.name());
-    let boundary: BTreeMap<String, &str> = options.mesh.boundary.iter().map(part).collect();
+    let boundary: BTreeMap<String, &str> = options.asked.mesh.boundary.iter().map(part).collect();
     // the meshes of a reference are refined from that of the coarsest level
     let coarsest = keys.iter().map(|key| key.level).min();
     for RowKey { scene, label, level, .. } in keys {
@@ -58,8 +65,8 @@ pub fn write_requests(
         let request = json!({
             "scene": scene, "label": label, "level": level, "coarsest": coarsest,
             "precision": options.precision,
-            "scale": options.scale, "contrast": options.contrast, "load": options.load,
-            "reference": options.reference.as_ref().map(|(scheme, level)| {
+            "scale": options.asked.scale, "contrast": options.asked.contrast, "load": options.asked.load,
+            "reference": options.asked.reference.as_ref().map(|(scheme, level)| {
                 json!({ "scheme": scheme.to_string(), "level": level })
             }),
             "mesh": mesh, "problem": problem, "contents": contents, "boundary": boundary,

@@ -5,6 +5,7 @@
 //! check failed, 2 if the request was wrong.
 
 mod adaptive;
+mod asked;
 mod compare;
 mod judge;
 mod mesh_file;

@@ -93,7 +93,7 @@ fn table(title: &str, heads: &str, rows: impl Iterator<Item = Vec<Cell>>) -> Tab
         title: title.to_owned(),
         columns: heads.split(',').map(str::to_owned).collect(),
         rows: rows.collect(),
-        remarks: Vec::new(),
+        ..Table::default()
     }
 }
 

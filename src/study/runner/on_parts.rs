@@ -212,6 +212,7 @@ impl<const D: usize> Study<'_, D> {
         let PartSeconds { mesh, assemble, number, start, solve } = parts.seconds;
         let in_bound = process.exchange.largest(&[row.seconds.bound.unwrap_or(0.0)])?[0];
         row.seconds = Seconds {
+            start: Some(start[1]),
             bound: row.seconds.bound.map(|_| in_bound),
             ..Seconds::new(mesh[1], assemble[1] + number[1], start[1] + solve[1])
         };

@@ -244,6 +244,7 @@ impl<const D: usize> Study<'_, D> {
         };
         Row {
             level_kind: Some(kind.to_owned()),
+            linear_asked: self.linear_asked.clone(),
             constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
             label: entry.label(problem),
             expected_order: self.expected_orders(scheme, set, failure),

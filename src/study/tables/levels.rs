@@ -5,7 +5,7 @@ use crate::study::extrapolate::{Limit, extrapolate};
 use crate::study::orders::rates::rates;
 use crate::study::part_figures::PartFigures;
 use crate::study::row::{Row, distinct};
-use crate::study::series::{Series, series_of};
+use crate::study::series::series_of;
 use crate::table::{Cell, Table, digits, fixed};
 
 /// The rows of each table with its title: those of a scene, in the order in which scenes first occur. Where a scene has
@@ -34,13 +34,14 @@ pub(crate) fn scenes(rows: &[Row]) -> Vec<(String, Vec<&Row>)> {
 /// one has what rows say of several processes.
 pub(crate) fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
     let series = series_of(rows);
-    let sorted: Vec<&Row> = series.iter().flat_map(Series::plain_rows).collect();
-    let finest: Vec<&Row> = series.iter().filter_map(|s| s.plain_rows().next_back()).collect();
+    let sorted: Vec<&Row> = series.iter().flat_map(|s| s.rows.iter().copied()).collect();
+    let finest: Vec<&Row> = series.iter().filter_map(|s| s.rows.last().copied()).collect();
     let mut columns = columns(rows);
     if rows.iter().any(|row| !row.converged()) {
         columns.push(column("", |_| Cell::Words(String::new())));
     }
-    let mut first = table(format!("{scene}: {}", heading(rows)), &columns, &sorted);
+    let mut first = table(scene.to_owned(), &columns, &sorted);
+    first.detail = format!(": {}", heading(rows));
     let mut told = Told::default();
     for (cells, row) in first.rows.iter_mut().zip(&sorted).filter(|(_, row)| !row.converged()) {
         let status = Cell::Words(format!("did not converge: {}", told.status(row)));
@@ -53,8 +54,9 @@ pub(crate) fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
     }
     first.remarks.extend(rates(rows).into_iter().chain(unproven(rows)));
     let further = |what: &str, columns: Vec<Column>| {
-        let title = format!("{scene}: {what}, at the finest level of each scheme");
-        (!columns.is_empty()).then(|| table(title, &[names(rows), columns].concat(), &finest))
+        let columns = Some(columns).filter(|columns| !columns.is_empty())?;
+        let table = table(format!("{scene}: {what}"), &[names(rows), columns].concat(), &finest);
+        Some(Table { detail: ", at the finest level of each scheme".to_owned(), ..table })
     };
     let mut second = further("totals and stages", totals(rows));
     if let Some(second) = second.as_mut().filter(|_| has_errors(rows)) {
@@ -71,7 +73,7 @@ fn table(title: String, columns: &[Column], rows: &[&Row]) -> Table {
         title,
         columns: columns.iter().map(|column| column.name.to_owned()).collect(),
         rows: rows.iter().map(line).collect(),
-        remarks: Vec::new(),
+        ..Table::default()
     }
 }
 
@@ -175,6 +177,9 @@ fn names(rows: &[&Row]) -> Vec<Column> {
     let mut columns = vec![column("scheme", |r| Cell::Words(r.label.clone()))];
     if rows.iter().any(|r| r.solver != rows[0].solver) {
         columns.push(column("solver", |r| Cell::Words(r.solver.clone())));
+    }
+    if rows.iter().any(|r| r.linear_asked != rows[0].linear_asked) {
+        columns.push(column("linear", |r| Cell::Words(r.linear_asked.clone().unwrap_or_default())));
     }
     let name = if is_adaptive(rows) { "step" } else { "n" };
     columns.push(column(name, |r| Cell::whole(Some(r.level))));

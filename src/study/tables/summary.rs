@@ -55,9 +55,9 @@ pub(crate) fn summaries(rows: &[Row]) -> Vec<Table> {
         .collect()
 }
 
-fn summary(title: &str, is_adaptive: bool, series: &[Series<'_, &Row>]) -> Table {
+fn summary(title: &str, is_adaptive: bool, series: &[Series<'_>]) -> Table {
     let finest: Vec<&Row> =
-        series.iter().filter_map(|series| series.plain_rows().next_back()).collect();
+        series.iter().filter_map(|series| series.rows.last().copied()).collect();
     let columns = columns(&finest);
     let best: Vec<Option<f64>> = columns.iter().map(|column| best(column, &finest)).collect();
     let cell = |column: &Column, best: Option<f64>, row: &Row| match (column.cell)(row) {
@@ -66,20 +66,29 @@ fn summary(title: &str, is_adaptive: bool, series: &[Series<'_, &Row>]) -> Table
         None => Cell::Nothing,
     };
     let mut told = Told::default();
-    let line = |(series, row): (&Series<'_, &Row>, &&Row)| {
+    let levels = distinct(finest.iter().map(|r| r.level));
+    let line = |(series, row): (&Series<'_>, &&Row)| {
         let numbers = columns.iter().zip(&best).map(|(column, &best)| cell(column, best, row));
         let status = Cell::Words(told.status(row));
-        [Cell::Words(series.name.clone())].into_iter().chain(numbers).chain([status]).collect()
+        let name = match levels.len() {
+            1 => series.name.clone(),
+            _ => format!("{} at {}", series.name, row.level),
+        };
+        [Cell::Words(name)].into_iter().chain(numbers).chain([status]).collect()
     };
     let lines = series.iter().zip(&finest).map(line).collect();
     let names = columns.iter().map(|column| column.name);
-    let levels = distinct(finest.iter().map(|r| r.level.to_string()));
     let references = distinct(finest.iter().filter_map(|r| r.reference()));
     let references = references.iter().map(|reference| format!("; errors against {reference}"));
+    let kind = if is_adaptive { "step" } else { "level" };
+    let place = match levels[..] {
+        [level] => format!(", {kind} {level}"),
+        _ => format!(", each scheme at its last {kind}"),
+    };
     let mut remarks = Vec::new();
     let mut coarser: Vec<(&str, &Row)> = Vec::new();
     for series in series {
-        let mut rows = series.plain_rows();
+        let mut rows = series.rows.iter().copied();
         rows.next_back();
         coarser.extend(rows.filter(|row| !row.converged()).map(|row| (&*series.name, row)));
     }
@@ -90,12 +99,8 @@ fn summary(title: &str, is_adaptive: bool, series: &[Series<'_, &Row>]) -> Table
     }
     let warnings = warnings(&finest).into_iter().map(|(labels, text)| format!("{labels}: {text}"));
     Table {
-        title: format!(
-            "{title}, {} {}{}",
-            if is_adaptive { "step" } else { "level" },
-            levels.join(", "),
-            references.collect::<String>()
-        ),
+        title: title.to_owned(),
+        detail: place + &references.collect::<String>(),
         columns: ["scheme"].into_iter().chain(names).chain(["status"]).map(str::to_owned).collect(),
         rows: lines,
         remarks: remarks.into_iter().chain(warnings).chain(unproven(&finest)).collect(),

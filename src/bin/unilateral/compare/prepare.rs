@@ -12,7 +12,6 @@ use unilateral::error::Error;
 use unilateral::inequality::solver_by_name;
 use unilateral::linear::LinearMethod;
 use unilateral::nested::Solved;
-use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
 use unilateral::real::Precision;
 use unilateral::scenes::Scene;
@@ -41,8 +40,8 @@ pub fn prepare<'a, const D: usize>(
 ) -> Request<Option<Run<'a>>> {
     let name = scene.name.clone();
     let has_mesh = scene.domain.is_mesh();
-    let levels = match &options.levels[..] {
-        [] if options.adaptive.is_some() => Vec::new(),
+    let levels = match &options.asked.levels[..] {
+        [] if options.asked.adaptive.is_some() => Vec::new(),
         [] => default_levels(D, has_mesh),
         some => each_once(some),
     };
@@ -70,9 +69,7 @@ pub fn prepare<'a, const D: usize>(
         Ok(())
     });
     if !options.no_fields {
-        let is_double = options.fields == "f64";
-        let scalar = if is_double { FieldScalar::Double } else { FieldScalar::Single };
-        study = study.fields_to(&options.out).field_scalar(scalar);
+        study = study.fields_to(&options.out);
     }
     if options.fields_of_all_levels {
         study = study.fields_of_all_levels();
@@ -88,33 +85,24 @@ pub fn prepare<'a, const D: usize>(
             .map(|solver| study.boxed_solver(solver))
             .ok_or_else(|| format!("there is no solver {name}"))?;
     }
-    if let Some(of) = options.adaptive {
+    if let Some(of) = options.asked.adaptive {
         study = study.adaptive(of);
     }
-    if let Some((scheme, level)) = &options.reference {
+    if let Some((scheme, level)) = &options.asked.reference {
         study = study.named_reference(scheme, *level);
     }
-    let place = place(options, &name);
+    let place = options.asked.place(&name);
     match study.check() {
-        Err(Error::UnfitMesh { .. }) if !options.scenes_are_named() => return Ok(None),
+        Err(Error::UnfitMesh { .. }) if !options.asked.scenes_are_named() => return Ok(None),
         other => other.and_then(|()| study.check_memory()).map_err(|e| format!("{place}: {e}"))?,
     }
     let keys = study.keys();
     // how many steps a bound takes is not known before
-    if options.adaptive.is_none() {
+    if options.asked.adaptive.is_none() {
         watcher.expect(D, has_mesh, keys.iter().map(|key| key.level));
     }
     let run = move |journal| Ok(study.journal(journal).run()?.rows);
     Ok(Some(Run { keys, place, run: Box::new(run) }))
-}
-
-/// What a message is about: the file of a problem, or a scene, perhaps on the mesh of a file.
-pub fn place(options: &Options, name: &str) -> String {
-    match (&options.problem, &options.mesh.path) {
-        (Some(path), _) => path.display().to_string(),
-        (None, Some(mesh)) => format!("{}, scene {name}", mesh.display()),
-        (None, None) => format!("scene {name}"),
-    }
 }
 
 /// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.
