@@ -115,32 +115,16 @@ impl StabilityReport {
                 Cell::Words(sweep),
                 Cell::Words(row.quantity.clone()),
                 Cell::Words(row.expected.words()),
-                row.figure_in_words().map_or(Cell::Nothing, |x| Cell::Number(x, None)),
+                Cell::number(row.figure_in_words()),
                 Cell::Words(row.verdict_words()),
                 Cell::Words(row.detail.clone()),
             ]
         };
         let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
+        let heads = "criterion,scheme,penalty,problem,n,at,quantity,expected,measured,verdict,further figures";
         Table {
-            title: format!("Case {case}"),
-            columns: [
-                "criterion",
-                "scheme",
-                "penalty",
-                "problem",
-                "n",
-                "at",
-                "quantity",
-                "expected",
-                "measured",
-                "verdict",
-                "further figures",
-            ]
-            .map(str::to_owned)
-            .into(),
-            rows: rows.iter().map(line).collect(),
             remarks: asked.map(|c| format!("{}: {}", c.name, c.sentence)).collect(),
-            ..Table::default()
+            ..Table::new(format!("Case {case}"), heads, rows.iter().map(line).collect())
         }
     }
 
@@ -242,7 +226,9 @@ impl StabilityReport {
 
     /// What stands before the tables.
     fn paragraphs(&self) -> Vec<String> {
+        let command = self.program.command.iter().map(|command| format!("Made by {command}."));
         let mut paragraphs = vec![self.heading()];
+        paragraphs.extend(command);
         paragraphs.extend(READING.map(str::to_owned));
         paragraphs.extend(self.findings());
         paragraphs

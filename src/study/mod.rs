@@ -28,7 +28,7 @@ pub use extrapolate::{Extrapolated, Limit};
 pub use file_name::file_name;
 #[cfg(feature = "report")]
 pub use journal::Journal;
-pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
+pub use memory::peak_memory_bytes;
 pub use orders::{
     ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders, orders_summary,
     orders_table,

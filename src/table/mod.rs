@@ -80,6 +80,12 @@ impl Cell {
 }
 
 impl Table {
+    /// A table with these heads, separated by commas.
+    pub(crate) fn new(title: impl Into<String>, heads: &str, rows: Vec<Vec<Cell>>) -> Self {
+        let columns = heads.split(',').map(str::to_owned).collect();
+        Self { title: title.into(), columns, rows, ..Self::default() }
+    }
+
     /// The title with its detail.
     pub(crate) fn caption(&self) -> String {
         format!("{}{}", self.title, self.detail)

@@ -3,6 +3,7 @@
 
 mod report;
 mod rounds;
+mod runs;
 mod tables;
 mod verdict;
 mod work_at_error;

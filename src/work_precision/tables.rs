@@ -51,12 +51,7 @@ fn variants(rows: &[Row]) -> Vec<Variant> {
     series_of(rows).into_iter().map(|series| series.variant).collect()
 }
 
-fn head(names: &[&str]) -> Vec<String> {
-    names.iter().map(|&name| name.to_owned()).collect()
-}
-
-/// The column of the median over the least time.
-const SPREAD: &str = "spread";
+/// What the column says that has the median over the least time.
 const WHAT_SPREAD_IS: &str =
     "spread: the median time of repeated runs over the least; - for what ran once";
 
@@ -83,14 +78,13 @@ fn costs(scene: &str, reach: &[&WorkAtError], variants: &[Variant]) -> Option<Ta
         ]
     };
     Some(Table {
-        title: format!(
-            "{scene}: costs at one {}",
-            if norm == ErrorNorm::Bound { "bound" } else { "error" }
-        ),
-        detail: format!(", the {}", reached(norm, Some(error))),
-        columns: head(&["scheme", "seconds", SPREAD, "unknowns", "entries"]),
-        rows: reach.iter().map(line).collect(),
+        detail: format!(" at an {}", reached(norm, Some(error))),
         remarks: vec![WHAT_SPREAD_IS.to_owned()],
+        ..Table::new(
+            format!("{scene}: costs"),
+            "scheme,seconds,spread,unknowns,entries",
+            reach.iter().map(line).collect(),
+        )
     })
 }
 
@@ -124,15 +118,14 @@ fn phases(scene: &str, series: Vec<&Series<'_>>) -> Table {
         cells
     };
     let rows = series.iter().flat_map(|of| of.rows.iter().map(move |&row| (&of.name, row)));
+    let rows = rows.filter(|(_, row)| row.runs.is_some()).map(line).collect();
     Table {
-        title: format!("{scene}: phases of the fastest run, in seconds, and memory"),
-        columns: head(&[
-            "scheme", "n", "mesh", "assembly", "start", "solve", "bound", "total", SPREAD, "runs",
-            "MB",
-        ]),
-        rows: rows.filter(|(_, row)| row.runs.is_some()).map(line).collect(),
         remarks: vec![WHAT_SPREAD_IS.to_owned()],
-        ..Table::default()
+        ..Table::new(
+            format!("{scene}: phases of the fastest run, in seconds, and memory"),
+            "scheme,n,mesh,assembly,start,solve,bound,total,spread,runs,MB",
+            rows,
+        )
     }
 }
 
@@ -151,8 +144,7 @@ fn times(scene: &str, norm: ErrorNorm, reach: &[&WorkAtError], variants: &[Varia
         }
         cells
     };
-    let mut columns = head(&["scheme"]);
-    columns.extend(errors.iter().map(|e| format!("{e:e}")));
+    let heads = errors.iter().map(|error| format!(",{error:e}")).collect::<String>();
     let mut remarks = vec![format!("in parentheses the ratio to the fastest; {MARKS}")];
     let spreads = reach.iter().filter(|r| errors.contains(&r.error));
     let largest = spreads.filter_map(|r| r.median_over_least).fold(0.0, f64::max);
@@ -162,11 +154,7 @@ fn times(scene: &str, norm: ErrorNorm, reach: &[&WorkAtError], variants: &[Varia
              times is no difference"
         ));
     }
-    Table {
-        title: format!("{scene}: time to reach an {}", reached(norm, None)),
-        columns,
-        rows: distinct(reach.iter().map(|r| r.variant.clone())).into_iter().map(line).collect(),
-        remarks,
-        ..Table::default()
-    }
+    let lines = distinct(reach.iter().map(|r| r.variant.clone())).into_iter().map(line).collect();
+    let title = format!("{scene}: time to reach an {}", reached(norm, None));
+    Table { remarks, ..Table::new(title, &format!("scheme{heads}"), lines) }
 }

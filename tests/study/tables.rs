@@ -153,9 +153,9 @@ fn a_missed_promise_names_the_row() {
     rows.extend(with_local_orders("sipg", &[1.2, 1.2, 1.2]));
     let missed = report(rows.clone()).assert_orders(0.1).unwrap_err();
     let [only] = &missed.0[..] else { panic!("{missed}") };
-    assert_eq!((&only.scene[..], &only.label[..]), ("radial-2d", "sipg"));
+    assert_eq!((&only.observed.scene[..], &only.observed.label[..]), ("radial-2d", "sipg"));
     assert_eq!((only.norm, only.promised), (ErrorNorm::H1, 1.5));
-    assert!((only.fitted.as_ref().unwrap().order - 1.2).abs() < 1e-12);
+    assert!((only.observed.fitted(ErrorNorm::H1).unwrap().order - 1.2).abs() < 1e-12);
     let expected = "sipg (vertices) on radial-2d: missed: order 1.20 ± 0.00 in H1 over levels \
                     8 to 64 (4), promised 1.5";
     assert_eq!(missed.to_string(), expected);

@@ -198,14 +198,15 @@ impl Asked {
         for (name, fingerprint) in files {
             program = program.with_request(name, fingerprint);
         }
-        with_command(program)
+        program.command = command();
+        program
     }
 }
 
-/// A program with the words of the command line.
-pub fn with_command(program: Program) -> Program {
-    let words = std::env::args().skip(1);
-    program.with_command(std::iter::once("unilateral".to_owned()).chain(words))
+/// The command line as a shell reads it.
+pub fn command() -> Option<String> {
+    let words = std::iter::once("unilateral".to_owned()).chain(std::env::args().skip(1));
+    Program::new("unilateral", "", 1, 1).with_command(words).command
 }
 
 /// Refuses a number of things that is zero or beyond a limit.

@@ -39,7 +39,8 @@ pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
         cells
     };
     let heads = "scene,scheme,bounds at,levels,L2,promised,H1,promised,verdict";
-    let table = table("Observed and promised orders", heads, orders.iter().map(line));
+    let table =
+        Table::new("Observed and promised orders", heads, orders.iter().map(line).collect());
     reading(tolerance) + &table.to_markdown()
 }
 
@@ -56,28 +57,28 @@ pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
     let labels = distinct(orders.iter().map(|line| &line.label));
     let of_schemes = labels.into_iter().map(|label| count(label, &|line| line.label == *label));
     let heads = ["scheme"].into_iter().chain(OrderVerdict::ALL.map(OrderVerdict::name));
-    let counts = table(
+    let counts = Table::new(
         "Verdicts by scheme",
         &heads.collect::<Vec<_>>().join(","),
-        of_schemes.chain([count("all", &|_| true)]),
+        of_schemes.chain([count("all", &|_| true)]).collect(),
     );
     let missed = |missed: OrderMissed| {
-        let fitted = missed.fitted.as_ref();
+        let fitted = missed.observed.fitted(missed.norm);
         vec![
-            Cell::Words(missed.scene),
-            Cell::Words(missed.label),
+            Cell::Words(missed.observed.scene.clone()),
+            Cell::Words(missed.observed.label.clone()),
             Cell::Words(missed.norm.to_string()),
-            Cell::Words(levels_in_words(&missed.levels)),
+            Cell::Words(levels_in_words(&missed.observed.levels)),
             observed(fitted),
             promised(Some(missed.promised)),
             Cell::number(fitted.map(local_orders)),
             Cell::Words(missed.verdict.name().to_owned()),
         ]
     };
-    let not_kept = table(
+    let not_kept = Table::new(
         "Promises that were not seen to be kept",
         "scene,scheme,norm,levels,order,promised,level to level,verdict",
-        orders.iter().flat_map(|line| line.missed(tolerance)).map(missed),
+        orders.iter().flat_map(|line| line.missed(tolerance)).map(missed).collect(),
     );
     let mut text = reading(tolerance) + &counts.to_markdown() + "\n" + &not_kept.to_markdown();
     let failures: Vec<String> = orders.iter().flat_map(failures).collect();
@@ -85,16 +86,6 @@ pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
         text += &format!("\nLevels that did not converge: {}.\n", failures.join("; "));
     }
     text
-}
-
-/// A table whose heads are separated by commas.
-fn table(title: &str, heads: &str, rows: impl Iterator<Item = Vec<Cell>>) -> Table {
-    Table {
-        title: title.to_owned(),
-        columns: heads.split(',').map(str::to_owned).collect(),
-        rows: rows.collect(),
-        ..Table::default()
-    }
 }
 
 fn observed(fitted: Option<&FittedOrder>) -> Cell {

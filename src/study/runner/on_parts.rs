@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::rc::Rc;
 
+use super::rows::with_level;
 use super::{Entry, Progress, Study};
 use crate::distributed::{Differences, Process, SolverOnParts};
 use crate::error::{Error, write_error};
@@ -54,10 +55,7 @@ impl<const D: usize> Study<'_, D> {
             let label = entry.label(problem);
             for &level in &self.levels {
                 (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
-                let Some((position, nested)) = on_level.next() else {
-                    unreachable!("a hierarchy has the level")
-                };
+                let (position, nested) = with_level(&mut nested, level);
                 nested.replace_constraint_set(problem);
                 let solved = match &admissible {
                     Ok(()) => nested.solve_on(position, &*entry.scheme),

@@ -111,7 +111,7 @@ fn costs_at_an_error_are_time_unknowns_and_entries() {
     let costs =
         tables.iter().map(|table| table.to_text(100)).find(|t| t.contains("costs")).unwrap();
     let lines: Vec<&str> = costs.lines().collect();
-    assert_eq!(lines[0], "radial-2d: costs at one error, the error of 5e-3 in L2");
+    assert_eq!(lines[0], "radial-2d: costs at an error of 5e-3 in L2");
     // level 200^(1/2): 6 unknowns and 70 entries to its square
     let p1: Vec<&str> = lines[2].split_whitespace().collect();
     assert_eq!(p1, ["p1", "2.83e-3", "(1.00)", "1.25", "1200", "14000"]);

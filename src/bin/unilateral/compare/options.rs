@@ -143,7 +143,7 @@ pub fn check_numbers(options: &Options) -> Request<()> {
     }
     options.asked.check()?;
     if options.asked.adaptive.is_some() && options.asked.reference.is_some() {
-        return Err("--adaptive: a --reference needs uniform refinements of all meshes".to_owned());
+        return Err("--adaptive cannot be used with --reference, which needs uniform refinements of all meshes".to_owned());
     }
     check_count("--repeat", Some(options.repeat), MOST_REPEATS)?;
     let names = |list: &[(&'static str, &str)]| list.iter().map(|s| s.0).collect::<Vec<_>>();

@@ -8,13 +8,13 @@ use unilateral::in_its_dimension;
 use unilateral::processes::{ExchangeError, agree};
 use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Journal, PartChecks, Report, Row, Study};
+use unilateral::study::{Journal, PartChecks, Report, Row};
 
 use super::options::{Options, check_numbers};
-use super::prepare::default_levels;
+use super::prepare::study;
 use super::watcher::Watcher;
 use super::{Chosen, check_output, processes_of_job, program, write_all};
-use crate::shared::{Request, complain, each_once, use_threads};
+use crate::shared::{Request, complain, use_threads};
 
 /// Whether every row converged: the same in all processes. The first one has said what went wrong.
 pub fn run(options: &Options) -> Request<bool> {
@@ -120,16 +120,7 @@ impl AllRuns<'_> {
         let Self { options, schemes, process, watcher } = *self;
         let place = options.asked.place(&scene.name);
         let has_mesh = scene.domain.is_mesh();
-        let levels = match &options.asked.levels[..] {
-            [] => default_levels(D, has_mesh),
-            some => each_once(some),
-        };
-        let mut study =
-            Study::new(scene).levels(levels).observer(|progress| watcher.tell(&progress));
-        study = schemes.iter().fold(study, Study::named_scheme);
-        if !options.no_fields {
-            study = study.fields_to(&options.out);
-        }
+        let mut study = study(scene, options, schemes, watcher);
         study.check().map_err(|e| format!("{place}: {e}"))?;
         watcher.expect(D, has_mesh, study.keys().iter().map(|key| key.level));
         if let Some(journal) = journal {

@@ -31,6 +31,23 @@ pub struct Run<'a> {
 /// Most cells of a solution that is drawn: pictures of more are large and show no more.
 const MOST_CELLS: usize = 5000;
 
+/// A study with schemes, levels, files and what shows its progress.
+pub fn study<'a, const D: usize>(
+    scene: Scene<D>,
+    options: &'a Options,
+    schemes: &[NamedScheme],
+    watcher: &'a Watcher,
+) -> Study<'a, D> {
+    let levels = match &options.asked.levels[..] {
+        [] if options.asked.adaptive.is_some() => Vec::new(),
+        [] => default_levels(D, scene.domain.is_mesh()),
+        some => each_once(some),
+    };
+    let study = Study::new(scene).levels(levels).observer(|progress| watcher.tell(&progress));
+    let study = schemes.iter().fold(study, Study::named_scheme);
+    if options.no_fields { study } else { study.fields_to(&options.out) }
+}
+
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
 pub fn prepare<'a, const D: usize>(
     scene: Scene<D>,
@@ -40,21 +57,13 @@ pub fn prepare<'a, const D: usize>(
 ) -> Request<Option<Run<'a>>> {
     let name = scene.name.clone();
     let has_mesh = scene.domain.is_mesh();
-    let levels = match &options.asked.levels[..] {
-        [] if options.asked.adaptive.is_some() => Vec::new(),
-        [] => default_levels(D, has_mesh),
-        some => each_once(some),
-    };
     let linear = match options.linear.as_deref() {
         Some("direct") => LinearMethod::Direct,
         Some(_) => LinearMethod::Iterative,
         None => LinearMethod::BySize,
     };
-    let mut study = Study::new(scene)
-        .levels(levels)
-        .repeat(options.repeat)
-        .steps(watcher.steps())
-        .observer(|progress| watcher.tell(&progress));
+    let mut study = study(scene, options, schemes, watcher);
+    study = study.repeat(options.repeat).steps(watcher.steps());
     let scene_name = name.clone();
     let drawn = RefCell::new(BTreeMap::new());
     study = study.each_solution(move |label, level, solved| {
@@ -68,13 +77,9 @@ pub fn prepare<'a, const D: usize>(
         }
         Ok(())
     });
-    if !options.no_fields {
-        study = study.fields_to(&options.out);
-    }
     if options.fields_of_all_levels {
         study = study.fields_of_all_levels();
     }
-    study = schemes.iter().fold(study, Study::named_scheme);
     if let Some(directory) = &options.dump {
         study = study.inequalities_to(directory);
     }
@@ -120,7 +125,7 @@ fn draw<const D: usize>(
 }
 
 /// The levels where none are named.
-pub fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
+fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
     match dimension {
         _ if on_mesh => vec![0, 1],
         3 => vec![2, 4, 8],
