@@ -1,7 +1,8 @@
 //! The program that made a report, and the machine.
 
 use std::collections::BTreeMap;
-use std::sync::LazyLock;
+use std::fs::File;
+use std::io::Read;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The program that made a report, and its settings.
@@ -47,7 +48,7 @@ impl Program {
             repeat,
             target_cpu: target_cpu(),
             date: SystemTime::now().duration_since(UNIX_EPOCH).ok().map(|d| date_of(d.as_secs())),
-            processor: PROCESSOR.clone(),
+            processor: processor(),
             request: BTreeMap::new(),
             command: None,
         }
@@ -104,11 +105,13 @@ fn target_cpu() -> String {
     }
 }
 
-/// The processor's name, read once.
-static PROCESSOR: LazyLock<Option<String>> = LazyLock::new(|| {
-    let text = std::fs::read_to_string("/proc/cpuinfo").ok();
-    text.as_deref().and_then(processor_of)
-});
+/// The name of the first processor, which the system states among the first lines of a long file.
+fn processor() -> Option<String> {
+    const FIRST_LINES: u64 = 4096;
+    let mut text = Vec::new();
+    File::open("/proc/cpuinfo").ok()?.take(FIRST_LINES).read_to_end(&mut text).ok()?;
+    processor_of(&String::from_utf8_lossy(&text))
+}
 
 /// The first processor's name in the text the kernel gives.
 fn processor_of(text: &str) -> Option<String> {

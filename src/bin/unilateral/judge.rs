@@ -3,11 +3,10 @@
 //! `compare --dump DIR` writes the inequalities, `judge DIR/SCENE-LABEL-LEVEL VECTOR` reads what came back.
 //! Exit codes: 0 if the certificate is within its limits, 1 if not, 2 if the request was wrong.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::Value;
 use unilateral::exchange::read_vector;
 use unilateral::in_its_dimension;
 use unilateral::inequality::{ActiveSet, in_precision};
@@ -15,12 +14,11 @@ use unilateral::mesh::BoundaryCondition;
 use unilateral::real::Precision;
 use unilateral::scenes::{self, Parameters, Scene};
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Program, Report, Row, RowKey, Study, file_name};
+use unilateral::study::{Program, Report, Row, Study};
 
 use crate::asked::{OUTPUT, PROBLEM};
-use crate::compare;
 use crate::mesh_file::MeshFile;
-use crate::shared::{Request, cannot_write, each_once, print, problem, read, write};
+use crate::shared::{Request, each_once, print, problem, read};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -43,39 +41,7 @@ pub struct Options {
 }
 
 /// The file of a folder that says which inequality it has.
-const REQUEST: &str = "request.json";
-
-/// Writes what `judge` must know of each inequality, with the fingerprints of all files that were read.
-pub fn write_requests(
-    options: &compare::Options,
-    contents: &[String],
-    keys: &[RowKey],
-) -> Request<()> {
-    let Some(directory) = &options.dump else { return Ok(()) };
-    let absolute = |path: &Option<PathBuf>| path.as_ref().map(std::path::absolute).transpose();
-    let files = [absolute(&options.asked.mesh.path), absolute(&options.asked.problem)];
-    let [mesh, problem] = files.map(|file| file.map_err(|e| format!("cannot find a file: {e}")));
-    let (mesh, problem) = (mesh?, problem?);
-    let part = |(name, part): &(String, BoundaryCondition)| (name.clone(), part.name());
-    let boundary: BTreeMap<String, &str> = options.asked.mesh.boundary.iter().map(part).collect();
-    // the meshes of a reference are refined from that of the coarsest level
-    let coarsest = keys.iter().map(|key| key.level).min();
-    for RowKey { scene, label, level, .. } in keys {
-        let folder = directory.join(file_name(&format!("{scene}-{label}-{level}")));
-        let request = json!({
-            "scene": scene, "label": label, "level": level, "coarsest": coarsest,
-            "precision": options.precision,
-            "scale": options.asked.scale, "contrast": options.asked.contrast, "load": options.asked.load,
-            "reference": options.asked.reference.as_ref().map(|(scheme, level)| {
-                json!({ "scheme": scheme.to_string(), "level": level })
-            }),
-            "mesh": mesh, "problem": problem, "contents": contents, "boundary": boundary,
-        });
-        std::fs::create_dir_all(&folder).map_err(|e| cannot_write(&folder, e))?;
-        write(&folder.join(REQUEST), format!("{request:#}\n"))?;
-    }
-    Ok(())
-}
+pub const REQUEST: &str = "request.json";
 
 /// Whether the certificate is within its limits.
 pub fn run(options: &Options) -> Request<bool> {

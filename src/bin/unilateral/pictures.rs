@@ -42,12 +42,12 @@ pub struct Options {
     /// NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]
     #[arg(help_heading = SCHEMES, long, value_name = "A", default_value = "wopsip")]
     scheme: NamedScheme,
-    /// On a box: subdivisions of its shortest side, by default 16, in space 8;
+    /// On a box: subdivisions of its shortest side, by default 16 or 8;
     /// on a mesh of a file: refinements, by default none
     #[arg(help_heading = MESHES, verbatim_doc_comment, long, visible_alias = "levels", value_name = "N")]
     level: Option<usize>,
-    /// Every mesh of a refinement that follows the error bound, as for compare,
-    /// from level N, by default 4
+    /// Every mesh of a refinement that follows the error bound, as for
+    /// compare, from level N, by default 4
     #[arg(help_heading = MESHES, verbatim_doc_comment, long, value_name = "GOAL|KEY=X", value_parser = adaptivity, conflicts_with = "series")]
     adaptive: Option<Adaptivity>,
     /// In space: the coordinate that the slice fixes, x, y or z

@@ -5,7 +5,7 @@ use crate::study::extrapolate::{Limit, extrapolate};
 use crate::study::orders::rates::rates;
 use crate::study::part_figures::PartFigures;
 use crate::study::row::{Row, distinct};
-use crate::study::series::series_of;
+use crate::study::series::{Series, series_of};
 use crate::table::{Cell, Table, digits, fixed};
 
 /// The rows of each table with its title: those of a scene, in the order in which scenes first occur. Where a scene has
@@ -89,28 +89,23 @@ fn has_errors(rows: &[&Row]) -> bool {
 
 /// The limits of energy, contact measure and resultant of each series.
 fn limits(rows: &[&Row]) -> Vec<String> {
-    let mut lines = Vec::new();
-    let has_solvers = rows.iter().any(|r| r.solver != rows[0].solver);
-    for series in extrapolate(rows) {
-        let limit = |name: &str, limit: Option<Limit>| {
-            let Limit { value, order } = limit?;
-            let order =
-                order.map_or_else(|| "on three levels".to_owned(), |p| format!("order {p:.2}"));
-            Some(format!("{name} {value:.6e} ({order})"))
-        };
+    let limit = |name: &str, limit: Option<Limit>| {
+        let Limit { value, order } = limit?;
+        let order = order.map_or_else(|| "on three levels".to_owned(), |p| format!("order {p:.2}"));
+        Some(format!("{name} {value:.6e} ({order})"))
+    };
+    let of_series = |series: Series<'_>| {
+        let found = extrapolate(&series.rows).pop()?;
         let limits = [
-            limit("energy", series.energy),
-            limit("contact", series.contact_measure),
-            limit("resultant", series.resultant),
+            limit("energy", found.energy),
+            limit("contact", found.contact_measure),
+            limit("resultant", found.resultant),
         ];
         let limits: Vec<String> = limits.into_iter().flatten().collect();
-        if !limits.is_empty() {
-            let solver = if has_solvers { format!(", {}", series.solver) } else { String::new() };
-            let name = format!("{}{solver}", series.label);
-            lines.push(format!("extrapolated, {name}: {}", limits.join(", ")));
-        }
-    }
-    lines
+        let line = format!("extrapolated, {}: {}", series.name, limits.join(", "));
+        (!limits.is_empty()).then_some(line)
+    };
+    series_of(rows).into_iter().filter_map(of_series).collect()
 }
 
 /// The heading after the name of the scene: what levels count, solvers, and the orders that theory promises.

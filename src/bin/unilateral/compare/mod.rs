@@ -3,6 +3,7 @@
 //! `cargo run --release -- compare --help` lists the options. Exit codes: 0 if every row converged,
 //! 1 if some did not or the run could not go on, 2 if the request was wrong, 130 if it was interrupted.
 
+mod dump;
 mod interrupt;
 mod options;
 #[cfg(feature = "petsc")]
@@ -10,6 +11,7 @@ mod over_processes;
 mod prepare;
 mod watcher;
 
+use dump::write_requests;
 use interrupt::Interrupt;
 pub use options::{Options, list};
 use options::{check_numbers, choose_schemes};
@@ -17,7 +19,6 @@ use prepare::{Run, prepare};
 use watcher::Watcher;
 
 use crate::asked::choose;
-use crate::judge::write_requests;
 use crate::one_run::take_directory;
 use crate::shared::{
     Request, check_writable, complain, print, print_to, terminal_width, use_threads, warn, write,

@@ -23,8 +23,8 @@ pub struct Options {
     /// curved-obstacle, biactive, scaling, contact-ends, orders, slivers
     #[arg(help_heading = PROBLEM, verbatim_doc_comment, hide_possible_values = true, long = "case", value_delimiter = ',', value_name = "A[,B...]", value_parser = STABILITY_CASES)]
     pub cases: Vec<String>,
-    /// NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]; by default p1, cr, sipg, wopsip,
-    /// wopsip:facet-means, p2 and nipg
+    /// NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]; by default
+    /// p1, cr, sipg, wopsip, wopsip:facet-means, p2 and nipg
     #[arg(help_heading = SCHEMES, verbatim_doc_comment, long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
     pub schemes: Vec<String>,
     /// Gmsh files of tetrahedra for the case of slivers

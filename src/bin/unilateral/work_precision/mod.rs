@@ -30,11 +30,13 @@ const SUBJECT: &str = "wopsip";
 /// Receives the report after every round.
 type Keep<'k> = dyn FnMut(&Report) -> Result<(), Error> + 'k;
 
+/// Runs studies and adds their rows to a report.
+type RunInto<'a> = Box<dyn FnOnce(&mut Report, &mut Keep<'_>) -> Request<()> + 'a>;
+
 /// Studies that have been checked.
 struct Run<'a> {
     labels: Vec<String>,
-    /// Runs them and adds their rows to a report.
-    run: Box<dyn FnOnce(&mut Report, &mut Keep<'_>) -> Request<()> + 'a>,
+    run: RunInto<'a>,
 }
 
 /// Whether every run converged.
