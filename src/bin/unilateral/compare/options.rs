@@ -67,7 +67,7 @@ pub struct Options {
     /// Keep the rows of this request that DIR has, and run the others
     #[arg(help_heading = OUTPUT, long, conflicts_with_all = ["dump", "adaptive"])]
     pub resume: bool,
-    /// Every algebraic inequality, in a folder of DIR each; `judge` reads results
+    /// Every algebraic inequality, in a folder of DIR, for `judge`
     #[arg(help_heading = OUTPUT, long, value_name = "DIR", conflicts_with = "adaptive")]
     pub dump: Option<PathBuf>,
     /// No .vtu files

@@ -33,7 +33,7 @@ pub struct Options {
     /// How often each case runs; 5, with --quick 2
     #[arg(help_heading = SOLVER, long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
     rounds: Option<u16>,
-    /// Runs of more than S seconds are neither repeated nor refined
+    /// Runs of over S seconds are neither repeated nor refined
     #[arg(help_heading = SOLVER, long, value_name = "S", default_value_t = 20.0)]
     pub limit: f64,
     /// Coarse levels and two rounds: within a minute
