@@ -80,8 +80,8 @@ pub struct Extrapolated {
 /// sizes are not those of one family.
 #[must_use]
 pub fn extrapolate<R: Borrow<Row>>(rows: &[R]) -> Vec<Extrapolated> {
-    let of_series = |series: Series<'_, R>| {
-        let levels: Vec<&Row> = series.plain_rows().filter(|r| r.converged()).collect();
+    let of_series = |series: Series<'_>| {
+        let levels: Vec<&Row> = series.rows.iter().copied().filter(|r| r.converged()).collect();
         let three: &[&Row; 3] = levels.last_chunk()?;
         let of = |figure: fn(&Row) -> Option<f64>, rounding: fn(Rounding) -> f64| {
             let [a, b, c] = three.map(figure);

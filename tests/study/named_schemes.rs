@@ -171,6 +171,6 @@ fn one_scheme_stands_in_a_report_once_for_every_label() {
     assert_eq!(has_order, [false, true, false, true, false, true]);
     for label in labels {
         assert!(scratch.0.join(format!("radial-2d-{}.vtu", file_name(label))).exists(), "{label}");
-        assert!(report.details_to_text().contains(&format!("\n{label} ")), "{report}");
+        assert!(report.details_to_text(100).contains(&format!("\n{label} ")), "{report}");
     }
 }

@@ -9,16 +9,17 @@ use unilateral::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile, GmshWarning};
 use unilateral::mesh::{BoundaryCondition, Mesh, MeshError};
 use unilateral::scenes::AnyScene;
 
+use crate::asked::MESHES;
 use crate::shared::Request;
 
 /// The options of a mesh in place of built-in ones.
 #[derive(Args, Clone, Debug, Default)]
 pub struct MeshFile {
-    /// Run on this Gmsh mesh; physical groups dirichlet, neumann, contact say what holds on them
-    #[arg(long = "mesh", id = "mesh", value_name = "FILE")]
+    /// Gmsh mesh; its groups dirichlet, neumann, contact are the boundary
+    #[arg(help_heading = MESHES, long = "mesh", id = "mesh", value_name = "FILE")]
     pub path: Option<PathBuf>,
-    /// The boundary conditions of other groups of the mesh, as bore=neumann
-    #[arg(long, value_delimiter = ',', value_name = "NAME=CONDITION[,...]", requires = "mesh", value_parser = boundary)]
+    /// Conditions of other groups of the mesh, as bore=neumann
+    #[arg(help_heading = MESHES, long, value_delimiter = ',', value_name = "NAME=CONDITION", requires = "mesh", value_parser = boundary)]
     pub boundary: Vec<(String, BoundaryCondition)>,
 }
 

@@ -58,13 +58,12 @@ impl<const D: usize> Domain<D> {
         match *self {
             Domain::Mesh(ref mesh) => {
                 let corners = |of: fn(&Point<D>, &Point<D>) -> Point<D>| {
-                    mesh.vertices().iter().copied().reduce(|a, b| of(&a, &b))
+                    let vertices = mesh.vertices().iter().copied();
+                    vertices
+                        .reduce(|a, b| of(&a, &b))
+                        .expect("a mesh has cells, a cell has vertices")
                 };
-                let (lower, upper) = (corners(Point::inf), corners(Point::sup));
-                BoxDomain::dirichlet(
-                    lower.unwrap_or_else(Point::zeros),
-                    upper.unwrap_or_else(Point::zeros),
-                )
+                BoxDomain::dirichlet(corners(Point::inf), corners(Point::sup))
             }
             Domain::Box(ref domain) => domain.clone(),
             Domain::LShape { half } => BoxDomain::centred(half),
