@@ -96,8 +96,8 @@ comparison() {
 }
 
 orders() {
-    head "Observed and promised orders" "orders FILE 1d --summary" "orders FILE 2d --quick --summary" \
-        "orders FILE 3d --summary"
+    head "Observed and promised orders" "orders FILE 1d --summary FILE" "orders FILE 2d --quick --summary FILE" \
+        "orders FILE 3d --summary FILE"
     for dimension in 1d "2d --quick" 3d; do
         program "orders $OUT/orders.md $dimension --summary $OUT/summary.md"
         echo "## ${dimension%% *}"

@@ -66,7 +66,8 @@ fn run<const D: usize>(name: &str, level: usize) -> Result<(), Failure> {
     let scheme: Box<dyn Scheme<D>> = match name {
         "p1" => Box::new(ConformingP1),
         "sipg" => Box::new(Sipg::default()),
-        _ => Box::new(Wopsip::default()),
+        "wopsip" | "wopsip:facet-means" => Box::new(Wopsip::default()),
+        other => return Err(format!("no scheme {other}").into()),
     };
     let scene = scenes::radial::<D>(1.0);
     let problem = match name.ends_with("facet-means") {
@@ -101,7 +102,8 @@ fn child(dimension: &str, scheme: &str, level: &str) -> Result<(), Failure> {
     let level = level.parse()?;
     pool.install(|| match dimension {
         "2d" => run::<2>(scheme, level).map_err(|e| e.to_string()),
-        _ => run::<3>(scheme, level).map_err(|e| e.to_string()),
+        "3d" => run::<3>(scheme, level).map_err(|e| e.to_string()),
+        other => Err(format!("no dimension {other}")),
     })?;
     Ok(())
 }

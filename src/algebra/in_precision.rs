@@ -2,8 +2,9 @@
 
 use super::bound::Bound;
 use super::inequality::Inequality;
+use super::jump_term::JumpTerm;
 use super::matrix::SparseMatrix;
-use super::penalised_matrix::{JumpTerm, PenalisedMatrix};
+use super::penalised_matrix::PenalisedMatrix;
 use super::rectangular_matrix::RectangularMatrix;
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::collect;

@@ -1,6 +1,6 @@
 //! The jumps of each block of a penalised matrix.
 
-use super::penalised_matrix::JumpTerm;
+use super::jump_term::JumpTerm;
 use crate::memory::in_large_pages;
 
 /// For each block of unknowns the jumps that contain some of them, ascending: whoever computes the rows of a block by
@@ -52,9 +52,16 @@ impl JumpsOfBlocks {
         &self.jumps[self.starts[block] as usize..self.starts[block + 1] as usize]
     }
 
+    /// The number of all entries of the lists.
+    pub(super) fn len(&self) -> usize {
+        self.jumps.len()
+    }
+
     /// Whether there is a list for each block, of existing jumps.
     pub(super) fn is_well_formed(&self, n_blocks: usize, n_jumps: usize) -> bool {
         self.starts.len() == n_blocks + 1
+            && self.starts[0] == 0
+            && self.starts.windows(2).all(|w| w[0] <= w[1])
             && self.starts[n_blocks] as usize == self.jumps.len()
             && self.jumps.iter().all(|&jump| (jump as usize) < n_jumps)
     }

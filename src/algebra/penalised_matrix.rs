@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::NO_INDEX;
+use super::jump_term::JumpTerm;
 use super::jumps_of_blocks::JumpsOfBlocks;
 use super::mean_jumps::MeanJumps;
 use crate::parallel::vectors::{
@@ -45,23 +45,6 @@ pub struct PenalisedMatrix<T> {
     pub mean_jumps: Option<MeanJumps>,
 }
 
-/// The term `weight * (u[here] - u[there])` of a jump. The difference is computed first, so that a
-/// function without jump has none in rounded arithmetic.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JumpTerm<T> {
-    /// The first unknown, or [`JumpTerm::NO_UNKNOWN`].
-    pub here: u32,
-    /// The second unknown, or [`JumpTerm::NO_UNKNOWN`].
-    pub there: u32,
-    /// The weight.
-    pub weight: T,
-}
-
-impl<T> JumpTerm<T> {
-    /// No unknown; its value in the difference is zero.
-    pub const NO_UNKNOWN: u32 = NO_INDEX;
-}
-
 impl<T: Real> PenalisedMatrix<T> {
     /// Number of unknowns.
     pub fn size(&self) -> usize {
@@ -100,8 +83,36 @@ impl<T: Real> PenalisedMatrix<T> {
                 is_valid(self.terms[k].here) && is_valid(self.terms[k].there)
             })
             && self.jumps_of_blocks.is_well_formed(size / self.block_size, n)
+            && self.has_jumps_of_blocks(size / self.block_size)
             && all(n, |k| self.weights[k] > T::lit(0.0))
             && self.mean_jumps.as_ref().is_none_or(|m| m.is_well_formed(n, size, self.block_size))
+    }
+
+    /// Whether each side of a jump has unknowns of one block, two different ones, and the lists of blocks have the jumps
+    /// with unknowns of the block, each once.
+    fn has_jumps_of_blocks(&self, n_blocks: usize) -> bool {
+        let block = |i: u32| (i != JumpTerm::<T>::NO_UNKNOWN).then_some(i / self.block_size as u32);
+        let belong_together = |jump: usize| {
+            let [here, there] = self.blocks_of_jump(jump);
+            let is_of = |term: &JumpTerm<T>| {
+                [(block(term.here), here), (block(term.there), there)]
+                    .iter()
+                    .all(|(of_term, of_jump)| of_term.is_none() || of_term == of_jump)
+            };
+            (here.is_none() || here != there) && self.terms_of(jump).iter().all(is_of)
+        };
+        let has_own_jumps = |block: usize| {
+            let jumps = self.jumps_of_blocks.of(block);
+            let is_own =
+                |jump: &u32| self.blocks_of_jump(*jump as usize).contains(&Some(block as u32));
+            jumps.windows(2).all(|pair| pair[0] < pair[1]) && jumps.iter().all(is_own)
+        };
+        let n_sides = map_chunks(self.n_jumps(), |jumps: Range<usize>| {
+            jumps.map(|jump| self.blocks_of_jump(jump).iter().flatten().count()).sum::<usize>()
+        });
+        all(self.n_jumps(), belong_together)
+            && all(n_blocks, has_own_jumps)
+            && n_sides.iter().sum::<usize>() == self.jumps_of_blocks.len()
     }
 
     /// The two blocks whose unknowns a jump contains, first that of [`JumpTerm::here`]; `None` for a

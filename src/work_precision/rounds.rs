@@ -32,13 +32,13 @@ pub struct Rounds {
     limit: f64,
 }
 
-/// What keeps the rows so far.
+/// A function that keeps the report of the rows so far.
 type Keep<'k> = dyn FnMut(&Report) -> Result<(), Error> + 'k;
 
 /// A case with its rows so far: one, or on adaptive meshes one for each step.
 struct Case<'s, const D: usize> {
     study: Study<'s, D>,
-    /// The study whose observer is told.
+    /// The study that has the observer.
     of: &'s Study<'s, D>,
     variant: Variant,
     level: usize,
@@ -131,7 +131,7 @@ impl Rounds {
                 order.reverse();
             }
             for (done, &k) in order.iter().enumerate() {
-                cases[k].of.tell_started(&cases[k].variant, cases[k].level);
+                cases[k].of.notify_started(&cases[k].variant, cases[k].level);
                 self.run_case(&mut cases, k, round, &known)?;
                 if done + 1 == order.len() || kept.elapsed() > WRITE_INTERVAL {
                     report.rows.truncate(before);
@@ -193,16 +193,20 @@ fn cases<'s, const D: usize>(studies: &'s [Study<'s, D>]) -> Result<Vec<Case<'s,
         of.check()?;
         for study in of.cases() {
             let (variant, level) = study.variant();
-            let is_coarser = |other: &&(usize, usize)| other.1 < level;
-            let same = cases.iter().enumerate().filter(|(_, other)| other.variant == variant);
-            let levels: Vec<(usize, usize)> = same.map(|(k, other)| (k, other.level)).collect();
-            if levels.iter().any(|other| other.1 == level) {
+            if cases.iter().any(|other| other.variant == variant && other.level == level) {
                 return Err(Error::equal_schemes(variant.label));
             }
-            let coarser = levels.iter().filter(is_coarser).max_by_key(|other| other.1);
-            let coarser = coarser.map(|other| other.0);
-            cases.push(Case { study, of, variant, level, coarser, rows: Vec::new() });
+            cases.push(Case { study, of, variant, level, coarser: None, rows: Vec::new() });
         }
+    }
+    for k in 0..cases.len() {
+        let Case { variant, level, .. } = &cases[k];
+        let is_coarser = |other: &usize| {
+            let other = &cases[*other];
+            other.variant == *variant && other.level < *level
+        };
+        let coarser = (0..cases.len()).filter(is_coarser);
+        cases[k].coarser = coarser.max_by_key(|&other| cases[other].level);
     }
     match cases.is_empty() {
         false => Ok(cases),
@@ -220,10 +224,9 @@ fn take_errors(row: &mut Row, known: &[Row]) {
     let same = |of: &&Row| of.level == row.level && Variant::of(of) == variant;
     if let Some(known) = known.iter().find(same) {
         row.against.clone_from(&known.against);
-        if known.against.is_none() {
-            row.warnings.clone_from(&known.warnings);
-        }
+        row.warnings.clone_from(&known.warnings);
         (row.error, row.contact) = (known.error, known.contact);
+        row.bound.clone_from(&known.bound);
     }
 }
 

@@ -160,7 +160,7 @@ impl Asked {
             if let (Some(d), Some(path)) = (mesh.filter(|&d| d != entry.dimension), &self.mesh.path)
             {
                 return Err(format!(
-                    "{} has dimension {d}, scene {} has {}: choose a scene of dimension {d} (--list names them)",
+                    "{} has dimension {d}, scene {} has {}: choose a scene of dimension {d} (`unilateral list` names them)",
                     path.display(),
                     entry.name,
                     entry.dimension

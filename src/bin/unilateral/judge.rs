@@ -108,9 +108,10 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
             let file = found_beside(&options.directory, file);
             let given = request["boundary"].as_object().into_iter().flatten();
             let condition = |(name, condition): (&String, &Value)| {
-                Some((name.clone(), BoundaryCondition::from_name(condition.as_str()?)?))
+                let of_name = condition.as_str().and_then(BoundaryCondition::from_name);
+                of_name.map(|found| (name.clone(), found)).ok_or_else(|| wrong("boundary"))
             };
-            let boundary = given.filter_map(condition).collect();
+            let boundary = given.map(condition).collect::<Result<_, _>>()?;
             let mesh = MeshFile { path: Some(file.clone()), boundary };
             let contents = mesh.read()?.expect("a file with a path has contents");
             is_unchanged(0, &file, contents.fingerprint())?;

@@ -15,7 +15,7 @@ use crate::shared::Request;
 /// The options of a mesh in place of built-in ones.
 #[derive(Args, Clone, Debug, Default)]
 pub struct MeshFile {
-    /// Gmsh mesh; its groups dirichlet, neumann, contact are the boundary
+    /// Gmsh mesh; groups dirichlet, neumann, contact are its boundary
     #[arg(help_heading = MESHES, long = "mesh", id = "mesh", value_name = "FILE")]
     pub path: Option<PathBuf>,
     /// Conditions of other groups of the mesh, as bore=neumann

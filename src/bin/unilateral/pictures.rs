@@ -43,7 +43,7 @@ pub struct Options {
     #[arg(help_heading = SCHEMES, long, value_name = "A", default_value = "wopsip")]
     scheme: NamedScheme,
     /// On a box: subdivisions of its shortest side, by default 16 or 8;
-    /// on a mesh of a file: refinements, by default none
+    /// on a mesh file: refinements, by default none
     #[arg(help_heading = MESHES, verbatim_doc_comment, long, visible_alias = "levels", value_name = "N")]
     level: Option<usize>,
     /// Every mesh of a refinement that follows the error bound, as for
@@ -95,7 +95,8 @@ fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Result<bool, Fail
     };
     let slice = match (&options.across, options.at) {
         (Some(name), Some(at)) => {
-            Some(Slice { axis: ["x", "y", "z"].iter().position(|n| n == name).unwrap_or(2), at })
+            let axis = ["x", "y", "z"].iter().position(|axis| axis == name);
+            Some(Slice { axis: axis.expect("the parser admits these three"), at })
         }
         _ => None,
     };

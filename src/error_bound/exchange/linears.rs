@@ -52,7 +52,7 @@ impl<const D: usize> CellOfLinears<D> {
         ]
     }
 
-    /// The part of the cell in the square of the bound.
+    /// The contribution of the cell to the square of the bound.
     fn square(&self) -> f64 {
         let mismatch = self.difference.norm_squared() + self.variance * self.sum * self.sum;
         let gap = self.gap(self.multiplier.signum()).unwrap_or(0.0);

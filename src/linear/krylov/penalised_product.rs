@@ -152,6 +152,31 @@ mod tests {
     }
 
     #[test]
+    fn lists_of_other_jumps_are_malformed() {
+        for (n, are_means) in [(3, true), (4, false)] {
+            let right = two_cells(n, are_means);
+            assert!(right.is_well_formed(2 * n));
+            let half = right.term_starts[1] as usize;
+            for (starts, terms) in [
+                (&right.term_starts[..1], &right.terms[..]),
+                (&right.term_starts[..2], &right.terms[..half]),
+                (&[0, 0, half as u32], &right.terms[..half]),
+            ] {
+                let jumps_of_blocks = JumpsOfBlocks::new((2, n), starts, terms);
+                let wrong = PenalisedMatrix { jumps_of_blocks, ..right.clone() };
+                assert!(!wrong.is_well_formed(2 * n), "{starts:?}");
+            }
+            // a jump whose unknowns of one side belong to two cells, and one within a cell
+            for there in [0, 2 * n as u32 - 1] {
+                let mut wrong = right.clone();
+                wrong.terms[half].here = 2 * n as u32 - 1 - there;
+                wrong.terms[half].there = there;
+                assert!(!wrong.is_well_formed(2 * n), "{there}");
+            }
+        }
+    }
+
+    #[test]
     fn the_product_is_that_of_the_sum() {
         for (n, are_means) in [(3, true), (3, false), (4, true), (4, false)] {
             let penalised = two_cells(n, are_means);

@@ -49,7 +49,7 @@ pub enum Condition {
     /// `u = g` or `alpha du/dn = 0` on the contact boundary.
     ContactComplementarity,
     /// The stated multiplier is `-div(alpha grad u) + c u - f`, or `alpha du/dn` on the contact
-    /// part.
+    /// boundary.
     Multiplier,
     /// A bound is active inside the stated contact set; outside, no bound is active and the multiplier
     /// vanishes.

@@ -65,7 +65,7 @@ impl<'a, const D: usize> Study<'a, D> {
     }
 
     /// Says that a run begins.
-    pub(crate) fn tell_started(&self, variant: &Variant, level: usize) {
+    pub(crate) fn notify_started(&self, variant: &Variant, level: usize) {
         (self.observer)(super::Progress::Started(&variant.scene, &variant.label, level));
     }
 }

@@ -1,6 +1,7 @@
 //! All levels: the tables of each scene.
 
-use super::remarks::{Told, warnings};
+use super::remarks::{ReasonsGiven, warnings};
+use crate::inequality::Outcome;
 use crate::study::extrapolate::{Limit, extrapolate};
 use crate::study::orders::rates::rates;
 use crate::study::part_figures::PartFigures;
@@ -42,9 +43,13 @@ pub(crate) fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
     }
     let mut first = table(scene.to_owned(), &columns, &sorted);
     first.detail = format!(": {}", heading(rows));
-    let mut told = Told::default();
+    let mut reasons = ReasonsGiven::default();
     for (cells, row) in first.rows.iter_mut().zip(&sorted).filter(|(_, row)| !row.converged()) {
-        let status = Cell::Words(format!("did not converge: {}", told.status(row)));
+        let status = reasons.status(row);
+        let status = Cell::Words(match row.status {
+            Outcome::TimeLimit => status,
+            _ => format!("did not converge: {status}"),
+        });
         *cells.last_mut().expect("a table has columns") = status;
     }
     let warning = |(labels, warning): (String, &str)| format!("warning, {labels}: {warning}");

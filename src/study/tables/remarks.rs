@@ -9,9 +9,9 @@ fn reason(row: &Row) -> &str {
 
 /// The reasons that a table has given.
 #[derive(Default)]
-pub(super) struct Told(Vec<String>);
+pub(super) struct ReasonsGiven(Vec<String>);
 
-impl Told {
+impl ReasonsGiven {
     /// The status of a row; of one that did not converge with the reason, which is kept.
     pub fn status(&mut self, row: &Row) -> String {
         let message = self.message(row);
@@ -24,7 +24,7 @@ impl Told {
     pub fn message(&self, row: &Row) -> String {
         match row.converged() {
             true => row.status.to_string(),
-            false if self.0.iter().any(|told| told == reason(row)) => {
+            false if self.0.iter().any(|given| given == reason(row)) => {
                 format!("{}, as above", row.status)
             }
             false => format!("{}: {}", row.status, reason(row)),

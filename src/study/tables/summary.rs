@@ -1,7 +1,7 @@
 //! The summary of a report: one table for each scene at the finest level of every series, and how the runs ended.
 
 use super::levels::{marked, scenes, unproven};
-use super::remarks::{Told, warnings};
+use super::remarks::{ReasonsGiven, warnings};
 use crate::study::row::{Row, distinct};
 use crate::study::series::{Series, series_of};
 use crate::table::{Cell, Table, digits, fixed, seconds};
@@ -65,11 +65,11 @@ fn summary(title: &str, is_adaptive: bool, series: &[Series<'_>]) -> Table {
         Some((_, text, remark)) => Cell::Number(text, remark),
         None => Cell::Nothing,
     };
-    let mut told = Told::default();
+    let mut reasons = ReasonsGiven::default();
     let levels = distinct(finest.iter().map(|r| r.level));
     let line = |(series, row): (&Series<'_>, &&Row)| {
         let numbers = columns.iter().zip(&best).map(|(column, &best)| cell(column, best, row));
-        let status = Cell::Words(told.status(row));
+        let status = Cell::Words(reasons.status(row));
         let name = match levels.len() {
             1 => series.name.clone(),
             _ => format!("{} at {}", series.name, row.level),
@@ -92,8 +92,8 @@ fn summary(title: &str, is_adaptive: bool, series: &[Series<'_>]) -> Table {
         rows.next_back();
         coarser.extend(rows.filter(|row| !row.converged()).map(|row| (&*series.name, row)));
     }
-    for message in distinct(coarser.iter().map(|(_, row)| told.message(row))) {
-        let of = coarser.iter().filter(|(_, row)| told.message(row) == message);
+    for message in distinct(coarser.iter().map(|(_, row)| reasons.message(row))) {
+        let of = coarser.iter().filter(|(_, row)| reasons.message(row) == message);
         let of: Vec<String> = of.map(|(name, row)| format!("{name} at {}", row.level)).collect();
         remarks.push(format!("{}: {message}", of.join(", ")));
     }
