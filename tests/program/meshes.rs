@@ -59,7 +59,7 @@ fn wrong_meshes_are_refused() {
         ),
         ("radial-2d", "touching", Square::in_contact(), &["radial-2d", "\"contact\""]),
         ("signorini-2d", "free", sound.clone(), &["signorini-2d", "\"contact\""]),
-        ("radial-3d", "plane", sound.clone(), &["dimension 2", "radial-3d", "--list"]),
+        ("radial-3d", "plane", sound.clone(), &["dimension 2", "radial-3d", "unilateral list"]),
         ("nowhere", "fine", sound.clone(), &["unknown scene \"nowhere\"", "radial-2d"]),
     ];
     for (scene, name, mesh, expected) in cases {
