@@ -1,6 +1,6 @@
 //! What assembly, facet topology, edges and refinement cost per cell, against the bandwidth of memory.
 //!
-//! `cargo bench --bench assembly` prints the table of `docs/assembly.md` and then runs criterion;
+//! `cargo bench --bench assembly` prints the table of `docs/results/assembly.md` and then runs criterion;
 //! after `--`
 //!
 //! * `--table` prints the table alone, for example of the cases `--table 2d/p1`;

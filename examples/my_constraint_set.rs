@@ -1,5 +1,6 @@
 //! A constraint set in one file: an obstacle at two of the three vertices of each triangle, beside
-//! the sets of the library on the same scheme.
+//! the sets of the library on the same scheme. `cargo run --release --example my_constraint_set` prints the tables, and
+//! how many unknowns the set binds.
 
 use unilateral::prelude::*;
 

@@ -68,8 +68,8 @@ impl<const D: usize> Scheme<D> for WithBubble {
     /// nothing is claimed here.
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         match setting.is_linear() && setting.regular_dual {
-            true => ExpectedOrders::none().with_l2(2.0).with_h1(1.0),
-            false => ExpectedOrders::none(),
+            true => ExpectedOrders::default().with_l2(2.0).with_h1(1.0),
+            false => ExpectedOrders::default(),
         }
     }
 }

@@ -1,4 +1,5 @@
 //! A solver in one file: projected successive over-relaxation, beside the solver of the library.
+//! `cargo run --release --example my_solver` prints iterations, errors and certificates of both.
 //!
 //! C. W. Cryer, SIAM J. Control 9 (1971), 385-392.
 

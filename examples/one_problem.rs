@@ -1,4 +1,4 @@
-//! A mesh of one's own: a bracket whose Gmsh file names its material and parts of its boundary stands on a
+//! A mesh of one's own: a bracket whose Gmsh file names its material and groups of boundary facets stands on a
 //! curved base, which alone holds it against a load that presses it down and turns it.
 //!
 //! `cargo run --release --example one_problem` writes a picture of the foot and fields for ParaView to

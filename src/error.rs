@@ -107,15 +107,15 @@ pub enum Error {
     },
     /// The data of a boundary group are of another kind than its facets.
     #[error(
-        "the problem has {given} data on boundary group {group}, whose facets are {part} in the mesh: give the mesh its parts by Problem::bind_boundary"
+        "the problem has {given} data on boundary group {group}, whose facets are {found} in the mesh: bind the problem to the mesh by Problem::bind_boundary"
     )]
     UnboundBoundary {
         /// A name of the group.
         group: String,
-        /// The part to which the data belong.
+        /// The condition to which the data belong.
         given: &'static str,
-        /// The part of the facets.
-        part: &'static str,
+        /// The condition on the facets.
+        found: &'static str,
     },
     /// Meshes are to follow an error bound that the scheme does not have.
     #[error("meshes cannot follow the error bound of {scheme}: {why}")]

@@ -1,4 +1,4 @@
-//! What comes from outside: files of limited size, and foreign text in messages.
+//! Input from outside: files of limited size, and foreign text in messages.
 
 use std::fs::{File, metadata};
 use std::io::{Error, ErrorKind, Read, Result};

@@ -1,5 +1,5 @@
-// labels of links and pictures: see `guide`
-#![cfg_attr(doc, doc = include_str!("guide/links.md"), doc = include_str!("guide/pictures.md"))]
+// links of README as modules, see `docs`
+#![cfg_attr(doc, doc = include_str!("docs/labels.md"))]
 #![doc = include_str!("../README.md")]
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
@@ -13,6 +13,8 @@ mod arrays;
 pub mod assemble;
 pub mod constraint;
 pub mod distributed;
+#[cfg(doc)]
+pub mod docs;
 pub mod element;
 pub mod error;
 pub mod error_bound;
@@ -21,7 +23,6 @@ pub mod exchange;
 pub mod facet;
 #[cfg(feature = "report")]
 mod files;
-pub mod guide;
 pub mod inequality;
 #[cfg(not(feature = "cli"))]
 mod input;

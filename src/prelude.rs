@@ -1,4 +1,4 @@
-//! What a program that compares schemes needs, in one line.
+//! The names that a program needs to compare schemes, in one import.
 
 pub use crate::assemble::Discretisation;
 pub use crate::constraint::{BoundBy, CellMeans, ConstraintSet, FacetMeans, Midpoints, Nodes};

@@ -1,4 +1,4 @@
-//! What theory promises of a scheme, and on what a promise may depend.
+//! The orders that theory promises of a scheme, and the conditions of a promise.
 
 /// Orders that theory promises.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,11 +12,6 @@ pub struct ExpectedOrders {
 }
 
 impl ExpectedOrders {
-    /// No promise in any norm.
-    #[must_use]
-    pub const fn none() -> Self {
-        Self { l2: None, h1: None }
-    }
     /// Promises an order in L2.
     #[must_use]
     pub const fn with_l2(self, order: f64) -> Self {
@@ -67,7 +62,7 @@ impl Regularity {
     }
 }
 
-/// What a promise of orders may depend on.
+/// The conditions of a promise of orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Setting {

@@ -1,4 +1,4 @@
-"""Makes the Gmsh meshes of docs/solvers.md and docs/assembly.md, binary MSH 4.1, in a folder.
+"""Makes the Gmsh meshes of docs/results/solvers.md, binary MSH 4.1, in a folder.
 
     pip install gmsh
     python3 benches/gmsh/make_meshes.py target/gmsh          # square.msh, cube.msh

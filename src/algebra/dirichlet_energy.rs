@@ -1,4 +1,4 @@
-//! What weak Dirichlet data change in the energy of a function.
+//! The part of the energy of a function that weak Dirichlet data add.
 
 /// The quadratic function that turns `u.A u` into the squared energy norm of a scheme with weak
 /// Dirichlet data `u_D`.
@@ -37,16 +37,16 @@ impl DirichletEnergy {
     }
 }
 
-/// What Dirichlet data contribute to one unknown.
+/// The contribution of Dirichlet data to one unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirichletTerm {
     /// The unknown.
     pub unknown: u32,
-    /// The part of the load that comes from the data.
+    /// The load that comes from the data.
     pub load: f64,
     /// The coefficient `l_i`, twice `load` for a symmetric form.
     pub linear: f64,
-    /// The part of `q`, the form at `(u_D, u_D)`, that counts with the unknown: that of a facet counts with one
+    /// The share of `q`, the form at `(u_D, u_D)`, that counts with the unknown: that of a facet counts with one
     /// unknown of its cell.
     pub constant: f64,
 }

@@ -19,7 +19,7 @@ pub struct FreeBody {
     pub stops_below: bool,
     /// Whether upper bounds stop a motion upwards.
     pub stops_above: bool,
-    /// The sum of the assembled load along the kernel vector: what is added to the load since is a part of the
+    /// The sum of the assembled load along the kernel vector: what is added to the load since is a term of the
     /// resultant too.
     pub(crate) assembled: f64,
 }

@@ -2,8 +2,9 @@
 
 use super::bound::Bound;
 use super::inequality::Inequality;
+use super::jump_term::JumpTerm;
 use super::matrix::SparseMatrix;
-use super::penalised_matrix::{JumpTerm, PenalisedMatrix};
+use super::penalised_matrix::PenalisedMatrix;
 use super::rectangular_matrix::RectangularMatrix;
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::collect;
@@ -63,6 +64,7 @@ impl PenalisedMatrix<f64> {
             blocks: rounded(&self.blocks),
             term_starts: self.term_starts.clone(),
             terms: collect(self.terms.len(), |k| term(&self.terms[k])),
+            jumps_of_blocks: self.jumps_of_blocks.clone(),
             weights: rounded(&self.weights),
             jump_data: rounded(&self.jump_data),
             mean_jumps: self.mean_jumps.clone(),
@@ -100,7 +102,7 @@ impl Inequality<f64> {
         rounded.bodies.iter_mut().zip(added).for_each(|(body, added)| body.assembled += added);
         rounded
     }
-    /// Whether the range of another precision holds the data: no diagonal entry and no part of a penalty loses its
+    /// Whether the range of another precision holds the data: no diagonal entry and no factor of a penalty loses its
     /// digits by rounding, and neither does the largest entry of the matrix, the load, the bounds and the Dirichlet
     /// data, nor the largest quotient of load and diagonal. `false` for sizes that do not match.
     pub(crate) fn is_in_range_of<T: Real>(&self) -> bool {

@@ -10,7 +10,7 @@ use super::distribution::{Distribution, sum_over_parts};
 use super::free_body::{FreeBody, Sum};
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
-use crate::parallel::vectors::all;
+use crate::parallel::vectors::{all, collect, indices};
 use crate::real::Real;
 
 /// The initial active set of a solver, for example that of a coarser mesh or a simpler scheme.
@@ -150,8 +150,7 @@ impl<T: Real> Inequality<T> {
     }
     /// The unknowns that are not fixed, ascending: those with more than one admissible value.
     pub(crate) fn free_unknowns(&self) -> Vec<u32> {
-        let is_free = |&i: &u32| self.bounds[i as usize].fixed_value().is_none();
-        (0..self.bounds.len() as u32).filter(is_free).collect()
+        indices(self.bounds.len(), |i| self.bounds[i].fixed_value().is_none())
     }
     /// Whether matrix, load, bounds, penalised matrix and the locations, if there are any, have the same
     /// size, the two matrices are well formed, and the vertices of locations are below four times the number of
@@ -215,7 +214,7 @@ impl<T: Real> Inequality<T> {
         are_finite(&self.matrix.values)
             && are_finite(&self.load)
             && self.penalised.as_ref().is_none_or(|penalised| are_finite(&penalised.jump_data))
-            && self.bounds.iter().all(|bound| match *bound {
+            && all(self.bounds.len(), |i| match self.bounds[i] {
                 Bound::Free => true,
                 Bound::Fixed(x) | Bound::Lower(x) | Bound::Upper(x) => finite(x),
                 Bound::Both(l, u) => finite(l) && finite(u),
@@ -231,7 +230,7 @@ impl<T: Real> Inequality<T> {
     }
     /// Whether every unknown has an admissible value.
     pub fn is_feasible(&self) -> bool {
-        self.bounds.iter().all(|bound| !matches!(*bound, Bound::Both(l, u) if l > u))
+        all(self.bounds.len(), |i| !matches!(self.bounds[i], Bound::Both(l, u) if l > u))
     }
     /// The energy `u.A u / 2 - b.u`, in `f64`; that of a penalised matrix by its jumps, because differences of
     /// products of its entries would have no digits where the penalty is large.
@@ -244,18 +243,13 @@ impl<T: Real> Inequality<T> {
             let own = penalised.objective(&self.load, |i| u[i].to_f64(), |i| self.owns(i));
             return sum_over_parts(distribution, own);
         }
-        let own = (0..self.size())
-            .filter(|&i| self.owns(i))
-            .map(|i| {
-                let (columns, values) = self.matrix.row(i);
-                let au: f64 = columns
-                    .iter()
-                    .zip(values)
-                    .map(|(&j, a)| a.to_f64() * u[j as usize].to_f64())
-                    .sum();
-                u[i].to_f64() * (0.5 * au - self.load[i].to_f64())
-            })
-            .sum();
-        sum_over_parts(distribution, own)
+        let of_unknown = |i: usize| {
+            let (columns, values) = self.matrix.row(i);
+            let au: f64 =
+                columns.iter().zip(values).map(|(&j, a)| a.to_f64() * u[j as usize].to_f64()).sum();
+            u[i].to_f64() * (0.5 * au - self.load[i].to_f64())
+        };
+        let terms = collect(self.size(), |i| if self.owns(i) { of_unknown(i) } else { 0.0 });
+        sum_over_parts(distribution, terms.iter().sum())
     }
 }

@@ -1,10 +1,10 @@
 //! Algebraic data: sparse and dense matrices, and the variational inequality that every solver and
 //! exporter takes. Independent of mesh, dimension and scheme.
 //!
-//! `matrix`: compressed sparse rows, and parts of them. `rectangular_matrix`: prolongations in compressed sparse
+//! `matrix`: compressed sparse rows, and submatrices. `rectangular_matrix`: prolongations in compressed sparse
 //! rows, and `P^T A P`. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
 //! discontinuous linear functions. `dense`: small dense matrices.
-//! `dirichlet_energy`: the part of an energy that weak Dirichlet data determine.
+//! `dirichlet_energy`: the terms of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
 //! unknown. `inequality`: locations of unknowns and the inequality. `in_precision`:
 //! matrices, bounds and inequalities rounded.
@@ -16,6 +16,8 @@ mod distribution;
 mod free_body;
 mod in_precision;
 mod inequality;
+mod jump_term;
+mod jumps_of_blocks;
 mod matrix;
 mod mean_jumps;
 mod penalised_matrix;
@@ -30,10 +32,12 @@ pub use free_body::FreeBody;
 pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
 pub(crate) use in_precision::rounded;
 pub use inequality::{DofLocation, Inequality, Start};
+pub use jump_term::JumpTerm;
+pub use jumps_of_blocks::JumpsOfBlocks;
 pub use matrix::SparseMatrix;
 pub(crate) use matrix::sort_by_column;
 pub use mean_jumps::MeanJumps;
-pub use penalised_matrix::{JumpTerm, PenalisedMatrix};
+pub use penalised_matrix::PenalisedMatrix;
 pub(crate) use rectangular_matrix::{RectangularMatrix, SparseSum, galerkin_product};
 pub(crate) use side_penalties::SidePenalties;
 

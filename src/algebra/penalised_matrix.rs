@@ -1,9 +1,13 @@
 //! The matrix `K + M^T S M` of an over-penalised scheme, kept as that sum.
 
-use crate::parallel::vectors::for_each_chunk;
+use std::ops::Range;
 
-use super::NO_INDEX;
+use super::jump_term::JumpTerm;
+use super::jumps_of_blocks::JumpsOfBlocks;
 use super::mean_jumps::MeanJumps;
+use crate::parallel::vectors::{
+    all, collect, for_each_chunk, for_each_chunk_of_groups, map_chunks,
+};
 use crate::real::Real;
 
 /// The matrix `A = K + M^T S M`, stored by `K`, `M` and `S`, and the Dirichlet data `g` that it imposes: the load of
@@ -30,6 +34,8 @@ pub struct PenalisedMatrix<T> {
     /// The rows of `M` one after the other. In a row all [`JumpTerm::here`] belong to one block, all
     /// [`JumpTerm::there`] to another.
     pub terms: Vec<JumpTerm<T>>,
+    /// The jumps of each block of `K`, from `terms`.
+    pub jumps_of_blocks: JumpsOfBlocks,
     /// The diagonal of `S`.
     pub weights: Vec<T>,
     /// `g`.
@@ -37,23 +43,6 @@ pub struct PenalisedMatrix<T> {
     /// The sides of facets to which the jumps belong, where they are those of means of discontinuous linear functions
     /// in two or three dimensions. Products and preconditioners for these functions need them.
     pub mean_jumps: Option<MeanJumps>,
-}
-
-/// The term `weight * (u[here] - u[there])` of a jump. The difference is computed first, so that a
-/// function without jump has none in rounded arithmetic.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JumpTerm<T> {
-    /// The first unknown, or [`JumpTerm::NO_UNKNOWN`].
-    pub here: u32,
-    /// The second unknown, or [`JumpTerm::NO_UNKNOWN`].
-    pub there: u32,
-    /// The weight.
-    pub weight: T,
-}
-
-impl<T> JumpTerm<T> {
-    /// No unknown; its value in the difference is zero.
-    pub const NO_UNKNOWN: u32 = NO_INDEX;
 }
 
 impl<T: Real> PenalisedMatrix<T> {
@@ -78,7 +67,7 @@ impl<T: Real> PenalisedMatrix<T> {
         self.term_starts.windows(2).all(|w| w[1] - w[0] <= 1)
     }
 
-    /// Whether all parts have consistent sizes for `size` unknowns, and weights are positive.
+    /// Whether all vectors and matrices have consistent sizes for `size` unknowns, and weights are positive.
     pub fn is_well_formed(&self, size: usize) -> bool {
         let n = self.n_jumps();
         let is_valid = |i: u32| i == JumpTerm::<T>::NO_UNKNOWN || (i as usize) < size;
@@ -88,11 +77,42 @@ impl<T: Real> PenalisedMatrix<T> {
             && self.jump_data.len() == n
             && self.term_starts.len() == n + 1
             && self.term_starts.first() == Some(&0)
-            && self.term_starts.windows(2).all(|w| w[0] <= w[1])
+            && all(n, |k| self.term_starts[k] <= self.term_starts[k + 1])
             && self.term_starts[n] as usize == self.terms.len()
-            && self.terms.iter().all(|t| is_valid(t.here) && is_valid(t.there))
-            && self.weights.iter().all(|&s| s > T::lit(0.0))
+            && all(self.terms.len(), |k| {
+                is_valid(self.terms[k].here) && is_valid(self.terms[k].there)
+            })
+            && self.jumps_of_blocks.is_well_formed(size / self.block_size, n)
+            && self.has_jumps_of_blocks(size / self.block_size)
+            && all(n, |k| self.weights[k] > T::lit(0.0))
             && self.mean_jumps.as_ref().is_none_or(|m| m.is_well_formed(n, size, self.block_size))
+    }
+
+    /// Whether each side of a jump has unknowns of one block, two different ones, and the lists of blocks have the jumps
+    /// with unknowns of the block, each once.
+    fn has_jumps_of_blocks(&self, n_blocks: usize) -> bool {
+        let block = |i: u32| (i != JumpTerm::<T>::NO_UNKNOWN).then_some(i / self.block_size as u32);
+        let belong_together = |jump: usize| {
+            let [here, there] = self.blocks_of_jump(jump);
+            let is_of = |term: &JumpTerm<T>| {
+                [(block(term.here), here), (block(term.there), there)]
+                    .iter()
+                    .all(|(of_term, of_jump)| of_term.is_none() || of_term == of_jump)
+            };
+            (here.is_none() || here != there) && self.terms_of(jump).iter().all(is_of)
+        };
+        let has_own_jumps = |block: usize| {
+            let jumps = self.jumps_of_blocks.of(block);
+            let is_own =
+                |jump: &u32| self.blocks_of_jump(*jump as usize).contains(&Some(block as u32));
+            jumps.windows(2).all(|pair| pair[0] < pair[1]) && jumps.iter().all(is_own)
+        };
+        let n_sides = map_chunks(self.n_jumps(), |jumps: Range<usize>| {
+            jumps.map(|jump| self.blocks_of_jump(jump).iter().flatten().count()).sum::<usize>()
+        });
+        all(self.n_jumps(), belong_together)
+            && all(n_blocks, has_own_jumps)
+            && n_sides.iter().sum::<usize>() == self.jumps_of_blocks.len()
     }
 
     /// The two blocks whose unknowns a jump contains, first that of [`JumpTerm::here`]; `None` for a
@@ -163,26 +183,31 @@ impl<T: Real> PenalisedMatrix<T> {
         &self,
         load: &[T],
         u: impl Fn(usize) -> f64 + Sync,
-        jump_multipliers: impl Fn(usize) -> f64,
+        jump_multipliers: impl Fn(usize) -> f64 + Sync,
         r: &mut [f64],
     ) {
-        for_each_chunk(r, |range, r| {
-            for (r, i) in r.iter_mut().zip(range) {
-                *r = load[i].to_f64() - self.stiffness(i, &u);
+        let n = self.block_size;
+        for_each_chunk_of_groups(r, n, |range, r| {
+            for (block, r) in (range.start / n..).zip(r.chunks_exact_mut(n)) {
+                let first = block * n;
+                for (i, r) in (first..).zip(&mut *r) {
+                    *r = load[i].to_f64() - self.stiffness(i, &u);
+                }
+                for &jump in self.jumps_of_blocks.of(block) {
+                    let multiplier = jump_multipliers(jump as usize);
+                    for t in self.terms_of(jump as usize) {
+                        let product = t.weight.to_f64() * multiplier;
+                        // unknowns of other blocks, and none, are beyond the end
+                        if let Some(r) = r.get_mut((t.here as usize).wrapping_sub(first)) {
+                            *r -= product;
+                        }
+                        if let Some(r) = r.get_mut((t.there as usize).wrapping_sub(first)) {
+                            *r += product;
+                        }
+                    }
+                }
             }
         });
-        for jump in 0..self.n_jumps() {
-            let multiplier = jump_multipliers(jump);
-            for t in self.terms_of(jump) {
-                let product = t.weight.to_f64() * multiplier;
-                if t.here != JumpTerm::<T>::NO_UNKNOWN {
-                    r[t.here as usize] -= product;
-                }
-                if t.there != JumpTerm::<T>::NO_UNKNOWN {
-                    r[t.there as usize] += product;
-                }
-            }
-        }
     }
 
     /// The residual `r = b - A u` with a load `c`.
@@ -199,8 +224,8 @@ impl<T: Real> PenalisedMatrix<T> {
     pub fn objective(
         &self,
         load: &[T],
-        u: impl Fn(usize) -> f64,
-        counts: impl Fn(usize) -> bool,
+        u: impl Fn(usize) -> f64 + Sync,
+        counts: impl Fn(usize) -> bool + Sync,
     ) -> f64 {
         let of_unknown = |i: usize| u(i) * (0.5 * self.stiffness(i, &u) - load[i].to_f64());
         let of_jump = |k: usize| {
@@ -208,10 +233,10 @@ impl<T: Real> PenalisedMatrix<T> {
             let jump = self.jump(k, &u) - g;
             0.5 * self.weights[k].to_f64() * (jump * jump - g * g)
         };
-        let is_counted = |&k: &usize| self.first_unknown(k).is_some_and(&counts);
-        let unknowns = (0..load.len()).filter(|&i| counts(i));
-        unknowns.map(of_unknown).sum::<f64>()
-            + (0..self.n_jumps()).filter(is_counted).map(of_jump).sum::<f64>()
+        let is_counted = |k: usize| self.first_unknown(k).is_some_and(&counts);
+        let of_unknowns = collect(load.len(), |i| if counts(i) { of_unknown(i) } else { 0.0 });
+        let of_jumps = collect(self.n_jumps(), |k| if is_counted(k) { of_jump(k) } else { 0.0 });
+        of_unknowns.iter().sum::<f64>() + of_jumps.iter().sum::<f64>()
     }
 
     /// The scale of energies `u.K u + p.(S^-1 p) + Σ |c_i u_i|` with a load `c` and jump multipliers `p`.
@@ -230,13 +255,13 @@ impl<T: Real> PenalisedMatrix<T> {
     /// as jumps, times the Dirichlet data, over the jumps whose first unknown `counts`.
     pub fn work_on_data(
         &self,
-        u: impl Fn(usize) -> f64,
+        u: impl Fn(usize) -> f64 + Sync,
         jump_multipliers: &[T],
-        counts: impl Fn(usize) -> bool,
+        counts: impl Fn(usize) -> bool + Sync,
     ) -> f64 {
         let is_given = jump_multipliers.len() == self.n_jumps();
-        let of_jump = |(k, g): (usize, &T)| {
-            let g = g.to_f64();
+        let of_jump = |k: usize| {
+            let g = self.jump_data[k].to_f64();
             if g == 0.0 || !self.first_unknown(k).is_some_and(&counts) {
                 return 0.0;
             }
@@ -247,7 +272,10 @@ impl<T: Real> PenalisedMatrix<T> {
             };
             multiplier * g
         };
-        self.jump_data.iter().enumerate().map(of_jump).sum()
+        let of_chunk =
+            |jumps: Range<usize>| jumps.map(of_jump).filter(|work| *work != 0.0).collect();
+        let not_zero: Vec<Vec<f64>> = map_chunks(self.n_jumps(), of_chunk);
+        not_zero.iter().flatten().sum()
     }
 
     /// The jump residual `g - M u + S^-1 p`, one entry, for the multiplier `p` of that jump.

@@ -1,5 +1,5 @@
-//! Counts of work done, in unit tests only: that what a scheme or a scene does not have is not
-//! computed is shown by counting. In any other build these functions are empty.
+//! Counters of work, in unit tests only. They show that the assembly computes no term that a scheme or a scene does
+//! not have. In any other build these functions are empty.
 
 macro_rules! counters {
     ($($(#[$doc:meta])* $name:ident)*) => {
@@ -18,7 +18,7 @@ macro_rules! counters {
             #[cfg(not(test))]
             let _ = times;
         })*
-        /// What was counted on this thread since the last call, by name.
+        /// The counts on this thread since the last call, by name.
         #[cfg(test)]
         pub(crate) fn take() -> std::collections::BTreeMap<&'static str, usize> {
             std::collections::BTreeMap::from([$((stringify!($name), cells::$name.with(|c| c.take())),)*])
@@ -59,7 +59,7 @@ mod tests {
     use crate::real::Point;
     use crate::scheme::{ConformingP1, NonconformingP1, Scheme, Sipg, Wopsip};
 
-    /// What assembling an inequality counts, on one thread.
+    /// The counts of the assembly of an inequality, on one thread.
     fn counted<S: Scheme<2>>(scheme: &S, problem: &Problem<2>) -> BTreeMap<&'static str, usize> {
         let sides = [
             [BoundaryCondition::Dirichlet, BoundaryCondition::Neumann],

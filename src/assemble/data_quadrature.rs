@@ -24,7 +24,7 @@ pub struct DataQuadrature {
 
 impl Default for DataQuadrature {
     /// Loads to the degree `k + b + 3`, with which doubling the degree changes the errors of linear and
-    /// quadratic elements on smooth loads by less than one part in a thousand on the coarsest meshes;
+    /// quadratic elements on smooth loads by less than a thousandth on the coarsest meshes;
     /// boundary data to degree 15, because there are few boundary facets and the weak
     /// Dirichlet data of an over-penalised scheme weigh much; all by [`ConicalProduct`].
     fn default() -> Self {

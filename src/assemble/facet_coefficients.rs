@@ -1,4 +1,4 @@
-//! What a facet form comes down to: a few numbers for all facets, a few for each.
+//! The numbers to which a facet form comes down: a few for all facets, a few for each.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -103,8 +103,8 @@ impl FacetCoefficients {
         let view = |facet| space.facet_view(facet, Some(metrics));
         let fill = |cells: Range<usize>, chunk: &mut [f64]| {
             for (cell, out) in cells.zip(chunk.chunks_exact_mut(per_cell)) {
-                for facet in space.form_facets_of(cell) {
-                    let out = &mut out[facet.here.1 * stride..][..stride];
+                for (local, out) in out.chunks_exact_mut(stride).enumerate() {
+                    let Some(facet) = space.counted_facet((cell, local)) else { continue };
                     let of_facet = view(facet);
                     out[0] = form.penalty(&of_facet);
                     if uses_flux {

@@ -140,7 +140,7 @@ impl<const D: usize> Discretisation<'_, D> {
         Ok(())
     }
 
-    /// Adds the part of the fluxes that the products of lifts make, from the jumps as each cell sees them.
+    /// Adds the fluxes that the products of lifts make, from the jumps as each cell sees them.
     fn add_lifted_fluxes(&self, jumps: &[f64], kept: usize, metrics: &Metrics, fluxes: &mut [f64]) {
         let (space, form) = (&self.space, self.form());
         let lifting = Lifting::new(space, form, metrics);

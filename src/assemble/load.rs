@@ -20,7 +20,7 @@ use crate::parallel::{cells, once};
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
 
-/// What is added to a cell's part of the load.
+/// A term that is added to the load of a cell.
 type OfCell<'w> = &'w (dyn Fn(usize, &mut [f64]) -> Result<(), Error> + Sync);
 
 impl<const D: usize> Space<'_, D> {
@@ -130,7 +130,7 @@ impl<const D: usize> Space<'_, D> {
         })
     }
 
-    /// Sets the load to zero and calls a function with each cell and its part of the load, in parallel.
+    /// Sets the load to zero and calls a function with each cell and its share of the load, in parallel.
     fn fill_each_cell(&self, load: &mut [f64], work: OfCell<'_>) -> Result<(), Error> {
         let n = self.per_cell();
         let add_cells = |mut cells: Range<usize>, entries: &mut [f64]| {

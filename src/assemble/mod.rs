@@ -18,7 +18,7 @@ mod jump_products;
 mod load;
 mod nullspace;
 mod owned_rows;
-mod penalised;
+mod penalised_matrix;
 mod penalty_below_bound;
 mod penalty_factor;
 mod shared_rows;

@@ -1,7 +1,7 @@
 //! Penalty factors that make no penalty.
 
 use super::discretisation::Discretisation;
-use super::penalised;
+use super::penalised_matrix::keeps_penalty_apart;
 use super::space::Space;
 use crate::error::Error;
 use crate::facet::FacetForm;
@@ -23,7 +23,7 @@ impl<const D: usize> Space<'_, D> {
         }
         let Some(ratio) = self.penalty_over_stiffness(form) else { return Ok(()) };
         let least = f64::EPSILON.powi(4);
-        let most = if penalised::applies(form) { 1.0 / least } else { 1.0 / f64::EPSILON };
+        let most = if keeps_penalty_apart(form) { 1.0 / least } else { 1.0 / f64::EPSILON };
         if ratio >= least && ratio <= most {
             return Ok(());
         }
@@ -46,6 +46,6 @@ impl<const D: usize> Discretisation<'_, D> {
     pub(crate) fn penalty_beyond(&self, precision: Precision) -> Option<f64> {
         self.form().theory().factor()?;
         let ratio = self.space.penalty_over_stiffness(self.form())?;
-        (!penalised::applies(self.form()) && ratio > 1.0 / precision.epsilon()).then_some(ratio)
+        (!keeps_penalty_apart(self.form()) && ratio > 1.0 / precision.epsilon()).then_some(ratio)
     }
 }

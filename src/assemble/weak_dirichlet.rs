@@ -1,4 +1,4 @@
-//! Dirichlet data that the facet form imposes: their part of the load, and what they change in the energy of a function.
+//! Dirichlet data that the facet form imposes: their share of the load, and what they change in the energy of a function.
 
 use super::count;
 use super::owned_rows::lifted::Lifting;

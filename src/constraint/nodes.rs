@@ -4,7 +4,7 @@ use super::constraint_set::{BoundBy, ConstraintSet};
 use crate::element::{Entity, Node};
 use crate::theory::Setting;
 
-/// Every unknown of the element is bound: the set in force where nothing else is said.
+/// Every [`Node`] of the element is bound: the set in force where nothing else is said.
 ///
 /// Obstacles bind values at points, a facet mean by the obstacle at the barycentre of the facet, a
 /// cell mean by the mean of the obstacle. Reports call the set `vertices` or `facet-means` where the

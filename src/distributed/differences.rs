@@ -1,4 +1,4 @@
-//! Whether a part has the bits of the whole.
+//! Rows of the parts of a mesh, compared bit for bit with those of the whole mesh.
 
 use crate::algebra::{Bound, Inequality};
 use crate::arrays::map_entries;
@@ -9,7 +9,7 @@ use crate::nested::Solved;
 use crate::processes::{OverParts, agree};
 use crate::scheme::Scheme;
 
-/// How many own rows of all parts were compared with those of the whole mesh, and in how many of them bits differ.
+/// Counts of own rows of all parts: those compared with the whole mesh, and those in which a bit differs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -31,8 +31,8 @@ impl Differences {
     pub fn are_none(&self) -> bool {
         [self.rows, self.loads, self.bounds, self.residuals] == [0; 4]
     }
-    /// Compares the own rows of all parts with those of the whole mesh, which every process assembles for this
-    /// purpose; all parts call it. Nothing is compared where the solution is one on a whole mesh.
+    /// Compares the own rows of all parts with those of the whole mesh. Every process assembles the whole mesh for this,
+    /// and all parts must call the function. A solution on a whole mesh has no rows to compare.
     ///
     /// # Errors
     /// [`Error::Processes`] with the error of assembly, and those of the exchange.

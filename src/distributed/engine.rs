@@ -1,4 +1,4 @@
-//! What a library for distributed matrices does for the solver: preconditioners of distributed matrices.
+//! A library for distributed matrices, as the solver uses it: preconditioners of distributed matrices.
 
 use std::fmt::Debug;
 
@@ -6,9 +6,9 @@ use crate::linear::FactorError;
 
 /// A library for matrices whose rows are distributed over processes.
 ///
-/// All parts call its functions, and those of its [`EngineSolver`]s, as often as one another and in the same
-/// order. What fails in one part fails in all; the engine keeps the reason for
-/// [`take_failure`](Self::take_failure), and corrections are then not numbers.
+/// All parts call its functions, and those of its [`EngineSolver`]s, equally often and in the same order. A function
+/// that fails in one part fails in all: corrections are then not numbers, and the engine keeps the reason for
+/// [`take_failure`](Self::take_failure).
 pub trait Engine: Debug + Send + Sync {
     /// Name and version, for reports.
     fn name(&self) -> String;
@@ -25,7 +25,8 @@ pub trait Engine: Debug + Send + Sync {
         let (_, _, _) = (rows, data, values);
         None
     }
-    /// Why a function has failed in this part since the last call, if one has. A matrix without factors is no failure.
+    /// The reason for the last failure of a function in this part since the last call, if there is one. A matrix without
+    /// factors is no failure.
     fn take_failure(&self) -> Option<String>;
 }
 

@@ -182,7 +182,7 @@ impl<const D: usize> Solve<'_, '_, D> {
         Ok(!matches!(factored, Err(FactorError::NotPositive | FactorError::Singular)))
     }
 
-    /// What corrects besides the blocks of cells, with the auxiliary matrix.
+    /// The correction besides the blocks of cells, with the auxiliary matrix.
     fn auxiliary(&self) -> Result<Auxiliary, Error> {
         let inequality = self.system.inequality();
         let locations = &inequality.locations;

@@ -1,4 +1,4 @@
-//! What an element is.
+//! The trait of elements.
 
 use std::fmt::Debug;
 use std::sync::Arc;

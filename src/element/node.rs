@@ -1,10 +1,10 @@
-//! Degrees of freedom: functionals on the functions of a cell.
+//! Nodes: the functionals on the functions of a cell whose values are the unknowns.
 
 use crate::arrays::array_of;
 use crate::mesh::edge_vertices;
 use crate::quadrature::{Rule, facet_to_cell};
 
-/// A part of the reference simplex.
+/// A vertex, an edge or a facet of the reference simplex, or the simplex itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entity {
     /// A vertex.
@@ -30,8 +30,12 @@ impl Entity {
     }
 }
 
-/// The functional that an unknown is the value of: a weighted sum of point values, tied to a part of
-/// the reference simplex. Points are barycentric; entries beyond the dimension are zero.
+/// The functional that an unknown is the value of: a weighted sum of point values, tied to a vertex, an edge, a
+/// facet or the cell. Points are barycentric; entries beyond the dimension are zero.
+///
+/// The literature calls it degree of freedom or *nodal variable* (S. C. Brenner, L. R. Scott, The mathematical
+/// theory of finite element methods, 3.1.1), and the basis dual to it the nodal basis. Here it is a node, be it a
+/// value at a point, a mean or a sum, and its number in the vector of values an unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     entity: Entity,

@@ -195,7 +195,7 @@ impl<const D: usize> Space<'_, D> {
         }
     }
 
-    /// Moves values at midpoints of edges into the constraints, and sets those on the Dirichlet part: a quadratic that
+    /// Moves values at midpoints of edges into the constraints, and sets those on the Dirichlet boundary: a quadratic that
     /// exceeds an obstacle at the vertices exceeds it everywhere if its Bernstein coefficients on the edges,
     /// `2 v_m - (v_a + v_b) / 2`, do not lie below those of the obstacle.
     fn clip_at_midpoints(&self, nodes: &FunctionNodes<'_>, values: &mut [f64]) {

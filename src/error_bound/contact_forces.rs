@@ -6,7 +6,7 @@ use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::facet_to_cell;
 
-/// The part of the contact force of a node that acts on one of its contact facets.
+/// The share of the contact force of a node that acts on one of its contact facets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodeForce {
     /// The cell of the facet.
@@ -24,7 +24,7 @@ impl<const D: usize> Space<'_, D> {
     /// facets whose gap binds it and, in the plane, if there are any, all of whose nodes are in contact: the other
     /// facet of a node is open there. In space facets around the end of contact are many, and few of them are in
     /// contact whole. A node of a quadratic that Dirichlet data pin beside nodes in contact has no force of its own:
-    /// the part of the flux of the discrete function `u` stands for it, and any number would do.
+    /// the flux of the discrete function `u` stands for it, and any number would do.
     pub(super) fn contact_forces(
         &self,
         inequality: &Inequality<f64>,
@@ -81,8 +81,8 @@ impl<const D: usize> Space<'_, D> {
         for (force, rank) in forces.iter_mut().zip(ranks).filter(|(_, rank)| *rank > 0) {
             let unknown = self.dofs.of(force.cell, force.node);
             let (of_best, all) = best[unknown];
-            let part = if rank == of_best { force.value / all } else { 0.0 };
-            force.value = part * (-residual[unknown]).max(0.0);
+            let share = if rank == of_best { force.value / all } else { 0.0 };
+            force.value = share * (-residual[unknown]).max(0.0);
         }
         forces
     }

@@ -1,4 +1,4 @@
-//! The bound of a pair: its parts, and what of it is proven.
+//! The bound of a pair: its terms, and what of it is proven.
 
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ pub enum Unproven {
     /// Obstacles and gaps of a higher degree than `v` in cells, or of degree two where the Bernstein coefficients of
     /// `v` do not exceed theirs: `v` satisfies them at points only.
     Obstacle,
-    /// What the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
+    /// The residual that the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
     /// somewhere.
     Algebra,
 }
@@ -37,7 +37,7 @@ pub enum Unproven {
 /// Shares of the square of a bound; their sum is one, or zero where the bound is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
-pub struct BoundParts {
+pub struct BoundTerms {
     /// The difference of `alpha grad v` and the flux and, with a reaction, of `v` and the discrete solution.
     pub mismatch: f64,
     /// The complementarity of the obstacles.
@@ -60,11 +60,11 @@ pub struct ErrorBound {
     /// The distance of `v` from the discrete solution `u_h` in the broken energy norm.
     pub distance: f64,
     /// Bound on the broken energy norm of `u - u_h`: that of the midpoint of function and flux, at most `total +
-    /// distance`. See the guide, [`bound`](crate::guide::bound).
+    /// distance`. See [`docs::bound`](crate::docs::bound).
     pub discrete: f64,
     /// Of what `total` is made.
-    pub parts: BoundParts,
-    /// The share of each cell in the square of `total`, without the part of the solver.
+    pub terms: BoundTerms,
+    /// The share of each cell in the square of `total`, without the term of the solver.
     pub cells: Vec<f64>,
     /// The terms that are not proven; empty where the bound is guaranteed.
     pub unproven: Vec<Unproven>,
@@ -168,7 +168,7 @@ impl<const D: usize> Discretisation<'_, D> {
 }
 
 impl ErrorBound {
-    /// The bound of these sums, with the part of the solver and the square that each cell adds.
+    /// The bound of these sums, with the term of the solver and the square that each cell adds.
     fn new(
         totals: &Totals,
         of_solver: f64,
@@ -181,7 +181,7 @@ impl ErrorBound {
         if !square.is_finite() || totals.least_coefficient <= 0.0 {
             return Err(NoBound::NotFinite);
         }
-        let share = |part: f64| if square > 0.0 { part / square } else { 0.0 };
+        let share = |term: f64| if square > 0.0 { term / square } else { 0.0 };
         let (total, distance) = (square.sqrt(), totals.distance.sqrt());
         // the radius of the ball around the midpoint that contains the solution, and the distance of the discrete
         // function from the midpoint
@@ -192,7 +192,7 @@ impl ErrorBound {
             distance,
             // the sum is never less but for rounding, and where a rule has weights of both signs
             discrete: discrete.min(total + distance),
-            parts: BoundParts {
+            terms: BoundTerms {
                 mismatch: share(mismatch),
                 obstacle: share(obstacle),
                 contact: share(contact),
@@ -206,12 +206,12 @@ impl ErrorBound {
     }
 }
 
-/// What one part of a mesh adds to a bound.
+/// The sums of one part of a mesh for a bound.
 #[derive(Debug)]
 pub(crate) struct PartOfBound<const D: usize> {
     totals: Totals,
     friedrichs: FriedrichsData<D>,
-    /// What each cell adds; zero for cells that do not count.
+    /// The part of each cell; zero for cells that do not count.
     squares: Vec<f64>,
     unproven: Vec<Unproven>,
 }
@@ -245,7 +245,7 @@ impl<const D: usize> Space<'_, D> {
         ErrorBound::new(&totals, of_solver.unwrap_or(0.0), squares, unproven)
     }
 
-    /// What the cells that count add to a bound.
+    /// The sums of the cells that count for a bound.
     fn part_of_bound(
         &self,
         pair: &PrimalDualPair<D>,

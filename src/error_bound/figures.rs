@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use super::estimate::Unproven;
-use super::{BoundParts, ErrorBound};
+use super::{BoundTerms, ErrorBound};
 use crate::measure::Rounding;
 
 /// Effectivities that differ from one by less are one but for rounding.
@@ -34,7 +34,7 @@ pub struct BoundFigures {
     pub guaranteed: Option<bool>,
     /// The terms that are computed, or neglected, without proof.
     pub unproven: Option<Vec<Unproven>>,
-    /// Parts of `total` squared.
+    /// The share of the square of `total` that `alpha grad v` less the flux has; the next four are the other shares.
     pub mismatch: Option<f64>,
     /// Complementarity of the obstacles.
     pub obstacle: Option<f64>,
@@ -42,7 +42,7 @@ pub struct BoundFigures {
     pub contact: Option<f64>,
     /// Data oscillation.
     pub oscillation: Option<f64>,
-    /// What the solver left.
+    /// The residual that the solver left.
     pub algebra: Option<f64>,
     /// `discrete` over the error of the discrete solution in the broken energy norm, where it is known and more than
     /// rounding.
@@ -62,7 +62,7 @@ impl BoundFigures {
             Ok(bound) => bound,
             Err(reason) => return Self { reason: Some(reason.to_string()), ..Self::default() },
         };
-        let BoundParts { mismatch, obstacle, contact, oscillation, algebra } = bound.parts;
+        let BoundTerms { mismatch, obstacle, contact, oscillation, algebra } = bound.terms;
         Self {
             total: Some(bound.total),
             distance: Some(bound.distance),
@@ -127,7 +127,7 @@ impl BoundFigures {
         if self.distance > self.total {
             return Some(format!("{start}: the admissible function is far from the solution"));
         }
-        let (share, part) = [
+        let (share, term) = [
             (self.mismatch, "the flux, further from the solution than the function"),
             (self.obstacle, "the multiplier where the function is off the obstacle"),
             (self.contact, "the contact force where the function is off the gap"),
@@ -135,9 +135,9 @@ impl BoundFigures {
             (self.algebra, "what the solver left"),
         ]
         .into_iter()
-        .filter_map(|(share, part)| Some((share?, part)))
+        .filter_map(|(share, term)| Some((share?, term)))
         .max_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some(format!("{start}: {:.0} % of the square of `total` is {part}", 100.0 * share))
+        Some(format!("{start}: {:.0} % of the square of `total` is {term}", 100.0 * share))
     }
 }
 

@@ -1,11 +1,11 @@
-//! Fluxes of the spaces of Raviart and Thomas of degree zero and one, by their numbers in cells.
+//! Fluxes in the spaces of Raviart and Thomas of degree zero and one, stored as a few numbers for each cell.
 
 use std::ops::Range;
 
 use crate::memory::in_large_pages;
 
-/// A flux `q`, in each cell `K` of the space of Raviart and Thomas of degree zero or one, by numbers `c`. With
-/// `phi_F = (x - a_F) / (D |K|)`, `a_F` the vertex opposite the facet `F`,
+/// A flux `q` in the space of Raviart and Thomas of degree zero or one. Numbers `c` describe it in each cell `K`, with
+/// the functions `phi_F = (x - a_F) / (D |K|)`, `a_F` the vertex opposite the facet `F`:
 ///
 /// ```text
 /// degree zero   q = sum_F c_F phi_F                     c_F    the integral of q.n over F, n outward
@@ -13,8 +13,8 @@ use crate::memory::in_large_pages;
 ///                                                       c_FF   the factor of a flux inside the cell
 /// ```
 ///
-/// A facet has in a cell the number of the opposite vertex. A facet between two cells has numbers in both: these are
-/// opposite where `q.n` is single-valued.
+/// The number of a facet in a cell is that of the opposite vertex. A facet between two cells has a `c` in each of them.
+/// Where `q.n` is single-valued, the two add up to zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flux<const D: usize> {
     degree: usize,
@@ -23,10 +23,10 @@ pub struct Flux<const D: usize> {
 }
 
 impl<const D: usize> Flux<D> {
-    /// The flux zero on so many cells.
+    /// The zero flux on `n_cells` cells.
     ///
     /// # Panics
-    /// For other degrees than zero and one.
+    /// If the degree is not zero or one.
     #[must_use]
     pub fn zero(degree: usize, n_cells: usize) -> Self {
         assert!(degree < 2, "fluxes have degree zero or one, not {degree}");
@@ -98,11 +98,11 @@ impl<const D: usize> Flux<D> {
         }
     }
 
-    /// Where `c_Fj` of degree one stands among the numbers of a cell; `c_jj` inside the cell.
+    /// The place of `c_Fj`, degree one, among the numbers of a cell; `c_jj` is the factor inside the cell.
     pub(super) const fn place(facet: usize, vertex: usize) -> usize {
         facet * (D + 1) + vertex
     }
-    /// How many numbers a cell has.
+    /// The count of numbers of a cell.
     pub(super) fn per_cell(&self) -> usize {
         (D + 1) * if self.degree == 0 { 1 } else { D + 1 }
     }

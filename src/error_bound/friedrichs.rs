@@ -14,7 +14,7 @@ pub(super) struct FriedrichsData<const D: usize> {
     /// The least box around the mesh.
     low: Point<D>,
     high: Point<D>,
-    /// For each axis whether all lines in its direction end, and whether all begin, on the Dirichlet part.
+    /// For each axis whether all lines in its direction end, and whether all begin, on the Dirichlet boundary.
     is_held: [[bool; 2]; D],
 }
 
@@ -50,8 +50,8 @@ impl<const D: usize> FriedrichsData<D> {
     }
 
     /// A number `C` with `|w| <= C |grad w|` in L2 for every function `w` that vanishes on the Dirichlet
-    /// part, if the part is such that a proof is short: along some axis every line through the mesh begins,
-    /// or ends, on the Dirichlet part.
+    /// boundary; none but where along some axis every line through the mesh begins, or ends, on that boundary, so that
+    /// the proof is short.
     ///
     /// On a segment of length `l` a function that vanishes at both ends, or at one, has `|w| <= l/pi |w'|`, or
     /// `2 l/pi |w'|`. The squares of `1/C` of the axes are added.
@@ -86,9 +86,9 @@ mod tests {
         assert!(near(constant(&square()), 0.5_f64.sqrt()));
         let one_side = square().side(1, 0, BoundaryCondition::Contact);
         assert!(near(constant(&one_side), (1.25_f64).powf(-0.5)));
-        let all = |part| {
+        let all = |condition| {
             let axes = [(0, 0), (0, 1), (1, 0), (1, 1)];
-            axes.iter().fold(square(), |d, &(axis, end)| d.side(axis, end, part))
+            axes.iter().fold(square(), |d, &(axis, end)| d.side(axis, end, condition))
         };
         assert_eq!(constant(&all(BoundaryCondition::Neumann)), None);
         // over parts too, where one end alone is held

@@ -1,4 +1,4 @@
-//! What of a bound is proven.
+//! The terms of a bound that are not proven.
 
 use super::PrimalDualPair;
 use super::admissible_function::PairNode;

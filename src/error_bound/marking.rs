@@ -2,7 +2,7 @@
 
 use super::ErrorBound;
 
-/// The part of all shares, one over this, of which the order is found at once.
+/// The fraction of all shares, one over this, of which the order is found at once.
 const SORTED_AT_ONCE: usize = 16;
 
 impl ErrorBound {

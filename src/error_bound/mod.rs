@@ -1,18 +1,18 @@
 //! Guaranteed bounds on the error of a discrete solution, computed from the solution and the data alone.
 //!
 //! An admissible function `v` and a flux `q` are made from the solution ([`PrimalDualPair`]); what `q` leaves of the
-//! load is the multiplier `mu` of an obstacle, and its normal component on the contact part a contact force `s`. The
+//! load is the multiplier `mu` of an obstacle, and its normal component on the contact boundary a contact force `s`. The
 //! bound ([`ErrorBound`]) is, but for the oscillation of data,
 //!
 //! ```text
 //! |||u - v|||^2 <= |alpha^-1/2 (alpha grad v - q)|^2 + 2 (mu, distance of v from the obstacle) + 2 int_C s (v - g)
 //! ```
 //!
-//! The theorem with all terms, its proof, its sources and what is guaranteed stand in the guide: [`bound`].
+//! The theorem with all terms, its proof, its sources and what is guaranteed stand in [`docs::bound`](crate::docs::bound).
 //!
 //! | file or folder | content |
 //! |---|---|
-//! | `primal_dual_pair` | function and flux of a discrete solution: where the parts below meet |
+//! | `primal_dual_pair` | function and flux of a discrete solution: where the files below meet |
 //! | `admissible_function` | `v`: means of the values at nodes, moved into the constraints |
 //! | `flux` | `q` by its numbers in cells |
 //! | `patches` | the flux of conforming functions, around each vertex |
@@ -24,8 +24,6 @@
 //! | `guarantee` | which terms are proven |
 //! | `estimate` | the bound from the sums |
 //! | `marking`, `figures` | cells to refine; the figures of a report |
-//!
-//! [`bound`]: crate::guide::bound
 
 mod admissible_function;
 mod contact_forces;
@@ -42,7 +40,7 @@ mod primal_dual_pair;
 mod quadratics;
 mod shared_multipliers;
 
-pub use estimate::{BoundParts, ErrorBound, Unproven};
+pub use estimate::{BoundTerms, ErrorBound, Unproven};
 pub use figures::{BoundFigures, TrueErrors};
 pub use flux::Flux;
 pub use primal_dual_pair::PrimalDualPair;

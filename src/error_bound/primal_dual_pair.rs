@@ -29,7 +29,7 @@ pub struct PrimalDualPair<const D: usize> {
     /// The values of the function `v` at the vertices of the mesh and, for degree two, after them at the
     /// midpoints of its edges, in the order of `mesh::Edges`: means of the values of the
     /// discrete solution in the cells around, with the coefficient as weights, Dirichlet values on the
-    /// Dirichlet part, moved into the constraints at all others.
+    /// Dirichlet boundary, moved into the constraints at all others.
     pub function: Vec<f64>,
     /// For degree two, by cell the numbers of its edges.
     pub edges: Vec<u32>,
@@ -50,8 +50,8 @@ impl<const D: usize> Discretisation<'_, D> {
     /// and one; inside cells the divergence balances load and multiplier tested with linear functions.
     ///
     /// Where obstacles bind, multipliers of cells are then exchanged for flux through their facets, and contact forces
-    /// of quadratics between facets, which makes mismatch and complementarity smaller: see the guide,
-    /// [`bound`](crate::guide::bound).
+    /// of quadratics between facets, which makes mismatch and complementarity smaller: see
+    /// [`docs::bound`](crate::docs::bound).
     ///
     /// # Errors
     /// [`NoBound`].
@@ -226,7 +226,7 @@ impl<const D: usize> Space<'_, D> {
         Ok(sum)
     }
 
-    /// Sets the fluxes through the boundary but for its Dirichlet part: Neumann data and contact forces. Residuals there
+    /// Sets the fluxes through the boundary but for the Dirichlet boundary: Neumann data and contact forces. Residuals there
     /// are multipliers, and sums of patches are rounding, which may have the wrong sign for a contact force.
     fn set_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut Flux<D>) -> Result<(), NoBound> {
         for f in self.mesh.boundary().iter().filter(|f| f.condition != BoundaryCondition::Dirichlet)
@@ -263,7 +263,7 @@ impl<const D: usize> Space<'_, D> {
         let mut residual = [0.0; 4];
         for (i, residual) in residual.iter_mut().enumerate().take(D + 1) {
             for j in 0..=D {
-                // gradients sum to zero: without the common part of the values a constant adds no rounding
+                // gradients sum to zero: without their common value a constant adds no rounding
                 *residual += scale * metric.products[i][j] * (values[j] - values[0])
                     + products[i][j] * values[j];
             }
@@ -273,7 +273,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The fluxes of the element of Crouzeix and Raviart, without those of Neumann data and contact. Of two cells that
-    /// both carry a part of the multiplier of their facet, or neither, each has half of it.
+    /// both carry a share of the multiplier of their facet, or neither, each has half of it.
     fn crouzeix_raviart_fluxes(
         &self,
         u: &[f64],
@@ -301,14 +301,14 @@ impl<const D: usize> Space<'_, D> {
                     self.coupled_neighbours().across(cell, local)
                 {
                     let facet = cell * (D + 1) + local;
-                    let across = other as usize * (D + 1) + there as usize;
+                    let facet_there = other as usize * (D + 1) + there as usize;
                     let act = map_entries([(cell, local), (other as usize, there as usize)], {
                         |(cell, local)| obstacles.act_in(cell, unknown_of_facet[local])
                     });
                     flux[facet] = match act {
-                        [true, false] => -own[across],
+                        [true, false] => -own[facet_there],
                         [false, true] => own[facet],
-                        _ => 0.5 * (own[facet] - own[across]),
+                        _ => 0.5 * (own[facet] - own[facet_there]),
                     };
                 }
             }

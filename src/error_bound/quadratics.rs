@@ -35,7 +35,7 @@ const MEAN_ROUNDING: f64 = 1e-12;
 pub(super) type Products = [[f64; 4]; 4];
 
 /// Load and multiplier of each unknown of each cell: the load less the reaction term of the discrete function, plus
-/// the multiplier less contact forces. Cells that share an unknown have a part of its multiplier each.
+/// the multiplier less contact forces. Cells that share an unknown have a share of its multiplier each.
 pub(super) struct CellLoads {
     /// By cell and unknown.
     pub values: Vec<f64>,

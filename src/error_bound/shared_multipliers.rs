@@ -34,7 +34,7 @@ impl<const D: usize> Space<'_, D> {
         Some((0..n_cells * n).map(|k| number((k / n, k % n))).collect())
     }
 
-    /// Adds multipliers, by unknown, to what cells have: of a node each cell whose obstacle acts there has the part of
+    /// Adds multipliers, by unknown, to what cells have: of a node each cell whose obstacle acts there has the share of
     /// its volume, among those in contact if there are any.
     pub(super) fn add_multipliers(
         &self,
@@ -47,7 +47,7 @@ impl<const D: usize> Space<'_, D> {
         let volume = |cell: usize| self.mesh.geometry(cell).volume;
         let held: Vec<bool> = self.cells_in_contact(bounds, contact);
         let n_nodes = numbers.iter().max().map_or(0, |&most| most as usize + 1);
-        // of broken functions, copies that no obstacle binds have no part
+        // of broken functions, copies that no obstacle binds have no share
         let acts = |cell: usize, i: usize| {
             let is_bound = || bounds[self.dofs.of(cell, i)].is_inequality();
             obstacles.act_in(cell, i) && (!self.broken || is_bound())

@@ -41,9 +41,9 @@ pub struct InteriorPenalty {
 }
 
 impl InteriorPenalty {
-    /// Which part of the symmetric form's bound is enough: the incomplete form has half of the
+    /// Which share of the symmetric form's bound is enough: the incomplete form has half of the
     /// consistency terms, and their square counts.
-    fn part(&self) -> f64 {
+    fn share_of_bound(&self) -> f64 {
         if self.symmetry == Symmetry::Incomplete { 0.25 } else { 1.0 }
     }
 }
@@ -56,7 +56,7 @@ impl<const D: usize> FacetForm<D> for InteriorPenalty {
     fn penalty(&self, facet: &FacetView<D>) -> f64 {
         match self.rule {
             PenaltyRule::Proven(margin) => {
-                ((1.0 + margin) * self.part()) * proven_bound::<D>(self.degree, facet)
+                ((1.0 + margin) * self.share_of_bound()) * proven_bound::<D>(self.degree, facet)
             }
             PenaltyRule::Diameter(sigma) => sigma * facet.coefficient() / facet.diameter(),
         }
@@ -67,7 +67,7 @@ impl<const D: usize> FacetForm<D> for InteriorPenalty {
             PenaltyRule::Diameter(sigma) => (Some(sigma), "sigma / h_F".to_owned()),
         };
         let parameters = PenaltyParameters { sigma, eta: None, rule: Some(rule) };
-        let theory = FormTheory::new().with_parameters(parameters);
+        let theory = FormTheory::default().with_parameters(parameters);
         let theory = match self.rule {
             PenaltyRule::Proven(margin) => theory.with_margin(margin),
             PenaltyRule::Diameter(_) => theory,
@@ -80,8 +80,9 @@ impl<const D: usize> FacetForm<D> for InteriorPenalty {
                 theory.with_coercivity(sigma > 0.0)
             }
             (PenaltyRule::Proven(margin), _) if margin >= 0.0 => theory.with_coercivity(true),
-            _ => theory
-                .with_least_penalty(|facet| self.part() * proven_bound::<D>(self.degree, facet)),
+            _ => theory.with_least_penalty(|facet| {
+                self.share_of_bound() * proven_bound::<D>(self.degree, facet)
+            }),
         }
     }
     fn is_uniform(&self) -> bool {

@@ -44,7 +44,7 @@ impl<const D: usize> FacetForm<D> for LocalFluxes {
         let beta = if self.switch { "one-sided flux" } else { "mean flux" };
         let rule = Some(format!("eta / h_F, {beta}"));
         let sigma = Some(self.eta);
-        FormTheory::new()
+        FormTheory::default()
             .with_parameters(PenaltyParameters { sigma, eta: None, rule })
             .with_coercivity(self.eta > 0.0)
     }

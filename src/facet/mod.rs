@@ -14,28 +14,28 @@
 //!
 //! The lift `r(v)` of a jump is the piecewise polynomial field, of degree one less than the element
 //! unless the form asks for another, with `int r(v) . tau = - sum_F int_F [v] {tau . n}`, the mean with the average weights of the
-//! flux; `r_F(v)` is the part of one facet.
+//! flux; `r_F(v)` is the lift of one facet.
 
 mod dirichlet;
+mod facet_lifts;
+mod form_theory;
 mod interior_penalty;
-mod lifting;
 mod local_fluxes;
 mod none;
 mod over_penalty;
 mod parameters;
 mod proven;
-mod theory;
 mod view;
 
 pub use dirichlet::DirichletBy;
+pub use facet_lifts::{FacetLifts, Lifts};
+pub use form_theory::FormTheory;
 pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
-pub use lifting::{FacetLifts, Lifts};
 pub use local_fluxes::LocalFluxes;
 pub use none::NoFacets;
-pub use over_penalty::{OverPenalty, WeightRule};
+pub use over_penalty::{Eta, OverPenalty, WeightRule};
 pub use parameters::PenaltyParameters;
 pub use proven::proven_bound;
-pub use theory::FormTheory;
 pub use view::{FacetKind, FacetView, Side};
 
 /// A moment of the jump and of the mean normal flux of a function on a facet.
@@ -54,7 +54,7 @@ pub struct Trace {
 ///
 /// From the one formula come the matrix, the load of Dirichlet data (which enter as the trial trace
 /// `{ jump: u_D, flux: 0 }`: wherever `[u]` stands on a Dirichlet facet, `[u] - u_D` is meant) and
-/// the penalty part of the norm (the formula at traces without flux).
+/// the penalty terms of the norm (the formula at traces without flux).
 pub trait FacetForm<const D: usize>: Send + Sync {
     /// Whether there is a form at all, by default true. Without one, facets are not even built.
     fn couples(&self) -> bool {
@@ -104,10 +104,13 @@ pub trait FacetForm<const D: usize>: Send + Sync {
         let _ = moment;
         1.0
     }
-    /// What theory and reports say of the form: parameters in force, the least penalty. By default nothing: the matrix
-    /// is then tested for definiteness before a solve, and reports state no penalty.
+    /// What is known of the form besides its formula; nothing of it enters matrix or load. A form may leave it out: its
+    /// matrix is then tested for definiteness before an inequality is solved, and reports state no penalty factor. A form
+    /// that theory proves coercive says so and saves the test, `FormTheory::default().with_coercivity(true)`; one whose
+    /// penalty must exceed a bound gives the bound, `FormTheory::default().with_least_penalty(|facet| ..)`, and a warning
+    /// says where it is not kept.
     fn theory(&self) -> FormTheory<'_, D> {
-        FormTheory::new()
+        FormTheory::default()
     }
     /// Whether the formula is the same on all interior facets and the same on all Dirichlet facets,
     /// but for the penalty weight; by default false. It is then read off once for each kind, not once for each facet,

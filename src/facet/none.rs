@@ -17,7 +17,7 @@ impl<const D: usize> FacetForm<D> for NoFacets {
         0.0
     }
     fn theory(&self) -> FormTheory<'_, D> {
-        FormTheory::new().with_coercivity(true)
+        FormTheory::default().with_coercivity(true)
     }
     #[inline(always)]
     fn integrand(&self, _: &FacetView<D>, _: Trace, _: Trace, _: f64) -> f64 {

@@ -1,6 +1,17 @@
 //! The weak over-penalty.
 
 use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace};
+use crate::mesh::Mesh;
+
+/// How the factor of the over-penalty is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Eta {
+    /// This number times the domain's diameter to the power `2k`, `k` the element's degree:
+    /// invariant under scaling.
+    Dimensionless(f64),
+    /// This number as it stands, of the dimension of a length to the power `2k`.
+    Absolute(f64),
+}
 
 /// How the over-penalty gets its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +41,21 @@ pub struct OverPenalty {
     pub rule: WeightRule,
     /// The largest cell diameter, for the anisotropic rule.
     pub mesh_size: f64,
+}
+
+impl OverPenalty {
+    /// The over-penalty on a mesh, for elements that contain all polynomials of this degree.
+    pub fn new<const D: usize>(eta: Eta, rule: WeightRule, degree: usize, mesh: &Mesh<D>) -> Self {
+        let eta = match eta {
+            Eta::Absolute(eta) => eta,
+            Eta::Dimensionless(factor) => factor * mesh.domain_diameter().powi(2 * degree as i32),
+        };
+        let mesh_size = match rule {
+            WeightRule::Isotropic => f64::NAN,
+            WeightRule::Anisotropic => mesh.mesh_size(),
+        };
+        Self { eta, degree, rule, mesh_size }
+    }
 }
 
 impl<const D: usize> FacetForm<D> for OverPenalty {
@@ -68,7 +94,7 @@ impl<const D: usize> FacetForm<D> for OverPenalty {
             WeightRule::Anisotropic => format!("eta / (h^{} l_F)", 2 * k),
         };
         let eta = Some(self.eta);
-        FormTheory::new()
+        FormTheory::default()
             .with_parameters(PenaltyParameters { sigma: None, eta, rule: Some(rule) })
             .with_coercivity(self.eta > 0.0)
     }

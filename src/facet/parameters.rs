@@ -14,11 +14,6 @@ pub struct PenaltyParameters {
 }
 
 impl PenaltyParameters {
-    /// No factor in force.
-    #[must_use]
-    pub const fn none() -> Self {
-        Self { sigma: None, eta: None, rule: None }
-    }
     /// Sets the interior penalty factor.
     #[must_use]
     pub const fn with_sigma(mut self, sigma: f64) -> Self {

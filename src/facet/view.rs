@@ -24,7 +24,7 @@ pub struct Side {
 pub enum FacetKind {
     /// Between two cells.
     Interior,
-    /// On the Dirichlet part of the boundary.
+    /// On the Dirichlet boundary.
     Dirichlet,
 }
 
@@ -56,7 +56,7 @@ impl<'a, const D: usize> FacetView<'a, D> {
     ) -> Self {
         Self { mesh, half, measure, here, there }
     }
-    /// Whether the facet lies between two cells or on the Dirichlet part of the boundary.
+    /// Whether the facet lies between two cells or on the Dirichlet boundary.
     #[inline(always)]
     pub fn kind(&self) -> FacetKind {
         if self.there.is_some() { FacetKind::Interior } else { FacetKind::Dirichlet }

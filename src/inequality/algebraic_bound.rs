@@ -86,7 +86,7 @@ fn multiplier<T: Real>(bound: &Bound<T>, value: T, residual: f64) -> f64 {
     }
 }
 
-/// The part of the residual `b - A u` of an unknown that no multiplier of the right sign balances: zero if the unknown
+/// The residual `b - A u` of an unknown unless a multiplier of the right sign balances it: zero if the unknown
 /// is fixed, or at a bound where its multiplier has the right sign; else `residual`.
 fn unbalanced_residual<T: Real>(bound: &Bound<T>, value: T, residual: f64) -> f64 {
     let is_balanced = bound.fixed_value().is_some() || multiplier(bound, value, residual) >= 0.0;

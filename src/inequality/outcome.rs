@@ -40,6 +40,8 @@ pub enum Outcome {
     Malformed,
     /// The factors do not fit into memory.
     OutOfMemory,
+    /// The solve was not begun: that on the next coarser level took longer than was allowed.
+    TimeLimit,
 }
 
 impl Outcome {
@@ -61,6 +63,7 @@ impl Outcome {
             Outcome::Infeasible => "infeasible",
             Outcome::Malformed => "malformed",
             Outcome::OutOfMemory => "out-of-memory",
+            Outcome::TimeLimit => "time-limit",
         }
     }
     /// Whether the values of a solution with this outcome are an iterate; otherwise they have no meaning.
@@ -75,6 +78,7 @@ impl Outcome {
                 | Outcome::OutOfRange
                 | Outcome::Infeasible
                 | Outcome::Malformed
+                | Outcome::TimeLimit
         )
     }
     /// The outcome of a solve that corresponds to an error of the data; `None` for errors of another kind.
@@ -134,6 +138,7 @@ impl Outcome {
                 "sizes of matrix, load, bounds and locations do not match, an entry of the matrix is out of place, or a matrix declared symmetric is not"
             }
             Outcome::OutOfMemory => "the factors of the matrix do not fit into memory",
+            Outcome::TimeLimit => "not run: the next coarser level took longer than the limit",
         }
     }
 }

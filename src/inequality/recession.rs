@@ -11,7 +11,7 @@ use super::{InitialGuess, Outcome, Solution};
 use crate::algebra::{Bound, FreeBody, Inequality, RESULTANT_ROUNDING};
 use crate::real::Real;
 
-/// What the load does to a body.
+/// The effect of the load on a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Motion {
     /// It presses the body against lower bounds.

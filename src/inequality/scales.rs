@@ -73,25 +73,25 @@ impl Sums {
     ) -> Self {
         let Inequality { load, bounds, penalised, dirichlet_energy, .. } = inequality;
         let mut sums = Sums::default();
-        for part in map_chunks(u.len(), |range| {
-            let mut part = Sums::default();
+        for chunk in map_chunks(u.len(), |range| {
+            let mut chunk = Sums::default();
             for i in range.filter(|&i| owns(i)) {
                 let (x, c, d) = (u[i].to_f64(), load[i].to_f64(), diagonal(i));
                 let nearest = bounds[i].nearest(u[i]).to_f64();
-                part.max_norm = maximum(part.max_norm, maximum(x.abs(), nearest.abs()));
+                chunk.max_norm = maximum(chunk.max_norm, maximum(x.abs(), nearest.abs()));
                 let energy = x * (c - residual[i]);
-                part.energy += energy;
-                part.terms += energy.abs();
-                part.load_energy += c * c / d;
-                part.diagonal_energy += d * x * x;
+                chunk.energy += energy;
+                chunk.terms += energy.abs();
+                chunk.load_energy += c * c / d;
+                chunk.diagonal_energy += d * x * x;
             }
-            part
+            chunk
         }) {
-            sums.max_norm = maximum(sums.max_norm, part.max_norm);
-            sums.energy += part.energy;
-            sums.terms += part.terms;
-            sums.load_energy += part.load_energy;
-            sums.diagonal_energy += part.diagonal_energy;
+            sums.max_norm = maximum(sums.max_norm, chunk.max_norm);
+            sums.energy += chunk.energy;
+            sums.terms += chunk.terms;
+            sums.load_energy += chunk.load_energy;
+            sums.diagonal_energy += chunk.diagonal_energy;
         }
         if let Some(penalised) = penalised {
             // u.K u + p.(S^-1 p) = u.(c - r) - p.g, without the cancellation of penalties

@@ -43,7 +43,7 @@ pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
 pub(super) fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_formed: bool) -> bool {
     let n = if is_well_formed { inequality.size() } else { 0 };
     let load = if is_well_formed { inequality.assembled_load() } else { Cow::Borrowed(&[][..]) };
-    let parts = map_chunks(n, |range| {
+    let chunks = map_chunks(n, |range| {
         range.filter(|&i| inequality.owns(i)).fold([0.0_f64; 2], |largest, i| {
             let (bound, load) = (&inequality.bounds[i], load[i]);
             let sqrt_diagonal = positive_diagonal(inequality, i).sqrt();
@@ -56,7 +56,7 @@ pub(super) fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_for
         })
     });
     let mut largest =
-        parts.iter().fold([0.0; 2], |[a, b]: [f64; 2], part| [a.max(part[0]), b.max(part[1])]);
+        chunks.iter().fold([0.0; 2], |[a, b]: [f64; 2], chunk| [a.max(chunk[0]), b.max(chunk[1])]);
     if let Some(distribution) = inequality.distribution() {
         distribution.largest(&mut largest);
     }

@@ -1,4 +1,4 @@
-//! What the laws need of a matrix.
+//! Functions of a matrix that the laws need.
 
 use crate::algebra::{Inequality, SparseMatrix};
 

@@ -27,6 +27,21 @@
 //! let error = check_scheme::<2>(&too_weak).unwrap_err();
 //! assert!(error.to_string().starts_with("coercivity: "));
 //! ```
+//!
+//! In the tests of a crate with a scheme of its own, here the library's:
+//!
+//! ```no_run
+//! use unilateral::kit::{KitError, check_scheme};
+//! use unilateral::prelude::Sipg;
+//!
+//! #[test]
+//! fn the_scheme_obeys_the_laws() -> Result<(), KitError> {
+//!     check_scheme::<1>(&Sipg::default())?;
+//!     check_scheme::<2>(&Sipg::default())?;
+//!     check_scheme::<3>(&Sipg::default())?;
+//!     Ok(())
+//! }
+//! ```
 
 mod coercivity;
 mod consistency;

@@ -54,8 +54,8 @@ impl<const D: usize> Admissible<'_, D> {
         (value, gradient)
     }
     /// Whether the function has the value of an obstacle at some of the corners of its cell and not at all of them:
-    /// the obstacle may exceed it in a part of the cell that is small.
-    pub fn touches_in_part(&self, corner: impl Fn(usize) -> Point<D>) -> bool {
+    /// the obstacle may exceed it in a piece of the cell that is small.
+    pub fn touches_in_piece(&self, corner: impl Fn(usize) -> Point<D>) -> bool {
         self.bounds.iter().flatten().any(|bound| {
             let touches = |k: &usize| bound.at(&corner(*k)) == self.values[*k];
             (1..=D).contains(&(0..D + 1).filter(touches).count())

@@ -21,7 +21,7 @@ use crate::real::{Point, maximum};
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
 /// limit what it measures. Cells that the exact free boundary or a jump of load, coefficient or reaction
 /// cuts are divided. For basis functions of degree `b` the degree of the rule is at least `2 b + 2`, that
-/// of the square of the largest part of the error.
+/// of the square of the largest term of the error.
 const fn error_degree(dimension: usize) -> usize {
     match dimension {
         1 | 2 => 19,
@@ -30,7 +30,7 @@ const fn error_degree(dimension: usize) -> usize {
 }
 
 /// Degrees of two rules with fewer points for basis functions of some degree. Both are exact for the square of
-/// the largest part of the error.
+/// the largest term of the error.
 const fn lower_degrees(dimension: usize, basis_degree: usize) -> Option<[usize; 2]> {
     match (dimension, basis_degree) {
         (2 | 3, 1) => Some([5, 6]),
@@ -41,7 +41,7 @@ const fn lower_degrees(dimension: usize, basis_degree: usize) -> Option<[usize; 
 
 /// Two rules agree in a cell if their integrals differ by this share. Let `s` be the diameter divided by the length
 /// over which derivatives of the solution change. The square of the error in L2 of functions of degree `b` has a
-/// leading part of degree `2 b + 2`, so that rules of degrees `2 b + 3` and `2 b + 4` leave shares of the sizes `s^2`
+/// leading term of degree `2 b + 2`, so that rules of degrees `2 b + 3` and `2 b + 4` leave shares of the sizes `s^2`
 /// and `s^3`, and smaller ones of the squares of gradients: where both agree, the rule of higher degree, which counts,
 /// leaves about 1e-6.
 const AGREEMENT: f64 = 1e-4;
@@ -63,7 +63,7 @@ const MEAN_DEGREE: usize = 5;
 /// Whether a cell counts in a sum over cells.
 pub(crate) type Counts<'c> = &'c (dyn Fn(usize) -> bool + Sync);
 
-/// What the errors of all cells read.
+/// The data that the errors of all cells read.
 struct Measure<'m, 'r, 'f, const D: usize> {
     exact: &'m Reference<'r, D>,
     /// The rule of highest degree.
@@ -117,7 +117,7 @@ impl<const D: usize> Space<'_, D> {
         let measure = Measure { exact, table, lower, cut_rules, kinks, nodes, u, function };
         let n_cells = self.mesh.n_cells();
         // partial sums are added in order, so the result does not depend on threads
-        let parts = cells::map(n_cells, &|cells: Range<usize>| {
+        let chunks = cells::map(n_cells, &|cells: Range<usize>| {
             let (mut sum, mut open) = (SquaredErrors::default(), Vec::new());
             for cell in cells.filter(|&cell| counts(cell)) {
                 let [low, high] = self.squares_in(&measure, cell, true)?;
@@ -130,18 +130,18 @@ impl<const D: usize> Space<'_, D> {
             Ok::<_, Error>((sum, open))
         });
         let (mut total, mut open) = (SquaredErrors::default(), Vec::new());
-        for part in parts {
-            let (sum, of_part) = part?;
+        for chunk in chunks {
+            let (sum, of_chunk) = chunk?;
             total.add(&sum.squares);
             total.max = maximum(total.max, sum.max);
-            open.extend(of_part);
+            open.extend(of_chunk);
         }
         let mut estimate = total;
         open.iter().for_each(|(_, _, high)| estimate.add(high));
         let n_counted = (0..n_cells).filter(|&cell| counts(cell)).count();
         let negligible =
             map_entries(estimate.squares, |square| NEGLIGIBLE * square / n_counted as f64);
-        let parts = cells::map(open.len(), &|range: Range<usize>| {
+        let chunks = cells::map(open.len(), &|range: Range<usize>| {
             let mut sum = SquaredErrors::default();
             for (cell, low, high) in &open[range] {
                 match differ(low, high, &negligible) {
@@ -151,13 +151,13 @@ impl<const D: usize> Space<'_, D> {
             }
             Ok::<_, Error>(sum)
         });
-        for part in parts {
-            total.add(&part?.squares);
+        for chunk in chunks {
+            total.add(&chunk?.squares);
         }
         Ok(total)
     }
 
-    /// What the error is integrated with in a cell.
+    /// The data with which the error is integrated in a cell.
     fn integrand_in<'c, 'f: 'c>(
         &'c self,
         of: &'c Measure<'_, '_, 'f, D>,
@@ -213,7 +213,7 @@ impl<const D: usize> Space<'_, D> {
         if !try_lower {
             return by_rule(&of.table).map(|squares| [squares; 2]);
         }
-        let on_parts = of.cut_rules.as_ref().and_then(|rules| {
+        let on_pieces = of.cut_rules.as_ref().and_then(|rules| {
             let level = of.kinks[self.mesh.region(cell)].level_in(&rules[0], self.mesh, cell)?;
             if !rules[0].cuts(self.mesh, cell, &level) {
                 return None;
@@ -235,16 +235,18 @@ impl<const D: usize> Space<'_, D> {
             };
             Some(integrand.checked(sums, points))
         });
-        if let Some(squares) = on_parts {
+        if let Some(squares) = on_pieces {
             return squares.map(|squares| [squares; 2]);
         }
         let corner = |k: usize| self.mesh.vertices()[self.mesh.cell(cell)[k] as usize];
-        let touches_in_part = || {
+        let touches_in_piece = || {
             let admissible = integrand.admissible.as_ref();
-            admissible.is_some_and(|function| function.touches_in_part(corner))
+            admissible.is_some_and(|function| function.touches_in_piece(corner))
         };
         match &of.lower {
-            Some([low, high]) if !may_jump(integrand.coefficient, corner) && !touches_in_part() => {
+            Some([low, high])
+                if !may_jump(integrand.coefficient, corner) && !touches_in_piece() =>
+            {
                 Ok([by_rule(low)?, by_rule(high)?])
             }
             _ => by_rule(&of.table).map(|squares| [squares; 2]),

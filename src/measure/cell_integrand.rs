@@ -20,7 +20,7 @@ pub(super) struct LocalFunction<const D: usize> {
     pub slope: Option<Point<D>>,
 }
 
-/// What the error is integrated with in a cell.
+/// The data with which the error is integrated in a cell.
 pub(super) struct CellIntegrand<'a, const D: usize> {
     pub exact: &'a Reference<'a, D>,
     pub cell: usize,

@@ -18,7 +18,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// 1/2 int alpha |grad u|^2 + 1/2 int c u^2 - int f u - int_N q u
     /// ```
     ///
-    /// with the gradient in each cell and the Neumann part `N`. No facet form enters, so that a function
+    /// with the gradient in each cell and the Neumann boundary `N`. No facet form enters, so that a function
     /// has the same energy in every scheme; the minimum over the admissible functions is that of the
     /// continuous problem, and a discontinuous function may lie below it. Coefficient, reaction and loads
     /// are integrated by the rules of the assembly.
@@ -59,7 +59,7 @@ impl<const D: usize> Space<'_, D> {
         let table = self.cell_table(rule);
         let n = self.per_cell();
         // partial sums are added in order, so the result does not depend on threads
-        let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+        let chunks = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut sum = 0.0;
             for cell in cells.filter(|&cell| counts(cell)) {
                 let geometry = self.mesh.geometry(cell);
@@ -71,7 +71,7 @@ impl<const D: usize> Space<'_, D> {
                     let slope = |k: usize| -> f64 {
                         (0..n).map(|i| local[i] * basis.derivatives[i][k]).sum()
                     };
-                    // the gradients of barycentric coordinates sum to zero: without the common part of
+                    // the gradients of barycentric coordinates sum to zero: without their common value
                     // the slopes a constant adds no rounding
                     let gradient = (1..=D).fold(Point::zeros(), |sum: Point<D>, k| {
                         sum + geometry.gradient(k) * (slope(k) - slope(0))
@@ -96,6 +96,6 @@ impl<const D: usize> Space<'_, D> {
             }
             sum
         });
-        Ok(parts.iter().sum())
+        Ok(chunks.iter().sum())
     }
 }

@@ -47,9 +47,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn errors_against(&self, exact: &Exact<D>, u: &[f64]) -> Result<Errors, Error> {
-        compiled!(const D: fn(&Discretisation<'_, D>, &Exact<D>, &[f64]) -> Result<Errors, Error>
-                = |of, exact, u| Ok(of.squares_beside(exact, Some(u), None, &|_| true)?.norms())
-        )(self, exact, u)
+        Ok(self.squared_errors(exact, u, &|_| true)?.norms())
     }
 
     /// Squares of the errors of [`Discretisation::errors_against`] over the cells for which `counts` is true and the
@@ -143,14 +141,14 @@ impl<const D: usize> Space<'_, D> {
             }
             Ok(())
         };
-        let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+        let chunks = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let (mut terms, mut counted) = (Vec::new(), cells.filter(|&cell| counts(cell)));
             counted.try_for_each(|cell| terms_of(cell, &mut terms)).map(|()| terms)
         });
         // added in the order of facets, for every number of threads
         let mut total = 0.0;
-        for part in parts {
-            total = part?.into_iter().fold(total, |sum, term| sum + term);
+        for chunk in chunks {
+            total = chunk?.into_iter().fold(total, |sum, term| sum + term);
         }
         Ok(total)
     }

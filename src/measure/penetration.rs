@@ -1,4 +1,4 @@
-//! How far a discrete function lies beyond obstacles and gaps, between its nodes too.
+//! The distance by which a discrete function lies beyond obstacles and gaps, between its nodes too.
 
 use std::ops::Range;
 
@@ -22,7 +22,7 @@ const SHARE_OF_DISTANCE: f64 = 0.1;
 /// With affine data there is one from this share of the largest value of the function on.
 const SHARE_OF_VALUE: f64 = 1e-6;
 
-/// What is below this many units of rounding of the size of the function is rounding.
+/// A distance below this many units of rounding of the size of the function is rounding.
 const ROUNDINGS: f64 = 1e3;
 
 /// The names of lower obstacles, upper obstacles and gaps.
@@ -40,7 +40,7 @@ pub struct Penetration {
     largest_value: f64,
     /// For each of the three whether its data, and all others of the problem, are known to be affine.
     is_affine: [bool; 3],
-    /// What is below this is rounding.
+    /// A distance below this is rounding.
     rounding: f64,
 }
 
@@ -207,7 +207,7 @@ impl<const D: usize> Space<'_, D> {
         largest * self.mesh.domain_diameter().powi(2)
     }
 
-    /// What a cell adds.
+    /// Adds the distances in a cell.
     fn add_penetration(
         &self,
         cell: usize,
@@ -233,7 +233,7 @@ impl<const D: usize> Space<'_, D> {
         Ok(())
     }
 
-    /// What a contact facet adds.
+    /// Adds the distances on a contact facet.
     fn add_penetration_on(
         &self,
         (cell, _): HalfFacet,
@@ -284,7 +284,7 @@ impl<const D: usize> Space<'_, D> {
     /// Whether all data but obstacles and gaps are known to be affine.
     fn has_affine_data(&self) -> bool {
         let data = &self.data;
-        let has = |part| self.mesh.has_condition(part);
+        let has = |condition| self.mesh.has_condition(condition);
         // without Neumann data an exact solution gives the flux
         let is_known = data.neumann.is_given() || self.problem.exact.is_none();
         let flux_is_affine = data.neumann.every(&|flux| self.is_affine_degree(flux.degree()))

@@ -47,7 +47,7 @@ impl<const D: usize> Discretisation<'_, D> {
         for term in inequality.dirichlet_energy.iter().flat_map(|data| &data.terms) {
             load[term.unknown as usize] -= term.load;
         }
-        let parts = map_chunks(u.len(), |range| {
+        let chunks = map_chunks(u.len(), |range| {
             let (mut largest, mut sums) = (0.0, [0.0; 5]);
             for i in range.filter(|&i| inequality.owns(i)) {
                 let d = positive_diagonal(inequality, i);
@@ -59,8 +59,8 @@ impl<const D: usize> Discretisation<'_, D> {
             (largest, sums)
         });
         let (mut largest, mut sums) = ([0.0], [0.0; 5]);
-        for (of_part, terms) in parts {
-            largest[0] = maximum(largest[0], of_part);
+        for (of_chunk, terms) in chunks {
+            largest[0] = maximum(largest[0], of_chunk);
             sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
         }
         if let Some(distribution) = inequality.distribution() {

@@ -12,7 +12,7 @@ pub(super) type Squares = [f64; 4];
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SquaredErrors {
     pub(super) squares: Squares,
-    /// The facet part of the energy norm.
+    /// The facet terms of the energy norm.
     pub(super) of_facets: f64,
     /// Maximum over nodes.
     pub(super) max: f64,

@@ -112,7 +112,7 @@ pub enum MeshError {
     },
     /// Two cells contain one point.
     #[error(
-        "cells {first} and {second} overlap at {at}: parts of the mesh lie on each other; leave one of them out, or mesh their union"
+        "cells {first} and {second} overlap at {at}: bodies of the mesh lie on each other; leave one of them out, or mesh their union"
     )]
     OverlappingCells {
         /// The first of the two.
@@ -134,14 +134,16 @@ pub enum MeshError {
         /// How many facets of the boundary lie on others; zero if this one does not.
         coincident: usize,
     },
-    /// A facet is in two parts.
-    #[error("facet {vertices:?} is in two boundary parts, {first} and {second}")]
-    FacetInTwoParts {
+    /// Two conditions are given for a facet.
+    #[error(
+        "facet {vertices:?} is in two groups, {first} and {second}, with different boundary conditions"
+    )]
+    FacetWithTwoConditions {
         /// Vertices of the facet.
         vertices: Vec<u32>,
-        /// The first part.
+        /// The first condition.
         first: &'static str,
-        /// The second part.
+        /// The second condition.
         second: &'static str,
         /// Position of the second mention in the list of tagged facets.
         tag: usize,
@@ -171,7 +173,7 @@ pub enum MeshError {
     },
     /// Neither the name of a boundary group nor the problem says what holds there.
     #[error(
-        "nothing says what holds on boundary group {group}: give the problem data there (dirichlet_on, neumann_on, signorini_on) and its parts to the mesh (Problem::bind_boundary), or name the group dirichlet, neumann or contact{hint}"
+        "nothing says what holds on boundary group {group}: give the problem data there (dirichlet_on, neumann_on, signorini_on) and bind it to the mesh (Problem::bind_boundary), or name the group dirichlet, neumann or contact{hint}"
     )]
     UndecidedGroup {
         /// The names of the group.
@@ -204,13 +206,14 @@ fn remedy(coincident: usize) -> String {
 }
 
 /// What to do with facets that lie on each other.
-pub(crate) const UNITE: &str = "let parts that were meshed apart share their nodes (in Gmsh by BooleanFragments or Coherence before meshing)";
+pub(crate) const UNITE: &str = "let bodies that were meshed apart share their nodes (in Gmsh by BooleanFragments or Coherence before meshing)";
 
 impl MeshError {
-    /// The error for a boundary group of undecided part with these names.
+    /// The error for a boundary group of undecided condition with these names.
     pub(crate) fn undecided(names: &[String]) -> Self {
         let meant = |name: &String| BoundaryCondition::from_name(&name.trim().to_lowercase());
-        let hint = names.iter().find_map(meant).map(|part| format!("; write {}", part.name()));
+        let hint =
+            names.iter().find_map(meant).map(|condition| format!("; write {}", condition.name()));
         let names: Vec<String> = names.iter().map(excerpt).collect();
         Self::UndecidedGroup { group: names.join(", "), hint: hint.unwrap_or_default() }
     }
@@ -231,7 +234,9 @@ impl MeshError {
     /// The position in the list of tagged facets of the facet in the message.
     pub fn tagged_facet(&self) -> Option<usize> {
         match self {
-            Self::FacetInTwoParts { tag, .. } | Self::NotABoundaryFacet { tag, .. } => Some(*tag),
+            Self::FacetWithTwoConditions { tag, .. } | Self::NotABoundaryFacet { tag, .. } => {
+                Some(*tag)
+            }
             _ => None,
         }
     }

@@ -41,15 +41,15 @@ pub struct Neighbours {
     per_cell: usize,
 }
 
-/// Codes from here on are boundary parts; codes below are half-facets.
+/// Codes from here on are boundary conditions; codes below are half-facets.
 const BOUNDARY: u32 = u32::MAX - 3;
-/// Neither a second cell nor a boundary part: not known yet, or cut.
+/// Neither a second cell nor a boundary condition: not known yet, or cut.
 const UNKNOWN: u32 = u32::MAX;
 /// Largest number of cells the codes can name.
 pub(super) const CELL_LIMIT: usize = (BOUNDARY as usize) / 4;
 
-fn part_code(part: BoundaryCondition) -> u32 {
-    BOUNDARY + part as u32
+fn boundary_code(condition: BoundaryCondition) -> u32 {
+    BOUNDARY + condition as u32
 }
 
 /// The code of a half-facet: four times the cell plus the number of the facet in it.
@@ -110,12 +110,12 @@ impl Neighbours {
         let codes = &self.codes[cell * self.per_cell..(cell + 1) * self.per_cell];
         codes.iter().filter(|code| **code < BOUNDARY).map(|code| (code >> 2) as usize)
     }
-    /// Whether a facet has neither a second cell nor a boundary part yet.
+    /// Whether a facet has neither a second cell nor a boundary condition yet.
     pub(super) fn is_unmatched(&self, cell: usize, local: usize) -> bool {
         self.codes[cell * self.per_cell + local] == UNKNOWN
     }
-    pub(super) fn set(&mut self, cell: usize, local: usize, part: BoundaryCondition) {
-        self.codes[cell * self.per_cell + local] = part_code(part);
+    pub(super) fn set(&mut self, cell: usize, local: usize, condition: BoundaryCondition) {
+        self.codes[cell * self.per_cell + local] = boundary_code(condition);
     }
 }
 
@@ -234,9 +234,9 @@ impl Facets {
             }
         }
         let mut starts = [0, half_facets.len(), 0, 0, 0, 0];
-        for (k, part) in BoundaryCondition::ALL.into_iter().enumerate() {
-            let of_part = mesh.boundary().iter().filter(|f| f.condition == part);
-            half_facets.extend(of_part.map(|f| {
+        for (k, condition) in BoundaryCondition::ALL.into_iter().enumerate() {
+            let facets = mesh.boundary().iter().filter(|f| f.condition == condition);
+            half_facets.extend(facets.map(|f| {
                 let code = half_facet_code(f.cell as usize, f.local as usize);
                 [code, code]
             }));
@@ -264,9 +264,9 @@ impl Facets {
     pub fn interior(&self) -> Range<usize> {
         self.starts[0]..self.starts[1]
     }
-    /// Numbers of the facets of a part of the boundary.
-    pub fn part(&self, part: BoundaryCondition) -> Range<usize> {
-        self.starts[part as usize + 1]..self.starts[part as usize + 2]
+    /// Numbers of the facets of the boundary on which a condition holds.
+    pub fn boundary(&self, condition: BoundaryCondition) -> Range<usize> {
+        self.starts[condition as usize + 1]..self.starts[condition as usize + 2]
     }
     /// Numbers of the facets beyond which the cells of another part of the mesh lie.
     pub fn cut(&self) -> Range<usize> {

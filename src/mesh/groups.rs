@@ -6,13 +6,13 @@
 
 use super::boundary::BoundaryCondition;
 
-/// The names that a set of boundary facets has in common, and its part of the boundary.
+/// The names that a set of boundary facets has in common, and the condition that holds on them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct BoundaryGroup {
     /// The names.
     pub names: Vec<String>,
-    /// The part; none as long as neither a name (`dirichlet`, `neumann`, `contact`) nor a problem
+    /// The condition; none as long as neither a name (`dirichlet`, `neumann`, `contact`) nor a problem
     /// decides.
     pub condition: Option<BoundaryCondition>,
 }
@@ -29,7 +29,7 @@ pub(in crate::mesh) struct Groups {
 }
 
 impl Groups {
-    /// One region without names, and boundary groups of one name each with these parts.
+    /// One region without names, and boundary groups of one name each with these conditions.
     pub fn of_boundary(boundary: impl IntoIterator<Item = (String, BoundaryCondition)>) -> Self {
         let group =
             |(name, condition)| BoundaryGroup { names: vec![name], condition: Some(condition) };

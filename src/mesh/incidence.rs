@@ -20,9 +20,9 @@ const BLOCKS_PER_TASK: usize = 16;
 /// Fewest numbers worth a range of their own.
 const LEAST: usize = 256;
 
-/// Numbers after which scratch memory is used again, and the most parts that this makes of a range.
-const PART: usize = 1 << 14;
-const MOST_PARTS: usize = 16;
+/// Numbers after which scratch memory is used again, and the most pieces that this makes of a range.
+const PIECE: usize = 1 << 14;
+const MOST_PIECES: usize = 16;
 
 /// A range of numbers of each kind: one kind of vertices, or `K` kinds of unknowns by their owners.
 pub(crate) type Ranges<const K: usize> = [Range<u32>; K];
@@ -32,21 +32,21 @@ pub(crate) type Ranges<const K: usize> = [Range<u32>; K];
 pub(crate) fn partition<const K: usize>(all: &Ranges<K>) -> Vec<Ranges<K>> {
     let threads = rayon::current_num_threads();
     let most = if threads == 1 { 1 } else { 2 * threads };
-    parts(all, most.min(length(all) / LEAST))
+    pieces(all, most.min(length(all) / LEAST))
 }
 
 fn length<const K: usize>(ranges: &Ranges<K>) -> usize {
     ranges.iter().map(|range| range.len()).sum()
 }
 
-/// Cuts ranges into this many parts.
-fn parts<const K: usize>(ranges: &Ranges<K>, n: usize) -> Vec<Ranges<K>> {
+/// Cuts ranges into this many pieces.
+fn pieces<const K: usize>(ranges: &Ranges<K>, n: usize) -> Vec<Ranges<K>> {
     let n = n.max(1);
-    let share = |range: &Range<u32>, part: usize| {
-        range.start + (range.len() as u64 * part as u64 / n as u64) as u32
+    let share = |range: &Range<u32>, piece: usize| {
+        range.start + (range.len() as u64 * piece as u64 / n as u64) as u32
     };
-    let part = |p| ranges.each_ref().map(|range| share(range, p)..share(range, p + 1));
-    (0..n).map(part).collect()
+    let piece = |p| ranges.each_ref().map(|range| share(range, p)..share(range, p + 1));
+    (0..n).map(piece).collect()
 }
 
 /// What the numbers of a cell are. Constants unroll the loops over them.
@@ -180,15 +180,15 @@ impl<const K: usize> Blocks<K> {
     fn cells(block: usize, n_cells: usize) -> Range<usize> {
         block * BLOCK..((block + 1) * BLOCK).min(n_cells)
     }
-    /// Cuts a range into parts that one thread takes one after the other: as many as help, unless
-    /// cells have so distant numbers that many belong to several parts.
-    pub fn parts_of(&self, ranges: &Ranges<K>) -> Vec<Ranges<K>> {
-        let mut n = (length(ranges) / PART).clamp(1, MOST_PARTS);
+    /// Cuts a range into pieces that one thread takes one after the other: as many as help, unless
+    /// cells have so distant numbers that many belong to several pieces.
+    pub fn pieces_of(&self, ranges: &Ranges<K>) -> Vec<Ranges<K>> {
+        let mut n = (length(ranges) / PIECE).clamp(1, MOST_PIECES);
         let most = self.of(ranges).count() * 5 / 4;
         loop {
-            let parts = parts(ranges, n);
-            if n == 1 || parts.iter().map(|part| self.of(part).count()).sum::<usize>() <= most {
-                return parts;
+            let pieces = pieces(ranges, n);
+            if n == 1 || pieces.iter().map(|piece| self.of(piece).count()).sum::<usize>() <= most {
+                return pieces;
             }
             n /= 2;
         }

@@ -9,7 +9,6 @@ use super::groups::BoundaryGroup;
 use super::simplicial::Mesh;
 use super::validate::is_supported;
 use crate::input::excerpt;
-use crate::instances::compiled;
 
 impl<const D: usize> Mesh<D> {
     /// The names of each region, by number.
@@ -70,17 +69,6 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::GroupWithTwoConditions`].
     pub fn with_boundary_conditions(
-        self,
-        condition_of: &dyn Fn(&str) -> Option<BoundaryCondition>,
-    ) -> Result<Self, MeshError> {
-        compiled!(const D: fn(
-                Mesh<D>,
-                &dyn Fn(&str) -> Option<BoundaryCondition>,
-            ) -> Result<Mesh<D>, MeshError>
-                = Mesh::decide_conditions
-        )(self, condition_of)
-    }
-    fn decide_conditions(
         mut self,
         condition_of: &dyn Fn(&str) -> Option<BoundaryCondition>,
     ) -> Result<Self, MeshError> {
@@ -115,7 +103,7 @@ impl<const D: usize> Mesh<D> {
     ///
     /// # Errors
     /// [`MeshError::UndecidedGroup`].
-    pub fn check_boundary_parts(&self) -> Result<(), MeshError> {
+    pub fn check_boundary_conditions(&self) -> Result<(), MeshError> {
         match self.groups.boundary.iter().find(|group| group.condition.is_none()) {
             Some(group) => Err(MeshError::undecided(&group.names)),
             None => Ok(()),

@@ -136,7 +136,7 @@ fn midpoints<const D: usize>(edges: &Edges, cell: &[u32], numbers: &[u32]) -> [[
 }
 
 impl<const D: usize> Mesh<D> {
-    /// Cuts every cell into `2^D` of equal volume; regions, boundary parts and groups are inherited.
+    /// Cuts every cell into `2^D` of equal volume; regions, boundary conditions and groups are inherited.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`].

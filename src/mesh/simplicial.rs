@@ -61,9 +61,9 @@ impl<const D: usize> Mesh<D> {
     pub fn boundary(&self) -> &[BoundaryFacet] {
         &self.boundary
     }
-    /// Whether some facet belongs to a part of the boundary.
-    pub fn has_condition(&self, part: BoundaryCondition) -> bool {
-        self.boundary.iter().any(|f| f.condition == part)
+    /// Whether this condition holds on some facet of the boundary.
+    pub fn has_condition(&self, condition: BoundaryCondition) -> bool {
+        self.boundary.iter().any(|f| f.condition == condition)
     }
     /// Whether every component of the mesh, connected through facets, has a Dirichlet facet; of a part, whether
     /// every component of the whole mesh has one.

@@ -17,12 +17,12 @@ use crate::instances::compiled;
 use crate::parallel::cells;
 use crate::real::Point;
 
-/// A facet of the boundary by its `D` vertices, in any order, and its part of the boundary.
+/// A facet of the boundary by its `D` vertices, in any order, and the condition that holds on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TaggedFacet<const D: usize> {
     /// The vertices.
     pub vertices: [u32; D],
-    /// The part.
+    /// The condition.
     pub condition: BoundaryCondition,
 }
 
@@ -36,7 +36,7 @@ pub struct GroupedFacet<const D: usize> {
 }
 
 impl<const D: usize> Mesh<D> {
-    /// A mesh from vertices, cells (`D + 1` vertices each, in any order) and the parts of its
+    /// A mesh from vertices, cells (`D + 1` vertices each, in any order) and the conditions on its
     /// boundary facets.
     ///
     /// Vertices that no cell uses are dropped and the others renumbered in their order. Cells keep
@@ -63,8 +63,8 @@ impl<const D: usize> Mesh<D> {
     }
 
     /// A mesh as [`Mesh::new`] makes it, with boundary facets in named groups, of which each may be in
-    /// several. The names `dirichlet`, `neumann` and `contact` say to which part their facets belong; the
-    /// part of other groups is decided by [`Mesh::with_boundary_conditions`]. Facets between two cells are
+    /// several. The names `dirichlet`, `neumann` and `contact` say which condition holds on their facets; the
+    /// condition of other groups is decided by [`Mesh::with_boundary_conditions`]. Facets between two cells are
     /// left out of groups with other names.
     ///
     /// # Errors
@@ -184,12 +184,12 @@ fn check_volumes<const D: usize>(
 /// A boundary facet by its ascending vertices, its cell and its number in the cell.
 type OpenFacet<const D: usize> = ([u32; D], usize, usize);
 
-/// The part that one of the names of a group stands for.
-fn part_of(names: &[String]) -> Option<BoundaryCondition> {
+/// The condition that one of the names of a group stands for.
+fn condition_of(names: &[String]) -> Option<BoundaryCondition> {
     names.iter().find_map(|name| BoundaryCondition::from_name(name))
 }
 
-/// Gives every facet of the boundary its group and part.
+/// Gives every facet of the boundary its group and condition.
 fn match_boundary<const D: usize>(
     vertices: &[Point<D>],
     cells: &[u32],
@@ -241,11 +241,16 @@ fn match_boundary<const D: usize>(
             continue;
         };
         if let (Some(one), Some(two)) =
-            (part_of(sets.names(first)), BoundaryCondition::from_name(name))
+            (condition_of(sets.names(first)), BoundaryCondition::from_name(name))
             && one != two
         {
             let (first, second) = (one.name(), two.name());
-            return Err(MeshError::FacetInTwoParts { vertices: key.to_vec(), first, second, tag });
+            return Err(MeshError::FacetWithTwoConditions {
+                vertices: key.to_vec(),
+                first,
+                second,
+                tag,
+            });
         }
         set_of[k] = Some(sets.union(first, group));
     }
@@ -263,16 +268,11 @@ fn match_boundary<const D: usize>(
         sets_used.resize(sets_used.len().max(set + 1), None);
         let group = *sets_used[set].get_or_insert_with(|| {
             let names = sets.names(set).to_vec();
-            groups.push(BoundaryGroup { condition: part_of(&names), names });
+            groups.push(BoundaryGroup { condition: condition_of(&names), names });
             (groups.len() - 1) as u16
         });
-        let part = groups[usize::from(group)].condition.unwrap_or(BoundaryCondition::Neumann);
-        boundary.push(BoundaryFacet {
-            cell: cell as u32,
-            local: local as u8,
-            condition: part,
-            group,
-        });
+        let condition = groups[usize::from(group)].condition.unwrap_or(BoundaryCondition::Neumann);
+        boundary.push(BoundaryFacet { cell: cell as u32, local: local as u8, condition, group });
     }
     if groups.len() > usize::from(u16::MAX) {
         let (what, count, limit) = ("boundary groups", groups.len(), usize::from(u16::MAX));

@@ -75,13 +75,13 @@ impl<const D: usize> Hierarchy<D> {
         layers: Layers,
         process: (u32, &Arc<dyn Exchange>),
     ) -> Result<Self, Error> {
-        let levels: Vec<usize> = (0..=refinements).collect();
-        Self::build_parts(&levels, (coarsest, None), layers, process)
+        let (levels, domain): (Vec<_>, _) = ((0..=refinements).collect(), coarsest.clone().into());
+        Self::build_parts(&levels, (coarsest, &domain), layers, process)
     }
-    /// The part of a mesh and of its refinements, those of a domain if one is given, which have these levels.
+    /// The part of a mesh of a domain and of its refinements, which have these levels.
     fn build_parts(
         levels: &[usize],
-        (coarsest, domain): (&Mesh<D>, Option<&Domain<D>>),
+        (coarsest, domain): (&Mesh<D>, &Domain<D>),
         layers: Layers,
         (number, exchange): (u32, &Arc<dyn Exchange>),
     ) -> Result<Self, Error> {
@@ -96,7 +96,7 @@ impl<const D: usize> Hierarchy<D> {
     fn build(
         levels: &[usize],
         first: impl Fn() -> Result<Piece<D>, Error>,
-        domain: Option<&Domain<D>>,
+        domain: &Domain<D>,
         exchange: Option<&Arc<dyn Exchange>>,
     ) -> Result<Self, Error> {
         let mut meshes: Vec<NestedMesh<D>> = Vec::new();
@@ -231,7 +231,7 @@ impl<const D: usize> Hierarchy<D> {
                 check_level(domain, level)?;
                 let levels = Hierarchy::levels_of(domain, level, coarsest);
                 let first = || Ok(Piece::Whole(domain.mesh(levels[0])?));
-                Hierarchy::build(&levels, first, Some(domain), None)
+                Hierarchy::build(&levels, first, domain, None)
             }
         )(domain, level, coarsest)
     }
@@ -255,7 +255,7 @@ impl<const D: usize> Hierarchy<D> {
         }
         let first = Self::of_domain(domain, levels[0])?;
         let coarsest = first.finest();
-        Self::build_parts(&levels, (coarsest, Some(domain)), layers(coarsest), process)
+        Self::build_parts(&levels, (coarsest, domain), layers(coarsest), process)
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
 use super::meshes::Meshes;
-use super::p1::{P1Iteration, P1Solution};
+use super::p1::P1Iteration;
 use super::phase::Phase;
 use super::solved::Solved;
 use super::system::{ByInequality, SystemSolver};
@@ -165,24 +165,13 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             why: why.to_string(),
         })
     }
-    /// Tells the observer that a phase begins.
+    /// Calls the observer at the beginning of a phase.
     pub(super) fn enter(&self, phase: Phase) {
         (self.observer)(phase);
     }
     /// The name of the solver.
     pub(crate) fn solver_name(&self) -> &'static str {
         self.p1.solver.name()
-    }
-
-    /// The conforming P1 solution on a mesh, by its position: zero for the coarsest.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] if there is no such mesh, and those of assembly.
-    pub fn p1_solution(&mut self, position: usize) -> Result<Arc<P1Solution>, Error> {
-        self.check_position(position)?;
-        compiled!(const D: fn(&mut NestedIteration<'_, D>, usize) -> Result<Arc<P1Solution>, Error>
-                = |nested, position| nested.p1.solve(position)
-        )(self, position)
     }
 
     /// The solution of a scheme on the finest mesh.

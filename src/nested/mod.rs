@@ -27,7 +27,6 @@ pub use hierarchy::Hierarchy;
 pub(crate) use hierarchy::check_level;
 pub use iteration::{NestedIteration, solve};
 pub use meshes::Meshes;
-pub use p1::P1Solution;
 pub use phase::Phase;
 pub use solved::Solved;
 pub use system::{System, SystemSolver};

@@ -23,8 +23,7 @@ use crate::scheme::ConformingP1;
 /// A conforming P1 function from which a solve starts: the solution on the same mesh, or the
 /// prolongation of the solution on the next coarser one.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct P1Solution {
+pub(super) struct P1Solution {
     /// The contact state of every vertex.
     pub contact: Vec<Contact>,
     /// The value at every vertex; empty if the solve did not converge.

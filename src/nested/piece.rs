@@ -24,26 +24,18 @@ impl<const D: usize> Piece<D> {
     /// The uniform refinement, on a domain with new vertices on its boundary; all parts call it.
     pub fn refined(
         &self,
-        domain: Option<&Domain<D>>,
+        domain: &Domain<D>,
         exchange: Option<&Arc<dyn Exchange>>,
     ) -> Result<(Self, Refinement), Error> {
         match (self, exchange) {
             (Self::Part(part), Some(exchange)) => {
-                let refined = match domain {
-                    Some(domain) => domain.refine_part(part, part.layers),
-                    None => part.refine(part.layers),
-                };
-                let (fine, by) = agree(refined, &**exchange)?;
+                let (fine, by) = agree(domain.refine_part(part, part.layers), &**exchange)?;
                 // the mesh size is that of all parts
                 let extent = merge_all(&Extent::of(&fine.mesh), &**exchange)?;
                 Ok((Self::Part(fine.with_extent(extent)), by))
             }
             _ => {
-                let mesh = self.mesh();
-                let (fine, by) = match domain {
-                    Some(domain) => domain.refine(mesh)?,
-                    None => mesh.refine()?,
-                };
+                let (fine, by) = domain.refine(self.mesh())?;
                 Ok((Self::Whole(fine), by))
             }
         }

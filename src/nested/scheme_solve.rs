@@ -101,7 +101,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         Ok(solved)
     }
 
-    /// What a system warns of. What a part of a mesh finds by itself is not the same in all parts.
+    /// The warnings of a system. Those that a part of a mesh finds by itself differ from part to part.
     fn warnings(&self, system: &System<'_, D>) -> Vec<String> {
         let inequality = &system.inequality;
         if system.part().is_some() {

@@ -1,4 +1,4 @@
-//! What a solve warns of.
+//! The warnings of a solve.
 
 use super::solved::Solved;
 use crate::algebra::Inequality;
@@ -74,7 +74,7 @@ pub(super) fn no_digits_of_stiffness<const D: usize>(
     })
 }
 
-/// What rounding of the problem to the precision of the solver loses.
+/// The loss by rounding of the problem to the precision of the solver.
 pub(super) fn rounding_of_data(
     inequality: &Inequality<f64>,
     precision: Precision,
@@ -186,7 +186,7 @@ pub(super) fn dirichlet_jumps<const D: usize>(problem: &Problem<D>, mesh: &Mesh<
     sentences
 }
 
-/// What helps a solution that took many active sets, or whose active sets changed to the end.
+/// Advice for a solution that took many active sets, or whose active sets changed to the end.
 pub(super) fn active_sets<const D: usize>(
     solution: &Solution<f64>,
     problem: &Problem<D>,
@@ -198,7 +198,7 @@ pub(super) fn active_sets<const D: usize>(
     are_many.then(|| advice_on_bounds(problem, scheme)).flatten()
 }
 
-/// What helps a scheme whose obstacle takes many active sets: bounds on cell means, where its element has
+/// Advice for a scheme whose obstacle takes many active sets: bounds on cell means, where its element has
 /// them and nothing else is bound.
 fn advice_on_bounds<const D: usize>(
     problem: &Problem<D>,

@@ -117,7 +117,7 @@ fn table(table: &Table) -> String {
     let class = |k: usize| if table.is_left(k) { "w" } else { "n" };
     let mut text = format!(
         "<div class=\"scroll\" tabindex=\"0\"><table>\n<caption>{}</caption>\n<thead><tr>",
-        escape(&table.title)
+        escape(&table.caption())
     );
     for (k, name) in table.columns.iter().enumerate() {
         text += &format!("<th scope=\"col\" class=\"{}\">{}</th>", class(k), escape(name));

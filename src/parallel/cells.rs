@@ -23,7 +23,7 @@ pub(crate) fn items(chunk: usize, n: usize) -> Range<usize> {
 /// The work on a chunk: a function of its items and their entries.
 pub(crate) type ChunkWork<'w, V, E> = &'w (dyn Fn(Range<usize>, &mut [V]) -> Result<(), E> + Sync);
 
-/// Calls `work` with the items of each chunk and their part of `entries`; the entries of the items
+/// Calls `work` with the items of each chunk and their share of `entries`; the entries of the items
 /// `a..b` are `end(a)..end(b)`.
 ///
 /// # Errors

@@ -64,7 +64,7 @@ pub(crate) fn for_each_item<A: Send>(items: Vec<A>, work: &(dyn Fn(usize, A) + S
     map_items(items, work);
 }
 
-/// Consecutive parts of a slice with these lengths, as many as there are lengths.
+/// Consecutive pieces of a slice with these lengths, as many as there are lengths.
 pub(crate) fn split<V>(
     mut rest: &mut [V],
     lengths: impl Iterator<Item = usize>,

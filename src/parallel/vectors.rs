@@ -69,8 +69,8 @@ fn gather<X: Send, R: Send, G: FromIterator<R>>(
 struct Total(f64);
 
 impl FromIterator<f64> for Total {
-    fn from_iter<I: IntoIterator<Item = f64>>(parts: I) -> Self {
-        Self(parts.into_iter().sum())
+    fn from_iter<I: IntoIterator<Item = f64>>(sums: I) -> Self {
+        Self(sums.into_iter().sum())
     }
 }
 
@@ -87,6 +87,13 @@ pub(crate) fn map_chunks_of_groups<R: Send>(
 ) -> Vec<R> {
     let items = (0..n.div_ceil(chunk_of_groups(group))).map(|_| ());
     gather(n, group, items, |range, ()| work(range))
+}
+
+/// The indices below `n` for which a predicate holds, ascending.
+pub(crate) fn indices(n: usize, predicate: impl Fn(usize) -> bool + Sync) -> Vec<u32> {
+    let of_chunk =
+        |range: Range<usize>| range.filter(|&i| predicate(i)).map(|i| i as u32).collect::<Vec<_>>();
+    map_chunks(n, of_chunk).concat()
 }
 
 /// Whether a predicate holds for all indices below `n`.
@@ -142,6 +149,16 @@ fn collect_in_parallel<V: Send>(n: usize, work: &(dyn Fn(usize) -> V + Sync), va
 /// Calls `work` with the index range and the entries of each chunk of `x`.
 pub(crate) fn for_each_chunk<A: Send>(x: &mut [A], work: impl Fn(Range<usize>, &mut [A]) + Sync) {
     for_each_chunk_of_groups(x, 1, work);
+}
+
+/// As [`for_each_chunk`], for two vectors of the same length.
+pub(crate) fn for_each_chunk_of_two<A: Send, B: Send>(
+    x: &mut [A],
+    y: &mut [B],
+    work: impl Fn(Range<usize>, &mut [A], &mut [B]) + Sync,
+) {
+    let (n, chunks) = (x.len(), x.chunks_mut(CHUNK).zip(y.chunks_mut(CHUNK)));
+    gather(n, 1, chunks, |range, (x, y)| work(range, x, y))
 }
 
 /// Calls `work` with the index range and the entries of each chunk of `x`; no chunk divides a group

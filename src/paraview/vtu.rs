@@ -110,10 +110,6 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         self.functions.push((name, Box::new(f)));
         self
     }
-    /// Adds the difference of `u` from this function as the point data `error`.
-    pub fn error_from(self, exact: Function<'a, D>) -> Self {
-        self.error_from_in_cells(move |_, x| exact(x))
-    }
     /// Adds the difference of `u` from a function of cell and point as the point data `error`.
     pub fn error_from_in_cells(mut self, exact: impl Fn(usize, &Point<D>) -> f64 + 'a) -> Self {
         self.exact = Some(Box::new(exact));

@@ -1,10 +1,7 @@
 //! Errors against cost: one column of panels, as wide as a column of text.
 
-use std::borrow::Borrow;
-
 use super::figure::Figure;
 use super::series::{Curve, Orders, Panel, Point, Quantity, title, with_curves};
-use crate::study::row::Row;
 use crate::study::series::Series;
 
 /// A measure of the cost of a run.
@@ -33,12 +30,8 @@ impl Cost {
 
 /// The panels of a scene, one for each norm in which there are errors and one for bounds, below each other;
 /// energy only where it is not the H1 seminorm.
-pub(crate) fn cost_figure<R: Borrow<Row>>(
-    scene: &str,
-    series: &[Series<'_, R>],
-    cost: Cost,
-) -> Figure {
-    let rows = || series.iter().flat_map(Series::plain_rows);
+pub(crate) fn cost_figure(scene: &str, series: &[Series<'_>], cost: Cost) -> Figure {
+    let rows = || series.iter().flat_map(|of| of.rows.iter().copied());
     let panel = |y: Quantity| {
         let x = match (cost, y) {
             (Cost::Seconds, Quantity::Bound) => Quantity::SecondsWithBound,
@@ -46,7 +39,7 @@ pub(crate) fn cost_figure<R: Borrow<Row>>(
         };
         let curves = series.iter().enumerate().map(|(key, of)| Curve {
             key,
-            points: of.plain_rows().filter_map(|row| Point::of(row, x, y)).collect(),
+            points: of.rows.iter().filter_map(|row| Point::of(row, x, y)).collect(),
         });
         // an order in the mesh size is that order over the dimension in the number of unknowns
         let dimension = rows().next().map(|r| r.dimension as u32);

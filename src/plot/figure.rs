@@ -49,18 +49,26 @@ pub fn convergence(rows: &[Row]) -> Figure {
     Figure { panels, keys: names, columns }
 }
 
-/// The two figures of a first screen, of the first four scenes: error against time, and the same error against mesh
-/// size; one panel for each scene.
-pub(crate) fn overview(rows: &[Row]) -> [Figure; 2] {
-    let first: Vec<&str> =
-        distinct(rows.iter().map(|row| &*row.scene)).into_iter().take(4).collect();
+/// The two figures of a first screen with their captions, of the first four scenes: error against time, and the same
+/// error against mesh size or unknowns; one panel for each scene.
+pub(crate) fn overview(rows: &[Row]) -> [(String, Figure); 2] {
+    let all = distinct(rows.iter().map(|row| &*row.scene));
+    let first = &all[..all.len().min(4)];
     let of: Vec<Row> = rows.iter().filter(|row| first.contains(&&*row.scene)).cloned().collect();
     let time = work_precision(&of);
     let Figure { panels, keys, .. } = convergence(&of);
     let errors: Vec<&String> = time.panels.iter().map(|panel| &panel.y).collect();
     let panels = panels.into_iter().filter(|panel| errors.contains(&&panel.y)).collect();
     let size = Figure { panels, keys, columns: time.columns };
-    [time, size]
+    let caption = |figure: &Figure| {
+        let of = |get: fn(&Panel) -> &str| distinct(figure.panels.iter().map(get)).join(" or ");
+        let scenes = match all.len() > first.len() {
+            true => format!(", on the first {} of {} scenes", first.len(), all.len()),
+            false => String::new(),
+        };
+        format!("{} against {}{scenes}", of(|panel| &panel.y), of(|panel| &panel.x))
+    };
+    [time, size].map(|figure| (caption(&figure), figure))
 }
 
 /// L2 error against the seconds a run took altogether, one panel for each scene. With adaptive meshes, and where no

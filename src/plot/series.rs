@@ -41,11 +41,12 @@ impl Quantity {
 
     /// The value of a row, if a logarithmic axis can show it.
     fn of(self, row: &Row) -> Option<f64> {
+        let begun = row.unknowns.is_some();
         let value = match self {
             Quantity::MeshSize => Some(row.mesh_size),
             // no clock is finer: a smaller number is a time that was not measured
-            Quantity::Seconds => Some(row.seconds.total.max(1e-6)),
-            Quantity::SecondsWithBound => Some(row.seconds_with_bound().max(1e-6)),
+            Quantity::Seconds => begun.then(|| row.seconds.total.max(1e-6)),
+            Quantity::SecondsWithBound => begun.then(|| row.seconds_with_bound().max(1e-6)),
             Quantity::Unknowns => row.unknowns.map(|n| n as f64),
             Quantity::L2 => row.error.l2,
             Quantity::H1 => row.error.h1,

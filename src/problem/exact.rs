@@ -17,7 +17,7 @@ pub struct Exact<const D: usize> {
     pub gradient: VectorField<D>,
     /// Density of the multiplier: with obstacles `lambda = -div(alpha grad u) + c u - f` per unit
     /// volume, negative where the upper obstacle is active; with the Signorini condition
-    /// `sigma = alpha du/dn` per unit area of the contact part, undefined elsewhere. None where the
+    /// `sigma = alpha du/dn` per unit area of the contact boundary, undefined elsewhere. None where the
     /// multiplier is a measure without density, or unknown.
     pub multiplier: Option<Field<D>>,
     /// The contact set; none where data and solution do not determine it.
@@ -25,7 +25,7 @@ pub struct Exact<const D: usize> {
 }
 
 /// The set where the exact solution equals a bound: with obstacles a subset of the domain, with the
-/// Signorini condition a subset of the contact part of the boundary.
+/// Signorini condition a subset of the contact boundary.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct ContactSet<const D: usize> {

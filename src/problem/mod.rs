@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! -div(alpha grad u) + c u = f + lambda      in the domain
-//! u = u_D                                    on the Dirichlet part
-//! alpha du/dn = q                            on the Neumann part
+//! u = u_D                                    on the Dirichlet boundary
+//! alpha du/dn = q                            on the Neumann boundary
 //! obstacle:   psi_lower <= u <= psi_upper    in the domain
-//! Signorini:  u >= g, alpha du/dn >= 0, (u - g) alpha du/dn = 0   on the contact part
+//! Signorini:  u >= g, alpha du/dn >= 0, (u - g) alpha du/dn = 0   on the contact boundary
 //! ```
 //!
 //! `n` is the outward unit normal. An absent datum is `None`, and no loop runs for it.
@@ -56,7 +56,7 @@ pub struct Problem<const D: usize> {
     pub lower: Given<Datum<D>>,
     /// Obstacle from above.
     pub upper: Given<Datum<D>>,
-    /// Signorini gap `g` on the contact part.
+    /// Signorini gap `g` on the contact boundary.
     pub gap: Given<Datum<D>>,
     /// Where obstacles and gap bind; at the [`Nodes`] of the element where absent.
     pub constraint_set: Option<Arc<dyn ConstraintSet>>,
@@ -135,7 +135,7 @@ impl<const D: usize> Problem<D> {
     /// mean thickness of 1e-5 (plane) to 1e-3 (space) times `h^2`, below the error of every scheme.
     /// A cell counts as cut if the sign of `level` differs between its vertices, the middles of its edges
     /// and its barycentre; an interface that enters and leaves through one facet between these points
-    /// escapes. A smooth one does so in few cells, with a part of the cell of order `h`.
+    /// escapes. A smooth one does so in few cells, with a piece of the cell of order `h`.
     ///
     /// ```
     /// use unilateral::prelude::*;
@@ -219,7 +219,7 @@ impl<const D: usize> Problem<D> {
         self.upper.everywhere = Some(psi.into());
         self
     }
-    /// Sets the Signorini condition `u >= g` on the contact part.
+    /// Sets the Signorini condition `u >= g` on the contact boundary.
     #[must_use]
     pub fn signorini(mut self, gap: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
         self.gap.everywhere = Some(gap.into());
@@ -304,7 +304,7 @@ impl<const D: usize> Problem<D> {
     pub fn has_obstacle(&self) -> bool {
         self.lower.is_given() || self.upper.is_given()
     }
-    /// Whether the problem has a Signorini condition on some part of the boundary.
+    /// Whether the problem has a Signorini condition somewhere on the boundary.
     pub fn has_gap(&self) -> bool {
         self.gap.is_given()
     }

@@ -100,7 +100,7 @@ impl<const D: usize> Problem<D> {
         let data = [&self.coefficient, &self.source, &self.reaction, &self.lower, &self.upper];
         data.into_iter().flat_map(Given::names)
     }
-    /// The boundary groups that have data, each with its part.
+    /// The boundary groups that have data, each with its condition.
     fn boundary_groups(&self) -> impl Iterator<Item = (&str, BoundaryCondition)> {
         let dirichlet = self.dirichlet.names().map(|name| (name, BoundaryCondition::Dirichlet));
         let contact = self.gap.names().map(|name| (name, BoundaryCondition::Contact));
@@ -111,9 +111,9 @@ impl<const D: usize> Problem<D> {
     pub(super) fn boundary_names(&self) -> impl Iterator<Item = &str> {
         self.boundary_groups().map(|(name, _)| name)
     }
-    /// The part of the boundary to which the data of a group belong.
-    pub(super) fn part_of(&self, group: &str) -> Option<BoundaryCondition> {
-        self.boundary_groups().find(|(name, _)| *name == group).map(|(_, part)| part)
+    /// The condition to which the data of a group belong.
+    pub(super) fn condition_of(&self, group: &str) -> Option<BoundaryCondition> {
+        self.boundary_groups().find(|(name, _)| *name == group).map(|(_, condition)| condition)
     }
     /// Whether some data are those of a named region or boundary group.
     pub(crate) fn has_named_data(&self) -> bool {
@@ -137,9 +137,9 @@ impl<const D: usize> Problem<D> {
         }
     }
 
-    /// The mesh with the parts of its boundary groups as the data of this problem say: Dirichlet where
+    /// The mesh with the conditions of its boundary groups as the data of this problem say: Dirichlet where
     /// [`Problem::dirichlet_on`] names the group, and so on. Groups that the problem does not name keep
-    /// their part.
+    /// their condition.
     ///
     /// # Errors
     /// [`MeshError::GroupWithTwoConditions`], also where a group `dirichlet`, `neumann` or `contact` is given
@@ -151,20 +151,20 @@ impl<const D: usize> Problem<D> {
     }
     fn bind(&self, mesh: Mesh<D>) -> Result<Mesh<D>, MeshError> {
         let all: Vec<(&str, BoundaryCondition)> = self.boundary_groups().collect();
-        for &(name, part) in &all {
-            let own = BoundaryCondition::from_name(name).map(|part| (name, part));
+        for &(name, condition) in &all {
+            let own = BoundaryCondition::from_name(name).map(|own| (name, own));
             let first = own.or_else(|| all.iter().copied().find(|(other, _)| *other == name));
-            if let Some((first, other)) = first.filter(|(_, other)| *other != part) {
+            if let Some((first, other)) = first.filter(|(_, other)| *other != condition) {
                 let groups = Box::new([first, name].map(excerpt));
                 return Err(MeshError::GroupWithTwoConditions {
                     groups,
-                    conditions: [other.name(), part.name()],
+                    conditions: [other.name(), condition.name()],
                 });
             }
         }
         if all.is_empty() {
             return Ok(mesh);
         }
-        mesh.with_boundary_conditions(&|name| self.part_of(name))
+        mesh.with_boundary_conditions(&|name| self.condition_of(name))
     }
 }

@@ -85,9 +85,9 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
     ///
     /// # Errors
     /// [`Error::UnknownGroup`] for a name that the mesh does not have, [`Error::Mesh`] for a boundary
-    /// group of undecided part, [`Error::UnboundBoundary`] for one of another part than that of its data.
+    /// group of undecided condition, [`Error::UnboundBoundary`] for one with another condition than its data.
     pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<D>) -> Result<Self, Error> {
-        mesh.check_boundary_parts()?;
+        mesh.check_boundary_conditions()?;
         Self::of_groups(problem, mesh.regions(), mesh.boundary_groups(), mesh.groups_inside())
     }
 
@@ -109,11 +109,11 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
             }
         }
         for group in boundary {
-            let given = group.names.iter().find_map(|n| Some((n, problem.part_of(n)?)));
+            let given = group.names.iter().find_map(|n| Some((n, problem.condition_of(n)?)));
             match (given, group.condition) {
-                (Some((name, given)), Some(part)) if given != part => {
-                    let (group, given, part) = (excerpt(name), given.name(), part.name());
-                    return Err(Error::UnboundBoundary { group, given, part });
+                (Some((name, given)), Some(found)) if given != found => {
+                    let (group, given, found) = (excerpt(name), given.name(), found.name());
+                    return Err(Error::UnboundBoundary { group, given, found });
                 }
                 (None, Some(BoundaryCondition::Contact))
                     if problem.gap.everywhere.is_none() && problem.gap.is_given() =>

@@ -1,15 +1,16 @@
-//! Whether bounds contradict each other anywhere, with the data of all parts.
+//! A check of bounds with the data of all parts: do they contradict each other anywhere?
 
 use super::agree::agree_on_data;
 use super::error::ExchangeError;
 use super::exchange::Exchange;
 use crate::assemble::Discretisation;
+use crate::assemble::space::contradictions::refuse;
 use crate::mesh::Part;
 
 /// Refuses bounds that contradict each other by more than rounding of the largest datum of all parts, as
 /// [`Discretisation::bounds`] does on a whole mesh; all parts call it.
 ///
-/// A gap is compared with Dirichlet data where the two parts of the boundary meet. With
+/// A gap is compared with Dirichlet data where the two boundaries meet. With
 /// [`Layers`](crate::mesh::Layers) across facets a part need not have the cells of both.
 ///
 /// # Errors
@@ -20,7 +21,8 @@ pub fn check_bounds<const D: usize>(
     discretisation: &Discretisation<'_, D>,
     exchange: &dyn Exchange,
 ) -> Result<(), ExchangeError> {
-    let found = agree_on_data(discretisation.contradictions(), &part.cells, exchange)?;
-    let size = exchange.largest(&[found.size()])?[0];
-    agree_on_data(found.check(size, &|cell| part.owns(cell)), &part.cells, exchange)
+    let (found, own_size) = agree_on_data(discretisation.contradictions(), &part.cells, exchange)?;
+    let size = exchange.largest(&[own_size])?[0];
+    let checked = refuse(&found, size, &part.mesh, &|cell| part.owns(cell));
+    agree_on_data(checked, &part.cells, exchange)
 }

@@ -1,4 +1,4 @@
-//! What can go wrong between parts.
+//! Errors between parts.
 
 use crate::error::Error;
 use crate::inequality::Outcome;

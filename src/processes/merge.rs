@@ -1,4 +1,4 @@
-//! What parts find each for itself, merged over all parts.
+//! Findings of single parts, merged over all parts.
 
 use super::error::ExchangeError;
 use super::exchange::{Exchange, numbers_of_all};
@@ -6,7 +6,7 @@ use crate::inequality::Violations;
 use crate::measure::SquaredErrors;
 use crate::mesh::Extent;
 
-/// What the parts of a mesh find each for itself, as numbers that an exchange can send.
+/// Findings of single parts of a mesh, as numbers that an exchange can send.
 ///
 /// For [`Violations`], of which the certificate is made, [`SquaredErrors`] and [`Extent`].
 pub trait Merge: Sized {

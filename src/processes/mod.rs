@@ -7,7 +7,7 @@
 //!
 //! Two things depend on all data and so on all parts: the mesh size of a
 //! [refined part](crate::mesh::Part::refine), which [`merge_all`] finds, and whether bounds contradict each other,
-//! which [`check_bounds`] tells. A step that may fail in one part ends in [`agree`], which makes its error one
+//! which [`check_bounds`] decides. A step that may fail in one part ends in [`agree`], which makes its error one
 //! of all parts.
 //!
 //! [`Hierarchy::of_parts`](crate::nested::Hierarchy::of_parts) has the part of one process of nested meshes, on which

@@ -33,8 +33,8 @@ impl OrthonormalPolynomials {
             // twice, so that rounding of the first pass does not stay
             for _ in 0..2 {
                 for other in &coefficients {
-                    let part = mean(&row, other);
-                    row.iter_mut().zip(other).for_each(|(r, o)| *r -= part * o);
+                    let component = mean(&row, other);
+                    row.iter_mut().zip(other).for_each(|(r, o)| *r -= component * o);
                 }
             }
             let norm = mean(&row, &row).sqrt();

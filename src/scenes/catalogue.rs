@@ -178,7 +178,7 @@ pub struct AcceptedParameters {
     pub load: bool,
 }
 
-/// What makes a scene from its parameters.
+/// The function that makes a scene from its parameters.
 type Builder = Box<dyn Fn(&Parameters) -> AnyScene + Send + Sync>;
 
 /// A registered scene: what lists show of it, and a function that builds it.
@@ -215,12 +215,12 @@ const CONTRASTS: RangeInclusive<f64> = 1e-100..=1e100;
 impl Entry {
     /// A scene without parameters.
     pub fn new<S: Into<AnyScene>>(build: impl Fn() -> S + Send + Sync + 'static) -> Self {
-        Self::from_parameters(AcceptedParameters::default(), move |_| build().into())
+        Self::from_parameters(AcceptedParameters::default(), Box::new(move |_| build().into()))
     }
     /// A scene that accepts a length scale, one by default.
     pub fn with_scale<S: Into<AnyScene>>(build: impl Fn(f64) -> S + Send + Sync + 'static) -> Self {
         let accepts = AcceptedParameters { scale: true, ..AcceptedParameters::default() };
-        Self::from_parameters(accepts, move |p| build(p.scale.unwrap_or(1.0)).into())
+        Self::from_parameters(accepts, Box::new(move |p| build(p.scale.unwrap_or(1.0)).into()))
     }
     /// A scene that accepts a ratio of coefficients, and its default.
     pub fn with_contrast<S: Into<AnyScene>>(
@@ -228,7 +228,10 @@ impl Entry {
         build: impl Fn(f64) -> S + Send + Sync + 'static,
     ) -> Self {
         let accepts = AcceptedParameters { contrast: true, ..AcceptedParameters::default() };
-        Self::from_parameters(accepts, move |p| build(p.contrast.unwrap_or(default)).into())
+        Self::from_parameters(
+            accepts,
+            Box::new(move |p| build(p.contrast.unwrap_or(default)).into()),
+        )
     }
     /// A scene that accepts the size of its load, and its default.
     pub fn with_load<S: Into<AnyScene>>(
@@ -236,16 +239,10 @@ impl Entry {
         build: impl Fn(f64) -> S + Send + Sync + 'static,
     ) -> Self {
         let accepts = AcceptedParameters { load: true, ..AcceptedParameters::default() };
-        Self::from_parameters(accepts, move |p| build(p.load.unwrap_or(default)).into())
+        Self::from_parameters(accepts, Box::new(move |p| build(p.load.unwrap_or(default)).into()))
     }
     /// An entry whose name, summary and dimension are those of the scene with its defaults.
-    fn from_parameters(
-        accepts: AcceptedParameters,
-        build: impl Fn(&Parameters) -> AnyScene + Send + Sync + 'static,
-    ) -> Self {
-        Self::from_builder(accepts, Box::new(build))
-    }
-    fn from_builder(accepts: AcceptedParameters, build: Builder) -> Self {
+    fn from_parameters(accepts: AcceptedParameters, build: Builder) -> Self {
         let (name, summary, dimension) = match build(&Parameters::default()) {
             AnyScene::One(scene) => (scene.name, scene.summary, 1),
             AnyScene::Two(scene) => (scene.name, scene.summary, 2),

@@ -20,9 +20,9 @@ use crate::scheme::Regularity;
 /// -Laplace u = -(r^{2/3} (g'' + g'/r) + (4/3) r^{-1/3} g') sin(2 phi/3).
 /// ```
 ///
-/// The load is that, less 1 for `r > 5/4`, where the multiplier is 1. It vanishes elsewhere, so the
-/// ring `3/4 < r < 5/4` is in contact without force. At the corner `u` behaves like `r^{2/3}`: it
-/// lies in `H^s` for `s < 5/3`.
+/// The load is this function, less 1 for `r > 5/4`. The multiplier is 1 for `r > 5/4` and vanishes elsewhere, so the
+/// ring `3/4 < r < 5/4` is in contact without force. At the corner `u` behaves like `r^{2/3}`: it lies in `H^s` for
+/// `s < 5/3`.
 pub fn lshape_2d() -> Scene<2> {
     let pressed = |x: &Point<2>| if x.norm() > 1.25 { 1.0 } else { 0.0 };
     let value = |x: &Point<2>| {

@@ -1,8 +1,11 @@
 //! The catalogue: named variational inequalities, most of them with an exact solution.
 //!
-//! A scene is a function that returns a [`Scene`]; scenes with a common formula share a file. The doc
-//! comment of the function derives the solution, and [`check_scene`] tests the derivation numerically.
-//! A scene is registered by one line in [`catalogue`]; studies also run scenes that are not registered.
+//! A scene is a function of some thirty lines that returns a [`Scene`]: see [`ridge`] for one in every dimension,
+//! [`pyramid_full_2d`] for one whose contact set and multiplier are known. Scenes with a common formula share a file.
+//! The doc comment of the function derives the solution, and [`check_scene`] tests the derivation numerically.
+//!
+//! To add one: write the function, name it in this file, and register it by one line in [`catalogue`]; the tests of
+//! the catalogue then check it. Studies also run scenes that are not registered.
 
 mod ball;
 mod biactive;

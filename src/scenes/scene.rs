@@ -16,7 +16,7 @@ pub struct Scene<const D: usize> {
     pub domain: Domain<D>,
     /// The data.
     pub problem: Problem<D>,
-    /// What is known of the solution's regularity.
+    /// The known regularity of the solution.
     pub regularity: Regularity,
 }
 
@@ -27,7 +27,7 @@ impl<const D: usize> Scene<D> {
         let (name, domain, regularity) = (name.into(), domain.into(), Regularity::finite_energy());
         Self { name, summary: "", domain, problem, regularity }
     }
-    /// A problem of one's own on a mesh and its refinements. The data of the problem give the boundary its parts
+    /// A problem of one's own on a mesh and its refinements. The data of the problem give the boundary its conditions
     /// ([`Problem::bind_boundary`]).
     ///
     /// # Errors

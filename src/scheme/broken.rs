@@ -14,23 +14,19 @@ use crate::mesh::Mesh;
 /// of that.
 pub trait BrokenScheme: Clone + Debug + Default + Send + Sync + 'static {
     /// The name on linears; `-p2` is added on quadratics, and so on.
-    fn name_on_linears(&self) -> &'static str;
+    fn name_on_linears(&self) -> &str;
     /// The form on the facets of a mesh, for a broken element.
-    fn form_on<const D: usize>(
-        &self,
-        element: &dyn Element<D>,
-        mesh: &Mesh<D>,
-    ) -> Box<dyn FacetForm<D>>;
+    fn form_on<const D: usize>(&self, on: &dyn Element<D>, mesh: &Mesh<D>)
+    -> Box<dyn FacetForm<D>>;
     /// Whether the exact solution satisfies the discrete equations.
     fn has_consistency_terms(&self) -> bool {
         true
     }
-    /// All parameters as options, in this dimension: those that differ from the default scheme's stand
-    /// in labels.
-    fn options(&self, dimension: usize) -> SchemeOptions;
+    /// All parameters as options: those that differ from the default scheme's stand in labels.
+    fn options(&self) -> SchemeOptions;
     /// The scheme with those of its parameters that the options give.
     #[must_use]
-    fn with_options(self, options: &SchemeOptions, dimension: usize) -> Self;
+    fn with_options(self, options: &SchemeOptions) -> Self;
     /// Orders that theory proves on elements of this degree, with bounds at all nodes; none by default.
     fn orders_of_degree(&self, degree: usize, setting: &Setting) -> ExpectedOrders {
         let _ = (degree, setting);
@@ -54,44 +50,47 @@ pub struct OnElement<S, const D: usize> {
     element: Arc<dyn Element<D>>,
 }
 
-impl<S: BrokenScheme, const D: usize> Scheme<D> for OnElement<S, D> {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn element(&self) -> Arc<dyn Element<D>> {
-        self.element.clone()
-    }
-    fn form(&self, mesh: &Mesh<D>) -> Box<dyn FacetForm<D>> {
-        self.scheme.form_on(&*self.element, mesh)
-    }
-    fn is_consistent(&self) -> bool {
-        self.scheme.has_consistency_terms()
-    }
-    fn choices(&self) -> SchemeOptions {
-        self.scheme.options(D).unlike(&S::default().options(D))
-    }
-    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        self.scheme.orders_of_degree(self.element.degree(), setting)
+/// A broken scheme and its element: broken linears where no other is chosen. It is a [`Scheme`].
+pub trait WithBrokenElement<const D: usize>: Send + Sync {
+    /// The scheme without its element.
+    type Method: BrokenScheme;
+    /// The scheme, its name on the element, and the element.
+    fn on_its_element(&self) -> (&Self::Method, &str, Arc<dyn Element<D>>);
+}
+
+impl<S: BrokenScheme, const D: usize> WithBrokenElement<D> for S {
+    type Method = S;
+    fn on_its_element(&self) -> (&S, &str, Arc<dyn Element<D>>) {
+        (self, self.name_on_linears(), Arc::new(Broken(P1)))
     }
 }
 
-impl<S: BrokenScheme, const D: usize> Scheme<D> for S {
+impl<S: BrokenScheme, const D: usize> WithBrokenElement<D> for OnElement<S, D> {
+    type Method = S;
+    fn on_its_element(&self) -> (&S, &str, Arc<dyn Element<D>>) {
+        (&self.scheme, &self.name, self.element.clone())
+    }
+}
+
+impl<W: WithBrokenElement<D>, const D: usize> Scheme<D> for W {
     fn name(&self) -> &str {
-        self.name_on_linears()
+        self.on_its_element().1
     }
     fn element(&self) -> Arc<dyn Element<D>> {
-        Arc::new(Broken(P1))
+        self.on_its_element().2
     }
     fn form(&self, mesh: &Mesh<D>) -> Box<dyn FacetForm<D>> {
-        self.form_on(&Broken(P1), mesh)
+        let (scheme, _, element) = self.on_its_element();
+        scheme.form_on(&*element, mesh)
     }
     fn is_consistent(&self) -> bool {
-        self.has_consistency_terms()
+        self.on_its_element().0.has_consistency_terms()
     }
     fn choices(&self) -> SchemeOptions {
-        self.options(D).unlike(&S::default().options(D))
+        self.on_its_element().0.options().unlike(&W::Method::default().options())
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        self.orders_of_degree(1, setting)
+        let (scheme, _, element) = self.on_its_element();
+        scheme.orders_of_degree(element.degree(), setting)
     }
 }

@@ -192,8 +192,8 @@ impl<'a, const D: usize> Discretisation<'a, D> {
                 DataQuadrature,
             ) -> Result<Discretisation<'p, D>, Error>
                 = |scheme, problem, mesh, quadrature| {
-                    let parts = (scheme.element(), scheme.form(mesh), scheme.dirichlet());
-                    Discretisation::of(parts, problem, mesh, quadrature)
+                    let values = (scheme.element(), scheme.form(mesh), scheme.dirichlet());
+                    Discretisation::of(values, problem, mesh, quadrature)
                 }
         )(scheme, problem, mesh, quadrature)
     }

@@ -29,17 +29,16 @@ impl Default for Ldg {
 }
 
 impl BrokenScheme for Ldg {
-    fn name_on_linears(&self) -> &'static str {
+    fn name_on_linears(&self) -> &str {
         if self.switch { "ldg-switch" } else { "ldg" }
     }
     fn form_on<const D: usize>(&self, _: &dyn Element<D>, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
         Box::new(LocalFluxes { eta: self.eta, switch: self.switch, lifts: self.lifts })
     }
-    fn options(&self, _: usize) -> SchemeOptions {
-        let (sigma, lifts) = (Some(self.eta), Some(self.lifts));
-        SchemeOptions { sigma, lifts, ..SchemeOptions::default() }
+    fn options(&self) -> SchemeOptions {
+        SchemeOptions { sigma: Some(self.eta), lifts: Some(self.lifts), ..Default::default() }
     }
-    fn with_options(self, options: &SchemeOptions, _: usize) -> Self {
+    fn with_options(self, options: &SchemeOptions) -> Self {
         let eta = options.sigma.unwrap_or(self.eta);
         Self { eta, lifts: options.lifts.unwrap_or(self.lifts), ..self }
     }

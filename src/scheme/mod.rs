@@ -1,31 +1,33 @@
 //! Schemes: an element, a facet form and a way to impose Dirichlet data. Nothing else: where an
 //! inequality binds is for the [constraint set](crate::constraint).
 
+mod bmmpr;
+mod br2;
 mod broken;
 mod conforming;
 mod crouzeix_raviart;
 mod definition;
 mod energy_order;
-mod interior_penalty;
+mod interior_penalty_methods;
 mod ldg;
-mod lifting;
 mod named_scheme;
 mod options;
 mod wopsip;
 
-pub use broken::{BrokenScheme, OnElement};
+pub use bmmpr::Bmmpr;
+pub use br2::Br2;
+pub use broken::{BrokenScheme, OnElement, WithBrokenElement};
 pub use conforming::{ConformingP1, ConformingP2};
 pub use crouzeix_raviart::NonconformingP1;
 pub use definition::Scheme;
-pub use interior_penalty::{Iipg, InteriorPenaltyMethod, Nipg, Sipg};
+pub use interior_penalty_methods::{Iipg, InteriorPenaltyMethod, Nipg, Sipg};
 pub use ldg::Ldg;
-pub use lifting::{Bmmpr, Br2};
 pub use named_scheme::{NamedScheme, SchemeNameError, SchemeNameErrorKind};
 pub use options::SchemeOptions;
-pub use wopsip::{Eta, Wopsip};
+pub use wopsip::Wopsip;
 
 #[doc(no_inline)]
-pub use crate::facet::DirichletBy;
+pub use crate::facet::{DirichletBy, Eta};
 pub use crate::theory::{ExpectedOrders, Regularity, Setting};
 
 use crate::element::P2;
@@ -66,8 +68,8 @@ macro_rules! schemes_by_name {
             }
             match (name.strip_suffix("-p2"), name) {
                 $(
-                    (None, $broken) => Some(Box::new($method.with_options(options, D))),
-                    (Some($broken), _) => Some(Box::new($method.with_options(options, D).on(P2))),
+                    (None, $broken) => Some(Box::new($method.with_options(options))),
+                    (Some($broken), _) => Some(Box::new($method.with_options(options).on(P2))),
                 )*
                 _ => None,
             }

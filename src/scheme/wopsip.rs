@@ -4,18 +4,8 @@ use super::{
     BrokenScheme, ExpectedOrders, SchemeOptions, Setting, broken_energy_order, with_duality,
 };
 use crate::element::Element;
-use crate::facet::{FacetForm, OverPenalty, WeightRule};
+use crate::facet::{Eta, FacetForm, OverPenalty, WeightRule};
 use crate::mesh::Mesh;
-
-/// How the factor of the over-penalty is chosen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Eta {
-    /// This number times the domain's diameter to the power `2k`, `k` the element's degree:
-    /// invariant under scaling.
-    Dimensionless(f64),
-    /// This number as it stands, of the dimension of a length to the power `2k`.
-    Absolute(f64),
-}
 
 /// Weak over-penalty on broken elements: no consistency terms, positive definite for every factor.
 ///
@@ -37,36 +27,27 @@ impl Default for Wopsip {
 }
 
 impl BrokenScheme for Wopsip {
-    fn name_on_linears(&self) -> &'static str {
+    fn name_on_linears(&self) -> &str {
         "wopsip"
     }
     fn form_on<const D: usize>(
         &self,
-        element: &dyn Element<D>,
+        on: &dyn Element<D>,
         mesh: &Mesh<D>,
     ) -> Box<dyn FacetForm<D>> {
-        let degree = element.degree();
-        let eta = match self.eta {
-            Eta::Absolute(eta) => eta,
-            Eta::Dimensionless(factor) => factor * mesh.domain_diameter().powi(2 * degree as i32),
-        };
-        let mesh_size = match self.weight {
-            WeightRule::Isotropic => f64::NAN,
-            WeightRule::Anisotropic => mesh.mesh_size(),
-        };
-        Box::new(OverPenalty { eta, degree, rule: self.weight, mesh_size })
+        Box::new(OverPenalty::new(self.eta, self.weight, on.degree(), mesh))
     }
     fn has_consistency_terms(&self) -> bool {
         false
     }
-    fn options(&self, _: usize) -> SchemeOptions {
+    fn options(&self) -> SchemeOptions {
         let weight = SchemeOptions { weight: Some(self.weight), ..SchemeOptions::default() };
         match self.eta {
             Eta::Dimensionless(factor) => SchemeOptions { factor: Some(factor), ..weight },
             Eta::Absolute(eta) => SchemeOptions { eta: Some(eta), ..weight },
         }
     }
-    fn with_options(self, options: &SchemeOptions, _: usize) -> Self {
+    fn with_options(self, options: &SchemeOptions) -> Self {
         let chosen = options.eta.map(Eta::Absolute).or(options.factor.map(Eta::Dimensionless));
         let weight = options.weight.unwrap_or(self.weight);
         Self { eta: chosen.unwrap_or(self.eta), weight }

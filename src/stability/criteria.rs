@@ -189,7 +189,7 @@ pub const CRITERIA: &[Criterion] = &[
     of(
         "contact-ends",
         "junction-inside-facet",
-        "A mesh on which the exact contact condition fails inside a contact facet, because contact and Dirichlet part do not meet at a vertex, is refused or its errors withheld with a warning: 1 if so.",
+        "A mesh on which the exact contact condition fails inside a contact facet, because contact and Dirichlet boundary do not meet at a vertex, is refused or its errors withheld with a warning: 1 if so.",
     ),
     of(
         "orders",

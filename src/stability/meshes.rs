@@ -12,7 +12,7 @@ pub(crate) fn stretched(n: usize, ratio: usize) -> Result<Mesh<2>, Error> {
     Ok(Mesh::kuhn_box(&square, [n, n * ratio])?)
 }
 
-/// A mesh with every vertex moved; boundary facets keep their parts.
+/// A mesh with every vertex moved; boundary facets keep their conditions.
 pub(crate) fn moved<const D: usize>(
     mesh: &Mesh<D>,
     to: impl Fn(&Point<D>) -> Point<D>,

@@ -41,8 +41,6 @@ pub enum StabilityProgress<'a> {
     Planned(usize),
     /// A job begins: case, and scheme or problem.
     Started(&'a str, &'a str),
-    /// A row is complete.
-    Row(&'a StabilityRow),
     /// The job ended.
     Finished,
 }
@@ -62,6 +60,7 @@ pub struct Stability<'a> {
     cases: Vec<String>,
     schemes: Vec<String>,
     given: Vec<(String, Mesh<3>)>,
+    command: Option<String>,
     directory: Option<PathBuf>,
     observer: Box<dyn Fn(StabilityProgress<'_>) + 'a>,
 }
@@ -88,6 +87,7 @@ impl<'a> Stability<'a> {
             cases: Vec::new(),
             schemes: Vec::new(),
             given: Vec::new(),
+            command: None,
             directory: None,
             observer: Box::new(|_| {}),
         }
@@ -107,6 +107,12 @@ impl<'a> Stability<'a> {
     #[must_use]
     pub fn mesh(mut self, name: &str, mesh: Mesh<3>) -> Self {
         self.given.push((name.to_owned(), mesh));
+        self
+    }
+    /// States the command that makes the report again.
+    #[must_use]
+    pub fn command(mut self, command: Option<String>) -> Self {
+        self.command = command;
         self
     }
     /// Writes the report to this directory as rows come, twice a second at most, and at the end.
@@ -157,12 +163,12 @@ impl<'a> Stability<'a> {
         let plan = self.checked_plan()?;
         (self.observer)(StabilityProgress::Planned(plan.jobs.len()));
         let mut report = StabilityReport::new(self.effort);
+        report.program.command.clone_from(&self.command);
         let mut written = Instant::now();
         for job in &plan.jobs {
             (self.observer)(StabilityProgress::Started(job.case, &job.label));
             let mut saved = Ok(());
             let mut take = |row: StabilityRow| {
-                (self.observer)(StabilityProgress::Row(&row));
                 report.rows.push(row);
                 // rows are saved early, so that an interrupted study keeps them
                 if written.elapsed() > WRITE_INTERVAL && saved.is_ok() {
@@ -176,7 +182,7 @@ impl<'a> Stability<'a> {
             saved?;
             (self.observer)(StabilityProgress::Finished);
         }
-        report.provenance.complete = true;
+        report.complete = true;
         self.save(&report)?;
         #[cfg(feature = "plot")]
         if let Some(directory) = &self.directory {

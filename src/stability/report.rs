@@ -10,14 +10,14 @@ use super::row::{StabilityRow, Verdict, short};
 use super::summary::{by_criterion, by_scheme, criteria, missed, robust, safe_ranges};
 use crate::error::Error;
 use crate::files::replace_text;
+use crate::output::csv;
+use crate::output::document::Document;
 #[cfg(feature = "plot")]
 use crate::output::html::{HtmlPage, Section};
-use crate::output::{Provenance, csv};
 #[cfg(feature = "plot")]
 use crate::plot::Figure;
 use crate::study::Program;
-#[cfg(feature = "plot")]
-use crate::table::{Cell, Table, WIDTH, latex_document, markdown};
+use crate::table::{Cell, Table, WIDTH};
 
 /// Notes before the tables.
 const READING: [&str; 3] = [
@@ -32,8 +32,8 @@ const READING: [&str; 3] = [
 pub struct StabilityReport {
     /// The program.
     pub program: Program,
-    /// Time and machine.
-    pub provenance: Provenance,
+    /// Whether all jobs have run.
+    pub complete: bool,
     /// The size of the study.
     pub effort: Effort,
     /// One row for every figure.
@@ -47,7 +47,7 @@ impl StabilityReport {
     pub fn new(effort: Effort) -> Self {
         Self {
             program: Program::new("stability", "f64, f32", rayon::current_num_threads(), 1),
-            provenance: Provenance::now(1),
+            complete: false,
             effort,
             rows: Vec::new(),
             failures: Vec::new(),
@@ -94,17 +94,10 @@ impl StabilityReport {
     /// Verdicts, what was missed, safe ranges of factors and robust choices, for a terminal: the report
     /// without its rows.
     pub fn summary(&self) -> String {
-        let mut text = format!("{}\n", self.heading());
-        for sentence in self.safe_ranges().into_iter().chain(self.robust_choices()) {
-            text += &format!("{sentence}\n");
-        }
-        for failure in &self.failures {
-            text += &format!("Not run to the end: {failure}.\n");
-        }
-        for table in self.verdict_tables() {
-            text += &format!("\n{}", table.to_text(WIDTH));
-        }
-        text
+        let mut opening = vec![self.heading()];
+        opening.extend(self.findings());
+        let tables = self.verdict_tables();
+        Document { title: "Stability", opening, tables, closing: Vec::new() }.to_text(WIDTH)
     }
 
     fn case_table(&self, case: &str) -> Table {
@@ -122,40 +115,25 @@ impl StabilityReport {
                 Cell::Words(sweep),
                 Cell::Words(row.quantity.clone()),
                 Cell::Words(row.expected.words()),
-                row.figure_in_words().map_or(Cell::Nothing, |x| Cell::Number(x, None)),
+                Cell::number(row.figure_in_words()),
                 Cell::Words(row.verdict_words()),
                 Cell::Words(row.detail.clone()),
             ]
         };
         let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
+        let heads = "criterion,scheme,penalty,problem,n,at,quantity,expected,measured,verdict,further figures";
         Table {
-            title: format!("Case {case}"),
-            columns: [
-                "criterion",
-                "scheme",
-                "penalty",
-                "problem",
-                "n",
-                "at",
-                "quantity",
-                "expected",
-                "measured",
-                "verdict",
-                "further figures",
-            ]
-            .map(str::to_owned)
-            .into(),
-            rows: rows.iter().map(line).collect(),
             remarks: asked.map(|c| format!("{}: {}", c.name, c.sentence)).collect(),
+            ..Table::new(format!("Case {case}"), heads, rows.iter().map(line).collect())
         }
     }
 
-    /// The report as JSON: `program`, `provenance`, `criteria`, `rows`, `failures`, `safe_ranges` and
+    /// The report as JSON: `program`, `complete`, `criteria`, `rows`, `failures`, `safe_ranges` and
     /// `robust_choices`. What does not apply is null.
     pub fn to_json(&self) -> String {
         let value = json!({
             "program": self.program,
-            "provenance": self.provenance,
+            "complete": self.complete,
             "criteria": CRITERIA,
             "rows": self.rows,
             "failures": self.failures,
@@ -172,33 +150,33 @@ impl StabilityReport {
 
     /// Tables for a terminal.
     pub fn to_text(&self) -> String {
-        self.document(&self.tables(), |table| table.to_text(WIDTH), |line| format!("{line}\n"))
+        self.document(self.tables()).to_text(WIDTH)
     }
 
     /// Tables, provenance and notes in Markdown.
     pub fn to_markdown(&self) -> String {
-        self.markdown_with(&self.tables())
+        self.document(self.tables()).to_markdown()
     }
 
     /// A summary in Markdown without the rows: verdicts, limits that were missed, criteria in words,
     /// provenance and notes.
     pub fn summary_to_markdown(&self) -> String {
-        let mut tables = self.verdict_tables();
-        tables.push(criteria(&self.rows));
-        self.markdown_with(&tables)
+        self.document(self.summary_tables()).to_markdown()
     }
 
-    fn markdown_with(&self, tables: &[Table]) -> String {
-        let line = |line: &str| format!("{}\n\n", markdown(line));
-        format!("# Stability\n\n{}", self.document(tables, Table::to_markdown, line))
+    fn document(&self, tables: Vec<Table>) -> Document {
+        Document { title: "Stability", opening: self.paragraphs(), tables, closing: Vec::new() }
     }
 
     /// Provenance, notes, verdicts, what was missed and the criteria in LaTeX, for `\input`; see
     /// [`LATEX_PACKAGES`](crate::output::LATEX_PACKAGES).
     pub fn to_latex(&self) -> String {
-        let mut summary = self.verdict_tables();
-        summary.push(criteria(&self.rows));
-        latex_document(&self.paragraphs(), &summary)
+        self.document(self.summary_tables()).to_latex()
+    }
+
+    /// Verdicts, limits that were missed, and the criteria in words.
+    fn summary_tables(&self) -> Vec<Table> {
+        self.verdict_tables().into_iter().chain([criteria(&self.rows)]).collect()
     }
 
     /// The sweeps of every case over a parameter, drawn, each with the name of its file.
@@ -246,51 +224,37 @@ impl StabilityReport {
         Ok(written)
     }
 
-    /// What stands before the tables.
+    /// The paragraphs before the tables.
     fn paragraphs(&self) -> Vec<String> {
+        let command = self.program.command.iter().map(|command| format!("Made by {command}."));
         let mut paragraphs = vec![self.heading()];
+        paragraphs.extend(command);
         paragraphs.extend(READING.map(str::to_owned));
-        paragraphs.extend(self.safe_ranges().into_iter().chain(self.robust_choices()));
-        paragraphs.extend(self.failures.iter().map(|f| format!("Not run to the end: {f}.")));
+        paragraphs.extend(self.findings());
         paragraphs
     }
 
-    fn document(
-        &self,
-        tables: &[Table],
-        table: fn(&Table) -> String,
-        line: impl Fn(&str) -> String,
-    ) -> String {
-        let mut text: String = self.paragraphs().iter().map(|paragraph| line(paragraph)).collect();
-        for t in tables {
-            text += "\n";
-            text += &table(t);
-        }
-        text
+    /// Safe ranges, robust choices, and jobs that ended in an error.
+    fn findings(&self) -> impl Iterator<Item = String> {
+        let failures = self.failures.iter().map(|f| format!("Not run to the end: {f}."));
+        let found = self.safe_ranges().into_iter().chain(self.robust_choices());
+        found.chain(failures).collect::<Vec<_>>().into_iter()
     }
 
     /// Program, provenance and the count of verdicts in one line.
     fn heading(&self) -> String {
-        let Program { name, version, threads, precision, target_cpu, .. } = &self.program;
-        let Provenance { date, processor, complete, .. } = &self.provenance;
-        let known = |text: &Option<String>| text.clone().unwrap_or_else(|| "unknown".to_owned());
         let effort = match self.effort {
             Effort::Trial => "trial",
             Effort::Quick => "quick",
             Effort::Full => "full",
         };
-        let end = if *complete { "" } else { " (interrupted or still running)" };
+        let end = if self.complete { "" } else { " (interrupted or still running)" };
         let counts: Vec<String> = Verdict::ALL
             .into_iter()
             .map(|verdict| format!("{} {}", self.count(verdict), verdict.name()))
             .collect();
-        format!(
-            "{name} {version}, {}; {target_cpu}, {}; {threads} threads; {precision}; {effort} run{end}; {} rows: {}.",
-            known(date),
-            known(processor),
-            self.rows.len(),
-            counts.join(", "),
-        )
+        let (program, rows) = (self.program.words(), self.rows.len());
+        format!("{program}; {effort} run{end}; {rows} rows: {}.", counts.join(", "))
     }
 
     /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be. Each file takes

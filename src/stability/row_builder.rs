@@ -60,7 +60,7 @@ impl RowBuilder {
         self.0.value = Some(value);
         self
     }
-    /// What is measured.
+    /// The quantity that is measured.
     pub fn quantity(mut self, quantity: &str) -> Self {
         self.0.quantity = quantity.to_owned();
         self

@@ -29,10 +29,9 @@ pub(crate) fn by_scheme(rows: &[StabilityRow]) -> Table {
         cells.extend(counts);
         cells
     };
-    let mut columns = vec!["scheme".to_owned(), "penalty".to_owned()];
-    columns.extend(Verdict::ALL.map(|v| v.name().to_owned()));
+    let heads = format!("scheme,penalty,{}", Verdict::ALL.map(Verdict::name).join(","));
     let rows = choices.into_iter().map(line).collect();
-    Table { title: "Verdicts by scheme and penalty".into(), columns, rows, remarks: Vec::new() }
+    Table::new("Verdicts by scheme and penalty", &heads, rows)
 }
 
 /// Verdicts of every criterion.
@@ -50,11 +49,8 @@ pub(crate) fn by_criterion(rows: &[StabilityRow]) -> Table {
         cells.push(Cell::Words(failing.join("; ")));
         cells
     };
-    let mut columns = vec!["case".to_owned(), "criterion".to_owned()];
-    columns.extend(Verdict::ALL.map(|v| v.name().to_owned()));
-    columns.push("missed by".to_owned());
-    let rows = asked.map(line).collect();
-    Table { title: "Verdicts by criterion".into(), columns, rows, remarks: Vec::new() }
+    let heads = format!("case,criterion,{},missed by", Verdict::ALL.map(Verdict::name).join(","));
+    Table::new("Verdicts by criterion", &heads, asked.map(line).collect())
 }
 
 /// Every row that misses its range, with the factor; no table without such rows.
@@ -69,41 +65,23 @@ pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
             Cell::whole(row.level),
             Cell::Words(sweep),
             Cell::Words(row.expected.words()),
-            row.figure_in_words().map_or(Cell::Nothing, |x| Cell::Number(x, None)),
-            row.missed_by.map_or(Cell::Nothing, |x| Cell::Number(factor_in_words(x), None)),
+            Cell::number(row.figure_in_words()),
+            Cell::number(row.missed_by.map(factor_in_words)),
             Cell::Words(row.detail.clone()),
         ]
     };
     let rows: Vec<_> = rows.iter().filter(|r| r.verdict == Verdict::Missed).map(line).collect();
-    let columns = [
-        "criterion",
-        "scheme",
-        "problem",
-        "n",
-        "at",
-        "expected",
-        "measured",
-        "factor",
-        "further figures",
-    ];
-    (!rows.is_empty()).then(|| Table {
-        title: "What was missed, and by what factor".into(),
-        columns: columns.map(str::to_owned).into(),
-        rows,
-        remarks: Vec::new(),
-    })
+    let heads = "criterion,scheme,problem,n,at,expected,measured,factor,further figures";
+    let title = "What was missed, and by what factor";
+    (!rows.is_empty()).then(|| Table::new(title, heads, rows))
 }
 
 /// The criteria in words.
 pub(crate) fn criteria(rows: &[StabilityRow]) -> Table {
     let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
     let words = |text: &str| Cell::Words(text.to_owned());
-    Table {
-        title: "The criteria".into(),
-        columns: ["criterion", "condition"].map(str::to_owned).into(),
-        rows: asked.map(|c| vec![words(c.name), words(c.sentence)]).collect(),
-        remarks: Vec::new(),
-    }
+    let rows = asked.map(|c| vec![words(c.name), words(c.sentence)]).collect();
+    Table::new("The criteria", "criterion,condition", rows)
 }
 
 /// The criteria of errors, of forces and of definiteness over sweeps of a penalty factor.

@@ -13,17 +13,17 @@ use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 /// scene breaks the contact condition, or none.
 ///
 /// Dirichlet and Neumann data of a scene with an exact solution come from that solution wherever
-/// the mesh has such parts, so it stays the solution on any domain where it is smooth enough. Only
+/// the mesh has such boundaries, so it stays the solution on any domain where it is smooth enough. Only
 /// the contact condition may fail there: it is tested on every contact facet.
 ///
 /// # Errors
-/// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part, or if the data of
+/// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact boundary, or if the data of
 /// the scene are no data on the mesh: not finite, or without an admissible value.
 pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Error> {
     let Domain::Mesh(mesh) = &scene.domain else {
         return check_contact(scene).map(|()| None);
     };
-    mesh.check_boundary_parts()?;
+    mesh.check_boundary_conditions()?;
     check_contact(scene)?;
     check_data(scene, mesh)?;
     Ok(first_failure(scene, mesh))
@@ -111,17 +111,17 @@ fn first_twice<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
     })
 }
 
-/// Checks that the domain has a contact part if and only if there is a Signorini condition.
+/// Checks that the domain has a contact boundary if and only if there is a Signorini condition.
 fn check_contact<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
     let why = match (
         scene.problem.has_gap(),
         scene.domain.has_condition(BoundaryCondition::Contact),
     ) {
         (true, false) => {
-            "the problem has a Signorini condition, but the mesh has no contact part: no group named \"contact\" or with a gap"
+            "the problem has a Signorini condition, but the mesh has no contact boundary: no group named \"contact\" or with a gap"
         }
         (false, true) => {
-            "the mesh has a contact part (the group \"contact\"), but the problem has no Signorini condition"
+            "the mesh has a contact boundary (the group \"contact\"), but the problem has no Signorini condition"
         }
         _ => return Ok(()),
     };

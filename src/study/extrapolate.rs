@@ -1,4 +1,4 @@
-//! Limits of figures that have no exact value, from three levels.
+//! The limits of energy, contact measure and contact force as the mesh size tends to zero, from three levels.
 
 use std::borrow::Borrow;
 
@@ -18,10 +18,10 @@ pub struct Limit {
     pub order: Option<f64>,
 }
 
-/// Two differences below this share of the figures are those of the accuracy of a solve.
+/// Figures that differ by less than this share of their size are equal: a solve is no more accurate.
 const EQUAL: f64 = 1e-9;
-/// The orders that are searched. Differences that fall more slowly are those of figures that have not begun to
-/// tend to a limit, as of a contact set that grows by whole cells: a limit far from all three figures.
+/// The orders that are searched. Figures whose differences fall more slowly have not begun to tend to a limit: a contact
+/// set, say, that grows by whole cells. Their extrapolation would lie far from all three.
 const ORDERS: [f64; 2] = [0.5, 12.0];
 
 /// The limit of three figures, coarsest mesh first, whose error is `C h^p`: Richardson extrapolation with
@@ -75,13 +75,13 @@ pub struct Extrapolated {
     pub resultant: Option<Limit>,
 }
 
-/// The limits of energy, contact measure and resultant of every series with three levels that converged,
-/// from the three finest of them, none of figures that are all rounding. Adaptive meshes have no limits: their sizes are
-/// not those of one family.
+/// The limits of energy, contact measure and resultant of every series with at least three converged levels, from the
+/// three finest of them. Figures that are all rounding have no limit. Adaptive meshes have none either, because their
+/// sizes are not those of one family.
 #[must_use]
 pub fn extrapolate<R: Borrow<Row>>(rows: &[R]) -> Vec<Extrapolated> {
-    let of_series = |series: Series<'_, R>| {
-        let levels: Vec<&Row> = series.plain_rows().filter(|r| r.converged()).collect();
+    let of_series = |series: Series<'_>| {
+        let levels: Vec<&Row> = series.rows.iter().copied().filter(|r| r.converged()).collect();
         let three: &[&Row; 3] = levels.last_chunk()?;
         let of = |figure: fn(&Row) -> Option<f64>, rounding: fn(Rounding) -> f64| {
             let [a, b, c] = three.map(figure);

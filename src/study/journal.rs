@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::orders::fill_orders;
-use super::report::{Program, Report};
+use super::program::Program;
+use super::report::Report;
 use super::row::{Row, RowKey};
 use crate::error::{Error, read_error, write_error};
 use crate::files::{remove_drafts, replace};

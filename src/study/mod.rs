@@ -12,6 +12,7 @@ mod journal;
 mod memory;
 pub(crate) mod orders;
 mod part_figures;
+pub(crate) mod program;
 mod reference;
 pub(crate) mod report;
 pub(crate) mod row;
@@ -27,13 +28,14 @@ pub use extrapolate::{Extrapolated, Limit};
 pub use file_name::file_name;
 #[cfg(feature = "report")]
 pub use journal::Journal;
-pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
+pub use memory::peak_memory_bytes;
 pub use orders::{
     ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders, orders_summary,
     orders_table,
 };
 pub use part_figures::{PartFigures, PartSeconds};
-pub use report::{Program, Report};
+pub use program::Program;
+pub use report::Report;
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
 pub use runner::{PartChecks, Progress, Study};
 pub use series::{Meshes, Series, Variant};

@@ -61,6 +61,10 @@ pub struct Seconds {
     pub assemble: f64,
     /// Solve, with the start from coarser levels.
     pub solve: f64,
+    /// The part of the solve that was the start: conforming P1 on coarser levels and, for other schemes, on this
+    /// one. None on adaptive meshes.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub start: Option<f64>,
     /// The error bound. On adaptive meshes with marking and a part of the sum, on uniform ones beside it; none
     /// where there is no bound.
     #[cfg_attr(feature = "report", serde(default))]
@@ -73,7 +77,7 @@ impl Seconds {
     /// Times of mesh, assembly and solve, with their sum.
     #[must_use]
     pub fn new(mesh: f64, assemble: f64, solve: f64) -> Self {
-        Self { mesh, assemble, solve, bound: None, total: mesh + assemble + solve }
+        Self { mesh, assemble, solve, start: None, bound: None, total: mesh + assemble + solve }
     }
 }
 
@@ -181,8 +185,11 @@ pub struct Row {
     pub iterations: Iterations,
     /// The certificate.
     pub certificate: Certificate,
-    /// Wall times.
+    /// Wall times; of several runs those of the fastest.
     pub seconds: Seconds,
+    /// The total seconds of all runs, ascending, where the case ran in several rounds; other rows do not have the key.
+    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub runs: Option<Vec<f64>>,
     /// Largest resident set of the process so far, if the system reports it.
     pub peak_memory_bytes: Option<u64>,
     /// Warnings by type, as text: a penalty below its proven bound, say.
@@ -232,6 +239,7 @@ impl Row {
             iterations: Iterations::default(),
             certificate: Certificate::INVALID,
             seconds: Seconds::default(),
+            runs: None,
             peak_memory_bytes: None,
             warnings: Vec::new(),
             ranks: None,
@@ -275,11 +283,10 @@ impl Row {
             },
             certificate: solved.certificate(),
             rounding: solved.rounding(),
-            seconds: Seconds::new(
-                solved.mesh_seconds,
-                solved.system().assemble_seconds,
-                solve_seconds,
-            ),
+            seconds: Seconds {
+                start: Some(solved.start_seconds),
+                ..Seconds::new(solved.mesh_seconds, solved.system().assemble_seconds, solve_seconds)
+            },
             warnings,
             ..row
         }

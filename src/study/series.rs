@@ -111,37 +111,29 @@ impl Variant {
 /// The rows of one variant.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Series<'r, R = Row> {
+pub struct Series<'r> {
     /// What the rows have in common.
     pub variant: Variant,
     /// What tells the series apart from the others of its report, but for the scene: its entry in a legend.
     pub name: String,
     /// The rows, from coarse to fine.
-    pub rows: Vec<&'r R>,
-}
-
-impl<'r, R: Borrow<Row>> Series<'r, R> {
-    /// The rows without what a report has besides.
-    pub(crate) fn plain_rows(&self) -> impl DoubleEndedIterator<Item = &'r Row> {
-        self.rows.iter().map(|&row| row.borrow())
-    }
+    pub rows: Vec<&'r Row>,
 }
 
 /// The series of rows, in the order in which they first occur.
-pub(crate) fn series_of<R: Borrow<Row>>(rows: &[R]) -> Vec<Series<'_, R>> {
-    let mut all: Vec<Series<'_, R>> = Vec::new();
-    for row in rows {
-        match all.iter_mut().find(|series| series.variant.has(row.borrow())) {
+pub(crate) fn series_of<R: Borrow<Row>>(rows: &[R]) -> Vec<Series<'_>> {
+    let mut all: Vec<Series<'_>> = Vec::new();
+    for row in rows.iter().map(R::borrow) {
+        match all.iter_mut().find(|series| series.variant.has(row)) {
             Some(series) => series.rows.push(row),
-            None => all.push(Series {
-                variant: Variant::of(row.borrow()),
-                name: String::new(),
-                rows: vec![row],
-            }),
+            None => {
+                let variant = Variant::of(row);
+                all.push(Series { variant, name: String::new(), rows: vec![row] });
+            }
         }
     }
     for k in 0..all.len() {
-        all[k].rows.sort_by_key(|&row| Borrow::<Row>::borrow(row).level);
+        all[k].rows.sort_by_key(|row| row.level);
         all[k].name = all[k].variant.name_among(all.iter().map(|series| &series.variant));
     }
     all
@@ -149,6 +141,6 @@ pub(crate) fn series_of<R: Borrow<Row>>(rows: &[R]) -> Vec<Series<'_, R>> {
 
 /// The names of series, each once: a scheme on several scenes has one.
 #[cfg(feature = "report")]
-pub(crate) fn names<R>(series: &[Series<'_, R>]) -> Vec<String> {
+pub(crate) fn names(series: &[Series<'_>]) -> Vec<String> {
     distinct(series.iter().map(|series| series.name.clone()))
 }

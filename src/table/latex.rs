@@ -2,18 +2,20 @@
 
 use super::{Cell, Table};
 
-/// What a document with tables needs in its preamble.
-pub const LATEX_PACKAGES: &str = "\\usepackage{booktabs,siunitx}";
+/// The lines that a document with tables needs in its preamble.
+///
+/// Numbers of `siunitx` are bold where the text around them is.
+pub const LATEX_PACKAGES: &str = "\\usepackage{booktabs,siunitx}\\sisetup{detect-weight=true}";
 
 impl Table {
-    /// A `table` with a `tabular` of all columns, the caption and the label `tab:` with the [slug](Self::slug). See
+    /// A `table` with a `tabular` of all columns, the caption and the label `tab:` with the title. See
     /// [`LATEX_PACKAGES`].
     pub fn to_latex(&self) -> String {
         let line = |cells: Vec<String>| format!("{} \\\\\n", cells.join(" & "));
         let kind = |k| if self.is_left(k) { 'l' } else { 'r' };
         let mut text = format!(
             "\\begin{{table}}\n\\caption{{{}}}\\label{{tab:{}}}\n\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n",
-            latex(&self.title),
+            latex(&self.caption()),
             self.slug(),
             (0..self.columns.len()).map(kind).collect::<String>(),
             line(self.columns.iter().map(|name| latex(name)).collect()),
@@ -99,6 +101,7 @@ mod tests {
     fn a_table_is_a_tabular_with_a_caption() {
         let table = Table {
             title: "Case: one_two".into(),
+            detail: ", level 8".into(),
             columns: vec!["scheme".into(), "L2".into()],
             rows: vec![
                 vec![Cell::Words("p1".into()), Cell::Number("1.5e-3".into(), None)],
@@ -108,7 +111,7 @@ mod tests {
         };
         assert_eq!(
             table.to_latex(),
-            "\\begin{table}\n\\caption{Case: one\\_two}\\label{tab:case-one-two}\n\
+            "\\begin{table}\n\\caption{Case: one\\_two, level 8}\\label{tab:case-one-two}\n\
              \\begin{tabular}{lr}\n\\toprule\nscheme & L2 \\\\\n\\midrule\n\
              p1 & \\num{1.5e-3} \\\\\ncr & -- \\\\\n\\bottomrule\n\
              \\end{tabular}\n\\end{table}\n50\\% off\n\n"

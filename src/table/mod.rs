@@ -2,12 +2,14 @@
 
 #[cfg(feature = "report")]
 mod latex;
+mod number;
 mod text;
 
 #[cfg(feature = "report")]
 pub use latex::LATEX_PACKAGES;
 #[cfg(feature = "report")]
 pub(crate) use latex::latex_document;
+pub(crate) use number::{digits, fixed, seconds};
 pub(crate) use text::wrapped;
 
 /// Characters in a line where the width of the terminal is not known.
@@ -28,24 +30,41 @@ pub(crate) enum Cell {
 
 /// A table with a title, and with remarks below. Words are aligned to the left, numbers to the
 /// right.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
+    /// What names the table, also in labels.
     pub(crate) title: String,
+    /// What follows the title and may change from run to run: levels, errors, settings.
+    pub(crate) detail: String,
     pub(crate) columns: Vec<String>,
     pub(crate) rows: Vec<Vec<Cell>>,
     pub(crate) remarks: Vec<String>,
 }
 
 impl Cell {
+    /// A number that is written already.
+    pub(crate) fn number(text: Option<String>) -> Self {
+        text.map_or(Cell::Nothing, |text| Cell::Number(text, None))
+    }
     /// A number of things.
-    #[cfg(feature = "report")]
     pub(crate) fn whole(x: Option<usize>) -> Self {
-        x.map_or(Cell::Nothing, |x| Cell::Number(x.to_string(), None))
+        Self::number(x.map(|x| x.to_string()))
     }
     /// Three digits.
-    #[cfg(feature = "report")]
     pub(crate) fn scientific(x: Option<f64>) -> Self {
-        x.map_or(Cell::Nothing, |x| Cell::Number(format!("{x:.2e}"), None))
+        Self::digits(x, 2)
+    }
+    /// So many digits after the point, and the power of ten.
+    pub(crate) fn digits(x: Option<f64>, places: usize) -> Self {
+        Self::number(x.map(|x| digits(x, places)))
+    }
+    /// Two digits after the point.
+    pub(crate) fn fixed(x: Option<f64>) -> Self {
+        Self::number(x.map(fixed))
+    }
+    /// Seconds in six characters.
+    pub(crate) fn seconds(x: f64) -> Self {
+        Self::number(Some(seconds(x)))
     }
 
     /// The text of the cell, without a mark.
@@ -61,26 +80,36 @@ impl Cell {
 }
 
 impl Table {
+    /// A table with these heads, separated by commas.
+    pub(crate) fn new(title: impl Into<String>, heads: &str, rows: Vec<Vec<Cell>>) -> Self {
+        let columns = heads.split(',').map(str::to_owned).collect();
+        Self { title: title.into(), columns, rows, ..Self::default() }
+    }
+
+    /// The title with its detail.
+    pub(crate) fn caption(&self) -> String {
+        format!("{}{}", self.title, self.detail)
+    }
+
     /// Whether a column is one of words.
     pub(crate) fn is_left(&self, column: usize) -> bool {
         self.rows.iter().any(|row| matches!(row[column], Cell::Words(_)))
     }
 
-    /// The title as a name of files and labels: letters and digits, and `-` for all else.
+    /// The title as a label: letters and digits, and `-` for all else.
     #[cfg(feature = "report")]
-    pub fn slug(&self) -> String {
+    fn slug(&self) -> String {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
         let text: String = self.title.chars().map(plain).collect();
         text.split_whitespace().collect::<Vec<_>>().join("-")
     }
 
     /// A heading, a table with bars, and a list of remarks; the best number of a column is bold.
-    #[cfg(feature = "report")]
     pub fn to_markdown(&self) -> String {
         let line = |cells: &mut dyn Iterator<Item = String>| {
             format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
         };
-        let mut text = format!("### {}\n\n", markdown(&self.title));
+        let mut text = format!("### {}\n\n", markdown(&self.caption()));
         text += &line(&mut self.columns.iter().map(|c| markdown(c)));
         let rule = |k| if self.is_left(k) { ":--" } else { "--:" }.to_owned();
         text += &line(&mut (0..self.columns.len()).map(rule));
@@ -100,7 +129,6 @@ impl Table {
 }
 
 /// A text with the markup characters of Markdown escaped.
-#[cfg(feature = "report")]
 pub(crate) fn markdown(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {
@@ -127,6 +155,7 @@ mod tests {
                 vec![Cell::Words("cr".into()), Cell::Best("1e-3".into(), Some("1.5".into()))],
             ],
             remarks: vec!["100% of _all_".into()],
+            ..Table::default()
         };
         let text = "t\nscheme             n\np1                 8\nwopsip             -\n\
                     cr      \u{2022} 1e-3 (1.5)\n  100% of _all_\n";
@@ -149,7 +178,7 @@ mod tests {
                 row("p1", "converged"),
                 row("wopsip:facet-means@factor=10", "stalled: the residual fell no more"),
             ],
-            remarks: vec![],
+            ..Table::default()
         };
         let expected = "t
 scheme        unknowns status

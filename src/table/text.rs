@@ -2,16 +2,17 @@
 
 use super::{Cell, Table};
 
-/// What stands before the best number of a column.
+/// The mark before the best number of a column.
 const BEST: &str = "\u{2022} ";
 
-/// Longer words of a last column stand below their line.
+/// Longer words of a last column stand below their line where lines are too long.
 const LONGEST_STATUS: usize = 16;
 
 impl Table {
     /// Aligned columns in lines of this many characters. Heads are broken where their columns are narrower. Where lines
     /// are too long, names in the first column are broken after their signs. Words of the last column that do not
-    /// fit go on lines of their own.
+    /// fit go on lines of their own. Where most rows have the name of the one before
+    /// them, blank lines stand between names.
     pub fn to_text(&self, width: usize) -> String {
         let cell = |cell: &Cell| match cell {
             Cell::Best(..) => format!("{BEST}{}", cell.plain()),
@@ -20,11 +21,14 @@ impl Table {
         let cells: Vec<Vec<String>> =
             self.rows.iter().map(|row| row.iter().map(cell).collect()).collect();
         let (widths, gap) = self.widths(&cells, width);
-        let mut text = wrapped(&self.title, width, 4);
+        let mut text = wrapped(&self.caption(), width, 4);
         text += &self.line(&self.columns, &widths, gap);
         let last = self.columns.len() - 1;
-        for mut row in cells {
+        let is_new = |k: usize| k > 0 && self.rows[k][0] != self.rows[k - 1][0];
+        let has_groups = 2 * (0..self.rows.len()).filter(|&k| is_new(k)).count() < self.rows.len();
+        for (k, mut row) in cells.into_iter().enumerate() {
             let mut below = String::new();
+            text += if has_groups && is_new(k) { "\n" } else { "" };
             if row[last].chars().count() > widths[last] {
                 below = wrapped(&format!("    {}", std::mem::take(&mut row[last])), width, 4);
             }
@@ -62,15 +66,18 @@ impl Table {
     /// The widths of the columns, and how many blanks stand between two: two where lines are short enough.
     fn widths(&self, cells: &[Vec<String>], width: usize) -> (Vec<usize>, usize) {
         let last = self.columns.len() - 1;
-        let is_short =
-            |k: usize, length: usize| k < last || !self.is_left(k) || length <= LONGEST_STATUS;
-        let mut widths: Vec<usize> = (0..=last)
-            .map(|k| {
+        let of = |longest: usize| -> Vec<usize> {
+            let is_short = |k: usize, n: usize| k < last || !self.is_left(k) || n <= longest;
+            let of_column = |k: usize| {
                 let lengths = cells.iter().map(|row| row[k].chars().count());
                 let words = self.columns[k].split_inclusive(is_break).map(length);
                 lengths.filter(|&n| is_short(k, n)).chain(words).max().unwrap_or(0)
-            })
-            .collect();
+            };
+            (0..=last).map(of_column).collect()
+        };
+        let with_all = of(usize::MAX);
+        let fits = with_all.iter().sum::<usize>() + 2 * last <= width;
+        let mut widths = if fits { with_all } else { of(LONGEST_STATUS) };
         let whole: usize = widths.iter().sum();
         let gap = if whole + 2 * last > width { 1 } else { 2 };
         let excess = (whole + gap * last).saturating_sub(width);

@@ -1,13 +1,13 @@
-//! The tables of a report: for every scene what was run, where the time went, what it costs to reach one
-//! error, and how long it takes to reach others.
+//! The tables of work against precision: for every scene where the time went, what it costs to reach one error, and how
+//! long it takes to reach others.
 
-use super::measured::{Failure, Measured, Phases, scenes, variants};
 use super::verdict::at_common_error;
 use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
-use crate::study::Variant;
 use crate::study::row::distinct;
-use crate::table::{Cell, Table};
+use crate::study::series::series_of;
+use crate::study::{Row, Seconds, Series, Variant};
+use crate::table::{Cell, Table, fixed};
 
 /// Columns of errors that fit into a line.
 const MOST_ERRORS: usize = 5;
@@ -18,17 +18,17 @@ const MARKS: &str = "> t: not reached by the finest level, which takes t; < t: u
     asked for; failed: the level that would decide did not converge";
 
 /// Costs and times to reach errors, scene by scene: the summary of a report.
-pub(crate) fn summary(all: &[Measured], failures: &[Failure], reach: &[WorkAtError]) -> Vec<Table> {
+pub(crate) fn summary(all: &[Row], reach: &[WorkAtError]) -> Vec<Table> {
     let variants = variants(all);
     let mut tables = Vec::new();
-    for scene in scenes(all, failures) {
+    for scene in distinct(all.iter().map(|row| row.scene.as_str())) {
         tables.extend(costs(scene, &at_common_error(reach, scene), &variants));
         for norm in ErrorNorm::ALL {
             let here = |r: &&WorkAtError| r.variant.scene == scene && r.norm == norm;
             let reach: Vec<&WorkAtError> = reach.iter().filter(here).collect();
-            let of_scene = || all.iter().filter(|m| m.row.scene == scene);
+            let of_scene = || all.iter().filter(|row| row.scene == scene);
             let says_nothing =
-                norm == ErrorNorm::Energy && of_scene().all(|m| m.row.error.is_energy_h1());
+                norm == ErrorNorm::Energy && of_scene().all(|row| row.error.is_energy_h1());
             if !reach.is_empty() && !says_nothing {
                 tables.push(times(scene, norm, &reach, &variants));
             }
@@ -37,71 +37,21 @@ pub(crate) fn summary(all: &[Measured], failures: &[Failure], reach: &[WorkAtErr
     tables
 }
 
-/// What was run and where the time went, scene by scene.
-pub(crate) fn details(all: &[Measured], failures: &[Failure]) -> Vec<Table> {
-    let variants = variants(all);
-    let of_scene = |scene| {
-        let rows: Vec<&Measured> = all.iter().filter(|m| m.row.scene == scene).collect();
-        [runs(failures, scene, &rows, &variants), phases(scene, &rows, &variants)]
-    };
-    scenes(all, failures).into_iter().flat_map(of_scene).collect()
+/// Where the time went, scene by scene.
+pub(crate) fn details(all: &[Row]) -> Vec<Table> {
+    let series = series_of(all);
+    let scenes = distinct(series.iter().map(|of| of.variant.scene.as_str()));
+    let of_scene =
+        |scene: &str| phases(scene, series.iter().filter(|of| of.variant.scene == scene).collect());
+    scenes.into_iter().map(of_scene).collect()
 }
 
-fn head(names: &[&str]) -> Vec<String> {
-    names.iter().map(|&name| name.to_owned()).collect()
+/// The variants of rows, in the order in which they first occur.
+fn variants(rows: &[Row]) -> Vec<Variant> {
+    series_of(rows).into_iter().map(|series| series.variant).collect()
 }
 
-/// Counts, errors, time and memory of every case, failures below.
-fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
-    let line = |m: &&Measured| {
-        let row = &m.row;
-        let c = &row.certificate;
-        let certificate = [c.feasibility, c.multiplier, c.complementarity, c.residual];
-        // what is not a number counts as larger than any
-        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
-        vec![
-            Cell::Words(m.variant().name_among(variants)),
-            Cell::whole(Some(row.level)),
-            Cell::whole(row.unknowns),
-            Cell::whole(row.iterations.outer),
-            Cell::whole(Some(row.iterations.linear)),
-            Cell::scientific(row.error.l2),
-            Cell::scientific(row.error.h1),
-            Cell::scientific(row.error.broken_energy),
-            Cell::scientific(row.bound.discrete),
-            Cell::scientific(Some(certificate.into_iter().fold(0.0, worse))),
-            Cell::scientific(Some(m.smallest.total)),
-            megabytes(row.peak_memory_bytes.map(|b| b as f64)),
-        ]
-    };
-    let failures = failures.iter().filter(|f| f.case.variant.scene == scene);
-    Table {
-        title: format!("{scene}: runs"),
-        columns: head(&[
-            "scheme", "n", "unknowns", "outer", "inner", "L2", "H1", "energy", "bound", "certif.",
-            "least", "MB",
-        ]),
-        rows: rows.iter().map(line).collect(),
-        remarks: failures
-            .map(|f| {
-                let name = f.case.variant.name_among(variants);
-                format!("failed: {name}, level {}: {}", f.case.level, f.why)
-            })
-            .collect(),
-    }
-}
-
-fn megabytes(bytes: Option<f64>) -> Cell {
-    bytes.map_or(Cell::Nothing, |b| Cell::Number(format!("{:.0}", b / 1e6), None))
-}
-
-/// Two decimals.
-fn decimals(x: Option<f64>) -> Cell {
-    x.map_or(Cell::Nothing, |x| Cell::Number(format!("{x:.2}"), None))
-}
-
-/// The column of the median over the least time.
-const SPREAD: &str = "spread";
+/// What the column says that has the median over the least time.
 const WHAT_SPREAD_IS: &str =
     "spread: the median time of repeated runs over the least; - for what ran once";
 
@@ -122,24 +72,26 @@ fn costs(scene: &str, reach: &[&WorkAtError], variants: &[Variant]) -> Option<Ta
         vec![
             Cell::Words(r.variant.name_among(variants)),
             time(r),
-            decimals(r.median_over_least),
+            Cell::fixed(r.median_over_least),
             whole(r.unknowns),
             whole(r.entries),
         ]
     };
     Some(Table {
-        title: format!("{scene}: costs at an {}", reached(norm, Some(error))),
-        columns: head(&["scheme", "seconds", SPREAD, "unknowns", "entries"]),
-        rows: reach.iter().map(line).collect(),
+        detail: format!(" at an {}", reached(norm, Some(error))),
         remarks: vec![WHAT_SPREAD_IS.to_owned()],
+        ..Table::new(
+            format!("{scene}: costs"),
+            "scheme,seconds,spread,unknowns,entries",
+            reach.iter().map(line).collect(),
+        )
     })
 }
 
 /// The time to reach an error with the ratio to the fastest, or why there is none.
 fn time(at: &WorkAtError) -> Cell {
-    let bound = |sign: &str| {
-        at.seconds_bound.map_or(Cell::Nothing, |s| Cell::Number(format!("{sign} {s:.2e}"), None))
-    };
+    let bound =
+        |sign: &str| Cell::number(at.seconds_bound.map(|seconds| format!("{sign} {seconds:.2e}")));
     match at.standing {
         Standing::Reached => at.seconds.zip(at.ratio).map_or(Cell::Nothing, |(seconds, ratio)| {
             Cell::Number(format!("{seconds:.2e}"), Some(format!("{ratio:.2}")))
@@ -152,29 +104,28 @@ fn time(at: &WorkAtError) -> Cell {
     }
 }
 
-/// Where the time of the fastest run went, and how far the run in the middle is from it.
-fn phases(scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
-    let line = |m: &&Measured| {
-        let Phases { mesh, assemble, coarse, solve, bound, total } = m.smallest;
-        let mut cells = vec![
-            Cell::Words(m.variant().name_among(variants)),
-            Cell::Words(m.row.linear.clone()),
-            Cell::whole(Some(m.row.level)),
-        ];
-        let seconds = [Some(mesh), Some(assemble), Some(coarse), Some(solve), bound, Some(total)];
+/// Where the time of the fastest run went, how far the run in the middle is from it, and the peak of memory.
+fn phases(scene: &str, series: Vec<&Series<'_>>) -> Table {
+    let line = |(name, row): (&String, &Row)| {
+        let Seconds { mesh, assemble, solve, start, bound, total } = row.seconds;
+        let mut cells = vec![Cell::Words(name.clone()), Cell::whole(Some(row.level))];
+        let solve = solve - start.unwrap_or(0.0);
+        let seconds = [Some(mesh), Some(assemble), start, Some(solve), bound, Some(total)];
         cells.extend(seconds.map(Cell::scientific));
-        cells.push(decimals(m.median_over_least));
-        cells.push(Cell::whole(Some(m.runs)));
+        cells.push(Cell::number(row.median_over_least().map(fixed)));
+        cells.push(Cell::whole(row.runs.as_ref().map(Vec::len)));
+        cells.push(Cell::number(row.peak_memory_bytes.map(|b| format!("{:.0}", b as f64 / 1e6))));
         cells
     };
+    let rows = series.iter().flat_map(|of| of.rows.iter().map(move |&row| (&of.name, row)));
+    let rows = rows.filter(|(_, row)| row.runs.is_some()).map(line).collect();
     Table {
-        title: format!("{scene}: phases of the fastest run"),
-        columns: head(&[
-            "scheme", "linear", "n", "mesh", "assembly", "start", "solve", "bound", "total",
-            SPREAD, "runs",
-        ]),
-        rows: rows.iter().map(line).collect(),
         remarks: vec![WHAT_SPREAD_IS.to_owned()],
+        ..Table::new(
+            format!("{scene}: phases of the fastest run, in seconds, and memory"),
+            "scheme,n,mesh,assembly,start,solve,bound,total,spread,runs,MB",
+            rows,
+        )
     }
 }
 
@@ -193,8 +144,7 @@ fn times(scene: &str, norm: ErrorNorm, reach: &[&WorkAtError], variants: &[Varia
         }
         cells
     };
-    let mut columns = head(&["scheme"]);
-    columns.extend(errors.iter().map(|e| format!("{e:e}")));
+    let heads = errors.iter().map(|error| format!(",{error:e}")).collect::<String>();
     let mut remarks = vec![format!("in parentheses the ratio to the fastest; {MARKS}")];
     let spreads = reach.iter().filter(|r| errors.contains(&r.error));
     let largest = spreads.filter_map(|r| r.median_over_least).fold(0.0, f64::max);
@@ -204,10 +154,7 @@ fn times(scene: &str, norm: ErrorNorm, reach: &[&WorkAtError], variants: &[Varia
              times is no difference"
         ));
     }
-    Table {
-        title: format!("{scene}: time to reach an {}", reached(norm, None)),
-        columns,
-        rows: distinct(reach.iter().map(|r| r.variant.clone())).into_iter().map(line).collect(),
-        remarks,
-    }
+    let lines = distinct(reach.iter().map(|r| r.variant.clone())).into_iter().map(line).collect();
+    let title = format!("{scene}: time to reach an {}", reached(norm, None));
+    Table { remarks, ..Table::new(title, &format!("scheme{heads}"), lines) }
 }

@@ -35,12 +35,13 @@ pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Opti
     let fastest = || there.iter().find(|r| r.ratio == Some(1.0));
     let named = there.iter().find(|r| r.variant.label == subject);
     let chosen = *named.or_else(fastest)?;
+    let seconds_of = |r: &WorkAtError| r.seconds.expect("those that get there have a time");
     let others = there.iter().filter(|r| r.variant != chosen.variant).map(|r| {
-        let ratio = chosen.seconds.unwrap_or(f64::NAN) / r.seconds.unwrap_or(f64::NAN);
+        let ratio = seconds_of(chosen) / seconds_of(r);
         (two_digits(ratio), r.variant.name_among(&variants))
     });
     let name = chosen.variant.name_among(&variants);
-    let seconds = chosen.seconds.unwrap_or(f64::NAN);
+    let seconds = seconds_of(chosen);
     let kind = if there[0].norm == ErrorNorm::L2 { "L2 error" } else { "error bound" };
     let mut text = format!("{scene}: at an {kind} of {error:e} {name} takes {seconds:.2e} s");
     for (k, (ratio, other)) in others.enumerate() {

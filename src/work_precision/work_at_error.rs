@@ -2,22 +2,21 @@
 
 use serde::Serialize;
 
-use super::measured::{Failure, Measured};
+use crate::inequality::Outcome;
 use crate::measure::ErrorNorm;
-use crate::study::Variant;
-use crate::study::row::distinct;
+use crate::study::row::{Row, distinct};
 use crate::study::series::series_of;
+use crate::study::{Series, Variant};
 
 /// The error of a row in a norm; none where the run did not converge.
-fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
-    let error = &measured.row.error;
+fn error_in(norm: ErrorNorm, row: &Row) -> Option<f64> {
     let value = match norm {
-        ErrorNorm::L2 => error.l2,
-        ErrorNorm::H1 => error.h1,
-        ErrorNorm::Energy => error.broken_energy,
-        ErrorNorm::Bound => measured.row.bound.discrete,
+        ErrorNorm::L2 => row.error.l2,
+        ErrorNorm::H1 => row.error.h1,
+        ErrorNorm::Energy => row.error.broken_energy,
+        ErrorNorm::Bound => row.bound.discrete,
     };
-    value.filter(|e| measured.row.converged() && e.is_finite() && *e > 0.0)
+    value.filter(|e| row.converged() && e.is_finite() && *e > 0.0)
 }
 
 /// Error and work of a level.
@@ -96,118 +95,116 @@ pub struct WorkAtError {
 
 /// All variants of the report at all errors worth comparing at: for every scene and norm the numbers 1,
 /// 2 and 5 times powers of ten that at least two variants reach, or the only one there is.
-pub(crate) fn work_at_errors(rows: &[Measured], refused: &[Failure]) -> Vec<WorkAtError> {
+pub(crate) fn work_at_errors(rows: &[Row]) -> Vec<WorkAtError> {
     let mut all = Vec::new();
-    let of_refused = refused.iter().map(|f| f.case.variant.clone());
-    let variants = distinct(rows.iter().map(Measured::variant).chain(of_refused));
-    for scene in distinct(rows.iter().map(|m| m.row.scene.as_str())) {
-        let run = curves(rows, scene);
+    let series = series_of(rows);
+    for scene in distinct(series.iter().map(|of| of.variant.scene.as_str())) {
+        let run: Vec<Curve<'_>> =
+            series.iter().filter(|of| of.variant.scene == scene).map(Curve::of).collect();
         let mut curves = run.clone();
-        for other in &variants {
-            if !curves.iter().any(|(v, _)| v.differs_in_scene_only(other)) {
-                curves.push((Variant { scene: scene.to_owned(), ..other.clone() }, Vec::new()));
+        for other in series.iter().map(|of| &of.variant) {
+            if !curves.iter().any(|of| of.variant.differs_in_scene_only(other)) {
+                let variant = Variant { scene: scene.to_owned(), ..other.clone() };
+                curves.push(Curve { variant, rows: &[], begun: Vec::new() });
             }
         }
         for norm in ErrorNorm::ALL {
             for error in targets(&run, norm) {
-                all.extend(work_of_variants_at(&curves, refused, norm, error));
+                all.extend(work_of_variants_at(&curves, norm, error));
             }
         }
     }
     all
 }
 
-/// The levels of every variant of a scene, in order.
-fn curves<'a>(rows: &'a [Measured], scene: &str) -> Vec<(Variant, Vec<&'a Measured>)> {
-    let of_scene = series_of(rows).into_iter().filter(|of| of.variant.scene == scene);
-    of_scene.map(|of| (of.variant, of.rows)).collect()
+/// The rows of a variant on a scene, from coarse to fine.
+#[derive(Clone)]
+struct Curve<'r> {
+    variant: Variant,
+    rows: &'r [&'r Row],
+    /// Those that were run: the others took too long, or do not fit into the memory.
+    begun: Vec<&'r Row>,
 }
 
-type Curves<'a> = [(Variant, Vec<&'a Measured>)];
+impl<'r> Curve<'r> {
+    fn of(series: &'r Series<'r>) -> Self {
+        let is_begun = |row: &Row| !matches!(row.status, Outcome::TimeLimit | Outcome::OutOfMemory);
+        let begun = series.rows.iter().copied().filter(|row| is_begun(row)).collect();
+        Self { variant: series.variant.clone(), rows: &series.rows, begun }
+    }
+}
 
-fn work_of_variants_at(
-    curves: &Curves<'_>,
-    refused: &[Failure],
-    norm: ErrorNorm,
-    error: f64,
-) -> Vec<WorkAtError> {
-    let at = |levels: &[&Measured], work: &dyn Fn(&Measured) -> Option<f64>| {
-        let point = |m: &&Measured| {
-            let work = work(m);
+fn work_of_variants_at(curves: &[Curve<'_>], norm: ErrorNorm, error: f64) -> Vec<WorkAtError> {
+    let at = |curve: &Curve<'_>, work: &dyn Fn(&Row) -> Option<f64>| {
+        let point = |row: &&Row| {
+            let work = work(row);
             WorkPoint {
-                error: error_in(norm, m).filter(|_| work.is_some()),
+                error: error_in(norm, row).filter(|_| work.is_some()),
                 work: work.unwrap_or(0.0),
             }
         };
-        work_at(&levels.iter().map(point).collect::<Vec<_>>(), error)
+        work_at(&curve.rows.iter().map(point).collect::<Vec<_>>(), error)
     };
     let seconds: Vec<Option<f64>> =
-        curves.iter().map(|(_, levels)| at(levels, &|m| Some(m.seconds_to(norm)))).collect();
+        curves.iter().map(|curve| at(curve, &|row| Some(row.seconds_to(norm)))).collect();
     let best = seconds.iter().flatten().copied().fold(f64::INFINITY, f64::min);
-    let of = |((variant, levels), seconds): (&(Variant, Vec<&Measured>), Option<f64>)| {
-        let finest = levels.last().map(|m| m.row.level);
-        let is_cut =
-            refused.iter().any(|f| f.case.variant == *variant && Some(f.case.level) > finest);
+    let of = |(curve, seconds): (&Curve<'_>, Option<f64>)| {
         let standing = match seconds {
             Some(_) => Standing::Reached,
-            None => standing(levels, is_cut, norm, error),
+            None => standing(curve, norm, error),
         };
         let bound = match standing {
-            Standing::Undercut => levels.first(),
-            Standing::NotReached => levels.last(),
+            Standing::Undercut => curve.begun.first(),
+            Standing::NotReached => curve.begun.last(),
             _ => None,
         };
         WorkAtError {
-            variant: variant.clone(),
+            variant: curve.variant.clone(),
             norm,
             error,
             standing,
             seconds,
-            seconds_bound: bound.map(|m| m.seconds_to(norm)),
-            median_over_least: at(levels, &|m| m.median_over_least),
+            seconds_bound: bound.map(|row| row.seconds_to(norm)),
+            median_over_least: at(curve, &Row::median_over_least),
             ratio: seconds.map(|s| s / best),
-            unknowns: at(levels, &|m| m.row.unknowns.map(|n| n as f64)),
-            entries: at(levels, &|m| m.row.nonzeros.map(|n| n as f64)),
+            unknowns: at(curve, &|row| row.unknowns.map(|n| n as f64)),
+            entries: at(curve, &|row| row.nonzeros.map(|n| n as f64)),
         }
     };
     curves.iter().zip(seconds).map(of).collect()
 }
 
-/// Where an error stands that is not between two neighbouring levels that converged. `is_cut` says that
-/// levels finer than these were asked for and not run.
-fn standing(levels: &[&Measured], is_cut: bool, norm: ErrorNorm, error: f64) -> Standing {
-    let (Some(&first), Some(&last)) = (levels.first(), levels.last()) else {
+/// Where an error stands that is not between two neighbouring levels that converged.
+fn standing(curve: &Curve<'_>, norm: ErrorNorm, error: f64) -> Standing {
+    let (Some(&first), Some(&last)) = (curve.begun.first(), curve.begun.last()) else {
         return Standing::NotRun;
     };
-    let error_of = |m: &Measured| error_in(norm, m);
-    let is_below = |m: &Measured| error_of(m).is_some_and(|e| e <= error);
-    let without_error =
-        |mut some: std::slice::Iter<'_, &Measured>| match some.any(|m| !m.row.converged()) {
-            true => Standing::Failed,
-            false => Standing::Unknown,
-        };
+    let is_below = |row: &Row| error_in(norm, row).is_some_and(|e| e <= error);
+    let without_error = |some: &[&Row]| match some.iter().any(|row| !row.converged()) {
+        true => Standing::Failed,
+        false => Standing::Unknown,
+    };
     match () {
         () if is_below(first) => Standing::Undercut,
         // no level that failed is bridged
-        () if levels.iter().any(|m| is_below(m)) => without_error(levels.iter()),
-        () if error_of(last).is_none() => without_error(levels[levels.len() - 1..].iter()),
-        () if is_cut => Standing::NotRun,
+        () if curve.begun.iter().any(|row| is_below(row)) => without_error(&curve.begun),
+        () if error_in(norm, last).is_none() => without_error(&[last]),
+        () if curve.begun.len() < curve.rows.len() => Standing::NotRun,
         () => Standing::NotReached,
     }
 }
 
 /// Errors to compare at, from large to small.
-fn targets(curves: &Curves<'_>, norm: ErrorNorm) -> Vec<f64> {
-    let errors = || curves.iter().flat_map(|c| &c.1).filter_map(|m| error_in(norm, m));
+fn targets(curves: &[Curve<'_>], norm: ErrorNorm) -> Vec<f64> {
+    let errors = || curves.iter().flat_map(|c| c.rows).filter_map(|row| error_in(norm, row));
     let low = errors().fold(f64::INFINITY, f64::min);
     let high = errors().fold(0.0, f64::max);
     if low > high {
         return Vec::new();
     }
     let reached = |error: &f64| {
-        let seconds = work_of_variants_at(curves, &[], norm, *error)
-            .into_iter()
-            .filter(|r| r.seconds.is_some());
+        let seconds =
+            work_of_variants_at(curves, norm, *error).into_iter().filter(|r| r.seconds.is_some());
         seconds.count() >= curves.len().min(2)
     };
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);

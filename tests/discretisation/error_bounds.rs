@@ -144,17 +144,17 @@ fn check<const D: usize>(scene: Scene<D>, mesh: &Mesh<D>, schemes: &str, share: 
         let (pair, bound, error) = bounded(&scene, mesh, &*scheme);
         let sides = mismatch_of_sides(mesh, &pair.flux);
         checks.that(sides < 1e-12, || format!("{label}: sides differ by {sides:.1e}"));
-        let algebra = bound.parts.algebra;
+        let algebra = bound.terms.algebra;
         checks.that(algebra.abs() < 1e-5, || format!("{label}: unbalanced {algebra:.1e}"));
-        let parts = bound.parts;
-        let sum = parts.mismatch + parts.obstacle + parts.contact + parts.oscillation + algebra;
+        let terms = bound.terms;
+        let sum = terms.mismatch + terms.obstacle + terms.contact + terms.oscillation + algebra;
         checks.that((sum - 1.0).abs() < 1e-12, || format!("{label}: shares add to {sum}"));
         let sum = bound.cells.iter().sum::<f64>() + algebra;
         checks.that((sum - 1.0).abs() < 1e-10, || format!("{label}: cells add to {sum}"));
         let effectivity = bound.total / error;
         checks.that((1.0..3.0).contains(&effectivity), || format!("{label}: {effectivity}"));
         // the oscillation is no part of the identity
-        let left = 0.5 * bound.total.powi(2) * (1.0 - parts.oscillation);
+        let left = 0.5 * bound.total.powi(2) * (1.0 - terms.oscillation);
         let identity = left / right_side(&scene.problem, mesh, &pair);
         println!("{label}: identity {identity:.4}, effectivity {effectivity:.3}");
         checks.that((identity - 1.0).abs() < share, || format!("{label}: identity {identity:.4}"));
@@ -203,7 +203,7 @@ fn a_vertex_with_two_fans_has_balanced_fluxes() {
     let sides = mismatch_of_sides(&mesh, &solved.primal_dual_pair().unwrap().flux);
     assert!(sides < 1e-12, "{sides:e}");
     let bound = solved.bound().unwrap();
-    assert!(bound.parts.algebra.abs() < 1e-6, "{:?}", bound.parts);
+    assert!(bound.terms.algebra.abs() < 1e-6, "{:?}", bound.terms);
 }
 
 /// The same on the mesh of a level.

@@ -126,7 +126,7 @@ fn forces_on_contact_facets_are_not_negative() {
         assert!(integral >= -1e-12, "{cell} {local}: {integral}");
     }
     let bound = solved.bound().unwrap();
-    assert!(bound.parts.contact >= 0.0, "{:?}", bound.parts);
+    assert!(bound.terms.contact >= 0.0, "{:?}", bound.terms);
     // a lower bound on the error of the function: norms of both solutions differ by it at most
     let energy = |solved: &Solved<'_, 2>| solved.energy().unwrap().unwrap();
     let excess = energy(&solved) - energy(&reference);

@@ -177,7 +177,7 @@ fn the_bound_is_that_of_the_midpoint() {
         let expected = midpoint_bound((&mesh, &pair), (alpha, load), &gradient_of);
         let ratio = bound.discrete / expected;
         assert!((ratio - 1.0).abs() < 1e-8, "{name}: {ratio}");
-        assert!(bound.parts.obstacle > 0.0 && bound.discrete < bound.total + bound.distance);
+        assert!(bound.terms.obstacle > 0.0 && bound.discrete < bound.total + bound.distance);
     }
 }
 
@@ -325,14 +325,14 @@ fn contact_forces_of_quadratics_have_one_sign() {
     let bound = solved.discretisation().error_bound(&pair, &vec![0.0; solved.values().len()]);
     let bound = bound.unwrap();
     // twice the integral of 2 x^2
-    let contact = bound.parts.contact * bound.total.powi(2);
+    let contact = bound.terms.contact * bound.total.powi(2);
     assert!((contact / (4.0 / 3.0) - 1.0).abs() < 1e-12, "{contact}");
     // the cell has the diameter root of two and the divergence -3, 9, 0 at its vertices; 2 x - 1 is left of the force
     let of_divergence = 2.0_f64.sqrt() / PI * 3.25_f64.sqrt();
     let constant = (2.0 * (1.0 / (PI * PI) + 1.0 / PI) * 2.0).sqrt();
     let expected = of_divergence + constant * (1.0_f64 / 3.0).sqrt();
-    let mismatch = bound.parts.mismatch;
-    let found = ((mismatch + bound.parts.oscillation).sqrt() - mismatch.sqrt()) * bound.total;
+    let mismatch = bound.terms.mismatch;
+    let found = ((mismatch + bound.terms.oscillation).sqrt() - mismatch.sqrt()) * bound.total;
     assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
 }
 

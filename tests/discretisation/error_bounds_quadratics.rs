@@ -24,10 +24,10 @@ fn check<const D: usize>(scene: Scene<D>, mesh: &Mesh<D>, schemes: &str) {
         let (pair, bound, error) = bounded(&scene, mesh, &*scheme);
         let sides = mismatch_of_sides(mesh, &pair.flux);
         checks.that(sides < 1e-12, || format!("{label}: sides differ by {sides:.1e}"));
-        let parts = bound.parts;
-        checks.that(parts.algebra.abs() < 1e-5, || format!("{label}: {:.1e}", parts.algebra));
+        let terms = bound.terms;
+        checks.that(terms.algebra.abs() < 1e-5, || format!("{label}: {:.1e}", terms.algebra));
         let effectivity = bound.total / error;
-        println!("{label}: effectivity {effectivity:.3}, {parts:?}");
+        println!("{label}: effectivity {effectivity:.3}, {terms:?}");
         checks.that((1.0..3.0).contains(&effectivity), || format!("{label}: {effectivity}"));
     }
     checks.finish();

@@ -177,7 +177,7 @@ fn wrong_names_are_refused() {
     assert!(matches!(&error, Error::UnknownGroup { kind: "boundary group", .. }), "{error}");
     let error = refusal(&Problem::new().signorini_on("left", 2.0), &mesh);
     assert!(
-        matches!(&error, Error::UnboundBoundary { given: "contact", part: "dirichlet", .. }),
+        matches!(&error, Error::UnboundBoundary { given: "contact", found: "dirichlet", .. }),
         "{error}"
     );
     let twice = Problem::new().signorini_on("left", 2.0).neumann_on("left", |_, _| 0.0);
@@ -186,23 +186,26 @@ fn wrong_names_are_refused() {
 }
 
 #[test]
-fn a_problem_gives_the_boundary_its_parts() {
+fn a_problem_gives_the_boundary_its_conditions() {
     let problem = Problem::new()
         .constant_source(-4.0)
         .signorini_on("bottom", |x: &Point<2>| 0.1 * x[0] - 0.1)
         .neumann_on("left", |x, n| x[1] * n[0]);
     let mesh = problem.bind_boundary(divided::<2>(8)).unwrap();
-    let part =
+    let condition =
         |BoundaryGroup { names, condition, .. }: &BoundaryGroup| (names[0].clone(), *condition);
-    let parts: Vec<_> = mesh.boundary_groups().iter().map(part).collect();
+    let conditions: Vec<_> = mesh.boundary_groups().iter().map(condition).collect();
     let expected = [
         ("left", BoundaryCondition::Neumann),
         ("right", BoundaryCondition::Dirichlet),
         ("bottom", BoundaryCondition::Contact),
         ("top", BoundaryCondition::Dirichlet),
     ];
-    assert!(parts.iter().zip(expected).all(|(a, b)| a.0 == b.0 && a.1 == Some(b.1)), "{parts:?}");
-    // as by a domain with these sides and functions for whole parts
+    assert!(
+        conditions.iter().zip(expected).all(|(a, b)| a.0 == b.0 && a.1 == Some(b.1)),
+        "{conditions:?}"
+    );
+    // as by a domain with these sides and functions for all facets with a condition
     let domain = BoxDomain::<2>::centred(1.0).side(0, 0, BoundaryCondition::Neumann).side(
         1,
         0,

@@ -253,7 +253,7 @@ fn systems_in_twice_the_digits_are_exact() {
 }
 
 #[test]
-#[ignore = "takes minutes: figures of docs/solvers.md"]
+#[ignore = "takes minutes: prints the distances"]
 fn distances_table() {
     let levels = std::env::var("LEVELS").unwrap_or("8,16".into());
     let levels: Vec<usize> = levels.split(',').map(|n| n.parse().unwrap()).collect();

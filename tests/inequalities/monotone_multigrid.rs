@@ -60,7 +60,7 @@ fn cycles_do_not_grow() {
 }
 
 #[test]
-#[ignore = "takes a minute: prints the table of docs/solvers.md"]
+#[ignore = "takes a minute: prints the cycles"]
 fn cycles_do_not_grow_on_fine_meshes() {
     for scene in scenes_without_strictness() {
         let cycles = compare(scene, &[32, 64, 128, 256]);
@@ -131,7 +131,7 @@ fn stagnating_active_sets_lead_to_cycles() {
 }
 
 #[test]
-#[ignore = "takes a minute: prints the table of docs/solvers.md"]
+#[ignore = "takes a minute: prints the cycles"]
 fn cycles_of_other_schemes_hardly_grow() {
     for row in lshape().levels([64, 128, 256]).run().unwrap().rows {
         println!("| {} | {} | {} |", row.label, row.level, cycles(&row));

@@ -42,10 +42,10 @@ fn check_conformity<const D: usize>(mesh: &Mesh<D>) {
     let again = Mesh::<D>::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &boundary).unwrap();
     assert_eq!(again.vertices(), mesh.vertices(), "every vertex is used");
     assert_eq!(again.cells(), mesh.cells());
-    let parts = |mesh: &Mesh<D>| -> Vec<_> {
+    let conditions = |mesh: &Mesh<D>| -> Vec<_> {
         mesh.boundary().iter().map(|f| (f.cell, f.local, f.condition)).collect()
     };
-    assert_eq!(parts(&again), parts(mesh));
+    assert_eq!(conditions(&again), conditions(mesh));
     assert_eq!(again.is_supported(), mesh.is_supported());
 }
 

@@ -36,16 +36,16 @@ fn check_topology<const D: usize>(mesh: &Mesh<D>) {
         }
     }
     assert_eq!(2 * facets.interior().len() + mesh.boundary().len(), mesh.cells().len());
-    for part in
+    for condition in
         [BoundaryCondition::Dirichlet, BoundaryCondition::Neumann, BoundaryCondition::Contact]
     {
         assert_eq!(
-            facets.part(part).len(),
-            mesh.boundary().iter().filter(|f| f.condition == part).count()
+            facets.boundary(condition).len(),
+            mesh.boundary().iter().filter(|f| f.condition == condition).count()
         );
-        for f in facets.part(part) {
+        for f in facets.boundary(condition) {
             let (c, i) = facets.here(f);
-            assert_eq!(neighbours.across(c, i), Neighbour::Boundary(part));
+            assert_eq!(neighbours.across(c, i), Neighbour::Boundary(condition));
         }
     }
     let numbers = facets.numbers::<D>(mesh.n_cells());
@@ -149,9 +149,9 @@ fn refined_boxes_are_finer_boxes() {
     check::<3>();
 }
 
-/// The part of a fine boundary facet is that of the side on which it lies.
+/// The condition of a fine boundary facet is that of the side on which it lies.
 #[test]
-fn refinement_keeps_the_parts_of_the_boundary() {
+fn refinement_keeps_the_conditions_on_the_boundary() {
     fn check<const D: usize>() {
         let domain: BoxDomain<D> = mixed_box();
         let mut mesh = Mesh::<D>::kuhn_box(&domain, [2; D]).unwrap();
@@ -323,7 +323,7 @@ fn wrong_boundaries() {
     raw.boundary.push(TaggedFacet { condition: BoundaryCondition::Contact, ..raw.boundary[0] });
     assert!(matches!(
         refused(&raw),
-        MeshError::FacetInTwoParts { first: "dirichlet", second: "contact", tag: 4, .. }
+        MeshError::FacetWithTwoConditions { first: "dirichlet", second: "contact", tag: 4, .. }
     ));
     let mut raw = square();
     raw.boundary.push(TaggedFacet { vertices: [0, 3], condition: BoundaryCondition::Dirichlet });
@@ -337,7 +337,7 @@ fn wrong_boundaries() {
         refused(&raw),
         MeshError::NotABoundaryFacet { why: "belongs to no cell", .. }
     ));
-    // the same facet twice in the same part is no contradiction
+    // the same facet twice with the same condition is no contradiction
     let mut raw = square();
     raw.boundary.push(raw.boundary[0]);
     assert_eq!(raw.mesh().boundary().len(), 4);

@@ -11,12 +11,12 @@ use unilateral::study::Row;
 
 /// A scene on the unit square with these data, held on its sides.
 fn scene(problem: Problem<2>) -> Scene<2> {
-    let part = if problem.gap.is_given() {
+    let condition = if problem.gap.is_given() {
         BoundaryCondition::Contact
     } else {
         BoundaryCondition::Neumann
     };
-    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(1, 0, part);
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(1, 0, condition);
     Scene::new("mine", domain, problem).regularity(Regularity::new(2.0))
 }
 

@@ -7,6 +7,7 @@ mod dump;
 mod figures;
 mod free_bodies;
 mod hard_rows;
+mod help;
 #[cfg(unix)]
 mod interrupt;
 mod limits;

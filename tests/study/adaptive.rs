@@ -37,7 +37,7 @@ fn a_row_is_a_step_with_the_times_of_all_before() {
         assert_eq!(rows[0].order.bound, None);
     }
     assert!(report.extrapolated().is_empty());
-    let table = report.details_to_text();
+    let table = report.details_to_text(100);
     assert!(table.contains(" step ") && table.contains(" total"), "{table}");
     // beside uniform rows of the same scheme
     let uniform = study(scenes::hertz_2d()).levels([4, 8]).run().unwrap().rows;

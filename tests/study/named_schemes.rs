@@ -39,7 +39,7 @@ fn labels_leave_out_what_is_default() {
     // a scheme that a program makes has the label that a user would write
     let label = |scheme: &dyn Scheme<3>| scheme.label_on(&Nodes);
     assert_eq!(label(&Sipg { penalty: PenaltyRule::Proven(0.05) }), "sipg@factor=1.05");
-    assert_eq!(label(&Br2 { eta: Some(6.0), lifts: Lifts::Full }.on(P2)), "br2-p2@lifts=full");
+    assert_eq!(label(&Br2 { factor: 1.5, lifts: Lifts::Full }.on(P2)), "br2-p2@lifts=full");
 }
 
 #[test]
@@ -171,6 +171,6 @@ fn one_scheme_stands_in_a_report_once_for_every_label() {
     assert_eq!(has_order, [false, true, false, true, false, true]);
     for label in labels {
         assert!(scratch.0.join(format!("radial-2d-{}.vtu", file_name(label))).exists(), "{label}");
-        assert!(report.details_to_text().contains(&format!("\n{label} ")), "{report}");
+        assert!(report.details_to_text(100).contains(&format!("\n{label} ")), "{report}");
     }
 }

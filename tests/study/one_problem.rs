@@ -165,7 +165,7 @@ fn solvers_stand_side_by_side() {
     assert_eq!(report.observed_orders().len(), 3);
     let [a, b, c] = [1, 3, 5].map(|k: usize| report.rows[k].error.h1.unwrap());
     assert!((a - b).abs() < 1e-8 * a && (a - c).abs() < 1e-8 * a, "{a} {b} {c}");
-    let text = report.details_to_text();
+    let text = report.details_to_text(100);
     assert!(text.contains("\nscheme solver ") && text.contains(two), "{text}");
     assert!(solver_by_name("magic", LinearMethod::default(), Precision::default()).is_none());
     for (name, _) in SOLVERS {

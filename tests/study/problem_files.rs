@@ -256,7 +256,7 @@ fn stated_solutions_are_held_against_the_data() {
         ("lower", "0.9 * x", "solution above the lower obstacle"),
         ("value", "0.001", "Dirichlet data equal to the solution"),
         ("flux", "2.001", "Neumann data equal to the flux of the solution"),
-        ("gap", "0.5", "u >= g on the contact part"),
+        ("gap", "0.5", "u >= g on the contact boundary"),
     ] {
         let found = warnings(datum, other);
         let expected = format!("{doubt}{condition}; at [");

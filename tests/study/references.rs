@@ -176,7 +176,7 @@ fn a_problem_of_ones_own_needs_a_name_and_a_mesh() {
         .reference(ConformingP2, 4)
         .run()
         .unwrap();
-    assert!(report.details_to_text().contains("errors against p2 at level 4"));
+    assert!(report.details_to_text(100).contains("errors against p2 at level 4"));
     for row in &report.rows {
         assert!(row.converged());
         assert!(row.active > Some(0) && row.resultant > Some(0.0));

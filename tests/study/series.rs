@@ -45,10 +45,10 @@ fn tables_of_a_report_with_both_are_those_of_each() {
     let [uniform, adaptive, both] = reports();
     let titled = |report: &Report, meshes: &str| {
         let title = format!("radial-2d, {meshes} meshes: ");
-        report.details_to_text().replacen("radial-2d: ", &title, 1)
+        report.details_to_text(100).replace("radial-2d: ", &title)
     };
-    let expected = titled(&uniform, "uniform") + &titled(&adaptive, "adaptive");
-    let text = both.details_to_text();
+    let expected = titled(&uniform, "uniform") + "\n" + &titled(&adaptive, "adaptive");
+    let text = both.details_to_text(100);
     // a longer title may break the line elsewhere
     let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     assert_eq!(words(&text), words(&expected), "{text}");

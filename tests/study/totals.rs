@@ -320,7 +320,7 @@ fn the_extrapolated_energy_is_the_reference() {
         assert!(gap(limit.value) < 0.1 * finest, "{}: {limit:?}", series.label);
         assert!((limit.order.unwrap() - 2.0).abs() < 0.2, "{}: {limit:?}", series.label);
     }
-    let text = report.details_to_text();
+    let text = report.details_to_text(100);
     assert!(text.contains("energy") && text.contains("extrapolated, p1: energy -4.18"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
 }

@@ -212,7 +212,7 @@ fn long_arrays_are_cut_into_blocks() {
     let rounded: Vec<f64> = u.iter().map(|&x| f64::from(x as f32)).collect();
     assert_eq!(read(&path).floats("PointData", "u"), rounded);
     // of an error four digits
-    VtuFile::new(&mesh, &u).error_from(&|_| 0.0).write(&path).unwrap();
+    VtuFile::new(&mesh, &u).error_from_in_cells(|_, _| 0.0).write(&path).unwrap();
     let error = read(&path).floats("PointData", "error");
     assert!(u.iter().zip(error).all(|(u, e)| (u - e).abs() <= 1.3e-4 * u.abs()));
     assert_eq!(std::fs::read_dir(&scratch.0).unwrap().count(), 1, "no draft is left");

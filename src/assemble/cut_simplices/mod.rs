@@ -41,7 +41,7 @@ const NEARLY_LINEAR: [f64; 4] = [0.0, 0.0, 0.01, 0.03];
 /// Steps after which the search for a zero on a segment ends.
 const MOST_STEPS: usize = 100;
 
-/// The largest degree of the rule on pieces. The square of an error of linears has a leading part of degree four.
+/// The largest degree of the rule on pieces. The square of an error of linears has a leading term of degree four.
 const MOST_IN_PARTS: usize = 5;
 
 /// The share of the way across a piece by which the two sides of the zero set are told apart.
@@ -80,7 +80,7 @@ impl CutRule {
         self.is_cut(&self.whole(), &mesh.corners(cell), level)
     }
 
-    /// Visits the points of the rule on a cell if it is cut, and tells whether it is: in barycentric
+    /// Visits the points of the rule on a cell if it is cut, and returns whether it is: in barycentric
     /// coordinates, in space, and with their weights.
     pub fn visit_if_cut<const D: usize>(
         &self,

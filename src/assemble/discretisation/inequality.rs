@@ -2,11 +2,10 @@
 
 use super::Discretisation;
 use crate::algebra::{Bound, Inequality, Start};
-use crate::assemble::penalised;
-use crate::assemble::space::contradictions::Contradictions;
+use crate::assemble::penalised_matrix::{keeps_penalty_apart, penalised_matrix};
+use crate::assemble::space::contradictions::{Contradiction, largest_datum, refuse};
 use crate::error::Error;
 use crate::instances::compiled;
-use crate::parallel::once;
 
 impl<const D: usize> Discretisation<'_, D> {
     /// The inequality: matrix, load, bounds, locations.
@@ -19,7 +18,7 @@ impl<const D: usize> Discretisation<'_, D> {
         )(self)
     }
     fn assemble(&self) -> Result<Inequality<f64>, Error> {
-        let is_penalised = self.owns_rows() && penalised::applies(self.form());
+        let is_penalised = self.owns_rows() && keeps_penalty_apart(self.form());
         let free = self.space.free_bodies()?;
         // the load of a penalised matrix has no Dirichlet data
         let metrics = || &self.prepared().0;
@@ -30,7 +29,7 @@ impl<const D: usize> Discretisation<'_, D> {
             .then(|| self.space.dirichlet_energy(self.form(), &|| &self.prepared().0, &data));
         let penalised = is_penalised.then(|| {
             let (metrics, weights) = self.prepared();
-            penalised::penalised_matrix(&self.space, self.form(), (metrics, weights), &data)
+            penalised_matrix(&self.space, self.form(), (metrics, weights), &data)
         });
         // the loops that fill the matrix return no error: a reaction term that is not finite is
         // detected here
@@ -59,9 +58,9 @@ impl<const D: usize> Discretisation<'_, D> {
     }
     /// The bounds of all unknowns.
     ///
-    /// Obstacles bind the unknowns of the problem's constraint set, the Signorini condition those of
-    /// contact facets on the cell that has the facet; the set says whether a node is bound by the
-    /// value of the datum or by its mean. An unknown pinned by Dirichlet data is not constrained besides.
+    /// Obstacles bind the unknowns of the problem's constraint set. The Signorini condition binds those on contact
+    /// facets, in the cell that has the facet. The set says whether the value of the datum or its mean binds a node. An
+    /// unknown that Dirichlet data fix has no bound.
     ///
     /// # Errors
     /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: see
@@ -73,32 +72,22 @@ impl<const D: usize> Discretisation<'_, D> {
     }
     fn checked_bounds(&self) -> Result<Vec<Bound<f64>>, Error> {
         let (bounds, found) = self.space.bounds()?;
-        if self.mesh().is_part() {
-            once(&self.contradictions, || Contradictions::new(&bounds, found, self.mesh()));
-        } else if !found.is_empty() {
-            let found = Contradictions::new(&bounds, found, self.mesh());
-            found.check(found.size(), &|_| true)?;
+        if !found.is_empty() && !self.mesh().is_part() {
+            refuse(&found, largest_datum(&bounds, &found), self.mesh(), &|_| true)?;
         }
         Ok(bounds)
     }
-    /// Lower bounds above upper ones. They contradict each other if they do so by more than rounding of the
-    /// largest datum, which a [part](crate::mesh::Part) of a mesh need not have.
+    /// Lower bounds that exceed upper ones, and the largest datum: two bounds contradict each other if they differ by more
+    /// than rounding of the largest datum of all [parts](crate::mesh::Part) of a mesh.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    pub(crate) fn contradictions(&self) -> Result<&Contradictions<D>, Error> {
-        compiled!(const D: for<'d> fn(&'d Discretisation<'_, D>) -> Result<&'d Contradictions<D>, Error>
-                = |of| of.find_contradictions()
-        )(self)
-    }
-    fn find_contradictions(&self) -> Result<&Contradictions<D>, Error> {
-        if let Some(found) = self.contradictions.get() {
-            return Ok(found);
-        }
+    pub(crate) fn contradictions(&self) -> Result<(Vec<Contradiction<D>>, f64), Error> {
         let (bounds, found) = self.space.bounds()?;
-        Ok(once(&self.contradictions, || Contradictions::new(&bounds, found, self.mesh())))
+        let size = largest_datum(&bounds, &found);
+        Ok((found, size))
     }
-    /// The load of all unknowns, that of the assembled matrix, with weak Dirichlet data: see
+    /// The load of the assembled matrix, with weak Dirichlet data, for all unknowns: see
     /// [`Inequality::assembled_load`].
     ///
     /// # Errors

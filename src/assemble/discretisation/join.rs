@@ -36,7 +36,6 @@ impl<'a, const D: usize> Discretisation<'a, D> {
             form,
             shared_rows: SharedRows::default(),
             prepared: OnceLock::new(),
-            contradictions: OnceLock::new(),
         })
     }
 }

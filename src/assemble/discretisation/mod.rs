@@ -16,7 +16,6 @@ use super::owned_rows;
 use super::penalty_below_bound::PenaltyBelowBound;
 use super::shared_rows::SharedRows;
 use super::space::Space;
-use super::space::contradictions::Contradictions;
 use super::space::metric::Metrics;
 use crate::algebra::{DofLocation, SparseMatrix};
 use crate::facet::FacetForm;
@@ -33,10 +32,8 @@ pub struct Discretisation<'a, const D: usize> {
     pub(crate) space: Space<'a, D>,
     form: Box<dyn FacetForm<D>>,
     shared_rows: SharedRows,
-    /// What facet forms need of cells and facets, computed when first needed.
+    /// The data of cells and facets that facet forms need, computed when first needed.
     prepared: OnceLock<(Metrics, FacetCoefficients)>,
-    /// On a part what its bounds, once found, leave to be judged with the data of all parts.
-    contradictions: OnceLock<Contradictions<D>>,
 }
 
 impl<'a, const D: usize> Discretisation<'a, D> {
@@ -100,7 +97,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
         self.prepared.take();
         self.space.load_by_cell.take();
     }
-    /// What facet forms need of cells and facets. Loops over cells ask for it before they begin.
+    /// The data of cells and facets that facet forms need. Loops over cells ask for them before they begin.
     pub(super) fn prepared(&self) -> &(Metrics, FacetCoefficients) {
         once(&self.prepared, || {
             let metrics = Metrics::of(self.space.mesh);
@@ -116,18 +113,14 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     }
     /// The location of each unknown.
     pub fn locations(&self) -> Vec<DofLocation> {
-        compiled!(const D: fn(&Discretisation<'_, D>) -> Vec<DofLocation>
-                = |of| of.space.locations()
-        )(self)
+        self.space.locations()
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn vertex_values(&self, u: &[f64]) -> Vec<f64> {
-        compiled!(const D: fn(&Discretisation<'_, D>, &[f64]) -> Vec<f64>
-                = |of, u| of.space.vertex_values(u)
-        )(self, u)
+        self.space.vertex_values(u)
     }
     /// The facets whose penalty lies below the bound that proves coercivity: their number and the
     /// one with the smallest quotient of penalty and bound; none if no penalty lies below its bound
@@ -158,11 +151,6 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// # Panics
     /// If there are fewer owners than cells.
     pub fn owners(&self, of_cells: &[u32]) -> Vec<u32> {
-        compiled!(const D: fn(&Discretisation<'_, D>, &[u32]) -> Vec<u32>
-                = |of, of_cells| of.owners_of_unknowns(of_cells)
-        )(self, of_cells)
-    }
-    fn owners_of_unknowns(&self, of_cells: &[u32]) -> Vec<u32> {
         let mut owners = vec![u32::MAX; self.unknowns()];
         for (cell, &owner) in of_cells[..self.mesh().n_cells()].iter().enumerate() {
             for unknown in self.unknowns_of(cell) {

@@ -1,9 +1,9 @@
 //! The rows of one cell of linear elements, in closed form.
 //!
-//! Where gradients of basis functions are those of barycentric coordinates times a factor, and the
-//! form has one weight for all jumps and one moment of fluxes or none, a facet comes down to four
-//! numbers and a few constants of the reference cell. What [`rows`](crate::assemble::owned_rows::rows) does in loops over
-//! moments is then one expression for each entry, which stays in registers.
+//! The closed form needs two things: gradients of basis functions are those of barycentric coordinates times a factor,
+//! and the form has one weight for all jumps and at most one moment of fluxes. A facet then comes down to four numbers
+//! and a few constants of the reference cell. Each entry is one expression, which stays in registers;
+//! [`rows`](crate::assemble::owned_rows::rows) is the general case, with loops over moments.
 
 use super::Filling;
 use super::rows::Rows;
@@ -27,8 +27,8 @@ struct Reference<const N: usize> {
     means: [[f64; N]; 4],
 }
 
-/// One facet of a cell: what multiplies products of jumps, and for each test function what multiplies
-/// fluxes and means of trial functions.
+/// The factors of one facet of a cell: of products of jumps, and for each test function of the fluxes and of the means
+/// of trial functions.
 struct OnFacet<const N: usize> {
     jump_jump: f64,
     by_flux: [f64; N],
@@ -36,7 +36,7 @@ struct OnFacet<const N: usize> {
 }
 
 impl<const D: usize> Filling<'_, '_, D> {
-    /// Whether [`Filling::fill_linear`] gives all that the form has.
+    /// Whether [`Filling::fill_linear`] assembles all terms of the form.
     pub(crate) fn is_linear(&self) -> bool {
         self.gradient.is_some() && self.jumps.weights.len() == 1 && self.flux_moments.len() < 2
     }
@@ -50,7 +50,7 @@ impl<const D: usize> Filling<'_, '_, D> {
         }
     }
 
-    /// The same; `FLUX`: the form has fluxes.
+    /// The rows of all cells; `FLUX` says whether the form has fluxes.
     fn fill_by_moments<const N: usize, const FLUX: bool>(
         &self,
         row_starts: &[u32],
@@ -136,8 +136,7 @@ impl<const D: usize> Filling<'_, '_, D> {
         }
     }
 
-    /// Adds what the form makes of a facet to the columns of the cell whose rows these are; normals
-    /// point out of it.
+    /// Adds the form on a facet to the columns of the cell whose rows these are. Normals point out of this cell.
     #[inline(always)]
     fn add_linear<const N: usize, const FLUX: bool>(
         &self,

@@ -201,7 +201,7 @@ pub(crate) fn fill<const D: usize>(
     }
 }
 
-/// What adds to the rows of a cell.
+/// The functions that add to the rows of a cell.
 type AddToCell<'w> = &'w (dyn Fn(usize, &Coupled, &mut [f64]) + Sync);
 
 impl<const D: usize> Filling<'_, '_, D> {

@@ -66,7 +66,7 @@ struct Own<'f, const D: usize> {
 struct OnFacet<'f, const D: usize, const N: usize, const M: usize> {
     own: Own<'f, D>,
     weight: FacetWeight<'f>,
-    /// What multiplies the products of jumps of the first class.
+    /// The factor of the products of jumps of the first class.
     jump_jump: f64,
     /// By moment what multiplies fluxes of trial functions, for each test function.
     by_flux: Moments<N, M>,
@@ -258,7 +258,7 @@ impl<const D: usize> Filling<'_, '_, D> {
         self.flux_moments.len().min(M)
     }
 
-    /// What multiplies the products of jumps of a class.
+    /// The factor of the products of jumps of a class.
     #[inline(always)]
     fn jump_scale(&self, own: &Own<'_, D>, weight: &FacetWeight<'_>, class: f64) -> f64 {
         own.metric.measures[own.local] * weight.coefficients.jump_jump.at(weight.penalty * class)

@@ -22,7 +22,7 @@ pub(crate) trait CellMatrix {
     fn entry(&self, i: usize, j: usize) -> f64;
 }
 
-/// What cells contribute, tabulated.
+/// The contributions of cells, tabulated.
 pub(crate) struct CellMatrices<'s, 'a, const D: usize> {
     space: &'s Space<'a, D>,
     /// For each pair `k < l` of barycentric coordinates what their product of gradients adds.

@@ -141,7 +141,7 @@ struct PatternBuilder<'m, const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
-    /// The rows of a subset, in parts, so that scratch memory is small and used again.
+    /// The rows of a subset, in pieces, so that scratch memory is small and used again.
     ///
     /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
     #[inline(never)]
@@ -151,10 +151,10 @@ impl<const D: usize, const N: usize> PatternBuilder<'_, D, N> {
         let mut neighbours = NeighbourNumbers::new(&mut last);
         let mut row = Row::default();
         let mut made = self.room_for(subset);
-        for part in self.incidence.blocks.parts_of(subset) {
-            self.incidence.find_stars(&part, &mut stars);
+        for piece in self.incidence.blocks.pieces_of(subset) {
+            self.incidence.find_stars(&piece, &mut stars);
             let mut k = 0;
-            for (rows, made) in part.iter().zip(&mut made) {
+            for (rows, made) in piece.iter().zip(&mut made) {
                 for _ in rows.clone() {
                     self.row(stars.of(k), &mut neighbours, &mut row, made);
                     k += 1;

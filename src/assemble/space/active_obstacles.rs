@@ -1,4 +1,4 @@
-//! Where obstacles give the bound that is active: the multiplier of an unknown belongs to that bound.
+//! The obstacle that gives the active bound of an unknown: the multiplier of the unknown belongs to that bound.
 //!
 //! Of several data that bind an unknown below the largest counts, above the smallest: obstacles of the regions around
 //! it and the gaps of its contact facets. The datum that the bound of the unknown equals is found again here, since
@@ -21,7 +21,7 @@ const ROUNDINGS: f64 = 16.0;
 pub(crate) struct ActiveObstacles {
     /// Whether the problem has obstacles: then they give all active bounds of which nothing else is known.
     has_obstacle: bool,
-    /// By cell a bit for each of its unknowns: whether the cell may carry a part of the multiplier that obstacles have
+    /// By cell a bit for each of its unknowns: whether the cell may carry a share of the multiplier that obstacles have
     /// there. Empty where all cells may: for one obstacle without names and no gap.
     in_cells: Vec<u32>,
     /// By unknown whether an obstacle gives the active bound; empty as above.
@@ -29,7 +29,7 @@ pub(crate) struct ActiveObstacles {
 }
 
 impl ActiveObstacles {
-    /// Whether a cell carries a part of the multiplier that obstacles have at its unknown `i`. Of each unknown some
+    /// Whether a cell carries a share of the multiplier that obstacles have at its unknown `i`. Of each unknown some
     /// cell does.
     pub fn act_in(&self, cell: usize, i: usize) -> bool {
         self.in_cells.get(cell).is_none_or(|bits| bits >> i & 1 == 1)

@@ -1,4 +1,4 @@
-//! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
+//! The bounds of each unknown: Dirichlet values, obstacles, the Signorini condition.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -131,7 +131,8 @@ impl<const D: usize> Space<'_, D> {
                     checks::finite(self.dirichlet_at(dirichlet, &x), "dirichlet", &x, cell)?;
                 // the node at the vertex, where the element has one, else one of the facet
                 let node = self.nodes_on(local).take(k + 1).last();
-                let unknown = node.map_or(0, |i| self.dofs.of(cell, i));
+                let node = node.expect("an element has nodes on facets if there is a gap");
+                let unknown = self.dofs.of(cell, node);
                 let of = (["gap", DIRICHLET], Some(dirichlet));
                 BoundedNode { unknown, cell, x }.compare(of, [gap.at(&x), datum], found);
             }
@@ -151,7 +152,7 @@ impl<const D: usize> Space<'_, D> {
         Ok(())
     }
 
-    /// What a datum imposes at a node.
+    /// The bound that a datum imposes at a node.
     pub(super) fn bound(
         &self,
         by: BoundBy,

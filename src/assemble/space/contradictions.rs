@@ -3,7 +3,7 @@
 use crate::algebra::Bound;
 use crate::error::Error;
 use crate::input::excerpt;
-use crate::mesh::{BoundaryGroup, Mesh, describe_point};
+use crate::mesh::{Mesh, describe_point};
 use crate::real::Point;
 
 /// What a value is that a boundary group imposes.
@@ -13,21 +13,10 @@ pub(crate) const DIRICHLET: &str = "Dirichlet value";
 /// rounding in the data.
 const RELATIVE_SLACK: f64 = 1e-9;
 
-/// Lower bounds above upper ones, by rounding or in earnest.
+/// Two values of which the first exceeds the second, by rounding or in earnest.
 ///
-/// Two values that are equal but for rounding may be zero but for rounding, so that only the size of all data can
-/// tell. [`Discretisation::bounds`](crate::assemble::Discretisation::bounds) does on a whole mesh; a
-/// [part](crate::mesh::Part) need not have the largest datum.
-#[derive(Clone, Debug)]
-pub struct Contradictions<const D: usize> {
-    found: Vec<Contradiction<D>>,
-    /// The names of boundary groups.
-    groups: Vec<String>,
-    size: f64,
-    relative_slack: f64,
-}
-
-/// Two values of which the first exceeds the second.
+/// Two values that are equal but for rounding may be zero but for rounding, so that the [largest](largest_datum) of all
+/// data decides, which a [part](crate::mesh::Part) of a mesh need not have.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contradiction<const D: usize> {
     pub node: BoundedNode<D>,
@@ -61,59 +50,40 @@ impl<const D: usize> BoundedNode<D> {
     }
 }
 
-impl<const D: usize> Contradictions<D> {
-    pub(in crate::assemble) fn new(
-        bounds: &[Bound<f64>],
-        found: Vec<Contradiction<D>>,
-        mesh: &Mesh<D>,
-    ) -> Self {
-        let name = |group: &BoundaryGroup| group.names.first().map(excerpt).unwrap_or_default();
-        let groups = mesh.boundary_groups().iter().filter(|_| !found.is_empty());
-        let groups = groups.map(name).collect();
-        let mut size = size_of(bounds);
-        for contradiction in &found {
-            size = size.max(contradiction.lower.abs()).max(contradiction.upper.abs());
-        }
-        Self { found, groups, size, relative_slack: RELATIVE_SLACK }
-    }
-    /// The largest absolute value of a bound.
-    pub fn size(&self) -> f64 {
-        self.size
-    }
-    /// Refuses a contradiction in an own cell that exceeds rounding of data of a size.
-    ///
-    /// # Errors
-    /// [`Error::EmptyConstraint`].
-    pub fn check(&self, size: f64, owns: &dyn Fn(usize) -> bool) -> Result<(), Error> {
-        let slack = self.relative_slack * size;
-        let mut own = self.found.iter().filter(|found| owns(found.node.cell));
-        match own.find(|found| found.lower - found.upper > slack) {
-            Some(&Contradiction { node, lower, upper, of, group }) => {
-                let BoundedNode { unknown, cell, x } = node;
-                let (cell, at) = (cell as u64, describe_point(&x));
-                let name = group.and_then(|group| self.groups.get(group));
-                let on = |of: &str| match name.filter(|name| of == DIRICHLET && !name.is_empty()) {
-                    Some(name) => format!("{of} on `{name}`"),
-                    None => of.to_owned(),
-                };
-                let of = Box::new(of.map(on));
-                Err(Error::EmptyConstraint { unknown, cell, at, lower, upper, of })
-            }
-            None => Ok(()),
-        }
-    }
+/// The largest absolute value of bounds, and of those that contradict each other.
+pub(crate) fn largest_datum<const D: usize>(
+    bounds: &[Bound<f64>],
+    found: &[Contradiction<D>],
+) -> f64 {
+    let of_found = found.iter().fold(0.0_f64, |most, c| most.max(c.lower.abs()).max(c.upper.abs()));
+    bounds.iter().fold(of_found, |most, bound| match *bound {
+        Bound::Free => most,
+        Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => most.max(a.abs()),
+        Bound::Both(a, b) => most.max(a.abs()).max(b.abs()),
+    })
 }
 
-/// The largest absolute value of bounds.
-fn size_of(bounds: &[Bound<f64>]) -> f64 {
-    let mut size = 0.0_f64;
-    for bound in bounds {
-        let [one, other] = match *bound {
-            Bound::Free => continue,
-            Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => [a, a],
-            Bound::Both(a, b) => [a, b],
-        };
-        size = size.max(one.abs()).max(other.abs());
-    }
-    size
+/// Refuses a contradiction in an own cell that exceeds rounding of data of which the largest is `size`.
+///
+/// # Errors
+/// [`Error::EmptyConstraint`].
+pub(crate) fn refuse<const D: usize>(
+    found: &[Contradiction<D>],
+    size: f64,
+    mesh: &Mesh<D>,
+    owns: &dyn Fn(usize) -> bool,
+) -> Result<(), Error> {
+    let is_one =
+        |c: &&Contradiction<D>| owns(c.node.cell) && c.lower - c.upper > RELATIVE_SLACK * size;
+    let Some(&Contradiction { node, lower, upper, of, group }) = found.iter().find(is_one) else {
+        return Ok(());
+    };
+    let BoundedNode { unknown, cell, x } = node;
+    let name = group.and_then(|group| mesh.boundary_groups()[group].names.first());
+    let on = |of: &str| match name {
+        Some(name) if of == DIRICHLET => format!("{of} on `{}`", excerpt(name)),
+        _ => of.to_owned(),
+    };
+    let (cell, at, of) = (cell as u64, describe_point(&x), Box::new(of.map(on)));
+    Err(Error::EmptyConstraint { unknown, cell, at, lower, upper, of })
 }

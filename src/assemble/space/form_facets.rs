@@ -2,7 +2,7 @@
 
 use super::Space;
 use super::metric::Metrics;
-use crate::facet::{FacetKind, FacetView};
+use crate::facet::{FacetKind, FacetView, Side};
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour};
 
 /// A facet that carries the form: one between two cells, or one with Dirichlet data that the form imposes.
@@ -17,7 +17,7 @@ pub(crate) struct FormFacet {
 }
 
 impl FormFacet {
-    /// Whether the facet lies between two cells or on the Dirichlet part of the boundary.
+    /// Whether the facet lies between two cells or on the Dirichlet boundary.
     #[inline(always)]
     pub fn kind(&self) -> FacetKind {
         if self.there.is_some() { FacetKind::Interior } else { FacetKind::Dirichlet }
@@ -36,7 +36,8 @@ impl<'a, const D: usize> Space<'a, D> {
         match self.coupled_neighbours().across(own.0, own.1) {
             Neighbour::Cell { cell, local } => {
                 let other = (cell as usize, usize::from(local));
-                Some(FormFacet { here: own.min(other), there: Some(own.max(other)) })
+                let (here, there) = if other.0 < own.0 { (other, own) } else { (own, other) };
+                Some(FormFacet { here, there: Some(there) })
             }
             Neighbour::Boundary(BoundaryCondition::Dirichlet) if !self.pins => {
                 Some(FormFacet { here: own, there: None })
@@ -44,28 +45,34 @@ impl<'a, const D: usize> Space<'a, D> {
             Neighbour::Boundary(_) | Neighbour::Cut => None,
         }
     }
+    /// The facet of a half-facet if it carries the form and is counted with the cell of the half-facet.
+    #[inline(always)]
+    pub fn counted_facet(&self, own: HalfFacet) -> Option<FormFacet> {
+        self.form_facet(own).filter(|facet| facet.here.0 == own.0)
+    }
     /// The facets that carry the form and are counted with a cell, by their numbers in it.
     #[inline(always)]
     pub fn form_facets_of(&self, cell: usize) -> impl Iterator<Item = FormFacet> {
-        let facet = move |local| self.form_facet((cell, local));
-        (0..D + 1).filter_map(facet).filter(move |facet| facet.here.0 == cell)
+        (0..D + 1).filter_map(move |local| self.counted_facet((cell, local)))
     }
     /// The facets that carry the form, in the order of the cells with which they are counted.
     pub fn form_facets(&self) -> impl Iterator<Item = FormFacet> {
         (0..self.mesh.n_cells()).flat_map(|cell| self.form_facets_of(cell))
     }
-    /// What a form may see of a facet and its cells, with the metrics of all cells if they are kept.
+    /// The data of a facet and its cells that a form may see, with the metrics of all cells if they are kept.
     #[inline(always)]
     pub fn facet_view(&self, facet: FormFacet, kept: Option<&Metrics>) -> FacetView<'a, D> {
-        let side = |half: HalfFacet| {
-            let coefficients = self.extreme_coefficients(half);
-            match kept {
-                Some(metrics) => metrics.side::<D>(half, coefficients),
-                None => self.metric(half.0).side(half.1, coefficients),
-            }
-        };
-        let (measure, here) = side(facet.here);
-        let there = facet.there.map(|there| side(there).1);
+        let (measure, here) = self.side(facet.here, kept);
+        let there = facet.there.map(|there| self.side(there, kept).1);
         FacetView::new(self.mesh, facet.here, measure, here, there)
+    }
+    /// The measure of a facet and the cell from which it is seen.
+    #[inline(always)]
+    fn side(&self, half: HalfFacet, kept: Option<&Metrics>) -> (f64, Side) {
+        let coefficients = self.extreme_coefficients(half);
+        match kept {
+            Some(metrics) => metrics.side::<D>(half, coefficients),
+            None => self.metric(half.0).side(half.1, coefficients),
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! What forms need of the geometry of cells: numbers without direction.
+//! The geometry of cells that forms need: numbers without direction.
 
 use std::convert::Infallible;
 

@@ -72,7 +72,7 @@ pub(crate) struct Space<'a, const D: usize> {
     coefficients: Option<Vec<f64>>,
     /// The coefficient in the cells in which it varies, for elements of degree two and more.
     varying: Option<VaryingCoefficient>,
-    /// What each of a cell's unknowns is the value of.
+    /// The functional whose value each unknown of a cell is.
     pub nodes: Vec<Node>,
     /// The vertices that stand for each of a cell's nodes.
     node_vertices: Vec<NodeVertices>,
@@ -177,8 +177,10 @@ impl<'a, const D: usize> Space<'a, D> {
         if self.problem.is_constrained() && self.bounded_nodes().next().is_none() {
             return refuse("an inequality", self.problem.has_gap());
         }
-        let on_facets = || (0..=D).any(|local| self.bounded_nodes_on(local).next().is_some());
-        if self.problem.has_gap() && !on_facets() {
+        let mut facets = 0..=D;
+        let has_nodes = facets.clone().all(|local| self.nodes_on(local).next().is_some());
+        let binds = facets.any(|local| self.bounded_nodes_on(local).next().is_some());
+        if self.problem.has_gap() && !(has_nodes && binds) {
             return refuse("a Signorini condition", true);
         }
         Ok(())
@@ -247,18 +249,18 @@ impl<'a, const D: usize> Space<'a, D> {
         }
         local
     }
-    /// The boundary facets of a part, by cell and number in the cell.
-    pub fn facets_of(&self, part: BoundaryCondition) -> impl Iterator<Item = HalfFacet> {
-        self.grouped_facets_of(part).map(|(facet, _)| facet)
+    /// The boundary facets with a condition, by cell and number in the cell.
+    pub fn facets_of(&self, condition: BoundaryCondition) -> impl Iterator<Item = HalfFacet> {
+        self.grouped_facets_of(condition).map(|(facet, _)| facet)
     }
-    /// The boundary facets of a part with the numbers of their groups.
+    /// The boundary facets with a condition, with the numbers of their groups.
     pub fn grouped_facets_of(
         &self,
         condition: BoundaryCondition,
     ) -> impl Iterator<Item = (HalfFacet, usize)> {
-        let of_part = move |f: &&BoundaryFacet| f.condition == condition;
+        let is_one = move |f: &&BoundaryFacet| f.condition == condition;
         let facet = |f: &BoundaryFacet| ((f.cell as usize, f.local as usize), usize::from(f.group));
-        self.mesh.boundary().iter().filter(of_part).map(facet)
+        self.mesh.boundary().iter().filter(is_one).map(facet)
     }
     /// The number of the group of a boundary facet.
     pub fn group_of(&self, (cell, local): HalfFacet) -> usize {

@@ -3,11 +3,10 @@
 //! `compare --dump DIR` writes the inequalities, `judge DIR/SCENE-LABEL-LEVEL VECTOR` reads what came back.
 //! Exit codes: 0 if the certificate is within its limits, 1 if not, 2 if the request was wrong.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::Value;
 use unilateral::exchange::read_vector;
 use unilateral::in_its_dimension;
 use unilateral::inequality::{ActiveSet, in_precision};
@@ -15,60 +14,34 @@ use unilateral::mesh::BoundaryCondition;
 use unilateral::real::Precision;
 use unilateral::scenes::{self, Parameters, Scene};
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Program, Report, Row, RowKey, Study, file_name};
+use unilateral::study::{Program, Report, Row, Study};
 
-use crate::compare;
+use crate::asked::{OUTPUT, PROBLEM};
 use crate::mesh_file::MeshFile;
-use crate::shared::{Request, cannot_write, each_once, print, problem, read, write};
+use crate::shared::{Request, each_once, print, problem, read};
+
+const EXAMPLES: &str = "\
+Examples:
+  unilateral judge dump/radial-2d-p1-8 solution.npy
+  unilateral judge dump/radial-2d-p1-8 solution.txt --json";
 
 /// Judges a vector that another program found for an inequality of `compare --dump`
 #[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Options {
     /// The folder of the inequality
-    #[arg(value_name = "DIR")]
+    #[arg(help_heading = PROBLEM, value_name = "DIR")]
     directory: PathBuf,
     /// The vector: .npy, or numbers in text
-    #[arg(value_name = "VECTOR")]
+    #[arg(help_heading = PROBLEM, value_name = "VECTOR")]
     vector: PathBuf,
     /// Print the report as JSON
-    #[arg(long)]
+    #[arg(help_heading = OUTPUT, long)]
     json: bool,
 }
 
 /// The file of a folder that says which inequality it has.
-const REQUEST: &str = "request.json";
-
-/// Writes what `judge` must know of each inequality, with the fingerprints of all files that were read.
-pub fn write_requests(
-    options: &compare::Options,
-    contents: &[String],
-    keys: &[RowKey],
-) -> Request<()> {
-    let Some(directory) = &options.dump else { return Ok(()) };
-    let absolute = |path: &Option<PathBuf>| path.as_ref().map(std::path::absolute).transpose();
-    let files = [absolute(&options.mesh.path), absolute(&options.problem)];
-    let [mesh, problem] = files.map(|file| file.map_err(|e| format!("cannot find a file: {e}")));
-    let (mesh, problem) = (mesh?, problem?);
-    let part = |(name, part): &(String, BoundaryCondition)| (name.clone(), part.name());
-    let boundary: BTreeMap<String, &str> = options.mesh.boundary.iter().map(part).collect();
-    // the meshes of a reference are refined from that of the coarsest level
-    let coarsest = keys.iter().map(|key| key.level).min();
-    for RowKey { scene, label, level, .. } in keys {
-        let folder = directory.join(file_name(&format!("{scene}-{label}-{level}")));
-        let request = json!({
-            "scene": scene, "label": label, "level": level, "coarsest": coarsest,
-            "precision": options.precision,
-            "scale": options.scale, "contrast": options.contrast, "load": options.load,
-            "reference": options.reference.as_ref().map(|(scheme, level)| {
-                json!({ "scheme": scheme.to_string(), "level": level })
-            }),
-            "mesh": mesh, "problem": problem, "contents": contents, "boundary": boundary,
-        });
-        std::fs::create_dir_all(&folder).map_err(|e| cannot_write(&folder, e))?;
-        write(&folder.join(REQUEST), format!("{request:#}\n"))?;
-    }
-    Ok(())
-}
+pub const REQUEST: &str = "request.json";
 
 /// Whether the certificate is within its limits.
 pub fn run(options: &Options) -> Request<bool> {
@@ -133,11 +106,12 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
         None => scene,
         Some(file) => {
             let file = found_beside(&options.directory, file);
-            let parts = request["boundary"].as_object().into_iter().flatten();
-            let part = |(name, part): (&String, &Value)| {
-                Some((name.clone(), BoundaryCondition::from_name(part.as_str()?)?))
+            let given = request["boundary"].as_object().into_iter().flatten();
+            let condition = |(name, condition): (&String, &Value)| {
+                let of_name = condition.as_str().and_then(BoundaryCondition::from_name);
+                of_name.map(|found| (name.clone(), found)).ok_or_else(|| wrong("boundary"))
             };
-            let boundary = parts.filter_map(part).collect();
+            let boundary = given.map(condition).collect::<Result<_, _>>()?;
             let mesh = MeshFile { path: Some(file.clone()), boundary };
             let contents = mesh.read()?.expect("a file with a path has contents");
             is_unchanged(0, &file, contents.fingerprint())?;

@@ -5,6 +5,7 @@
 //! check failed, 2 if the request was wrong.
 
 mod adaptive;
+mod asked;
 mod compare;
 mod judge;
 mod mesh_file;
@@ -27,7 +28,7 @@ use unilateral::input::excerpt;
 
 /// Finite element schemes on variational inequalities: comparisons, measurements, pictures.
 #[derive(Parser)]
-#[command(name = "unilateral", version, about, propagate_version = true)]
+#[command(name = "unilateral", version, about)]
 #[command(after_help = "Without a command, its options are those of `compare`.")]
 struct Program {
     #[command(subcommand)]

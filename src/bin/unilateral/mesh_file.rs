@@ -1,4 +1,4 @@
-//! A Gmsh file of the command line, and the parts of its boundary.
+//! A Gmsh file of the command line, and the conditions on its boundary.
 
 use std::path::{Path, PathBuf};
 
@@ -9,16 +9,17 @@ use unilateral::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile, GmshWarning};
 use unilateral::mesh::{BoundaryCondition, Mesh, MeshError};
 use unilateral::scenes::AnyScene;
 
+use crate::asked::MESHES;
 use crate::shared::Request;
 
 /// The options of a mesh in place of built-in ones.
 #[derive(Args, Clone, Debug, Default)]
 pub struct MeshFile {
-    /// Run on this Gmsh mesh; physical groups dirichlet, neumann, contact name the boundary parts
-    #[arg(long = "mesh", id = "mesh", value_name = "FILE")]
+    /// Gmsh mesh; groups dirichlet, neumann, contact are its boundary
+    #[arg(help_heading = MESHES, long = "mesh", id = "mesh", value_name = "FILE")]
     pub path: Option<PathBuf>,
-    /// The parts of other groups of the mesh, as bore=neumann
-    #[arg(long, value_delimiter = ',', value_name = "NAME=PART[,...]", requires = "mesh", value_parser = boundary)]
+    /// Conditions of other groups of the mesh, as bore=neumann
+    #[arg(help_heading = MESHES, long, value_delimiter = ',', value_name = "NAME=CONDITION", requires = "mesh", value_parser = boundary)]
     pub boundary: Vec<(String, BoundaryCondition)>,
 }
 
@@ -45,7 +46,7 @@ impl MeshFile {
         let path = self.path.as_deref().expect("a file that has been read has a path");
         let read = file.mesh::<D>().map_err(|e| cannot_mesh(path, &e))?;
         warn_of(&read.warnings, path, warn);
-        with_parts(read.mesh, path, &self.boundary)
+        with_conditions(read.mesh, path, &self.boundary)
     }
 }
 
@@ -64,8 +65,8 @@ pub fn warn_of(warnings: &[GmshWarning], path: &Path, warn: &dyn Fn(String)) {
     }
 }
 
-/// A mesh of a file whose boundary groups have these parts besides those that they name.
-pub fn with_parts<const D: usize>(
+/// A mesh of a file whose boundary groups have these conditions besides those that they name.
+pub fn with_conditions<const D: usize>(
     mesh: Mesh<D>,
     path: &Path,
     boundary: &[(String, BoundaryCondition)],
@@ -82,12 +83,12 @@ pub fn with_parts<const D: usize>(
         };
         return Err(format!("--boundary: {why} has {groups}"));
     }
-    let part_of = |name: &str| {
+    let condition_of = |name: &str| {
         let given = boundary.iter().find(|(group, _)| group == name);
-        given.map(|(_, part)| *part)
+        given.map(|(_, condition)| *condition)
     };
-    let mesh = mesh.with_boundary_conditions(&part_of).map_err(|e| format!("{file}: {e}"))?;
-    mesh.check_boundary_parts().map_err(|e| match e {
+    let mesh = mesh.with_boundary_conditions(&condition_of).map_err(|e| format!("{file}: {e}"))?;
+    mesh.check_boundary_conditions().map_err(|e| match e {
         MeshError::UndecidedGroup { group, .. } => format!(
             "{file}: nothing says what holds on boundary group {group}: \
              --boundary {group}=dirichlet, {group}=neumann or {group}=contact does"
@@ -97,10 +98,11 @@ pub fn with_parts<const D: usize>(
     Ok(mesh)
 }
 
-/// A boundary group and its part.
+/// A boundary group and its condition.
 pub fn boundary(text: &str) -> Request<(String, BoundaryCondition)> {
     let found = text.rsplit_once('=');
-    let found =
-        found.and_then(|(name, part)| Some((name.to_owned(), BoundaryCondition::from_name(part)?)));
+    let found = found.and_then(|(name, condition)| {
+        Some((name.to_owned(), BoundaryCondition::from_name(condition)?))
+    });
     found.ok_or_else(|| "expected NAME=dirichlet, NAME=neumann or NAME=contact".to_owned())
 }

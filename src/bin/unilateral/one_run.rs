@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use unilateral::input::beginning;
-use unilateral::output::Provenance;
+use unilateral::study::Program;
 
 use crate::shared::{Request, cannot_write, warn};
 
@@ -37,7 +37,9 @@ pub fn take_directory(path: &Path) -> Request<()> {
             warn(&format!("warning: {path} cannot be locked, start no other run there: {why}"));
         }
     }
-    let since = Provenance::now(0).date.map_or_else(String::new, |date| format!(" since {date}"));
+    let since = Program::new("unilateral", "", 1, 1)
+        .date
+        .map_or_else(String::new, |date| format!(" since {date}"));
     let holder = format!("process {}{since}", std::process::id());
     let written = file.set_len(0).and_then(|()| file.write_all(holder.as_bytes()));
     written.map_err(|e| cannot_write(&name, e))?;

@@ -19,26 +19,34 @@ use unilateral::scenes::{Parameters, Scene, catalogue};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{ObservedOrders, Program, Row, orders_summary, orders_table};
 
+use crate::asked::{MESHES, OUTPUT, PROBLEM, SCHEMES};
 use crate::shared::{
     Failure, ORDER_TOLERANCE, Request, check_writable, end_at_interrupt, print, schemes, write,
 };
 
+const EXAMPLES: &str = "\
+Examples:
+  unilateral orders orders.md radial-2d --scheme p1,sipg,wopsip
+  unilateral orders --quick orders.md --summary summary.md";
+
 /// Sets observed orders beside those that theory promises, every scheme on every scene
 #[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Options {
     /// Where the table goes, in Markdown; standard output by default
+    #[arg(help_heading = OUTPUT)]
     file: Option<PathBuf>,
     /// Only scenes whose names contain this
-    #[arg(value_name = "WORD")]
+    #[arg(help_heading = PROBLEM, value_name = "WORD")]
     pattern: Option<String>,
     /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]; all by default
-    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
+    #[arg(help_heading = SCHEMES, long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
     schemes: Vec<String>,
     /// Also write how many promises each scheme keeps, and those that it misses
-    #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = OUTPUT, long, value_name = "FILE")]
     summary: Option<PathBuf>,
     /// Half the levels
-    #[arg(long)]
+    #[arg(help_heading = MESHES, long)]
     quick: bool,
 }
 

@@ -17,43 +17,51 @@ use unilateral::scheme::NamedScheme;
 use unilateral::study::{Row, Study, file_name};
 
 use crate::adaptive::adaptivity;
+use crate::asked::{MESHES, OUTPUT, PROBLEM, SCHEMES};
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
 use crate::shared::{Failure, end_at_interrupt, fields_with_bound, print, problem, scene, warn};
 
+const EXAMPLES: &str = "\
+Examples:
+  unilateral pictures --scene ball-2d --scheme wopsip:facet-means --level 32
+  unilateral pictures plate.toml --adaptive 1e-2 --out plate";
+
 /// Draws the solution of a scheme on a scene, or on a problem of your own
 #[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Options {
     /// A problem of your own, as for compare
-    #[arg(value_name = "PROBLEM.toml", conflicts_with_all = ["scene", "mesh", "boundary"])]
+    #[arg(help_heading = PROBLEM, value_name = "PROBLEM.toml", conflicts_with_all = ["scene", "mesh", "boundary"])]
     problem: Option<PathBuf>,
     /// Scene by name
-    #[arg(long, default_value = "radial-2d")]
+    #[arg(help_heading = PROBLEM, long, value_name = "A", default_value = "radial-2d")]
     scene: String,
     #[command(flatten)]
     mesh: MeshFile,
-    /// Scheme as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]
-    #[arg(long, default_value = "wopsip")]
+    /// NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]
+    #[arg(help_heading = SCHEMES, long, value_name = "A", default_value = "wopsip")]
     scheme: NamedScheme,
-    /// On a box: subdivisions of its shortest side, by default 16, in space 8; on a mesh of a file: refinements, by
-    /// default none
-    #[arg(long, visible_alias = "levels", value_name = "N")]
+    /// On a box: subdivisions of its shortest side, by default 16 or 8;
+    /// on a mesh file: refinements, by default none
+    #[arg(help_heading = MESHES, verbatim_doc_comment, long, visible_alias = "levels", value_name = "N")]
     level: Option<usize>,
-    /// Draw every mesh of a refinement that follows the error bound, as for compare; --level N then sets the first mesh,
-    /// by default 4 subdivisions
-    #[arg(long, value_name = "GOAL|KEY=VALUE[,...]", value_parser = adaptivity, conflicts_with = "series")]
+    /// Every mesh of a refinement that follows the error bound, as for
+    /// compare, from level N, by default 4
+    #[arg(help_heading = MESHES, verbatim_doc_comment, long, value_name = "GOAL|KEY=X", value_parser = adaptivity, conflicts_with = "series")]
     adaptive: Option<Adaptivity>,
     /// In space: the coordinate that the slice fixes, x, y or z
-    #[arg(long, value_parser = ["x", "y", "z"], requires = "at")]
+    #[arg(help_heading = OUTPUT, long, value_name = "AXIS", value_parser = ["x", "y", "z"], hide_possible_values = true,
+        requires = "at")]
     across: Option<String>,
     /// In space: the value of that coordinate
-    #[arg(long, value_name = "X", requires = "across", allow_negative_numbers = true)]
+    #[arg(help_heading = OUTPUT, long, value_name = "X", requires = "across", allow_negative_numbers = true)]
     at: Option<f64>,
-    /// Also write the fields of these levels as .vtu files and a .pvd file that lists them
-    #[arg(long, value_delimiter = ',', value_name = "N[,N...]")]
+    /// Also the fields of these levels as .vtu files, with a .pvd file
+    #[arg(help_heading = OUTPUT, long, value_delimiter = ',', value_name = "N[,N...]")]
     series: Vec<usize>,
     /// Where the files go
-    #[arg(long, value_name = "DIR", default_value = "target/pictures")]
+    #[arg(help_heading = OUTPUT, long, value_name = "DIR", default_value = "target/pictures")]
     out: PathBuf,
 }
 
@@ -87,7 +95,8 @@ fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Result<bool, Fail
     };
     let slice = match (&options.across, options.at) {
         (Some(name), Some(at)) => {
-            Some(Slice { axis: ["x", "y", "z"].iter().position(|n| n == name).unwrap_or(2), at })
+            let axis = ["x", "y", "z"].iter().position(|axis| axis == name);
+            Some(Slice { axis: axis.expect("the parser admits these three"), at })
         }
         _ => None,
     };

@@ -80,7 +80,7 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
         (flux.iter().enumerate().map(term).sum::<f64>() + of_cell.energy).max(0.0)
     }
 
-    /// What a cell adds to the square of the bound: mismatch and complementarity.
+    /// The part of a cell in the square of the bound: mismatch and complementarity.
     pub fn square(&self, k: usize) -> f64 {
         let cell = &self.cells[k];
         let gaps = &cell.gaps[usize::from(cell.sum() < 0.0)];

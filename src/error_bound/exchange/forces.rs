@@ -70,7 +70,7 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
     }
 
     /// Moves a contact force towards its mean until the force is nowhere negative. The force stays as it is if the
-    /// mismatch would grow by more than the negative part counts for.
+    /// mismatch would grow by more than the negative multiplier counts for.
     fn make_force_positive(&mut self, facet: &mut ContactFacet) {
         let at = facet.at;
         let mean = vertices_of::<D>(at.1).map(|j| self.force(at, j)).sum::<f64>() / D as f64;
@@ -212,12 +212,12 @@ impl<const D: usize> Space<'_, D> {
                         cells.exchange_along(&chain[..2 * length], gaps);
                     }
                 }
-                Neighbour::Cell { cell, local: across } if length < LONGEST => {
+                Neighbour::Cell { cell, local: entered } if length < LONGEST => {
                     let next = numbers.binary_search(&(cell as usize)).ok();
                     let Some((next, j)) = next.zip(corner(cell as usize)) else { continue };
-                    let across = usize::from(across);
-                    chain[2 * length] = (next, across * (D + 1) + j, -1.0);
-                    self.follow(cells, around, chain, ((next, across), length + 1));
+                    let entered = usize::from(entered);
+                    chain[2 * length] = (next, entered * (D + 1) + j, -1.0);
+                    self.follow(cells, around, chain, ((next, entered), length + 1));
                 }
                 Neighbour::Cell { .. } => {}
             }

@@ -9,8 +9,8 @@ use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
-use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbours};
+use crate::parallel::vectors::collect;
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -21,7 +21,7 @@ const SWEEPS: usize = 4;
 /// The degree of the rule for distances from obstacles that are no constants.
 const DEGREE: usize = 2;
 
-/// What the exchange needs of a cell.
+/// The data of a cell that the exchange needs.
 struct CellOfLinears<const D: usize> {
     /// The number of the cell.
     number: usize,
@@ -52,7 +52,7 @@ impl<const D: usize> CellOfLinears<D> {
         ]
     }
 
-    /// What the cell adds to the square of the bound.
+    /// The contribution of the cell to the square of the bound.
     fn square(&self) -> f64 {
         let mismatch = self.difference.norm_squared() + self.variance * self.sum * self.sum;
         let gap = self.gap(self.multiplier.signum()).unwrap_or(0.0);
@@ -74,7 +74,7 @@ impl<const D: usize> CellOfLinears<D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the part that its
+    /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the share that its
     /// flux balances, by volume around a vertex and half on the two sides of a facet, if the cell's obstacle gives the
     /// active bound. The multipliers of inactive
     /// unknowns are set to zero: the residual of an inactive unknown is an algebraic error.
@@ -99,19 +99,20 @@ impl<const D: usize> Space<'_, D> {
         multipliers.iter_mut().filter(is_rounding).for_each(|m| *m = 0.0);
         let by_volume = self.is_conforming_linear();
         let n_cells = self.mesh.n_cells();
-        let part = |cell: usize| if by_volume { self.mesh.geometry(cell).volume } else { 1.0 };
-        let mut parts = vec![0.0; multipliers.len()];
+        let weight = |cell: usize| if by_volume { self.mesh.geometry(cell).volume } else { 1.0 };
+        let mut weights = vec![0.0; multipliers.len()];
         let pressing = |cell: usize| {
             let acting = (0..n).filter(move |&i| obstacles.act_in(cell, i));
             acting.map(move |i| self.dofs.of(cell, i)).filter(|&i| multipliers[i] != 0.0)
         };
         let mut of_cells = vec![0.0; n_cells];
         for cell in (0..n_cells).filter(|&cell| pressing(cell).next().is_some()) {
-            of_cells[cell] = part(cell);
-            pressing(cell).for_each(|i| parts[i] += of_cells[cell]);
+            of_cells[cell] = weight(cell);
+            pressing(cell).for_each(|i| weights[i] += of_cells[cell]);
         }
-        for (cell, of_cell) in of_cells.iter_mut().enumerate().filter(|(_, part)| **part > 0.0) {
-            *of_cell *= pressing(cell).map(|i| multipliers[i] / parts[i]).sum::<f64>();
+        for (cell, of_cell) in of_cells.iter_mut().enumerate().filter(|(_, weight)| **weight > 0.0)
+        {
+            *of_cell *= pressing(cell).map(|i| multipliers[i] / weights[i]).sum::<f64>();
         }
         of_cells
     }
@@ -128,18 +129,17 @@ impl<const D: usize> Space<'_, D> {
         let presses = |cell: usize| counts(cell) && multipliers[cell].abs() > ROUNDING * largest;
         let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, counts), false);
         let rule = Rule::new(D, DEGREE);
-        let in_contact = |&cell: &usize| {
-            let multiplier = if presses(cell) { multipliers[cell] } else { 0.0 };
-            self.cell_of_linears(cell, function, multiplier, &rule)
-        };
-        let mut cells = in_large_pages(Vec::<CellOfLinears<D>>::with_capacity(numbers.len()));
-        cells.extend(numbers.iter().map(in_contact));
-        for cell in &mut cells {
-            for (flux, at_centre) in flux.of_cell(cell.number).iter().zip(&cell.at_centre) {
+        let before = &*flux;
+        let mut cells = collect(numbers.len(), |k| {
+            let number = numbers[k];
+            let multiplier = if presses(number) { multipliers[number] } else { 0.0 };
+            let mut cell = self.cell_of_linears(number, function, multiplier, &rule);
+            for (flux, at_centre) in before.of_cell(number).iter().zip(&cell.at_centre) {
                 cell.difference += at_centre * *flux;
                 cell.sum += flux;
             }
-        }
+            cell
+        });
         let square: f64 = cells.iter().map(CellOfLinears::square).sum();
         visit_steps(&steps, (cells.len(), square), SWEEPS, |step| match step {
             ExchangeStep::Between(at) => {
@@ -200,7 +200,7 @@ impl<const D: usize> Space<'_, D> {
 /// bound falls.
 fn exchange_between<const D: usize>(
     cells: &mut [CellOfLinears<D>],
-    [(here, local), (there, across)]: [HalfFacet; 2],
+    [(here, facet_here), (there, facet_there)]: [HalfFacet; 2],
     flux: &mut Flux<D>,
 ) -> f64 {
     let [of_here, of_there] = [&cells[here], &cells[there]];
@@ -208,8 +208,8 @@ fn exchange_between<const D: usize>(
     let gaps = of_here.gap(sign).zip(of_there.gap(sign));
     let gaps = gaps.filter(|_| of_here.multiplier * of_there.multiplier >= 0.0);
     let Some((gap_here, gap_there)) = gaps else { return 0.0 };
-    let [slope, curvature] = of_here.slopes(local);
-    let [slope_there, curvature_there] = of_there.slopes(across);
+    let [slope, curvature] = of_here.slopes(facet_here);
+    let [slope_there, curvature_there] = of_there.slopes(facet_there);
     let slope = slope - slope_there + sign * (gap_there - gap_here);
     let curvature = curvature + curvature_there;
     let (a, b) = (-of_there.multiplier, of_here.multiplier);
@@ -217,8 +217,8 @@ fn exchange_between<const D: usize>(
     if !exchange.is_finite() {
         return 0.0;
     }
-    cells[here].add(local, exchange, flux);
-    cells[there].add(across, -exchange, flux);
+    cells[here].add(facet_here, exchange, flux);
+    cells[there].add(facet_there, -exchange, flux);
     decrease([slope, curvature], exchange)
 }
 

@@ -1,6 +1,6 @@
 //! Multipliers exchanged for flux between cells in contact.
 //!
-//! Where an obstacle binds the unknowns of two neighbouring cells, the multipliers of the two may carry a part of the
+//! Where an obstacle binds the unknowns of two neighbouring cells, the multipliers of the two may carry a share of the
 //! flux through their facet: the sum of both is determined by the discrete equations, its division is not, and
 //! over-penalties have no flux where jumps vanish. A number `e` added to the flux from `K` to `K'`, taken from
 //! the multiplier of `K` and given to that of `K'`, keeps the balance of both cells. The square of the bound
@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Facet by facet the least value is taken, among those numbers that keep the signs of both multipliers. Through a
-//! Dirichlet facet the flux is free, and `K` is alone. Cells beside those in contact take part: their multipliers
+//! Dirichlet facet the flux is free, and `K` is alone. Cells beside those in contact count, too: their multipliers
 //! may grow, if the distance costs less than the mismatch. A facet is visited again as long as visits of its cells make
 //! the square smaller by more than a negligible number.
 

@@ -20,7 +20,7 @@ const SWEEPS: usize = 8;
 
 impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Moves the multiplier of a cell towards its mean until the multiplier has one sign. Numbers inside the cell keep
-    /// the balance. The multiplier stays as it is if the mismatch would grow by more than the part of the other sign
+    /// the balance. The multiplier stays as it is if the mismatch would grow by more than the multiplier of the other sign
     /// counts for.
     fn make_sign_definite(&mut self, k: usize) {
         let cell = &self.cells[k];
@@ -48,8 +48,8 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
         let [here, there] = at.map(|(k, _)| &self.cells[k]);
         let sign = (here.sum() + there.sum()).signum();
         let obstacle = usize::from(sign < 0.0);
-        let takes_part = |cell: &CellOfQuadratics| cell.has_one_sign && cell.is_given[obstacle];
-        if here.sum() * there.sum() < 0.0 || !takes_part(here) || !takes_part(there) {
+        let exchanges = |cell: &CellOfQuadratics| cell.has_one_sign && cell.is_given[obstacle];
+        if here.sum() * there.sum() < 0.0 || !exchanges(here) || !exchanges(there) {
             return 0.0;
         }
         let number = map_entries([0, 1], |s| Flux::<D>::place(at[s].1, vertex[s]));
@@ -131,8 +131,9 @@ impl<const D: usize> Space<'_, D> {
             ExchangeStep::Between(facets) => {
                 let at = facets.map(FacetOfCell::half);
                 let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
-                let across = |v: u32| other.iter().position(|&w| w == v);
-                let common = vertices_of::<D>(at[0].1).filter_map(|j| Some([j, across(cell[j])?]));
+                let position = |v: u32| other.iter().position(|&w| w == v);
+                let common =
+                    vertices_of::<D>(at[0].1).filter_map(|j| Some([j, position(cell[j])?]));
                 common.map(|vertex| cells.exchange_between(at, vertex)).sum()
             }
             ExchangeStep::WithDirichlet(facet) => {

@@ -78,7 +78,7 @@ impl<const D: usize> CellFlux<D> {
     }
 }
 
-/// What the flux of a cell leaves of the load.
+/// The part of the load that the flux of a cell leaves.
 pub(super) struct LeftOfLoad {
     /// Its mean.
     pub mean: f64,

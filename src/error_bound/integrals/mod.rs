@@ -41,7 +41,7 @@ use crate::mesh::edge_vertices;
 use crate::problem::{Datum, Field};
 use crate::real::Point;
 
-/// What one cell adds to the bound.
+/// The part of one cell in the bound.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CellTerms {
     /// The square of the mismatch.
@@ -69,13 +69,13 @@ pub(super) struct CellTerms {
 }
 
 impl CellTerms {
-    /// What the cell adds to the square of the bound, without the part of the solver.
+    /// The contribution of the cell to the square of the bound, without the term of the solver.
     pub fn square(&self) -> f64 {
         self.with_oscillation + self.obstacle + self.contact
     }
 }
 
-/// What the integrals of a cell read.
+/// The data that the integrals of a cell read.
 struct CellInputs<'a, const D: usize> {
     flux: CellFlux<D>,
     admissible: Admissible<'a, D>,
@@ -368,7 +368,7 @@ impl<const D: usize> Space<'_, D> {
         })
     }
 
-    /// What the integrals of a cell read.
+    /// The data that the integrals of a cell read.
     fn cell_inputs(
         &self,
         pair: &PrimalDualPair<D>,

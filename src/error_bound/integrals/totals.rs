@@ -71,7 +71,7 @@ impl Totals {
             largest.map(|x| -x);
     }
 
-    /// What is summed over cells.
+    /// The sums over cells.
     fn sums(&mut self) -> [&mut f64; 7] {
         [
             &mut self.mismatch,
@@ -84,8 +84,8 @@ impl Totals {
         ]
     }
 
-    /// The part of the solver, a number `A` with `(rho, e) <= A |||e|||` for what the solver left, `rho`, and all `e`
-    /// that vanish on the Dirichlet part: the norm of `rho` in L2 times the constant of Friedrichs' inequality or,
+    /// The term of the solver, a number `A` with `(rho, e) <= A |||e|||` for what the solver left, `rho`, and all `e`
+    /// that vanish on the Dirichlet boundary: the norm of `rho` in L2 times the constant of Friedrichs' inequality or,
     /// where the reaction is positive, by the reaction. None if neither is known and `rho` is not zero.
     pub fn of_solver(&self, friedrichs: Option<f64>) -> Result<Option<f64>, NoBound> {
         if self.least_reaction < 0.0 {

@@ -1,4 +1,4 @@
-//! Where the patches write: the fluxes around each vertex of some cells.
+//! The fluxes around each vertex of some cells, which the patches write.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -19,7 +19,7 @@ impl CornerFluxes {
         Self { kept: 0..0, per_corner, per_cell: per_corner * n_corners, bits: Vec::new() }
     }
 
-    /// Keeps the parts of these cells from now on. Every part of a kept cell is written before it is read.
+    /// Keeps the fluxes of these cells from now on. Every flux of a kept cell is written before it is read.
     pub fn keep(&mut self, cells: Range<usize>) {
         self.bits.resize_with(cells.len() * self.per_cell, AtomicU64::default);
         self.kept = cells;
@@ -28,16 +28,16 @@ impl CornerFluxes {
     /// Writes number `k` of a corner, if its cell is kept.
     pub fn set(&self, corner: Corner, k: usize, flux: f64) {
         if self.kept.contains(&corner.cell()) {
-            self.part(corner, k).store(flux.to_bits(), Ordering::Relaxed);
+            self.entry(corner, k).store(flux.to_bits(), Ordering::Relaxed);
         }
     }
 
     /// Number `k` of a corner of a kept cell.
     pub fn get(&self, corner: Corner, k: usize) -> f64 {
-        f64::from_bits(self.part(corner, k).load(Ordering::Relaxed))
+        f64::from_bits(self.entry(corner, k).load(Ordering::Relaxed))
     }
 
-    fn part(&self, corner: Corner, k: usize) -> &AtomicU64 {
+    fn entry(&self, corner: Corner, k: usize) -> &AtomicU64 {
         let cell = corner.cell() - self.kept.start;
         &self.bits[cell * self.per_cell + corner.own() * self.per_corner + k]
     }

@@ -57,7 +57,7 @@ impl<const D: usize> Space<'_, D> {
         Corners { corners, starts }
     }
 
-    /// Ranges of `length` cells that have their parts kept at a time, each with the vertices of its cells. All cells are
+    /// Ranges of `length` cells whose fluxes of vertices are kept at a time, each with the vertices of its cells. All cells are
     /// one range if the ranges would have more than twice as many vertices as the mesh: the numbers of neighbours are far
     /// apart then.
     pub(super) fn ranges_with_vertices(&self, length: usize) -> Vec<(Range<usize>, Vec<u32>)> {

@@ -17,11 +17,11 @@ pub(super) struct CellOfFan {
 }
 
 impl<const D: usize> LinearCells<'_, '_, D> {
-    /// Sets the parts of those of these vertices whose cells form one fan, and returns the others.
-    pub(super) fn set_fans(&self, vertices: &[u32], parts: &CornerFluxes) -> Vec<u32> {
+    /// Sets the fluxes of those of these vertices whose cells form one fan, and returns the others.
+    pub(super) fn set_fans(&self, vertices: &[u32], fluxes: &CornerFluxes) -> Vec<u32> {
         let others = cells::map(vertices.len(), &|range: Range<usize>| {
             let mut fan = Vec::new();
-            let set = |corner: Corner, k: usize, number: f64| parts.set(corner, k, number);
+            let set = |corner: Corner, k: usize, number: f64| fluxes.set(corner, k, number);
             let is_other = |v: &u32| !self.set_fan(*v as usize, &mut fan, set);
             vertices[range].iter().copied().filter(is_other).collect::<Vec<_>>()
         });

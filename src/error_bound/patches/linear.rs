@@ -1,4 +1,4 @@
-//! What the patches of linears read of the cells: a flux has one number on each facet, its integral there.
+//! The data of cells for patches of linears: a flux has one number on each facet, its integral there.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -109,13 +109,13 @@ impl<const D: usize> LinearCells<'_, '_, D> {
         &self.cells[cell * known_of_cell(D) + 1..][..D + 1]
     }
 
-    /// What the flux of a vertex balances in a cell, with a multiplier per volume.
+    /// The load that the flux of a vertex balances in a cell, with a multiplier per volume.
     pub fn load(&self, corner: Corner, pressure: f64) -> f64 {
         let load = self.cells[corner.cell() * known_of_cell(D) + D + 2 + corner.own()];
         load - pressure * self.carried(corner)
     }
 
-    /// The volume over which a cell carries a part of the multiplier of one of its vertices: its own, or none where
+    /// The volume over which a cell carries a share of the multiplier of one of its vertices: its own, or none where
     /// another obstacle than that of the cell gives the active bound.
     pub fn carried(&self, corner: Corner) -> f64 {
         match self.obstacles.act_in(corner.cell(), corner.own()) {

@@ -1,8 +1,8 @@
-//! The flux of a conforming function: `alpha grad u` in each cell and a part around each vertex, the smallest that makes
+//! The flux of a conforming function: `alpha grad u` in each cell and a flux around each vertex, the smallest that makes
 //! normal components single-valued and balances load and multiplier.
 //!
-//! Let `phi` be the hat function of a vertex, its patch the cells around it, and `g = alpha grad u . n`. Its part `p` of
-//! the flux has for all `w` that are constant, for quadratics linear,
+//! Let `phi` be the hat function of a vertex, its patch the cells around it, and `g = alpha grad u . n`. Its flux `p`
+//! has for all `w` that are constant, for quadratics linear,
 //!
 //! ```text
 //! (div p, w)_K = a_K(u, phi w) - l_K(phi w) - int_dK g phi w     in each cell K of the patch
@@ -23,12 +23,12 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `mod` | the flux: the parts of all vertices added up |
-//! | `patch` | the part of a vertex, by least squares |
-//! | `fan` | the part of a vertex of linears in the plane, where all numbers follow from one |
+//! | `mod` | the flux: that of all vertices added up |
+//! | `patch` | the flux of a vertex, by least squares |
+//! | `fan` | the flux of a vertex of linears in the plane, where all numbers follow from one |
 //! | `patch_cells` | what patches ask of cells |
 //! | `linear`, `quadratic` | the cells of linears and quadratics |
-//! | `corners`, `parts` | the cells around each vertex, and the numbers there |
+//! | `corners`, `corner_fluxes` | the cells around each vertex, and the numbers there |
 
 mod corner_fluxes;
 mod corners;
@@ -58,7 +58,7 @@ use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::{BoundaryCondition, Neighbours};
 use crate::parallel::cells;
 
-/// Number of cells whose parts are kept at a time. The parts of a tetrahedron are twelve numbers, the flux is four.
+/// Number of cells whose fluxes of vertices are kept at a time. Those of a tetrahedron are twelve numbers, the flux is four.
 const CELLS_AT_A_TIME: usize = 1 << 17;
 
 impl<const D: usize> Space<'_, D> {
@@ -88,7 +88,7 @@ impl<const D: usize> Space<'_, D> {
         self.flux_of_patches(&cells, None, neighbours, CELLS_AT_A_TIME)
     }
 
-    /// The flux, with the parts of `length` cells at a time; in the plane the cells of linears know the fans.
+    /// The flux, with the fluxes of vertices in `length` cells at a time; in the plane the cells of linears know the fans.
     fn flux_of_patches<C: PatchCells<D, N>, const N: usize>(
         &self,
         of: &C,
@@ -96,13 +96,13 @@ impl<const D: usize> Space<'_, D> {
         neighbours: &Neighbours,
         length: usize,
     ) -> Flux<D> {
-        let mut parts = CornerFluxes::new(D * C::PER_FACET, D + 1);
+        let mut of_vertices = CornerFluxes::new(D * C::PER_FACET, D + 1);
         let mut corners = None;
         let mut flux = Flux::zero(C::DEGREE, self.mesh.n_cells());
         for (cells, mut vertices) in self.ranges_with_vertices(length) {
-            parts.keep(cells.clone());
+            of_vertices.keep(cells.clone());
             if let Some(of) = fans {
-                vertices = of.set_fans(&vertices, &parts);
+                vertices = of.set_fans(&vertices, &of_vertices);
             }
             if !vertices.is_empty() {
                 let corners = corners.get_or_insert_with(|| self.corners());
@@ -110,7 +110,7 @@ impl<const D: usize> Space<'_, D> {
                     let mut patch = Patch::default();
                     for &v in &vertices[range] {
                         patch.solve(of, neighbours, corners.at(v as usize), |corner, k, number| {
-                            parts.set(corner, k, number);
+                            of_vertices.set(corner, k, number);
                         });
                     }
                 });
@@ -123,7 +123,7 @@ impl<const D: usize> Space<'_, D> {
                     for corner in (0..=D).map(|own| Corner::new(cell, own)) {
                         for (f, facet) in corner.facets::<D>().enumerate() {
                             for p in 0..C::PER_FACET {
-                                let number = parts.get(corner, f * C::PER_FACET + p);
+                                let number = of_vertices.get(corner, f * C::PER_FACET + p);
                                 out[C::place(facet, p)] += number;
                             }
                         }

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Where numbers are known, `G` is that of the others. What the two sides of each facet have too much gives a symmetric
-//! positive semidefinite system for the multipliers. Those of facets on the Dirichlet part are zero; without such
+//! positive semidefinite system for the multipliers. Those of facets on the Dirichlet boundary are zero; without such
 //! facets a constant is free.
 
 use super::corners::Corner;
@@ -20,7 +20,7 @@ use crate::mesh::{BoundaryCondition, Neighbour, Neighbours};
 /// determined up to a constant.
 const ZERO_PIVOT: f64 = 1e-11;
 
-/// What is known of a number of the flux of a cell.
+/// The known data of a number of the flux of a cell.
 #[derive(Clone, Copy)]
 enum Number {
     /// The sum with that on the other side of the facet; the multiplier of this condition.
@@ -109,17 +109,18 @@ impl<const N: usize> Patch<N> {
         let corner = corners[k];
         let normal = of.normal(corner, facet);
         match neighbours.across(corner.cell(), facet) {
-            Neighbour::Cell { cell: other, local: across } => {
-                let across = usize::from(across);
+            Neighbour::Cell { cell: other, local: facet_there } => {
+                let facet_there = usize::from(facet_there);
                 let position = corners.binary_search_by_key(&(other as usize), |c| c.cell());
                 let there = position.expect("a cell across a facet at a vertex has the vertex");
                 if there < k {
-                    let place = corners[there].facets::<D>().take_while(|&f| f != across).count();
+                    let place =
+                        corners[there].facets::<D>().take_while(|&f| f != facet_there).count();
                     let of_there = &self.cells[there].known[place * C::PER_FACET..];
                     known.copy_from_slice(&of_there[..C::PER_FACET]);
                     return;
                 }
-                let of_other = of.normal(corners[there], across);
+                let of_other = of.normal(corners[there], facet_there);
                 for (known, (here, there)) in known.iter_mut().zip(normal.iter().zip(of_other)) {
                     *known = Number::Shared(self.multipliers.len());
                     self.multipliers.push(here + there);

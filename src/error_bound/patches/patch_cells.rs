@@ -1,4 +1,4 @@
-//! What patches ask of the cells of a conforming function.
+//! The data of the cells of a conforming function that patches need.
 
 use super::corners::Corner;
 use crate::error_bound::flux::Flux;

@@ -1,12 +1,13 @@
-//! What the patches of quadratics read of the cells: a flux has one number for each vertex of a facet.
+//! The data of cells for patches of quadratics: a flux has one number for each vertex of a facet.
 //!
-//! In the notation of [`quadratics`](crate::error_bound::quadratics) the part of a vertex is in a cell
+//! Each vertex contributes a flux `p` on its patch. In a cell of the patch
 //!
 //! ```text
 //! p = sum c_Fj lambda_j (a_j - a_F) / (D |K|) + sum_j r_j lambda_j phi_j
 //! ```
 //!
-//! over the facets `F` at the vertex, with numbers `r_j` that the divergence, tested with linear functions, tells.
+//! with the first sum over the facets `F` at the vertex, in the notation of
+//! [`quadratics`](crate::error_bound::quadratics). The divergence, tested with linear functions, determines the `r_j`.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -28,7 +29,7 @@ use crate::mesh::{HalfFacet, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
 use crate::real::Point;
 
-/// What is known of a cell before its patches are.
+/// The data of a cell that do not depend on its patches.
 #[derive(Clone, Default)]
 struct KnownOfCell {
     /// By facet the densities of `alpha grad u . n`.
@@ -126,9 +127,10 @@ impl<const D: usize> Space<'_, D> {
                     let mut flux = data[cell].normal[facet];
                     if let Neighbour::Cell { cell: other, local } = neighbours.across(cell, facet) {
                         let local = usize::from(local);
-                        let across = &data[other as usize].normal[local];
+                        let normal_there = &data[other as usize].normal[local];
                         let pairs = vertices_of::<D>(facet).zip(vertices_of::<D>(local));
-                        pairs.for_each(|(j, there)| flux[j] = 0.5 * (flux[j] - across[there]));
+                        pairs
+                            .for_each(|(j, there)| flux[j] = 0.5 * (flux[j] - normal_there[there]));
                     }
                     let products = products_on_facet::<D>(&flux, facet);
                     for a in 0..=D {
@@ -254,8 +256,8 @@ impl<const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, D> {
     }
 }
 
-/// The products of `sum_j r_j lambda_j phi_j` in a cell with `lambda_k` times a vector, for each vertex `k`; `tested`
-/// is the divergence tested with the barycentric coordinates.
+/// The integrals of `sum_j r_j lambda_j phi_j` times `lambda_k` over a cell, a vector for each vertex `k`. `tested` is
+/// the divergence tested with the barycentric coordinates.
 fn divergence_products<const D: usize>(points: &[Point<D>; 4], tested: &[f64; 4]) -> [Point<D>; 4] {
     let d = D as f64;
     let sum: Point<D> = points[..=D].iter().sum();
@@ -271,8 +273,8 @@ fn divergence_products<const D: usize>(points: &[Point<D>; 4], tested: &[f64; 4]
     })
 }
 
-/// The products of what the part of vertex `own` aims at, its hat function times the difference of gradients, with
-/// `lambda_j` times a vector, for each vertex `j` of a cell.
+/// The integrals of the target of vertex `own` times `lambda_j` over a cell, a vector for each vertex `j`. The target is
+/// the hat function of `own` times the difference of gradients.
 fn target_products<const D: usize>(own: usize, differences: &[[f64; 3]; 4]) -> [Point<D>; 4] {
     let d = D as f64;
     array_of(|j| {

@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use crate::real::Point;
 use crate::scheme::{ConformingP1, ConformingP2};
 
-/// Boxes with sides of different lengths; one side is not of the Dirichlet part.
+/// Boxes with sides of different lengths; one side is not Dirichlet.
 fn mesh<const D: usize>(n: usize) -> Mesh<D> {
     let far = Point::from_fn(|k, _| [1.0, 0.7, 1.9][k]);
     let domain = BoxDomain::dirichlet(Point::zeros(), far).side(1, 0, BoundaryCondition::Neumann);
@@ -29,7 +29,7 @@ fn collected(find: impl FnOnce(&dyn Fn(Corner, usize, f64))) -> Vec<(usize, usiz
 }
 
 /// In the plane the numbers along a fan are those of least squares where the equation of the vertex holds: inside
-/// the domain and on the Dirichlet part, here of a linear function with a load.
+/// the domain and on the Dirichlet boundary, here of a linear function with a load.
 #[test]
 fn numbers_along_a_fan_are_those_of_least_squares() {
     let (mesh, problem) = (mesh::<2>(3), Problem::new().coefficient(|x| 2.0 + x[0] - 0.5 * x[1]));
@@ -56,7 +56,7 @@ fn numbers_along_a_fan_are_those_of_least_squares() {
     }
 }
 
-/// The parts of a few cells at a time, and of all cells, have the same bits; so do cells whose neighbours have
+/// The fluxes of a few cells at a time, and of all cells, have the same bits; so do cells whose neighbours have
 /// numbers far apart, which are one range.
 fn check_ranges<const D: usize>(flux_of: impl Fn(&Mesh<D>, usize) -> (Flux<D>, [usize; 3])) {
     let mesh = mesh::<D>(5);

@@ -1,6 +1,7 @@
 //! The contact states that a bound allows, and the values that contact states prescribe.
 
 use crate::algebra::{Bound, Contact, Inequality, Start};
+use crate::parallel::vectors::collect;
 use crate::real::Real;
 
 /// The given contact state if the bound has the side that the state names, else inactive. Always lower if lower and
@@ -32,9 +33,8 @@ pub(crate) fn starting_states<T: Real>(inequality: &Inequality<T>) -> Vec<Contac
         Start::Cold => &[],
         Start::Contact(guess) => guess.as_slice(),
     };
-    let admissible =
-        |(i, bound)| admissible_state(bound, guess.get(i).copied().unwrap_or_default());
-    let mut states: Vec<Contact> = bounds.iter().enumerate().map(admissible).collect();
+    let guess_at = |i: usize| guess.get(i).copied().unwrap_or_default();
+    let mut states = collect(bounds.len(), |i| admissible_state(&bounds[i], guess_at(i)));
     for body in kernel {
         let unknowns = || body.iter().map(|&(i, _)| i as usize);
         if unknowns().all(|i| states[i] == Contact::Inactive) {

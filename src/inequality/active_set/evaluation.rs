@@ -75,18 +75,18 @@ impl<T: Real> Iterate<'_, T> {
         );
         let mut evaluation = Evaluation { max_norm, energy_norm, ..Evaluation::default() };
         let bound_tolerance = ROUNDING_BAND * T::EPSILON * max_norm;
-        let parts = map_chunks(self.values.len(), |range| {
-            let mut part = Evaluation::default();
+        let chunks = map_chunks(self.values.len(), |range| {
+            let mut chunk = Evaluation::default();
             range
                 .filter(|&i| self.inequality.owns(i))
-                .for_each(|i| self.evaluate_at(i, bound_tolerance, solver, &mut part));
-            part
+                .for_each(|i| self.evaluate_at(i, bound_tolerance, solver, &mut chunk));
+            chunk
         });
-        for part in parts {
-            evaluation.state_changes.extend(part.state_changes);
-            evaluation.merit += part.merit;
-            evaluation.bound_violation = evaluation.bound_violation.max(part.bound_violation);
-            evaluation.multiplier_violation += part.multiplier_violation;
+        for chunk in chunks {
+            evaluation.state_changes.extend(chunk.state_changes);
+            evaluation.merit += chunk.merit;
+            evaluation.bound_violation = evaluation.bound_violation.max(chunk.bound_violation);
+            evaluation.multiplier_violation += chunk.multiplier_violation;
         }
         evaluation.n_changes = evaluation.state_changes.len();
         if let Some(distribution) = self.inequality.distribution() {

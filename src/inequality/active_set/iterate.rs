@@ -7,7 +7,7 @@ use crate::algebra::{Contact, Inequality, any_part};
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Outcome, Solution};
-use crate::parallel::vectors::{collect, sum_chunks};
+use crate::parallel::vectors::{collect, for_each_chunk_of_two, sum_chunks};
 use crate::real::Real;
 
 /// The largest certificate that is attributed to rounding, divided by machine epsilon.
@@ -58,7 +58,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         let bounds = &inequality.bounds;
         let n = bounds.len();
         let value = |i: usize| if guess.len() == n { guess[i] } else { T::lit(0.0) };
-        let values: Vec<T> = (0..n).map(|i| bounds[i].nearest(value(i))).collect();
+        let values: Vec<T> = collect(n, |i| bounds[i].nearest(value(i)));
         let mut states = starting_states(inequality);
         let is_ghost = |&(i, _): &(usize, _)| !inequality.owns(i);
         let ghosts = states.iter_mut().enumerate().filter(is_ghost);
@@ -98,13 +98,14 @@ impl<'a, T: Real> Iterate<'a, T> {
 
     /// Sets every fixed or active unknown to its prescribed value, exactly, and marks it as eliminated.
     fn set_prescribed_values(&mut self) {
-        for (i, bound) in self.inequality.bounds.iter().enumerate() {
-            let prescribed = prescribed_value(bound, self.states[i]);
-            self.eliminated[i] = prescribed.is_some() || !self.inequality.owns(i);
-            if let Some(value) = prescribed {
-                self.values[i] = value;
+        let Self { inequality, values, states, eliminated, .. } = &mut *self;
+        for_each_chunk_of_two(values, eliminated, |range, values, eliminated| {
+            for (i, (value, eliminated)) in range.zip(values.iter_mut().zip(eliminated)) {
+                let prescribed = prescribed_value(&inequality.bounds[i], states[i]);
+                *eliminated = prescribed.is_some() || !inequality.owns(i);
+                *value = prescribed.unwrap_or(*value);
             }
-        }
+        });
         self.residual_is_current = false;
         if let Some(distribution) = self.inequality.distribution() {
             distribution.update(&mut self.values);

@@ -146,7 +146,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             }
         });
         let (residual, correction) = (&self.residual, &self.correction);
-        let parts = map_chunks(correction.len(), |range| {
+        let chunks = map_chunks(correction.len(), |range| {
             range.filter(|&i| !eliminated[i]).fold([0.0; 2], |[slope, curvature], i| {
                 let step = correction[i].to_f64();
                 let image = matrix.row_dot_f64(i, correction);
@@ -154,7 +154,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             })
         });
         let (slope, curvature) =
-            parts.iter().fold((0.0, 0.0), |(a, b), [slope, curvature]| (a + slope, b + curvature));
+            chunks.iter().fold((0.0, 0.0), |(a, b), [slope, curvature]| (a + slope, b + curvature));
         if slope <= 0.0 || curvature <= 0.0 {
             return Ok(0.0);
         }
@@ -203,7 +203,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     fn ratio_test(&self) -> f64 {
         let (bounds, values, correction) =
             (&self.inequality.bounds, &self.values, &self.correction);
-        let parts = map_chunks(values.len(), |range| {
+        let chunks = map_chunks(values.len(), |range| {
             range.fold(f64::INFINITY, |longest, i| {
                 let (x, step) = (values[i].to_f64(), correction[i].to_f64());
                 match (bounds[i].lower(), bounds[i].upper()) {
@@ -213,6 +213,6 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                 }
             })
         });
-        parts.into_iter().fold(f64::INFINITY, f64::min).max(1.0)
+        chunks.into_iter().fold(f64::INFINITY, f64::min).max(1.0)
     }
 }

@@ -159,7 +159,7 @@ impl Violations {
         sums.jump_residual = largest_jump_residual(inequality, u, jump_multipliers, owns);
         let steps = |i: usize| -r[i] / diagonal[i];
         let shares = has_all_copies.then(|| shares_of_nodes(inequality, u, &steps)).flatten();
-        let parts = map_chunks(n, |range| {
+        let chunks = map_chunks(n, |range| {
             let (mut diagonal_sum, mut feasibility, mut squares) = (0.0, 0.0_f64, [0.0; 3]);
             for i in range.filter(|&i| owns(i)) {
                 let d = diagonal[i];
@@ -178,7 +178,7 @@ impl Violations {
             }
             (diagonal_sum, feasibility, squares)
         });
-        for (diagonal_sum, feasibility, squares) in parts {
+        for (diagonal_sum, feasibility, squares) in chunks {
             sums.diagonal_sum += diagonal_sum;
             sums.feasibility = maximum(sums.feasibility, feasibility);
             sums.squares.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);

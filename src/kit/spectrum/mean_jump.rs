@@ -30,7 +30,8 @@ impl MeanJump {
         let facets = Facets::new(mesh, &Neighbours::new(mesh));
         let numbers = facets.numbers::<D>(mesh.n_cells());
         // interior facets are numbered first, Dirichlet ones next
-        let (interior, dirichlet) = (facets.interior(), facets.part(BoundaryCondition::Dirichlet));
+        let (interior, dirichlet) =
+            (facets.interior(), facets.boundary(BoundaryCondition::Dirichlet));
         let means = facets.len() - dirichlet.len();
         let change = RectangularMatrix::by_rows(0..numbers.len(), |unknown, columns, values| {
             let facet = numbers[unknown] as usize;

@@ -178,10 +178,10 @@ impl<const N: usize> CellGaussSeidel<N> {
     /// The smoother of a matrix divided by `scale`, whose unknowns belong to cells in groups of `N`.
     pub fn new<T: Real>(matrix: &SparseMatrix<T>, scale: f64) -> Self {
         let n = matrix.size();
-        let parts = map_chunks_of_groups(n, N, |range| CellRows::new(matrix, scale, range));
-        let (mut chunks, mut diagonal) = (Vec::with_capacity(parts.len()), Vec::new());
+        let chunks_made = map_chunks_of_groups(n, N, |range| CellRows::new(matrix, scale, range));
+        let (mut chunks, mut diagonal) = (Vec::with_capacity(chunks_made.len()), Vec::new());
         diagonal.reserve_exact(n / N);
-        for (rows, blocks) in parts {
+        for (rows, blocks) in chunks_made {
             chunks.push(rows);
             diagonal.extend(blocks);
         }

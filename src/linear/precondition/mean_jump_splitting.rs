@@ -16,7 +16,8 @@ use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
 use crate::algebra::{DofLocation, NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix};
 use crate::linear::direct::FactorError;
-use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups};
+use crate::parallel::map_items;
+use crate::parallel::vectors::{CHUNK, for_each_chunk, for_each_chunk_of_groups};
 use crate::real::Real;
 
 /// The sum of a diagonal correction of jumps, a solution with factors on cells with free and fixed vertex values
@@ -185,18 +186,23 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
     fn set_side_states(&mut self) {
         let (fixed, size) = (&self.fixed, self.penalties.cell_size);
         if self.penalties.are_means {
-            for (state, &fixed) in self.states.iter_mut().zip(fixed) {
-                *state = if fixed { SideState::Fixed } else { SideState::Free };
-            }
+            for_each_chunk(&mut self.states, |range, states| {
+                for (state, &fixed) in states.iter_mut().zip(&fixed[range]) {
+                    *state = if fixed { SideState::Fixed } else { SideState::Free };
+                }
+            });
             return;
         }
-        for (states, fixed) in self.states.chunks_exact_mut(size).zip(fixed.chunks_exact(size)) {
-            states.fill(match fixed.iter().filter(|&&fixed| fixed).count() {
-                0 => SideState::Free,
-                n if n < size => SideState::Mixed,
-                _ => SideState::Fixed,
-            });
-        }
+        for_each_chunk_of_groups(&mut self.states, size, |range, states| {
+            let cells = states.chunks_exact_mut(size).zip(fixed[range].chunks_exact(size));
+            for (states, fixed) in cells {
+                states.fill(match fixed.iter().filter(|&&fixed| fixed).count() {
+                    0 => SideState::Free,
+                    n if n < size => SideState::Mixed,
+                    _ => SideState::Fixed,
+                });
+            }
+        });
     }
 
     /// Sets the diagonal corrections of all sides, and the unknowns of the mixed block.
@@ -207,27 +213,38 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
         let Self { penalties, diagonal, states, sides, mixed_block, fixed, .. } = self;
         mixed_block.vertex_values.clear();
         mixed_block.sides.clear();
-        let corrections = sides.is_pair.iter_mut().zip(&mut sides.inverse_jump);
-        for (s, (is_pair, inverse_jump)) in corrections.enumerate() {
-            (*is_pair, *inverse_jump) = (false, T::lit(0.0));
-            if states[s] != SideState::Free {
-                if !fixed[s] {
-                    mixed_block.vertex_values.push(s as u32);
+        // the free vertex values and the sides of the mixed block, of one chunk of sides
+        let of_chunk = |k: usize, (are_pairs, inverse_jumps): (&mut [bool], &mut [T])| {
+            let (mut vertex_values, mut mixed_sides) = (Vec::new(), Vec::new());
+            let corrections = are_pairs.iter_mut().zip(inverse_jumps);
+            for (s, (is_pair, inverse_jump)) in (k * CHUNK..).zip(corrections) {
+                (*is_pair, *inverse_jump) = (false, T::lit(0.0));
+                if states[s] != SideState::Free {
+                    if !fixed[s] {
+                        vertex_values.push(s as u32);
+                    }
+                    continue;
                 }
-                continue;
-            }
-            let (own, opposite) = (diagonal[s], penalties.opposite[s]);
-            match states.get(opposite as usize) {
-                Some(SideState::Free) => {
-                    let (other, penalty) = (diagonal[opposite as usize], penalties.penalty[s]);
-                    *is_pair = true;
-                    *inverse_jump = invert(own + other + (penalty + penalty))?;
+                let (own, opposite) = (diagonal[s], penalties.opposite[s]);
+                match states.get(opposite as usize) {
+                    Some(SideState::Free) => {
+                        let (other, penalty) = (diagonal[opposite as usize], penalties.penalty[s]);
+                        *is_pair = true;
+                        *inverse_jump = invert(own + other + (penalty + penalty))?;
+                    }
+                    Some(SideState::Mixed) => mixed_sides.push(s as u32),
+                    Some(SideState::Fixed) => *inverse_jump = invert(own)?,
+                    None if penalties.has_jump(s) => *inverse_jump = invert(own)?,
+                    None => {}
                 }
-                Some(SideState::Mixed) => mixed_block.sides.push(s as u32),
-                Some(SideState::Fixed) => *inverse_jump = invert(own)?,
-                None if penalties.has_jump(s) => *inverse_jump = invert(own)?,
-                None => {}
             }
+            Ok((vertex_values, mixed_sides))
+        };
+        let chunks = sides.is_pair.chunks_mut(CHUNK).zip(sides.inverse_jump.chunks_mut(CHUNK));
+        for found in map_items(chunks.collect(), &of_chunk) {
+            let (vertex_values, mixed_sides) = found?;
+            mixed_block.vertex_values.extend(vertex_values);
+            mixed_block.sides.extend(mixed_sides);
         }
         Ok(())
     }
@@ -236,22 +253,25 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
     /// correct: the facets of cells with free and fixed vertex values, in which facet mean functions are not free.
     fn set_facets(&mut self) {
         let Self { penalties, space, states, fixed_facets, kept_facets, .. } = self;
-        kept_facets.clear();
-        let facets = fixed_facets.iter_mut().zip(&space.sides_of_facet);
-        for (facet, (is_fixed, &[one, other])) in (0..).zip(facets) {
-            let one = one as usize;
-            // on a facet with Dirichlet data the jump has no opposite side
-            let opposite = match states.get(other as usize) {
-                Some(&state) => state,
-                None if penalties.has_jump(one) => SideState::Fixed,
-                None => states[one],
-            };
-            let pair = [states[one], opposite];
-            *is_fixed = pair.contains(&SideState::Fixed);
-            if !*is_fixed && pair.contains(&SideState::Mixed) {
-                kept_facets.push(facet);
+        let of_chunk = |k: usize, are_fixed: &mut [bool]| {
+            let mut kept = Vec::new();
+            for (facet, is_fixed) in (k * CHUNK..).zip(are_fixed) {
+                let [one, other] = space.sides_of_facet[facet].map(|side| side as usize);
+                // on a facet with Dirichlet data the jump has no opposite side
+                let opposite = match states.get(other) {
+                    Some(&state) => state,
+                    None if penalties.has_jump(one) => SideState::Fixed,
+                    None => states[one],
+                };
+                let pair = [states[one], opposite];
+                *is_fixed = pair.contains(&SideState::Fixed);
+                if !*is_fixed && pair.contains(&SideState::Mixed) {
+                    kept.push(facet as u32);
+                }
             }
-        }
+            kept
+        };
+        *kept_facets = map_items(fixed_facets.chunks_mut(CHUNK).collect(), &of_chunk).concat();
     }
 }
 
@@ -332,7 +352,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
             }
         });
         if !are_means {
-            z.fill(zero);
+            for_each_chunk(z, |_, z| z.fill(zero));
             self.mixed_block.solve(r, g, &mut self.means, z);
             let (means, fixed) = (&self.means, &self.fixed);
             for_each_chunk_of_groups(z, size, |range, z| {

@@ -1,7 +1,7 @@
 //! Symmetric positive definite preconditioners on the free unknowns.
 //!
 //! `preconditioner`: the traits. `multigrid`: conforming linear functions, and other elements with conforming linear
-//! functions as auxiliary space; its parts are `smoother`, `gauss_seidel`, `cell_gauss_seidel`, `prolongation`,
+//! functions as auxiliary space; it uses `smoother`, `gauss_seidel`, `cell_gauss_seidel`, `prolongation`,
 //! `aggregation` and `coarse_level`. `mean_jump_splitting`, `mixed_block`, `facet_mean_form` and
 //! `crouzeix_raviart_space`: over-penalised discontinuous linear elements. `coarse_spaces`: the spaces that are known for
 //! an inequality. `built_in`: the preconditioner that fits an inequality.

@@ -53,7 +53,7 @@ impl<'a, T> PreconditionedSystem<'a, T> {
 
 /// A family of preconditioners: at most one for each system.
 pub trait PreconditionerFamily<T: Real>: Send + Sync {
-    /// The name of the family. Reports show it as part of the name of a solver that uses the family.
+    /// The name of the family. Reports show it in the name of a solver that uses the family.
     fn name(&self) -> &'static str;
     /// The preconditioner of a system; `None` if none fits.
     fn preconditioner<'a>(

@@ -30,7 +30,7 @@ impl<const D: usize> Space<'_, D> {
         if self.problem.has_obstacle() && self.problem.has_gap() {
             return contact;
         }
-        let weights = self.hat_integrals(&entities);
+        let weights = self.hat_integrals(&entities, &self.measures_of(&entities));
         let multipliers = self.vertex_multipliers(inequality, solution);
         let given = self.dirichlet_groups();
         let density = |v: usize| {
@@ -41,11 +41,11 @@ impl<const D: usize> Space<'_, D> {
         contact
     }
 
-    /// The integral of each hat function over these entities.
-    pub(super) fn hat_integrals(&self, entities: &[ContactEntity]) -> Vec<f64> {
+    /// The integral of each hat function over entities with these measures.
+    pub(super) fn hat_integrals(&self, entities: &[ContactEntity], measures: &[f64]) -> Vec<f64> {
         let mut integrals = vec![0.0; self.mesh.vertices().len()];
-        for &entity in entities {
-            let share = self.measure_of(entity) / (entity.dimension::<D>() + 1) as f64;
+        for (entity, measure) in entities.iter().zip(measures) {
+            let share = measure / (entity.dimension::<D>() + 1) as f64;
             for local in entity.corners::<D>() {
                 integrals[self.mesh.cell(entity.cell)[local] as usize] += share;
             }

@@ -47,10 +47,12 @@ fn difference<const D: usize>(
     let (entities, fine_entities) = (space.entities(), fine.entities());
     let touching = space.in_contact(&entities, inequality, solution);
     let fine_touching = fine.in_contact(&fine_entities, fine_inequality, fine_solution);
-    let area = fine_entities.iter().zip(fine_touching).map(|(&entity, touches)| {
+    let measures = fine.measures_of(&fine_entities);
+    let of_fine = fine_entities.iter().zip(&measures).zip(fine_touching);
+    let area = of_fine.map(|((&entity, measure), touches)| {
         let ancestor = ancestor(space, &entities, (fine, entity), refinements.len());
         let differs = ancestor.is_some_and(|k| touching[k] != touches);
-        if differs { fine.measure_of(entity) } else { 0.0 }
+        if differs { *measure } else { 0.0 }
     });
     errors.contact_area_error = Some(area.sum());
 
@@ -61,7 +63,7 @@ fn difference<const D: usize>(
         multipliers = tested_with_coarser_hats(&multipliers, refinement);
     }
     multipliers.iter_mut().zip(own).for_each(|(m, own)| *m -= own);
-    let weights = space.hat_integrals(&entities);
+    let weights = space.hat_integrals(&entities, &space.measures_of(&entities));
     let given = space.dirichlet_groups();
     let vertices = || (0..weights.len()).filter(|&v| weights[v] > 0.0 && given[v].is_none());
     if vertices().next().is_some() {

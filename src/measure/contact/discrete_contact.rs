@@ -13,6 +13,6 @@ pub struct DiscreteContact {
     pub facets: Vec<HalfFacet>,
     /// Density of the multiplier at every vertex: the nodal multiplier over the integral of the hat
     /// function of the vertex, over the domain or the contact boundary. None where there is no such
-    /// integral, on the Dirichlet part and where rounding leaves no digit; empty without a constraint.
+    /// integral, on the Dirichlet boundary and where rounding leaves no digit; empty without a constraint.
     pub density: Vec<Option<f64>>,
 }

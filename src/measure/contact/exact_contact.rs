@@ -10,7 +10,7 @@ use crate::parallel::cells;
 use crate::problem::Exact;
 use crate::real::Point;
 
-/// Degree of the rule on a simplex, or on the parts into which the free boundary cuts it.
+/// Degree of the rule on a simplex, or on the pieces into which the free boundary cuts it.
 const DEGREE: usize = 5;
 
 /// The exact solution of an inequality on an entity.

@@ -30,6 +30,7 @@ use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::BoundaryCondition;
 use crate::parallel::cells;
+use crate::parallel::vectors::collect;
 use crate::real::Point;
 use entity::ContactEntity;
 use exact_contact::ExactContact;
@@ -47,7 +48,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// that vertex, whatever the unknowns. Over the integral of `phi` it is a density, and so is
     /// the exact multiplier tested with `phi`. Their difference is measured in L1 and in L2, with
     /// the integral of `phi` as the weight of its vertex (the lumped norms of piecewise linear
-    /// functions), over the vertices off the Dirichlet part. These are weaker than norms of the
+    /// functions), over the vertices off the Dirichlet boundary. These are weaker than norms of the
     /// multiplier itself: nodal multipliers of over-penalised schemes that cancel within a patch
     /// have no effect. In general only the norm dual to the energy norm is bounded by the energy
     /// error (A. Veeser, SIAM J. Numer. Anal. 39 (2001), 146-167). With an obstacle the exact
@@ -58,7 +59,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// *Contact set.* A vertex, edge or facet is in contact if some unknown there is: on both sides
     /// of a facet, in all cells at a vertex. The nodal multipliers of a discontinuous scheme there
     /// need not all have the sign of their sum (those of over-penalised schemes on curved obstacles
-    /// do not). On the Dirichlet part, where some schemes have no unknowns and others satisfy the datum
+    /// do not). On the Dirichlet boundary, where some schemes have no unknowns and others satisfy the datum
     /// approximately, it is in contact if the datum is. A cell, or a facet of the contact boundary,
     /// is in contact if all its unknowns are that have bounds and basis functions with a positive mean over
     /// it (those of quadratics at vertices of triangles and tetrahedra have none); where no unknown has
@@ -124,7 +125,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// where rounding leaves no digit. Nodes with weakly imposed Dirichlet data do not count: where an obstacle
     /// equals the datum, their entries contain the flux through the boundary.
     ///
-    /// Where only contact holds the body, without Dirichlet part and reaction, it is the negative of the
+    /// Where only contact holds the body, without Dirichlet boundary and reaction, it is the negative of the
     /// total load, for every scheme: constants have no energy. It approximates the integral of the
     /// multiplier over domain and contact boundary.
     ///
@@ -165,19 +166,21 @@ impl<const D: usize> Space<'_, D> {
             return Ok(errors);
         }
         let on_entities = self.exact_contact(exact, &entities)?;
+        let measures = self.measures_of(&entities);
         if exact.multiplier.is_some() {
-            let found = self.multiplier_errors(&entities, &on_entities, inequality, solution);
+            let of_entities = (&entities[..], &measures[..]);
+            let found = self.multiplier_errors(of_entities, &on_entities, inequality, solution);
             [errors.multiplier_l1, errors.multiplier_l2] =
                 map_entries([0, 1], |k| found.map(|e| e[k]));
         }
         if let Some(set) = &exact.contact {
             let touching = self.in_contact(&entities, inequality, solution);
-            let wrong = |((entity, exact), touches): ((&ContactEntity, &ExactContact), &bool)| {
-                exact.shares[usize::from(!touches)] * self.measure_of(*entity)
+            let wrong = |((measure, exact), touches): ((&f64, &ExactContact), &bool)| {
+                exact.shares[usize::from(!touches)] * measure
             };
             let exact = on_entities.iter().flatten();
-            let area = entities.iter().zip(exact).zip(&touching).map(wrong).sum();
-            errors.contact_area_error = Some(area);
+            errors.contact_area_error =
+                Some(measures.iter().zip(exact).zip(&touching).map(wrong).sum());
             errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
         }
         Ok(errors)
@@ -192,8 +195,9 @@ impl<const D: usize> Space<'_, D> {
         let mut entities = self.problem.is_constrained().then(|| self.entities())?;
         entities.retain(|entity| counts(entity.cell));
         let touching = self.in_contact(&entities, inequality, solution);
-        let in_contact = entities.iter().zip(touching).filter(|(_, touches)| *touches);
-        Some(in_contact.fold(0.0, |sum, (entity, _)| sum + self.measure_of(*entity)))
+        let measures = self.measures_of(&entities);
+        let in_contact = measures.iter().zip(touching).filter(|(_, touches)| *touches);
+        Some(in_contact.fold(0.0, |sum, (measure, _)| sum + measure))
     }
 
     fn entities(&self) -> Vec<ContactEntity> {
@@ -211,7 +215,7 @@ impl<const D: usize> Space<'_, D> {
         contact.map(|(cell, local)| ContactEntity { cell, facet: Some(local) }).collect()
     }
 
-    /// For each vertex on the Dirichlet part the boundary group whose datum is given there.
+    /// For each vertex on the Dirichlet boundary the boundary group whose datum is given there.
     pub(crate) fn dirichlet_groups(&self) -> Vec<Option<usize>> {
         let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
         let rank = |group: usize| self.data.dirichlet_rank[group];
@@ -224,12 +228,15 @@ impl<const D: usize> Space<'_, D> {
         given
     }
 
-    fn measure_of(&self, entity: ContactEntity) -> f64 {
-        let geometry = self.mesh.geometry(entity.cell);
-        match entity.facet {
-            None => geometry.volume,
-            Some(local) => geometry.facet_measure(local),
-        }
+    /// The volumes of cells and the areas of facets.
+    fn measures_of(&self, entities: &[ContactEntity]) -> Vec<f64> {
+        collect(entities.len(), |k| {
+            let geometry = self.mesh.geometry(entities[k].cell);
+            match entities[k].facet {
+                None => geometry.volume,
+                Some(local) => geometry.facet_measure(local),
+            }
+        })
     }
 
     /// Corners of an entity in space; one point more than its dimension of them are used.

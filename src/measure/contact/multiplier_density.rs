@@ -7,19 +7,20 @@ use crate::assemble::space::Space;
 use crate::inequality::Solution;
 
 impl<const D: usize> Space<'_, D> {
-    /// The errors of the density in L1 and lumped L2 against the exact multiplier on these entities, which
-    /// [`Space::exact_contact`] has tested with hat functions; none if all vertices lie on the Dirichlet part.
+    /// The errors of the density in L1 and lumped L2 against the exact multiplier on entities with these measures, which
+    /// [`Space::exact_contact`] has tested with hat functions; none if all vertices lie on the Dirichlet boundary.
     pub(super) fn multiplier_errors(
         &self,
-        entities: &[ContactEntity],
+        (entities, measures): (&[ContactEntity], &[f64]),
         exact: &[Vec<ExactContact>],
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Option<[f64; 2]> {
-        let weights = self.hat_integrals(entities);
+        let weights = self.hat_integrals(entities, measures);
         let mut multipliers = self.vertex_multipliers(inequality, solution)?;
-        for (entity, exact) in entities.iter().zip(exact.iter().flatten()) {
-            let (measure, cell) = (self.measure_of(*entity), self.mesh.cell(entity.cell));
+        for ((entity, measure), exact) in entities.iter().zip(measures).zip(exact.iter().flatten())
+        {
+            let cell = self.mesh.cell(entity.cell);
             for (k, local) in entity.corners::<D>().enumerate() {
                 multipliers[cell[local] as usize] -= measure * exact.tested[k];
             }

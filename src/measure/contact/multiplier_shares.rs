@@ -11,7 +11,7 @@ use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryCondition, HalfFacet};
 
-/// What of the multiplier of an unknown acts on one of several cells or contact facets.
+/// The share of the multiplier of an unknown that acts on one of several cells or contact facets.
 #[derive(Clone, Copy, Debug)]
 struct Share {
     /// The position of the cell or facet in the list of cells or of contact facets.
@@ -135,7 +135,7 @@ impl<const D: usize> Space<'_, D> {
 
     /// The shares of the multipliers of obstacles in all cells: that of a shared unknown by volume among the cells
     /// whose obstacle gives the bound.
-    fn parts_of_obstacles(&self, of: &Multipliers) -> Vec<Share> {
+    fn shares_of_obstacles(&self, of: &Multipliers) -> Vec<Share> {
         let n_cells = self.mesh.n_cells();
         let volume = |cell: usize| self.mesh.geometry(cell).volume;
         let acting = |cell: usize| {
@@ -205,7 +205,7 @@ impl<const D: usize> Space<'_, D> {
         let by_region = self.data.lower.has_names() || self.data.upper.has_names();
         let group = |cell: usize| if by_region { self.mesh.region(cell) } else { 0 };
         let cells = (0..self.mesh.n_cells()).map(|cell| ((cell, None), group(cell)));
-        self.densities(&cells.collect::<Vec<_>>(), &self.parts_of_obstacles(of), inequality)
+        self.densities(&cells.collect::<Vec<_>>(), &self.shares_of_obstacles(of), inequality)
     }
 
     /// The density of the multipliers of gaps on each contact facet, by groups.
@@ -244,7 +244,7 @@ impl<const D: usize> Space<'_, D> {
                 let at_vertex = share.value / around.len() as f64;
                 around.iter().for_each(|&v| at_vertices[v as usize] += at_vertex);
             }
-            let hats = self.hat_integrals(&entities);
+            let hats = self.hat_integrals(&entities, &self.measures_of(&entities));
             at_vertices.iter_mut().zip(hats).for_each(|(density, hat)| *density /= hat);
             for (&k, entity) in of_group.iter().zip(&entities) {
                 let corners = entity.corners::<D>().map(|c| self.mesh.cell(entity.cell)[c]);

@@ -65,9 +65,6 @@ impl<const D: usize> BisectedMesh<D> {
     /// An initial mesh. Of edges of equal length the one whose vertices have higher numbers counts as
     /// longer.
     pub fn new(mesh: Mesh<D>) -> Self {
-        compiled!(const D: fn(Mesh<D>) -> BisectedMesh<D> = BisectedMesh::initial)(mesh)
-    }
-    fn initial(mesh: Mesh<D>) -> Self {
         let length = |[a, b]: [u32; 2]| {
             let [x, y] = map_entries([a, b], |v| mesh.vertices[v as usize]);
             (x - y).norm_squared()
@@ -91,7 +88,7 @@ impl<const D: usize> BisectedMesh<D> {
     /// Divides every marked cell at least once, and of the others those that must be divided for the
     /// mesh to be conforming. Neither the order of marks nor their repetition matters.
     ///
-    /// A division cuts a cell into two of equal volume. Regions, boundary parts and groups are
+    /// A division cuts a cell into two of equal volume. Regions, boundary conditions and groups are
     /// inherited. New vertices are midpoints of edges, on curved boundaries too.
     ///
     /// # Errors

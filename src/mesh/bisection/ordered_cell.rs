@@ -29,7 +29,7 @@ pub(super) struct OrderedCell {
     pub vertices: [u32; 4],
     /// The refinement edges of faces 0 and 1; in space only.
     face_edges: [FaceEdge; 2],
-    /// Tells two kinds of cells apart whose three refinement edges lie in one face.
+    /// Distinguishes two kinds of cells whose three refinement edges lie in one face.
     is_flagged: bool,
 }
 

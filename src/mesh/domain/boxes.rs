@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::arrays::array_of;
-use crate::instances::compiled;
 use crate::mesh::boundary::{BoundaryCondition, BoundaryFacet};
 use crate::mesh::error::MeshError;
 use crate::mesh::groups::Groups;
@@ -15,7 +14,7 @@ use crate::real::Point;
 /// meshes of a box.
 pub(crate) const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
 
-/// An axis-parallel box and the part of the boundary each of its sides belongs to. The boundary groups of
+/// An axis-parallel box and the boundary condition on each of its sides. The boundary groups of
 /// its meshes are called `left` and `right` (first axis), `bottom` and `top` (second), `back` and `front`
 /// (third).
 #[derive(Clone, Debug)]
@@ -25,12 +24,12 @@ pub struct BoxDomain<const D: usize> {
     pub lower: Point<D>,
     /// Highest corner.
     pub upper: Point<D>,
-    /// Part of the sides `x_k = lower_k` and `x_k = upper_k`, for each axis `k`.
+    /// Condition on the sides `x_k = lower_k` and `x_k = upper_k`, for each axis `k`.
     pub sides: [[BoundaryCondition; 2]; D],
 }
 
 impl<const D: usize> BoxDomain<D> {
-    /// The box between two corners, with the part of the sides `x_k = lower_k` and `x_k = upper_k`
+    /// The box between two corners, with the condition on the sides `x_k = lower_k` and `x_k = upper_k`
     /// for each axis `k`.
     pub fn new(lower: Point<D>, upper: Point<D>, sides: [[BoundaryCondition; 2]; D]) -> Self {
         Self { lower, upper, sides }
@@ -43,10 +42,10 @@ impl<const D: usize> BoxDomain<D> {
     pub fn centred(half: f64) -> Self {
         Self::dirichlet(Point::repeat(-half), Point::repeat(half))
     }
-    /// Sets the part of one side (`end` 0 for the lower, 1 for the upper one).
+    /// Sets the condition on one side (`end` 0 for the lower, 1 for the upper one).
     #[must_use]
-    pub fn side(mut self, axis: usize, end: usize, part: BoundaryCondition) -> Self {
-        self.sides[axis][end] = part;
+    pub fn side(mut self, axis: usize, end: usize, condition: BoundaryCondition) -> Self {
+        self.sides[axis][end] = condition;
         self
     }
     /// The box of Signorini scenes: `(-1,1)^(D-1) x (0,1)`, contact where the last coordinate is
@@ -93,11 +92,6 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Parameter`] for a count of zero or a box without volume, [`MeshError::TooLarge`].
     pub fn kuhn_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
-        compiled!(const D: fn(&BoxDomain<D>, [usize; D]) -> Result<Mesh<D>, MeshError>
-                = Mesh::cut_box
-        )(domain, counts)
-    }
-    fn cut_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
         let wrong = |parameter, value: String, allowed: &str| MeshError::Parameter {
             parameter,
             value,

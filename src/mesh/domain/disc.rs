@@ -3,7 +3,6 @@
 use std::f64::consts::FRAC_PI_3;
 
 use crate::arrays::array_of;
-use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryCondition;
 use crate::mesh::error::MeshError;
 use crate::mesh::part::extent::Extent;
@@ -24,9 +23,6 @@ impl<const D: usize> Mesh<D> {
     /// [`MeshError::Parameter`] for `n = 0`, a radius that is not positive and finite and a dimension
     /// other than two; [`MeshError::TooLarge`].
     pub fn disc(radius: f64, n: usize) -> Result<Self, MeshError> {
-        compiled!(const D: fn(f64, usize) -> Result<Mesh<D>, MeshError> = Mesh::cut_disc)(radius, n)
-    }
-    fn cut_disc(radius: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("disc", radius, n)?;
         let number = |ring: usize, place: usize| match ring {
             0 => 0,

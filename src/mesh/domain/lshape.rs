@@ -2,7 +2,6 @@
 
 use super::disc::check_shape;
 use crate::arrays::array_of;
-use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryCondition;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
@@ -18,17 +17,12 @@ impl<const D: usize> Mesh<D> {
     /// [`MeshError::Parameter`] for `n = 0`, a length that is not positive and finite and a dimension
     /// other than two; [`MeshError::TooLarge`].
     pub fn l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
-        compiled!(const D: fn(f64, usize) -> Result<Mesh<D>, MeshError>
-                = Mesh::cut_l_shape
-        )(half, n)
-    }
-    fn cut_l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("L-shape", half, n)?;
-        let across = 2 * n + 1;
-        let vertex = |i: usize, j: usize| (i + j * across) as u32;
+        let per_line = 2 * n + 1;
+        let vertex = |i: usize, j: usize| (i + j * per_line) as u32;
         let at = |i: usize| half * (i as f64 / n as f64 - 1.0);
-        let vertices = (0..across * across)
-            .map(|v| Point::from_fn(|k, _| at(if k == 0 { v % across } else { v / across })))
+        let vertices = (0..per_line * per_line)
+            .map(|v| Point::from_fn(|k, _| at(if k == 0 { v % per_line } else { v / per_line })))
             .collect();
         let mut cells = Vec::with_capacity(18 * n * n);
         for (j, i) in (0..2 * n).flat_map(|j| (0..2 * n).map(move |i| (j, i))) {

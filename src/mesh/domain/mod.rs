@@ -14,7 +14,6 @@ use super::part::{Layers, Part};
 use super::refine::Refinement;
 use super::simplicial::Mesh;
 use crate::arrays::array_of;
-use crate::instances::compiled;
 use crate::real::Point;
 
 /// A domain. All the boundary of an L-shape and of a disc is Dirichlet.
@@ -54,18 +53,17 @@ impl<const D: usize> Domain<D> {
     pub fn is_mesh(&self) -> bool {
         matches!(self, Domain::Mesh(_))
     }
-    /// The smallest box that contains the domain; for a box that box, with the parts of its sides.
+    /// The smallest box that contains the domain; for a box that box, with the conditions on its sides.
     pub fn bounding_box(&self) -> BoxDomain<D> {
         match *self {
             Domain::Mesh(ref mesh) => {
                 let corners = |of: fn(&Point<D>, &Point<D>) -> Point<D>| {
-                    mesh.vertices().iter().copied().reduce(|a, b| of(&a, &b))
+                    let vertices = mesh.vertices().iter().copied();
+                    vertices
+                        .reduce(|a, b| of(&a, &b))
+                        .expect("a mesh has cells, a cell has vertices")
                 };
-                let (lower, upper) = (corners(Point::inf), corners(Point::sup));
-                BoxDomain::dirichlet(
-                    lower.unwrap_or_else(Point::zeros),
-                    upper.unwrap_or_else(Point::zeros),
-                )
+                BoxDomain::dirichlet(corners(Point::inf), corners(Point::sup))
             }
             Domain::Box(ref domain) => domain.clone(),
             Domain::LShape { half } => BoxDomain::centred(half),
@@ -93,12 +91,12 @@ impl<const D: usize> Domain<D> {
             Domain::Mesh(_) => f64::NEG_INFINITY,
         }
     }
-    /// Whether the boundary has a facet in this part.
-    pub fn has_condition(&self, part: BoundaryCondition) -> bool {
+    /// Whether the boundary has a facet with this condition.
+    pub fn has_condition(&self, condition: BoundaryCondition) -> bool {
         match self {
-            Domain::Box(domain) => domain.sides.iter().flatten().any(|&side| side == part),
-            Domain::Mesh(mesh) => mesh.has_condition(part),
-            _ => part == BoundaryCondition::Dirichlet,
+            Domain::Box(domain) => domain.sides.iter().flatten().any(|&side| side == condition),
+            Domain::Mesh(mesh) => mesh.has_condition(condition),
+            _ => condition == BoundaryCondition::Dirichlet,
         }
     }
 
@@ -147,11 +145,6 @@ impl<const D: usize> Domain<D> {
     /// # Errors
     /// [`MeshError::TooLarge`] if there would be too many cells.
     pub fn refine(&self, mesh: &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError> {
-        compiled!(const D: fn(&Domain<D>, &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError>
-                = Domain::refine_mesh
-        )(self, mesh)
-    }
-    fn refine_mesh(&self, mesh: &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError> {
         Ok(match self {
             Domain::Disc { .. } => mesh.refine_disc()?,
             _ => mesh.refine()?,
@@ -167,20 +160,7 @@ impl<const D: usize> Domain<D> {
         part: &Part<D>,
         layers: Layers,
     ) -> Result<(Part<D>, Refinement), MeshError> {
-        compiled!(const D: fn(
-                &Domain<D>,
-                &Part<D>,
-                Layers,
-            ) -> Result<(Part<D>, Refinement), MeshError>
-                = Domain::refine_and_peel
-        )(self, part, layers)
-    }
-    fn refine_and_peel(
-        &self,
-        part: &Part<D>,
-        layers: Layers,
-    ) -> Result<(Part<D>, Refinement), MeshError> {
         part.check_refinement(layers)?;
-        Ok(part.peel(self.refine_mesh(&part.mesh)?, layers))
+        Ok(part.peel(self.refine(&part.mesh)?, layers))
     }
 }

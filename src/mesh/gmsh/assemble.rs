@@ -221,7 +221,7 @@ fn grouped_facets<const D: usize>(
         let (elements, entity) =
             [("point", "Point"), ("line", "Curve"), ("triangle", "Surface")][D - 1];
         let message = format!(
-            "no {elements} of the file is in a physical group, so the boundary conditions are unknown; name the boundary parts in Gmsh, e.g. `Physical {entity}(\"dirichlet\") = {{1, 2}};`, with the names dirichlet, neumann and contact or with others, for which the problem says what holds there; put the domain in a group too, and save without `Mesh.SaveAll`"
+            "no {elements} of the file is in a physical group, so the boundary conditions are unknown; put the boundary in groups in Gmsh, e.g. `Physical {entity}(\"dirichlet\") = {{1, 2}};`, with the names dirichlet, neumann and contact or with others, for which the problem says what holds there; put the domain in a group too, and save without `Mesh.SaveAll`"
         );
         return Err(GmshError::new(GmshErrorKind::NoPhysicalGroups, message));
     }
@@ -266,7 +266,7 @@ fn vertices_of(error: &MeshError) -> Vec<usize> {
         | MeshError::RepeatedCell { vertices, .. }
         | MeshError::FacetOfThreeCells { vertices, .. }
         | MeshError::UntaggedFacet { vertices, .. }
-        | MeshError::FacetInTwoParts { vertices, .. }
+        | MeshError::FacetWithTwoConditions { vertices, .. }
         | MeshError::NotABoundaryFacet { vertices, .. } => {
             vertices.iter().map(|&v| v as usize).collect()
         }

@@ -4,8 +4,8 @@
 //! physical groups make the regions of the mesh. The groups of its boundary are the elements of one
 //! dimension less in physical groups; elements in no group are ignored, so a boundary facet in no group
 //! is reported by [`Mesh::with_groups`](crate::mesh::Mesh::with_groups). Groups may have any names, a group
-//! without a name is called by its number. The names `dirichlet`, `neumann` and `contact` say what holds on
-//! a part of the boundary; for others the data of a problem do, see
+//! without a name is called by its number. The names `dirichlet`, `neumann` and `contact` say which
+//! condition holds on their facets; for others the data of a problem do, see
 //! [`Problem::bind_boundary`](crate::problem::Problem::bind_boundary). Facets of groups that lie between two cells
 //! are left out. Elements of higher order are read as straight ones, with a [`GmshWarning`]. There are warnings too
 //! of facets of the boundary that lie on each other with different nodes, and of periodic boundaries, whose sides are

@@ -4,7 +4,6 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::error::{GmshError, GmshErrorKind};
-use crate::instances::compiled;
 use crate::mesh::simplicial::Mesh;
 
 /// Element types of points, lines, triangles and tetrahedra.
@@ -18,26 +17,11 @@ struct Entity<'m> {
 }
 
 /// A mesh as the text of a Gmsh file. What a [`GmshFile`](super::GmshFile) reads from it has the vertices of the mesh,
-/// bit by bit, its cells, and the names of regions and boundary groups, in the order of every mesh that is read;
-/// the tag of a node is the number of its vertex from one on. The file keeps the part of a boundary group whose name is that of a part; the part of any other group is left to a
-/// problem.
+/// bit by bit, its cells, and the names of regions and boundary groups, in the order of every mesh that is read; the tag
+/// of a node is the number of its vertex from one on. Only the boundary conditions that are names of groups are kept:
+/// on any other group a problem says what holds.
 #[must_use]
 pub fn to_text<const D: usize>(mesh: &Mesh<D>) -> String {
-    compiled!(const D: fn(&Mesh<D>) -> String = text_of)(mesh)
-}
-
-/// Writes a mesh to a file, as [`to_text`] makes it.
-///
-/// # Errors
-/// [`GmshErrorKind::Unwritable`].
-pub fn write<const D: usize>(mesh: &Mesh<D>, path: &Path) -> Result<(), GmshError> {
-    std::fs::write(path, to_text(mesh)).map_err(|error| {
-        let message = format!("cannot write {}: {error}", path.display());
-        GmshError::new(GmshErrorKind::Unwritable, message).caused_by(error)
-    })
-}
-
-fn text_of<const D: usize>(mesh: &Mesh<D>) -> String {
     let mut regions: Vec<Entity<'_>> =
         mesh.regions().iter().map(|names| Entity { names, elements: Vec::new() }).collect();
     for cell in 0..mesh.n_cells() {
@@ -72,6 +56,17 @@ fn text_of<const D: usize>(mesh: &Mesh<D>) -> String {
     write_nodes(&mut text, D, mesh.vertices().len(), &coordinates);
     write_elements(&mut text, &blocks);
     text
+}
+
+/// Writes a mesh to a file, as [`to_text`] makes it.
+///
+/// # Errors
+/// [`GmshErrorKind::Unwritable`].
+pub fn write<const D: usize>(mesh: &Mesh<D>, path: &Path) -> Result<(), GmshError> {
+    std::fs::write(path, to_text(mesh)).map_err(|error| {
+        let message = format!("cannot write {}: {error}", path.display());
+        GmshError::new(GmshErrorKind::Unwritable, message).caused_by(error)
+    })
 }
 
 // writing to a text does not fail: results of `write!` are ignored below

@@ -1,4 +1,4 @@
-//! Search for the facets that a point lies in, and for facets of the boundary that lie on each other: between parts
+//! Search for the facets that a point lies in, and for facets of the boundary that lie on each other: between bodies
 //! of a domain that were meshed apart, each with nodes of its own, or at a slit.
 
 use crate::arrays::array_of;

@@ -14,7 +14,7 @@ use crate::arrays::array_of;
 use crate::real::Point;
 
 /// Refuses two cells on the same side of the facet that they share. `is_positive` has the sign of the
-/// determinant of the edges of each cell; `neighbours` is without boundary parts.
+/// determinant of the edges of each cell; `neighbours` is without boundary conditions.
 pub(super) fn check_folds<const D: usize>(
     cells: &[u32],
     neighbours: &Neighbours,
@@ -120,16 +120,16 @@ fn sheared<const D: usize>(x: &Point<D>) -> Point<D> {
 /// bit.
 #[inline(always)]
 fn crossing<const D: usize>(corners: &[Point<D>; D], start: &Point<D>) -> Option<f64> {
-    let across = |k: usize, axis: usize| corners[k][axis % D] - start[axis % D];
+    let offset = |k: usize, axis: usize| corners[k][axis % D] - start[axis % D];
     let weights = match D {
         1 => [1.0, 0.0, 0.0],
-        2 => [-across(1, 1), across(0, 1), 0.0],
+        2 => [-offset(1, 1), offset(0, 1), 0.0],
         _ => {
-            let above = (0..D).filter(|&k| across(k, 1) > 0.0).count();
+            let above = (0..D).filter(|&k| offset(k, 1) > 0.0).count();
             if above == 0 || above == D {
                 return None;
             }
-            let edge = |a, b| across(a, 1) * across(b, 2) - across(a, 2) * across(b, 1);
+            let edge = |a, b| offset(a, 1) * offset(b, 2) - offset(a, 2) * offset(b, 1);
             [edge(1, 2), edge(2, 0), edge(0, 1)]
         }
     };

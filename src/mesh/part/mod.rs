@@ -8,7 +8,6 @@ pub use extent::Extent;
 
 use std::fmt;
 
-use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryFacet;
 use crate::mesh::error::MeshError;
 use crate::mesh::facets::Neighbours;
@@ -117,11 +116,6 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Parameter`] unless there is one owner for each cell and the part owns a cell.
     pub fn part(&self, owners: &[u32], number: u32, layers: Layers) -> Result<Part<D>, MeshError> {
-        compiled!(const D: fn(&Mesh<D>, &[u32], u32, Layers) -> Result<Part<D>, MeshError>
-                = Mesh::take_part
-        )(self, owners, number, layers)
-    }
-    fn take_part(&self, owners: &[u32], number: u32, layers: Layers) -> Result<Part<D>, MeshError> {
         if owners.len() != self.n_cells() {
             return Err(MeshError::Parameter {
                 parameter: "numbers of parts of cells",

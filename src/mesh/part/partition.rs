@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use crate::arrays::array_of;
-use crate::instances::compiled;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
 
@@ -15,10 +14,6 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Parameter`] for no parts, and for more parts than cells.
     pub fn partition(&self, parts: usize) -> Result<Vec<u32>, MeshError> {
-        compiled!(const D: fn(&Mesh<D>, usize) -> Result<Vec<u32>, MeshError> = Mesh::bisect_recursively
-        )(self, parts)
-    }
-    fn bisect_recursively(&self, parts: usize) -> Result<Vec<u32>, MeshError> {
         let n_cells = self.n_cells();
         if parts == 0 || parts > n_cells {
             return Err(MeshError::Parameter {

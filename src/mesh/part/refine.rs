@@ -1,7 +1,6 @@
 //! Uniform refinement of a part, by itself: what the refined whole has there.
 
 use super::{Across, Layers, Part, numbers_of_taken};
-use crate::instances::compiled;
 use crate::mesh::error::MeshError;
 use crate::mesh::part::extent::Extent;
 use crate::mesh::refine::Refinement;
@@ -57,9 +56,8 @@ impl<const D: usize> Part<D> {
     /// many across vertices in one and two dimensions, and across facets where it has layers across vertices.
     /// [`MeshError::TooLarge`].
     pub fn refine(&self, layers: Layers) -> Result<(Self, Refinement), MeshError> {
-        compiled!(const D: fn(&Part<D>, Layers) -> Result<(Part<D>, Refinement), MeshError>
-                = |part, layers| part.refine_with_layers(layers)
-        )(self, layers)
+        self.check_refinement(layers)?;
+        Ok(self.peel(self.mesh.refine()?, layers))
     }
 
     /// The part as one of a mesh with this extent. A refined part does not know the mesh size of the whole, on
@@ -67,11 +65,6 @@ impl<const D: usize> Part<D> {
     #[must_use]
     pub fn with_extent(self, whole: Extent<D>) -> Self {
         Self { mesh: self.mesh.with_extent(whole), ..self }
-    }
-
-    fn refine_with_layers(&self, layers: Layers) -> Result<(Self, Refinement), MeshError> {
-        self.check_refinement(layers)?;
-        Ok(self.peel(self.mesh.refine()?, layers))
     }
 
     /// Refuses more layers than there are after refinement, and numbers of cells that are too large.

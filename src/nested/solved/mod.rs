@@ -155,7 +155,7 @@ impl<'a, const D: usize> Solved<'a, D> {
     pub fn certificate(&self) -> Certificate {
         self.certificate
     }
-    /// What the solver returned: values, contact states, numbers of iterations.
+    /// The result of the solver: values, contact states, numbers of iterations.
     pub fn solution(&self) -> &Solution<f64> {
         &self.solution
     }

@@ -34,7 +34,7 @@ pub(crate) enum Stroke {
     Coloured(Colour, f64),
     /// Of the discrete contact set.
     Discrete,
-    /// A part of the boundary in contact.
+    /// A piece of the boundary in contact.
     Touching,
     /// Exact.
     Exact,

@@ -16,8 +16,8 @@ pub(crate) fn colour(share: f64) -> Colour {
     let amplitude = HUE * lightness * (1.0 - lightness) / 2.0;
     let (sin, cos) = angle.sin_cos();
     let channel = |a: f64, b: f64| {
-        let part = lightness + amplitude * (a * cos + b * sin);
-        (255.0 * part.clamp(0.0, 1.0)).round() as u8
+        let component = lightness + amplitude * (a * cos + b * sin);
+        (255.0 * component.clamp(0.0, 1.0)).round() as u8
     };
     Colour(channel(-0.14861, 1.78277), channel(-0.29227, -0.90649), channel(1.97294, 0.0))
 }

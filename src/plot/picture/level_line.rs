@@ -3,7 +3,7 @@
 use super::section::{Corner, PlanePoint, Section};
 use crate::arrays::array_of;
 
-/// Sections are cut into parts no longer than this share of the picture.
+/// Sections are cut into pieces no longer than this share of the picture.
 const FINEST: f64 = 1.0 / 120.0;
 /// Most often that a section is cut.
 const MOST: u32 = 6;
@@ -43,8 +43,8 @@ fn follow(
     let [a, b, c] = corners;
     if cuts > 0 {
         let (ab, bc, ca) = (between(a, b, 0.5), between(b, c, 0.5), between(c, a, 0.5));
-        for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-            follow(cell, part, cuts - 1, inside, segments);
+        for piece in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+            follow(cell, piece, cuts - 1, inside, segments);
         }
         return;
     }

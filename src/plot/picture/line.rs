@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 use crate::problem::{DataOnMesh, Datum, Problem};
 use crate::real::Point;
 
-/// Parts of a cell on which given functions are drawn as linear.
+/// Pieces of a cell on which given functions are drawn as linear.
 const PARTS: usize = 6;
 
 /// The data of the panels.

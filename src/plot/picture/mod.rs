@@ -3,7 +3,7 @@
 //! cell in the error bound; on the line curves; in space the panels of a slice.
 //!
 //! A discontinuous function is drawn cell by cell as it is. The bands of a colour are cut exactly
-//! along the levels of the function on each cell, of a quadratic one on the parts between vertices
+//! along the levels of the function on each cell, of a quadratic one on the pieces between vertices
 //! and midpoints, where it is drawn as linear.
 
 mod axes;

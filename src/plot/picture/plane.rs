@@ -103,7 +103,7 @@ impl<'a, const D: usize> Plane<'a, D> {
             (corner.at, view.value(piece.cell, &corner.barycentric))
         };
         let triangles: Vec<_> =
-            view.linear_parts().iter().map(|p| [value(p, 0), value(p, 1), value(p, 2)]).collect();
+            view.linear_pieces().iter().map(|p| [value(p, 0), value(p, 1), value(p, 2)]).collect();
         let mut map = self.map("solution");
         shade(&mut map, "u", &triangles, true);
         map.lines.extend(self.rim());
@@ -125,7 +125,7 @@ impl<'a, const D: usize> Plane<'a, D> {
             false => Symbol::Line(Stroke::Touching),
         };
         map.legend.push((of_contact, "in contact".to_owned()));
-        let found = self.edges.iter().filter(|e| self.parts_contact(e));
+        let found = self.edges.iter().filter(|e| self.separates_contact(e));
         let before = map.lines.len();
         map.lines.extend(found.map(|e| (Stroke::Discrete, e.ends)));
         if map.lines.len() > before {
@@ -138,7 +138,7 @@ impl<'a, const D: usize> Plane<'a, D> {
     }
 
     /// Whether an edge separates cells in contact from cells that are not.
-    fn parts_contact(&self, edge: &Edge) -> bool {
+    fn separates_contact(&self, edge: &Edge) -> bool {
         let any = |touches: bool| edge.sides.iter().any(|s| self.touches[s.cell] == touches);
         any(true) && any(false)
     }

@@ -86,9 +86,9 @@ impl<'a, const D: usize> View<'a, D> {
 
     /// Triangles on which the function of a cell is drawn as linear: of a quadratic one those
     /// between its vertices and midpoints.
-    pub fn linear_parts(&self) -> Vec<Section> {
-        let parts = parts::<D>(!self.fields.midpoints.is_empty());
-        let of_cell = |cell| parts.iter().filter_map(move |part| self.section(cell, part));
+    pub fn linear_pieces(&self) -> Vec<Section> {
+        let pieces = pieces::<D>(!self.fields.midpoints.is_empty());
+        let of_cell = |cell| pieces.iter().filter_map(move |piece| self.section(cell, piece));
         (0..self.mesh.n_cells()).flat_map(of_cell).flat_map(triangles).collect()
     }
 
@@ -223,25 +223,25 @@ fn unit_corners<const D: usize>() -> Vec<[f64; 4]> {
     (0..D + 1).map(|k| array_of(|i| f64::from(u8::from(i == k)))).collect()
 }
 
-/// The simplex, or the parts between its vertices and the midpoints of its edges.
-fn parts<const D: usize>(quadratic: bool) -> Vec<Vec<[f64; 4]>> {
+/// The simplex, or the pieces between its vertices and the midpoints of its edges.
+fn pieces<const D: usize>(quadratic: bool) -> Vec<Vec<[f64; 4]>> {
     let v = unit_corners::<D>();
     if !quadratic {
         return vec![v];
     }
     let middle = |i: usize, j: usize| array_of(|k| 0.5 * (v[i][k] + v[j][k]));
-    let mut parts: Vec<Vec<[f64; 4]>> = (0..D + 1)
+    let mut pieces: Vec<Vec<[f64; 4]>> = (0..D + 1)
         .map(|i| (0..D + 1).map(|j| if i == j { v[i] } else { middle(i, j) }).collect())
         .collect();
     if D == 2 {
-        parts.push(vec![middle(0, 1), middle(0, 2), middle(1, 2)]);
+        pieces.push(vec![middle(0, 1), middle(0, 2), middle(1, 2)]);
     }
     if D == 3 {
         // the octahedron within, in four around one of its diagonals
         let around = [middle(0, 1), middle(0, 2), middle(2, 3), middle(1, 3)];
         for k in 0..4 {
-            parts.push(vec![middle(0, 3), middle(1, 2), around[k], around[(k + 1) % 4]]);
+            pieces.push(vec![middle(0, 3), middle(1, 2), around[k], around[(k + 1) % 4]]);
         }
     }
-    parts
+    pieces
 }

@@ -8,12 +8,12 @@ use crate::mesh::{BoundaryCondition, Mesh};
 use crate::problem::Problem;
 use crate::real::Point;
 
-/// Parts of a facet at which exact data are looked at.
+/// Pieces of a facet at which exact data are looked at.
 const PARTS: usize = 8;
 /// A boundary that departs by less than this from a line, in units of the domain, is straight.
 const STRAIGHT: f64 = 1e-9;
 
-/// A part of a facet of the contact boundary.
+/// A piece of a facet of the contact boundary.
 pub(crate) struct Sample<const D: usize> {
     pub ends: [Point<D>; 2],
 }
@@ -29,7 +29,7 @@ fn facets<const D: usize>(mesh: &Mesh<D>) -> Vec<(usize, usize, Vec<u32>)> {
         .collect()
 }
 
-/// The contact boundary in short parts.
+/// The contact boundary in short pieces.
 pub(crate) fn samples<const D: usize>(mesh: &Mesh<D>) -> Vec<Sample<D>> {
     let mut samples = Vec::new();
     for (_, _, vertices) in facets(mesh) {

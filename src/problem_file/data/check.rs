@@ -81,8 +81,8 @@ pub(super) struct Checks<'s, 't, const D: usize> {
     pub source: &'s Source<'t>,
     pub problem: &'s Problem<D>,
     pub entries: &'s [Entry<D>],
-    /// The boundary groups that the file names.
-    pub parts: &'s [(String, BoundaryCondition)],
+    /// The boundary groups that the file names, with their conditions.
+    pub conditions: &'s [(String, BoundaryCondition)],
     /// Where the file has the gradient of the exact solution.
     pub gradient_offset: usize,
 }
@@ -116,7 +116,7 @@ impl<const D: usize> Checks<'_, '_, D> {
             }
         }
         for names in groups {
-            if !names.iter().any(|name| self.parts.iter().any(|(known, _)| known == name)) {
+            if !names.iter().any(|name| self.conditions.iter().any(|(known, _)| known == name)) {
                 let name = excerpt(names.first().expect("a boundary group has a name"));
                 let message = format!(
                     "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann or contact, or [boundary.default] for groups without one, if its kind is that of the name"

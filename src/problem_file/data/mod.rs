@@ -39,8 +39,8 @@ struct Builder<'s, 't, const D: usize> {
     source: &'s Source<'t>,
     problem: Problem<D>,
     entries: Vec<Entry<D>>,
-    parts: Vec<(String, BoundaryCondition)>,
-    /// What is given on boundary groups without a table of their own.
+    conditions: Vec<(String, BoundaryCondition)>,
+    /// The data on boundary groups without a table of their own.
     on_other_groups: Option<OnGroup>,
     /// The gaps of the problem, in their order.
     gaps: Vec<Formula>,
@@ -50,7 +50,7 @@ struct Builder<'s, 't, const D: usize> {
     gradient_offset: usize,
 }
 
-/// What a file gives on a boundary group.
+/// The data of a file on a boundary group.
 struct OnGroup {
     condition: BoundaryCondition,
     formula: Formula,
@@ -74,18 +74,19 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         for (key, value) in table.iter() {
             let group = key.get_ref().to_string();
             let variables = &VARIABLES[0][..D];
-            let parts = value.get_ref().as_table().filter(|_| PIECEWISE.contains(&name));
-            let (formula, level) = match parts {
+            let with_level = value.get_ref().as_table().filter(|_| PIECEWISE.contains(&name));
+            let (formula, level) = match with_level {
                 None => (self.source.formula(&group, value, variables)?, None),
-                Some(parts) => {
-                    self.source.allow(parts, &["value", "level"])?;
-                    let part = |key: &str, purpose: &str| {
+                Some(table) => {
+                    self.source.allow(table, &["value", "level"])?;
+                    let entry = |key: &str, purpose: &str| {
                         let missing = || self.source.missing(value.span().start, key, purpose);
-                        let found = parts.get(key).ok_or_else(missing)?;
+                        let found = table.get(key).ok_or_else(missing)?;
                         Ok((self.source.formula(key, found, variables)?, found.span().start))
                     };
-                    let level = part("level", "an expression that vanishes where the datum jumps")?;
-                    (part("value", "the datum")?.0, Some(level))
+                    let level =
+                        entry("level", "an expression that vanishes where the datum jumps")?;
+                    (entry("value", "the datum")?.0, Some(level))
                 }
             };
             let region = (group != DEFAULT).then_some(&group[..]);
@@ -143,14 +144,14 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let Some(kind) = table.get("kind") else {
             return Err(self.source.missing(offset, "kind", kinds));
         };
-        let part = BoundaryCondition::from_name(self.source.string("kind", kind)?)
+        let condition = BoundaryCondition::from_name(self.source.string("kind", kind)?)
             .ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?;
-        if BoundaryCondition::from_name(group).is_some_and(|named| named != part) {
+        if BoundaryCondition::from_name(group).is_some_and(|named| named != condition) {
             let expected =
                 "what the name of the group says: dirichlet, neumann and contact fix their kind";
             return Err(self.source.wrong_type("kind", kind, expected));
         }
-        let (name, takes_normal) = match part {
+        let (name, takes_normal) = match condition {
             BoundaryCondition::Dirichlet => ("value", false),
             BoundaryCondition::Neumann => ("flux", true),
             BoundaryCondition::Contact => ("gap", true),
@@ -162,20 +163,20 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         };
         let formula = match table.get(name) {
             Some(value) => self.source.formula(name, value, &variables)?,
-            None if self.has_exact && part != BoundaryCondition::Contact => {
+            None if self.has_exact && condition != BoundaryCondition::Contact => {
                 let purpose = "the exact solution does not stand for data that are left out";
                 return Err(self.source.missing(offset, name, purpose));
             }
             None => Formula::Number(0.0),
         };
-        Ok(OnGroup { condition: part, formula, datum: format!("boundary.{group}.{name}"), offset })
+        Ok(OnGroup { condition, formula, datum: format!("boundary.{group}.{name}"), offset })
     }
 
     /// Puts what is given on a boundary group into the problem.
     fn put_on(&mut self, group: &str, given: &OnGroup) {
-        let OnGroup { condition: part, formula, datum, offset } = given;
+        let OnGroup { condition, formula, datum, offset } = given;
         let (problem, name) = (&mut self.problem, Some(group));
-        match part {
+        match condition {
             BoundaryCondition::Dirichlet => problem.dirichlet.give(name, formula.datum()),
             BoundaryCondition::Neumann => problem.neumann.give(name, formula.flux()),
             BoundaryCondition::Contact => {
@@ -188,12 +189,12 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             group: Some(group.to_owned()),
             is_boundary: true,
             others: Vec::new(),
-            at_vertices: *part != BoundaryCondition::Neumann,
+            at_vertices: *condition != BoundaryCondition::Neumann,
             offset: *offset,
             allowed: Allowed::Finite,
             value: formula.flux(),
         });
-        self.parts.push((group.to_owned(), *part));
+        self.conditions.push((group.to_owned(), *condition));
     }
 
     /// Puts what is given by default on the boundary groups without a table of their own, by a name that no group with a
@@ -201,17 +202,17 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     /// fixes another kind is left without data.
     fn complete(&mut self, groups: &[Vec<String>]) {
         let Some(given) = self.on_other_groups.take() else { return };
-        let named = self.parts.clone();
+        let named = self.conditions.clone();
         let has_table = |names: &Vec<String>| named.iter().any(|(group, _)| names.contains(group));
         let (with_table, without): (Vec<_>, Vec<_>) = groups.iter().partition(|g| has_table(g));
         for names in without {
-            let of_part = |name: &&String| {
-                BoundaryCondition::from_name(name).is_none_or(|part| part == given.condition)
+            let fits = |name: &&String| {
+                BoundaryCondition::from_name(name).is_none_or(|own| own == given.condition)
             };
             let is_own = |name: &&String| !with_table.iter().any(|group| group.contains(name));
-            let own = names.iter().filter(of_part).find(is_own);
-            if let Some(name) = own.or_else(|| names.iter().find(of_part))
-                && self.parts.iter().all(|(known, _)| known != name)
+            let own = names.iter().filter(fits).find(is_own);
+            if let Some(name) = own.or_else(|| names.iter().find(fits))
+                && self.conditions.iter().all(|(known, _)| known != name)
             {
                 self.put_on(name, &given);
             }
@@ -289,7 +290,7 @@ where
         source,
         problem: Problem::<D>::new(),
         entries: Vec::new(),
-        parts: Vec::new(),
+        conditions: Vec::new(),
         on_other_groups: None,
         gaps: Vec::new(),
         has_exact: root.contains_key("exact"),
@@ -331,9 +332,9 @@ where
             builder
                 .complete(&SIDES[..2 * D].iter().map(|&s| vec![s.to_owned()]).collect::<Vec<_>>());
             let mut domain = BoxDomain::dirichlet(lower, upper);
-            for (name, part) in &builder.parts {
+            for (name, condition) in &builder.conditions {
                 if let Some(side) = SIDES[..2 * D].iter().position(|side| side == name) {
-                    domain = domain.side(side / 2, side % 2, *part);
+                    domain = domain.side(side / 2, side % 2, *condition);
                 }
             }
             domain.into()
@@ -343,9 +344,15 @@ where
         |error: Error| ProblemFileError::of_file(source.path, ProblemFileErrorKind::Problem, error);
     let mesh = sample_mesh(&domain).map_err(|error| failed(error.into()))?;
     builder.put_normals(&mesh);
-    let Builder { problem, entries, parts, gradient_offset, .. } = builder;
-    Checks { source, problem: &problem, entries: &entries, parts: &parts, gradient_offset }
-        .run(&mesh)?;
+    let Builder { problem, entries, conditions, gradient_offset, .. } = builder;
+    Checks {
+        source,
+        problem: &problem,
+        entries: &entries,
+        conditions: &conditions,
+        gradient_offset,
+    }
+    .run(&mesh)?;
     let mesh = problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
     let domain = if domain.is_mesh() { mesh.into() } else { domain };
     Ok(ProblemFile { scene: Scene::new(name, domain, problem).into(), fingerprints, warnings })

@@ -45,7 +45,7 @@ impl Expression {
         let node = preceded(multispace0, sum).parse_next(&mut rest);
         let offset = match &node {
             Ok(_) if rest.is_empty() => text.len(),
-            // where the last complete part ends
+            // where the last complete operand ends
             Ok(_) => text.len() - rest.len(),
             Err(Left { bytes, .. }) => text.len() - bytes,
         };

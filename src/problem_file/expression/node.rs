@@ -74,7 +74,7 @@ impl Node {
             Node::Name(..) | Node::Call(..) => true,
             Node::One(_, a) | Node::Negative(a) => has(a),
             Node::Two(_, ab) | Node::Arithmetic(_, ab) => has(&ab.0) || has(&ab.1),
-            Node::If(parts) => has(&parts.0) || has(&parts.1) || has(&parts.2),
+            Node::If(three) => has(&three.0) || has(&three.1) || has(&three.2),
         }
     }
 
@@ -120,8 +120,8 @@ impl Node {
                 of_numbers(at(&ab.0), at(&ab.1), |a, b| operator.value(a, b))
             }
             Node::Two(f, ab) => of_numbers(at(&ab.0), at(&ab.1), f),
-            Node::If(parts) => {
-                let (condition, yes, no) = &**parts;
+            Node::If(three) => {
+                let (condition, yes, no) = &**three;
                 match at(condition) {
                     condition if condition.is_nan() => condition,
                     0.0 => at(no),

@@ -1,6 +1,6 @@
 //! Sample points of a domain and its boundary.
 
-use crate::mesh::{BoundaryCondition, BoundaryFacet, BoxDomain, Domain, Mesh};
+use crate::mesh::{BoundaryCondition, BoxDomain, Domain};
 use crate::real::Point;
 
 /// Quasi-random points of a box: the additive recurrence `x_n = 1/2 + n theta mod 1`, where
@@ -50,7 +50,7 @@ pub(super) struct BoundaryPoint<const D: usize> {
     pub x: Point<D>,
     /// The outward unit normal there.
     pub normal: Point<D>,
-    /// The part of the boundary.
+    /// The boundary condition.
     pub condition: BoundaryCondition,
 }
 
@@ -85,16 +85,12 @@ pub(super) fn boundary<const D: usize>(
             .take(2 * samples)
             .map(|x| BoundaryPoint::dirichlet(x.normalize() * radius, x.normalize()))
             .collect(),
-        Domain::Mesh(ref mesh) => mesh.boundary().iter().map(|f| on_facet(mesh, f)).collect(),
+        Domain::Mesh(_) => unreachable!("{NO_MESH}"),
     }
 }
 
-/// The barycentre of a facet of the boundary of a mesh.
-fn on_facet<const D: usize>(mesh: &Mesh<D>, facet: &BoundaryFacet) -> BoundaryPoint<D> {
-    let (cell, local) = (facet.cell as usize, facet.local as usize);
-    let (x, normal) = (mesh.facet_barycentre(cell, local), mesh.geometry(cell).normal(local));
-    BoundaryPoint { x, normal, condition: facet.condition }
-}
+/// Why a domain has no samples.
+const NO_MESH: &str = "a domain that is a mesh is tested at its barycentres";
 
 /// Points projected onto every side of a box.
 fn on_sides<const D: usize>(
@@ -128,6 +124,6 @@ pub(super) fn sees<const D: usize>(domain: &Domain<D>, a: &Point<D>, b: &Point<D
         // both halves of the L-shape are convex
         Domain::LShape { .. } => a[0].max(b[0]) < 0.0 || a[1 % D].min(b[1 % D]) > 0.0,
         Domain::Box(_) | Domain::Disc { .. } => true,
-        Domain::Mesh(_) => false,
+        Domain::Mesh(_) => unreachable!("{NO_MESH}"),
     }
 }

@@ -30,7 +30,7 @@ pub(super) fn check_inside<const D: usize>(
     )
 }
 
-/// Conditions on multiplier and contact set at a point of the contact part.
+/// Conditions on multiplier and contact set at a point of the contact boundary.
 pub(super) fn check_on_boundary<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     x: &Point<D>,

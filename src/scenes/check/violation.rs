@@ -42,14 +42,14 @@ pub enum Condition {
     Dirichlet,
     /// Neumann data are the flux of the solution.
     Neumann,
-    /// `u >= g` on the contact part.
+    /// `u >= g` on the contact boundary.
     Gap,
-    /// `alpha du/dn >= 0` on the contact part.
+    /// `alpha du/dn >= 0` on the contact boundary.
     ContactFlux,
-    /// `u = g` or `alpha du/dn = 0` on the contact part.
+    /// `u = g` or `alpha du/dn = 0` on the contact boundary.
     ContactComplementarity,
     /// The stated multiplier is `-div(alpha grad u) + c u - f`, or `alpha du/dn` on the contact
-    /// part.
+    /// boundary.
     Multiplier,
     /// A bound is active inside the stated contact set; outside, no bound is active and the multiplier
     /// vanishes.
@@ -76,9 +76,9 @@ impl fmt::Display for Condition {
             Self::BoundaryLimit => "value and gradient continuous up to and across the boundary",
             Self::Dirichlet => "Dirichlet data equal to the solution",
             Self::Neumann => "Neumann data equal to the flux of the solution",
-            Self::Gap => "u >= g on the contact part",
-            Self::ContactFlux => "alpha du/dn >= 0 on the contact part",
-            Self::ContactComplementarity => "u = g or alpha du/dn = 0 on the contact part",
+            Self::Gap => "u >= g on the contact boundary",
+            Self::ContactFlux => "alpha du/dn >= 0 on the contact boundary",
+            Self::ContactComplementarity => "u = g or alpha du/dn = 0 on the contact boundary",
             Self::Multiplier => "stated multiplier equal to that of the solution",
             Self::ContactSet => "contact inside the stated contact set and nowhere else",
             Self::FreeBoundary => "free boundary between contact and no contact",

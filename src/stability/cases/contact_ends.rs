@@ -107,7 +107,7 @@ fn largest_on_contact(
 }
 
 /// A mesh that reaches beyond the domain on the left: the corner of the domain, where Dirichlet and
-/// contact part meet, lies inside a contact facet.
+/// contact boundary meet, lies inside a contact facet.
 fn junction(choice: &Choice, sink: Sink<'_>) -> Result<(), Error> {
     let lower = Point::<2>::new(-1.1, 0.0);
     let domain = BoxDomain { lower, ..BoxDomain::above_contact() };

@@ -14,31 +14,21 @@ pub(super) fn kilobytes(text: &str, key: &str) -> Option<u64> {
 /// Address space that each thread reserves: 64 MiB for its allocations and 2 MiB for its stack.
 const PER_THREAD: u64 = 66 << 20;
 
-/// What is left below the limits on address space and data, in bytes; none without such limits.
-pub(super) fn left_to_process() -> Option<u64> {
-    let [limits, status] =
-        ["/proc/self/limits", "/proc/self/status"].map(|file| read_to_string(file).ok());
-    below_limits(&limits?, &status?, rayon::current_num_threads() as u64 * PER_THREAD)
-}
-
 /// The limits on address space and data less what threads reserve, in bytes; none without such limits.
 pub(super) fn limit_of_process() -> Option<u64> {
     let limits = read_to_string("/proc/self/limits").ok()?;
-    let nothing_used = "VmSize: 0 kB\nVmData: 0 kB\n";
-    below_limits(&limits, nothing_used, rayon::current_num_threads() as u64 * PER_THREAD)
+    least_limit(&limits, rayon::current_num_threads() as u64 * PER_THREAD)
 }
 
-/// The memory below the limits, in bytes, from the texts of the files `limits` and `status` of a process;
-/// `reserved` bytes of address space count as used.
-fn below_limits(limits: &str, status: &str, reserved: u64) -> Option<u64> {
-    let left = |&(limit, used, reserved): &(&str, &str, u64)| {
+/// The least limit in the text of the file `limits` of a process, of address space less `reserved` bytes.
+fn least_limit(limits: &str, reserved: u64) -> Option<u64> {
+    let left = |&(limit, reserved): &(&str, u64)| {
         let rest = limits.lines().find_map(|line| line.strip_prefix(limit))?;
         // the limit in force stands before the highest one that the process may set
         let most: u64 = rest.split_whitespace().next()?.parse().ok()?;
-        Some(most.saturating_sub(kilobytes(status, used)? + reserved))
+        Some(most.saturating_sub(reserved))
     };
-    let limits = [("Max address space", "VmSize:", reserved), ("Max data size", "VmData:", 0)];
-    limits.iter().filter_map(left).min()
+    [("Max address space", reserved), ("Max data size", 0)].iter().filter_map(left).min()
 }
 
 /// What is left to the control group of this process and to those around it, in bytes; none without
@@ -82,7 +72,7 @@ fn left_in(group: &Path, [limit, usage, inactive]: [&str; 3]) -> Option<u64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{below_groups, below_limits};
+    use super::{below_groups, least_limit};
     use std::fs;
 
     #[test]
@@ -95,14 +85,12 @@ mod tests {
                  Max address space         {space}            4096            bytes\n"
             )
         };
-        let status = "VmPeak:\t 9 kB\nVmSize:\t 3 kB\nVmData:\t 1 kB\n";
-        let left = |space: &str, data: &str| below_limits(&limits(space, data), status, 1024);
-        assert_eq!(left("unlimited", "unlimited"), None);
-        assert_eq!(left("10240", "unlimited"), Some(6144));
-        assert_eq!(left("10240", "5120"), Some(4096));
-        assert_eq!(left("1024", "unlimited"), Some(0));
-        assert_eq!(below_limits("", status, 0), None);
-        assert_eq!(below_limits(&limits("10240", "unlimited"), "", 0), None);
+        let least = |space: &str, data: &str| least_limit(&limits(space, data), 1024);
+        assert_eq!(least("unlimited", "unlimited"), None);
+        assert_eq!(least("10240", "unlimited"), Some(9216));
+        assert_eq!(least("10240", "5120"), Some(5120));
+        assert_eq!(least("512", "unlimited"), Some(0));
+        assert_eq!(least_limit("", 0), None);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Peak memory of the process, available memory, and an estimate of the memory of a run.
+//! Peak memory of the process, the memory that it may have, and an estimate of the memory of a run.
 
 #[cfg(any(test, target_os = "linux"))]
 mod limits;
@@ -8,7 +8,7 @@ use crate::real::Precision;
 #[cfg(any(test, target_os = "linux"))]
 use limits::kilobytes;
 #[cfg(target_os = "linux")]
-use limits::{left_to_group, left_to_process, limit_of_process};
+use limits::{left_to_group, limit_of_process};
 
 /// The largest resident set of this process so far, if the system reports it: on Linux the peak the
 /// kernel keeps (`VmHWM`), elsewhere nothing.
@@ -25,27 +25,12 @@ fn peak_of_status(status: &str) -> Option<u64> {
     kilobytes(status, "VmHWM:")
 }
 
-/// The memory available to this process, as the crate `sysinfo` finds it.
+/// The memory that this process may have in all: what the crate `sysinfo` finds available.
 #[cfg(not(target_os = "linux"))]
-pub fn available_memory_bytes() -> Option<u64> {
+pub(crate) fn memory_of_process() -> Option<u64> {
     let mut system = sysinfo::System::new();
     system.refresh_memory();
     Some(system.available_memory()).filter(|bytes| *bytes > 0)
-}
-
-/// The memory available to this process without swapping, if the system reports it: the least of
-/// `MemAvailable`, of what the limits on address space and data leave (`ulimit -v`, `ulimit -d`), and of what
-/// its control groups leave (containers, batch systems).
-#[cfg(target_os = "linux")]
-pub fn available_memory_bytes() -> Option<u64> {
-    let machine = kilobytes(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:");
-    [machine, left_to_process(), left_to_group()].into_iter().flatten().min()
-}
-
-/// The memory that this process may have in all: what is available to it.
-#[cfg(not(target_os = "linux"))]
-pub(crate) fn memory_of_process() -> Option<u64> {
-    available_memory_bytes()
 }
 
 /// The memory that this process may have in all, in bytes: what it has and what machine and control groups leave, and
@@ -57,18 +42,6 @@ pub(crate) fn memory_of_process() -> Option<u64> {
     let machine = kilobytes(&text("/proc/meminfo")?, "MemAvailable:");
     let left = [machine, left_to_group()].into_iter().flatten().map(|left| left + own);
     left.chain(limit_of_process()).min()
-}
-
-/// Estimated memory of the largest run of a study.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct MemoryEstimate {
-    /// Bytes of the whole process.
-    pub bytes: f64,
-    /// Name of the scheme that needs most.
-    pub scheme: String,
-    /// The level of that run.
-    pub level: usize,
 }
 
 /// Bytes a run will need, most of them for the factors of the direct solver.

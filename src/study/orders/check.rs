@@ -108,18 +108,10 @@ pub(crate) const PROMISED: [ErrorNorm; 2] = [ErrorNorm::L2, ErrorNorm::H1];
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct OrderMissed {
-    /// Name of the scene.
-    pub scene: String,
-    /// Label of the scheme.
-    pub label: String,
-    /// Where the scheme imposes bounds.
-    pub constraint: String,
-    /// The levels that converged, the finest last.
-    pub levels: Vec<usize>,
+    /// The orders observed, of which this one is missed.
+    pub observed: ObservedOrders,
     /// The norm.
     pub norm: ErrorNorm,
-    /// The order observed; none without two errors.
-    pub fitted: Option<FittedOrder>,
     /// The order promised.
     pub promised: f64,
     /// Why it does not count as kept.
@@ -128,10 +120,11 @@ pub struct OrderMissed {
 
 impl fmt::Display for OrderMissed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { scene, label, constraint, norm, promised, verdict, .. } = self;
-        let (verdict, levels) = (verdict.name(), levels_in_words(&self.levels));
-        write!(f, "{label} ({constraint}) on {scene}: {verdict}: ")?;
-        match (&self.fitted, self.verdict) {
+        let Self { observed, norm, promised, verdict } = self;
+        let ObservedOrders { scene, label, constraint, levels, .. } = observed;
+        let levels = levels_in_words(levels);
+        write!(f, "{label} ({constraint}) on {scene}: {}: ", verdict.name())?;
+        match (observed.fitted(*norm), verdict) {
             (Some(fitted), OrderVerdict::Missed | OrderVerdict::Undecided) => {
                 write!(f, "order {} in {norm} over levels {levels}", order_in_words(fitted))?;
             }
@@ -199,16 +192,8 @@ impl ObservedOrders {
         let miss = |norm: ErrorNorm| {
             let verdict = self.verdict(norm, tolerance);
             let passes = [OrderVerdict::Kept, OrderVerdict::Exact, OrderVerdict::NothingPromised];
-            Some(OrderMissed {
-                scene: self.scene.clone(),
-                label: self.label.clone(),
-                constraint: self.constraint.clone(),
-                levels: self.levels.clone(),
-                norm,
-                fitted: self.fitted(norm).cloned(),
-                promised: self.promised(norm).filter(|_| !passes.contains(&verdict))?,
-                verdict,
-            })
+            let promised = self.promised(norm).filter(|_| !passes.contains(&verdict))?;
+            Some(OrderMissed { observed: self.clone(), norm, promised, verdict })
         };
         PROMISED.into_iter().filter_map(miss).collect()
     }

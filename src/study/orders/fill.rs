@@ -1,7 +1,5 @@
 //! Observed orders of convergence.
 
-use std::borrow::BorrowMut;
-
 use crate::measure::observed_order;
 use crate::study::row::{Orders, Row};
 use crate::study::series::series_of;
@@ -11,16 +9,16 @@ use crate::study::series::series_of;
 ///
 /// The order is none if one of the two rows did not converge, or has no error or one that is rounding. Rows further
 /// back are never used, since the table would not show it.
-pub fn fill_orders<R: BorrowMut<Row>>(rows: &mut [R]) {
-    let series = series_of(&*rows);
+pub fn fill_orders(rows: &mut [Row]) {
+    let series = series_of(rows);
     let previous = |row: &Row| {
         let own = series.iter().find(|series| series.variant.has(row))?;
-        own.plain_rows().rev().find(|other| other.level < row.level)
+        own.rows.iter().copied().rev().find(|other| other.level < row.level)
     };
     let of = |row: &Row| previous(row).map_or_else(Orders::default, |coarse| order(coarse, row));
-    let orders: Vec<Orders> = rows.iter().map(|row| of(row.borrow())).collect();
+    let orders: Vec<Orders> = rows.iter().map(of).collect();
     for (row, order) in rows.iter_mut().zip(orders) {
-        row.borrow_mut().order = order;
+        row.order = order;
     }
 }
 

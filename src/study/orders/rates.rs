@@ -7,8 +7,8 @@ use crate::study::series::{Series, series_of};
 /// The orders of bound and error over the last half of the steps of each adaptive series, by least squares, the
 /// range of effectivities, and the time of all steps over that of the last one.
 pub(crate) fn rates(rows: &[&Row]) -> Vec<String> {
-    let of_series = |series: Series<'_, &Row>| {
-        let steps: Vec<&Row> = series.plain_rows().filter(|r| r.converged()).collect();
+    let of_series = |series: Series<'_>| {
+        let steps: Vec<&Row> = series.rows.iter().copied().filter(|r| r.converged()).collect();
         let ([.., before, last], half) = (&steps[..], &steps[steps.len() / 2..]) else {
             return None;
         };

@@ -1,13 +1,11 @@
 //! Observed and promised orders, as tables in Markdown.
 
-use std::fmt::Write;
-
-use super::check::{ObservedOrders, OrderVerdict, PROMISED, levels_in_words, order_in_words};
+use super::check::{
+    ObservedOrders, OrderMissed, OrderVerdict, PROMISED, levels_in_words, order_in_words,
+};
 use crate::measure::{ErrorNorm, FittedOrder};
 use crate::study::row::distinct;
-
-/// The cell of a number that does not apply.
-const NONE: &str = "-";
+use crate::table::{Cell, Table};
 
 /// What the words of the tables mean.
 fn reading(tolerance: f64) -> String {
@@ -27,78 +25,79 @@ fn reading(tolerance: f64) -> String {
 /// The verdict is that of all norms, or the norms follow it; `exact` where errors are rounding.
 /// Levels that did not converge follow with the outcome of their solves.
 pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
-    let mut text = reading(tolerance)
-        + "| scene | scheme | bounds at | levels | L2 | promised | H1 | promised | verdict |\n\
-           |---|---|---|---|---|---|---|---|---|\n";
-    for line in orders {
-        let norms = PROMISED.map(|norm| {
-            format!("{} | {}", observed(line.fitted(norm)), promised(line.promised(norm)))
-        });
-        // writing to a string does not fail
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {} | {} | {} |",
-            line.scene,
-            line.label,
-            line.constraint,
-            levels_in_words(&line.levels),
-            norms.join(" | "),
-            verdicts(line, tolerance)
-        );
-    }
-    text
+    let line = |line: &ObservedOrders| {
+        let mut cells = vec![
+            Cell::Words(line.scene.clone()),
+            Cell::Words(line.label.clone()),
+            Cell::Words(line.constraint.clone()),
+            Cell::Words(levels_in_words(&line.levels)),
+        ];
+        for norm in PROMISED {
+            cells.extend([observed(line.fitted(norm)), promised(line.promised(norm))]);
+        }
+        cells.push(Cell::Words(verdicts(line, tolerance)));
+        cells
+    };
+    let heads = "scene,scheme,bounds at,levels,L2,promised,H1,promised,verdict";
+    let table =
+        Table::new("Observed and promised orders", heads, orders.iter().map(line).collect());
+    reading(tolerance) + &table.to_markdown()
 }
 
 /// How many promises each scheme keeps, and every promise that it was not seen to keep, with the orders
 /// from level to level beside the fitted one; then the levels that did not converge.
 pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
-    let heads = OrderVerdict::ALL.map(OrderVerdict::name).join(" | ");
-    let mut text = reading(tolerance)
-        + &format!("| scheme | {heads} |\n|---{}|\n", "|--:".repeat(OrderVerdict::ALL.len()));
-    let count = |wanted: &dyn Fn(&ObservedOrders) -> bool, verdict| {
+    let count = |name: &str, wanted: &dyn Fn(&ObservedOrders) -> bool| {
         let lines = orders.iter().filter(|line| wanted(line));
-        let verdicts = lines.flat_map(|o| PROMISED.map(|norm| o.verdict(norm, tolerance)));
-        verdicts.filter(|v| *v == verdict).count().to_string()
+        let found: Vec<OrderVerdict> =
+            lines.flat_map(|o| PROMISED.map(|norm| o.verdict(norm, tolerance))).collect();
+        let of = |verdict| Cell::whole(Some(found.iter().filter(|v| **v == verdict).count()));
+        [Cell::Words(name.to_owned())].into_iter().chain(OrderVerdict::ALL.map(of)).collect()
     };
-    for label in distinct(orders.iter().map(|line| &line.label)) {
-        let counts = OrderVerdict::ALL.map(|v| count(&|line| line.label == *label, v));
-        let _ = writeln!(text, "| {label} | {} |", counts.join(" | "));
-    }
-    let all = OrderVerdict::ALL.map(|v| count(&|_| true, v));
-    let _ = writeln!(text, "| all | {} |", all.join(" | "));
-    text += "\n| scene | scheme | norm | levels | order | promised | level to level | verdict |\n\
-             |---|---|---|---|---|---|---|---|\n";
-    for missed in orders.iter().flat_map(|line| line.missed(tolerance)) {
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {} | {} | {} | {} | {} |",
-            missed.scene,
-            missed.label,
-            missed.norm,
-            levels_in_words(&missed.levels),
-            observed(missed.fitted.as_ref()),
-            missed.promised,
-            missed.fitted.as_ref().map_or(NONE.to_owned(), local_orders),
-            missed.verdict.name(),
-        );
-    }
+    let labels = distinct(orders.iter().map(|line| &line.label));
+    let of_schemes = labels.into_iter().map(|label| count(label, &|line| line.label == *label));
+    let heads = ["scheme"].into_iter().chain(OrderVerdict::ALL.map(OrderVerdict::name));
+    let counts = Table::new(
+        "Verdicts by scheme",
+        &heads.collect::<Vec<_>>().join(","),
+        of_schemes.chain([count("all", &|_| true)]).collect(),
+    );
+    let missed = |missed: OrderMissed| {
+        let fitted = missed.observed.fitted(missed.norm);
+        vec![
+            Cell::Words(missed.observed.scene.clone()),
+            Cell::Words(missed.observed.label.clone()),
+            Cell::Words(missed.norm.to_string()),
+            Cell::Words(levels_in_words(&missed.observed.levels)),
+            observed(fitted),
+            promised(Some(missed.promised)),
+            Cell::number(fitted.map(local_orders)),
+            Cell::Words(missed.verdict.name().to_owned()),
+        ]
+    };
+    let not_kept = Table::new(
+        "Promises that were not seen to be kept",
+        "scene,scheme,norm,levels,order,promised,level to level,verdict",
+        orders.iter().flat_map(|line| line.missed(tolerance)).map(missed).collect(),
+    );
+    let mut text = reading(tolerance) + &counts.to_markdown() + "\n" + &not_kept.to_markdown();
     let failures: Vec<String> = orders.iter().flat_map(failures).collect();
     if !failures.is_empty() {
-        let _ = writeln!(text, "\nLevels that did not converge: {}.", failures.join("; "));
+        text += &format!("\nLevels that did not converge: {}.\n", failures.join("; "));
     }
     text
 }
 
-fn observed(fitted: Option<&FittedOrder>) -> String {
-    fitted.map_or(NONE.to_owned(), order_in_words)
+fn observed(fitted: Option<&FittedOrder>) -> Cell {
+    Cell::number(fitted.map(order_in_words))
 }
 
 fn local_orders(fitted: &FittedOrder) -> String {
     fitted.local.iter().map(|order| format!("{order:.2}")).collect::<Vec<_>>().join(", ")
 }
 
-fn promised(order: Option<f64>) -> String {
-    order.map_or(NONE.to_owned(), |order| order.to_string())
+fn promised(order: Option<f64>) -> Cell {
+    Cell::number(order.map(|order| order.to_string()))
 }
 
 fn failures(line: &ObservedOrders) -> Vec<String> {

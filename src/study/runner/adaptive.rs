@@ -148,6 +148,7 @@ fn adaptive_row<const D: usize>(row: Row, step: &AdaptiveStep<'_, D>, theta: f64
     let seconds = Seconds {
         assemble: step.assemble_seconds,
         solve: step.solve_seconds,
+        start: None,
         bound: Some(step.bound_seconds),
         total: step.seconds(),
         ..row.seconds

@@ -7,35 +7,29 @@ use crate::instances::compiled;
 use crate::problem::Problem;
 use crate::scheme::Scheme;
 use crate::study::memory::{
-    MemoryEstimate, estimate, estimate_without_factors, memory_of_process, peak_memory_bytes,
-    unknowns_about,
+    estimate, estimate_without_factors, memory_of_process, peak_memory_bytes, unknowns_about,
 };
 use crate::study::row::Row;
 
 impl<const D: usize> Study<'_, D> {
-    /// An estimate of the memory of the largest run, with factors if the solver computes them from
-    /// the start; none for a study without schemes or levels. The largest run of adaptive refinement has as many
-    /// unknowns as are allowed, and at least those of its first mesh.
-    pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
-        compiled!(const D: fn(&Study<'_, D>) -> Option<MemoryEstimate>
-                = |study| study.estimate_memory()
-        )(self)
-    }
-    fn estimate_memory(&self) -> Option<MemoryEstimate> {
+    /// Bytes, scheme and level of the largest run, with factors if the solver computes them from the start; none for a
+    /// study without schemes or levels. The largest run of adaptive refinement has as many unknowns as are allowed, and
+    /// at least those of its first mesh.
+    fn largest_run(&self) -> Option<(f64, &str, usize)> {
         let level = match &self.adaptive {
             Some(_) => self.first_level(),
             None => self.levels.iter().copied().max()?,
         };
-        let run = |scheme: &dyn Scheme<D>, level: usize| {
+        let bytes = |scheme: &dyn Scheme<D>, level: usize| {
             let most = self
                 .adaptive
                 .map_or(0.0, |of| of.unknowns as f64 / unknowns_about(D, scheme.layout(), 1.0));
-            let bytes = self.memory_of(scheme, self.scene.domain.cells(level).max(most));
-            MemoryEstimate { bytes, scheme: scheme.name().to_owned(), level }
+            self.memory_of(scheme, self.scene.domain.cells(level).max(most))
         };
-        let runs = self.entries.iter().map(|entry| run(&*entry.scheme, level));
-        let reference = self.reference.iter().map(|of| run(&*of.scheme, of.level));
-        runs.chain(reference).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
+        let runs = self.entries.iter().map(|entry| (&*entry.scheme, level));
+        let runs = runs.chain(self.reference.iter().map(|of| (&*of.scheme, of.level)));
+        let runs = runs.map(|(scheme, level)| (bytes(scheme, level), scheme.name(), level));
+        runs.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Bytes that the process needs for a scheme on so many cells.
@@ -59,9 +53,12 @@ impl<const D: usize> Study<'_, D> {
     /// # Errors
     /// [`Error::NotEnoughMemory`].
     pub fn check_memory(&self) -> Result<(), Error> {
-        let Some(MemoryEstimate { bytes, scheme, level }) = self.memory_estimate() else {
-            return Ok(());
-        };
+        compiled!(const D: fn(&Study<'_, D>) -> Result<(), Error>
+                = |study| study.check_largest_run()
+        )(self)
+    }
+    fn check_largest_run(&self) -> Result<(), Error> {
+        let Some((bytes, scheme, level)) = self.largest_run() else { return Ok(()) };
         let what = match &self.adaptive {
             Some(of) => format!("{} unknowns", of.unknowns),
             None => format!("level {level}"),

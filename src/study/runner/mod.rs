@@ -1,6 +1,8 @@
 //! A study: schemes on a scene, level by level.
 
 mod adaptive;
+#[cfg(feature = "report")]
+mod cases;
 mod crossing;
 mod judge;
 mod memory;
@@ -32,8 +34,9 @@ use crate::study::fields::FieldFiles;
 use crate::study::journal::Journal;
 use crate::study::memory::memory_of_process;
 use crate::study::orders::fill_orders;
+use crate::study::program::Program;
 use crate::study::reference::{Measured, Reference};
-use crate::study::report::{Program, Report};
+use crate::study::report::Report;
 use crate::study::row::{Row, RowKey};
 pub use on_parts::PartChecks;
 
@@ -76,6 +79,7 @@ pub struct Study<'a, const D: usize> {
     not_exact: OnceCell<Option<String>>,
     reference: Option<Reference<'a, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<f64> + 'a>>,
+    linear_asked: Option<String>,
     quadrature: DataQuadrature,
     repeat: usize,
     #[cfg(feature = "report")]
@@ -94,6 +98,7 @@ type EachSolution<'a, const D: usize> =
     Box<dyn Fn(&str, usize, &Solved<'_, D>) -> Result<(), Error> + 'a>;
 
 /// A scheme, with its constraint set if that is not the problem's.
+#[derive(Clone)]
 struct Entry<'a, const D: usize> {
     scheme: Arc<dyn Scheme<D> + 'a>,
     set: Option<Arc<dyn ConstraintSet>>,
@@ -148,6 +153,7 @@ impl<'a, const D: usize> Study<'a, D> {
             not_exact: OnceCell::new(),
             reference: None,
             solvers: Vec::new(),
+            linear_asked: None,
             quadrature: DataQuadrature::default(),
             repeat: 1,
             #[cfg(feature = "report")]
@@ -332,27 +338,6 @@ impl<'a, const D: usize> Study<'a, D> {
         (None, false)
     }
 
-    /// Runs the first scheme with the first solver on the first level with a new hierarchy, so that no
-    /// earlier run shortens it, or on adaptive meshes. Returns the row, or those of all steps, each with the
-    /// seconds of the start from coarser levels; on adaptive meshes these are a part of the solve.
-    #[cfg(feature = "report")]
-    pub(crate) fn run_alone(&self) -> Result<Vec<(Row, f64)>, Error> {
-        let failure = self.where_exact_fails()?;
-        if let Some(adaptivity) = self.adaptive {
-            let report = self.run_adaptive(adaptivity, failure.as_deref())?;
-            return Ok(report.rows.into_iter().map(|row| (row, 0.0)).collect());
-        }
-        let (Some(entry), level) = (self.entries.first(), self.first_level()) else {
-            unreachable!("checked above")
-        };
-        let problem = entry.problem(&self.scene.problem);
-        let hierarchy = Hierarchy::of_domain(&self.scene.domain, level)?;
-        let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
-        let measured = Measured { failure: failure.as_deref(), reference: None };
-        let (row, solved) = self.row(&mut nested, (entry, &problem), level, measured)?;
-        Ok(vec![(row, solved.map_or(0.0, |solved| solved.start_seconds))])
-    }
-
     /// The meshes of all levels on which some scheme fits into the available bytes; the meshes of a reference are in the
     /// same hierarchy as these levels.
     fn hierarchies(&self, available: Option<u64>) -> Result<Vec<Hierarchy<D>>, Error> {
@@ -382,7 +367,7 @@ impl<'a, const D: usize> Study<'a, D> {
     }
 
     /// The precision of all solvers.
-    fn precision(&self) -> Precision {
+    pub(crate) fn precision(&self) -> Precision {
         self.solvers()[0].precision()
     }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::rc::Rc;
 
+use super::rows::with_level;
 use super::{Entry, Progress, Study};
 use crate::distributed::{Differences, Process, SolverOnParts};
 use crate::error::{Error, write_error};
@@ -54,10 +55,7 @@ impl<const D: usize> Study<'_, D> {
             let label = entry.label(problem);
             for &level in &self.levels {
                 (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
-                let Some((position, nested)) = on_level.next() else {
-                    unreachable!("a hierarchy has the level")
-                };
+                let (position, nested) = with_level(&mut nested, level);
                 nested.replace_constraint_set(problem);
                 let solved = match &admissible {
                     Ok(()) => nested.solve_on(position, &*entry.scheme),
@@ -212,6 +210,7 @@ impl<const D: usize> Study<'_, D> {
         let PartSeconds { mesh, assemble, number, start, solve } = parts.seconds;
         let in_bound = process.exchange.largest(&[row.seconds.bound.unwrap_or(0.0)])?[0];
         row.seconds = Seconds {
+            start: Some(start[1]),
             bound: row.seconds.bound.map(|_| in_bound),
             ..Seconds::new(mesh[1], assemble[1] + number[1], start[1] + solve[1])
         };

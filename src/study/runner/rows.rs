@@ -20,6 +20,15 @@ use crate::study::reference::Measured;
 use crate::study::row::Row;
 use crate::study::setting::setting;
 
+/// The hierarchy that has a level, with the place of its mesh.
+pub(super) fn with_level<'n, 'p, const D: usize>(
+    nested: &'n mut [NestedIteration<'p, D>],
+    level: usize,
+) -> (usize, &'n mut NestedIteration<'p, D>) {
+    let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
+    on_level.next().expect("the meshes of all levels are there")
+}
+
 impl<const D: usize> Study<'_, D> {
     /// Adds a row that is finished.
     pub(super) fn finish<'r>(&self, row: Row, rows: &'r mut Vec<Row>) -> Result<&'r Row, Error> {
@@ -63,10 +72,7 @@ impl<const D: usize> Study<'_, D> {
         level: usize,
         measured: Measured<'_, 'p, D>,
     ) -> Result<(Row, Option<Solved<'p, D>>), Error> {
-        let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
-        let Some((position, nested)) = on_level.next() else {
-            unreachable!("a hierarchy has the level")
-        };
+        let (position, nested) = with_level(nested, level);
         let solver = nested.solver_name();
         nested.replace_constraint_set(problem);
         match nested.solve_on(position, &*entry.scheme) {
@@ -86,15 +92,12 @@ impl<const D: usize> Study<'_, D> {
     /// The row of a problem whose bounds cross on the finest mesh, on one level of these hierarchies.
     fn row_of_crossing<'p>(
         &self,
-        nested: &[NestedIteration<'p, D>],
+        nested: &mut [NestedIteration<'p, D>],
         of: (&Entry<'_, D>, &'p Problem<D>),
         level: usize,
         crossing: &Crossing<D>,
     ) -> Result<Row, Error> {
-        let mut on_level = nested.iter().filter_map(|n| Some((n.position(level)?, n)));
-        let Some((position, nested)) = on_level.next() else {
-            unreachable!("a hierarchy has the level")
-        };
+        let (position, nested) = with_level(nested, level);
         let place = (level, nested.mesh(position));
         self.row_without(of, place, nested.solver_name(), None, crossing.error())
     }
@@ -244,6 +247,7 @@ impl<const D: usize> Study<'_, D> {
         };
         Row {
             level_kind: Some(kind.to_owned()),
+            linear_asked: self.linear_asked.clone(),
             constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
             label: entry.label(problem),
             expected_order: self.expected_orders(scheme, set, failure),

@@ -42,34 +42,26 @@ impl<'a, const D: usize> Study<'a, D> {
     }
     /// As [`Study::reference`], with a scheme as users write it.
     #[must_use]
-    pub fn named_reference(self, scheme: &NamedScheme, level: usize) -> Self {
-        self.shared_reference(scheme.make().into(), scheme.constraint_set(), level)
-    }
-    /// As [`Study::reference`], with a scheme that other studies have too.
-    pub(crate) fn shared_reference(
-        mut self,
-        scheme: Arc<dyn Scheme<D> + 'a>,
-        set: Option<Arc<dyn ConstraintSet>>,
-        level: usize,
-    ) -> Self {
+    pub fn named_reference(mut self, scheme: &NamedScheme, level: usize) -> Self {
+        let (set, scheme) = (scheme.constraint_set(), scheme.make().into());
         self.reference = Some(Reference { scheme, set, level });
         self
     }
     /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
     pub fn scheme(self, scheme: impl Scheme<D> + 'a) -> Self {
-        self.shared_scheme(Arc::new(scheme), None, None)
+        self.entry(Arc::new(scheme), None, None)
     }
     /// Adds a scheme with a constraint set of its own, so that one scheme may stand beside itself with
     /// other bounds.
     #[must_use]
     pub fn scheme_on(self, scheme: impl Scheme<D> + 'a, set: impl ConstraintSet + 'static) -> Self {
-        self.shared_scheme(Arc::new(scheme), Some(Arc::new(set)), None)
+        self.entry(Arc::new(scheme), Some(Arc::new(set)), None)
     }
     /// Adds a scheme chosen at run time, with the constraint set of the problem.
     #[must_use]
     pub fn boxed_scheme(self, scheme: Box<dyn Scheme<D> + 'a>) -> Self {
-        self.shared_scheme(scheme.into(), None, None)
+        self.entry(scheme.into(), None, None)
     }
     /// Adds a scheme chosen at run time, with a constraint set of its own.
     #[must_use]
@@ -78,15 +70,15 @@ impl<'a, const D: usize> Study<'a, D> {
         scheme: Box<dyn Scheme<D> + 'a>,
         set: impl ConstraintSet + 'static,
     ) -> Self {
-        self.shared_scheme(scheme.into(), Some(Arc::new(set)), None)
+        self.entry(scheme.into(), Some(Arc::new(set)), None)
     }
     /// Adds a scheme as users write it; without a placement it has the constraint set of the problem.
     #[must_use]
     pub fn named_scheme(self, scheme: &NamedScheme) -> Self {
-        self.shared_scheme(scheme.make().into(), scheme.constraint_set(), scheme.shown_choices())
+        self.entry(scheme.make().into(), scheme.constraint_set(), scheme.shown_choices())
     }
-    /// Adds a scheme that other studies have too, with its own constraint set and the choices in its label.
-    pub(crate) fn shared_scheme(
+    /// Adds a scheme with its own constraint set and the choices in its label.
+    fn entry(
         mut self,
         scheme: Arc<dyn Scheme<D> + 'a>,
         set: Option<Arc<dyn ConstraintSet>>,
@@ -111,6 +103,13 @@ impl<'a, const D: usize> Study<'a, D> {
     #[must_use]
     pub fn boxed_solver(mut self, solver: Box<dyn InequalitySolver<f64> + 'a>) -> Self {
         self.solvers.push(solver.into());
+        self
+    }
+    /// Says in all rows by which name their linear solver was asked for, so that rows of studies that ask for others can
+    /// stand beside them.
+    #[must_use]
+    pub fn linear_asked(mut self, name: &str) -> Self {
+        self.linear_asked = Some(name.to_owned());
         self
     }
     /// Sets the quadrature of data.

@@ -7,8 +7,8 @@ pub(crate) mod summary;
 use std::fmt;
 
 use crate::study::report::Report;
-use crate::table::{WIDTH, wrapped};
-use levels::write_tables;
+use crate::table::{Table, WIDTH, wrapped};
+use levels::{scenes, tables_of};
 use summary::{lead, summaries};
 
 impl fmt::Display for Report {
@@ -29,11 +29,15 @@ impl Report {
         [lead].into_iter().chain(tables).collect::<Vec<_>>().join("\n")
     }
 
-    /// The tables of all levels: errors, orders, counts and times, then energy, contact measure, resultant, bound
-    /// and stages.
-    pub fn details_to_text(&self) -> String {
-        let mut text = String::new();
-        write_tables(&mut text, &self.rows).expect("writing to a text does not fail");
-        text
+    /// The tables of all levels of each scene: errors, orders, counts and times, then energy, contact measure,
+    /// resultant, bound and stages.
+    pub fn tables(&self) -> Vec<Table> {
+        scenes(&self.rows).iter().flat_map(|(scene, rows)| tables_of(scene, rows)).collect()
+    }
+
+    /// The tables of all levels in lines of this many characters.
+    pub fn details_to_text(&self, width: usize) -> String {
+        let tables = self.tables().into_iter().map(|table| table.to_text(width));
+        tables.collect::<Vec<_>>().join("\n")
     }
 }

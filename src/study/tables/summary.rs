@@ -1,10 +1,10 @@
 //! The summary of a report: one table for each scene at the finest level of every series, and how the runs ended.
 
-use super::levels::{fixed, marked, scenes, scientific, seconds, unproven};
-use super::remarks::{reason, warnings};
+use super::levels::{marked, scenes, unproven};
+use super::remarks::{ReasonsGiven, warnings};
 use crate::study::row::{Row, distinct};
 use crate::study::series::{Series, series_of};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, digits, fixed, seconds};
 
 /// The name of the column of effectivities.
 const BOUND: &str = "bound/error";
@@ -55,9 +55,9 @@ pub(crate) fn summaries(rows: &[Row]) -> Vec<Table> {
         .collect()
 }
 
-fn summary(title: &str, is_adaptive: bool, series: &[Series<'_, &Row>]) -> Table {
+fn summary(title: &str, is_adaptive: bool, series: &[Series<'_>]) -> Table {
     let finest: Vec<&Row> =
-        series.iter().filter_map(|series| series.plain_rows().next_back()).collect();
+        series.iter().filter_map(|series| series.rows.last().copied()).collect();
     let columns = columns(&finest);
     let best: Vec<Option<f64>> = columns.iter().map(|column| best(column, &finest)).collect();
     let cell = |column: &Column, best: Option<f64>, row: &Row| match (column.cell)(row) {
@@ -65,65 +65,45 @@ fn summary(title: &str, is_adaptive: bool, series: &[Series<'_, &Row>]) -> Table
         Some((_, text, remark)) => Cell::Number(text, remark),
         None => Cell::Nothing,
     };
-    let mut told = Told::default();
-    let line = |(series, row): (&Series<'_, &Row>, &&Row)| {
+    let mut reasons = ReasonsGiven::default();
+    let levels = distinct(finest.iter().map(|r| r.level));
+    let line = |(series, row): (&Series<'_>, &&Row)| {
         let numbers = columns.iter().zip(&best).map(|(column, &best)| cell(column, best, row));
-        let status = Cell::Words(told.status(row));
-        [Cell::Words(series.name.clone())].into_iter().chain(numbers).chain([status]).collect()
+        let status = Cell::Words(reasons.status(row));
+        let name = match levels.len() {
+            1 => series.name.clone(),
+            _ => format!("{} at {}", series.name, row.level),
+        };
+        [Cell::Words(name)].into_iter().chain(numbers).chain([status]).collect()
     };
     let lines = series.iter().zip(&finest).map(line).collect();
     let names = columns.iter().map(|column| column.name);
-    let levels = distinct(finest.iter().map(|r| r.level.to_string()));
     let references = distinct(finest.iter().filter_map(|r| r.reference()));
     let references = references.iter().map(|reference| format!("; errors against {reference}"));
+    let kind = if is_adaptive { "step" } else { "level" };
+    let place = match levels[..] {
+        [level] => format!(", {kind} {level}"),
+        _ => format!(", each scheme at its last {kind}"),
+    };
     let mut remarks = Vec::new();
     let mut coarser: Vec<(&str, &Row)> = Vec::new();
     for series in series {
-        let mut rows = series.plain_rows();
+        let mut rows = series.rows.iter().copied();
         rows.next_back();
         coarser.extend(rows.filter(|row| !row.converged()).map(|row| (&*series.name, row)));
     }
-    for message in distinct(coarser.iter().map(|(_, row)| told.message(row))) {
-        let of = coarser.iter().filter(|(_, row)| told.message(row) == message);
+    for message in distinct(coarser.iter().map(|(_, row)| reasons.message(row))) {
+        let of = coarser.iter().filter(|(_, row)| reasons.message(row) == message);
         let of: Vec<String> = of.map(|(name, row)| format!("{name} at {}", row.level)).collect();
         remarks.push(format!("{}: {message}", of.join(", ")));
     }
     let warnings = warnings(&finest).into_iter().map(|(labels, text)| format!("{labels}: {text}"));
     Table {
-        title: format!(
-            "{title}, {} {}{}",
-            if is_adaptive { "step" } else { "level" },
-            levels.join(", "),
-            references.collect::<String>()
-        ),
+        title: title.to_owned(),
+        detail: place + &references.collect::<String>(),
         columns: ["scheme"].into_iter().chain(names).chain(["status"]).map(str::to_owned).collect(),
         rows: lines,
         remarks: remarks.into_iter().chain(warnings).chain(unproven(&finest)).collect(),
-    }
-}
-
-/// The reasons that a table has given.
-#[derive(Default)]
-struct Told(Vec<String>);
-
-impl Told {
-    /// The status of a row; of one that did not converge with the reason, which is kept.
-    fn status(&mut self, row: &Row) -> String {
-        let message = self.message(row);
-        if !row.converged() {
-            self.0.push(reason(row).to_owned());
-        }
-        message
-    }
-    /// The status, with the reason unless it was given before.
-    fn message(&self, row: &Row) -> String {
-        match row.converged() {
-            true => row.status.to_string(),
-            false if self.0.iter().any(|told| told == reason(row)) => {
-                format!("{}, as above", row.status)
-            }
-            false => format!("{}: {}", row.status, reason(row)),
-        }
     }
 }
 
@@ -158,7 +138,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     }
     if any(|r| r.bound.effectivity) && !is_adaptive {
         columns.push(column(BOUND, true, |r| {
-            r.bound.effectivity.map(|x| (x, marked(r, fixed(Some(x))), None))
+            r.bound.effectivity.map(|x| (x, marked(r, fixed(x)), None))
         }));
     } else if any(|r| r.bound.discrete) {
         columns.push(column("bound (order)", true, |r| {
@@ -180,5 +160,5 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
 
 /// An error in three digits with its order.
 fn figure(x: Option<f64>, order: Option<f64>) -> Option<Figure> {
-    x.map(|x| (x, scientific(Some(x)), order.map(|p| fixed(Some(p)))))
+    x.map(|x| (x, digits(x, 2), order.map(fixed)))
 }

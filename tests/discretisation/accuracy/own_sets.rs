@@ -62,7 +62,7 @@ fn own_sets_stand_beside_those_of_the_library() {
     let promised: Vec<_> = fine.iter().map(|row| row.expected_order.h1.is_some()).collect();
     assert_eq!(promised, [true, false, false, false, true]);
     // the heading may be cut anywhere
-    let table = report.details_to_text().split_whitespace().collect::<Vec<_>>().join(" ");
+    let table = report.details_to_text(100).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(table.contains("expected order H1 1 (sipg cr)"), "{table}");
     // fewer bounds leave a function that is nowhere above the one with more in energy
     let energy = |k: usize| fine[k].objective.unwrap();

@@ -80,7 +80,7 @@ fn wopsip_misses_a_plane_as_an_independent_implementation_does() {
 }
 
 /// The slope of the linear function `8 + x - 2y`, `8 + x - 2y - 3z` or `8 - x`: it falls along
-/// every axis but the first, so that it presses on a contact part at the lower end of one.
+/// every axis but the first, so that it presses on a contact boundary at the lower end of one.
 fn slope<const D: usize>() -> Point<D> {
     Point::from_fn(|k, _| if k == 0 && D > 1 { 1.0 } else { -(k as f64 + 1.0) })
 }
@@ -130,7 +130,7 @@ fn reproduces<const D: usize>(
     }
 }
 
-/// All linear problems on a mesh. Where it has a contact part, the gap is the solution itself.
+/// All linear problems on a mesh. Where it has a contact boundary, the gap is the solution itself.
 fn all_linear<const D: usize>(checks: &mut Checks, on: &str, mesh: &Mesh<D>, tolerance: f64) {
     for (name, problem) in linear_problems() {
         let problem = if mesh.has_condition(BoundaryCondition::Contact) {
@@ -145,7 +145,7 @@ fn all_linear<const D: usize>(checks: &mut Checks, on: &str, mesh: &Mesh<D>, tol
 fn on_boxes<const D: usize>(n: usize) {
     let mut checks = Checks::default();
     let mut random = Random(17);
-    for (name, domain) in [("box", unit_box()), ("box with mixed parts", mixed_box::<D>())] {
+    for (name, domain) in [("box", unit_box()), ("box with mixed conditions", mixed_box::<D>())] {
         let counts = std::array::from_fn(|k| n + k);
         all_linear(&mut checks, name, &Mesh::kuhn_box(&domain, counts).unwrap(), 1e-12);
         let moved = Raw::jittered(&domain, n, 0.4, &mut random).shuffled(&mut random);
@@ -211,7 +211,7 @@ mod needs_meshes {
     }
 }
 
-/// A gap that stays open: the contact part is then a Neumann part without flux.
+/// A gap that stays open: the contact boundary is then a Neumann boundary without flux.
 #[test]
 fn linears_are_exact_above_an_open_gap() {
     fn on<const D: usize>(checks: &mut Checks, name: &str, mesh: &Mesh<D>) {

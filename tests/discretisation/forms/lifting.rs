@@ -275,7 +275,7 @@ fn check_on<const D: usize>(
 fn every_method<const D: usize, E: Element<D> + Copy + 'static>(element: E, n: usize) {
     let mean = |_: &Point<D>| 0.5;
     for lifts in [Lifts::Reduced, Lifts::Full] {
-        let br2 = Br2 { eta: Some(4.5), lifts }.on(element);
+        let br2 = Br2 { factor: 4.5 / (D + 1) as f64, lifts }.on(element);
         check(Method::Br2(4.5), (&br2, lifts), n, &mean);
         let bmmpr = Bmmpr { eta: 0.7, lifts }.on(element);
         check(Method::Bmmpr(0.7), (&bmmpr, lifts), n, &mean);

@@ -44,8 +44,8 @@ fn fan(n: u32) -> Mesh<2> {
     let vertices = std::iter::once(Point::from([0.0, 0.0])).chain(rim).collect();
     let rims = (0..n).map(|k| [k + 1, (k + 1) % n + 1]);
     let cells = rims.clone().flat_map(|[a, b]| [0, a, b]).collect();
-    let part = BoundaryCondition::Dirichlet;
-    let boundary: Vec<_> = rims.map(|vertices| TaggedFacet { vertices, condition: part }).collect();
+    let condition = BoundaryCondition::Dirichlet;
+    let boundary: Vec<_> = rims.map(|vertices| TaggedFacet { vertices, condition }).collect();
     Mesh::new(vertices, cells, &boundary).unwrap()
 }
 

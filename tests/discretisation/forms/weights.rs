@@ -92,7 +92,7 @@ fn the_bound_of_lifts_is_the_number_of_facets() {
     let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [3, 3]).unwrap();
     let problem = Problem::new();
     for (eta, is_below) in [(2.5, true), (2.99, true), (3.01, false), (4.5, false)] {
-        let scheme = Br2 { eta: Some(eta), ..Br2::default() };
+        let scheme = Br2 { factor: eta / 3.0, ..Br2::default() };
         let of = Discretisation::new(&scheme, &problem, &mesh, Default::default()).unwrap();
         assert_eq!(of.penalty_below_bound().is_some(), is_below, "eta = {eta}");
     }

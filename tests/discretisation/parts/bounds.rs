@@ -51,8 +51,8 @@ fn holds<const D: usize>(scene: &Scene<D>, coarsest: usize, parts: usize) {
                 }
                 let bound = solved.bound().unwrap();
                 let share: f64 = bound.cells.iter().sum();
-                let all = exchange_sum(&process, share) + bound.parts.algebra;
-                assert!((all - 1.0).abs() < 1e-9 || bound.parts.algebra > 1e-9, "{name}: {all}");
+                let all = exchange_sum(&process, share) + bound.terms.algebra;
+                assert!((all - 1.0).abs() < 1e-9 || bound.terms.algebra > 1e-9, "{name}: {all}");
                 (fluxes, values, [bound.total, bound.distance])
             })
         };

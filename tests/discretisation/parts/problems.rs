@@ -65,7 +65,7 @@ pub fn obstacle_problem<const D: usize>() -> Problem<D> {
         )
 }
 
-/// A gap on the contact part, reaction, Neumann and Dirichlet data.
+/// A gap on the contact boundary, reaction, Neumann and Dirichlet data.
 pub fn signorini_problem<const D: usize>() -> Problem<D> {
     Problem::new()
         .constant_source(-2.0)

@@ -170,7 +170,7 @@ fn ragged_contact_is_found_under_every_penalty() {
 }
 
 #[test]
-#[ignore = "takes half a minute: figures of docs/solvers.md"]
+#[ignore = "takes half a minute"]
 fn curved_obstacles_converge_on_fine_meshes() {
     for level in [64, 128, 256] {
         converges(scenes::ball_2d(), wopsip(10.0), level, 25);

@@ -66,7 +66,7 @@ fn is_asked(variable: &str, name: &str) -> bool {
 }
 
 #[test]
-#[ignore = "takes minutes: prints the table of docs/solvers.md"]
+#[ignore = "takes minutes: prints how many runs converge, and their systems"]
 fn reach() {
     let mut summary = BTreeMap::<(usize, String), Vec<Row>>::new();
     for entry in catalogue().iter().filter(|entry| is_asked("SCENES", &entry.name)) {

@@ -1,6 +1,6 @@
 //! Another reader as an oracle, and the meshes of a folder that the variable `UNILATERAL_MESHES` names.
 
-use super::forms::{parse, parts, volume};
+use super::forms::{conditions, parse, volume};
 use super::writer::{FORMS, square, tetrahedron};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -31,10 +31,10 @@ fn check<const D: usize>(name: &str, bytes: &[u8]) {
         assert!(matches!(warning, GmshWarning::Straightened { order: 2, .. }), "{name}: {warning}");
     }
     eprintln!(
-        "{name}: {} cells, volume {}, parts {:?}",
+        "{name}: {} cells, volume {}, conditions {:?}",
         read.mesh.n_cells(),
         volume(&read.mesh),
-        parts(&read.mesh)
+        conditions(&read.mesh)
     );
 }
 
@@ -122,7 +122,7 @@ mod needs_meshes {
             let (area, length) = (1.125 * sides * angle.sin(), 3.0 * sides * (angle / 2.0).sin());
             assert!((volume(mesh) - area).abs() < 1e-9, "{name}: area {} of {area}", volume(mesh));
             assert!((boundary_length(mesh) - length).abs() < 1e-9, "{name}");
-            assert_eq!(parts(mesh), [mesh.boundary().len(), 0, 0], "{name}");
+            assert_eq!(conditions(mesh), [mesh.boundary().len(), 0, 0], "{name}");
             // Euler: vertices - edges + cells = 1
             let edges = (3 * mesh.n_cells() + mesh.boundary().len()) / 2;
             assert_eq!(mesh.vertices().len() + mesh.n_cells(), edges + 1, "{name}");

@@ -185,9 +185,9 @@ fn no_physical_groups() {
 }
 
 #[test]
-fn a_group_of_undecided_part() {
+fn a_group_of_undecided_condition() {
     let undecided =
-        |text: &str| parse::<2>(text.as_bytes()).mesh.check_boundary_parts().unwrap_err();
+        |text: &str| parse::<2>(text.as_bytes()).mesh.check_boundary_conditions().unwrap_err();
     let error = undecided(&change(TWO, "1 2 \"neumann\"", "1 2 \"outer wall\"").0);
     assert!(matches!(&error, MeshError::UndecidedGroup { group, .. } if group == "outer wall"));
     assert!(error.to_string().contains("dirichlet_on, neumann_on, signorini_on"), "{error}");

@@ -28,10 +28,10 @@ pub fn volume<const D: usize>(mesh: &Mesh<D>) -> f64 {
     (0..mesh.n_cells()).map(of_cell).sum()
 }
 
-/// Number of facets of each part: dirichlet, neumann, contact.
-pub fn parts<const D: usize>(mesh: &Mesh<D>) -> [usize; 3] {
+/// Number of facets with each condition: dirichlet, neumann, contact.
+pub fn conditions<const D: usize>(mesh: &Mesh<D>) -> [usize; 3] {
     [BoundaryCondition::Dirichlet, BoundaryCondition::Neumann, BoundaryCondition::Contact]
-        .map(|part| mesh.boundary().iter().filter(|f| f.condition == part).count())
+        .map(|condition| mesh.boundary().iter().filter(|f| f.condition == condition).count())
 }
 
 /// Every form of a sample reads to the same mesh.
@@ -53,21 +53,21 @@ fn all_forms<const D: usize>(sample: &Sample) -> Mesh<D> {
 #[test]
 fn interval_in_all_forms() {
     let mesh = all_forms::<1>(&interval());
-    assert_eq!((mesh.n_cells(), parts(&mesh)), (3, [1, 1, 0]));
+    assert_eq!((mesh.n_cells(), conditions(&mesh)), (3, [1, 1, 0]));
     assert!((volume(&mesh) - 2.0).abs() < 1e-15);
 }
 
 #[test]
 fn square_in_all_forms() {
     let mesh = all_forms::<2>(&square());
-    assert_eq!((mesh.n_cells(), parts(&mesh)), (4, [1, 2, 1]));
+    assert_eq!((mesh.n_cells(), conditions(&mesh)), (4, [1, 2, 1]));
     assert!((volume(&mesh) - 1.0).abs() < 1e-15);
 }
 
 #[test]
 fn tetrahedron_in_all_forms() {
     let mesh = all_forms::<3>(&tetrahedron());
-    assert_eq!((mesh.n_cells(), parts(&mesh)), (1, [3, 0, 1]));
+    assert_eq!((mesh.n_cells(), conditions(&mesh)), (1, [3, 0, 1]));
     assert!((volume(&mesh) - 1.0 / 6.0).abs() < 1e-15);
 }
 
@@ -99,15 +99,15 @@ fn a_cell_in_two_groups_is_one_cell() {
 #[test]
 fn files_made_by_hand() {
     let square = parse::<2>(SQUARE.as_bytes()).mesh;
-    assert_eq!((square.n_cells(), parts(&square), volume(&square)), (4, [1, 2, 1], 1.0));
+    assert_eq!((square.n_cells(), conditions(&square), volume(&square)), (4, [1, 2, 1], 1.0));
     // The last cell of this one is listed for two groups.
     let again = parse::<2>(SQUARE_V2.as_bytes()).mesh;
     assert_eq!(again.vertices(), square.vertices());
     assert_eq!((again.cells(), again.boundary()), (square.cells(), square.boundary()));
     let interval = parse::<1>(INTERVAL.as_bytes()).mesh;
-    assert_eq!((interval.n_cells(), parts(&interval), volume(&interval)), (3, [1, 1, 0], 2.0));
+    assert_eq!((interval.n_cells(), conditions(&interval), volume(&interval)), (3, [1, 1, 0], 2.0));
     let body = parse::<3>(TETRAHEDRON.as_bytes()).mesh;
-    assert_eq!((body.n_cells(), parts(&body)), (1, [3, 0, 1]));
+    assert_eq!((body.n_cells(), conditions(&body)), (1, [3, 0, 1]));
 }
 
 #[test]

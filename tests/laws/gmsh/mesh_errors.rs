@@ -55,7 +55,7 @@ fn a_side_in_no_group() {
 fn a_side_in_two_groups() {
     let (text, _) = change(FOUR, "1 0 0 2 1 0 2 1 1 2 1 -2", "1 0 0 2 1 0 2 2 1 3 2 1 -2");
     let error = fail::<2>(text.as_bytes());
-    assert!(matches!(of_mesh(&error), MeshError::FacetInTwoParts { .. }), "{error}");
+    assert!(matches!(of_mesh(&error), MeshError::FacetWithTwoConditions { .. }), "{error}");
     says(&error, &["dirichlet", "contact", "element 2 (line 49)", "nodes 10, 20"]);
 }
 

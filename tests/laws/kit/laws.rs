@@ -97,7 +97,7 @@ fn a_spectrum_that_is_not_reached_is_an_error() {
     assert!(matches!(error, SpectrumError::NotPositive { .. }), "{error}");
 }
 
-/// The change of variables is what it is said to be, on every part of the boundary.
+/// The change of variables is what it is said to be, under every boundary condition.
 #[test]
 fn means_and_jumps() {
     fn on<const D: usize>() {

@@ -7,7 +7,7 @@ use crate::scratch::Scratch;
 use unilateral::inequality::Outcome;
 use unilateral::output::LATEX_PACKAGES;
 use unilateral::stability::{Effort, Stability};
-use unilateral::work_precision::Failure;
+use unilateral::work_precision::WorkPrecision;
 
 /// Cells of a line without quoted commas.
 fn table(csv: &str) -> Vec<Vec<&str>> {
@@ -20,9 +20,9 @@ fn csv_reads_back_to_the_same_numbers() {
     let text = report.to_csv();
     let lines = table(&text);
     assert_eq!(lines.len(), 1 + 8);
-    for (line, measured) in lines[1..].iter().zip(&report.rows) {
+    for (line, row) in lines[1..].iter().zip(&report.rows) {
         // not read back from JSON: that reader may be wrong in the last digit
-        let row = serde_json::to_value(measured).unwrap();
+        let row = serde_json::to_value(row).unwrap();
         let mut numbers = 0;
         for (key, cell) in lines[0].iter().zip(line) {
             let value = row.pointer(&format!("/{}", key.replace('.', "/"))).unwrap();
@@ -35,11 +35,11 @@ fn csv_reads_back_to_the_same_numbers() {
         }
         assert!(numbers > 30, "{numbers}");
     }
-    let smallest = lines[0].iter().position(|k| *k == "smallest.total").unwrap();
-    let expected = report.rows[2].smallest.total;
-    assert_eq!(lines[3][smallest].parse::<f64>().unwrap().to_bits(), expected.to_bits());
-    let reach = report.reach_csv();
-    assert_eq!(table(&reach).len(), 1 + report.reach().len());
+    let scratch = Scratch::new("reach");
+    let work = WorkPrecision::of(&report);
+    work.write(&scratch.0).unwrap();
+    let reach = scratch.read("reach.csv");
+    assert_eq!(table(&reach).len(), 1 + work.reach().len());
     assert!(reach.starts_with("scene,label,solver,linear_asked,meshes,norm,error,standing,"));
 }
 
@@ -52,24 +52,24 @@ fn bars(markdown: &str) -> Vec<Vec<usize>> {
 
 #[test]
 fn markdown_tables_have_as_many_cells_in_each_line() {
-    let text = synthetic().to_markdown();
+    let text = WorkPrecision::of(&synthetic()).to_markdown();
     let tables = bars(&text);
     assert_eq!(tables.len(), 5, "{text}");
     for lines in &tables {
         assert!(lines.iter().all(|n| n == &lines[0]), "{lines:?}\n{text}");
     }
-    assert_eq!(tables[0].len(), 2 + 8);
+    assert_eq!(tables[4].len(), 2 + 8, "the phases of all runs");
     assert!(text.contains("### radial-2d: time to reach an error in L2"));
 }
 
 #[test]
 fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
     let mut report = synthetic();
-    let case = report.rows[0].case();
-    report.refused.push(Failure::new(case, "odd_reason & 100%"));
-    let text = report.to_latex();
+    report.rows[0].warnings.push("odd_reason & 100%".into());
+    let work = WorkPrecision::of(&report);
+    let text = work.to_latex();
     let tables: Vec<&str> = text.split("\\begin{tabular}{").skip(1).collect();
-    assert_eq!(tables.len(), report.summary_tables().len());
+    assert_eq!(tables.len(), work.summary_tables().len());
     for table in tables {
         let (columns, rest) = table.split_once("}\n\\toprule\n").unwrap();
         let body = rest.split("\\end{tabular}").next().unwrap();
@@ -81,8 +81,8 @@ fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
         }
         assert_eq!(body.matches("\\bottomrule").count(), 1);
     }
-    assert!(!text.contains(": runs") && text.contains("\\num{2.83e-3}"), "{text}");
-    let all: String = report.tables().iter().map(|table| table.to_latex()).collect();
+    assert!(!text.contains("phases") && text.contains("\\num{2.83e-3}"), "{text}");
+    let all: String = work.detail_tables().iter().map(|table| table.to_latex()).collect();
     assert!(all.contains("odd\\_reason \\& 100\\%") && all.contains("\\num{1.02e-3}"), "{all}");
 }
 
@@ -90,15 +90,15 @@ fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
 #[ignore = "needs pdflatex"]
 fn needs_pdflatex_to_compile_latex() {
     let mut report = synthetic();
-    let case = report.rows[0].case();
-    report.refused.push(Failure::new(case, "not run: would need about 12.5 GB of memory"));
+    report.rows[5].status = Outcome::OutOfMemory;
     let stability = Stability::new(Effort::Trial).run().unwrap();
     let mut rows = crate::rows::rows();
     rows[3].label += ":facet-means@factor=10,weight=anisotropic";
     rows[5].status = Outcome::Stalled;
     let scratch = Scratch::new("latex");
     crate::rows::report(rows).write(&scratch.0).unwrap();
-    let texts = [report.to_latex(), stability.to_latex(), scratch.read("report.tex")];
+    let texts =
+        [WorkPrecision::of(&report).to_latex(), stability.to_latex(), scratch.read("report.tex")];
     let document = format!(
         "\\documentclass{{article}}\n{LATEX_PACKAGES}\n\\begin{{document}}\n{}\\end{{document}}\n",
         texts.join("\\clearpage\n")
@@ -115,25 +115,27 @@ fn needs_pdflatex_to_compile_latex() {
 #[test]
 fn failures_are_listed_and_drawn() {
     let mut report = synthetic();
-    report.rows[2].row.status = Outcome::Cycling;
-    let failures = report.failures();
-    assert_eq!(failures.len(), 1);
-    assert_eq!((failures[0].case.level, &failures[0].why[..]), (32, "cycling"));
-    assert!(report.to_text().contains("failed: p1, level 32: cycling"));
+    report.rows[2].status = Outcome::Cycling;
+    report.complete = false;
+    let text = WorkPrecision::of(&report).to_text(100);
+    assert!(text.contains("did not converge: cycling"), "{text}");
     let scratch = Scratch::new("drawn");
-    let written = report.write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 5 + 2);
+    let written = WorkPrecision::of(&report).write(&scratch.0).unwrap();
+    assert_eq!(written.len(), 5);
+    // a page and figures come with the last round
+    assert!(!scratch.0.join("report.html").exists());
+    report.complete = true;
+    let written = WorkPrecision::of(&report).write(&scratch.0).unwrap();
+    assert_eq!(written.len(), 6 + 2);
     for plot in ["time", "unknowns"] {
         let text = scratch.read(&format!("radial-2d-{plot}.svg"));
         assert!(text.contains("did not converge"), "{plot}");
     }
-    // a page comes with the last round
-    assert!(!scratch.0.join("report.html").exists());
-    report.provenance.complete = true;
-    let written = report.write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 6 + 2);
     let page = scratch.read("report.html");
-    assert!(page.matches("<svg").count() == 2 && page.contains("time to reach an error"), "{page}");
+    assert!(
+        page.matches("<svg").count() == 2 + 2 && page.contains("time to reach an error"),
+        "{page}"
+    );
     // nothing is left of what was on its way
     let hidden = std::fs::read_dir(&scratch.0).unwrap();
     let is_hidden = |e: std::fs::DirEntry| e.file_name().to_string_lossy().starts_with('.');
@@ -144,11 +146,10 @@ fn failures_are_listed_and_drawn() {
 fn figures_are_as_wide_as_their_longest_label() {
     let width = |label: &str| {
         let mut report = synthetic();
-        report.rows.iter_mut().for_each(|m| m.row.label = format!("{}{label}", m.row.scheme));
-        let scratch = Scratch::new(&format!("wide{}", label.len()));
-        std::fs::create_dir_all(&scratch.0).unwrap();
-        report.write_figures(&scratch.0, "radial-2d").unwrap();
-        let text = scratch.read("radial-2d-time.svg");
+        report.rows.iter_mut().for_each(|row| row.label = format!("{}{label}", row.scheme));
+        let figures = WorkPrecision::of(&report).figures();
+        let of_time = figures.iter().find(|(name, _)| name == "radial-2d-time").unwrap();
+        let text = of_time.1.to_svg();
         for scheme in ["p1", "sipg", "wopsip"] {
             assert!(text.contains(&format!(">{scheme}{label}</text>")), "{scheme}{label}");
         }

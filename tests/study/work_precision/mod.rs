@@ -9,11 +9,11 @@ use crate::scratch::Scratch;
 use serde_json::Value;
 use synthetic::{measured, synthetic};
 use unilateral::inequality::Outcome;
-use unilateral::measure::ErrorNorm;
+use unilateral::linear::LinearMethod;
+use unilateral::measure::{ErrorNorm, Errors};
 use unilateral::prelude::*;
-use unilateral::work_precision::{
-    Failure, Measured, Phases, Standing, WorkAtError, WorkPrecision, WorkProgress, WorkReport,
-};
+use unilateral::study::{Progress, Row, Seconds, Variant};
+use unilateral::work_precision::{Rounds, Standing, WorkAtError, WorkPrecision};
 
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * b.abs()
@@ -21,7 +21,8 @@ fn close(a: f64, b: f64) -> bool {
 
 #[test]
 fn times_to_reach_an_error_come_with_the_ratio_to_the_best() {
-    let reach = synthetic().reach();
+    let report = synthetic();
+    let reach = WorkPrecision::of(&report).reach();
     let l2: Vec<_> = reach.iter().filter(|r| r.norm == ErrorNorm::L2).collect();
     // errors from 1/64 to 1/1024, and the same three variants at each
     let at = |error: f64| l2.iter().filter(|r| r.error == error).collect::<Vec<_>>();
@@ -41,8 +42,8 @@ fn times_to_reach_an_error_come_with_the_ratio_to_the_best() {
 }
 
 /// Where an error in L2 stands for a scheme, and the seconds of the level that bounds the time.
-fn standing(report: &WorkReport, scene: &str, label: &str, error: f64) -> (Standing, Option<f64>) {
-    let at = report.reach().into_iter().find(|r| {
+fn standing(report: &Report, scene: &str, label: &str, error: f64) -> (Standing, Option<f64>) {
+    let at = WorkPrecision::of(report).reach().into_iter().find(|r| {
         (&r.variant.scene[..], &r.variant.label[..], r.norm, r.error)
             == (scene, label, ErrorNorm::L2, error)
     });
@@ -55,63 +56,58 @@ fn standing(report: &WorkReport, scene: &str, label: &str, error: f64) -> (Stand
 fn errors_without_a_time_say_why() {
     let mut report = synthetic();
     report.rows.extend([32, 64].map(|level| measured("cr", level, 1e-6)));
-    let at =
-        |report: &WorkReport, label: &str, error: f64| standing(report, "radial-2d", label, error);
+    let at = |report: &Report, label: &str, error: f64| standing(report, "radial-2d", label, error);
     assert_eq!(at(&report, "wopsip", 5e-3), (Standing::Reached, None));
     assert_eq!(at(&report, "wopsip", 2e-3), (Standing::NotReached, Some(4.5e-6 * 4096.0)));
     assert_eq!(at(&report, "cr", 2e-3), (Standing::Undercut, Some(1e-6 * 32768.0)));
     // a table states both bounds and what they mean
-    let text = report.to_text();
+    let text = WorkPrecision::of(&report).to_text(100);
     assert!(text.contains("> 1.84e-2") && text.contains("< 3.28e-2"), "{text}");
     assert!(text.contains("> t: not reached by the finest level"), "{text}");
 
     // a finer level was asked for and not run
-    let mut finer = report.rows[7].case();
-    assert_eq!((&finer.variant.label[..], finer.level), ("wopsip", 16));
-    finer.level = 32;
-    report.refused.push(Failure::new(finer, "not run: level 16 took 21.0 s"));
+    let mut finer = measured("wopsip", 32, 4.5e-6);
+    (finer.status, finer.error) = (Outcome::TimeLimit, Errors::default());
+    report.rows.push(finer);
     assert_eq!(at(&report, "wopsip", 2e-3), (Standing::NotRun, None));
     assert_eq!(at(&report, "wopsip", 5e-3), (Standing::Reached, None));
     // a level between did not converge, which says nothing of errors above it
-    report.rows[4].row.status = Outcome::Cycling;
-    assert_eq!((&report.rows[4].row.label[..], report.rows[4].row.level), ("sipg", 16));
+    report.rows[4].status = Outcome::Cycling;
+    assert_eq!((&report.rows[4].label[..], report.rows[4].level), ("sipg", 16));
     assert_eq!(at(&report, "sipg", 5e-3), (Standing::Failed, None));
-    let text = report.to_text();
+    let text = WorkPrecision::of(&report).to_text(100);
     assert!(text.contains("  failed  "), "{text}");
-    assert!(
-        report.verdicts()[0].contains("; undercut on the coarsest mesh by cr"),
-        "{:?}",
-        report.verdicts()
-    );
+    let verdicts = WorkPrecision::of(&report).subject("wopsip").verdicts();
+    assert!(verdicts[0].contains("; undercut on the coarsest mesh by cr"), "{verdicts:?}");
     // schemes of another scene
     let elsewhere = ["p1", "sipg"].map(|scheme| [8, 16].map(|n| measured(scheme, n, 1e-6)));
-    report.rows.extend(elsewhere.into_iter().flatten().map(|mut m| {
-        m.row.scene = "signorini-2d".into();
-        m
+    report.rows.extend(elsewhere.into_iter().flatten().map(|mut row| {
+        row.scene = "signorini-2d".into();
+        row
     }));
     assert_eq!(standing(&report, "signorini-2d", "cr", 5e-3), (Standing::NotRun, None));
     assert_eq!(standing(&report, "signorini-2d", "p1", 5e-3), (Standing::Reached, None));
     let title = "signorini-2d: time to reach an error in L2\n";
-    let text = report.to_text();
+    let text = WorkPrecision::of(&report).to_text(100);
     let table = text.split(title).nth(1).unwrap();
     let of_cr = table.lines().find(|line| line.starts_with("cr ")).unwrap();
     let words: Vec<&str> = of_cr.split_whitespace().collect();
     assert_eq!(words, ["cr", "not", "run", "not", "run"]);
     // no errors in a norm are no failure
     let mut report = synthetic();
-    report.rows.iter_mut().skip(6).for_each(|m| m.row.error.l2 = None);
+    report.rows.iter_mut().skip(6).for_each(|row| row.error.l2 = None);
     assert_eq!(at(&report, "wopsip", 5e-3), (Standing::Unknown, None));
 }
 
 #[test]
 fn costs_at_an_error_are_time_unknowns_and_entries() {
     let mut report = synthetic();
-    for m in &mut report.rows {
-        let row = m.row.clone();
-        let total = 1.25 * m.smallest.total;
-        m.add(&row, Phases { solve: total, total, ..Phases::default() });
+    for row in &mut report.rows {
+        let mut again = row.clone();
+        again.seconds.total *= 1.25;
+        row.add_run(&again);
     }
-    let tables = report.tables();
+    let tables = WorkPrecision::of(&report).summary_tables();
     let costs =
         tables.iter().map(|table| table.to_text(100)).find(|t| t.contains("costs")).unwrap();
     let lines: Vec<&str> = costs.lines().collect();
@@ -119,191 +115,199 @@ fn costs_at_an_error_are_time_unknowns_and_entries() {
     // level 200^(1/2): 6 unknowns and 70 entries to its square
     let p1: Vec<&str> = lines[2].split_whitespace().collect();
     assert_eq!(p1, ["p1", "2.83e-3", "(1.00)", "1.25", "1200", "14000"]);
-    assert!(report.to_text().contains("is up to 1.25 times the least"));
+    assert!(WorkPrecision::of(&report).to_text(100).contains("is up to 1.25 times the least"));
 }
 
 #[test]
 fn the_verdict_is_a_sentence_made_from_the_figures() {
     let expected = "radial-2d: at an L2 error of 5e-3 wopsip takes 1.27e-2 s, 4.5 times the time of p1; 1.5 times that of sipg.";
-    assert_eq!(synthetic().verdicts(), [expected]);
-    let mut fastest = synthetic();
-    fastest.subject.clear();
-    assert!(
-        fastest.verdicts()[0].contains("p1 takes 2.83e-3 s, 0.33 times the time of sipg; 0.22")
-    );
+    let report = synthetic();
+    assert_eq!(WorkPrecision::of(&report).subject("wopsip").verdicts(), [expected]);
+    let fastest = &WorkPrecision::of(&report).verdicts()[0];
+    assert!(fastest.contains("p1 takes 2.83e-3 s, 0.33 times the time of sipg; 0.22"), "{fastest}");
 }
 
 #[test]
 fn smallest_and_median_are_those_of_all_runs() {
-    let mut m = measured("p1", 8, 1.0);
-    assert_eq!((m.median_over_least, m.largest_over_least), (None, None));
-    let row = m.row.clone();
+    let mut row = measured("p1", 8, 1.0);
+    assert_eq!(row.median_over_least(), None);
+    let first = row.clone();
     for total in [2.0, 9.0, 4.0, 7.0] {
-        m.add(&row, Phases { solve: total, total, ..Phases::default() });
+        let mut again = first.clone();
+        again.seconds = Seconds::new(0.0, 0.0, total);
+        row.add_run(&again);
     }
-    assert_eq!((m.runs, m.smallest.total, m.median.total), (5, 2.0, 7.0));
-    assert_eq!(m.median_over_least, Some(3.5));
-    let largest = m.largest_over_least.unwrap();
-    assert!(close(largest, 512.0 / 2.0), "{largest}");
-    assert_eq!(m.row.seconds.total, 2.0);
-    assert!(m.row.warnings.is_empty());
-    let mut other = row.clone();
+    assert_eq!(row.runs, Some(vec![2.0, 4.0, 7.0, 9.0, 512.0]));
+    assert_eq!((row.median_over_least(), row.seconds.total), (Some(3.5), 2.0));
+    assert!(row.warnings.is_empty());
+    let mut other = first;
     other.iterations.outer = Some(99);
-    m.add(&other, Phases::default());
-    assert_eq!(m.row.warnings, ["status or counts differ between runs"]);
+    row.add_run(&other);
+    assert_eq!(row.warnings, ["status or counts differ between runs"]);
 }
 
-fn tiny<'a>() -> WorkPrecision<'a, 2> {
-    WorkPrecision::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).scheme(Wopsip::default())
+fn tiny<'a>() -> Study<'a, 2> {
+    Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).scheme(Wopsip::default())
+}
+
+/// The names of the variants of a report.
+fn names(report: &Report) -> Vec<String> {
+    report.series().into_iter().map(|series| series.name).collect()
 }
 
 #[test]
-fn an_interrupted_study_leaves_a_readable_report_of_what_is_finished() {
+fn the_rows_so_far_are_handed_over_after_every_round() {
+    let begun = RefCell::new(0);
+    let study = tiny().levels([4, 8]).observer(|progress| {
+        if let Progress::Started(..) = progress {
+            *begun.borrow_mut() += 1;
+        }
+    });
+    let mut kept = Vec::new();
+    let mut report = synthetic();
+    let before = report.rows.len();
+    let mut keep = |report: &Report| {
+        kept.push((*begun.borrow(), report.rows[before..].to_vec()));
+        Ok(())
+    };
+    Rounds::new(2).run_into(&[study], &mut report, &mut keep).unwrap();
+    let (runs, rows) = &kept[0];
+    assert_eq!((*runs, rows.len()), (4, 4));
+    assert!(rows.iter().all(|row| row.runs.as_ref().is_some_and(|runs| runs.len() == 1)));
+    assert_eq!((kept.len(), *begun.borrow()), (2, 8));
+    assert!(report.rows[before..].iter().all(|row| row.median_over_least() >= Some(1.0)));
+    // what is on disc is readable before the end and after it
     let scratch = Scratch::new("interrupted");
-    let seen = RefCell::new(Vec::new());
-    // what stands on the disc when the second round begins, before anything else is finished
-    let report = tiny()
-        .levels([4, 8])
-        .rounds(2)
-        .write_to(&scratch.0)
-        .observer(|progress| {
-            if let WorkProgress::Started(_, 1) = progress {
-                seen.borrow_mut().push(scratch.read("report.json"));
-            }
-        })
-        .run()
-        .unwrap();
-    let early: Value = serde_json::from_str(&seen.borrow()[0]).unwrap();
-    assert_eq!(early["rows"].as_array().unwrap().len(), 4);
-    assert!(early["rows"].as_array().unwrap().iter().all(|r| r["runs"] == 1));
-    assert_eq!(early["provenance"]["complete"], false);
-    assert_eq!(early["provenance"]["rounds"], 2);
-    let late: Value = serde_json::from_str(&scratch.read("report.json")).unwrap();
-    assert_eq!(late["provenance"]["complete"], true);
+    for complete in [false, true] {
+        report.complete = complete;
+        WorkPrecision::of(&report).write(&scratch.0).unwrap();
+        let read: Value = serde_json::from_str(&scratch.read("report.json")).unwrap();
+        assert_eq!(read["complete"], complete);
+        assert_eq!(read["rows"].as_array().unwrap().len(), before + 4);
+    }
     assert!(scratch.read("radial-2d-time.svg").contains("wopsip"));
-    assert!(report.rows.iter().all(|m| m.runs == 2));
 }
 
 #[test]
 fn a_tiny_study_measures_every_variant_alike() {
-    let report = tiny()
-        .scheme_on(Wopsip::default(), FacetMeans)
-        .linear([
-            unilateral::linear::LinearMethod::Direct,
-            unilateral::linear::LinearMethod::Iterative,
-        ])
-        .levels([8, 4])
-        .rounds(3)
-        .run()
-        .unwrap();
+    let study = |(name, linear)| {
+        let solver = unilateral::inequality::ActiveSet::default().linear(linear);
+        let study = tiny().scheme_on(Wopsip::default(), FacetMeans).linear_asked(name);
+        study.solver(solver).levels([8, 4])
+    };
+    let both = [("direct", LinearMethod::Direct), ("iterative", LinearMethod::Iterative)];
+    let report = Rounds::new(3).run(&both.map(study)).unwrap();
     assert_eq!(report.rows.len(), 3 * 2 * 2);
-    assert_eq!(report.failures(), []);
-    assert_eq!(report.program.precision, "f64");
-    let labels: Vec<String> =
-        report.variants().iter().map(|v| v.name_among(&report.variants())).collect();
-    assert_eq!(labels.len(), 6);
-    assert_eq!(labels[0], "p1, direct");
-    assert_eq!(labels[5], "wopsip:facet-means, iterative");
-    for m in &report.rows {
-        assert_eq!(m.runs, 3);
-        assert!(m.smallest.total > 0.0 && m.smallest.total <= m.median.total);
-        for p in [m.smallest, m.median] {
-            let sum = p.mesh + p.assemble + p.coarse + p.solve;
-            assert!((sum - p.total).abs() <= 1e-9, "{p:?}");
-            // WOPSIP starts from P1, P1 on the coarsest level from nothing
-            assert_eq!(p.coarse > 0.0, m.row.scheme != "p1" || m.row.level == 8, "{p:?}");
-        }
-        assert!(m.row.certificate.residual < 1e-9);
-        // the same counts and errors as a study of this scheme alone
-        assert_eq!(m.row.order.l2.is_some(), m.row.level == 8);
+    assert!(report.rows.iter().all(Row::converged));
+    assert_eq!((&report.program.precision[..], report.program.repeat), ("f64", 3));
+    let names = names(&report);
+    assert_eq!(names.len(), 6);
+    assert_eq!(names[0], "p1, direct");
+    assert_eq!(names[5], "wopsip:facet-means, iterative");
+    for row in &report.rows {
+        let runs = row.runs.as_ref().unwrap();
+        assert_eq!((runs.len(), runs[0]), (3, row.seconds.total));
+        assert!(runs[0] > 0.0 && runs.is_sorted());
+        let Seconds { mesh, assemble, solve, start, .. } = row.seconds;
+        assert!((mesh + assemble + solve - runs[0]).abs() <= 1e-9, "{:?}", row.seconds);
+        // WOPSIP starts from P1, P1 on the coarsest level from nothing
+        let start = start.unwrap();
+        assert!(start <= solve, "{:?}", row.seconds);
+        assert_eq!(start > 0.0, row.scheme != "p1" || row.level == 8, "{:?}", row.seconds);
+        assert!(row.certificate.residual < 1e-9);
+        assert_eq!(row.order.l2.is_some(), row.level == 8);
     }
-    let alone = Study::<2>::new(scenes::radial(1.0))
-        .scheme(ConformingP1)
-        .solver(
-            unilateral::inequality::ActiveSet::default()
-                .linear(unilateral::linear::LinearMethod::Direct),
-        )
-        .levels([4, 8])
-        .run()
-        .unwrap();
-    for (a, m) in alone.rows.iter().zip(&report.rows) {
-        assert_eq!(
-            (a.error, a.nonzeros, a.iterations.clone()),
-            (m.row.error, m.row.nonzeros, m.row.iterations.clone())
-        );
+    // the same counts and errors as a study in one round
+    let alone = study(both[0]).run().unwrap();
+    for (a, row) in alone.rows.iter().zip(&report.rows) {
+        let of = |row: &Row| (row.label.clone(), row.level, row.error, row.nonzeros);
+        assert_eq!((of(a), &a.iterations), (of(row), &row.iterations));
     }
 }
 
 #[test]
 fn adaptive_meshes_stand_beside_uniform_ones() {
     let adaptivity = Adaptivity::default().steps(3);
-    let study = || tiny().levels([4, 8]).adaptive(adaptivity).rounds(2);
-    assert_eq!(study().check().unwrap().len(), 2 * 3);
-    let scratch = Scratch::new("work-adaptive");
-    let report = study().write_to(&scratch.0).run().unwrap();
-    assert_eq!(report.failures(), []);
+    let studies = [tiny().levels([4, 8]), tiny().levels([4]).adaptive(adaptivity)];
+    assert_eq!(Rounds::new(2).check(&studies).unwrap(), 2 * 2 * 3);
+    let report = Rounds::new(2).run(&studies).unwrap();
+    assert!(report.rows.iter().all(Row::converged));
     assert_eq!(report.rows.len(), 2 * (2 + 4));
-    let names: Vec<String> =
-        report.variants().iter().map(|v| v.name_among(&report.variants())).collect();
-    assert_eq!(names, ["p1, uniform", "p1, adaptive", "wopsip, uniform", "wopsip, adaptive"]);
-    let alone = Study::<2>::new(scenes::radial(1.0))
-        .scheme(ConformingP1)
-        .scheme(Wopsip::default())
-        .levels([4])
-        .adaptive(adaptivity)
-        .run()
-        .unwrap();
-    let adaptive = || report.rows.iter().filter(|m| m.meshes.is_adaptive());
-    assert_eq!(adaptive().count(), alone.rows.len());
-    for (m, row) in adaptive().zip(&alone.rows) {
-        assert_eq!((m.row.level, m.row.error, &m.row.bound), (row.level, row.error, &row.bound));
-        assert_eq!((m.runs, m.row.peak_memory_bytes), (2, None));
-        let p = m.smallest;
-        let sum = p.mesh + p.assemble + p.solve + p.bound.unwrap();
-        assert!((sum - p.total).abs() <= 1e-9 && m.seconds_to(ErrorNorm::Bound) == p.total);
+    assert_eq!(
+        names(&report),
+        ["p1, uniform", "wopsip, uniform", "p1, adaptive", "wopsip, adaptive"]
+    );
+    let alone = studies[1].run().unwrap();
+    let (adaptive, uniform): (Vec<&Row>, Vec<&Row>) =
+        report.rows.iter().partition(|row| row.theta.is_some());
+    assert_eq!(adaptive.len(), alone.rows.len());
+    for (row, alone) in adaptive.into_iter().zip(&alone.rows) {
+        assert_eq!((row.level, row.error, &row.bound), (alone.level, alone.error, &alone.bound));
+        let runs = row.runs.as_ref().map(Vec::len);
+        assert_eq!((runs, row.peak_memory_bytes), (Some(2), None));
+        let Seconds { mesh, assemble, solve, bound, total, .. } = row.seconds;
+        assert!((mesh + assemble + solve + bound.unwrap() - total).abs() <= 1e-9);
+        assert_eq!(row.seconds_to(ErrorNorm::Bound), total);
     }
-    for m in report.rows.iter().filter(|m| !m.meshes.is_adaptive()) {
-        let with_bound = m.smallest.total + m.smallest.bound.unwrap();
-        assert_eq!(m.seconds_to(ErrorNorm::Bound), with_bound);
-        assert_eq!(m.seconds_to(ErrorNorm::H1), m.smallest.total);
+    for row in uniform {
+        let with_bound = row.seconds.total + row.seconds.bound.unwrap();
+        assert_eq!(row.seconds_to(ErrorNorm::Bound), with_bound);
+        assert_eq!(row.seconds_to(ErrorNorm::H1), row.seconds.total);
     }
     // adaptive meshes follow the bound, and the bound is what the verdict compares by
-    let verdict = &report.verdicts()[0];
+    let work = WorkPrecision::of(&report);
+    let verdict = &work.verdicts()[0];
     assert!(verdict.starts_with("radial-2d: at an error bound of "), "{verdict}");
     let by_bound = |r: &&WorkAtError| r.norm == ErrorNorm::Bound;
-    for r in report.reach().iter().filter(by_bound) {
-        let of = |m: &&Measured| m.variant() == r.variant && m.row.bound.total > Some(r.error);
+    for r in work.reach().iter().filter(by_bound) {
+        let of = |row: &&Row| Variant::of(row) == r.variant && row.bound.total > Some(r.error);
         let coarser = report.rows.iter().rfind(of);
-        let is_above = |m: &Measured| r.seconds.is_none_or(|s| s >= m.seconds_to(r.norm));
+        let is_above = |row: &Row| r.seconds.is_none_or(|s| s >= row.seconds_to(r.norm));
         assert!(coarser.is_none_or(is_above), "{r:?}");
     }
-    let text = report.to_text();
+    let text = work.to_text(100);
     assert!(text.contains("time to reach an error bound\n"), "{text}");
-    let mut runs = text.lines().skip(1).take_while(|line| !line.contains("phases"));
-    assert!(runs.all(|line| line.len() <= 110), "{text}");
-    let rows: Value = serde_json::from_str(&scratch.read("report.json")).unwrap();
-    assert_eq!(rows["rows"][2]["meshes"], "adaptive");
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    let scratch = Scratch::new("work-adaptive");
+    work.write(&scratch.0).unwrap();
     assert!(scratch.read("radial-2d-time.svg").contains("time in s, bound included"));
 }
 
 #[test]
 fn wrong_requests_are_refused_before_anything_runs() {
-    let message = |study: WorkPrecision<2>| study.run().unwrap_err().to_string();
-    assert!(message(tiny()).contains("needs a scheme"));
+    let message = |study: Study<2>| Rounds::new(1).run(&[study]).unwrap_err().to_string();
+    assert!(message(tiny()).contains("needs levels"));
     let share = Adaptivity::default().theta(2.0);
     assert!(message(tiny().levels([4]).adaptive(share)).contains("share of marked cells"));
     assert!(message(tiny().levels([0, 4])).contains("at least one subdivision"));
     assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("tell their rows apart"));
-    let named: NamedScheme = "wopsip@factor=1".parse().unwrap();
-    assert!(message(tiny().named_scheme(&named).levels([4])).contains("tell their rows apart"));
+    let twice = [tiny().levels([4]), tiny().levels([4, 8])];
+    assert!(Rounds::new(1).run(&twice).unwrap_err().to_string().contains("tell their rows apart"));
+    assert!(Rounds::new(1).run::<2>(&[]).is_err());
 }
 
 #[test]
 fn what_takes_too_long_is_not_repeated_and_finer_levels_are_listed() {
-    let report = tiny().levels([4, 8]).rounds(2).limit(1e-12).run().unwrap();
-    assert_eq!(report.rows.len(), 2);
-    assert!(report.rows.iter().all(|m| m.runs == 1 && m.row.level == 4));
-    let failures = report.failures();
-    assert_eq!(failures.len(), 2);
-    assert!(failures.iter().all(|f| f.why.starts_with("not run: level 4 took")));
+    let report = Rounds::new(2).limit(1e-12).run(&[tiny().levels([4, 8, 16])]).unwrap();
+    assert_eq!(report.rows.len(), 6);
+    for row in &report.rows {
+        let runs = row.runs.as_ref().map(Vec::len);
+        let message = row.message.as_deref().unwrap_or_default();
+        match row.level {
+            4 => assert!(row.converged() && runs == Some(1)),
+            8 => assert!(message.starts_with("not run: level 4 took"), "{message}"),
+            _ => assert_eq!(message, "not run: level 8 was not, either"),
+        }
+        assert_eq!(row.status == Outcome::TimeLimit, row.level > 4);
+    }
+}
+
+#[test]
+fn errors_are_against_a_reference_where_there_is_one() {
+    let study = tiny().levels([4, 8]).reference(ConformingP2, 32);
+    let rows = study.run().unwrap().rows;
+    for (row, alone) in Rounds::new(1).run(&[study]).unwrap().rows.iter().zip(&rows) {
+        assert_eq!(row.against.as_deref(), Some("p2 at level 32"));
+        assert_eq!((&row.label, row.error), (&alone.label, alone.error));
+    }
 }

@@ -3,6 +3,7 @@
 //! `cargo run --release -- compare --help` lists the options. Exit codes: 0 if every row converged,
 //! 1 if some did not or the run could not go on, 2 if the request was wrong, 130 if it was interrupted.
 
+mod dump;
 mod interrupt;
 mod options;
 #[cfg(feature = "petsc")]
@@ -10,29 +11,23 @@ mod over_processes;
 mod prepare;
 mod watcher;
 
+use dump::write_requests;
 use interrupt::Interrupt;
 pub use options::{Options, list};
-use options::{check_numbers, choose, choose_schemes};
+use options::{check_numbers, choose_schemes};
 use prepare::{Run, prepare};
 use watcher::Watcher;
 
-use crate::judge::write_requests;
+use crate::asked::choose;
 use crate::one_run::take_directory;
 use crate::shared::{
-    ORDER_TOLERANCE, Request, check_writable, complain, print, print_to, problem, terminal_width,
-    use_threads, warn, write,
+    Request, check_writable, complain, print, print_to, terminal_width, use_threads, warn, write,
 };
-
-use std::path::Path;
 
 use unilateral::in_its_dimension;
 use unilateral::inequality::SOLVERS;
-use unilateral::input::excerpt;
-use unilateral::mesh::gmsh::GmshFile;
-use unilateral::problem_file::ProblemFile;
-use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters};
+use unilateral::scenes::AnyScene;
 use unilateral::scheme::NamedScheme;
-use unilateral::study::orders_table;
 use unilateral::study::{Journal, Program, Report, Row, RowKey};
 
 /// Whether every row converged.
@@ -44,9 +39,9 @@ pub fn run(options: &Options) -> Request<bool> {
         return run_over_processes(options);
     }
     check_numbers(options)?;
-    use_threads(options.threads)?;
+    use_threads(options.asked.threads)?;
     let copy = options.clone();
-    let resumes = options.adaptive.is_none() && options.dump.is_none();
+    let resumes = options.asked.adaptive.is_none() && options.dump.is_none();
     let interrupt = Interrupt::install(resumes, move |report| write_all(&copy, report))?;
     let watcher = Watcher::new(options);
     Chosen::new(options, &watcher)?.run(options, &watcher, &interrupt)
@@ -72,35 +67,9 @@ fn run_over_processes(_: &Options) -> Request<bool> {
 /// The program, with all that its rows depend on and do not say.
 fn program(options: &Options, files: &[(&str, String)]) -> Program {
     let threads = rayon::current_num_threads();
-    let words = std::env::args().skip(1);
-    let mut program = Program::new("compare", &options.precision, threads, options.repeat)
-        .with_command(std::iter::once("unilateral".to_owned()).chain(words));
-    for (name, value) in
-        [("scale", options.scale), ("contrast", options.contrast), ("load", options.load)]
-    {
-        if let Some(x) = value {
-            program = program.with_request(name, format!("{x:?}"));
-        }
-    }
-    if let Some(linear) = &options.linear {
-        program = program.with_request("linear", linear);
-    }
-    if let Some((scheme, level)) = &options.reference {
-        program = program.with_request("reference", format!("{scheme} at level {level}"));
-    }
-    if let Some(of) = &options.adaptive {
-        program = program.with_request("adaptive", crate::adaptive::words(of));
-        if let [level] = options.levels[..] {
-            program = program.with_request("first level", level);
-        }
-    }
-    for (name, part) in &options.mesh.boundary {
-        program = program.with_request(&format!("boundary {name}"), part.name());
-    }
-    for (name, fingerprint) in files {
-        program = program.with_request(name, fingerprint);
-    }
-    program
+    let program = Program::new("compare", &options.precision, threads, options.repeat);
+    let program = options.asked.stated_in(program, files);
+    options.linear.iter().fold(program, |program, linear| program.with_request("linear", linear))
 }
 
 /// What the options ask for, with every name found.
@@ -115,80 +84,12 @@ struct Chosen {
 
 impl Chosen {
     fn new(options: &Options, watcher: &Watcher) -> Request<Self> {
-        let warn = |warning| watcher.warn_once(warning);
-        let mesh = options.mesh.read()?;
         let schemes = choose_schemes(options)?;
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
-        if let Some(path) = &options.problem {
-            Self::check_problem(options, path)?;
-            let ProblemFile { scene, fingerprints, .. } = problem(path, &warn)?;
-            return Ok(Self { scenes: vec![scene], schemes, solvers, fingerprints });
-        }
-        let scenes = Self::scenes(options, mesh.as_ref().map(GmshFile::dimension))?;
-        let on_mesh = |scene| options.mesh.under(scene, mesh.as_ref(), &warn);
-        let scenes = scenes.into_iter().map(on_mesh).collect::<Request<_>>()?;
-        let fingerprints = mesh.iter().map(|file| ("mesh", file.fingerprint())).collect();
+        let warn = |warning| watcher.warn_once(warning);
+        let (scenes, fingerprints) = options.asked.scenes(&["radial-2d", "signorini-2d"], &warn)?;
         Ok(Self { scenes, schemes, solvers, fingerprints })
-    }
-
-    /// Refuses a problem file that is not there, and parameters of scenes beside one.
-    fn check_problem(options: &Options, path: &Path) -> Request<()> {
-        if !path.exists() {
-            let path = excerpt(path.as_os_str().as_encoded_bytes());
-            return Err(format!("there is no file {path}; scenes are named by --scene"));
-        }
-        let parameters =
-            [("scale", options.scale), ("contrast", options.contrast), ("load", options.load)];
-        match parameters.iter().find_map(|(n, x)| Some((n, (*x)?))) {
-            None => Ok(()),
-            Some((name, x)) => {
-                let path = path.display();
-                Err(format!("--{name} {x:?}: a parameter of scenes; {path} has none"))
-            }
-        }
-    }
-
-    fn scenes(options: &Options, mesh: Option<usize>) -> Request<Vec<AnyScene>> {
-        let mut catalogue = scenes::catalogue();
-        let names: Vec<&str> = catalogue.iter().map(|s| &s.name[..]).collect();
-        let default = if mesh.is_some() { &names[..] } else { &["radial-2d", "signorini-2d"] };
-        let wanted = choose("scene", &options.scenes, default, &names)?;
-        // with a mesh, all scenes are all that live in its dimension
-        let any_fitting = !options.scenes_are_named();
-        catalogue.retain(|s| !any_fitting || mesh.is_none_or(|d| d == s.dimension));
-        let takers = |parameter: &str,
-                      accepts: fn(&AcceptedParameters) -> bool,
-                      value: Option<f64>| {
-            let takers: Vec<&str> =
-                catalogue.iter().filter(|s| accepts(&s.accepts)).map(|s| &s.name[..]).collect();
-            match value {
-                Some(x) if !takers.iter().any(|s| wanted.iter().any(|w| w == s)) => Err(format!(
-                    "--{parameter} {x:?}: none of the scenes chosen takes it; there are: {}",
-                    if takers.is_empty() { "none".to_owned() } else { takers.join(", ") }
-                )),
-                _ => Ok(()),
-            }
-        };
-        takers("scale", |t| t.scale, options.scale)?;
-        takers("contrast", |t| t.contrast, options.contrast)?;
-        takers("load", |t| t.load, options.load)?;
-        let mut scenes = Vec::new();
-        for entry in wanted.iter().filter_map(|name| catalogue.iter().find(|s| s.name == *name)) {
-            if let Some(d) = mesh.filter(|&d| d != entry.dimension) {
-                return Err(format!(
-                    "the mesh has dimension {d}, scene {} has {}: choose a scene of dimension {d} (--list names them)",
-                    entry.name, entry.dimension
-                ));
-            }
-            // a parameter goes to the scenes that take it
-            let parameters = Parameters::new()
-                .with_scale(options.scale.filter(|_| entry.accepts.scale))
-                .with_contrast(options.contrast.filter(|_| entry.accepts.contrast))
-                .with_load(options.load.filter(|_| entry.accepts.load));
-            scenes.push(entry.make(&parameters));
-        }
-        scenes.into_iter().collect::<Result<_, _>>().map_err(|e| e.to_string())
     }
 
     /// Whether every row converged. Nothing runs and nothing is written before everything has been
@@ -279,7 +180,7 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
 /// Makes sure before the work, not after it, that the report can be written, and by no other run.
 fn check_output(options: &Options) -> Request<()> {
     let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
-    check_writable(json.into_iter().chain(&options.orders))?;
+    check_writable(json)?;
     options.dump.iter().chain([&options.out]).try_for_each(|directory| take_directory(directory))
 }
 
@@ -292,23 +193,23 @@ fn write_all(options: &Options, report: &Report) -> Request<()> {
         Some(path) => write(path, report.to_json()),
         None => Ok(()),
     };
-    let orders = options.orders.as_ref().map_or(Ok(()), |path| {
-        write(path, orders_table(&report.observed_orders(), ORDER_TOLERANCE))
-    });
-    files.and(json).and(orders)
+    files.and(json)
 }
 
 /// Prints the tables of a run that ended of itself.
 fn show(options: &Options, report: &Report) -> Request<()> {
-    if options.quiet || report.rows.is_empty() {
+    if options.asked.quiet || report.rows.is_empty() {
         return Ok(());
     }
     let (out, is_whole) = (options.out.display(), report.complete);
     let files = if is_whole { "Report, plots and fields are" } else { "The incomplete report is" };
-    let details =
-        if options.details { format!("\n{}", report.details_to_text()) } else { String::new() };
+    let width = terminal_width();
+    let details = match options.details {
+        true => format!("\n{}", report.details_to_text(width)),
+        false => String::new(),
+    };
     let more = if options.details { "" } else { "; --details shows all levels" };
-    let summary = report.summary_to_text(terminal_width());
+    let summary = report.summary_to_text(width);
     let text = format!("{summary}{details}\nTimes are in seconds{more}. {files} in {out}\n");
     match options.json.as_deref().is_some_and(|path| path.as_os_str() == "-") {
         true => print_to(std::io::stderr(), &text),

@@ -5,122 +5,77 @@ use std::path::PathBuf;
 use clap::Args;
 use unilateral::constraint::CONSTRAINT_SETS;
 use unilateral::inequality::SOLVERS;
-use unilateral::input::excerpt;
-use unilateral::nested::Adaptivity;
 use unilateral::scenes;
 use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 
-use crate::adaptive::adaptivity;
-use crate::mesh_file::MeshFile;
-use crate::shared::{MOST_THREADS, Request, each_once, reference, schemes};
+use crate::asked::{Asked, OUTPUT, PROBLEM, SCHEMES as OF_SCHEMES, SOLVER};
+use crate::asked::{check_count, known, number, whole};
+use crate::shared::{Request, schemes};
+
+const EXAMPLES: &str = "\
+Examples:
+  unilateral compare --scene ball-2d --scheme p1,wopsip@factor=10 --levels 8,16,32
+  unilateral compare plate.toml --reference 4 --details --out plate";
 
 /// Compares finite element schemes on obstacle and Signorini problems
 #[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Options {
-    /// A problem of your own: a TOML file with mesh or box, data by name and boundary conditions
-    #[arg(value_name = "PROBLEM.toml", conflicts_with_all = ["scenes", "mesh", "boundary"])]
-    pub problem: Option<PathBuf>,
-    /// Name every scene, scheme, constraint placement and solver, and end
-    #[arg(long)]
-    pub list: bool,
-    /// Scenes by name, or `all`; with --mesh by default all that fit the mesh
-    #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
-    pub scenes: Vec<String>,
-    /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]], or `all`; --list names the keys of each
-    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
-    pub schemes: Vec<String>,
-    /// On a box, a scene's own or that of a problem: subdivisions of its shortest side, from 1; on a mesh of a file:
-    /// uniform refinements, from 0
-    #[arg(long, visible_alias = "level", value_delimiter = ',', value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
-    pub levels: Vec<usize>,
-    /// Meshes that follow the error bound in place of levels, until the bound is GOAL; or keys:
-    /// theta=0.5,steps=20,unknowns=1e6,goal=GOAL. --levels N then sets the first mesh
-    #[arg(long, value_name = "GOAL|KEY=VALUE[,...]", allow_negative_numbers = true,
-        value_parser = adaptivity, conflicts_with_all = ["reference", "resume", "dump"])]
-    pub adaptive: Option<Adaptivity>,
     #[command(flatten)]
-    pub mesh: MeshFile,
-    /// Measure against one fine solution in place of the exact one, by p2 where no scheme is named
-    #[arg(long, value_name = "[SCHEME@level=]N", value_parser = reference)]
-    pub reference: Option<(NamedScheme, usize)>,
-    /// Length scale of scenes that have one
-    #[arg(long, value_name = "L", allow_negative_numbers = true, value_parser = number)]
-    pub scale: Option<f64>,
-    /// Ratio of coefficients of scenes that have one
-    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
-    pub contrast: Option<f64>,
-    /// Load of scenes that have one
-    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
-    pub load: Option<f64>,
-    /// Interior penalty X / h_F on every facet, for schemes named without a penalty
-    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
+    pub asked: Asked,
+    /// Name every scene, scheme, constraint placement and solver, and end
+    #[arg(help_heading = PROBLEM, long)]
+    pub list: bool,
+    /// Interior penalty X / h_F, for schemes without a penalty
+    #[arg(help_heading = OF_SCHEMES, long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub sigma: Option<f64>,
-    /// WOPSIP weight X / h_F^3 on every facet (quadratics: h_F^5), for schemes named without a penalty
-    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
+    /// WOPSIP weight X / h_F^3 (P2: h_F^5), for schemes without a penalty
+    #[arg(help_heading = OF_SCHEMES, long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub eta: Option<f64>,
-    /// Where schemes named without a placement that have the choice impose the inequality
-    #[arg(long, value_parser = CONSTRAINT_SETS.map(|set| set.0), default_value = "vertices")]
+    /// Placement of schemes named without one; vertices by default
+    #[arg(help_heading = OF_SCHEMES, long, value_name = "PLACEMENT", default_value = "vertices", hide_default_value = true,
+        value_parser = CONSTRAINT_SETS.map(|set| set.0), hide_possible_values = true)]
     pub constraint: String,
-    /// Solvers of the inequality, side by side where several; active-set by default
-    #[arg(long = "solver", value_delimiter = ',', value_name = "A[,B...]")]
+    /// Solvers of the inequality, side by side; active-set by default
+    #[arg(help_heading = SOLVER, long = "solver", value_delimiter = ',', value_name = "A[,B...]")]
     pub solvers: Vec<String>,
-    /// Linear solver inside it: direct or iterative; by default whichever is faster
-    #[arg(long, value_name = "NAME")]
+    /// Linear solver: direct or iterative; by default whichever is faster
+    #[arg(help_heading = SOLVER, long, value_name = "NAME")]
     pub linear: Option<String>,
-    /// Scalar of assembly and solve
-    #[arg(long, value_parser = ["f64", "f32"], default_value = "f64")]
+    /// Scalar of the solve
+    #[arg(help_heading = SOLVER, long, value_name = "NAME", value_parser = ["f64", "f32"], default_value = "f64")]
     pub precision: String,
-    /// Number of threads; all cores by default
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
-    pub threads: Option<usize>,
-    /// Every time is the smallest of K runs
-    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = whole, default_value_t = 1)]
+    /// Every time is the least of K runs
+    #[arg(help_heading = SOLVER, long, value_name = "K", allow_negative_numbers = true, value_parser = whole, default_value_t = 1)]
     pub repeat: usize,
-    /// Where the report goes; it has pictures of meshes of at most 5000 cells
-    #[arg(long, value_name = "DIR", default_value = "target/compare")]
-    pub out: PathBuf,
-    /// Write every algebraic inequality to a folder of DIR, for other solvers; `judge` reads their results
-    #[arg(long, value_name = "DIR")]
-    pub dump: Option<PathBuf>,
-    /// Keep the rows of this request that the report in DIR has, and run the others
-    #[arg(long, conflicts_with = "dump")]
-    pub resume: bool,
-    /// Also write the JSON report here; `-` for standard output
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
-    /// Also write a table of observed against promised orders here, in Markdown
-    #[arg(long, value_name = "FILE")]
-    pub orders: Option<PathBuf>,
-    /// Scalar of fields in .vtu files; coordinates have f64 always
-    #[arg(long, value_parser = ["f32", "f64"], default_value = "f32")]
-    pub fields: String,
-    /// No .vtu files
-    #[arg(long, conflicts_with = "fields_of_all_levels")]
-    pub no_fields: bool,
-    /// Write the fields of every level, and for each scheme a .pvd file that lists its .vtu files
-    #[arg(long)]
-    pub fields_of_all_levels: bool,
-    /// Over the processes of mpirun: preconditioners by PETSc, or the whole inequality by its SNESVI, to
-    /// check one by the other; petsc by default
-    #[arg(long, value_name = "NAME", value_parser = ["petsc", "snesvi"])]
+    /// Over mpirun: petsc for preconditioners, or snesvi for the whole inequality
+    #[arg(help_heading = SOLVER, long, value_name = "NAME", value_parser = ["petsc", "snesvi"],
+        hide_possible_values = true, hide = !cfg!(feature = "petsc"))]
     pub engine: Option<String>,
-    /// Over the processes of mpirun: compare all rows with those of the whole mesh, bit for bit
-    #[arg(long)]
+    /// Over mpirun: compare all rows with those of the whole mesh, bit for bit
+    #[arg(help_heading = SOLVER, long, hide = !cfg!(feature = "petsc"))]
     pub verify: bool,
+    /// Where the report goes
+    #[arg(help_heading = OUTPUT, long, value_name = "DIR", default_value = "target/compare")]
+    pub out: PathBuf,
     /// After the summary also the tables of all levels
-    #[arg(long)]
+    #[arg(help_heading = OUTPUT, long)]
     pub details: bool,
-    /// No progress, no tables
-    #[arg(long)]
-    pub quiet: bool,
-}
-
-impl Options {
-    /// Whether the user named scenes, not all or whichever are the default.
-    pub fn scenes_are_named(&self) -> bool {
-        let all = self.scenes.is_empty() || self.scenes.iter().any(|name| name == "all");
-        self.problem.is_some() || !all
-    }
+    /// Also write the JSON report here; `-` for standard output
+    #[arg(help_heading = OUTPUT, long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Keep the rows of this request that DIR has, and run the others
+    #[arg(help_heading = OUTPUT, long, conflicts_with_all = ["dump", "adaptive"])]
+    pub resume: bool,
+    /// Every algebraic inequality, in a folder of DIR, for `judge`
+    #[arg(help_heading = OUTPUT, long, value_name = "DIR", conflicts_with = "adaptive")]
+    pub dump: Option<PathBuf>,
+    /// No .vtu files
+    #[arg(help_heading = OUTPUT, long, conflicts_with = "fields_of_all_levels")]
+    pub no_fields: bool,
+    /// .vtu files of every level, and a .pvd file for each scheme
+    #[arg(help_heading = OUTPUT, long)]
+    pub fields_of_all_levels: bool,
 }
 
 /// Linear solvers inside those of the inequality, with one line each.
@@ -130,14 +85,6 @@ const LINEAR: &[(&str, &str)] = &[
 ];
 /// The times of a thousand runs have no smaller least than those of more.
 const MOST_REPEATS: usize = 1000;
-
-fn whole(text: &str) -> Request<usize> {
-    text.parse().map_err(|_| "expected a whole number, such as 16".to_owned())
-}
-
-fn number(text: &str) -> Request<f64> {
-    text.parse().map_err(|_| "expected a number, such as 2.5 or 1e-3".to_owned())
-}
 
 /// Every scene, scheme, constraint placement and solver, with one line each.
 pub fn list() -> String {
@@ -167,35 +114,9 @@ fn with_keys((name, summary): &(&str, &str)) -> String {
     }
 }
 
-/// A name of a list, or a message with the list.
-fn known(kind: &str, name: &str, names: &[&str]) -> Request<()> {
-    if names.contains(&name) {
-        return Ok(());
-    }
-    Err(format!("unknown {kind} \"{}\"; there are: {}", excerpt(name), names.join(", ")))
-}
-
-/// The names asked for, each once; all of them if one is `all`.
-pub fn choose(
-    kind: &str,
-    asked: &[String],
-    default: &[&str],
-    names: &[&str],
-) -> Request<Vec<String>> {
-    let allowed = [names, &["all"]].concat();
-    asked.iter().try_for_each(|name| known(kind, name, &allowed))?;
-    Ok(if asked.is_empty() {
-        default.iter().map(|&name| name.to_owned()).collect()
-    } else if asked.iter().any(|name| name == "all") {
-        names.iter().map(|&name| name.to_owned()).collect()
-    } else {
-        each_once(asked)
-    })
-}
-
 /// The schemes asked for; refuses a penalty factor that none of them takes.
 pub fn choose_schemes(options: &Options) -> Request<Vec<NamedScheme>> {
-    let chosen = schemes(&options.schemes, &["p1", "sipg", "wopsip", "wopsip:facet-means"])?;
+    let chosen = schemes(&options.asked.schemes, &["p1", "sipg", "wopsip", "wopsip:facet-means"])?;
     for (key, given) in [("sigma", options.sigma), ("eta", options.eta)] {
         let takes = |name: &str| keys_of_scheme(name).contains(&key);
         if let Some(x) = given.filter(|_| !chosen.iter().any(|scheme| takes(scheme.name()))) {
@@ -220,16 +141,11 @@ pub fn check_numbers(options: &Options) -> Request<()> {
             return Err(format!("{name} {x:?}: a penalty factor must be positive and finite"));
         }
     }
-    for (name, value, most) in [
-        ("--repeat", Some(options.repeat), MOST_REPEATS),
-        ("--threads", options.threads, MOST_THREADS),
-    ] {
-        match value {
-            Some(0) => return Err(format!("{name} 0: must be at least 1")),
-            Some(n) if n > most => return Err(format!("{name} {n}: must be at most {most}")),
-            _ => {}
-        }
+    options.asked.check()?;
+    if options.asked.adaptive.is_some() && options.asked.reference.is_some() {
+        return Err("--adaptive cannot be used with --reference, which needs uniform refinements of all meshes".to_owned());
     }
+    check_count("--repeat", Some(options.repeat), MOST_REPEATS)?;
     let names = |list: &[(&'static str, &str)]| list.iter().map(|s| s.0).collect::<Vec<_>>();
     if let Some(name) = &options.linear {
         known("linear solver", name, &names(LINEAR))?;

@@ -5,17 +5,16 @@
 use unilateral::distributed::Process;
 use unilateral::distributed::petsc::Processes;
 use unilateral::in_its_dimension;
-use unilateral::paraview::FieldScalar;
 use unilateral::processes::{ExchangeError, agree};
 use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Journal, PartChecks, Report, Row, Study};
+use unilateral::study::{Journal, PartChecks, Report, Row};
 
 use super::options::{Options, check_numbers};
-use super::prepare::{default_levels, place};
+use super::prepare::study;
 use super::watcher::Watcher;
 use super::{Chosen, check_output, processes_of_job, program, write_all};
-use crate::shared::{Request, complain, each_once, use_threads};
+use crate::shared::{Request, complain, use_threads};
 
 /// Whether every row converged: the same in all processes. The first one has said what went wrong.
 pub fn run(options: &Options) -> Request<bool> {
@@ -37,7 +36,7 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
     agreed(check_request(options, process), process)?;
     let is_first = process.number == 0;
     let mut quiet = options.clone();
-    quiet.quiet |= !is_first;
+    quiet.asked.quiet |= !is_first;
     let watcher = Watcher::new(&quiet);
     let chosen = agreed(Chosen::new(options, &watcher), process)?;
     let Chosen { scenes, schemes, fingerprints: files, .. } = chosen;
@@ -83,7 +82,7 @@ fn check_request(options: &Options, process: &Process) -> Request<()> {
             "the launcher has started {started} processes, and MPI knows of {found}: start the program by the mpirun of the MPI that it is linked with"
         ));
     }
-    use_threads(Some(options.threads.unwrap_or_else(threads_of_process)))
+    use_threads(Some(options.asked.threads.unwrap_or_else(threads_of_process)))
 }
 
 /// Refuses processes with other options or files than the first one.
@@ -119,20 +118,9 @@ impl AllRuns<'_> {
     /// The rows of one scene or problem.
     fn run<const D: usize>(&self, scene: Scene<D>, journal: Option<&Journal>) -> Request<Vec<Row>> {
         let Self { options, schemes, process, watcher } = *self;
-        let place = place(options, &scene.name);
+        let place = options.asked.place(&scene.name);
         let has_mesh = scene.domain.is_mesh();
-        let levels = match &options.levels[..] {
-            [] => default_levels(D, has_mesh),
-            some => each_once(some),
-        };
-        let mut study =
-            Study::new(scene).levels(levels).observer(|progress| watcher.tell(&progress));
-        study = schemes.iter().fold(study, Study::named_scheme);
-        if !options.no_fields {
-            let is_double = options.fields == "f64";
-            let scalar = if is_double { FieldScalar::Double } else { FieldScalar::Single };
-            study = study.fields_to(&options.out).field_scalar(scalar);
-        }
+        let mut study = study(scene, options, schemes, watcher);
         study.check().map_err(|e| format!("{place}: {e}"))?;
         watcher.expect(D, has_mesh, study.keys().iter().map(|key| key.level));
         if let Some(journal) = journal {
@@ -148,8 +136,8 @@ impl AllRuns<'_> {
 /// Refuses options that processes do not support.
 fn check_options(options: &Options) -> Request<()> {
     let asked = [
-        ("--adaptive", options.adaptive.is_some()),
-        ("--reference", options.reference.is_some()),
+        ("--adaptive", options.asked.adaptive.is_some()),
+        ("--reference", options.asked.reference.is_some()),
         ("--dump", options.dump.is_some()),
         ("--resume", options.resume),
         ("--precision f32", options.precision == "f32"),

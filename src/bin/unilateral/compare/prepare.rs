@@ -12,7 +12,6 @@ use unilateral::error::Error;
 use unilateral::inequality::solver_by_name;
 use unilateral::linear::LinearMethod;
 use unilateral::nested::Solved;
-use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
 use unilateral::real::Precision;
 use unilateral::scenes::Scene;
@@ -32,6 +31,23 @@ pub struct Run<'a> {
 /// Most cells of a solution that is drawn: pictures of more are large and show no more.
 const MOST_CELLS: usize = 5000;
 
+/// A study with schemes, levels, files and what shows its progress.
+pub fn study<'a, const D: usize>(
+    scene: Scene<D>,
+    options: &'a Options,
+    schemes: &[NamedScheme],
+    watcher: &'a Watcher,
+) -> Study<'a, D> {
+    let levels = match &options.asked.levels[..] {
+        [] if options.asked.adaptive.is_some() => Vec::new(),
+        [] => default_levels(D, scene.domain.is_mesh()),
+        some => each_once(some),
+    };
+    let study = Study::new(scene).levels(levels).observer(|progress| watcher.tell(&progress));
+    let study = schemes.iter().fold(study, Study::named_scheme);
+    if options.no_fields { study } else { study.fields_to(&options.out) }
+}
+
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
 pub fn prepare<'a, const D: usize>(
     scene: Scene<D>,
@@ -41,21 +57,13 @@ pub fn prepare<'a, const D: usize>(
 ) -> Request<Option<Run<'a>>> {
     let name = scene.name.clone();
     let has_mesh = scene.domain.is_mesh();
-    let levels = match &options.levels[..] {
-        [] if options.adaptive.is_some() => Vec::new(),
-        [] => default_levels(D, has_mesh),
-        some => each_once(some),
-    };
     let linear = match options.linear.as_deref() {
         Some("direct") => LinearMethod::Direct,
         Some(_) => LinearMethod::Iterative,
         None => LinearMethod::BySize,
     };
-    let mut study = Study::new(scene)
-        .levels(levels)
-        .repeat(options.repeat)
-        .steps(watcher.steps())
-        .observer(|progress| watcher.tell(&progress));
+    let mut study = study(scene, options, schemes, watcher);
+    study = study.repeat(options.repeat).steps(watcher.steps());
     let scene_name = name.clone();
     let drawn = RefCell::new(BTreeMap::new());
     study = study.each_solution(move |label, level, solved| {
@@ -69,15 +77,9 @@ pub fn prepare<'a, const D: usize>(
         }
         Ok(())
     });
-    if !options.no_fields {
-        let is_double = options.fields == "f64";
-        let scalar = if is_double { FieldScalar::Double } else { FieldScalar::Single };
-        study = study.fields_to(&options.out).field_scalar(scalar);
-    }
     if options.fields_of_all_levels {
         study = study.fields_of_all_levels();
     }
-    study = schemes.iter().fold(study, Study::named_scheme);
     if let Some(directory) = &options.dump {
         study = study.inequalities_to(directory);
     }
@@ -88,33 +90,24 @@ pub fn prepare<'a, const D: usize>(
             .map(|solver| study.boxed_solver(solver))
             .ok_or_else(|| format!("there is no solver {name}"))?;
     }
-    if let Some(of) = options.adaptive {
+    if let Some(of) = options.asked.adaptive {
         study = study.adaptive(of);
     }
-    if let Some((scheme, level)) = &options.reference {
+    if let Some((scheme, level)) = &options.asked.reference {
         study = study.named_reference(scheme, *level);
     }
-    let place = place(options, &name);
+    let place = options.asked.place(&name);
     match study.check() {
-        Err(Error::UnfitMesh { .. }) if !options.scenes_are_named() => return Ok(None),
+        Err(Error::UnfitMesh { .. }) if !options.asked.scenes_are_named() => return Ok(None),
         other => other.and_then(|()| study.check_memory()).map_err(|e| format!("{place}: {e}"))?,
     }
     let keys = study.keys();
     // how many steps a bound takes is not known before
-    if options.adaptive.is_none() {
+    if options.asked.adaptive.is_none() {
         watcher.expect(D, has_mesh, keys.iter().map(|key| key.level));
     }
     let run = move |journal| Ok(study.journal(journal).run()?.rows);
     Ok(Some(Run { keys, place, run: Box::new(run) }))
-}
-
-/// What a message is about: the file of a problem, or a scene, perhaps on the mesh of a file.
-pub fn place(options: &Options, name: &str) -> String {
-    match (&options.problem, &options.mesh.path) {
-        (Some(path), _) => path.display().to_string(),
-        (None, Some(mesh)) => format!("{}, scene {name}", mesh.display()),
-        (None, None) => format!("scene {name}"),
-    }
 }
 
 /// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.
@@ -132,7 +125,7 @@ fn draw<const D: usize>(
 }
 
 /// The levels where none are named.
-pub fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
+fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
     match dimension {
         _ if on_mesh => vec![0, 1],
         3 => vec![2, 4, 8],

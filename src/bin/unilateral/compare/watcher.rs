@@ -41,11 +41,11 @@ impl Watcher {
             };
         };
         let template = "{spinner} {pos} of {len} done, {elapsed}: {msg}{step}";
-        let bar = bar(options.quiet, 0, template);
+        let bar = bar(options.asked.quiet, 0, template);
         bar.set_style(bar.style().with_key("step", step));
         Self {
             bar,
-            quiet: options.quiet,
+            quiet: options.asked.quiet,
             warned: RefCell::default(),
             steps,
             run: RefCell::default(),

@@ -11,27 +11,16 @@
 
 mod options;
 
-use std::path::Path;
-
 pub use options::Options;
 
-use crate::mesh_file::{cannot_mesh, warn_of, with_parts};
+use crate::asked::command;
+use crate::mesh_file::{cannot_mesh, warn_of, with_conditions};
 use crate::one_run::take_directory;
 use crate::shared::{
     Failure, bar, check_writable, end_at_interrupt, print, tick, use_threads, warn, write,
 };
 use unilateral::mesh::gmsh;
-use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
-
-/// The name of a file without its directory.
-fn name_of(path: &Path) -> String {
-    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
-}
-
-/// A path as it was given; of an absolute one, which says nothing elsewhere, its last part.
-fn shown(path: &Path) -> String {
-    if path.is_relative() { path.display().to_string() } else { name_of(path) }
-}
+use unilateral::stability::{Stability, StabilityProgress, Verdict};
 
 /// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
 pub fn run(options: &Options) -> Result<bool, Failure> {
@@ -41,6 +30,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     let mut study = Stability::new(options.effort())
         .cases(options.cases.clone())
         .schemes(options.schemes.clone())
+        .command(command())
         .write_to(&options.out)
         .observer(|progress| match progress {
             StabilityProgress::Planned(n) => bar.set_length(n as u64),
@@ -53,8 +43,9 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         if !options.quiet {
             warn_of(&read.warnings, path, &|warning| warn(&warning));
         }
-        let mesh = with_parts(read.mesh, path, &options.boundary)?;
-        study = study.mesh(&name_of(path), mesh);
+        let mesh = with_conditions(read.mesh, path, &options.boundary)?;
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        study = study.mesh(&name.unwrap_or_default(), mesh);
     }
     study.check().map_err(|e| e.to_string())?;
     check_writable(&options.markdown)?;
@@ -63,20 +54,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     let report = study.run().map_err(Failure::of_work)?;
     bar.finish_and_clear();
     if let Some(path) = &options.markdown {
-        let named: Vec<String> = options.meshes.iter().map(|path| shown(path)).collect();
-        let meshes = match named.is_empty() {
-            true => String::new(),
-            false => format!(" --mesh {}", named.join(",")),
-        };
-        let title = "# Stability\n";
-        let quick = if options.effort() == Effort::Full { "" } else { " --quick" };
-        let command = format!("cargo run --release -- stability{quick} --markdown FILE{meshes}");
-        let text = report.summary_to_markdown().replacen(
-            title,
-            &format!("{title}\nMade by `{command}`.\n"),
-            1,
-        );
-        write(path, text).map_err(Failure::Work)?;
+        write(path, report.summary_to_markdown()).map_err(Failure::Work)?;
     }
     if !options.quiet {
         print(&report.summary())?;

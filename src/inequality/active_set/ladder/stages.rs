@@ -58,7 +58,7 @@ pub(super) fn suits_monotone_multigrid<T: Real>(
         && penalised.as_ref().is_none_or(PenalisedMatrix::has_jumps_of_single_unknowns)
 }
 
-/// What the methods of a solve hand on.
+/// The state that the methods of a solve hand on.
 pub(super) struct Ladder<'s, 'a, T: Real> {
     settings: &'s ActiveSet,
     inequality: &'a Inequality<T>,

@@ -8,6 +8,7 @@ use std::ops::Range;
 use super::level::Level;
 use crate::algebra::{NO_INDEX, RectangularMatrix, SparseSum};
 use crate::linear::precondition::prolongation::Prolongation;
+use crate::parallel::vectors::{collect, for_each_chunk, indices};
 use crate::parallel::{for_each_item, split};
 use crate::real::Real;
 
@@ -32,15 +33,11 @@ impl<T: Real> Level<'_, T> {
         let (near, changed) = self.mark_children((finer, changed_rows), prolongation);
         let fixed = &self.fixed;
         let is_recomputed = |j: usize| !fixed[j] && prolongation.any_child(j, |i| near[i]);
-        let rows: Vec<u32> =
-            (0..fixed.len()).filter(|&j| is_recomputed(j)).map(|j| j as u32).collect();
-        let is_kept: Vec<bool> = rows
-            .iter()
-            .map(|&j| j as usize)
-            .map(|j| {
-                self.recomputed_index(j).is_some() && !prolongation.any_child(j, |i| changed[i])
-            })
-            .collect();
+        let rows = indices(fixed.len(), is_recomputed);
+        let is_kept = collect(rows.len(), |k| {
+            let j = rows[k] as usize;
+            self.recomputed_index(j).is_some() && !prolongation.any_child(j, |i| changed[i])
+        });
         let computed = rows.iter().zip(&is_kept).filter(|(_, is_kept)| !**is_kept);
         let mut outdated: Vec<u32> = computed.map(|(j, _)| *j).collect();
         let images = Images::new(finer, prolongation, &outdated);
@@ -72,17 +69,18 @@ impl<T: Real> Level<'_, T> {
         let n = finer.fixed.len();
         // if all parents of a fixed unknown are fixed, as for most Dirichlet data, no free function is truncated there
         let is_truncated =
-            |&i: &usize| finer.fixed[i] && prolongation.any_parent(i, |j| !self.fixed[j as usize]);
+            |i: usize| finer.fixed[i] && prolongation.any_parent(i, |j| !self.fixed[j as usize]);
         let mut near = vec![false; n];
         let mut changed = vec![false; n];
-        let mark = |flags: &mut [bool], i: usize| {
-            flags[i] = true;
-            finer.matrix.row(i).0.iter().for_each(|&j| flags[j as usize] = true);
+        let mark = |flags: &mut [bool], i: u32| {
+            flags[i as usize] = true;
+            finer.matrix.row(i as usize).0.iter().for_each(|&j| flags[j as usize] = true);
         };
-        (0..n).filter(is_truncated).for_each(|i| mark(&mut near, i));
+        indices(n, is_truncated).iter().for_each(|&i| mark(&mut near, i));
         finer.recomputed_rows.iter().for_each(|&i| near[i as usize] = true);
-        let flags = self.fixed_on_finer.iter().zip(&finer.fixed).enumerate();
-        flags.filter(|(_, (before, now))| before != now).for_each(|(i, _)| mark(&mut changed, i));
+        let before = &self.fixed_on_finer;
+        let has_changed = indices(before.len(), |i| before[i] != finer.fixed[i]);
+        has_changed.iter().for_each(|&i| mark(&mut changed, i));
         changed_rows.iter().for_each(|&i| changed[i as usize] = true);
         (near, changed)
     }
@@ -152,15 +150,14 @@ impl<T: Real> Images<T> {
         for &j in parents {
             prolongation.for_each_child(j as usize, |i, _| numbers[i] = 0);
         }
-        let has_row = |i: &usize| numbers[*i] == 0 && !finer.fixed[*i];
-        let children: Vec<usize> = (0..numbers.len()).filter(has_row).collect();
-        numbers.fill(NO_INDEX);
-        (0..).zip(&children).for_each(|(k, &i)| numbers[i] = k);
+        let children = indices(numbers.len(), |i| numbers[i] == 0 && !finer.fixed[i]);
+        for_each_chunk(&mut numbers, |_, numbers| numbers.fill(NO_INDEX));
+        (0..).zip(&children).for_each(|(k, &i)| numbers[i as usize] = k);
         let n_coarse = prolongation.n_coarse();
         let rows = RectangularMatrix::by_groups(children.len(), &|range| {
             let mut sum = SparseSum::new(n_coarse);
             RectangularMatrix::by_rows(range, |k, columns, values| {
-                let (neighbours, entries) = finer.row(children[k]);
+                let (neighbours, entries) = finer.row(children[k] as usize);
                 let free =
                     neighbours.iter().zip(entries).filter(|(j, _)| !finer.fixed[**j as usize]);
                 for (&j, &a) in free {

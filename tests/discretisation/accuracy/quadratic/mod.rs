@@ -42,8 +42,8 @@ fn all<const D: usize>() -> Vec<Entry<D>> {
 fn h1_as_tables(scene: &Scene<2>, set: impl ConstraintSet + 'static, level: usize) -> f64 {
     let (solver, quadrature) = (ActiveSet::default(), DataQuadrature::default());
     let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
-    let mut nested = NestedIteration::new(&scene.problem, &meshes);
-    let start = nested.p1_solution(meshes.n_meshes() - 1).unwrap().contact.clone();
+    let linear = NestedIteration::new(&scene.problem, &meshes).solve(&ConformingP1).unwrap();
+    let start = &linear.solution().contact;
     let mesh = meshes.finest();
     let problem = scene.problem.clone().on(set);
     let space = Discretisation::new(&ConformingP2, &problem, mesh, quadrature).unwrap();

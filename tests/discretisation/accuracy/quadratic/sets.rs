@@ -46,7 +46,7 @@ fn each_set_binds_its_own_nodes() {
         bounds(&ConformingP2, Nodes, &signorini, &mesh).unwrap(),
         bounds(&ConformingP2, Midpoints, &signorini, &mesh).unwrap(),
     ] {
-        // the vertex that the Dirichlet part shares is pinned
+        // the vertex that the Dirichlet boundary shares is pinned
         assert_eq!([count(&nodes, 1), count(&nodes, 2)], [2, 2]);
         let lowest = nodes.iter().filter_map(|b| b.1.lower()).fold(0.0, f64::min);
         assert_eq!(lowest, -3.0);

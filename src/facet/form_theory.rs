@@ -1,4 +1,4 @@
-//! What is known of a form besides its formula, for warnings and reports.
+//! Known properties of a form besides its formula, for warnings and reports.
 
 use std::fmt;
 
@@ -7,7 +7,9 @@ use super::{FacetView, PenaltyParameters};
 /// The least penalty weight of a facet with which a form is provably coercive.
 pub type LeastPenalty<'f, const D: usize> = Box<dyn Fn(&FacetView<'_, D>) -> f64 + 'f>;
 
-/// What theory and measurement say of a form: nothing of it enters matrix or load.
+/// Properties of a form by theory and measurement: nothing of it enters matrix or load. By default there are no
+/// parameters, no proof of coercivity and no least penalty.
+#[derive(Default)]
 #[non_exhaustive]
 pub struct FormTheory<'f, const D: usize> {
     /// The factors in force, for reports.
@@ -24,12 +26,6 @@ pub struct FormTheory<'f, const D: usize> {
 }
 
 impl<'f, const D: usize> FormTheory<'f, D> {
-    /// No parameters, no proof of coercivity, no least penalty.
-    #[must_use]
-    pub fn new() -> Self {
-        let parameters = PenaltyParameters::default();
-        Self { parameters, is_coercive: false, least_penalty: None, margin: None }
-    }
     /// Sets the factors in force.
     #[must_use]
     pub fn with_parameters(self, parameters: PenaltyParameters) -> Self {
@@ -65,12 +61,6 @@ impl<'f, const D: usize> FormTheory<'f, D> {
     /// measured for linears.
     pub fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
         0.5 * length * epsilon.powf(0.25)
-    }
-}
-
-impl<const D: usize> Default for FormTheory<'_, D> {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

@@ -8,7 +8,7 @@ use super::space::metric::Metrics;
 use super::space::tables::FacetDatum;
 use super::space::tables::FacetTable;
 use super::stiffness::zero_local;
-use crate::algebra::{JumpTerm, MeanJumps, NO_INDEX, PenalisedMatrix};
+use crate::algebra::{JumpTerm, JumpsOfBlocks, MeanJumps, NO_INDEX, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::FacetForm;
 use crate::mesh::HalfFacet;
@@ -19,11 +19,11 @@ use crate::parallel::cells;
 const ROUNDING: f64 = 1e-12;
 
 /// Whether all there is of a form is a sum of products of jumps.
-pub(crate) fn applies<const D: usize>(form: &dyn FacetForm<D>) -> bool {
+pub(crate) fn keeps_penalty_apart<const D: usize>(form: &dyn FacetForm<D>) -> bool {
     !form.uses_flux() && !form.is_lifted() && form.is_symmetric()
 }
 
-/// The parts: stiffness and reaction by cells, jumps of moments over facets with their weights, Dirichlet data.
+/// The terms: stiffness and reaction by cells, jumps of moments over facets with their weights, Dirichlet data.
 pub(crate) fn penalised_matrix<const D: usize>(
     space: &Space<'_, D>,
     form: &dyn FacetForm<D>,
@@ -40,6 +40,7 @@ pub(crate) fn penalised_matrix<const D: usize>(
         blocks: blocks(space, metrics),
         term_starts: Vec::with_capacity(n_jumps + 1),
         terms: Vec::with_capacity(n_jumps * templates.most_terms()),
+        jumps_of_blocks: JumpsOfBlocks::default(),
         weights: Vec::with_capacity(n_jumps),
         jump_data: Vec::with_capacity(n_jumps),
         mean_jumps: mean_jumps(space, &table),
@@ -64,6 +65,8 @@ pub(crate) fn penalised_matrix<const D: usize>(
             out.weights.push(measure * jump_jump);
         }
     }
+    let blocks = (space.mesh.n_cells(), out.block_size);
+    out.jumps_of_blocks = JumpsOfBlocks::new(blocks, &out.term_starts, &out.terms);
     out
 }
 

@@ -1,4 +1,4 @@
-//! The interior penalty methods.
+//! The interior penalty methods: symmetric, incomplete, non-symmetric.
 
 use super::{
     BrokenScheme, ExpectedOrders, SchemeOptions, Setting, broken_energy_order, with_duality,
@@ -57,29 +57,25 @@ impl<const THETA: i8> Default for InteriorPenaltyMethod<THETA> {
 }
 
 impl<const THETA: i8> BrokenScheme for InteriorPenaltyMethod<THETA> {
-    fn name_on_linears(&self) -> &'static str {
+    fn name_on_linears(&self) -> &str {
         match Self::SYMMETRY {
             Symmetry::Symmetric => "sipg",
             Symmetry::Incomplete => "iipg",
             Symmetry::NonSymmetric => "nipg",
         }
     }
-    fn form_on<const D: usize>(
-        &self,
-        element: &dyn Element<D>,
-        _: &Mesh<D>,
-    ) -> Box<dyn FacetForm<D>> {
-        let degree = element.basis_degree();
+    fn form_on<const D: usize>(&self, on: &dyn Element<D>, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
+        let degree = on.basis_degree();
         Box::new(InteriorPenalty { symmetry: Self::SYMMETRY, rule: self.penalty, degree })
     }
-    fn options(&self, _: usize) -> SchemeOptions {
+    fn options(&self) -> SchemeOptions {
         let none = SchemeOptions::default();
         match self.penalty {
             PenaltyRule::Proven(margin) => SchemeOptions { factor: Some(1.0 + margin), ..none },
             PenaltyRule::Diameter(sigma) => SchemeOptions { sigma: Some(sigma), ..none },
         }
     }
-    fn with_options(self, options: &SchemeOptions, _: usize) -> Self {
+    fn with_options(self, options: &SchemeOptions) -> Self {
         let by_bound = options.factor.map(|factor| PenaltyRule::Proven(factor - 1.0));
         let chosen = options.sigma.map(PenaltyRule::Diameter).or(by_bound);
         Self { penalty: chosen.unwrap_or(self.penalty) }

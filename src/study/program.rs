@@ -1,0 +1,157 @@
+//! The program that made a report, and the machine.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// The program that made a report, and its settings.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Program {
+    /// Name of the program.
+    pub name: String,
+    /// Version of the library.
+    pub version: String,
+    /// Number of threads.
+    pub threads: usize,
+    /// Scalar of assembly and solve: `f64` or `f32`.
+    pub precision: String,
+    /// Every time is the smallest of this many runs.
+    pub repeat: usize,
+    /// Architecture and vector instructions for which the program was compiled.
+    pub target_cpu: String,
+    /// When the study began: the system's clock, in universal time; none where the system does not tell.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub date: Option<String>,
+    /// The processor's name, on Linux.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub processor: Option<String>,
+    /// What else the rows depend on and do not say, by name: parameters of scenes, a mesh file.
+    pub request: BTreeMap<String, String>,
+    /// The command that makes the report again, for its page; files of rows do not have it.
+    #[cfg_attr(feature = "report", serde(skip))]
+    pub command: Option<String>,
+}
+
+impl Program {
+    /// A program linked with this version of the library and compiled for the processor that the
+    /// library was compiled for.
+    #[must_use]
+    pub fn new(name: &str, precision: &str, threads: usize, repeat: usize) -> Self {
+        Program {
+            name: name.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            threads,
+            precision: precision.to_owned(),
+            repeat,
+            target_cpu: target_cpu(),
+            date: SystemTime::now().duration_since(UNIX_EPOCH).ok().map(|d| date_of(d.as_secs())),
+            processor: processor(),
+            request: BTreeMap::new(),
+            command: None,
+        }
+    }
+    /// Program, date and machine in one line.
+    #[cfg(feature = "report")]
+    pub(crate) fn words(&self) -> String {
+        let Self { name, version, threads, precision, target_cpu, date, processor, .. } = self;
+        let known = |text: &Option<String>| text.clone().unwrap_or_else(|| "unknown".to_owned());
+        let (date, processor) = (known(date), known(processor));
+        format!(
+            "{name} {version}, {date}; {target_cpu}, {processor}; {threads} threads; {precision}"
+        )
+    }
+    /// States something else on which the rows depend.
+    #[must_use]
+    pub fn with_request(mut self, name: &str, value: impl ToString) -> Self {
+        self.request.insert(name.to_owned(), value.to_string());
+        self
+    }
+    /// States the command that makes the report again, by its words.
+    #[must_use]
+    pub fn with_command(mut self, words: impl Iterator<Item = String>) -> Self {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,@+".contains(c);
+        let quoted = |word: String| match !word.is_empty() && word.chars().all(is_plain) {
+            true => word,
+            false => format!("'{}'", word.replace('\'', "'\\''")),
+        };
+        self.command = Some(words.map(quoted).collect::<Vec<_>>().join(" "));
+        self
+    }
+}
+
+/// The architecture and the vector instructions the compiler was allowed to use: `x86_64 (sse2)`
+/// by default on common machines, `x86_64 (avx2, avx512f, fma)` with `-C target-cpu=native` on a
+/// recent one.
+///
+/// The text describes the executable. Instructions that the linear algebra selects at run time are
+/// not listed.
+fn target_cpu() -> String {
+    let mut features = Vec::new();
+    macro_rules! list {
+        ($($name:literal),*) => { $(if cfg!(target_feature = $name) { features.push($name); })* };
+    }
+    list!("avx2", "avx512f", "fma", "neon", "sve", "simd128", "v", "altivec", "vsx");
+    // processors with AVX2 have the following features: listed only without AVX2
+    if features.is_empty() {
+        list!("avx", "sse4.2", "sse2");
+        features.truncate(1);
+    }
+    match features.as_slice() {
+        [] => std::env::consts::ARCH.to_owned(),
+        some => format!("{} ({})", std::env::consts::ARCH, some.join(", ")),
+    }
+}
+
+/// The name of the first processor, which the system states among the first lines of a long file.
+fn processor() -> Option<String> {
+    const FIRST_LINES: u64 = 4096;
+    let mut text = Vec::new();
+    File::open("/proc/cpuinfo").ok()?.take(FIRST_LINES).read_to_end(&mut text).ok()?;
+    processor_of(&String::from_utf8_lossy(&text))
+}
+
+/// The first processor's name in the text the kernel gives.
+fn processor_of(text: &str) -> Option<String> {
+    let line = text.lines().find(|l| l.starts_with("model name"))?;
+    Some(line.split_once(':')?.1.trim().to_owned())
+}
+
+/// Date and time of day of a number of seconds after the beginning of 1970.
+fn date_of(seconds: u64) -> String {
+    let (days, second) = (seconds / 86_400, seconds % 86_400);
+    // years begin in March here, so that the day that comes and goes is their last
+    let day = days + 719_468;
+    let (era, day) = (day / 146_097, day % 146_097);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let (month, next) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
+    let year = 400 * era + year + next;
+    let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
+    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{date_of, processor_of};
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        assert_eq!(date_of(0), "1970-01-01T00:00:00Z");
+        assert_eq!(date_of(951_782_400), "2000-02-29T00:00:00Z");
+        assert_eq!(date_of(1_000_000_000), "2001-09-09T01:46:40Z");
+        assert_eq!(date_of(1_709_251_199), "2024-02-29T23:59:59Z");
+        assert_eq!(date_of(4_107_542_400), "2100-03-01T00:00:00Z");
+    }
+
+    #[test]
+    fn the_processor_is_read_and_not_made_up() {
+        let text = "processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\nmodel name\t: Other\n";
+        assert_eq!(processor_of(text).as_deref(), Some("Some CPU @ 2 GHz"));
+        assert_eq!(processor_of("processor\t: 0\n"), None);
+    }
+}

@@ -1,0 +1,71 @@
+//! The cases of a study: what runs alone, and reuses nothing of other runs.
+
+use super::Study;
+use crate::error::Error;
+use crate::inequality::Outcome;
+use crate::study::{Row, Variant};
+
+impl<'a, const D: usize> Study<'a, D> {
+    /// The cases, each as a study of its own: one scheme with one solver on one level, or on all adaptive meshes. They
+    /// have no reference, no files and no observer.
+    pub(crate) fn cases(&self) -> Vec<Self> {
+        let mut cases = Vec::new();
+        let levels: Vec<Vec<usize>> = match self.adaptive {
+            Some(_) => vec![self.levels.clone()],
+            None => self.levels.iter().map(|&level| vec![level]).collect(),
+        };
+        for entry in &self.entries {
+            for solver in self.solvers() {
+                cases.extend(levels.iter().map(|levels| Self {
+                    entries: vec![entry.clone()],
+                    levels: levels.clone(),
+                    adaptive: self.adaptive,
+                    fit: self.fit.clone(),
+                    solvers: vec![solver.clone()],
+                    linear_asked: self.linear_asked.clone(),
+                    quadrature: self.quadrature,
+                    ..Self::new(self.scene.clone())
+                }));
+            }
+        }
+        cases
+    }
+
+    /// The row of a case that is not run since a coarser level took too long, for this reason.
+    ///
+    /// # Panics
+    /// If the study has no scheme or no level.
+    pub(crate) fn row_not_run(&self, why: String) -> Row {
+        let (entry, level) = (&self.entries[0], self.first_level());
+        let row = Row {
+            cells: self.scene.domain.cells(level) as usize,
+            solver: self.solvers()[0].name().to_owned(),
+            message: Some(why),
+            ..Row::new(&self.scene.name, D, entry.scheme.name(), level, Outcome::TimeLimit)
+        };
+        self.named(entry, &entry.problem(&self.scene.problem), row, None)
+    }
+
+    /// What the rows of a case have in common, with its level; of adaptive meshes that is zero.
+    pub(crate) fn variant(&self) -> (Variant, usize) {
+        let row = self.row_not_run(String::new());
+        let theta = self.adaptive.map(|of| of.theta);
+        let level = if theta.is_some() { 0 } else { row.level };
+        (Variant::of(&Row { theta, ..row }), level)
+    }
+
+    /// Whether the study runs on adaptive meshes.
+    pub(crate) fn is_adaptive(&self) -> bool {
+        self.adaptive.is_some()
+    }
+
+    /// The rows of all schemes and levels against the reference of the study; none without one.
+    pub(crate) fn rows_against_reference(&self) -> Result<Vec<Row>, Error> {
+        self.reference.as_ref().map_or_else(|| Ok(Vec::new()), |_| Ok(self.run()?.rows))
+    }
+
+    /// Says that a run begins.
+    pub(crate) fn notify_started(&self, variant: &Variant, level: usize) {
+        (self.observer)(super::Progress::Started(&variant.scene, &variant.label, level));
+    }
+}
