@@ -11,7 +11,7 @@ use clap::Args;
 use unilateral::error::Error;
 use unilateral::in_its_dimension;
 use unilateral::nested::{Adaptivity, Solved};
-use unilateral::plot::{Picture, Slice};
+use unilateral::plot::Picture;
 use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Row, Study, file_name};
@@ -50,13 +50,6 @@ pub struct Options {
     /// compare, from level N, by default 4
     #[arg(help_heading = MESHES, verbatim_doc_comment, long, value_name = "GOAL|KEY=X", value_parser = adaptivity, conflicts_with = "series")]
     adaptive: Option<Adaptivity>,
-    /// In space: the coordinate that the slice fixes, x, y or z
-    #[arg(help_heading = OUTPUT, long, value_name = "AXIS", value_parser = ["x", "y", "z"], hide_possible_values = true,
-        requires = "at")]
-    across: Option<String>,
-    /// In space: the value of that coordinate
-    #[arg(help_heading = OUTPUT, long, value_name = "X", requires = "across", allow_negative_numbers = true)]
-    at: Option<f64>,
     /// Also the fields of these levels as .vtu files, with a .pvd file
     #[arg(help_heading = OUTPUT, long, value_delimiter = ',', value_name = "N[,N...]")]
     series: Vec<usize>,
@@ -93,20 +86,13 @@ fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Result<bool, Fail
         false if D == 3 => 8,
         false => 16,
     };
-    let slice = match (&options.across, options.at) {
-        (Some(name), Some(at)) => {
-            let axis = ["x", "y", "z"].iter().position(|axis| axis == name);
-            Some(Slice { axis: axis.expect("the parser admits these three"), at })
-        }
-        _ => None,
-    };
     let written = RefCell::new(Vec::new());
     let level = options.level.unwrap_or(default);
     let picture = study().levels([level]).each_solution(|label, level, solved| {
         let stem = file_name(&format!("{}-{label}-{level}", scene.name));
         let unit = if options.adaptive.is_some() { "step" } else { "level" };
         let title = format!("{}: {label}, {unit} {level}", scene.name);
-        written.borrow_mut().extend(draw_one(options, &title, &stem, solved, slice)?);
+        written.borrow_mut().extend(draw_one(options, &title, &stem, solved)?);
         Ok(())
     });
     picture.check().and_then(|()| picture.check_memory()).map_err(|e| e.to_string())?;
@@ -140,7 +126,6 @@ fn draw_one<const D: usize>(
     title: &str,
     stem: &str,
     solved: &Solved<'_, D>,
-    slice: Option<Slice>,
 ) -> Result<Vec<PathBuf>, Error> {
     let Some(fields) = fields_with_bound(solved) else { return Ok(Vec::new()) };
     let mut title = title.to_owned();
@@ -148,6 +133,6 @@ fn draw_one<const D: usize>(
         title += &format!(", NOT CONVERGED: {}", solved.outcome());
     }
     let problem = solved.discretisation().problem();
-    let picture = Picture::of(&title, problem, solved.mesh(), &fields, slice)?;
+    let picture = Picture::of(&title, problem, solved.mesh(), &fields, None)?;
     Ok(vec![picture.write(&options.out, stem)?])
 }
