@@ -1,4 +1,4 @@
-//! The part of the energy of a function that weak Dirichlet data add.
+//! The terms that weak Dirichlet data add to the energy of a function.
 
 /// The quadratic function that turns `u.A u` into the squared energy norm of a scheme with weak
 /// Dirichlet data `u_D`.

@@ -69,16 +69,15 @@ impl Program {
         self.request.insert(name.to_owned(), value.to_string());
         self
     }
-    /// States the command that makes the report again, by its words.
+    /// The words of a command in one line, as a shell reads them.
     #[must_use]
-    pub fn with_command(mut self, words: impl Iterator<Item = String>) -> Self {
+    pub fn quoted(words: impl Iterator<Item = String>) -> String {
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,@+".contains(c);
         let quoted = |word: String| match !word.is_empty() && word.chars().all(is_plain) {
             true => word,
             false => format!("'{}'", word.replace('\'', "'\\''")),
         };
-        self.command = Some(words.map(quoted).collect::<Vec<_>>().join(" "));
-        self
+        words.map(quoted).collect::<Vec<_>>().join(" ")
     }
 }
 

@@ -11,7 +11,7 @@ use unilateral::inequality::Outcome;
 use unilateral::measure::Errors;
 use unilateral::plot::convergence;
 use unilateral::scheme::ExpectedOrders;
-use unilateral::study::{Row, peak_memory_bytes};
+use unilateral::study::{Program, Row, peak_memory_bytes};
 
 fn keys(value: &Value) -> Vec<&str> {
     value.as_object().expect("an object").keys().map(String::as_str).collect()
@@ -249,7 +249,7 @@ fn the_page_begins_with_how_the_comparison_ended_and_needs_no_network() {
     std::fs::write(scratch.0.join("radial-2d-p1.svg"), "<svg></svg>\n").unwrap();
     let mut report = report(rows);
     let words = ["unilateral", "--scheme", "p1,sipg", "my file.toml"];
-    report.program = report.program.with_command(words.into_iter().map(str::to_owned));
+    report.program.command = Some(Program::quoted(words.into_iter().map(str::to_owned)));
     report.write(&scratch.0).unwrap();
     let html = scratch.read("report.html");
     for foreign in ["<script", "http:", "https:", "@import", "url("] {

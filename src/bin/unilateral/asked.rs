@@ -192,8 +192,8 @@ impl Asked {
                 program = program.with_request("first level", level);
             }
         }
-        for (name, part) in &self.mesh.boundary {
-            program = program.with_request(&format!("boundary {name}"), part.name());
+        for (name, condition) in &self.mesh.boundary {
+            program = program.with_request(&format!("boundary {name}"), condition.name());
         }
         for (name, fingerprint) in files {
             program = program.with_request(name, fingerprint);
@@ -206,7 +206,7 @@ impl Asked {
 /// The command line as a shell reads it.
 pub fn command() -> Option<String> {
     let words = std::iter::once("unilateral".to_owned()).chain(std::env::args().skip(1));
-    Program::new("unilateral", "", 1, 1).with_command(words).command
+    Some(Program::quoted(words))
 }
 
 /// Refuses a number of things that is zero or beyond a limit.

@@ -41,7 +41,7 @@ use crate::mesh::edge_vertices;
 use crate::problem::{Datum, Field};
 use crate::real::Point;
 
-/// The part of one cell in the bound.
+/// The contribution of one cell to the bound.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CellTerms {
     /// The square of the mismatch.

@@ -18,8 +18,10 @@ pub fn write_requests(options: &Options, contents: &[String], keys: &[RowKey]) -
     let files = [absolute(&options.asked.mesh.path), absolute(&options.asked.problem)];
     let [mesh, problem] = files.map(|file| file.map_err(|e| format!("cannot find a file: {e}")));
     let (mesh, problem) = (mesh?, problem?);
-    let part = |(name, part): &(String, BoundaryCondition)| (name.clone(), part.name());
-    let boundary: BTreeMap<String, &str> = options.asked.mesh.boundary.iter().map(part).collect();
+    let given = options.asked.mesh.boundary.iter();
+    let by_name =
+        |(name, condition): &(String, BoundaryCondition)| (name.clone(), condition.name());
+    let boundary: BTreeMap<String, &str> = given.map(by_name).collect();
     // the meshes of a reference are refined from that of the coarsest level
     let coarsest = keys.iter().map(|key| key.level).min();
     for RowKey { scene, label, level, .. } in keys {
