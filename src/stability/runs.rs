@@ -103,7 +103,7 @@ pub(crate) fn imbalance<const D: usize>(solved: &Solved<'_, D>) -> Option<f64> {
         left -= inequality.load[i];
     }
     for (jump, multiplier) in solution.jump_multipliers.iter().enumerate() {
-        if penalised.blocks_of_jump(jump).iter().any(Option::is_none) {
+        if penalised.jumps.blocks_of(jump).iter().any(Option::is_none) {
             let weights = penalised.terms_of(jump).iter().map(|term| term.weight);
             left += weights.sum::<f64>() * multiplier;
         }
