@@ -2,10 +2,9 @@
 
 mod cases;
 mod choice;
-mod criteria;
+mod criterion;
 #[cfg(feature = "plot")]
 mod figures;
-mod limit;
 mod meshes;
 mod plan;
 mod report;
@@ -15,7 +14,8 @@ mod runs;
 mod summary;
 mod unweighted;
 
-pub use criteria::{CRITERIA, Criterion, STABILITY_CASES};
+pub use cases::{STABILITY_CASES, criteria};
+pub use criterion::Criterion;
 pub use plan::Effort;
 pub use report::StabilityReport;
 pub use row::{ExpectedRange, StabilityRow, Verdict};
@@ -27,7 +27,7 @@ use std::time::{Duration, Instant};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::scheme::NamedScheme;
-use choice::Choice;
+use cases::CASES;
 use plan::Plan;
 
 /// The least time between two writes of finished rows.
@@ -169,7 +169,7 @@ impl<'a> Stability<'a> {
             (self.observer)(StabilityProgress::Started(job.case, &job.label));
             let mut saved = Ok(());
             let mut take = |row: StabilityRow| {
-                report.rows.push(row);
+                report.rows.push(StabilityRow { case: job.case.to_owned(), ..row });
                 // rows are saved early, so that an interrupted study keeps them
                 if written.elapsed() > WRITE_INTERVAL && saved.is_ok() {
                     saved = self.save(&report);
@@ -205,39 +205,12 @@ impl<'a> Stability<'a> {
             value: self.schemes.join(","),
             allowed: why.to_string(),
         })?;
-        let (mut schemes, mut further) = (Vec::new(), Vec::new());
-        for scheme in wanted {
-            match Self::SCHEMES.into_iter().find(|known| *known == scheme.to_string()) {
-                Some(known) => schemes.push(known),
-                None => further.push(Choice::written(scheme)),
-            }
-        }
         let (effort, given) = (self.effort, &self.given[..]);
-        let mut plan = Plan { effort, schemes, further, given, jobs: Vec::new() };
-        for case in STABILITY_CASES {
-            if !self.cases.is_empty() && !self.cases.iter().any(|c| c == case) {
-                continue;
-            }
-            match case {
-                "round-off" => {
-                    cases::round_off::plan(&mut plan);
-                    limit::plan(&mut plan);
-                }
-                "penalty-factor" => {
-                    cases::over_penalty::plan(&mut plan);
-                    cases::condition::plan(&mut plan);
-                }
-                "stretched-cells" => cases::anisotropy::plan(&mut plan),
-                "graded-meshes" => cases::grading::plan(&mut plan),
-                "contrast" => cases::contrast::plan(&mut plan),
-                "coercivity" => cases::coercivity::plan(&mut plan),
-                "curved-obstacle" => cases::curved_obstacle::plan(&mut plan),
-                "biactive" => cases::biactive::plan(&mut plan),
-                "scaling" => cases::scaling::plan(&mut plan),
-                "contact-ends" => cases::contact_ends::plan(&mut plan),
-                "orders" => cases::orders::plan(&mut plan),
-                _ => cases::slivers::plan(&mut plan),
-            }
+        let mut plan = Plan { effort, wanted, given, case: "", jobs: Vec::new() };
+        let is_chosen = |case: &str| self.cases.is_empty() || self.cases.iter().any(|c| c == case);
+        for case in CASES.into_iter().filter(|case| is_chosen(case.name)) {
+            plan.case = case.name;
+            (case.plan)(&mut plan);
         }
         Ok(plan)
     }

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::criteria::{CRITERIA, STABILITY_CASES};
+use super::cases::{STABILITY_CASES, criteria};
+use super::criterion::Criterion;
 use super::plan::Effort;
-use super::row::{StabilityRow, Verdict, short};
-use super::summary::{by_criterion, by_scheme, criteria, missed, robust, safe_ranges};
+use super::row::{StabilityRow, Verdict};
+use super::summary::{by_criterion, by_scheme, conditions, missed, robust, safe_ranges};
 use crate::error::Error;
 use crate::files::replace_text;
 use crate::output::csv;
@@ -23,7 +24,7 @@ use crate::table::{Cell, Table, WIDTH};
 const READING: [&str; 3] = [
     "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Figures have the digits that decide. A safe range of a penalty factor is the longest part of its sweep in which every factor stays within the limits of errors, of forces and of definiteness; a penalty is robust in a case if all its figures stay within their limits.",
     "Schemes: p1 and p2, conforming linear and quadratic elements with bounds at nodes; cr, Crouzeix-Raviart elements with bounds on facet means; sipg and nipg, symmetric and non-symmetric interior penalty on broken linears; wopsip, the weakly over-penalised method on broken linears with bounds at vertices, wopsip:facet-means the same with bounds on facet means.",
-    "Penalties: h_F is the diameter of a facet, l_F the height of its cells over it, h the mesh size, diam the diameter of the domain, and the proven bound the least interior penalty that is provably enough on each cell. All but what ignores it carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
+    "Penalties: sipg has 1.5 times the proven bound, the least interior penalty that is provably enough on each cell, nipg 1/h_F, with h_F the diameter of a facet; sigma is the factor of 1/h_F. wopsip has eta/h_F^3, with eta the square of the diameter of the domain unless it is given; weight=anisotropic puts h^2 l_F in place of h_F^3, with h the mesh size and l_F the height of the cells over the facet. All but what ignores it carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
 ];
 
 /// All rows, in the order run.
@@ -103,16 +104,12 @@ impl StabilityReport {
     fn case_table(&self, case: &str) -> Table {
         let rows: Vec<&StabilityRow> = self.rows.iter().filter(|r| r.case == case).collect();
         let line = |row: &&StabilityRow| {
-            let sweep = row
-                .value
-                .map_or(String::new(), |value| format!("{} {}", row.parameter, short(value)));
             vec![
                 Cell::Words(row.criterion.clone()),
-                Cell::Words(row.scheme.clone()),
-                Cell::Words(row.choice.clone()),
+                Cell::Words(row.label.clone()),
                 Cell::Words(format!("{} {}", row.problem, row.precision)),
                 Cell::whole(row.level),
-                Cell::Words(sweep),
+                Cell::Words(row.place()),
                 Cell::Words(row.quantity.clone()),
                 Cell::Words(row.expected.words()),
                 Cell::number(row.figure_in_words()),
@@ -120,10 +117,11 @@ impl StabilityReport {
                 Cell::Words(row.detail.clone()),
             ]
         };
-        let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
-        let heads = "criterion,scheme,penalty,problem,n,at,quantity,expected,measured,verdict,further figures";
+        let asked = criteria().filter(|of| rows.iter().any(|r| r.criterion == of.1.name));
+        let heads =
+            "criterion,scheme,problem,n,at,quantity,expected,measured,verdict,further figures";
         Table {
-            remarks: asked.map(|c| format!("{}: {}", c.name, c.sentence)).collect(),
+            remarks: asked.map(|(_, c)| format!("{}: {}", c.name, c.sentence())).collect(),
             ..Table::new(format!("Case {case}"), heads, rows.iter().map(line).collect())
         }
     }
@@ -131,10 +129,11 @@ impl StabilityReport {
     /// The report as JSON: `program`, `complete`, `criteria`, `rows`, `failures`, `safe_ranges` and
     /// `robust_choices`. What does not apply is null.
     pub fn to_json(&self) -> String {
+        let criterion = |(case, c): (_, &Criterion)| json!({ "name": c.name, "case": case, "sentence": c.sentence() });
         let value = json!({
             "program": self.program,
             "complete": self.complete,
-            "criteria": CRITERIA,
+            "criteria": criteria().map(criterion).collect::<Vec<_>>(),
             "rows": self.rows,
             "failures": self.failures,
             "safe_ranges": self.safe_ranges(),
@@ -176,7 +175,7 @@ impl StabilityReport {
 
     /// Verdicts, limits that were missed, and the criteria in words.
     fn summary_tables(&self) -> Vec<Table> {
-        self.verdict_tables().into_iter().chain([criteria(&self.rows)]).collect()
+        self.verdict_tables().into_iter().chain([conditions(&self.rows)]).collect()
     }
 
     /// The sweeps of every case over a parameter, drawn, each with the name of its file.
@@ -214,7 +213,10 @@ impl StabilityReport {
                 Section { title: "Sweeps".to_owned(), pictures, ..Section::default() },
                 Section {
                     title: "Cases".to_owned(),
-                    tables: [criteria(&self.rows)].into_iter().chain(self.case_tables()).collect(),
+                    tables: [conditions(&self.rows)]
+                        .into_iter()
+                        .chain(self.case_tables())
+                        .collect(),
                     ..Section::default()
                 },
             ],
