@@ -136,22 +136,7 @@ impl<'a> Stability<'a> {
     /// # Errors
     /// [`Error::Parameter`] for a case that does not exist or a scheme that is wrong.
     pub fn check(&self) -> Result<(), Error> {
-        self.checked_plan().map(|_| ())
-    }
-    fn checked_plan(&self) -> Result<Plan<'_>, Error> {
-        let check = |parameter, names: &[String], known: &[&str]| match names
-            .iter()
-            .find(|name| !known.contains(&name.as_str()))
-        {
-            None => Ok(()),
-            Some(name) => Err(Error::Parameter {
-                parameter,
-                value: name.clone(),
-                allowed: format!("there are: {}", known.join(", ")),
-            }),
-        };
-        check("case", &self.cases, &STABILITY_CASES)?;
-        self.plan()
+        self.plan().map(|_| ())
     }
 
     /// Runs everything.
@@ -160,7 +145,7 @@ impl<'a> Stability<'a> {
     /// Those of [`Self::check`], before anything runs; [`Error::Write`]. Errors of a job are listed in
     /// [`StabilityReport::failures`].
     pub fn run(&self) -> Result<StabilityReport, Error> {
-        let plan = self.checked_plan()?;
+        let plan = self.plan()?;
         (self.observer)(StabilityProgress::Planned(plan.jobs.len()));
         let mut report = StabilityReport::new(self.effort);
         report.program.command.clone_from(&self.command);
@@ -184,10 +169,6 @@ impl<'a> Stability<'a> {
         }
         report.complete = true;
         self.save(&report)?;
-        #[cfg(feature = "plot")]
-        if let Some(directory) = &self.directory {
-            report.write_figures(directory)?;
-        }
         Ok(report)
     }
 
@@ -199,12 +180,13 @@ impl<'a> Stability<'a> {
     }
 
     fn plan(&self) -> Result<Plan<'_>, Error> {
-        let wanted = NamedScheme::list(self.schemes.iter().map(String::as_str));
-        let wanted = wanted.map_err(|why| Error::Parameter {
-            parameter: "scheme",
-            value: self.schemes.join(","),
-            allowed: why.to_string(),
-        })?;
+        let refuse = |parameter, value, allowed| Error::Parameter { parameter, value, allowed };
+        if let Some(name) = self.cases.iter().find(|name| !STABILITY_CASES.contains(&&name[..])) {
+            let allowed = format!("there are: {}", STABILITY_CASES.join(", "));
+            return Err(refuse("case", name.clone(), allowed));
+        }
+        let wanted = NamedScheme::list(self.schemes.iter().map(String::as_str))
+            .map_err(|why| refuse("scheme", self.schemes.join(","), why.to_string()))?;
         let (effort, given) = (self.effort, &self.given[..]);
         let mut plan = Plan { effort, wanted, given, case: "", jobs: Vec::new() };
         let is_chosen = |case: &str| self.cases.is_empty() || self.cases.iter().any(|c| c == case);

@@ -13,10 +13,7 @@ use crate::error::Error;
 use crate::files::replace_text;
 use crate::output::csv;
 use crate::output::document::Document;
-#[cfg(feature = "plot")]
 use crate::output::html::{HtmlPage, Section};
-#[cfg(feature = "plot")]
-use crate::plot::Figure;
 use crate::study::Program;
 use crate::table::{Cell, Table, WIDTH};
 
@@ -72,20 +69,14 @@ impl StabilityReport {
         robust(&self.rows)
     }
 
-    /// All tables: verdicts by scheme and by criterion, what was missed, then the rows case by
-    /// case.
-    pub fn tables(&self) -> Vec<Table> {
-        let mut tables = self.verdict_tables();
-        tables.extend(self.case_tables());
-        tables
-    }
-
+    /// Verdicts by scheme and by criterion, and what was missed.
     fn verdict_tables(&self) -> Vec<Table> {
         let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
         tables.extend(missed(&self.rows));
         tables
     }
 
+    /// The rows case by case.
     fn case_tables(&self) -> impl Iterator<Item = Table> + '_ {
         let cases =
             STABILITY_CASES.iter().filter(|case| self.rows.iter().any(|r| r.case == **case));
@@ -147,14 +138,10 @@ impl StabilityReport {
         csv::lines(&self.rows)
     }
 
-    /// Tables for a terminal.
-    pub fn to_text(&self) -> String {
-        self.document(self.tables()).to_text(WIDTH)
-    }
-
     /// Tables, provenance and notes in Markdown.
     pub fn to_markdown(&self) -> String {
-        self.document(self.tables()).to_markdown()
+        self.document(self.verdict_tables().into_iter().chain(self.case_tables()).collect())
+            .to_markdown()
     }
 
     /// A summary in Markdown without the rows: verdicts, limits that were missed, criteria in words,
@@ -178,29 +165,24 @@ impl StabilityReport {
         self.verdict_tables().into_iter().chain([conditions(&self.rows)]).collect()
     }
 
-    /// The sweeps of every case over a parameter, drawn, each with the name of its file.
+    /// The sweeps of every case over a parameter, drawn: names of files and SVG.
     #[cfg(feature = "plot")]
-    pub fn figures(&self) -> Vec<(String, Figure)> {
-        super::figures::figures(&self.rows)
+    fn svg_files(&self) -> Vec<(String, String)> {
+        let figures = super::figures::figures(&self.rows).into_iter();
+        figures.map(|(name, figure)| (format!("{name}.svg"), figure.to_svg())).collect()
+    }
+    /// Without the feature `plot` there are no figures.
+    #[cfg(not(feature = "plot"))]
+    fn svg_files(&self) -> Vec<(String, String)> {
+        Vec::new()
     }
 
-    /// Writes the figures as SVG, and `stability.html`, one page with them and all
-    /// tables, into a directory.
-    ///
-    /// # Errors
-    /// [`Error::Write`] at the first file that cannot be written.
-    #[cfg(feature = "plot")]
-    pub fn write_figures(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
-        let figures = self.figures();
-        let mut written = Vec::new();
-        let mut pictures = Vec::new();
-        for (name, figure) in &figures {
-            let file = format!("{name}.svg");
-            written.push(replace_text(&directory.join(&file), &figure.to_svg())?);
-            pictures.push((name.clone(), file));
-        }
+    /// One page with all tables, which links these figures.
+    fn page(&self, figures: &[(String, String)]) -> HtmlPage {
         let mut paragraphs = self.paragraphs().into_iter();
-        let page = HtmlPage {
+        let picture =
+            |(file, _): &(String, String)| (file.trim_end_matches(".svg").to_owned(), file.clone());
+        HtmlPage {
             title: "Stability".to_owned(),
             lead: paragraphs.next().expect("the heading is the first paragraph"),
             summary: self.verdict_tables(),
@@ -210,7 +192,11 @@ impl StabilityReport {
                     paragraphs: paragraphs.collect(),
                     ..Section::default()
                 },
-                Section { title: "Sweeps".to_owned(), pictures, ..Section::default() },
+                Section {
+                    title: "Sweeps".to_owned(),
+                    pictures: figures.iter().map(picture).collect(),
+                    ..Section::default()
+                },
                 Section {
                     title: "Cases".to_owned(),
                     tables: [conditions(&self.rows)]
@@ -221,9 +207,7 @@ impl StabilityReport {
                 },
             ],
             ..HtmlPage::default()
-        };
-        written.push(replace_text(&directory.join("stability.html"), &page.to_html())?);
-        Ok(written)
+        }
     }
 
     /// The paragraphs before the tables.
@@ -259,18 +243,24 @@ impl StabilityReport {
         format!("{program}; {effort} run{end}; {rows} rows: {}.", counts.join(", "))
     }
 
-    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be. Each file takes
-    /// the place of an earlier one only when it is whole.
+    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be, and, if the report is
+    /// complete, `stability.html` and its figures `stability-CASE.svg`. Each file takes the place of an earlier one only
+    /// when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     pub fn write(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
-        let files = [
-            ("stability.json", self.to_json()),
-            ("stability.csv", self.to_csv()),
-            ("stability.md", self.to_markdown()),
-            ("stability.tex", self.to_latex()),
+        let mut files = vec![
+            ("stability.json".to_owned(), self.to_json()),
+            ("stability.csv".to_owned(), self.to_csv()),
+            ("stability.md".to_owned(), self.to_markdown()),
+            ("stability.tex".to_owned(), self.to_latex()),
         ];
+        if self.complete {
+            let figures = self.svg_files();
+            files.push(("stability.html".to_owned(), self.page(&figures).to_html()));
+            files.extend(figures);
+        }
         files.iter().map(|(name, text)| replace_text(&directory.join(name), text)).collect()
     }
 }
