@@ -23,10 +23,8 @@ pub struct Program {
     /// Architecture and vector instructions for which the program was compiled.
     pub target_cpu: String,
     /// When the study began: the system's clock, in universal time; none where the system does not tell.
-    #[cfg_attr(feature = "report", serde(default))]
     pub date: Option<String>,
     /// The processor's name, on Linux.
-    #[cfg_attr(feature = "report", serde(default))]
     pub processor: Option<String>,
     /// What else the rows depend on and do not say, by name: parameters of scenes, a mesh file.
     pub request: BTreeMap<String, String>,

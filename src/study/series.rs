@@ -3,7 +3,7 @@
 use std::borrow::Borrow;
 
 use super::row::Row;
-#[cfg(feature = "report")]
+#[cfg(feature = "plot")]
 use super::row::distinct;
 
 /// The meshes of a series.
@@ -140,7 +140,7 @@ pub(crate) fn series_of<R: Borrow<Row>>(rows: &[R]) -> Vec<Series<'_>> {
 }
 
 /// The names of series, each once: a scheme on several scenes has one.
-#[cfg(feature = "report")]
+#[cfg(feature = "plot")]
 pub(crate) fn names(series: &[Series<'_>]) -> Vec<String> {
     distinct(series.iter().map(|series| series.name.clone()))
 }

@@ -271,7 +271,7 @@ impl<'a, const D: usize> Study<'a, D> {
                     let of = (entry, problem);
                     let why_not = (&crossing, available);
                     let place = (level, solver.name());
-                    let (row, solved) = self.row_or_reason(nested, of, place, measured, why_not)?;
+                    let (row, solved) = self.row(nested, of, place, measured, why_not)?;
                     let row = match &kept {
                         Some(row) => row,
                         None => self.finish(row, &mut rows)?,
