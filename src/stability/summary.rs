@@ -131,42 +131,36 @@ pub(crate) fn safe_ranges(rows: &[StabilityRow]) -> Vec<String> {
 /// The penalties of a scheme that stay within all limits of a case, for schemes with several
 /// penalties; sweeps of factors have their [`safe_ranges`].
 pub(crate) fn robust(rows: &[StabilityRow]) -> Vec<String> {
-    let mut sentences = Vec::new();
-    let compared = rows.iter().filter(|r| !SWEEPS.contains(&&r.case[..]));
-    for key in distinct(compared.map(|r| (r.case.clone(), r.scheme.clone()))) {
-        let mine = || rows.iter().filter(|r| (&r.case, &r.scheme) == (&key.0, &key.1));
-        let judged = |label: String| {
-            let of = |v: Verdict| count(mine().filter(|r| r.label == label), v);
-            let kept = of(Verdict::Met) + of(Verdict::BetterThanExpected);
-            let failed = |r: &&StabilityRow| {
-                r.label == label && r.verdict == Verdict::Reported && r.measured.is_none()
-            };
-            let other = of(Verdict::Missed) + of(Verdict::FailsAsExpected);
-            let all = kept + other + mine().filter(failed).count();
-            (label, kept, all)
+    let sentence = |(case, scheme): (&String, &String)| {
+        let mine = || rows.iter().filter(|r| (&r.case, &r.scheme) == (case, scheme));
+        let judged = |label: &String| {
+            let of_label = mine().filter(|r| r.label == *label);
+            let verdicts = of_label.filter_map(|r| match r.verdict {
+                // a solve that failed keeps nothing, whatever its limits
+                Verdict::Reported => r.measured.is_none().then_some(false),
+                Verdict::NotApplicable => None,
+                verdict => Some(matches!(verdict, Verdict::Met | Verdict::BetterThanExpected)),
+            });
+            verdicts.collect::<Vec<bool>>()
         };
-        let labels = distinct(mine().map(|r| r.label.clone()));
-        let counts: Vec<_> = labels.into_iter().map(judged).filter(|of| of.2 > 0).collect();
-        if counts.len() < 2 {
-            continue;
-        }
-        let list = |wanted: bool| {
-            let chosen = counts.iter().filter(|(_, kept, all)| (kept == all) == wanted);
-            let words = |(label, kept, all): &(String, usize, usize)| match wanted {
-                true => format!("\"{label}\""),
-                false => format!("\"{label}\" ({kept} of {all} rows)"),
-            };
-            chosen.map(words).collect::<Vec<_>>()
-        };
-        let (robust, others) = (list(true), list(false));
-        let text = match (robust.is_empty(), others.is_empty()) {
-            (false, true) => format!("every penalty shown is robust: {}", robust.join(", ")),
-            (false, false) => {
-                format!("robust: {}; not robust: {}", robust.join(", "), others.join(", "))
+        let (mut robust, mut others) = (Vec::new(), Vec::new());
+        for label in distinct(mine().map(|r| &r.label)) {
+            let verdicts = judged(label);
+            let (kept, all) = (verdicts.iter().filter(|kept| **kept).count(), verdicts.len());
+            match kept == all {
+                _ if all == 0 => {}
+                true => robust.push(format!("\"{label}\"")),
+                false => others.push(format!("\"{label}\" ({kept} of {all} rows)")),
             }
-            _ => format!("no penalty shown is robust: {}", others.join(", ")),
+        }
+        let text = match (robust.len(), others.len()) {
+            (0, 0) | (1, 0) | (0, 1) => return None,
+            (_, 0) => format!("every penalty shown is robust: {}", robust.join(", ")),
+            (0, _) => format!("no penalty shown is robust: {}", others.join(", ")),
+            _ => format!("robust: {}; not robust: {}", robust.join(", "), others.join(", ")),
         };
-        sentences.push(format!("{}, {}: {text}.", key.0, key.1));
-    }
-    sentences
+        Some(format!("{case}, {scheme}: {text}."))
+    };
+    let compared = rows.iter().filter(|r| !SWEEPS.contains(&&r.case[..]));
+    distinct(compared.map(|r| (&r.case, &r.scheme))).into_iter().filter_map(sentence).collect()
 }
