@@ -17,7 +17,7 @@ use crate::stability::runs::{free_matrix, over, row};
 pub(crate) const INERTIA: Criterion = Criterion::new(
     "inertia",
     &[ExpectedRange::at_most(0.0)],
-    "Interior penalty sigma/h_F on the unit square, threshold sigma = 3: {} negative eigenvalues (counted by the pivots of a factorisation). Below the threshold there are some, whatever the size of the error.",
+    "Interior penalty sigma/h_F on the unit square, threshold sigma = 3: the number of negative eigenvalues, counted by the pivots of a factorisation, is at most {}. Below the threshold there are some, whatever the size of the error.",
 );
 const REFUSED: Criterion = Criterion::new(
     "refused-or-warned",

@@ -22,12 +22,12 @@ const ORDER: Criterion = Criterion::new(
 const END: Criterion = Criterion::new(
     "end-of-contact",
     &[ExpectedRange::at_most(1.0)],
-    "The distance of the end of contact from the exact one is at most {} times 2h.",
+    "The distance of the end of contact from the exact one, divided by 2h, is at most {}.",
 );
 const VALUES: Criterion = Criterion::new(
     "values-on-contact-set",
     &[ExpectedRange::at_most(1.0)],
-    "The largest value of the solution on the exact contact set is at most {} times (2h)^(3/2), which is what the exact solution has 2h from the end.",
+    "The largest value of the solution on the exact contact set, divided by (2h)^(3/2), which is what the exact solution has 2h from the end, is at most {}.",
 );
 const JUNCTION: Criterion = Criterion::new(
     "junction-inside-facet",

@@ -32,7 +32,7 @@ const CERTIFICATE: Criterion = Criterion::new(
 const CONTACT_SET: Criterion = Criterion::new(
     "contact-set",
     &[ExpectedRange::at_most(1.0)],
-    "The contact set, of vertices where some unknown touches, differs from the exact one by an area of at most {} times that of a strip of width 2h along the free boundary. The share of single unknowns in contact well inside the exact set is reported beside it: it need not tend to one, and is no measure of contact.",
+    "The contact set, of vertices where some unknown touches, differs from the exact one by an area that, divided by that of a strip of width 2h along the free boundary, is at most {}. The share of single unknowns in contact well inside the exact set is reported beside it: it need not tend to one, and is no measure of contact.",
 );
 const MULTIPLIER: Criterion = Criterion::new(
     "multiplier-order",

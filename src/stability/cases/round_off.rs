@@ -32,7 +32,7 @@ const TO_FLOOR: Criterion = Criterion::new(
 const LIMIT: Criterion = Criterion::new(
     "limit-of-large-factors",
     &[ExpectedRange::at_most(1.0)],
-    "With bounds on facet means or with none, the relative distance in L2 to the Crouzeix-Raviart solution is at most {} times eta^(-1/2) for eta to 1e6: the limit is reached before rounding matters. For larger factors rounding is known to prevail.",
+    "With bounds on facet means or with none, the relative distance in L2 to the Crouzeix-Raviart solution, times eta^(1/2), is at most {} for eta to 1e6: the limit is reached before rounding matters. For larger factors rounding is known to prevail.",
 );
 pub(crate) const CASE: Case =
     Case { name: "round-off", criteria: &[ABOVE_BARRIER, TO_FLOOR, LIMIT], plan };
