@@ -33,7 +33,7 @@ impl Choice {
     pub fn without_coefficient(scheme: &str) -> Self {
         Self { ignores_coefficient: true, ..Self::of(scheme) }
     }
-    /// What its rows are named by: the text that users write, without what is default.
+    /// The label of its rows: the text that users write, without choices that are default.
     pub fn label(&self) -> String {
         match self.ignores_coefficient {
             true => format!("{}, coefficient ignored", self.name),

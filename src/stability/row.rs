@@ -197,7 +197,7 @@ pub struct StabilityRow {
     pub underlying_quantity: String,
     /// Further figures, or why there is none.
     pub detail: String,
-    /// What follows.
+    /// The verdict on figure and range.
     pub verdict: Verdict,
     /// The factor by which the limit is missed, if there is one.
     pub missed_by: Option<f64>,

@@ -94,9 +94,9 @@ pub(crate) fn solved_by<'a, const D: usize>(
     nested.cold_start(is_cold).solve(&*choice.make())
 }
 
-/// What contact forces and the fluxes through facets with weakly imposed Dirichlet data leave of the load, less the
-/// reaction, over the sum of absolute loads. None without forces or without jump multipliers of the solver, which are
-/// the fluxes.
+/// The imbalance of forces: the load less reaction, contact forces and fluxes through facets with weakly imposed
+/// Dirichlet data, over the sum of absolute loads. None without forces or without jump multipliers of the solver, which
+/// are the fluxes.
 pub(crate) fn imbalance<const D: usize>(solved: &Solved<'_, D>) -> Option<f64> {
     let (inequality, solution) = (solved.inequality(), solved.solution());
     let penalised = inequality.penalised.as_ref()?;

@@ -1,4 +1,4 @@
-//! What a row says of a run over several parts of a mesh.
+//! The figures of a run over several parts of a mesh.
 
 use crate::distributed::Differences;
 

@@ -26,7 +26,8 @@ pub struct Program {
     pub date: Option<String>,
     /// The processor's name, on Linux.
     pub processor: Option<String>,
-    /// What else the rows depend on and do not say, by name: parameters of scenes, a mesh file.
+    /// The rest of the request, on which rows depend and which they do not state, by name: parameters of scenes, a mesh
+    /// file.
     pub request: BTreeMap<String, String>,
     /// The command that makes the report again, for its page; files of rows do not have it.
     #[cfg_attr(feature = "report", serde(skip))]

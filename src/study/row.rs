@@ -78,7 +78,7 @@ impl Seconds {
     }
 }
 
-/// What tells the rows of a report apart.
+/// The key of a row, by which the rows of a report differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RowKey {
@@ -111,7 +111,7 @@ pub struct Row {
     pub label: String,
     /// Subdivisions of the shortest side, or number of refinements of a mesh file or of adaptive refinement.
     pub level: usize,
-    /// What levels count: `subdivisions`, `refinements`, or `steps` of adaptive refinement.
+    /// The unit of levels: `subdivisions`, `refinements`, or `steps` of adaptive refinement.
     pub level_kind: Option<String>,
     /// Share of the error bound that each adaptive refinement marks; null for uniform meshes. Times of
     /// such a row are those of all its steps so far.
@@ -137,7 +137,7 @@ pub struct Row {
     pub mesh_size: f64,
     /// How the solve ended; its name in files.
     pub status: Outcome,
-    /// What the status says, in one sentence; none if the solve converged.
+    /// The status in one sentence; none if the solve converged.
     pub message: Option<String>,
     /// Against what the errors are: `exact`, or scheme and level of a reference; none without errors.
     pub against: Option<String>,
@@ -301,7 +301,7 @@ impl Row {
         Ok(self)
     }
 
-    /// What tells the row apart from the others of its report.
+    /// The key by which the row differs from the others of its report.
     pub fn key(&self) -> RowKey {
         let [scene, label, solver] = [&self.scene, &self.label, &self.solver].map(String::clone);
         RowKey { scene, label, solver, level: self.level }

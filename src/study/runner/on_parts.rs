@@ -20,7 +20,7 @@ use crate::study::reference::Measured;
 use crate::study::report::Report;
 use crate::study::row::{Row, Seconds};
 
-/// What a study over the parts of a mesh does besides.
+/// The options of a study over the parts of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PartChecks {
     /// Compares the rows of all parts with those of the whole mesh, which every process then has.

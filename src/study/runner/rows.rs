@@ -114,7 +114,7 @@ impl<const D: usize> Study<'_, D> {
         Ok(Row { solver, peak_memory_bytes, ..row })
     }
 
-    /// What tells the files of a row apart from others of its scene and level.
+    /// The name of a row in its files, after the scene: the label, with the solver where there are several.
     fn name_of_files(&self, row: &Row) -> String {
         match self.solvers.len() {
             0 | 1 => row.label.clone(),
