@@ -1,5 +1,6 @@
 //! Stability study: difficult cases, each with a sweep, a criterion, and a verdict on each figure.
 
+mod case;
 mod cases;
 mod choice;
 mod criterion;

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::Case;
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, InteriorPoint};
 use crate::nested::Hierarchy;
 use crate::scenes;
 use crate::scenes::Scene;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};

@@ -1,16 +1,15 @@
 //! Interior penalty across its threshold of coercivity, by inertia.
 
-use super::Case;
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::kit::spectrum::{negative_eigenvalues, smallest_eigenvalue};
 use crate::scenes;
 use crate::scenes::sines;
-use crate::stability::StabilityRow;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};
-use crate::stability::row::ExpectedRange;
+use crate::stability::row::{ExpectedRange, StabilityRow};
 use crate::stability::row_builder::{RowBuilder, figures, of};
 use crate::stability::runs::{free_matrix, over, row};
 

@@ -1,12 +1,12 @@
 //! The end of contact at a vertex and off all vertices.
 
-use super::Case;
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
 use crate::nested::Hierarchy;
 use crate::real::{Point, Precision};
 use crate::scenes;
 use crate::scenes::Scene;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};

@@ -1,11 +1,11 @@
 //! Coefficients that jump.
 
-use super::Case;
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::scheme::ConformingP1;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::Case;
 use crate::algebra::Contact;
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, InteriorPoint, Outcome};
@@ -12,6 +11,7 @@ use crate::real::Point;
 use crate::real::Precision;
 use crate::scenes;
 use crate::scenes::Scene;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};

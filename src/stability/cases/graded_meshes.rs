@@ -1,8 +1,8 @@
 //! Graded meshes: cells of very different sizes beside each other.
 
-use super::Case;
 use crate::error::Error;
 use crate::scenes;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::meshes::graded;

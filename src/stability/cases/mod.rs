@@ -14,16 +14,8 @@ mod scaling;
 mod slivers;
 mod stretched_cells;
 
+use super::case::Case;
 use super::criterion::Criterion;
-use super::plan::Plan;
-
-/// A hard case: what is judged, and the jobs that compute it.
-pub(crate) struct Case {
-    pub name: &'static str,
-    pub criteria: &'static [Criterion],
-    /// Adds the jobs of the case.
-    pub plan: fn(&mut Plan<'_>),
-}
 
 /// All cases.
 pub(crate) const CASES: [Case; 12] = [

@@ -1,9 +1,9 @@
 //! Orders that experience expects.
 
-use super::Case;
 use crate::error::Error;
 use crate::scenes;
 use crate::scenes::{Scene, sines};
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};

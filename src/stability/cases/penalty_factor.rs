@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::Case;
 use super::condition_numbers;
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, in_precision};
@@ -10,6 +9,7 @@ use crate::nested::Hierarchy;
 use crate::real::Precision;
 use crate::scenes;
 use crate::scenes::Scene;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};

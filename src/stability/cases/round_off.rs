@@ -1,13 +1,13 @@
 //! Over-penalty and rounding: Poisson on meshes fine enough for it to show, and the limit of large factors, which is the
 //! Crouzeix-Raviart scheme.
 
-use super::Case;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::nested::Hierarchy;
 use crate::real::Precision;
 use crate::scenes;
 use crate::scenes::{Scene, sines};
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};

@@ -1,11 +1,11 @@
 //! Invariance under a change of units.
 
-use super::Case;
 use crate::error::Error;
 use crate::nested::Hierarchy;
 use crate::problem::Datum;
 use crate::scenes;
 use crate::scenes::Scene;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};

@@ -1,10 +1,10 @@
 //! Tetrahedra without volume to speak of.
 
-use super::Case;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::scenes;
 use crate::scenes::sines;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::meshes::{clamped, slivers};

@@ -1,9 +1,9 @@
 //! Stretched cells.
 
-use super::Case;
 use crate::error::Error;
 use crate::facet::WeightRule;
 use crate::scenes::sines;
+use crate::stability::case::Case;
 use crate::stability::choice::Choice;
 use crate::stability::criterion::Criterion;
 use crate::stability::meshes::stretched;
