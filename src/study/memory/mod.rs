@@ -14,15 +14,9 @@ use limits::{left_to_group, limit_of_process};
 /// kernel keeps (`VmHWM`), elsewhere nothing.
 pub fn peak_memory_bytes() -> Option<u64> {
     #[cfg(target_os = "linux")]
-    return peak_of_status(&std::fs::read_to_string("/proc/self/status").ok()?);
+    return kilobytes(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:");
     #[cfg(not(target_os = "linux"))]
     None
-}
-
-/// The peak in the text of a status file, which gives it in units of 1024 bytes and calls them kB.
-#[cfg(any(test, target_os = "linux"))]
-fn peak_of_status(status: &str) -> Option<u64> {
-    kilobytes(status, "VmHWM:")
 }
 
 /// The memory that this process may have in all: what the crate `sysinfo` finds available.
@@ -123,7 +117,7 @@ pub(super) fn estimate_without_factors(
 
 #[cfg(test)]
 mod tests {
-    use super::{estimate, estimate_without_factors, peak_of_status};
+    use super::{estimate, estimate_without_factors, kilobytes};
     use crate::element::Layout;
     use crate::real::Precision;
 
@@ -195,8 +189,8 @@ mod tests {
     #[test]
     fn the_peak_is_read_and_nothing_is_made_up() {
         let status = "VmPeak:\t  999 kB\nVmHWM:\t   2048 kB\nVmRSS:\t 12 kB\n";
-        assert_eq!(peak_of_status(status), Some(2048 * 1024));
-        assert_eq!(peak_of_status("VmRSS:\t 12 kB\n"), None);
-        assert_eq!(peak_of_status("VmHWM:\t many kB\n"), None);
+        assert_eq!(kilobytes(status, "VmHWM:"), Some(2048 * 1024));
+        assert_eq!(kilobytes("VmRSS:\t 12 kB\n", "VmHWM:"), None);
+        assert_eq!(kilobytes("VmHWM:\t many kB\n", "VmHWM:"), None);
     }
 }

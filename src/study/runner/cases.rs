@@ -46,7 +46,7 @@ impl<'a, const D: usize> Study<'a, D> {
         self.named(entry, &entry.problem(&self.scene.problem), row, None)
     }
 
-    /// What the rows of a case have in common, with its level; of adaptive meshes that is zero.
+    /// The variant of the rows of a case, with its level; of adaptive meshes that is zero.
     pub(crate) fn variant(&self) -> (Variant, usize) {
         let row = self.row_not_run(String::new());
         let theta = self.adaptive.map(|of| of.theta);

@@ -271,7 +271,7 @@ impl<'a, const D: usize> Study<'a, D> {
                     let of = (entry, problem);
                     let why_not = (&crossing, available);
                     let place = (level, solver.name());
-                    let (row, solved) = self.row_or_reason(nested, of, place, measured, why_not)?;
+                    let (row, solved) = self.row(nested, of, place, measured, why_not)?;
                     let row = match &kept {
                         Some(row) => row,
                         None => self.finish(row, &mut rows)?,
@@ -307,8 +307,8 @@ impl<'a, const D: usize> Study<'a, D> {
         self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect()
     }
 
-    /// What tells the rows of the study apart, in the order in which they run; none of adaptive refinement, whose
-    /// number of steps is not known before.
+    /// The keys of all rows, in the order in which they run; none of adaptive refinement, whose number of steps is not
+    /// known before.
     pub fn keys(&self) -> Vec<RowKey> {
         let mut keys = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&self.problems()) {

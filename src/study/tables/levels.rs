@@ -246,7 +246,7 @@ pub(super) fn marked(row: &Row, bound: String) -> String {
     if row.bound.guaranteed == Some(false) { bound + "*" } else { bound }
 }
 
-/// What the marks of bounds mean, where there are any.
+/// The remark that explains the marks of bounds, where there are any.
 pub(super) fn unproven(rows: &[&Row]) -> Option<String> {
     let sets =
         distinct(rows.iter().map(|r| r.bound.unproven_words()).filter(|words| !words.is_empty()));

@@ -1,4 +1,4 @@
-//! What is compared: a study, checked before any runs.
+//! The studies of a comparison, each checked before any runs.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ use unilateral::study::{Journal, Row, RowKey, Study, file_name};
 
 /// A study that has been checked.
 pub struct Run<'a> {
-    /// What tells its rows apart.
+    /// The keys of its rows.
     pub keys: Vec<RowKey>,
     /// Problem file, or scene and mesh, for messages.
     pub place: String,
