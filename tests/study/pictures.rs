@@ -211,8 +211,8 @@ fn colour_at(paths: &[(String, Vec<Vec<[f64; 2]>>)], [x, y]: [f64; 2]) -> Option
 fn what_is_nearer_hides_what_is_behind() {
     // the viewer is above: nothing of the lower layer hides the upper one
     let mesh = cube::<3>(4);
-    let upper = paths(&contact_in_cube(&mesh, |x| x[2] > 0.75));
-    let both = paths(&contact_in_cube(&mesh, |x| (x[2] - 0.5).abs() > 0.25));
+    let upper = paths(&contact_in_cube(&mesh, |x| x[2] > 0.5));
+    let both = paths(&contact_in_cube(&mesh, |x| x[2] > 0.5 || x[2] < 0.25));
     let lower = paths(&contact_in_cube(&mesh, |x| x[2] < 0.25));
     let mut overlap = 0;
     for polygon in upper.iter().filter(|(fill, _)| fill != CONTACT).flat_map(|p| &p.1) {

@@ -18,8 +18,8 @@ use unilateral::work_precision::{Rounds, WorkPrecision};
 
 use crate::one_run::take_directory;
 use crate::shared::{
-    Failure, Request, bar, each_once, end_at_interrupt, print, terminal_width, tick, use_threads,
-    warn,
+    Failure, Request, bar, complain, each_once, end_at_interrupt, print, terminal_width, tick,
+    use_threads, warn,
 };
 
 const SCENES: [&str; 5] = ["radial-2d", "ball-2d", "signorini-2d", "hertz-2d", "radial-3d"];
@@ -70,20 +70,23 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     let mut keep = |report: &Report| {
         WorkPrecision::of(report).subject(subject).write(&options.out).map(|_| ())
     };
-    // rows of an earlier request do not stand for this one
+    // files of an earlier request do not stand for this one
+    if let Ok(earlier) = Report::read(&options.out) {
+        earlier.remove_files(&options.out);
+    }
     keep(&report).map_err(Failure::of_work)?;
     tick(&bar);
-    for Run { run, .. } in runs {
-        run(&mut report, &mut keep).map_err(Failure::Work)?;
-    }
-    report.complete = true;
-    keep(&report).map_err(Failure::of_work)?;
+    let run_one = |Run { run, .. }: Run<'_>| run(&mut report, &mut keep).err();
+    let messages: Vec<String> = runs.into_iter().filter_map(run_one).collect();
     bar.finish_and_clear();
+    messages.iter().for_each(|text| complain(text));
+    report.complete = messages.is_empty();
+    keep(&report).map_err(Failure::of_work)?;
     if !quiet {
         print(&WorkPrecision::of(&report).subject(subject).to_text(terminal_width()))?;
         print(&format!("\nReport and plots are in {}\n", options.out.display()))?;
     }
-    Ok(report.rows.iter().all(Row::converged))
+    Ok(report.complete && report.rows.iter().all(Row::converged))
 }
 
 /// Refuses a subject that no scheme is.
