@@ -65,8 +65,9 @@ impl<const D: usize> Discretisation<'_, D> {
     /// it (those of quadratics at vertices of triangles and tetrahedra have none); where no unknown has
     /// both, if all its unknowns with bounds are. Where a scheme leaves all unknowns of a facet inactive
     /// within the contact set, as SIPG with bounds on facet means over curved obstacles, the set is too
-    /// small. The area error is the measure of the symmetric difference with the exact set. The distance is that of Hausdorff between the exact
-    /// free boundary and the facets between cells in contact and cells that are not.
+    /// small. The area error is the measure of the symmetric difference with the exact set. The distance
+    /// is that of Hausdorff between the exact free boundary and the facets between cells in contact and
+    /// cells that are not.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
