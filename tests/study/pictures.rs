@@ -114,26 +114,25 @@ fn the_area_painted_is_that_of_the_cells_in_contact() {
     assert!((largest / unit.powi(2) / contact - 1.0).abs() < 2e-3, "{largest}");
 }
 
+/// The filled paths, all of which lie on the paper.
+fn paths_on_paper(svg: &str) -> usize {
+    let size = svg.split("viewBox=\"0 0 ").nth(1).unwrap().split('"').next().unwrap();
+    let size: Vec<f64> = size.split(' ').map(|n| n.parse().unwrap()).collect();
+    let paths = paths(svg);
+    let n_paths = paths.len();
+    for [x, y] in paths.into_iter().flat_map(|p| p.1).flatten() {
+        assert!((0.0..=size[0]).contains(&x) && (0.0..=size[1]).contains(&y), "{x} {y}");
+    }
+    n_paths
+}
+
 #[test]
 fn all_that_is_drawn_lies_on_the_paper_and_the_legend_names_it() {
     let scene = scenes::radial::<2>(1.0);
     let (picture, ..) = picture(&scene, &Sipg::default(), 8);
     let svg = picture.to_svg().unwrap();
-    let size: Vec<f64> = svg
-        .split("viewBox=\"0 0 ")
-        .nth(1)
-        .unwrap()
-        .split('"')
-        .next()
-        .unwrap()
-        .split(' ')
-        .map(|n| n.parse().unwrap())
-        .collect();
-    let paths = paths(&svg);
-    assert!(paths.len() > 20, "{}", paths.len());
-    for [x, y] in paths.into_iter().flat_map(|p| p.1).flatten() {
-        assert!((0.0..=size[0]).contains(&x) && (0.0..=size[1]).contains(&y), "{x} {y}");
-    }
+    let n_paths = paths_on_paper(&svg);
+    assert!(n_paths > 20, "{n_paths}");
     for text in ["in contact", "free boundary, found", "free boundary, exact", "|mean jump|"] {
         assert!(svg.contains(text), "{text}");
     }
@@ -238,6 +237,19 @@ fn a_contact_boundary_in_space_is_seen_flat_beside_the_solution_on_the_surface()
     assert!((largest / unit.powi(2) / area - 1.0).abs() < 2e-3, "{largest} {area}");
     for text in ["solution on the surface", "free boundary, exact", "density of the multiplier"] {
         assert!(svg.contains(text), "{text}");
+    }
+}
+
+#[test]
+fn a_contact_boundary_may_close_or_be_absent() {
+    for condition in [BoundaryCondition::Contact, BoundaryCondition::Dirichlet] {
+        let domain = BoxDomain::<3>::new(Point::zeros(), Point::repeat(1.0), [[condition; 2]; 3]);
+        let mesh = Mesh::kuhn_box(&domain, [2; 3]).unwrap();
+        let problem = Problem::new().signorini(|_| 0.0);
+        let picture = Picture::of("", &problem, &mesh, &function(&mesh, |k| k as f64)).unwrap();
+        let svg = picture.to_svg().unwrap();
+        assert!(paths_on_paper(&svg) > 0);
+        assert_eq!(svg.contains("contact set"), condition == BoundaryCondition::Contact);
     }
 }
 

@@ -37,29 +37,39 @@ struct Facet<const D: usize> {
     depth: f64,
 }
 
+/// The axis along which most of the contact boundary faces, and the sign of its outward normal there; none without one.
+fn facing<const D: usize>(mesh: &Mesh<D>) -> Option<(usize, f64)> {
+    let facets = trace::facets(mesh);
+    let area = |&(axis, sign): &(usize, f64)| -> f64 {
+        let faces = |&(cell, local): &HalfFacet| {
+            let geometry = mesh.geometry(cell);
+            (sign * geometry.normal(local)[axis]).max(0.0) * geometry.facet_measure(local)
+        };
+        facets.iter().map(faces).sum()
+    };
+    let directions = (0..D).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]);
+    directions.filter(|_| !facets.is_empty()).max_by(|a, b| area(a).total_cmp(&area(b)))
+}
+
 /// The data of the panels.
 pub(crate) struct Space<'a, const D: usize> {
     problem: &'a Problem<D>,
     view: View<'a, D>,
     neighbours: Neighbours,
     towards_viewer: Point<D>,
-    /// The axis along which the contact boundary faces, and whether forwards or backwards.
-    facing: (usize, f64),
+    /// Where the contact boundary faces.
+    facing: Option<(usize, f64)>,
     /// The surface of the domain.
     surface: Vec<Facet<D>>,
 }
 
 impl<'a, const D: usize> Space<'a, D> {
     pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<D>, fields: &'a Fields) -> Self {
-        // the sum of the areas of the contact boundary that face along each axis
-        let areas = trace::facets(mesh).into_iter().fold(Point::zeros(), |sum, (cell, local)| {
-            let geometry = mesh.geometry(cell);
-            sum + geometry.normal(local) * geometry.facet_measure(local)
-        });
-        let areas: Point<D> = areas;
-        let axis = areas.iamax();
+        let facing = facing(mesh);
         let mut towards = TOWARDS_VIEWER;
-        let is_hidden = areas[axis] * towards[axis] < 0.0;
+        // without a contact boundary nothing is hidden
+        let (axis, sign) = facing.unwrap_or((0, TOWARDS_VIEWER[0]));
+        let is_hidden = sign * towards[axis] < 0.0;
         let mut turn = 1.0;
         if is_hidden && axis == 2 {
             // the lower side is turned up: a box seen from below looks like a room seen from above
@@ -76,7 +86,7 @@ impl<'a, const D: usize> Space<'a, D> {
             neighbours: Neighbours::new(mesh),
             view,
             towards_viewer: vector(towards),
-            facing: (axis, areas[axis]),
+            facing,
             surface: Vec::new(),
         };
         space.surface = space.surface_of(&|_| true);
@@ -94,9 +104,9 @@ impl<'a, const D: usize> Space<'a, D> {
         if self.problem.has_obstacle() {
             panels.push(Panel::Map(self.contact()));
         }
-        if self.problem.has_gap() {
+        if let Some(facing) = self.facing.filter(|_| self.problem.has_gap()) {
             let (problem, fields) = (self.problem, self.view.fields);
-            let plane = Plane::of_contact_boundary(problem, mesh, fields, self.facing);
+            let plane = Plane::of_contact_boundary(problem, mesh, fields, facing);
             panels.extend(plane.panels_of_contact());
         }
         panels
