@@ -63,9 +63,11 @@ impl<const D: usize> Discretisation<'_, D> {
     /// approximately, it is in contact if the datum is. A cell, or a facet of the contact boundary,
     /// is in contact if all its unknowns are that have bounds and basis functions with a positive mean over
     /// it (those of quadratics at vertices of triangles and tetrahedra have none); where no unknown has
-    /// both, if all its unknowns with bounds are. The area error is the measure of the
-    /// symmetric difference with the exact set. The distance is that of Hausdorff between the exact
-    /// free boundary and the facets between cells in contact and cells that are not.
+    /// both, if all its unknowns with bounds are. Where a scheme leaves all unknowns of a facet inactive
+    /// within the contact set, as SIPG with bounds on facet means over curved obstacles, the set is too
+    /// small. The area error is the measure of the symmetric difference with the exact set. The distance
+    /// is that of Hausdorff between the exact free boundary and the facets between cells in contact and
+    /// cells that are not.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].

@@ -64,6 +64,11 @@ impl<'a, const D: usize> Study<'a, D> {
         self.reference.as_ref().map_or_else(|| Ok(Vec::new()), |_| Ok(self.run()?.rows))
     }
 
+    /// The number of runs for these rows, that of the reference among them.
+    pub(crate) fn runs_against_reference(&self) -> usize {
+        self.reference.as_ref().map_or(0, |_| 1 + self.keys().len())
+    }
+
     /// Says that a run begins.
     pub(crate) fn notify_started(&self, variant: &Variant, level: usize) {
         (self.observer)(super::Progress::Started(&variant.scene, &variant.label, level));

@@ -120,7 +120,7 @@ fn draw<const D: usize>(
     let Some(fields) = fields_with_bound(solved) else { return Ok(()) };
     let title = format!("{name}, level {level}");
     let problem = solved.discretisation().problem();
-    let picture = Picture::of(&title, problem, solved.mesh(), &fields, None)?;
+    let picture = Picture::of(&title, problem, solved.mesh(), &fields)?;
     picture.write_svg(&directory.join(file_name(name) + ".svg"))
 }
 
