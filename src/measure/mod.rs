@@ -14,6 +14,7 @@ mod kinks;
 mod norms;
 mod order;
 mod penetration;
+mod roughness;
 mod rounding;
 mod squared_errors;
 

@@ -7,12 +7,12 @@ use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
+use crate::assemble::space::metric::shape;
 use crate::error_bound::NoBound;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryCondition, Neighbours};
 use crate::parallel::cells;
-use crate::real::Point;
 
 /// The cells of a conforming linear function.
 pub(super) struct LinearCells<'s, 'a, const D: usize> {
@@ -49,17 +49,16 @@ impl<const D: usize> Space<'_, D> {
         let mut data = in_large_pages(vec![0.0; n_cells * stride]);
         let fill = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, data) in cells.zip(out.chunks_exact_mut(stride)) {
-                let metric = self.metric(cell);
+                let (volume, products) = shape(self.mesh, cell, 1.0);
                 let values = self.local_values(cell, u);
                 let alpha = self.alpha(cell);
-                let residual = self.cell_residual(cell, &metric, u, &load);
-                data[0] = metric.volume;
+                let loads = self.reaction_less_load(cell, volume, &values, &load);
+                data[0] = volume;
                 for i in 0..=D {
-                    let product = |j: usize| metric.products[i][j] * (values[j] - values[0]);
-                    let stiffness = alpha * (1..=D).map(product).sum::<f64>();
+                    let product = |j: usize| products[i][j] * (values[j] - values[0]);
                     // |F| n = -D |K| grad lambda
-                    data[1 + i] = -(D as f64) * stiffness;
-                    data[D + 2 + i] = residual[i] - stiffness;
+                    data[1 + i] = -(D as f64) * alpha * (1..=D).map(product).sum::<f64>();
+                    data[D + 2 + i] = loads[i];
                 }
             }
             Ok::<(), Infallible>(())
@@ -140,23 +139,23 @@ impl<const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, D> {
         [0.0; 3]
     }
 
+    /// Fluxes with the sum zero are constants along the facet opposite the vertex, whose products are those of gradients,
+    /// `K`, less the part across the facet: `S = D^2 alpha (K_ab - K_av K_vb / K_vv)`, `v` the vertex. Orthogonal to them
+    /// are `x` less the barycentre and the constant across the facet.
     fn problem(&self, corner: Corner) -> CellProblem<3> {
-        let (cell, d) = (corner.cell(), D as f64);
-        let points = self.space.mesh.corners(cell);
-        let middle = points[..=D].iter().sum::<Point<D>>() / (d + 1.0);
-        let from_middle = points.map(|p| p - middle);
-        let squares: f64 = from_middle[..=D].iter().map(|p| p.norm_squared()).sum();
-        let variance = squares / ((d + 1.0) * (d + 2.0));
-        let alpha = self.space.alpha(cell);
-        let scale = 1.0 / (d * d * self.volume(cell) * alpha);
-        let mut products = [[0.0; 3]; 3];
-        for (row, a) in products.iter_mut().zip(corner.facets::<D>()) {
-            for (product, b) in row.iter_mut().zip(corner.facets::<D>()) {
-                *product = scale * (from_middle[a].dot(&from_middle[b]) + variance);
+        let (cell, own, d) = (corner.cell(), corner.own(), D as f64);
+        let (_, products) = shape(self.space.mesh, cell, 1.0);
+        let vertex = self.space.mesh.cell(cell)[own] as usize;
+        let mean = self.load(corner, self.pressures[vertex]) / (d + 1.0);
+        let scale = d * d * self.space.alpha(cell);
+        let across = products[own].map(|product| -product / products[own][own]);
+        let mut problem = CellProblem { slopes: [[0.0; 3]; 3], numbers: [0.0; 3] };
+        for (k, a) in corner.facets::<D>().enumerate() {
+            problem.numbers[k] = mean * (1.0 + across[a]);
+            for (slope, b) in problem.slopes[k].iter_mut().zip(corner.facets::<D>()) {
+                *slope = scale * (products[a][b] + products[a][own] * across[b]);
             }
         }
-        let vertex = self.space.mesh.cell(cell)[corner.own()] as usize;
-        let sum = self.load(corner, self.pressures[vertex]);
-        CellProblem { products, aims: [0.0; 3], sum }
+        problem
     }
 }

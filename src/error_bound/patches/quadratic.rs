@@ -252,7 +252,7 @@ impl<const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, D> {
                 products[a][b] = if j == k { 2.0 } else { 1.0 } * scale * along.dot(other);
             }
         }
-        CellProblem { products, aims, sum: d * tested[..=D].iter().sum::<f64>() }
+        CellProblem::new(products, &aims, d * tested[..=D].iter().sum::<f64>(), D * D)
     }
 }
 

@@ -177,12 +177,14 @@ impl<const D: usize> Space<'_, D> {
         }
         if let Some(set) = &exact.contact {
             let touching = self.in_contact(&entities, inequality, solution);
-            let wrong = |((measure, exact), touches): ((&f64, &ExactContact), &bool)| {
+            let mut exact = on_entities.iter().flatten().peekable();
+            let wrong = |(k, (measure, touches)): (usize, (&f64, &bool))| {
+                let found = exact.next_if(|(of, _)| *of == k);
+                let exact = found.map_or(ExactContact::FREE, |(_, exact)| *exact);
                 exact.shares[usize::from(!touches)] * measure
             };
-            let exact = on_entities.iter().flatten();
-            errors.contact_area_error =
-                Some(measures.iter().zip(exact).zip(&touching).map(wrong).sum());
+            let area = measures.iter().zip(&touching).enumerate().map(wrong).sum();
+            errors.contact_area_error = Some(area);
             errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
         }
         Ok(errors)
