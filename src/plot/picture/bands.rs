@@ -39,7 +39,9 @@ pub(crate) fn bands(scale: &Scale, triangle: &[Valued; 3]) -> Vec<(usize, Vec<Pl
         let level = if k == values[0] { f64::NEG_INFINITY } else { scale.levels[k] };
         (k, not_below(triangle, level))
     };
-    (values[0]..=values[2]).map(part).filter(|(_, area)| area.len() > 2).collect()
+    let highest = triangle.map(|corner| corner.1).into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let is_painted = |&k: &usize| k == values[0] || scale.levels[k] < highest;
+    (values[0]..=values[2]).filter(is_painted).map(part).collect()
 }
 
 /// The segment on which the function has a value; none where it only touches.
