@@ -62,17 +62,19 @@ impl<T: Real> Jumps<T> {
     /// The jumps for `n_blocks` blocks of `block_size` unknowns, given by the start of each jump in `terms`, with the
     /// number of terms at the end.
     ///
-    /// `None` if the starts are not those of lists in `terms`, if there are more than 2^31 jumps, if a term has an
-    /// unknown that no block has, if the unknowns of one side of a jump belong to two blocks or those of both sides to
-    /// one.
+    /// `None` if blocks have no unknowns, if the starts are not those of lists in `terms`, if there are 2^31 jumps or
+    /// more, if a term has an unknown that no block has, if the unknowns of one side of a jump belong to two blocks or
+    /// those of both sides to one.
     #[must_use]
     pub fn new(
         (n_blocks, block_size): (usize, usize),
         term_starts: Vec<u32>,
         terms: Vec<JumpTerm<T>>,
     ) -> Option<Self> {
-        let are_starts = term_starts.first() == Some(&0)
-            && term_starts.last() == Some(&(terms.len() as u32))
+        let n_terms = u32::try_from(terms.len()).ok();
+        let are_starts = block_size > 0
+            && term_starts.first() == Some(&0)
+            && term_starts.last().copied() == n_terms
             && term_starts.is_sorted()
             && term_starts.len() <= 1 << 31;
         let (mut side_starts, sides) = (vec![0; n_blocks + 1], Vec::new());
@@ -202,6 +204,7 @@ mod tests {
         for starts in [vec![], vec![0, 4, 3], vec![1, 4], vec![0, 3], vec![0, 5, 4]] {
             assert!(Jumps::new((2, 3), starts.clone(), terms()).is_none(), "{starts:?}");
         }
+        assert!(Jumps::new((2, 0), vec![0, 3, 4], terms()).is_none());
         // a side of two blocks, both sides of one block, an unknown of no block
         for (here, there) in [(4, NONE), (1, 2), (6, NONE)] {
             let mut wrong = terms();

@@ -29,8 +29,8 @@ pub enum Unproven {
     /// Obstacles and gaps of a higher degree than `v` in cells, or of degree two where the Bernstein coefficients of
     /// `v` do not exceed theirs: `v` satisfies them at points only.
     Obstacle,
-    /// The residual that the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
-    /// somewhere.
+    /// The residual that the solver left, where no constant of Friedrichs' inequality is known and the reaction
+    /// vanishes somewhere.
     Algebra,
 }
 
@@ -278,7 +278,8 @@ impl<const D: usize> Space<'_, D> {
         squares.max(2 * (reaction + of_pair)).max(of_obstacles).max(least)
     }
 
-    /// The terms of the cells that count together, and the square that each cell adds; zero for cells that do not count.
+    /// The terms of the cells that count together, and the square that each cell adds; zero for cells that do not
+    /// count.
     fn terms_of_bound(
         &self,
         (pair, u): (&PrimalDualPair<D>, &[f64]),

@@ -226,8 +226,8 @@ impl<const D: usize> Space<'_, D> {
         Ok(sum)
     }
 
-    /// Sets the fluxes through the boundary but for the Dirichlet boundary: Neumann data and contact forces. Residuals there
-    /// are multipliers, and sums of patches are rounding, which may have the wrong sign for a contact force.
+    /// Sets the fluxes through the boundary but for the Dirichlet boundary: Neumann data and contact forces. Residuals
+    /// there are multipliers, and sums of patches are rounding, which may have the wrong sign for a contact force.
     fn set_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut Flux<D>) -> Result<(), NoBound> {
         for f in self.mesh.boundary().iter().filter(|f| f.condition != BoundaryCondition::Dirichlet)
         {

@@ -10,7 +10,8 @@ use crate::real::{Precision, Real};
 /// Forces have no digit where their errors may exceed this share of them.
 const LARGEST_ERROR: f64 = 0.1;
 
-/// Forces that are known up to this share of the load, rounding in double precision, have digits even where they vanish.
+/// Forces that are known up to this share of the load, rounding in double precision, have digits even where they
+/// vanish.
 const NO_LOAD: f64 = 8.0 * f64::EPSILON;
 
 /// The forces with which active bounds hold their unknowns, the entries of `r = A u - b`.

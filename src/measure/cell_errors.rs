@@ -42,17 +42,18 @@ const fn smooth_degree(dimension: usize, basis_degree: usize) -> Option<usize> {
     }
 }
 
-/// The error is smooth in a cell if of the square of its flux at most this share belongs to no polynomial of the degree
-/// of the basis. With `s` the diameter divided by the length over which derivatives of the solution change, the share is
-/// a fraction of `s^2`. The rule then leaves a small part of the share of the square of the error in L2, and of its
-/// square of that of the gradient.
+/// The error counts as smooth in a cell if `1 - |P q|^2 / |q|^2` is at most this number: `q` is the flux of the error
+/// in the L2 norm, `P` the projection to polynomials of the degree of the basis. Let `s` be the diameter divided by the
+/// length over which derivatives of the solution change. The number is a fraction of `s^2`, and the rule leaves a small
+/// part of it of the square of the error in L2, a small part of its square of that of the gradient.
 const SMOOTH: f64 = 1e-3;
 
-/// A cell counts as smooth if this share of its squares is less than this part of their means over all cells.
+/// The rule of smooth cells also counts where what is not smooth of each square is less than this number times the mean
+/// of that square over all cells.
 const NEGLIGIBLE: f64 = 1e-8;
 
-/// The largest ratio of two values at the corners of a cell of a coefficient that counts as smooth there. With a larger
-/// one a coefficient without a level, and with it the exact gradient, may jump within the cell.
+/// The largest ratio of two values at the corners of a cell of a coefficient or reaction that counts as smooth there.
+/// With a larger one a datum without a level, and with it the integrand, may jump within the cell.
 const SMOOTH_RATIO: f64 = 2.0;
 
 /// An obstacle is linear along an edge if its value at the middle differs from the mean of its values at the ends by at
@@ -236,8 +237,8 @@ impl<const D: usize> Space<'_, D> {
         integrand.checked(sums, || points.iter().map(|p| in_space(p, &corners)).collect())
     }
 
-    /// The squares of a cell, on pieces if kinks cut it, and by the rule for smooth errors elsewhere, with the share that
-    /// is not smooth; zero if it is known that another rule does no better.
+    /// The squares of a cell, on pieces if kinks cut it, and by the rule for smooth errors elsewhere, with the share
+    /// that is not smooth; zero if it is known that another rule does no better.
     fn squares_in(
         &self,
         of: &Measure<'_, '_, '_, D>,
@@ -248,14 +249,17 @@ impl<const D: usize> Space<'_, D> {
         if let Some(squares) = self.squares_on_pieces(of, &integrand, &corners) {
             return Ok((0.0, squares?));
         }
+        let corner = |k: usize| corners[k];
         let touches_in_piece = || {
             let admissible = integrand.admissible.as_ref();
-            admissible.is_some_and(|function| function.touches_in_piece(|k| corners[k]))
+            admissible.is_some_and(|function| function.touches_in_piece(corner))
         };
+        let data = [integrand.coefficient, integrand.reaction];
         let Some(SmoothRule { table, n, polynomials }) = of
             .smooth
             .as_ref()
-            .filter(|_| !may_jump(integrand.coefficient, |k| corners[k]) && !touches_in_piece())
+            .filter(|_| data.into_iter().all(|datum| !may_jump(datum, corner)))
+            .filter(|_| !touches_in_piece())
         else {
             return Ok((0.0, self.squares_by(of, cell)?));
         };

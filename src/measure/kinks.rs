@@ -15,10 +15,12 @@ pub(super) struct Kinks<const D: usize> {
     pub levels: Vec<Field<D>>,
 }
 
-/// Whether the zeros of a function are far from a simplex with these corners: its values there have one sign, and differ
-/// by less than the least of them. A function that is constant at the corners may jump between them.
+/// Whether a function seems far from zero in a simplex with these corners: its values there and at the barycentre have
+/// one sign, and differ by less than the least of them. This is no proof: zeros are missed of a function that varies
+/// more between these points. A function that is constant at these points may jump between them.
 pub(super) fn is_far<const D: usize>(level: &Field<D>, corners: &[Point<D>]) -> bool {
-    let values = corners.iter().map(|x| level(x));
+    let barycentre = corners.iter().sum::<Point<D>>() / corners.len() as f64;
+    let values = corners.iter().chain([&barycentre]).map(|x| level(x));
     let limits = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
     let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), limits);
     let distance = if least > 0.0 { least } else { -most };

@@ -1,5 +1,5 @@
-//! Nested meshes: uniform refinements of an input mesh or the levels of a built-in domain, or the parts of these that one
-//! process has.
+//! Nested meshes: uniform refinements of an input mesh or the levels of a built-in domain, or the parts of these that
+//! one process has.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;

@@ -23,9 +23,8 @@ impl Report {
     }
 
     /// Removes the files of this report from a directory, where they are: those that [`Report::write`] and
-    /// [`WorkPrecision::write`](crate::work_precision::WorkPrecision::write) write but `report.json`, and the fields and
-    /// pictures of its rows. Another report that is written there then
-    /// has no file of this one beside it.
+    /// [`WorkPrecision::write`](crate::work_precision::WorkPrecision::write) write but `report.json`, and the fields
+    /// and pictures of its rows. Another report that is written there then has no file of this one beside it.
     pub fn remove_files(&self, directory: impl AsRef<Path>) {
         let mut names: Vec<String> =
             ["csv", "md", "tex", "html"].map(|end| format!("report.{end}")).into();

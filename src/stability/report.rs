@@ -243,9 +243,9 @@ impl StabilityReport {
         format!("{program}; {effort} run{end}; {rows} rows: {}.", counts.join(", "))
     }
 
-    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be, and, if the report is
-    /// complete, `stability.html` and its figures `stability-CASE.svg`. Each file takes the place of an earlier one only
-    /// when it is whole.
+    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be, and, if the report
+    /// is complete, `stability.html` and its figures `stability-CASE.svg`. Each file takes the place of an earlier one
+    /// only when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.

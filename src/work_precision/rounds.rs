@@ -11,9 +11,9 @@ use crate::study::{Program, Report, Row, Study, Variant, fill_orders};
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Studies under one clock. In every round each case, a scheme with a solver on a level or on all adaptive meshes, runs
-/// once and reuses nothing of other runs: its time includes its mesh and its start from coarser levels. Rounds alternate
-/// in direction, so that drift of the machine affects all cases equally. Before the first one the coarsest case of
-/// every scheme runs once unmeasured.
+/// once and reuses nothing of other runs: its time includes its mesh and its start from coarser levels. Rounds
+/// alternate in direction, so that drift of the machine affects all cases equally. Before the first one the coarsest
+/// case of every scheme runs once unmeasured.
 ///
 /// ```
 /// use unilateral::prelude::*;

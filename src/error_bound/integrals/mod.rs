@@ -315,8 +315,8 @@ impl<const D: usize> Space<'_, D> {
         }
     }
 
-    /// The least value of a datum at vertices and midpoints of edges and, for a datum of degree two, its least Bernstein
-    /// coefficient, which is a bound from below.
+    /// The least value of a datum at vertices and midpoints of edges and, for a datum of degree two, its least
+    /// Bernstein coefficient, which is a bound from below.
     fn least_values(&self, cell: usize, datum: &Datum<D>) -> [f64; 2] {
         if let Some(constant) = datum.constant() {
             return [constant; 2];

@@ -8,9 +8,9 @@
 //! c = S (b - m) + s t,   S = G^-1 - (G^-1 1) (G^-1 1)^T / (1 . G^-1 1)
 //! ```
 //!
-//! Where a number is known, its own multiplier holds it. What the two sides of each facet have too much gives a symmetric
-//! positive semidefinite system for the multipliers. Those of facets on the Dirichlet boundary are zero; without such
-//! facets a constant is free.
+//! Where a number is known, its own multiplier holds it. What the two sides of each facet have too much gives a
+//! symmetric positive semidefinite system for the multipliers. Those of facets on the Dirichlet boundary are zero;
+//! without such facets a constant is free.
 
 use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
@@ -156,8 +156,8 @@ impl<const N: usize> Patch<N> {
 }
 
 impl<const N: usize> CellProblem<N> {
-    /// The problem with these products `G` of `n` fluxes with each other and `b` with what the flux aims at, and this sum
-    /// `s`.
+    /// The problem with these products `G` of `n` fluxes with each other and `b` with what the flux aims at, and this
+    /// sum `s`.
     pub fn new(products: [[f64; N]; N], aims: &[f64; N], sum: f64, n: usize) -> Self {
         let mut slopes = products;
         invert(&mut slopes, n);

@@ -3,8 +3,8 @@
 use super::corners::Corner;
 use crate::error_bound::flux::Flux;
 
-/// The numbers of the flux of a cell, on its facets at the vertex, as an affine function of the multipliers: the numbers
-/// `c` with the sum `s` for which `c . G c / 2 - b . c + m . c` is least.
+/// The numbers of the flux of a cell, on its facets at the vertex, as an affine function of the multipliers: the
+/// numbers `c` with the sum `s` for which `c . G c / 2 - b . c + m . c` is least.
 #[derive(Clone, Copy)]
 pub(super) struct CellProblem<const N: usize> {
     /// `S`, minus the derivative of the numbers.
@@ -13,8 +13,8 @@ pub(super) struct CellProblem<const N: usize> {
     pub numbers: [f64; N],
 }
 
-/// The cells of a conforming function, as patches read them: a flux has `N` numbers at most on the facets of a cell at a
-/// vertex.
+/// The cells of a conforming function, as patches read them: a flux has `N` numbers at most on the facets of a cell at
+/// a vertex.
 pub(super) trait PatchCells<const D: usize, const N: usize>: Sync {
     /// The degree of the flux, zero or one.
     const DEGREE: usize;

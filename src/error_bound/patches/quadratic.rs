@@ -273,8 +273,8 @@ fn divergence_products<const D: usize>(points: &[Point<D>; 4], tested: &[f64; 4]
     })
 }
 
-/// The integrals of the target of vertex `own` times `lambda_j` over a cell, a vector for each vertex `j`. The target is
-/// the hat function of `own` times the difference of gradients.
+/// The integrals of the target of vertex `own` times `lambda_j` over a cell, a vector for each vertex `j`. The target
+/// is the hat function of `own` times the difference of gradients.
 fn target_products<const D: usize>(own: usize, differences: &[[f64; 3]; 4]) -> [Point<D>; 4] {
     let d = D as f64;
     array_of(|j| {

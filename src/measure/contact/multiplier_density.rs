@@ -7,8 +7,9 @@ use crate::assemble::space::Space;
 use crate::inequality::Solution;
 
 impl<const D: usize> Space<'_, D> {
-    /// The errors of the density in L1 and lumped L2 against the exact multiplier on entities with these measures, which
-    /// [`Space::exact_contact`] has tested with hat functions; none if all vertices lie on the Dirichlet boundary.
+    /// The errors of the density in L1 and lumped L2 against the exact multiplier on entities with these measures,
+    /// which [`Space::exact_contact`] has tested with hat functions; none if all vertices lie on the Dirichlet
+    /// boundary.
     pub(super) fn multiplier_errors(
         &self,
         (entities, measures): (&[ContactEntity], &[f64]),

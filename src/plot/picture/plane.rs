@@ -30,6 +30,8 @@ pub(crate) struct Plane<'a, const D: usize> {
     edges: Vec<Edge>,
     /// Whether each triangle is in contact.
     touches: Vec<bool>,
+    /// Whether the contact boundary has facets that face elsewhere.
+    is_partial: bool,
 }
 
 impl<'a, const D: usize> Plane<'a, D> {
@@ -40,11 +42,12 @@ impl<'a, const D: usize> Plane<'a, D> {
         let triangles: Vec<Triangle> = (0..mesh.n_cells()).map(|cell| view.cell(cell)).collect();
         let mut touches = vec![false; mesh.n_cells()];
         fields.discrete_contact.cells.iter().for_each(|&cell| touches[cell] = true);
-        Plane { problem, axes, edges: edges(mesh, &triangles), view, triangles, touches }
+        let edges = edges(mesh, &triangles);
+        Plane { problem, axes, edges, view, triangles, touches, is_partial: false }
     }
 
-    /// The facets of the contact boundary in space that face along a coordinate axis: forwards for
-    /// a positive sign.
+    /// The facets of the contact boundary in space that face along a coordinate axis, up to half a right angle:
+    /// forwards for a positive sign.
     pub fn of_contact_boundary(
         problem: &'a Problem<D>,
         mesh: &'a Mesh<D>,
@@ -54,12 +57,15 @@ impl<'a, const D: usize> Plane<'a, D> {
         let axes = [[1, 2], [0, 2], [0, 1]][axis];
         let view = View::along_coordinates(mesh, fields, axes);
         let faces =
-            |&(cell, local): &HalfFacet| sign * mesh.geometry(cell).normal(local)[axis] > 0.0;
-        let facets: Vec<HalfFacet> = trace::facets(mesh).into_iter().filter(faces).collect();
+            |&(cell, local): &HalfFacet| sign * mesh.geometry(cell).normal(local)[axis] > 0.7;
+        let all = trace::facets(mesh);
+        let facets: Vec<HalfFacet> = all.iter().copied().filter(faces).collect();
+        let is_partial = facets.len() < all.len();
         let triangles: Vec<Triangle> = facets.iter().map(|&(c, k)| view.facet(c, k)).collect();
         let touching: BTreeSet<&HalfFacet> = fields.discrete_contact.facets.iter().collect();
         let touches = facets.iter().map(|facet| touching.contains(facet)).collect();
-        Plane { problem, axes, edges: edges(mesh, &triangles), view, triangles, touches }
+        let edges = edges(mesh, &triangles);
+        Plane { problem, axes, edges, view, triangles, touches, is_partial }
     }
 
     /// All panels of a domain in the plane that are not empty.
@@ -105,7 +111,10 @@ impl<'a, const D: usize> Plane<'a, D> {
     }
 
     fn contact(&self) -> Map {
-        let mut map = self.map("contact set");
+        let mut map = self.map(match self.is_partial {
+            true => "contact set (one side)",
+            false => "contact set",
+        });
         let touching = self.triangles.iter().zip(&self.touches).filter(|(_, touches)| **touches);
         map.fills.extend(touching.map(|(triangle, _)| (CONTACT, triangle.places())));
         if self.triangles.len() <= MOST_EDGES {

@@ -21,7 +21,7 @@ pub(crate) const INERTIA: Criterion = Criterion::new(
 const REFUSED: Criterion = Criterion::new(
     "refused-or-warned",
     &[ExpectedRange::at_least(1.0), ExpectedRange::at_most(0.0)],
-    "A penalty below its proven bound is not accepted silently: {} if the library refuses to solve or warns, and {} from the bound on, where it does not.",
+    "A penalty below its proven bound is not accepted silently. The figure is one if the library refuses to solve or warns: at least {} below the bound, at most {} from the bound on.",
 );
 pub(crate) const ERROR: Criterion = Criterion::new(
     "error-of-interior-penalty",
@@ -55,12 +55,15 @@ fn inertia(choice: &Choice, level: usize) -> Result<StabilityRow, Error> {
     let claim = RowBuilder::new(&INERTIA, choice).on(&scene.name).level(level);
     let claim = sigma.map_or(claim.clone(), |sigma| claim.at("sigma", sigma));
     let least = smallest_eigenvalue(&matrix);
-    let least = least.map(|least| format!("smallest eigenvalue {least:.3e} of {}", matrix.size()));
+    let least = match least {
+        Ok(least) => format!("smallest eigenvalue {least:.3e} of {}", matrix.size()),
+        Err(error) => error.to_string(),
+    };
     Ok(claim
         .known_to_fail(sigma.is_some_and(|sigma| sigma < THRESHOLD))
         .quantity("negative eigenvalues")
-        .detail(least.unwrap_or_default())
-        .measured(Some(negative_eigenvalues(&matrix) as f64)))
+        .detail(least)
+        .measured(negative_eigenvalues(&matrix).map(|n| n as f64)))
 }
 
 fn factor(choice: &Choice, sigma: f64, level: usize, sink: Sink<'_>) -> Result<(), Error> {

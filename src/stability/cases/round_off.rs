@@ -1,5 +1,5 @@
-//! Over-penalty and rounding: Poisson on meshes fine enough for it to show, and the limit of large factors, which is the
-//! Crouzeix-Raviart scheme.
+//! Over-penalty and rounding: Poisson on meshes fine enough for it to show, and the limit of large factors, which is
+//! the Crouzeix-Raviart scheme.
 
 use crate::error::Error;
 use crate::mesh::Mesh;

@@ -63,7 +63,7 @@ fn sweep(choice: &Choice, n: usize, ratios: &[usize], sink: Sink<'_>) -> Result<
         let scene = scene.clone().domain(mesh);
         let ours = row(&scene, choice, 0)?;
         let share = over("cr", &scene, &ours, |r| r.error.energy)?;
-        at_one = at_one.or(share);
+        at_one = at_one.or(share.filter(|_| ratio == 1));
         let jumps = of(&ours, jumps).filter(|_| ours.error.energy != ours.error.h1);
         let jumps = jumps.map_or(String::new(), |j| format!(", jump seminorm {j:.2e}"));
         sink(

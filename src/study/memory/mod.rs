@@ -40,12 +40,12 @@ pub(crate) fn memory_of_process() -> Option<u64> {
 
 /// Bytes a run will need, most of them for the factors of the direct solver.
 ///
-/// These grow like `N`, `N log N` and `N^(4/3)` in one, two and three dimensions. The constants are
-/// peaks of the process measured on obstacle scenes with 1e6 (1D), 5e5 and 2e6 (2D) and 5e4 to 7e5
-/// (3D) cells, and on Signorini scenes of half that size, whose factors are larger because no
-/// contact set in the interior drops out: by 1.4 in two and 1.5 in three dimensions. On these the estimate is right to a fifth; a scene with much or
-/// little contact may be off by a half. Layouts with more unknowns than linear ones were not
-/// measured, but for conforming quadratics, and are scaled by the square of their number.
+/// These grow like `N`, `N log N` and `N^(4/3)` in one, two and three dimensions. The constants are peaks of the
+/// process measured on obstacle scenes with 1e6 (1D), 5e5 and 2e6 (2D) and 5e4 to 7e5 (3D) cells, and on Signorini
+/// scenes of half that size, whose factors are larger because no contact set in the interior drops out: by 1.4 in two
+/// and 1.5 in three dimensions. On these the estimate is right to a fifth; a scene with much or little contact may be
+/// off by a half. Layouts with more unknowns than linear ones were not measured, but for conforming quadratics, and are
+/// scaled by the square of their number.
 pub(super) fn estimate(dimension: usize, layout: Layout, cells: f64, obstacle: bool) -> f64 {
     let growth = match dimension {
         1 => 1.0,

@@ -338,8 +338,8 @@ impl<'a, const D: usize> Study<'a, D> {
         (None, false)
     }
 
-    /// The meshes of all levels on which some scheme fits into the available bytes; the meshes of a reference are in the
-    /// same hierarchy as these levels.
+    /// The meshes of all levels on which some scheme fits into the available bytes; the meshes of a reference are in
+    /// the same hierarchy as these levels.
     fn hierarchies(&self, available: Option<u64>) -> Result<Vec<Hierarchy<D>>, Error> {
         match &self.reference {
             None => {

@@ -78,18 +78,20 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     }
     keep(&report).map_err(Failure::of_work)?;
     tick(&bar);
-    let mut messages = Vec::new();
+    let mut failed = false;
     for Run { place, run, .. } in runs {
         match run(&mut report, &mut keep) {
             // the next scene could not be written either
             Err(error @ Error::Write { .. }) => return Err(Failure::of_work(error)),
-            Err(error) => messages.push(format!("{place}: {error}")),
+            Err(error) => {
+                bar.suspend(|| complain(&format!("{place}: {error}")));
+                failed = true;
+            }
             Ok(()) => {}
         }
     }
     bar.finish_and_clear();
-    messages.iter().for_each(|text| complain(text));
-    report.complete = messages.is_empty();
+    report.complete = !failed;
     keep(&report).map_err(Failure::of_work)?;
     if !quiet {
         print(&WorkPrecision::of(&report).subject(subject).to_text(terminal_width()))?;
@@ -115,7 +117,8 @@ fn check_subject(options: &Options, runs: &[Run<'_>]) -> Request<()> {
     }
 }
 
-/// Checks the studies of a scene: one for each linear solver, on levels and, where they are asked for, on adaptive meshes.
+/// Checks the studies of a scene: one for each linear solver, on levels and, where they are asked for, on adaptive
+/// meshes.
 fn prepare<'a, const D: usize>(
     options: &'a Options,
     schemes: &[NamedScheme],
