@@ -33,7 +33,7 @@ fn main() -> Result<(), Error> {
             u.write_vtu(format!("target/contact_force/{}-{level}.vtu", scheme.name()))?;
             if (level, scheme.name()) == (8, "p1") {
                 let title = "parabola pressed into a half plane, p1";
-                let picture = Picture::of(title, &hertz.problem, u.mesh(), &fields, None)?;
+                let picture = Picture::of(title, &hertz.problem, u.mesh(), &fields)?;
                 picture.write("target/contact_force".as_ref(), "hertz")?;
             }
         }

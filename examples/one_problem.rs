@@ -27,7 +27,7 @@ fn main() -> Result<(), Error> {
         println!("contact area {area:.3}, violation {:.0e}", u.certificate().largest());
         u.write_vtu(format!("target/one_problem/bracket-{refinements}.vtu"))?;
         if let (0, Some(fields)) = (refinements, u.fields()) {
-            let picture = Picture::of("bracket, p1", &bracket, u.mesh(), &fields, None)?;
+            let picture = Picture::of("bracket, p1", &bracket, u.mesh(), &fields)?;
             picture.write("target/one_problem".as_ref(), "bracket")?;
         }
     }

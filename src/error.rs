@@ -238,6 +238,7 @@ impl Error {
 }
 
 /// The error of a file that could not be written: from an [`std::io::Error`] or from a message.
+#[cfg(any(feature = "report", test))]
 pub(crate) fn write_error(
     path: &std::path::Path,
     why: impl Into<Box<dyn std::error::Error + Send + Sync>>,

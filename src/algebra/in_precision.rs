@@ -2,7 +2,6 @@
 
 use super::bound::Bound;
 use super::inequality::Inequality;
-use super::jump_term::JumpTerm;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
 use super::rectangular_matrix::RectangularMatrix;
@@ -57,14 +56,10 @@ impl PenalisedMatrix<f64> {
     /// The sum with stiffness, jumps, weights and Dirichlet data rounded each for itself.
     #[must_use]
     pub fn in_precision<T: Real>(&self) -> PenalisedMatrix<T> {
-        let term =
-            |t: &JumpTerm<f64>| JumpTerm { here: t.here, there: t.there, weight: T::lit(t.weight) };
         PenalisedMatrix {
             block_size: self.block_size,
             blocks: rounded(&self.blocks),
-            term_starts: self.term_starts.clone(),
-            terms: collect(self.terms.len(), |k| term(&self.terms[k])),
-            jumps_of_blocks: self.jumps_of_blocks.clone(),
+            jumps: self.jumps.in_precision(),
             weights: rounded(&self.weights),
             jump_data: rounded(&self.jump_data),
             mean_jumps: self.mean_jumps.clone(),
@@ -127,7 +122,7 @@ impl Inequality<f64> {
             && is_held(self.bounds.iter().fold(0.0, of_bounds))
             && self.penalised.as_ref().is_none_or(|penalised| {
                 are_held(&penalised.weights)
-                    && penalised.terms.iter().all(|term| is_held(term.weight))
+                    && penalised.jumps.terms().iter().all(|term| is_held(term.weight))
                     && is_held(largest(&penalised.jump_data))
                     && (0..penalised.size()).all(|i| is_held(penalised.stiffness_diagonal(i)))
             })

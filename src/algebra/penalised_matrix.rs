@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::jump_term::JumpTerm;
-use super::jumps_of_blocks::JumpsOfBlocks;
+use super::jumps::Jumps;
 use super::mean_jumps::MeanJumps;
 use crate::parallel::vectors::{
     all, collect, for_each_chunk, for_each_chunk_of_groups, map_chunks,
@@ -29,13 +29,8 @@ pub struct PenalisedMatrix<T> {
     pub block_size: usize,
     /// `K`: its blocks one after the other, each by rows, positive semidefinite.
     pub blocks: Vec<T>,
-    /// Start of each row of `M` in `terms`, and the number of terms at the end.
-    pub term_starts: Vec<u32>,
-    /// The rows of `M` one after the other. In a row all [`JumpTerm::here`] belong to one block, all
-    /// [`JumpTerm::there`] to another.
-    pub terms: Vec<JumpTerm<T>>,
-    /// The jumps of each block of `K`, from `terms`.
-    pub jumps_of_blocks: JumpsOfBlocks,
+    /// `M`.
+    pub jumps: Jumps<T>,
     /// The diagonal of `S`.
     pub weights: Vec<T>,
     /// `g`.
@@ -59,71 +54,26 @@ impl<T: Real> PenalisedMatrix<T> {
     /// Row `jump` of `M`.
     #[inline]
     pub fn terms_of(&self, jump: usize) -> &[JumpTerm<T>] {
-        &self.terms[self.term_starts[jump] as usize..self.term_starts[jump + 1] as usize]
+        self.jumps.terms_of(jump)
     }
 
     /// Whether each jump is that of one unknown, or the difference of two: in a basis of facet means.
     pub(crate) fn has_jumps_of_single_unknowns(&self) -> bool {
-        self.term_starts.windows(2).all(|w| w[1] - w[0] <= 1)
+        (0..self.n_jumps()).all(|jump| self.terms_of(jump).len() <= 1)
     }
 
     /// Whether all vectors and matrices have consistent sizes for `size` unknowns, and weights are positive.
     pub fn is_well_formed(&self, size: usize) -> bool {
         let n = self.n_jumps();
-        let is_valid = |i: u32| i == JumpTerm::<T>::NO_UNKNOWN || (i as usize) < size;
         self.block_size > 0
             && size.is_multiple_of(self.block_size)
             && self.blocks.len() == size * self.block_size
             && self.jump_data.len() == n
-            && self.term_starts.len() == n + 1
-            && self.term_starts.first() == Some(&0)
-            && all(n, |k| self.term_starts[k] <= self.term_starts[k + 1])
-            && self.term_starts[n] as usize == self.terms.len()
-            && all(self.terms.len(), |k| {
-                is_valid(self.terms[k].here) && is_valid(self.terms[k].there)
-            })
-            && self.jumps_of_blocks.is_well_formed(size / self.block_size, n)
-            && self.has_jumps_of_blocks(size / self.block_size)
+            && self.jumps.len() == n
+            && self.jumps.block_size() == self.block_size
+            && self.jumps.n_blocks() == size / self.block_size
             && all(n, |k| self.weights[k] > T::lit(0.0))
             && self.mean_jumps.as_ref().is_none_or(|m| m.is_well_formed(n, size, self.block_size))
-    }
-
-    /// Whether each side of a jump has unknowns of one block, two different ones, and the lists of blocks have the jumps
-    /// with unknowns of the block, each once.
-    fn has_jumps_of_blocks(&self, n_blocks: usize) -> bool {
-        let block = |i: u32| (i != JumpTerm::<T>::NO_UNKNOWN).then_some(i / self.block_size as u32);
-        let belong_together = |jump: usize| {
-            let [here, there] = self.blocks_of_jump(jump);
-            let is_of = |term: &JumpTerm<T>| {
-                [(block(term.here), here), (block(term.there), there)]
-                    .iter()
-                    .all(|(of_term, of_jump)| of_term.is_none() || of_term == of_jump)
-            };
-            (here.is_none() || here != there) && self.terms_of(jump).iter().all(is_of)
-        };
-        let has_own_jumps = |block: usize| {
-            let jumps = self.jumps_of_blocks.of(block);
-            let is_own =
-                |jump: &u32| self.blocks_of_jump(*jump as usize).contains(&Some(block as u32));
-            jumps.windows(2).all(|pair| pair[0] < pair[1]) && jumps.iter().all(is_own)
-        };
-        let n_sides = map_chunks(self.n_jumps(), |jumps: Range<usize>| {
-            jumps.map(|jump| self.blocks_of_jump(jump).iter().flatten().count()).sum::<usize>()
-        });
-        all(self.n_jumps(), belong_together)
-            && all(n_blocks, has_own_jumps)
-            && n_sides.iter().sum::<usize>() == self.jumps_of_blocks.len()
-    }
-
-    /// The two blocks whose unknowns a jump contains, first that of [`JumpTerm::here`]; `None` for a
-    /// side without unknowns.
-    pub fn blocks_of_jump(&self, jump: usize) -> [Option<u32>; 2] {
-        let block = |unknown: fn(&JumpTerm<T>) -> u32| {
-            let mut unknowns = self.terms_of(jump).iter().map(unknown);
-            let found = unknowns.find(|&i| i != JumpTerm::<T>::NO_UNKNOWN);
-            found.map(|i| i / self.block_size as u32)
-        };
-        [block(|t| t.here), block(|t| t.there)]
     }
 
     /// The first unknown that a jump contains.
@@ -193,16 +143,12 @@ impl<T: Real> PenalisedMatrix<T> {
                 for (i, r) in (first..).zip(&mut *r) {
                     *r = load[i].to_f64() - self.stiffness(i, &u);
                 }
-                for &jump in self.jumps_of_blocks.of(block) {
-                    let multiplier = jump_multipliers(jump as usize);
-                    for t in self.terms_of(jump as usize) {
-                        let product = t.weight.to_f64() * multiplier;
-                        // unknowns of other blocks, and none, are beyond the end
-                        if let Some(r) = r.get_mut((t.here as usize).wrapping_sub(first)) {
-                            *r -= product;
-                        }
-                        if let Some(r) = r.get_mut((t.there as usize).wrapping_sub(first)) {
-                            *r += product;
+                for side in self.jumps.sides_of(block) {
+                    let multiplier = side.sign() * jump_multipliers(side.jump());
+                    for t in self.terms_of(side.jump()) {
+                        // no unknown is beyond the end
+                        if let Some(r) = r.get_mut((side.unknown(t) as usize).wrapping_sub(first)) {
+                            *r -= t.weight.to_f64() * multiplier;
                         }
                     }
                 }

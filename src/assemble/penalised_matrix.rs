@@ -8,7 +8,7 @@ use super::space::metric::Metrics;
 use super::space::tables::FacetDatum;
 use super::space::tables::FacetTable;
 use super::stiffness::zero_local;
-use crate::algebra::{JumpTerm, JumpsOfBlocks, MeanJumps, NO_INDEX, PenalisedMatrix};
+use crate::algebra::{JumpTerm, Jumps, MeanJumps, NO_INDEX, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::FacetForm;
 use crate::mesh::HalfFacet;
@@ -35,17 +35,12 @@ pub(crate) fn penalised_matrix<const D: usize>(
     let templates = Templates::new(D, &space.nodes, &table);
     let of_degree: Vec<f64> = table.degrees.iter().map(|&k| form.moment_weight(k)).collect();
     let n_jumps = space.form_facets().count() * of_degree.len();
-    let mut out = PenalisedMatrix {
-        block_size: space.per_cell(),
-        blocks: blocks(space, metrics),
-        term_starts: Vec::with_capacity(n_jumps + 1),
-        terms: Vec::with_capacity(n_jumps * templates.most_terms()),
-        jumps_of_blocks: JumpsOfBlocks::default(),
-        weights: Vec::with_capacity(n_jumps),
-        jump_data: Vec::with_capacity(n_jumps),
-        mean_jumps: mean_jumps(space, &table),
-    };
-    out.term_starts.push(0);
+    let block_size = space.per_cell();
+    let mut term_starts = Vec::with_capacity(n_jumps + 1);
+    let mut terms = Vec::with_capacity(n_jumps * templates.most_terms());
+    let mut jump_weights = Vec::with_capacity(n_jumps);
+    let mut jump_data = Vec::with_capacity(n_jumps);
+    term_starts.push(0);
     for facet in space.form_facets() {
         let (cell, local) = facet.here;
         let (other, template) = match facet.there {
@@ -53,21 +48,28 @@ pub(crate) fn penalised_matrix<const D: usize>(
             None => (cell, templates.on_boundary(local)),
         };
         match dirichlet.next_if(|datum| datum.facet == facet.here) {
-            Some(datum) => out.jump_data.extend(&datum.moments),
-            None => out.jump_data.extend(of_degree.iter().map(|_| 0.0)),
+            Some(datum) => jump_data.extend(&datum.moments),
+            None => jump_data.extend(of_degree.iter().map(|_| 0.0)),
         }
         let weight = weights.at::<D>(facet.here, true, facet.kind());
         let measure = metrics.measure::<D>(facet.here);
-        for (terms, &factor) in template.iter().zip(&of_degree) {
-            out.terms.extend(terms.iter().map(|t| t.between(cell, other, out.block_size)));
-            out.term_starts.push(out.terms.len() as u32);
+        for (moment, &factor) in template.iter().zip(&of_degree) {
+            terms.extend(moment.iter().map(|t| t.between(cell, other, block_size)));
+            term_starts.push(terms.len() as u32);
             let jump_jump = weight.coefficients.jump_jump.at(weight.penalty * factor);
-            out.weights.push(measure * jump_jump);
+            jump_weights.push(measure * jump_jump);
         }
     }
-    let blocks = (space.mesh.n_cells(), out.block_size);
-    out.jumps_of_blocks = JumpsOfBlocks::new(blocks, &out.term_starts, &out.terms);
-    out
+    let jumps = Jumps::new((space.mesh.n_cells(), block_size), term_starts, terms)
+        .expect("each side of a facet has the unknowns of one cell");
+    PenalisedMatrix {
+        block_size,
+        blocks: blocks(space, metrics),
+        jumps,
+        weights: jump_weights,
+        jump_data,
+        mean_jumps: mean_jumps(space, &table),
+    }
 }
 
 /// The sides of facets to which the jumps belong, if the functions are linear with their values at vertices or their

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::friedrichs::FriedrichsData;
-use super::integrals::{CellTerms, Totals};
+use super::integrals::Totals;
 use super::{NoBound, PrimalDualPair};
 use crate::algebra::Distribution;
 use crate::assemble::Discretisation;
@@ -29,8 +29,8 @@ pub enum Unproven {
     /// Obstacles and gaps of a higher degree than `v` in cells, or of degree two where the Bernstein coefficients of
     /// `v` do not exceed theirs: `v` satisfies them at points only.
     Obstacle,
-    /// The residual that the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
-    /// somewhere.
+    /// The residual that the solver left, where no constant of Friedrichs' inequality is known and the reaction
+    /// vanishes somewhere.
     Algebra,
 }
 
@@ -236,12 +236,10 @@ impl<const D: usize> PartOfBound<D> {
 
 impl<const D: usize> Space<'_, D> {
     fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[f64]) -> Result<ErrorBound, NoBound> {
-        let terms = self.terms_of_bound((pair, u), &|_| true)?;
-        let totals = Totals::of(&terms);
+        let (totals, squares) = self.terms_of_bound((pair, u), &|_| true)?;
         let of_solver = totals.of_solver(FriedrichsData::of(self.mesh).constant())?;
         let is_proven = [of_solver.is_some(), totals.reaction_from_below >= 0.0];
         let unproven = self.unproven_terms(pair, is_proven, &|_| true);
-        let squares = terms.iter().flatten().map(CellTerms::square).collect();
         ErrorBound::new(&totals, of_solver.unwrap_or(0.0), squares, unproven)
     }
 
@@ -252,15 +250,9 @@ impl<const D: usize> Space<'_, D> {
         u: &[f64],
         counts: Counts<'_>,
     ) -> Result<PartOfBound<D>, NoBound> {
-        let terms = self.terms_of_bound((pair, u), counts)?;
-        let totals = Totals::of(&terms);
+        let (totals, squares) = self.terms_of_bound((pair, u), counts)?;
         let is_proven = [true, totals.reaction_from_below >= 0.0];
         let unproven = self.unproven_terms(pair, is_proven, counts);
-        let n_cells = self.mesh.n_cells();
-        let mut squares = vec![0.0; n_cells];
-        for (cell, terms) in (0..n_cells).filter(|&cell| counts(cell)).zip(terms.iter().flatten()) {
-            squares[cell] = terms.square();
-        }
         let friedrichs = FriedrichsData::of(self.mesh);
         Ok(PartOfBound { totals, friedrichs, squares, unproven })
     }
@@ -286,22 +278,33 @@ impl<const D: usize> Space<'_, D> {
         squares.max(2 * (reaction + of_pair)).max(of_obstacles).max(least)
     }
 
-    /// The terms of the cells that count, by chunk, as they come: copies of them would cost more than their sums.
+    /// The terms of the cells that count together, and the square that each cell adds; zero for cells that do not
+    /// count.
     fn terms_of_bound(
         &self,
         (pair, u): (&PrimalDualPair<D>, &[f64]),
         counts: Counts<'_>,
-    ) -> Result<Vec<Vec<CellTerms>>, NoBound> {
+    ) -> Result<(Totals, Vec<f64>), NoBound> {
         let table = self.cell_table(Rule::new(D, self.degree_of_terms(pair.degree)));
         let has_level = self.data.source.any(&|f| f.level().is_some());
         let cut = has_level.then(|| CutRule::new(D, self.cell_degree));
         let boundary = self.boundary_terms(pair)?;
         let rules = (&table, cut.as_ref());
-        Ok(cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
-            let terms = |cell| self.cell_terms(pair, u, cell, rules, &boundary);
-            let mut all = Vec::with_capacity(cells.len());
-            all.extend(cells.filter(|&cell| counts(cell)).map(terms));
-            all
-        }))
+        let chunks = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+            let mut totals = Totals::NONE;
+            let mut squares = vec![0.0; cells.len()];
+            for (cell, square) in cells.zip(&mut squares).filter(|(cell, _)| counts(*cell)) {
+                let terms = self.cell_terms(pair, u, cell, rules, &boundary);
+                totals.add(&terms);
+                *square = terms.square();
+            }
+            (totals, squares)
+        });
+        let (mut totals, mut squares) = (Totals::NONE, Vec::with_capacity(self.mesh.n_cells()));
+        for (of_chunk, of_cells) in chunks {
+            totals.add(&of_chunk);
+            squares.extend(of_cells);
+        }
+        Ok((totals, squares))
     }
 }

@@ -10,7 +10,7 @@ use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::assemble::space::metric::CellMetric;
+use crate::assemble::space::metric::shape;
 use crate::assemble::stiffness::zero_local;
 use crate::element::Entity;
 use crate::inequality::Solution;
@@ -226,8 +226,8 @@ impl<const D: usize> Space<'_, D> {
         Ok(sum)
     }
 
-    /// Sets the fluxes through the boundary but for the Dirichlet boundary: Neumann data and contact forces. Residuals there
-    /// are multipliers, and sums of patches are rounding, which may have the wrong sign for a contact force.
+    /// Sets the fluxes through the boundary but for the Dirichlet boundary: Neumann data and contact forces. Residuals
+    /// there are multipliers, and sums of patches are rounding, which may have the wrong sign for a contact force.
     fn set_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut Flux<D>) -> Result<(), NoBound> {
         for f in self.mesh.boundary().iter().filter(|f| f.condition != BoundaryCondition::Dirichlet)
         {
@@ -246,30 +246,40 @@ impl<const D: usize> Space<'_, D> {
 
     /// Stiffness and reaction of a cell at the values of a function, less its load: one number for each
     /// unknown of the cell.
-    pub(super) fn cell_residual(
-        &self,
-        cell: usize,
-        metric: &CellMetric<D>,
-        u: &[f64],
-        load: &[f64],
-    ) -> [f64; 4] {
+    fn cell_residual(&self, cell: usize, u: &[f64], load: &[f64]) -> [f64; 4] {
         let gradient = self.gradient_factor().unwrap_or(1.0);
         let scale = self.alpha(cell) * gradient * gradient;
         let values = self.local_values(cell, u);
-        let mut products = zero_local();
-        if let Some(reaction) = &self.reaction {
-            reaction.add(self.mesh, cell, metric.volume, &mut products);
-        }
-        let mut residual = [0.0; 4];
-        for (i, residual) in residual.iter_mut().enumerate().take(D + 1) {
-            for j in 0..=D {
-                // gradients sum to zero: without their common value a constant adds no rounding
-                *residual += scale * metric.products[i][j] * (values[j] - values[0])
-                    + products[i][j] * values[j];
-            }
-            *residual -= load.get(cell * (D + 1) + i).copied().unwrap_or(0.0);
+        let (volume, products) = shape(self.mesh, cell, 1.0);
+        let mut residual = self.reaction_less_load(cell, volume, &values, load);
+        for (residual, products) in residual.iter_mut().zip(&products).take(D + 1) {
+            // gradients sum to zero: without their common value a constant adds no rounding
+            *residual +=
+                (1..=D).map(|j| scale * products[j] * (values[j] - values[0])).sum::<f64>();
         }
         residual
+    }
+
+    /// The reaction of a cell at the values of a function, less its load.
+    pub(super) fn reaction_less_load(
+        &self,
+        cell: usize,
+        volume: f64,
+        values: &[f64],
+        load: &[f64],
+    ) -> [f64; 4] {
+        let mut left = [0.0; 4];
+        if let Some(reaction) = &self.reaction {
+            let mut products = zero_local();
+            reaction.add(self.mesh, cell, volume, &mut products);
+            for (left, products) in left.iter_mut().zip(&products).take(D + 1) {
+                *left = products.iter().zip(values).map(|(product, value)| product * value).sum();
+            }
+        }
+        // without sources the list is empty
+        let load = load.iter().skip(cell * (D + 1));
+        left[..=D].iter_mut().zip(load).for_each(|(left, load)| *left -= load);
+        left
     }
 
     /// The fluxes of the element of Crouzeix and Raviart, without those of Neumann data and contact. Of two cells that
@@ -289,7 +299,7 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         for (cell, own) in own.chunks_exact_mut(D + 1).enumerate() {
-            let residual = self.cell_residual(cell, &self.metric(cell), u, &load);
+            let residual = self.cell_residual(cell, u, &load);
             for (own, &i) in own.iter_mut().zip(&unknown_of_facet) {
                 *own = residual[i];
             }

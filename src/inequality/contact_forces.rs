@@ -10,7 +10,8 @@ use crate::real::{Precision, Real};
 /// Forces have no digit where their errors may exceed this share of them.
 const LARGEST_ERROR: f64 = 0.1;
 
-/// Forces that are known up to this share of the load, rounding in double precision, have digits even where they vanish.
+/// Forces that are known up to this share of the load, rounding in double precision, have digits even where they
+/// vanish.
 const NO_LOAD: f64 = 8.0 * f64::EPSILON;
 
 /// The forces with which active bounds hold their unknowns, the entries of `r = A u - b`.
@@ -143,12 +144,16 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
         }
         let no_unknown = JumpTerm::<T>::NO_UNKNOWN;
         let mut nodes = Components::new(inequality.size());
-        for term in penalised.terms.iter().filter(|t| ![t.here, t.there].contains(&no_unknown)) {
+        for term in
+            penalised.jumps.terms().iter().filter(|t| ![t.here, t.there].contains(&no_unknown))
+        {
             nodes.join(term.here as usize, term.there as usize);
         }
         let node: Vec<u32> = (0..inequality.size()).map(|i| nodes.find(i) as u32).collect();
         let mut is_balanced = vec![true; node.len()];
-        for term in penalised.terms.iter().filter(|t| [t.here, t.there].contains(&no_unknown)) {
+        for term in
+            penalised.jumps.terms().iter().filter(|t| [t.here, t.there].contains(&no_unknown))
+        {
             let unknown = if term.here == no_unknown { term.there } else { term.here };
             is_balanced[node[unknown as usize] as usize] = false;
         }

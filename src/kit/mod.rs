@@ -165,6 +165,10 @@ pub fn check_consistency<const D: usize>(
 /// ([`Scheme::expected_orders`] without inequalities) or where duality proves it, which is for
 /// consistent symmetric forms.
 ///
+/// The meshes are two coarse ones, of 4 and 8 subdivisions in the plane, and a quarter of an order may be missing. An
+/// error of lower order with a small factor, such as that of an over-penalty with too small a power of `h`, may pass
+/// and show the order of the element. A study over more levels shows the order that remains.
+///
 /// # Errors
 /// [`KitErrorKind::OrderMissed`].
 pub fn check_orders<const D: usize>(scheme: &dyn Scheme<D>) -> Result<OrdersReport, KitError> {

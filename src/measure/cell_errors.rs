@@ -6,16 +6,19 @@ use super::admissible::InCells;
 use super::cell_integrand::{CellIntegrand, LocalFunction};
 use super::evaluation::Reference;
 use super::kinks::Kinks;
+use super::roughness::{Polynomials, Roughness};
 use super::squared_errors::{SquaredErrors, Squares};
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::tables::CellTable;
 use crate::assemble::space::{Space, Terms, checks};
+use crate::element::{Entity, Node};
 use crate::error::Error;
 use crate::mesh::edge_vertices;
 use crate::parallel::cells;
+use crate::parallel::vectors::collect;
 use crate::problem::Datum;
-use crate::quadrature::{FullySymmetric, Quadrature, Rule};
+use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule};
 use crate::real::{Point, maximum};
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
@@ -29,28 +32,28 @@ const fn error_degree(dimension: usize) -> usize {
     }
 }
 
-/// Degrees of two rules with fewer points for basis functions of some degree. Both are exact for the square of
-/// the largest term of the error.
-const fn lower_degrees(dimension: usize, basis_degree: usize) -> Option<[usize; 2]> {
+/// Degree of the rule in cells where the error is smooth, for basis functions of some degree `b`: `2 b + 3`, exact for
+/// the square of the largest term of the error.
+const fn smooth_degree(dimension: usize, basis_degree: usize) -> Option<usize> {
     match (dimension, basis_degree) {
-        (2 | 3, 1) => Some([5, 6]),
-        (2, 2) => Some([7, 8]),
+        (2 | 3, 1) => Some(5),
+        (2, 2) => Some(7),
         _ => None,
     }
 }
 
-/// Two rules agree in a cell if their integrals differ by this share. Let `s` be the diameter divided by the length
-/// over which derivatives of the solution change. The square of the error in L2 of functions of degree `b` has a
-/// leading term of degree `2 b + 2`, so that rules of degrees `2 b + 3` and `2 b + 4` leave shares of the sizes `s^2`
-/// and `s^3`, and smaller ones of the squares of gradients: where both agree, the rule of higher degree, which counts,
-/// leaves about 1e-6.
-const AGREEMENT: f64 = 1e-4;
+/// The error counts as smooth in a cell if `1 - |P q|^2 / |q|^2` is at most this number: `q` is the flux of the error
+/// in the L2 norm, `P` the projection to polynomials of the degree of the basis. Let `s` be the diameter divided by the
+/// length over which derivatives of the solution change. The number is a fraction of `s^2`, and the rule leaves a small
+/// part of it of the square of the error in L2, a small part of its square of that of the gradient.
+const SMOOTH: f64 = 1e-3;
 
-/// Two rules agree in a cell if their integrals differ by this share of the mean over all cells.
+/// The rule of smooth cells also counts where what is not smooth of each square is less than this number times the mean
+/// of that square over all cells.
 const NEGLIGIBLE: f64 = 1e-8;
 
-/// The largest ratio of two values at the corners of a cell of a coefficient that counts as smooth there. With a larger
-/// one a coefficient without a level, and with it the exact gradient, may jump within the cell.
+/// The largest ratio of two values at the corners of a cell of a coefficient or reaction that counts as smooth there.
+/// With a larger one a datum without a level, and with it the integrand, may jump within the cell.
 const SMOOTH_RATIO: f64 = 2.0;
 
 /// An obstacle is linear along an edge if its value at the middle differs from the mean of its values at the ends by at
@@ -68,16 +71,27 @@ struct Measure<'m, 'r, 'f, const D: usize> {
     exact: &'m Reference<'r, D>,
     /// The rule of highest degree.
     table: CellTable,
-    /// Two rules that are tried before.
-    lower: Option<[CellTable; 2]>,
+    /// The rule in cells where the error is smooth.
+    smooth: Option<SmoothRule>,
     /// The rules on cells that kinks cut, the second one for cells in which admissible functions have no kinks.
     cut_rules: Option<[CutRule; 2]>,
     /// By region the functions whose zeros are kinks.
     kinks: Vec<Kinks<D>>,
     /// The functional of each node.
     nodes: Vec<Terms>,
+    /// The exact solution at the vertices of the mesh, if all nodes are vertices.
+    at_vertices: Option<Vec<f64>>,
     u: Option<&'m [f64]>,
     function: Option<InCells<'f, D>>,
+}
+
+/// The rule in cells where the error is smooth.
+struct SmoothRule {
+    table: CellTable,
+    /// Number of polynomials.
+    n: usize,
+    /// The values of orthonormal polynomials of the degree of the basis, by point.
+    polynomials: Vec<Polynomials>,
 }
 
 impl<const D: usize> Space<'_, D> {
@@ -89,21 +103,17 @@ impl<const D: usize> Space<'_, D> {
         function: Option<InCells<'_, D>>,
         counts: Counts<'_>,
     ) -> Result<SquaredErrors, Error> {
-        let (degree, lower) = match exact {
+        let (degree, smooth) = match exact {
             Reference::Exact(_) => (
                 error_degree(D).max(2 * self.basis_degree + 2),
-                lower_degrees(D, self.basis_degree),
+                smooth_degree(D, self.basis_degree),
             ),
             // exact: the integrand is the square of a difference of polynomials
             Reference::Coarse { space, .. } => {
                 (2 * self.basis_degree.max(space.basis_degree), None)
             }
         };
-        let lower = lower.map(|degrees| degrees.map(|degree| FullySymmetric.rule(D, degree)));
-        let lower = match lower {
-            Some([Ok(a), Ok(b)]) => Some([a, b].map(|rule| self.cell_table(rule))),
-            _ => None,
-        };
+        let smooth = smooth.map(|degree| self.smooth_rule(degree)).transpose()?;
         let cell_rule = Rule::new(D, degree);
         let nodes = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
         let kinks: Vec<Kinks<D>> =
@@ -114,16 +124,18 @@ impl<const D: usize> Space<'_, D> {
             [rule(), rule().without_needless_bisections()]
         });
         let table = self.cell_table(cell_rule);
-        let measure = Measure { exact, table, lower, cut_rules, kinks, nodes, u, function };
+        let at_vertices = self.values_at_vertices(exact);
+        let measure =
+            Measure { exact, table, smooth, cut_rules, kinks, nodes, at_vertices, u, function };
         let n_cells = self.mesh.n_cells();
         // partial sums are added in order, so the result does not depend on threads
         let chunks = cells::map(n_cells, &|cells: Range<usize>| {
             let (mut sum, mut open) = (SquaredErrors::default(), Vec::new());
             for cell in cells.filter(|&cell| counts(cell)) {
-                let [low, high] = self.squares_in(&measure, cell, true)?;
-                match differ(&low, &high, &map_entries(high, |square| AGREEMENT * square)) {
-                    true => open.push((cell, low, high)),
-                    false => sum.add(&high),
+                let (rough, squares) = self.squares_in(&measure, cell)?;
+                match rough <= SMOOTH {
+                    true => sum.add(&squares),
+                    false => open.push((cell, map_entries(squares, |s| rough * s), squares)),
                 }
                 sum.max = maximum(sum.max, self.largest_at_nodes(&measure, cell)?);
             }
@@ -137,16 +149,16 @@ impl<const D: usize> Space<'_, D> {
             open.extend(of_chunk);
         }
         let mut estimate = total;
-        open.iter().for_each(|(_, _, high)| estimate.add(high));
+        open.iter().for_each(|(_, _, squares)| estimate.add(squares));
         let n_counted = (0..n_cells).filter(|&cell| counts(cell)).count();
         let negligible =
             map_entries(estimate.squares, |square| NEGLIGIBLE * square / n_counted as f64);
         let chunks = cells::map(open.len(), &|range: Range<usize>| {
             let mut sum = SquaredErrors::default();
-            for (cell, low, high) in &open[range] {
-                match differ(low, high, &negligible) {
-                    true => sum.add(&self.squares_in(&measure, *cell, false)?[1]),
-                    false => sum.add(high),
+            for (cell, rough, squares) in &open[range] {
+                match rough.iter().zip(&negligible).all(|(rough, limit)| rough <= limit) {
+                    true => sum.add(squares),
+                    false => sum.add(&self.squares_by(&measure, *cell)?),
                 }
             }
             Ok::<_, Error>(sum)
@@ -193,64 +205,104 @@ impl<const D: usize> Space<'_, D> {
         }
     }
 
-    /// The squares of a cell by two rules; by the same one if it is the one of highest degree.
+    /// The rule of this degree with the polynomials of the degree of the basis.
+    fn smooth_rule(&self, degree: usize) -> Result<SmoothRule, Error> {
+        let table = self.cell_table(FullySymmetric.rule(D, degree)?);
+        let polynomials = OrthonormalPolynomials::new(D, self.basis_degree);
+        let n = polynomials.len();
+        let at =
+            |point: &[f64; 4]| array_of(|k| if k < n { polynomials.value(k, point) } else { 0.0 });
+        let polynomials = table.points.iter().map(at).collect();
+        Ok(SmoothRule { table, n, polynomials })
+    }
+
+    /// The values of an exact solution at the vertices of the mesh, if these are all nodes.
+    fn values_at_vertices(&self, exact: &Reference<'_, D>) -> Option<Vec<f64>> {
+        let Reference::Exact(exact) = exact else { return None };
+        let is_vertex = |node: &Node| matches!(node.entity(), Entity::Vertex(_));
+        let vertices = self.mesh.vertices();
+        let is_known = self.nodes.iter().all(is_vertex);
+        is_known.then(|| collect(vertices.len(), |v| exact.value.at(&vertices[v])))
+    }
+
+    /// The squares of a cell by the rule of highest degree.
+    fn squares_by(&self, of: &Measure<'_, '_, '_, D>, cell: usize) -> Result<Squares, Error> {
+        let integrand = self.integrand_in(of, cell);
+        let corners = self.mesh.corners(cell);
+        let CellTable { points, basis, weights } = &of.table;
+        let mut sums = Squares::default();
+        for ((point, basis), &weight) in points.iter().zip(basis).zip(weights) {
+            integrand.add(&mut sums, (point, &in_space(point, &corners)), weight, basis);
+        }
+        integrand.checked(sums, || points.iter().map(|p| in_space(p, &corners)).collect())
+    }
+
+    /// The squares of a cell, on pieces if kinks cut it, and by the rule for smooth errors elsewhere, with the share
+    /// that is not smooth; zero if it is known that another rule does no better.
     fn squares_in(
         &self,
         of: &Measure<'_, '_, '_, D>,
         cell: usize,
-        try_lower: bool,
-    ) -> Result<[Squares; 2], Error> {
+    ) -> Result<(f64, Squares), Error> {
         let integrand = self.integrand_in(of, cell);
-        let by_rule = |table: &CellTable| {
-            let CellTable { points, basis, weights } = table;
-            let in_space = |point: &[f64; 4]| self.cell_point(point, cell);
-            let mut sums = Squares::default();
-            for ((point, basis), &weight) in points.iter().zip(basis).zip(weights) {
-                integrand.add(&mut sums, (point, &in_space(point)), weight, basis);
-            }
-            integrand.checked(sums, || points.iter().map(in_space).collect())
-        };
-        if !try_lower {
-            return by_rule(&of.table).map(|squares| [squares; 2]);
+        let corners = self.mesh.corners(cell);
+        if let Some(squares) = self.squares_on_pieces(of, &integrand, &corners) {
+            return Ok((0.0, squares?));
         }
-        let on_pieces = of.cut_rules.as_ref().and_then(|rules| {
-            let level = of.kinks[self.mesh.region(cell)].level_in(&rules[0], self.mesh, cell)?;
-            if !rules[0].cuts(self.mesh, cell, &level) {
-                return None;
-            }
-            let corners = self.mesh.corners(cell);
-            let is_linear = self.basis_degree == 1 && self.has_linear_obstacles(cell);
-            let rule = &rules[usize::from(is_linear)];
-            let mut sums = Squares::default();
-            rule.visit(&corners, &level, &mut |point, weight| {
-                let x = in_space(point, &corners);
-                integrand.add(&mut sums, (point, &x), weight, &self.basis_at(point));
-            });
-            let points = || {
-                let mut points = Vec::new();
-                rule.visit(&corners, &level, &mut |point, _| {
-                    points.push(in_space(point, &corners))
-                });
-                points
-            };
-            Some(integrand.checked(sums, points))
-        });
-        if let Some(squares) = on_pieces {
-            return squares.map(|squares| [squares; 2]);
-        }
-        let corner = |k: usize| self.mesh.vertices()[self.mesh.cell(cell)[k] as usize];
+        let corner = |k: usize| corners[k];
         let touches_in_piece = || {
             let admissible = integrand.admissible.as_ref();
             admissible.is_some_and(|function| function.touches_in_piece(corner))
         };
-        match &of.lower {
-            Some([low, high])
-                if !may_jump(integrand.coefficient, corner) && !touches_in_piece() =>
-            {
-                Ok([by_rule(low)?, by_rule(high)?])
-            }
-            _ => by_rule(&of.table).map(|squares| [squares; 2]),
+        let data = [integrand.coefficient, integrand.reaction];
+        let Some(SmoothRule { table, n, polynomials }) = of
+            .smooth
+            .as_ref()
+            .filter(|_| data.into_iter().all(|datum| !may_jump(datum, corner)))
+            .filter(|_| !touches_in_piece())
+        else {
+            return Ok((0.0, self.squares_by(of, cell)?));
+        };
+        let (mut sums, mut rough) = (Squares::default(), Roughness::new(*n));
+        let points = table.points.iter().zip(&table.basis).zip(&table.weights);
+        for (((point, basis), &weight), polynomials) in points.zip(polynomials) {
+            let x = in_space(point, &corners);
+            let fluxes = integrand.add(&mut sums, (point, &x), weight, basis);
+            rough.add(weight, &fluxes, polynomials);
         }
+        let points = || table.points.iter().map(|p| in_space(p, &corners)).collect();
+        Ok((rough.share(), integrand.checked(sums, points)?))
+    }
+
+    /// The squares of a cell that kinks of the exact solution cut.
+    fn squares_on_pieces(
+        &self,
+        of: &Measure<'_, '_, '_, D>,
+        integrand: &CellIntegrand<'_, D>,
+        corners: &[Point<D>; 4],
+    ) -> Option<Result<Squares, Error>> {
+        let (rules, cell) = (of.cut_rules.as_ref()?, integrand.cell);
+        let kinks = &of.kinks[self.mesh.region(cell)];
+        if kinks.are_far(&corners[..=D]) {
+            return None;
+        }
+        let level = kinks.level_in(&rules[0], self.mesh, cell)?;
+        if !rules[0].cuts(self.mesh, cell, &level) {
+            return None;
+        }
+        let is_linear = self.basis_degree == 1 && self.has_linear_obstacles(cell);
+        let rule = &rules[usize::from(is_linear)];
+        let mut sums = Squares::default();
+        rule.visit(corners, &level, &mut |point, weight| {
+            let x = in_space(point, corners);
+            integrand.add(&mut sums, (point, &x), weight, &self.basis_at(point));
+        });
+        let points = || {
+            let mut points = Vec::new();
+            rule.visit(corners, &level, &mut |point, _| points.push(in_space(point, corners)));
+            points
+        };
+        Some(integrand.checked(sums, points))
     }
 
     /// Whether obstacles are linear in a cell, as far as their values at corners and middles of edges tell. A linear
@@ -277,7 +329,10 @@ impl<const D: usize> Space<'_, D> {
             let at = |(point, weight): &([f64; 4], f64)| {
                 weight * of.exact.value(cell, &self.cell_point(point, cell))
             };
-            let value: f64 = terms.iter().map(at).sum();
+            let value: f64 = match (&of.at_vertices, node.entity()) {
+                (Some(values), Entity::Vertex(k)) => values[self.mesh.cell(cell)[k] as usize],
+                _ => terms.iter().map(at).sum(),
+            };
             let value = match value.is_finite() {
                 true => value,
                 false => {
@@ -303,9 +358,4 @@ fn may_jump<const D: usize>(
     let values = (0..=D).map(|k| alpha.at(&corner(k)));
     let (least, most) = values.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
     most > SMOOTH_RATIO * least
-}
-
-/// Whether two lists of squares differ by more than is allowed.
-fn differ(a: &Squares, b: &Squares, allowed: &Squares) -> bool {
-    a.iter().zip(b).zip(allowed).any(|((a, b), allowed)| (a - b).abs() > *allowed)
 }

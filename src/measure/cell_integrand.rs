@@ -40,24 +40,30 @@ pub(super) struct CellIntegrand<'a, const D: usize> {
 }
 
 impl<const D: usize> CellIntegrand<'_, D> {
-    /// Adds the squares of the error at a point, with the weight of the point, to sums over points.
+    /// Adds the squares of the error at a point, with the weight of the point, to sums over points. The result are the
+    /// fluxes of the errors of the discrete and of the admissible function, zero without one.
     pub fn add(
         &self,
         sums: &mut Squares,
         (point, x): (&[f64; 4], &Point<D>),
         weight: f64,
         basis: &BasisAt,
-    ) {
+    ) -> [Point<D>; 2] {
+        let mut fluxes = [Point::zeros(); 2];
         let weight = weight * self.volume;
         let value = self.exact.value(self.cell, x);
         let gradient = self.exact.gradient(self.cell, x);
         let reaction = self.reaction.map_or(0.0, |c| c.at(x));
         if let Some(discrete) = &self.discrete {
-            let own: f64 = (0..discrete.n).map(|i| discrete.values[i] * basis.values[i]).sum();
+            // linear functions have one basis function for each vertex
+            let n = if discrete.slope.is_some() { D + 1 } else { discrete.n };
+            let own: f64 = (0..n).map(|i| discrete.values[i] * basis.values[i]).sum();
             let slope = discrete.slope.unwrap_or_else(|| discrete.gradient(basis, &self.gradients));
-            let square = (slope - gradient).norm_squared();
+            let difference = slope - gradient;
+            let square = difference.norm_squared();
             let of_value = (own - value) * (own - value);
             let alpha = self.varying.map_or(self.alpha, |alpha| alpha.at(x));
+            fluxes[0] = difference * alpha;
             sums[0] += weight * of_value;
             sums[1] += weight * square;
             sums[2] += weight * (alpha * square + reaction * of_value);
@@ -65,9 +71,12 @@ impl<const D: usize> CellIntegrand<'_, D> {
         if let Some(admissible) = &self.admissible {
             let (own, slope) = admissible.at(point, x);
             let alpha = self.coefficient.map_or(1.0, |alpha| alpha.at(x));
-            let (square, difference) = ((slope - gradient).norm_squared(), own - value);
-            sums[3] += weight * (alpha * square + reaction * difference * difference);
+            let difference = slope - gradient;
+            fluxes[1] = difference * alpha;
+            let of_value = (own - value) * (own - value);
+            sums[3] += weight * (alpha * difference.norm_squared() + reaction * of_value);
         }
+        fluxes
     }
 
     /// Sums over points, if the exact solution is finite at these points. Finite sums prove that the exact solution is

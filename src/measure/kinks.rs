@@ -8,13 +8,31 @@ use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
 use crate::mesh::Mesh;
 use crate::problem::{Exact, Field};
+use crate::real::Point;
 
 /// The functions of a region whose zeros are kinks of the exact solution.
 pub(super) struct Kinks<const D: usize> {
     pub levels: Vec<Field<D>>,
 }
 
+/// Whether a function seems far from zero in a simplex with these corners: its values there and at the barycentre have
+/// one sign, and differ by less than the least of them. This is no proof: zeros are missed of a function that varies
+/// more between these points. A function that is constant at these points may jump between them.
+pub(super) fn is_far<const D: usize>(level: &Field<D>, corners: &[Point<D>]) -> bool {
+    let barycentre = corners.iter().sum::<Point<D>>() / corners.len() as f64;
+    let values = corners.iter().chain([&barycentre]).map(|x| level(x));
+    let limits = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
+    let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), limits);
+    let distance = if least > 0.0 { least } else { -most };
+    0.0 < most - least && most - least < distance
+}
+
 impl<const D: usize> Kinks<D> {
+    /// Whether all zeros are far from a simplex with these corners.
+    pub fn are_far(&self, corners: &[Point<D>]) -> bool {
+        self.levels.iter().all(|level| is_far(level, corners))
+    }
+
     /// The function along whose zeros a cell is divided; `None` if no function is known. Of functions that have the
     /// same zeros in the cell it is the first one: in some scenes the free boundary and jumps of load and coefficient
     /// coincide. Of functions with different zeros it is the product.
@@ -76,7 +94,6 @@ impl<const D: usize> Space<'_, D> {
 mod tests {
     use super::*;
     use crate::mesh::BoxDomain;
-    use crate::real::Point;
 
     /// The level along which the first cell of a unit cube is divided. The middle of an edge of this cell has the first
     /// coordinate 1/2.

@@ -52,8 +52,8 @@ impl<const D: usize> Discretisation<'_, D> {
 
     /// Squares of the errors of [`Discretisation::errors_against`] over the cells for which `counts` is true and the
     /// facets whose cell of lower number is one of them: over the own cells of a [part](crate::mesh::Part::owns) of a
-    /// mesh. Those of all parts merge into that of the whole, up to the rule that a cell is given: where the integrals
-    /// of two rules differ by less than `1e-8` of the mean over all cells that count, the rule of highest degree is
+    /// mesh. Those of all parts merge into that of the whole, up to the rule that a cell is given: where what is not
+    /// smooth of the error is less than `1e-8` of the mean over all cells that count, the rule of highest degree is
     /// left out.
     ///
     /// # Errors

@@ -46,7 +46,7 @@ const BOUNDARY: u32 = u32::MAX - 3;
 /// Neither a second cell nor a boundary condition: not known yet, or cut.
 const UNKNOWN: u32 = u32::MAX;
 /// Largest number of cells the codes can name.
-pub(super) const CELL_LIMIT: usize = (BOUNDARY as usize) / 4;
+pub(crate) const CELL_LIMIT: usize = (BOUNDARY as usize) / 4;
 
 fn boundary_code(condition: BoundaryCondition) -> u32 {
     BOUNDARY + condition as u32

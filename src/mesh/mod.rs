@@ -40,6 +40,7 @@ pub use domain::{BoxDomain, Domain};
 pub use edges::Edges;
 pub(crate) use edges::edge_vertices;
 pub use error::MeshError;
+pub(crate) use facets::CELL_LIMIT;
 pub use facets::{Facets, HalfFacet, Neighbour, Neighbours};
 pub use geometry::CellGeometry;
 pub(crate) use geometry::describe_point;

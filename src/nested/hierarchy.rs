@@ -1,5 +1,5 @@
-//! Nested meshes: uniform refinements of an input mesh or the levels of a built-in domain, or the parts of these that one
-//! process has.
+//! Nested meshes: uniform refinements of an input mesh or the levels of a built-in domain, or the parts of these that
+//! one process has.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -8,7 +8,7 @@ use super::piece::{Piece, SharedPart};
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::linear::Prolongation;
-use crate::mesh::{Domain, Layers, Mesh, Part, Refinement};
+use crate::mesh::{CELL_LIMIT, Domain, Layers, Mesh, Part, Refinement};
 use crate::parallel::once;
 use crate::processes::{Exchange, agree};
 
@@ -272,8 +272,8 @@ pub(crate) fn check_level<const D: usize>(domain: &Domain<D>, level: usize) -> R
         }
     }
     let cells = domain.cells(level);
-    // 32-bit indices number the unknowns and matrix entries of a discontinuous space
-    let limit = f64::from(u32::MAX) / ((D + 1) * (D + 1) * (D + 2)) as f64;
+    // a scheme with more entries than 32-bit numbers count is refused when its matrix is made
+    let limit = CELL_LIMIT as f64;
     if cells > limit {
         let kind = match is_mesh {
             true => "refinements of the mesh",
@@ -322,6 +322,15 @@ mod tests {
         let scene = scenes::radial::<2>(1.0);
         let error = Hierarchy::<2>::of_domain(&scene.domain, 0).unwrap_err();
         assert!(matches!(error, Error::Parameter { parameter: "level", .. }), "{error}");
+    }
+
+    /// 8e8 triangles, of which continuous functions have 4e8 unknowns.
+    #[test]
+    fn a_level_is_refused_where_numbers_of_cells_end() {
+        let scene = scenes::radial::<2>(1.0);
+        assert!(check_level(&scene.domain, 20_000).is_ok());
+        let error = check_level(&scene.domain, 30_000).unwrap_err().to_string();
+        assert!(error.contains("would make 1.8e9 cells, at most 1.1e9 are possible"), "{error}");
     }
 
     #[test]

@@ -238,7 +238,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
 /// # }
 /// ```
 ///
-/// [`NestedIteration`] has the settings: solver, quadrature, number of runs.
+/// The result borrows the problem and the meshes: give both a variable that lives as long. [`NestedIteration`] has the
+/// settings: solver, quadrature, number of runs.
 ///
 /// # Errors
 /// Those of [`NestedIteration::solve`].

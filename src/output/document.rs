@@ -2,7 +2,7 @@
 
 use crate::table::{Table, latex_document, markdown, wrapped};
 
-/// What a report says: paragraphs, tables, and paragraphs after them.
+/// The text of a report: paragraphs, tables, and paragraphs after them.
 #[derive(Default)]
 pub(crate) struct Document {
     pub title: &'static str,

@@ -6,7 +6,7 @@ use crate::table::{Cell, Table};
 #[derive(Default)]
 pub(crate) struct HtmlPage {
     pub title: String,
-    /// What was compared and how it ended.
+    /// The sentence that says what was compared and how it ended.
     pub lead: String,
     /// Titles and texts of SVG files that stand side by side on the first screen.
     pub plots: Vec<(String, String)>,

@@ -22,16 +22,15 @@ impl Report {
         csv::to_csv(&self.rows)
     }
 
-    /// Removes the files of this report from a directory, where they are: those that [`Report::write`] writes
-    /// but `report.json`, and the fields and pictures of its rows. Another report that is written there then
-    /// has no file of this one beside it.
+    /// Removes the files of this report from a directory, where they are: those that [`Report::write`] and
+    /// [`WorkPrecision::write`](crate::work_precision::WorkPrecision::write) write but `report.json`, and the fields
+    /// and pictures of its rows. Another report that is written there then has no file of this one beside it.
     pub fn remove_files(&self, directory: impl AsRef<Path>) {
         let mut names: Vec<String> =
             ["csv", "md", "tex", "html"].map(|end| format!("report.{end}")).into();
-        for plot in ["convergence", "work_precision"] {
-            names.push(format!("{plot}.svg"));
-        }
+        names.extend(["reach.csv", "convergence.svg", "work_precision.svg"].map(str::to_owned));
         for Series { variant: Variant { scene, label, solver, .. }, rows, .. } in self.series() {
+            names.extend(["time", "unknowns"].map(|cost| format!("{scene}-{cost}.svg")));
             for stem in [format!("{scene}-{label}"), format!("{scene}-{label}-{solver}")] {
                 let stem = file_name(&stem);
                 names.extend(["svg", "vtu", "pvd"].map(|end| format!("{stem}.{end}")));

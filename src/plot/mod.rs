@@ -18,5 +18,5 @@ mod sweep;
 pub(crate) use cost::{Cost, cost_figure};
 pub(crate) use figure::overview;
 pub use figure::{Figure, convergence, work_precision};
-pub use picture::{Picture, Slice};
+pub use picture::Picture;
 pub(crate) use sweep::{SweepPoint, sweep_figure};

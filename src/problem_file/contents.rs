@@ -1,4 +1,4 @@
-//! What has been read from a problem file.
+//! The contents of a problem file.
 
 use crate::scenes::AnyScene;
 

@@ -1,4 +1,4 @@
-//! What may be wrong with a problem file.
+//! The errors of a problem file.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::readable_debug::debug_by_display;
 #[error("{}{}: {message}", path.display(), place.map_or(String::new(), |[line, column]| format!(":{line}:{column}")))]
 #[non_exhaustive]
 pub struct ProblemFileError {
-    /// What is wrong.
+    /// The kind of the error.
     pub kind: ProblemFileErrorKind,
     /// The file.
     pub path: PathBuf,
@@ -47,7 +47,7 @@ impl ProblemFileError {
     }
 }
 
-/// What is wrong with a problem file.
+/// The kinds of errors of a problem file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ProblemFileErrorKind {

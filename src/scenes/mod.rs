@@ -30,6 +30,7 @@ mod signorini_harmonic;
 mod signorini_layers;
 mod signorini_smooth;
 mod signorini_string;
+mod sines;
 mod strings;
 mod without_solution;
 
@@ -59,5 +60,6 @@ pub use signorini_smooth::{signorini_biactive_2d, signorini_disc, signorini_smoo
 pub use signorini_string::{
     signorini_closed_1d, signorini_grazing_1d, signorini_open_1d, signorini_reaction_1d,
 };
+pub use sines::sines;
 pub use strings::{icelike_1d, parabola_1d};
 pub use without_solution::{pyramid_2d, signorini_sine_2d, spiral_2d, torsion_2d};

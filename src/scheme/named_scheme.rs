@@ -156,6 +156,11 @@ impl NamedScheme {
     pub fn options(&self) -> &SchemeOptions {
         &self.options
     }
+    /// The label without choices: the name, with the placement of bounds if that is not the default.
+    #[cfg(feature = "report")]
+    pub(crate) fn label_without_choices(&self) -> String {
+        Self { options: SchemeOptions::default(), shows_all: false, ..*self }.to_string()
+    }
     /// The choices that stand in the label, where those that are default are among them.
     pub(crate) fn shown_choices(&self) -> Option<SchemeOptions> {
         self.shows_all.then_some(self.options)

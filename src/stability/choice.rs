@@ -1,110 +1,68 @@
-//! Schemes with choices of their penalties.
+//! Schemes of the study, each with the choice of its penalty.
 
 use super::unweighted::UnweightedWopsip;
-use crate::algebra::Inequality;
-use crate::assemble::DataQuadrature;
-use crate::error::Error;
-use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::scheme::{NamedScheme, Scheme};
+use crate::scenes::Scene;
+use crate::scheme::{NamedScheme, Scheme, SchemeOptions};
 
-/// The schemes of the study, as users write them.
+/// The schemes of the study, as users write them. All but the last are compared in every case.
 pub(crate) const NAMES: [&str; 7] =
     ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "p2", "nipg"];
 
-/// The choice of a penalty.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Penalty {
-    /// The default of the library.
-    Default,
-    /// WOPSIP: this number over the cube of the facet's diameter.
-    Eta(f64),
-    /// Interior penalty: this number over the facet's diameter.
-    Sigma(f64),
-    /// WOPSIP: weights by heights, for stretched cells.
-    ByHeights,
-    /// WOPSIP: without the coefficient.
-    Unweighted,
-    /// All that a user wrote, placement of bounds included.
-    Written(NamedScheme),
-}
-
-/// A scheme with the choice of its penalty.
+/// A scheme as users write it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Choice {
-    /// Its name, with the placement of bounds after a colon.
-    pub scheme: &'static str,
-    pub penalty: Penalty,
+    name: NamedScheme,
+    /// Whether the penalty lacks the coefficient of the problem: of WOPSIP only, and users cannot choose it.
+    pub ignores_coefficient: bool,
 }
 
 impl Choice {
-    pub const fn new(scheme: &'static str, penalty: Penalty) -> Self {
-        Self { scheme, penalty }
+    pub const fn new(name: NamedScheme) -> Self {
+        Self { name, ignores_coefficient: false }
     }
-    /// The library's choice.
-    pub const fn default(scheme: &'static str) -> Self {
-        Self::new(scheme, Penalty::Default)
+    /// The scheme that this text names.
+    pub fn of(text: &str) -> Self {
+        Self::new(text.parse().expect("cases name schemes that exist"))
     }
-    /// A scheme as a user wrote it.
-    pub const fn written(scheme: NamedScheme) -> Self {
-        Self::new(scheme.name(), Penalty::Written(scheme))
+    /// A scheme with a power of ten as its over-penalty factor `eta`.
+    pub fn with_eta(scheme: &str, exponent: i32) -> Self {
+        Self::of(&format!("{scheme}@eta=1e{exponent}"))
     }
-    /// The scheme with its choices, but for a penalty without the coefficient.
-    fn named(&self) -> NamedScheme {
-        let choices = match self.penalty {
-            Penalty::Written(scheme) => return scheme,
-            Penalty::Default | Penalty::Unweighted => String::new(),
-            Penalty::Eta(eta) => format!("@eta={eta:e}"),
-            Penalty::Sigma(sigma) => format!("@sigma={sigma:e}"),
-            Penalty::ByHeights => "@weight=anisotropic".to_owned(),
-        };
-        match format!("{}{choices}", self.scheme).parse() {
-            Ok(scheme) => scheme,
-            Err(_) => unreachable!("cases give schemes penalties that they take"),
+    /// A scheme with a penalty that lacks the coefficient.
+    pub fn without_coefficient(scheme: &str) -> Self {
+        Self { ignores_coefficient: true, ..Self::of(scheme) }
+    }
+    /// The label of its rows: the text that users write, without choices that are default.
+    pub fn label(&self) -> String {
+        match self.ignores_coefficient {
+            true => format!("{}, coefficient ignored", self.name),
+            false => self.name.to_string(),
         }
+    }
+    /// The label without choices: the scheme, with the placement of its bounds if that is not the default.
+    pub fn scheme(&self) -> String {
+        self.name.label_without_choices()
+    }
+    /// Its choices.
+    pub fn options(&self) -> &SchemeOptions {
+        self.name.options()
     }
     /// Whether the penalty of the scheme is of order `h^-3`.
     pub fn is_over_penalised(&self) -> bool {
-        self.scheme.starts_with("wopsip")
+        self.name.name().starts_with("wopsip")
     }
-    /// The penalty in words; empty for a scheme without a penalty.
-    pub fn words(&self) -> String {
-        match self.penalty {
-            Penalty::Default if self.is_over_penalised() => "eta = diam^2, eta/h_F^3".into(),
-            Penalty::Default if self.scheme == "sipg" => "1.5 times proven bound".into(),
-            Penalty::Default if self.scheme == "nipg" => "1/h_F".into(),
-            Penalty::Default => String::new(),
-            Penalty::Eta(1.0) => "1/h_F^3".into(),
-            Penalty::Eta(eta) => format!("{eta:e}/h_F^3"),
-            Penalty::Sigma(sigma) => format!("{sigma}/h_F"),
-            Penalty::ByHeights => "eta = diam^2, eta/(h^2 l_F)".into(),
-            Penalty::Unweighted => "eta = diam^2, eta/h_F^3, coefficient ignored".into(),
-            Penalty::Written(scheme) => {
-                scheme.to_string()[self.scheme.len()..].replacen('@', "", 1)
-            }
-        }
-    }
-    /// The problem with the constraint set of the choice.
-    pub fn constrain<const D: usize>(&self, problem: Problem<D>) -> Problem<D> {
-        match self.named().constraint_set() {
-            Some(set) => problem.on(set),
-            None => problem,
-        }
-    }
-    /// The inequality of a problem on a mesh.
-    pub fn inequality<const D: usize>(
-        &self,
-        problem: &Problem<D>,
-        mesh: &Mesh<D>,
-    ) -> Result<Inequality<f64>, Error> {
-        let problem = self.constrain(problem.clone());
-        self.make::<D>().inequality(&problem, mesh, DataQuadrature::default())
+    /// The problem of a scene with the constraint set of the choice.
+    pub fn problem<const D: usize>(&self, scene: &Scene<D>) -> Problem<D> {
+        let mut problem = scene.problem.clone();
+        problem.constraint_set = self.name.constraint_set().or(problem.constraint_set);
+        problem
     }
     /// The scheme.
     pub fn make<const D: usize>(&self) -> Box<dyn Scheme<D>> {
-        match self.penalty {
-            Penalty::Unweighted => Box::new(UnweightedWopsip::default()),
-            _ => self.named().make(),
+        match self.ignores_coefficient {
+            true => Box::new(UnweightedWopsip::default()),
+            false => self.name.make(),
         }
     }
 }

@@ -1,21 +1,9 @@
 //! The sweeps of a stability study, drawn: errors and condition numbers over a parameter.
 
-use super::criteria::STABILITY_CASES;
+use super::cases::STABILITY_CASES;
 use super::row::{StabilityRow, Verdict};
 use crate::plot::{Figure, SweepPoint, sweep_figure};
 use crate::study::row::distinct;
-
-/// Scheme and penalty, without the factor where that is the parameter of the sweep.
-fn series(row: &StabilityRow) -> String {
-    let is_factor = row.parameter == "eta" || row.parameter == "sigma";
-    let choice = match row.choice.split_once("/h_F") {
-        Some((factor, rest)) if is_factor && factor.parse::<f64>().is_ok() => {
-            rest.split_once(", ").map_or("", |(_, rest)| rest)
-        }
-        _ => &row.choice,
-    };
-    if choice.is_empty() { row.scheme.clone() } else { format!("{}, {choice}", row.scheme) }
-}
 
 /// Whether a quantity is not just yes or no.
 fn is_number(rows: &[StabilityRow], quantity: &str) -> bool {
@@ -43,7 +31,7 @@ pub(crate) fn figures(rows: &[StabilityRow]) -> Vec<(String, Figure)> {
                     precision => format!("{} {precision}", r.problem),
                 },
                 axes: [r.parameter.clone(), quantity.clone()],
-                series: series(r),
+                series: r.series(),
                 at: r.value.unwrap_or(f64::NAN),
                 value: if is_underlying { r.underlying } else { r.measured },
                 limit: r.expected.at_most.filter(|_| !is_underlying),

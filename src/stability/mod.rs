@@ -1,11 +1,11 @@
 //! Stability study: difficult cases, each with a sweep, a criterion, and a verdict on each figure.
 
+mod case;
 mod cases;
 mod choice;
-mod criteria;
+mod criterion;
 #[cfg(feature = "plot")]
 mod figures;
-mod limit;
 mod meshes;
 mod plan;
 mod report;
@@ -15,7 +15,8 @@ mod runs;
 mod summary;
 mod unweighted;
 
-pub use criteria::{CRITERIA, Criterion, STABILITY_CASES};
+pub use cases::{STABILITY_CASES, criteria};
+pub use criterion::Criterion;
 pub use plan::Effort;
 pub use report::StabilityReport;
 pub use row::{ExpectedRange, StabilityRow, Verdict};
@@ -27,7 +28,7 @@ use std::time::{Duration, Instant};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::scheme::NamedScheme;
-use choice::Choice;
+use cases::CASES;
 use plan::Plan;
 
 /// The least time between two writes of finished rows.
@@ -136,22 +137,7 @@ impl<'a> Stability<'a> {
     /// # Errors
     /// [`Error::Parameter`] for a case that does not exist or a scheme that is wrong.
     pub fn check(&self) -> Result<(), Error> {
-        self.checked_plan().map(|_| ())
-    }
-    fn checked_plan(&self) -> Result<Plan<'_>, Error> {
-        let check = |parameter, names: &[String], known: &[&str]| match names
-            .iter()
-            .find(|name| !known.contains(&name.as_str()))
-        {
-            None => Ok(()),
-            Some(name) => Err(Error::Parameter {
-                parameter,
-                value: name.clone(),
-                allowed: format!("there are: {}", known.join(", ")),
-            }),
-        };
-        check("case", &self.cases, &STABILITY_CASES)?;
-        self.plan()
+        self.plan().map(|_| ())
     }
 
     /// Runs everything.
@@ -160,7 +146,7 @@ impl<'a> Stability<'a> {
     /// Those of [`Self::check`], before anything runs; [`Error::Write`]. Errors of a job are listed in
     /// [`StabilityReport::failures`].
     pub fn run(&self) -> Result<StabilityReport, Error> {
-        let plan = self.checked_plan()?;
+        let plan = self.plan()?;
         (self.observer)(StabilityProgress::Planned(plan.jobs.len()));
         let mut report = StabilityReport::new(self.effort);
         report.program.command.clone_from(&self.command);
@@ -169,7 +155,7 @@ impl<'a> Stability<'a> {
             (self.observer)(StabilityProgress::Started(job.case, &job.label));
             let mut saved = Ok(());
             let mut take = |row: StabilityRow| {
-                report.rows.push(row);
+                report.rows.push(StabilityRow { case: job.case.to_owned(), ..row });
                 // rows are saved early, so that an interrupted study keeps them
                 if written.elapsed() > WRITE_INTERVAL && saved.is_ok() {
                     saved = self.save(&report);
@@ -184,10 +170,6 @@ impl<'a> Stability<'a> {
         }
         report.complete = true;
         self.save(&report)?;
-        #[cfg(feature = "plot")]
-        if let Some(directory) = &self.directory {
-            report.write_figures(directory)?;
-        }
         Ok(report)
     }
 
@@ -199,45 +181,19 @@ impl<'a> Stability<'a> {
     }
 
     fn plan(&self) -> Result<Plan<'_>, Error> {
-        let wanted = NamedScheme::list(self.schemes.iter().map(String::as_str));
-        let wanted = wanted.map_err(|why| Error::Parameter {
-            parameter: "scheme",
-            value: self.schemes.join(","),
-            allowed: why.to_string(),
-        })?;
-        let (mut schemes, mut further) = (Vec::new(), Vec::new());
-        for scheme in wanted {
-            match Self::SCHEMES.into_iter().find(|known| *known == scheme.to_string()) {
-                Some(known) => schemes.push(known),
-                None => further.push(Choice::written(scheme)),
-            }
+        let refuse = |parameter, value, allowed| Error::Parameter { parameter, value, allowed };
+        if let Some(name) = self.cases.iter().find(|name| !STABILITY_CASES.contains(&&name[..])) {
+            let allowed = format!("there are: {}", STABILITY_CASES.join(", "));
+            return Err(refuse("case", name.clone(), allowed));
         }
+        let wanted = NamedScheme::list(self.schemes.iter().map(String::as_str))
+            .map_err(|why| refuse("scheme", self.schemes.join(","), why.to_string()))?;
         let (effort, given) = (self.effort, &self.given[..]);
-        let mut plan = Plan { effort, schemes, further, given, jobs: Vec::new() };
-        for case in STABILITY_CASES {
-            if !self.cases.is_empty() && !self.cases.iter().any(|c| c == case) {
-                continue;
-            }
-            match case {
-                "round-off" => {
-                    cases::round_off::plan(&mut plan);
-                    limit::plan(&mut plan);
-                }
-                "penalty-factor" => {
-                    cases::over_penalty::plan(&mut plan);
-                    cases::condition::plan(&mut plan);
-                }
-                "stretched-cells" => cases::anisotropy::plan(&mut plan),
-                "graded-meshes" => cases::grading::plan(&mut plan),
-                "contrast" => cases::contrast::plan(&mut plan),
-                "coercivity" => cases::coercivity::plan(&mut plan),
-                "curved-obstacle" => cases::curved_obstacle::plan(&mut plan),
-                "biactive" => cases::biactive::plan(&mut plan),
-                "scaling" => cases::scaling::plan(&mut plan),
-                "contact-ends" => cases::contact_ends::plan(&mut plan),
-                "orders" => cases::orders::plan(&mut plan),
-                _ => cases::slivers::plan(&mut plan),
-            }
+        let mut plan = Plan { effort, wanted, given, case: "", jobs: Vec::new() };
+        let is_chosen = |case: &str| self.cases.is_empty() || self.cases.iter().any(|c| c == case);
+        for case in CASES.into_iter().filter(|case| is_chosen(case.name)) {
+            plan.case = case.name;
+            (case.plan)(&mut plan);
         }
         Ok(plan)
     }

@@ -4,6 +4,8 @@ use super::choice::{Choice, NAMES};
 use super::row::StabilityRow;
 use crate::error::Error;
 use crate::mesh::Mesh;
+use crate::scheme::NamedScheme;
+use crate::study::row::distinct;
 
 /// How many meshes and values of each sweep are run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,9 +25,6 @@ pub(crate) type Sink<'s> = &'s mut dyn FnMut(StabilityRow);
 /// A function that computes rows.
 type Run<'p> = Box<dyn Fn(Sink<'_>) -> Result<(), Error> + 'p>;
 
-/// The work on one scheme, which is yet to be chosen.
-type RunChoice<'p> = Box<dyn Fn(&Choice, Sink<'_>) -> Result<(), Error> + 'p>;
-
 /// A unit of work whose rows do not depend on other jobs.
 pub(super) struct Job<'p> {
     pub(super) case: &'static str,
@@ -36,11 +35,12 @@ pub(super) struct Job<'p> {
 /// The jobs of a study.
 pub(crate) struct Plan<'p> {
     pub(super) effort: Effort,
-    /// The schemes of the study that are wanted; all of them if there is neither one nor a further one.
-    pub(super) schemes: Vec<&'static str>,
-    /// Schemes as users wrote them, compared besides.
-    pub(super) further: Vec<Choice>,
+    /// The schemes that users ask for; all of the study if there is none.
+    pub(super) wanted: Vec<NamedScheme>,
+    /// Meshes that users give, with their names.
     pub(super) given: &'p [(String, Mesh<3>)],
+    /// The case to which jobs are added.
+    pub(super) case: &'static str,
     pub(super) jobs: Vec<Job<'p>>,
 }
 
@@ -57,33 +57,29 @@ impl<'p> Plan<'p> {
     pub fn pick_of<T>(&self, trial: T, quick: T, full: T) -> T {
         if self.effort == Effort::Trial { trial } else { self.pick(quick, full) }
     }
-    /// The schemes that every case compares, with default penalties and as users wrote them.
+    /// The schemes that every case compares: those of the study and those that users ask for besides.
     pub fn compared(&self) -> Vec<Choice> {
-        let own = NAMES[..6].iter().map(|name| Choice::default(name));
-        own.chain(self.further.iter().copied()).collect()
+        let of_study = NAMES[..6].iter().map(|name| Choice::of(name));
+        let besides = self.wanted.iter().filter(|scheme| !NAMES.contains(&&scheme.to_string()[..]));
+        of_study.chain(besides.copied().map(Choice::new)).collect()
     }
     /// The same, followed by further choices of this case.
     pub fn compared_and(&self, of_case: &[Choice]) -> Vec<Choice> {
-        let mut all = self.compared();
-        all.extend_from_slice(of_case);
-        all
+        distinct(self.compared().into_iter().chain(of_case.iter().copied()))
     }
-    /// Adds work on a scheme, if that scheme is wanted.
+    /// Adds work on a scheme, if users ask for this choice or for its scheme without choices.
     pub fn add(
         &mut self,
-        case: &'static str,
         choice: Choice,
         what: &str,
         run: impl Fn(&Choice, Sink<'_>) -> Result<(), Error> + 'p,
     ) {
-        self.add_boxed(case, choice, what, Box::new(run));
-    }
-    fn add_boxed(&mut self, case: &'static str, choice: Choice, what: &str, run: RunChoice<'p>) {
-        let all = self.schemes.is_empty() && self.further.is_empty();
-        if all || self.schemes.contains(&choice.scheme) || self.further.contains(&choice) {
-            let label = format!("{} {} {what}", choice.scheme, choice.words());
+        let names = [choice.label(), choice.scheme()];
+        let is_wanted = |scheme: &NamedScheme| names.contains(&scheme.to_string());
+        if self.wanted.is_empty() || self.wanted.iter().any(is_wanted) {
+            let label = format!("{} {what}", names[0]);
             let run = Box::new(move |sink: Sink<'_>| run(&choice, sink));
-            self.jobs.push(Job { case, label, run });
+            self.jobs.push(Job { case: self.case, label, run });
         }
     }
 }

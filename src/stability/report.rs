@@ -4,18 +4,16 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::criteria::{CRITERIA, STABILITY_CASES};
+use super::cases::{STABILITY_CASES, criteria};
+use super::criterion::Criterion;
 use super::plan::Effort;
-use super::row::{StabilityRow, Verdict, short};
-use super::summary::{by_criterion, by_scheme, criteria, missed, robust, safe_ranges};
+use super::row::{StabilityRow, Verdict};
+use super::summary::{by_criterion, by_scheme, conditions, missed, robust, safe_ranges};
 use crate::error::Error;
 use crate::files::replace_text;
 use crate::output::csv;
 use crate::output::document::Document;
-#[cfg(feature = "plot")]
 use crate::output::html::{HtmlPage, Section};
-#[cfg(feature = "plot")]
-use crate::plot::Figure;
 use crate::study::Program;
 use crate::table::{Cell, Table, WIDTH};
 
@@ -23,7 +21,7 @@ use crate::table::{Cell, Table, WIDTH};
 const READING: [&str; 3] = [
     "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Figures have the digits that decide. A safe range of a penalty factor is the longest part of its sweep in which every factor stays within the limits of errors, of forces and of definiteness; a penalty is robust in a case if all its figures stay within their limits.",
     "Schemes: p1 and p2, conforming linear and quadratic elements with bounds at nodes; cr, Crouzeix-Raviart elements with bounds on facet means; sipg and nipg, symmetric and non-symmetric interior penalty on broken linears; wopsip, the weakly over-penalised method on broken linears with bounds at vertices, wopsip:facet-means the same with bounds on facet means.",
-    "Penalties: h_F is the diameter of a facet, l_F the height of its cells over it, h the mesh size, diam the diameter of the domain, and the proven bound the least interior penalty that is provably enough on each cell. All but what ignores it carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
+    "Penalties: sipg has 1.5 times the proven bound, the least interior penalty that is provably enough on each cell, nipg 1/h_F, with h_F the diameter of a facet; sigma is the factor of 1/h_F. wopsip has eta/h_F^3, with eta the square of the diameter of the domain unless it is given; weight=anisotropic puts h^2 l_F in place of h_F^3, with h the mesh size and l_F the height of the cells over the facet. All but what ignores it carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
 ];
 
 /// All rows, in the order run.
@@ -71,20 +69,14 @@ impl StabilityReport {
         robust(&self.rows)
     }
 
-    /// All tables: verdicts by scheme and by criterion, what was missed, then the rows case by
-    /// case.
-    pub fn tables(&self) -> Vec<Table> {
-        let mut tables = self.verdict_tables();
-        tables.extend(self.case_tables());
-        tables
-    }
-
+    /// Verdicts by scheme and by criterion, and what was missed.
     fn verdict_tables(&self) -> Vec<Table> {
         let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
         tables.extend(missed(&self.rows));
         tables
     }
 
+    /// The rows case by case.
     fn case_tables(&self) -> impl Iterator<Item = Table> + '_ {
         let cases =
             STABILITY_CASES.iter().filter(|case| self.rows.iter().any(|r| r.case == **case));
@@ -103,16 +95,12 @@ impl StabilityReport {
     fn case_table(&self, case: &str) -> Table {
         let rows: Vec<&StabilityRow> = self.rows.iter().filter(|r| r.case == case).collect();
         let line = |row: &&StabilityRow| {
-            let sweep = row
-                .value
-                .map_or(String::new(), |value| format!("{} {}", row.parameter, short(value)));
             vec![
                 Cell::Words(row.criterion.clone()),
-                Cell::Words(row.scheme.clone()),
-                Cell::Words(row.choice.clone()),
+                Cell::Words(row.label.clone()),
                 Cell::Words(format!("{} {}", row.problem, row.precision)),
                 Cell::whole(row.level),
-                Cell::Words(sweep),
+                Cell::Words(row.place()),
                 Cell::Words(row.quantity.clone()),
                 Cell::Words(row.expected.words()),
                 Cell::number(row.figure_in_words()),
@@ -120,10 +108,11 @@ impl StabilityReport {
                 Cell::Words(row.detail.clone()),
             ]
         };
-        let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
-        let heads = "criterion,scheme,penalty,problem,n,at,quantity,expected,measured,verdict,further figures";
+        let asked = criteria().filter(|of| rows.iter().any(|r| r.criterion == of.1.name));
+        let heads =
+            "criterion,scheme,problem,n,at,quantity,expected,measured,verdict,further figures";
         Table {
-            remarks: asked.map(|c| format!("{}: {}", c.name, c.sentence)).collect(),
+            remarks: asked.map(|(_, c)| format!("{}: {}", c.name, c.sentence())).collect(),
             ..Table::new(format!("Case {case}"), heads, rows.iter().map(line).collect())
         }
     }
@@ -131,10 +120,11 @@ impl StabilityReport {
     /// The report as JSON: `program`, `complete`, `criteria`, `rows`, `failures`, `safe_ranges` and
     /// `robust_choices`. What does not apply is null.
     pub fn to_json(&self) -> String {
+        let criterion = |(case, c): (_, &Criterion)| json!({ "name": c.name, "case": case, "sentence": c.sentence() });
         let value = json!({
             "program": self.program,
             "complete": self.complete,
-            "criteria": CRITERIA,
+            "criteria": criteria().map(criterion).collect::<Vec<_>>(),
             "rows": self.rows,
             "failures": self.failures,
             "safe_ranges": self.safe_ranges(),
@@ -148,14 +138,10 @@ impl StabilityReport {
         csv::lines(&self.rows)
     }
 
-    /// Tables for a terminal.
-    pub fn to_text(&self) -> String {
-        self.document(self.tables()).to_text(WIDTH)
-    }
-
     /// Tables, provenance and notes in Markdown.
     pub fn to_markdown(&self) -> String {
-        self.document(self.tables()).to_markdown()
+        self.document(self.verdict_tables().into_iter().chain(self.case_tables()).collect())
+            .to_markdown()
     }
 
     /// A summary in Markdown without the rows: verdicts, limits that were missed, criteria in words,
@@ -176,32 +162,27 @@ impl StabilityReport {
 
     /// Verdicts, limits that were missed, and the criteria in words.
     fn summary_tables(&self) -> Vec<Table> {
-        self.verdict_tables().into_iter().chain([criteria(&self.rows)]).collect()
+        self.verdict_tables().into_iter().chain([conditions(&self.rows)]).collect()
     }
 
-    /// The sweeps of every case over a parameter, drawn, each with the name of its file.
+    /// The sweeps of every case over a parameter, drawn: names of files and SVG.
     #[cfg(feature = "plot")]
-    pub fn figures(&self) -> Vec<(String, Figure)> {
-        super::figures::figures(&self.rows)
+    fn svg_files(&self) -> Vec<(String, String)> {
+        let figures = super::figures::figures(&self.rows).into_iter();
+        figures.map(|(name, figure)| (format!("{name}.svg"), figure.to_svg())).collect()
+    }
+    /// Without the feature `plot` there are no figures.
+    #[cfg(not(feature = "plot"))]
+    fn svg_files(&self) -> Vec<(String, String)> {
+        Vec::new()
     }
 
-    /// Writes the figures as SVG, and `stability.html`, one page with them and all
-    /// tables, into a directory.
-    ///
-    /// # Errors
-    /// [`Error::Write`] at the first file that cannot be written.
-    #[cfg(feature = "plot")]
-    pub fn write_figures(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
-        let figures = self.figures();
-        let mut written = Vec::new();
-        let mut pictures = Vec::new();
-        for (name, figure) in &figures {
-            let file = format!("{name}.svg");
-            written.push(replace_text(&directory.join(&file), &figure.to_svg())?);
-            pictures.push((name.clone(), file));
-        }
+    /// One page with all tables, which links these figures.
+    fn page(&self, figures: &[(String, String)]) -> HtmlPage {
         let mut paragraphs = self.paragraphs().into_iter();
-        let page = HtmlPage {
+        let picture =
+            |(file, _): &(String, String)| (file.trim_end_matches(".svg").to_owned(), file.clone());
+        HtmlPage {
             title: "Stability".to_owned(),
             lead: paragraphs.next().expect("the heading is the first paragraph"),
             summary: self.verdict_tables(),
@@ -211,17 +192,22 @@ impl StabilityReport {
                     paragraphs: paragraphs.collect(),
                     ..Section::default()
                 },
-                Section { title: "Sweeps".to_owned(), pictures, ..Section::default() },
+                Section {
+                    title: "Sweeps".to_owned(),
+                    pictures: figures.iter().map(picture).collect(),
+                    ..Section::default()
+                },
                 Section {
                     title: "Cases".to_owned(),
-                    tables: [criteria(&self.rows)].into_iter().chain(self.case_tables()).collect(),
+                    tables: [conditions(&self.rows)]
+                        .into_iter()
+                        .chain(self.case_tables())
+                        .collect(),
                     ..Section::default()
                 },
             ],
             ..HtmlPage::default()
-        };
-        written.push(replace_text(&directory.join("stability.html"), &page.to_html())?);
-        Ok(written)
+        }
     }
 
     /// The paragraphs before the tables.
@@ -257,18 +243,24 @@ impl StabilityReport {
         format!("{program}; {effort} run{end}; {rows} rows: {}.", counts.join(", "))
     }
 
-    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be. Each file takes
-    /// the place of an earlier one only when it is whole.
+    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be, and, if the report
+    /// is complete, `stability.html` and its figures `stability-CASE.svg`. Each file takes the place of an earlier one
+    /// only when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     pub fn write(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
-        let files = [
-            ("stability.json", self.to_json()),
-            ("stability.csv", self.to_csv()),
-            ("stability.md", self.to_markdown()),
-            ("stability.tex", self.to_latex()),
+        let mut files = vec![
+            ("stability.json".to_owned(), self.to_json()),
+            ("stability.csv".to_owned(), self.to_csv()),
+            ("stability.md".to_owned(), self.to_markdown()),
+            ("stability.tex".to_owned(), self.to_latex()),
         ];
+        if self.complete {
+            let figures = self.svg_files();
+            files.push(("stability.html".to_owned(), self.page(&figures).to_html()));
+            files.extend(figures);
+        }
         files.iter().map(|(name, text)| replace_text(&directory.join(name), text)).collect()
     }
 }

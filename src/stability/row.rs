@@ -16,6 +16,17 @@ pub struct ExpectedRange {
 }
 
 impl ExpectedRange {
+    pub(crate) const fn at_least(least: f64) -> Self {
+        Self { at_least: Some(least), at_most: None, to_fail: false }
+    }
+    pub(crate) const fn at_most(most: f64) -> Self {
+        Self { at_least: None, at_most: Some(most), to_fail: false }
+    }
+    /// Around one: at most this factor above or below.
+    pub(crate) const fn within(factor: f64) -> Self {
+        Self { at_least: Some(1.0 / factor), at_most: Some(factor), to_fail: false }
+    }
+
     /// Whether a figure lies in the range; a figure that is not finite does not.
     pub fn holds(&self, figure: f64) -> bool {
         figure.is_finite()
@@ -158,12 +169,12 @@ impl Verdict {
 pub struct StabilityRow {
     /// Name of the case.
     pub case: String,
-    /// Name of the criterion; see [`CRITERIA`](crate::stability::CRITERIA).
+    /// Name of the criterion; see [`criteria`](crate::stability::criteria).
     pub criterion: String,
     /// The scheme, with the placement of its bounds after a colon if it is not the default.
     pub scheme: String,
-    /// The choice of the penalty.
-    pub choice: String,
+    /// The scheme with its choices, as users write it: what distinguishes the penalties of a scheme.
+    pub label: String,
     /// Scalar of assembly and solve.
     pub precision: String,
     /// Scene or problem.
@@ -186,7 +197,7 @@ pub struct StabilityRow {
     pub underlying_quantity: String,
     /// Further figures, or why there is none.
     pub detail: String,
-    /// What follows.
+    /// The verdict on figure and range.
     pub verdict: Verdict,
     /// The factor by which the limit is missed, if there is one.
     pub missed_by: Option<f64>,
@@ -203,6 +214,24 @@ impl StabilityRow {
                 format!("{} (no figure)", self.verdict.name())
             }
             _ => self.verdict.name().to_owned(),
+        }
+    }
+
+    /// The place of the sweep in words; empty without a sweep.
+    pub(crate) fn place(&self) -> String {
+        self.value.map_or_else(String::new, |value| format!("{} {}", self.parameter, short(value)))
+    }
+
+    /// Whether the parameter of the sweep is the penalty factor of the scheme.
+    pub(crate) fn sweeps_factor(&self) -> bool {
+        self.parameter == "eta" || self.parameter == "sigma"
+    }
+
+    /// The label, of a sweep of a penalty factor without its value: `wopsip@eta`.
+    pub(crate) fn series(&self) -> String {
+        match self.sweeps_factor() {
+            true => format!("{}@{}", self.scheme, self.parameter),
+            false => self.label.clone(),
         }
     }
 
@@ -223,7 +252,7 @@ impl StabilityRow {
 
 /// A factor by which a limit is missed, with as many digits as it takes to see that it is above one.
 pub(crate) fn factor_in_words(factor: f64) -> String {
-    ExpectedRange { at_most: Some(1.0), ..ExpectedRange::default() }.deciding(factor)
+    ExpectedRange::at_most(1.0).deciding(factor)
 }
 
 #[cfg(test)]
@@ -232,7 +261,7 @@ mod tests {
 
     #[test]
     fn verdicts_follow_from_figures() {
-        let most = ExpectedRange { at_most: Some(1.5), ..ExpectedRange::default() };
+        let most = ExpectedRange::at_most(1.5);
         assert_eq!(Verdict::on(&most, Some(1.5)), Verdict::Met);
         assert_eq!(Verdict::on(&most, Some(3.0)), Verdict::Missed);
         assert_eq!(Verdict::on(&most, None), Verdict::Missed);
@@ -241,7 +270,7 @@ mod tests {
         assert_eq!(Verdict::on(&fail, Some(3.0)), Verdict::FailsAsExpected);
         assert_eq!(Verdict::on(&fail, Some(1.0)), Verdict::BetterThanExpected);
         assert_eq!(Verdict::on(&ExpectedRange::default(), Some(1.0)), Verdict::Reported);
-        let least = ExpectedRange { at_least: Some(0.9), ..ExpectedRange::default() };
+        let least = ExpectedRange::at_least(0.9);
         assert_eq!(least.missed_by(0.45), Some(2.0));
         assert_eq!(least.missed_by(-0.1), None);
         assert!(!least.holds(f64::NAN));
@@ -249,11 +278,11 @@ mod tests {
 
     #[test]
     fn the_digit_that_decides_is_shown() {
-        let most = ExpectedRange { at_most: Some(1.15), ..ExpectedRange::default() };
+        let most = ExpectedRange::at_most(1.15);
         assert_eq!(most.deciding(1.149), "1.149");
         assert_eq!(most.deciding(1.1500021), "1.150002");
         assert_eq!(most.deciding(1.15), "1.15");
-        let tiny = ExpectedRange { at_most: Some(1e-9), ..ExpectedRange::default() };
+        let tiny = ExpectedRange::at_most(1e-9);
         assert_eq!(tiny.deciding(1.0004e-9), "1.0004e-9");
         assert_eq!(tiny.deciding(3.21987e-9), "3.22e-9");
         assert_eq!(super::factor_in_words(1.0000018), "1.000002");

@@ -1,18 +1,19 @@
-//! Runs of a scheme on a scene or a mesh, and properties of its matrix.
+//! Runs of a scheme on a scene, and properties of its matrix.
 
 use std::sync::Arc;
 
 use super::choice::Choice;
-use crate::algebra::{Bound, SparseMatrix};
+use super::row_builder::{of, quotient};
+use crate::algebra::{Inequality, SparseMatrix};
+use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, in_precision};
 use crate::linear::{LinearMethod, is_positive_definite};
-use crate::mesh::{BoxDomain, Mesh};
+use crate::mesh::Mesh;
 use crate::nested::{Hierarchy, NestedIteration, Solved};
 use crate::problem::Problem;
-use crate::real::{Point, Precision};
+use crate::real::Precision;
 use crate::scenes::Scene;
-use crate::scheme::Regularity;
 use crate::study::{Row, Study};
 
 /// The solver of the study: the library's own, with factors on every level, so that no tolerance of
@@ -21,74 +22,81 @@ pub(crate) fn solver() -> ActiveSet {
     ActiveSet::default().linear(LinearMethod::Direct)
 }
 
+/// A study of a scheme on a scene.
+pub(crate) fn study<const D: usize>(
+    precision: Precision,
+    scene: &Scene<D>,
+    choice: &Choice,
+) -> Study<'static, D> {
+    let scene = Scene { problem: choice.problem(scene), ..scene.clone() };
+    let study = Study::<D>::new(scene).boxed_scheme(choice.make());
+    study.boxed_solver(in_precision(precision, solver()))
+}
+
 /// The rows of a scheme on levels of a scene.
 pub(crate) fn rows<const D: usize>(
-    scene: Scene<D>,
+    scene: &Scene<D>,
     choice: &Choice,
     levels: &[usize],
 ) -> Result<Vec<Row>, Error> {
-    rows_in(Precision::Double, scene, choice, levels)
+    Ok(study(Precision::Double, scene, choice).levels(levels.iter().copied()).run()?.rows)
 }
 
-/// The rows of a scheme on levels of a scene, solved in a precision.
-pub(crate) fn rows_in<const D: usize>(
+/// The row of a scheme on one level of a scene, solved in a precision.
+pub(crate) fn row_in<const D: usize>(
     precision: Precision,
-    mut scene: Scene<D>,
-    choice: &Choice,
-    levels: &[usize],
-) -> Result<Vec<Row>, Error> {
-    scene.problem = choice.constrain(scene.problem);
-    let study = Study::<D>::new(scene).boxed_scheme(choice.make());
-    let study = study.boxed_solver(in_precision(precision, solver()));
-    Ok(study.levels(levels.iter().copied()).run()?.rows)
-}
-
-/// The row of a scheme on one level.
-pub(crate) fn row<const D: usize>(
-    scene: Scene<D>,
+    scene: &Scene<D>,
     choice: &Choice,
     level: usize,
 ) -> Result<Row, Error> {
-    Ok(rows::<D>(scene, choice, &[level])?.swap_remove(0))
+    Ok(study(precision, scene, choice).levels([level]).run()?.rows.swap_remove(0))
 }
 
-/// The row of a scheme on a mesh.
-pub(crate) fn row_on<const D: usize>(
-    mut scene: Scene<D>,
-    mesh: Mesh<D>,
+/// The row of a scheme on one level of a scene.
+pub(crate) fn row<const D: usize>(
+    scene: &Scene<D>,
     choice: &Choice,
+    level: usize,
 ) -> Result<Row, Error> {
-    scene.problem = choice.constrain(scene.problem);
-    let study = Study::<D>::new(scene.domain(mesh)).boxed_scheme(choice.make());
-    Ok(study.solver(solver()).levels([0]).run()?.rows.swap_remove(0))
+    row_in(Precision::Double, scene, choice, level)
 }
 
-/// A scheme's solution of a problem with the scheme's constraint set ([`Choice::constrain`]) on the finest
-/// mesh of a hierarchy; started from conforming elements if asked for.
+/// An error of a row over that of another scheme on the same level of the same scene.
+pub(crate) fn over<const D: usize>(
+    other: &str,
+    scene: &Scene<D>,
+    ours: &Row,
+    error: impl Fn(&Row) -> Option<f64>,
+) -> Result<Option<f64>, Error> {
+    let theirs = row(scene, &Choice::of(other), ours.level)?;
+    Ok(quotient(of(ours, &error), of(&theirs, &error)))
+}
+
+/// The solution of a scheme for a problem that has the [constraint set](Choice::problem) of the scheme, on the finest
+/// mesh of a hierarchy, started from conforming elements.
 pub(crate) fn solved<'a, const D: usize>(
     problem: &'a Problem<D>,
     meshes: &'a Hierarchy<D>,
     choice: &Choice,
-    is_warm: bool,
 ) -> Result<Solved<'a, D>, Error> {
-    solved_by(Arc::new(solver()), problem, meshes, choice, is_warm)
+    solved_by(Arc::new(solver()), problem, meshes, choice, false)
 }
 
-/// [`solved`] with another solver.
+/// [`solved`] with another solver, on request from a cold start.
 pub(crate) fn solved_by<'a, const D: usize>(
     solver: Arc<dyn InequalitySolver<f64>>,
     problem: &'a Problem<D>,
     meshes: &'a Hierarchy<D>,
     choice: &Choice,
-    is_warm: bool,
+    is_cold: bool,
 ) -> Result<Solved<'a, D>, Error> {
     let nested = NestedIteration::new(problem, meshes).shared_solver(solver);
-    nested.cold_start(!is_warm).solve(&*choice.make())
+    nested.cold_start(is_cold).solve(&*choice.make())
 }
 
-/// What contact forces and the fluxes through facets with weakly imposed Dirichlet data leave of the load, less the
-/// reaction, over the sum of absolute loads. None without forces or without jump multipliers of the solver, which are
-/// the fluxes.
+/// The imbalance of forces: the load less reaction, contact forces and fluxes through facets with weakly imposed
+/// Dirichlet data, over the sum of absolute loads. None without forces or without jump multipliers of the solver, which
+/// are the fluxes.
 pub(crate) fn imbalance<const D: usize>(solved: &Solved<'_, D>) -> Option<f64> {
     let (inequality, solution) = (solved.inequality(), solved.solution());
     let penalised = inequality.penalised.as_ref()?;
@@ -103,7 +111,7 @@ pub(crate) fn imbalance<const D: usize>(solved: &Solved<'_, D>) -> Option<f64> {
         left -= inequality.load[i];
     }
     for (jump, multiplier) in solution.jump_multipliers.iter().enumerate() {
-        if penalised.blocks_of_jump(jump).iter().any(Option::is_none) {
+        if penalised.jumps.blocks_of(jump).iter().any(Option::is_none) {
             let weights = penalised.terms_of(jump).iter().map(|term| term.weight);
             left += weights.sum::<f64>() * multiplier;
         }
@@ -112,53 +120,36 @@ pub(crate) fn imbalance<const D: usize>(solved: &Solved<'_, D>) -> Option<f64> {
     Some(left.abs() / size)
 }
 
+/// The inequality of a scheme on a mesh, with the problem of a scene.
+pub(crate) fn inequality<const D: usize>(
+    scene: &Scene<D>,
+    mesh: &Mesh<D>,
+    choice: &Choice,
+) -> Result<Inequality<f64>, Error> {
+    choice.make::<D>().inequality(&choice.problem(scene), mesh, DataQuadrature::default())
+}
+
 /// Whether a scheme's matrix is symmetric positive definite on a mesh: 1 or 0; none if the
 /// scheme is not symmetric or the factorisation failed.
 pub(crate) fn definite<const D: usize>(
-    problem: &Problem<D>,
+    scene: &Scene<D>,
     mesh: &Mesh<D>,
     choice: &Choice,
 ) -> Result<Option<f64>, Error> {
-    let inequality = choice.inequality(problem, mesh)?;
-    let free: Vec<u32> = (0..inequality.size() as u32)
-        .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
-        .collect();
+    let inequality = inequality(scene, mesh, choice)?;
     if !inequality.symmetric {
         return Ok(None);
     }
-    let answer = is_positive_definite(&inequality.matrix, true, &free).ok();
-    Ok(answer.map(|is| f64::from(u8::from(is))))
+    let answer = is_positive_definite(&inequality.matrix, true, &inequality.free_unknowns());
+    Ok(answer.ok().map(|is| f64::from(u8::from(is))))
 }
 
 /// The matrix of a scheme, restricted to its free unknowns.
 pub(crate) fn free_matrix<const D: usize>(
-    problem: &Problem<D>,
+    scene: &Scene<D>,
     mesh: &Mesh<D>,
     choice: &Choice,
 ) -> Result<SparseMatrix<f64>, Error> {
-    let inequality = choice.inequality(problem, mesh)?;
+    let inequality = inequality(scene, mesh, choice)?;
     Ok(inequality.matrix.submatrix(&inequality.free_unknowns()))
-}
-
-/// `-Laplace u = f` in the unit box with `u` the product of `sin(pi x_k)`.
-pub(crate) fn sines<const D: usize>() -> Scene<D> {
-    use std::f64::consts::PI;
-    let value = |x: &Point<D>| x.iter().map(|x| (PI * x).sin()).product::<f64>();
-    let gradient = |x: &Point<D>| {
-        Point::from_fn(|k, _| {
-            let factor = |(j, x): (usize, &f64)| {
-                if j == k { PI * (PI * x).cos() } else { (PI * x).sin() }
-            };
-            x.iter().enumerate().map(factor).product::<f64>()
-        })
-    };
-    Scene {
-        name: format!("sines-{D}d"),
-        summary: "Poisson in the unit box",
-        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
-        problem: Problem::new()
-            .source(move |x| D as f64 * PI * PI * value(x))
-            .exact(value, gradient),
-        regularity: Regularity::smooth(),
-    }
 }

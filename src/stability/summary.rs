@@ -1,6 +1,7 @@
 //! Counts of verdicts, and robust choices of penalties.
 
-use super::criteria::{CRITERIA, Criterion};
+use super::cases::{OVER_FACTORS, SWEEPS, criteria};
+use super::criterion::Criterion;
 use super::row::{StabilityRow, Verdict, factor_in_words, short};
 use crate::study::row::distinct;
 use crate::table::{Cell, Table};
@@ -9,61 +10,54 @@ fn count<'r>(rows: impl Iterator<Item = &'r StabilityRow>, verdict: Verdict) -> 
     rows.filter(|row| row.verdict == verdict).count()
 }
 
-/// A choice without the power of ten of a factor that is swept.
-fn kind(choice: &str) -> String {
-    match choice.split_once("/h_F^3") {
-        Some((factor, rest)) if factor != "1" && factor.parse::<f64>().is_ok() => {
-            format!("other factors/h_F^3{rest}")
-        }
-        _ => choice.to_owned(),
-    }
+/// The heads of a table with a column for each verdict.
+fn heads(before: &str, after: &str) -> String {
+    format!("{before},{}{after}", Verdict::ALL.map(Verdict::name).join(","))
 }
 
-/// Verdicts of every scheme and choice.
+/// The number of rows for each verdict.
+fn counts<'r>(rows: impl Iterator<Item = &'r StabilityRow> + Clone) -> [Cell; 6] {
+    Verdict::ALL.map(|verdict| Cell::whole(Some(count(rows.clone(), verdict))))
+}
+
+/// Verdicts of every scheme with its choices; all values of a factor that is swept are one line.
 pub(crate) fn by_scheme(rows: &[StabilityRow]) -> Table {
-    let choices = distinct(rows.iter().map(|r| (r.scheme.clone(), kind(&r.choice))));
-    let line = |(scheme, choice): (String, String)| {
-        let mine = || rows.iter().filter(|r| r.scheme == scheme && kind(&r.choice) == choice);
-        let counts = Verdict::ALL.map(|verdict| Cell::whole(Some(count(mine(), verdict))));
-        let mut cells = vec![Cell::Words(scheme.clone()), Cell::Words(choice.clone())];
-        cells.extend(counts);
-        cells
+    let line = |series: String| {
+        let mine = counts(rows.iter().filter(|r| r.series() == series));
+        [Cell::Words(series.clone())].into_iter().chain(mine).collect()
     };
-    let heads = format!("scheme,penalty,{}", Verdict::ALL.map(Verdict::name).join(","));
-    let rows = choices.into_iter().map(line).collect();
-    Table::new("Verdicts by scheme and penalty", &heads, rows)
+    let lines = distinct(rows.iter().map(StabilityRow::series)).into_iter().map(line).collect();
+    Table::new("Verdicts by scheme", &heads("scheme", ""), lines)
+}
+
+/// The criteria of these rows, with their cases.
+fn asked(rows: &[StabilityRow]) -> impl Iterator<Item = (&'static str, &'static Criterion)> {
+    criteria().filter(|of| rows.iter().any(|r| r.criterion == of.1.name))
 }
 
 /// Verdicts of every criterion.
 pub(crate) fn by_criterion(rows: &[StabilityRow]) -> Table {
-    let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
-    let line = |c: &Criterion| {
-        let mine = || rows.iter().filter(|r| r.criterion == c.name);
-        let mut cells = vec![Cell::Words(c.case.to_owned()), Cell::Words(c.name.to_owned())];
-        cells.extend(Verdict::ALL.map(|verdict| Cell::whole(Some(count(mine(), verdict)))));
-        let failing = distinct(
-            mine()
-                .filter(|r| r.verdict == Verdict::Missed)
-                .map(|r| format!("{} {}", r.scheme, r.choice).trim().to_owned()),
-        );
-        cells.push(Cell::Words(failing.join("; ")));
+    let line = |(case, criterion): (&str, &Criterion)| {
+        let mine = rows.iter().filter(|r| r.criterion == criterion.name);
+        let mut cells = vec![Cell::Words(case.to_owned()), Cell::Words(criterion.name.to_owned())];
+        cells.extend(counts(mine.clone()));
+        let failing = mine.filter(|r| r.verdict == Verdict::Missed).map(|r| &r.label[..]);
+        cells.push(Cell::Words(distinct(failing).join("; ")));
         cells
     };
-    let heads = format!("case,criterion,{},missed by", Verdict::ALL.map(Verdict::name).join(","));
-    Table::new("Verdicts by criterion", &heads, asked.map(line).collect())
+    let lines = asked(rows).map(line).collect();
+    Table::new("Verdicts by criterion", &heads("case,criterion", ",missed by"), lines)
 }
 
 /// Every row that misses its range, with the factor; no table without such rows.
 pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
     let line = |row: &StabilityRow| {
-        let sweep =
-            row.value.map_or(String::new(), |value| format!("{} {}", row.parameter, short(value)));
         vec![
             Cell::Words(row.criterion.clone()),
-            Cell::Words(format!("{} {}", row.scheme, row.choice).trim().to_owned()),
+            Cell::Words(row.label.clone()),
             Cell::Words(format!("{} {}", row.problem, row.precision)),
             Cell::whole(row.level),
-            Cell::Words(sweep),
+            Cell::Words(row.place()),
             Cell::Words(row.expected.words()),
             Cell::number(row.figure_in_words()),
             Cell::number(row.missed_by.map(factor_in_words)),
@@ -77,31 +71,18 @@ pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
 }
 
 /// The criteria in words.
-pub(crate) fn criteria(rows: &[StabilityRow]) -> Table {
-    let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
-    let words = |text: &str| Cell::Words(text.to_owned());
-    let rows = asked.map(|c| vec![words(c.name), words(c.sentence)]).collect();
-    Table::new("The criteria", "criterion,condition", rows)
+pub(crate) fn conditions(rows: &[StabilityRow]) -> Table {
+    let line =
+        |(_, c): (_, &Criterion)| vec![Cell::Words(c.name.to_owned()), Cell::Words(c.sentence())];
+    Table::new("The criteria", "criterion,condition", asked(rows).map(line).collect())
 }
-
-/// The criteria of errors, of forces and of definiteness over sweeps of a penalty factor.
-const OVER_FACTORS: [&str; 6] = [
-    "definite-for-every-factor",
-    "error-of-large-factors",
-    "multiplier-of-large-factors",
-    "equilibrium",
-    "inertia",
-    "error-of-interior-penalty",
-];
-/// The cases of these sweeps.
-const SWEEPS: [&str; 2] = ["penalty-factor", "coercivity"];
 
 /// For every scheme whose penalty factor is swept, the longest part of the sweep in which each factor
 /// keeps the limits, and what the factors next to it miss.
 pub(crate) fn safe_ranges(rows: &[StabilityRow]) -> Vec<String> {
     let swept = || {
-        let of_factor = |r: &&StabilityRow| r.parameter == "eta" || r.parameter == "sigma";
-        rows.iter().filter(|r| OVER_FACTORS.contains(&&r.criterion[..])).filter(of_factor)
+        let is_judged = |r: &StabilityRow| OVER_FACTORS.iter().any(|c| c.name == r.criterion);
+        rows.iter().filter(move |r| r.sweeps_factor() && is_judged(r))
     };
     let sentence = |(scheme, parameter): (&String, &String)| {
         let mine = || swept().filter(|r| (&r.scheme, &r.parameter) == (scheme, parameter));
@@ -150,52 +131,36 @@ pub(crate) fn safe_ranges(rows: &[StabilityRow]) -> Vec<String> {
 /// The penalties of a scheme that stay within all limits of a case, for schemes with several
 /// penalties; sweeps of factors have their [`safe_ranges`].
 pub(crate) fn robust(rows: &[StabilityRow]) -> Vec<String> {
-    let mut sentences = Vec::new();
-    let compared = rows.iter().filter(|r| !SWEEPS.contains(&&r.case[..]));
-    for key in distinct(compared.map(|r| (r.case.clone(), r.scheme.clone()))) {
-        let mine = || rows.iter().filter(|r| (&r.case, &r.scheme) == (&key.0, &key.1));
-        let choices = distinct(mine().map(|r| r.choice.clone()));
-        let judged = |choice: &str| {
-            let of = |v: Verdict| count(mine().filter(|r| r.choice == choice), v);
-            let kept = of(Verdict::Met) + of(Verdict::BetterThanExpected);
-            let failed = |r: &&StabilityRow| {
-                r.choice == choice && r.verdict == Verdict::Reported && r.measured.is_none()
-            };
-            let other = of(Verdict::Missed) + of(Verdict::FailsAsExpected);
-            (kept, kept + other + mine().filter(failed).count())
+    let sentence = |(case, scheme): (&String, &String)| {
+        let mine = || rows.iter().filter(|r| (&r.case, &r.scheme) == (case, scheme));
+        let judged = |label: &String| {
+            let of_label = mine().filter(|r| r.label == *label);
+            let verdicts = of_label.filter_map(|r| match r.verdict {
+                // a solve that failed keeps nothing, whatever its limits
+                Verdict::Reported => r.measured.is_none().then_some(false),
+                Verdict::NotApplicable => None,
+                verdict => Some(matches!(verdict, Verdict::Met | Verdict::BetterThanExpected)),
+            });
+            verdicts.collect::<Vec<bool>>()
         };
-        let counts: Vec<(String, usize, usize)> = choices
-            .into_iter()
-            .map(|c| {
-                let (kept, all) = judged(&c);
-                (c, kept, all)
-            })
-            .filter(|c| c.2 > 0)
-            .collect();
-        if counts.len() < 2 {
-            continue;
-        }
-        let list = |wanted: bool| {
-            let chosen = counts.iter().filter(|(_, kept, all)| (kept == all) == wanted);
-            let words = |(c, kept, all): &(String, usize, usize)| {
-                let name = if c.is_empty() { "default" } else { c };
-                if wanted {
-                    format!("\"{name}\"")
-                } else {
-                    format!("\"{name}\" ({kept} of {all} rows)")
-                }
-            };
-            chosen.map(words).collect::<Vec<_>>()
-        };
-        let (robust, others) = (list(true), list(false));
-        let text = match (robust.is_empty(), others.is_empty()) {
-            (false, true) => format!("every penalty shown is robust: {}", robust.join(", ")),
-            (false, false) => {
-                format!("robust: {}; not robust: {}", robust.join(", "), others.join(", "))
+        let (mut robust, mut others) = (Vec::new(), Vec::new());
+        for label in distinct(mine().map(|r| &r.label)) {
+            let verdicts = judged(label);
+            let (kept, all) = (verdicts.iter().filter(|kept| **kept).count(), verdicts.len());
+            match kept == all {
+                _ if all == 0 => {}
+                true => robust.push(format!("\"{label}\"")),
+                false => others.push(format!("\"{label}\" ({kept} of {all} rows)")),
             }
-            _ => format!("no penalty shown is robust: {}", others.join(", ")),
+        }
+        let text = match (robust.len(), others.len()) {
+            (0, 0) | (1, 0) | (0, 1) => return None,
+            (_, 0) => format!("every penalty shown is robust: {}", robust.join(", ")),
+            (0, _) => format!("no penalty shown is robust: {}", others.join(", ")),
+            _ => format!("robust: {}; not robust: {}", robust.join(", "), others.join(", ")),
         };
-        sentences.push(format!("{}, {}: {text}.", key.0, key.1));
-    }
-    sentences
+        Some(format!("{case}, {scheme}: {text}."))
+    };
+    let compared = rows.iter().filter(|r| !SWEEPS.contains(&&r.case[..]));
+    distinct(compared.map(|r| (&r.case, &r.scheme))).into_iter().filter_map(sentence).collect()
 }

@@ -71,7 +71,7 @@ impl<const D: usize> Seen<D> {
         self.worst.filter(|worst| worst.lower - worst.upper > slack)
     }
 
-    /// What both saw.
+    /// The worst crossing and the largest size of two parts of a mesh.
     fn merged(mut self, other: Self) -> Self {
         other.worst.into_iter().for_each(|crossing| self.compare(crossing));
         Self { size: self.size.max(other.size), ..self }
@@ -105,7 +105,7 @@ impl Points {
         Ok(())
     }
 
-    /// What is seen of lower and upper bounds on a mesh: obstacles at vertices, midpoints of edges and
+    /// The worst crossing of lower and upper bounds on a mesh: obstacles at vertices, midpoints of edges and
     /// these points of cells, gaps at vertices, midpoints of edges and these points of contact facets. At vertices and
     /// on edges the bounds of all cells and contact facets around count together.
     pub fn look<const D: usize>(

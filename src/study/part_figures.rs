@@ -1,4 +1,4 @@
-//! What a row says of a run over several parts of a mesh.
+//! The figures of a run over several parts of a mesh.
 
 use crate::distributed::Differences;
 
@@ -23,7 +23,6 @@ pub struct PartFigures {
     /// Peak memory of a process so far, the least and the most; none where the system does not tell.
     pub peak_memory_bytes: Option<[u64; 2]>,
     /// Rows that differ from those of the whole mesh, where that was asked for.
-    #[cfg_attr(feature = "report", serde(default))]
     pub differences: Option<Differences>,
 }
 

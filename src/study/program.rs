@@ -23,12 +23,11 @@ pub struct Program {
     /// Architecture and vector instructions for which the program was compiled.
     pub target_cpu: String,
     /// When the study began: the system's clock, in universal time; none where the system does not tell.
-    #[cfg_attr(feature = "report", serde(default))]
     pub date: Option<String>,
     /// The processor's name, on Linux.
-    #[cfg_attr(feature = "report", serde(default))]
     pub processor: Option<String>,
-    /// What else the rows depend on and do not say, by name: parameters of scenes, a mesh file.
+    /// The rest of the request, on which rows depend and which they do not state, by name: parameters of scenes, a mesh
+    /// file.
     pub request: BTreeMap<String, String>,
     /// The command that makes the report again, for its page; files of rows do not have it.
     #[cfg_attr(feature = "report", serde(skip))]

@@ -1,6 +1,5 @@
 //! Against what rows are measured: the exact solution, or a fine solution in place of it.
 
-use std::fmt;
 use std::sync::Arc;
 
 use crate::constraint::ConstraintSet;
@@ -21,15 +20,6 @@ pub(super) struct Reference<'a, const D: usize> {
     pub scheme: Arc<dyn Scheme<D> + 'a>,
     pub set: Option<Arc<dyn ConstraintSet>>,
     pub level: usize,
-}
-
-impl<const D: usize> fmt::Debug for Reference<'_, D> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Reference")
-            .field("scheme", &self.scheme.name())
-            .field("level", &self.level)
-            .finish_non_exhaustive()
-    }
 }
 
 impl<const D: usize> Reference<'_, D> {

@@ -24,8 +24,7 @@ pub struct Orders {
     pub energy: Option<f64>,
     /// In the maximum over nodes.
     pub max: Option<f64>,
-    /// Order of the error bound; none in reports of versions before it.
-    #[cfg_attr(feature = "report", serde(default))]
+    /// Of the error bound.
     pub bound: Option<f64>,
     /// Of the multiplier in L1.
     pub multiplier_l1: Option<f64>,
@@ -63,11 +62,9 @@ pub struct Seconds {
     pub solve: f64,
     /// The part of the solve that was the start: conforming P1 on coarser levels and, for other schemes, on this
     /// one. None on adaptive meshes.
-    #[cfg_attr(feature = "report", serde(default))]
     pub start: Option<f64>,
     /// The error bound. On adaptive meshes with marking and a part of the sum, on uniform ones beside it; none
     /// where there is no bound.
-    #[cfg_attr(feature = "report", serde(default))]
     pub bound: Option<f64>,
     /// The sum.
     pub total: f64,
@@ -81,7 +78,7 @@ impl Seconds {
     }
 }
 
-/// What tells the rows of a report apart.
+/// The key of a row, by which the rows of a report differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RowKey {
@@ -114,12 +111,10 @@ pub struct Row {
     pub label: String,
     /// Subdivisions of the shortest side, or number of refinements of a mesh file or of adaptive refinement.
     pub level: usize,
-    /// What levels count: `subdivisions`, `refinements`, or `steps` of adaptive refinement.
-    #[cfg_attr(feature = "report", serde(default))]
+    /// The unit of levels: `subdivisions`, `refinements`, or `steps` of adaptive refinement.
     pub level_kind: Option<String>,
     /// Share of the error bound that each adaptive refinement marks; null for uniform meshes. Times of
     /// such a row are those of all its steps so far.
-    #[cfg_attr(feature = "report", serde(default))]
     pub theta: Option<f64>,
     /// Penalty factors in force.
     pub parameters: PenaltyParameters,
@@ -128,7 +123,7 @@ pub struct Row {
     /// Linear solver inside it.
     pub linear: String,
     /// The linear solver asked for, in reports that set several side by side; other rows do not have the key.
-    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "report", serde(skip_serializing_if = "Option::is_none"))]
     pub linear_asked: Option<String>,
     /// Number of cells.
     pub cells: usize,
@@ -142,7 +137,7 @@ pub struct Row {
     pub mesh_size: f64,
     /// How the solve ended; its name in files.
     pub status: Outcome,
-    /// What the status says, in one sentence; none if the solve converged.
+    /// The status in one sentence; none if the solve converged.
     pub message: Option<String>,
     /// Against what the errors are: `exact`, or scheme and level of a reference; none without errors.
     pub against: Option<String>,
@@ -151,8 +146,7 @@ pub struct Row {
     /// Distances of multiplier and contact set, keys of the row itself.
     #[cfg_attr(feature = "report", serde(flatten))]
     pub contact: ContactErrors,
-    /// Rounding errors in the figures of the row: figures that are no larger have no orders. Old reports have none.
-    #[cfg_attr(feature = "report", serde(default))]
+    /// Rounding errors in the figures of the row: figures that are no larger have no orders.
     pub rounding: Option<Rounding>,
     /// Observed order against the previous level of the same scene and label; none where an error is rounding.
     pub order: Orders,
@@ -173,13 +167,11 @@ pub struct Row {
     pub contact_measure: Option<f64>,
     /// Total contact force, positive where a lower bound pushes upward; null without an inequality.
     pub resultant: Option<f64>,
-    /// The same for each obstacle (`lower`, `upper`) and each contact group by its name; old reports have none.
-    #[cfg_attr(feature = "report", serde(default))]
+    /// The same for each obstacle (`lower`, `upper`) and each contact group by its name.
     pub resultants: Option<BTreeMap<String, f64>>,
     /// How far the solution lies beyond an obstacle or a gap, the largest value over cells and contact facets, negative
     /// where it reaches none: [`Discretisation::penetration`](crate::assemble::Discretisation::penetration). Null
-    /// without an inequality; old reports have none.
-    #[cfg_attr(feature = "report", serde(default))]
+    /// without an inequality.
     pub penetration: Option<f64>,
     /// Iteration counts.
     pub iterations: Iterations,
@@ -188,14 +180,14 @@ pub struct Row {
     /// Wall times; of several runs those of the fastest.
     pub seconds: Seconds,
     /// The total seconds of all runs, ascending, where the case ran in several rounds; other rows do not have the key.
-    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "report", serde(skip_serializing_if = "Option::is_none"))]
     pub runs: Option<Vec<f64>>,
     /// Largest resident set of the process so far, if the system reports it.
     pub peak_memory_bytes: Option<u64>,
     /// Warnings by type, as text: a penalty below its proven bound, say.
     pub warnings: Vec<String>,
     /// Figures of a run over several processes; rows of a run in one do not have the key.
-    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "report", serde(skip_serializing_if = "Option::is_none"))]
     pub ranks: Option<PartFigures>,
 }
 
@@ -309,7 +301,7 @@ impl Row {
         Ok(self)
     }
 
-    /// What tells the row apart from the others of its report.
+    /// The key by which the row differs from the others of its report.
     pub fn key(&self) -> RowKey {
         let [scene, label, solver] = [&self.scene, &self.label, &self.solver].map(String::clone);
         RowKey { scene, label, solver, level: self.level }

@@ -3,7 +3,7 @@
 use std::borrow::Borrow;
 
 use super::row::Row;
-#[cfg(feature = "report")]
+#[cfg(feature = "plot")]
 use super::row::distinct;
 
 /// The meshes of a series.
@@ -45,7 +45,7 @@ impl serde::Serialize for Meshes {
     }
 }
 
-/// What the rows of a series have in common: a scheme with a solver on a scene and one kind of meshes.
+/// A scheme with a solver on a scene and one kind of meshes: the rows of a series have it in common.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -112,9 +112,9 @@ impl Variant {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Series<'r> {
-    /// What the rows have in common.
+    /// Scene, scheme, solver and kind of meshes of the rows.
     pub variant: Variant,
-    /// What tells the series apart from the others of its report, but for the scene: its entry in a legend.
+    /// The entry in a legend: the label, with all that varies between the series of the report but the scene.
     pub name: String,
     /// The rows, from coarse to fine.
     pub rows: Vec<&'r Row>,
@@ -140,7 +140,7 @@ pub(crate) fn series_of<R: Borrow<Row>>(rows: &[R]) -> Vec<Series<'_>> {
 }
 
 /// The names of series, each once: a scheme on several scenes has one.
-#[cfg(feature = "report")]
+#[cfg(feature = "plot")]
 pub(crate) fn names(series: &[Series<'_>]) -> Vec<String> {
     distinct(series.iter().map(|series| series.name.clone()))
 }

@@ -32,9 +32,9 @@ pub(crate) enum Cell {
 /// right.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// What names the table, also in labels.
+    /// The name of the table, also in labels.
     pub(crate) title: String,
-    /// What follows the title and may change from run to run: levels, errors, settings.
+    /// The text after the title, which may change from run to run: levels, errors, settings.
     pub(crate) detail: String,
     pub(crate) columns: Vec<String>,
     pub(crate) rows: Vec<Vec<Cell>>,

@@ -18,7 +18,7 @@ use crate::study::Report;
 use crate::study::row::distinct;
 use crate::table::Table;
 
-/// What the rows of a report took to reach given errors.
+/// The work that the rows of a report took to reach given errors.
 #[derive(Clone, Copy, Debug)]
 pub struct WorkPrecision<'r> {
     report: &'r Report,

@@ -11,9 +11,9 @@ use crate::study::{Program, Report, Row, Study, Variant, fill_orders};
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Studies under one clock. In every round each case, a scheme with a solver on a level or on all adaptive meshes, runs
-/// once and reuses nothing of other runs: its time includes its mesh and its start from coarser levels. Rounds alternate
-/// in direction, so that drift of the machine affects all cases equally. Before the first one the coarsest case of
-/// every scheme runs once unmeasured.
+/// once and reuses nothing of other runs: its time includes its mesh and its start from coarser levels. Rounds
+/// alternate in direction, so that drift of the machine affects all cases equally. Before the first one the coarsest
+/// case of every scheme runs once unmeasured.
 ///
 /// ```
 /// use unilateral::prelude::*;
@@ -54,14 +54,15 @@ impl Rounds {
         Self { count: count.max(1), limit: f64::INFINITY }
     }
     /// A run that took longer than this many seconds is not repeated, and no finer level of its scheme is tried: the
-    /// rows of these have the status `time-limit`.
+    /// rows of these have the status `time-limit`. The solves against a reference have no limit.
     #[must_use]
     pub fn limit(mut self, seconds: f64) -> Self {
         self.limit = seconds;
         self
     }
 
-    /// Checks everything without a run. Returns the number of runs, fewer if some exceed the limit of time.
+    /// Checks everything without a run. Returns the number of runs that observers see, fewer if some exceed the limit
+    /// of time: each case in every round, and before them the reference and each case against it.
     ///
     /// # Errors
     /// Those of [`Study::check`] and [`Study::check_memory`]; [`Error::EqualNames`] for studies with the same schemes,
@@ -70,7 +71,8 @@ impl Rounds {
         compiled!(
             const D: fn(&Rounds, &[Study<'_, D>]) -> Result<usize, Error> = |rounds, studies| {
                 studies.iter().try_for_each(Study::check_memory)?;
-                Ok(cases(studies)?.len() * rounds.count)
+                let against: usize = studies.iter().map(Study::runs_against_reference).sum();
+                Ok(cases(studies)?.len() * rounds.count + against)
             }
         )(self, studies)
     }

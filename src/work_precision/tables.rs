@@ -12,7 +12,7 @@ use crate::table::{Cell, Table, fixed};
 /// Columns of errors that fit into a line.
 const MOST_ERRORS: usize = 5;
 
-/// What stands in the place of a time.
+/// The remark that explains the marks in place of a time.
 const MARKS: &str = "> t: not reached by the finest level, which takes t; < t: undercut by the coarsest \
     level, which takes t; not run: the scheme was not run on this scene or on a finer level that was \
     asked for; failed: the level that would decide did not converge";
@@ -51,11 +51,10 @@ fn variants(rows: &[Row]) -> Vec<Variant> {
     series_of(rows).into_iter().map(|series| series.variant).collect()
 }
 
-/// What the column says that has the median over the least time.
-const WHAT_SPREAD_IS: &str =
-    "spread: the median time of repeated runs over the least; - for what ran once";
+/// The remark that explains the column of spreads.
+const SPREAD: &str = "spread: the median time of repeated runs over the least; - for what ran once";
 
-/// What is reached, in words, with its value if there is one.
+/// The error or bound that is reached, in words, with its value if there is one.
 fn reached(norm: ErrorNorm, value: Option<f64>) -> String {
     let value = value.map_or_else(String::new, |value| format!(" of {value:e}"));
     match norm {
@@ -79,7 +78,7 @@ fn costs(scene: &str, reach: &[&WorkAtError], variants: &[Variant]) -> Option<Ta
     };
     Some(Table {
         detail: format!(" at an {}", reached(norm, Some(error))),
-        remarks: vec![WHAT_SPREAD_IS.to_owned()],
+        remarks: vec![SPREAD.to_owned()],
         ..Table::new(
             format!("{scene}: costs"),
             "scheme,seconds,spread,unknowns,entries",
@@ -120,7 +119,7 @@ fn phases(scene: &str, series: Vec<&Series<'_>>) -> Table {
     let rows = series.iter().flat_map(|of| of.rows.iter().map(move |&row| (&of.name, row)));
     let rows = rows.filter(|(_, row)| row.runs.is_some()).map(line).collect();
     Table {
-        remarks: vec![WHAT_SPREAD_IS.to_owned()],
+        remarks: vec![SPREAD.to_owned()],
         ..Table::new(
             format!("{scene}: phases of the fastest run, in seconds, and memory"),
             "scheme,n,mesh,assembly,start,solve,bound,total,spread,runs,MB",

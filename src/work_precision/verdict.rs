@@ -4,7 +4,7 @@ use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
 use crate::study::Variant;
 
-/// What variants take in a scene at the smallest error that the most of them reach: in L2, and by the bound where
+/// The work of all variants in a scene at the smallest error that the most of them reach: in L2, and by the bound where
 /// meshes are adaptive or no error is known. Empty without errors and bounds.
 pub(crate) fn at_common_error<'a>(reach: &'a [WorkAtError], scene: &str) -> Vec<&'a WorkAtError> {
     let mut of_scene: Vec<&WorkAtError> =
@@ -23,7 +23,7 @@ pub(crate) fn at_common_error<'a>(reach: &'a [WorkAtError], scene: &str) -> Vec<
     of_scene
 }
 
-/// What the figures say of a scene: at the error of [`at_common_error`], how many times the time of each
+/// The sentence about a scene: at the error of [`at_common_error`], how many times the time of each
 /// other variant the subject takes. The subject is the first variant of that label that gets there,
 /// otherwise the fastest. Nothing without errors and bounds.
 pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Option<String> {

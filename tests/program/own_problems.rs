@@ -311,6 +311,17 @@ fn files_of_an_earlier_request_go() {
     assert!(out.join("mine-p1.svg").exists());
     let page = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(!page.contains("radial-2d-p1.svg"));
+
+    let mut work = command("work-precision");
+    let options = "--scene radial-2d --scheme p1,sipg --levels 4 --rounds 1";
+    let work = work.args(options.split(' ')).args(["--out", &scratch.path("out")]);
+    assert_eq!(work.output().unwrap().status.code(), Some(0));
+    assert!(out.join("radial-2d-time.svg").exists() && out.join("reach.csv").exists());
+    assert!(!out.join("convergence.svg").exists());
+    scratch.report("--scene signorini-2d --scheme p1 --levels 4");
+    for name in ["radial-2d-time.svg", "radial-2d-unknowns.svg", "reach.csv"] {
+        assert!(!out.join(name).exists(), "{name}");
+    }
 }
 
 /// Problems of the test data, with their meshes.

@@ -77,7 +77,7 @@ fn check_size<const D: usize>(
     element: &dyn Element<D>,
     form: &dyn FacetForm<D>,
 ) -> Result<(), Error> {
-    let coupled = match form.couples() && element.layout().is_broken() {
+    let coupled = match form.couples() {
         true if form.is_lifted() => 1 + (D + 1) * (D + 1),
         true => D + 2,
         false => 1,

@@ -1,4 +1,4 @@
-//! What the commands that compare schemes ask for alike.
+//! The options that the commands which compare schemes share.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -82,7 +82,7 @@ impl Asked {
         self.problem.is_some() || !all
     }
 
-    /// What a message is about: the file of a problem, or a scene, perhaps on the mesh of a file.
+    /// The subject of a message: the file of a problem, or a scene, perhaps on the mesh of a file.
     pub fn place(&self, name: &str) -> String {
         match (&self.problem, &self.mesh.path) {
             (Some(path), _) => path.display().to_string(),

@@ -147,7 +147,7 @@ fn found_beside(folder: &Path, file: &str) -> PathBuf {
     places.into_iter().find(|place| place.exists()).unwrap_or(file)
 }
 
-/// What is judged: the scheme, its level and the coarsest one, the reference, and the precision of the values.
+/// The scheme, its level and the coarsest one, the reference, and the precision of the values that are judged.
 type Judged<'a> = (&'a NamedScheme, [usize; 2], Option<&'a (NamedScheme, usize)>, Precision);
 
 fn row<const D: usize>(

@@ -116,7 +116,7 @@ fn words(mut words: Vec<OsString>) -> Vec<OsString> {
     words
 }
 
-/// What the parser of options finds wrong, without its hints on usage.
+/// The error of the parser of options in one line, without its hints on usage.
 fn one_line(wrong: &clap::Error, words: &[OsString]) -> String {
     let words = || words.iter().map(|word| word.to_string_lossy());
     let shortened = |text: String, word: &str| {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use unilateral::in_its_dimension;
 use unilateral::input::{excerpt, excerpts};
-use unilateral::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile, GmshWarning};
+use unilateral::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile};
 use unilateral::mesh::{BoundaryCondition, Mesh, MeshError};
 use unilateral::scenes::AnyScene;
 
@@ -42,31 +42,26 @@ impl MeshFile {
     }
 
     /// The mesh of the contents of the file; warnings go to `warn`.
-    fn mesh<const D: usize>(&self, file: &GmshFile, warn: &dyn Fn(String)) -> Request<Mesh<D>> {
+    pub fn mesh<const D: usize>(&self, file: &GmshFile, warn: &dyn Fn(String)) -> Request<Mesh<D>> {
         let path = self.path.as_deref().expect("a file that has been read has a path");
         let read = file.mesh::<D>().map_err(|e| cannot_mesh(path, &e))?;
-        warn_of(&read.warnings, path, warn);
+        for warning in &read.warnings {
+            warn(format!("warning: {}: {warning}", path.display()));
+        }
         with_conditions(read.mesh, path, &self.boundary)
     }
 }
 
 /// The message for a file that is no mesh, with its path once.
-pub fn cannot_mesh(path: &Path, error: &GmshError) -> String {
+fn cannot_mesh(path: &Path, error: &GmshError) -> String {
     match error.kind {
         GmshErrorKind::Unreadable => error.to_string(),
         _ => format!("{}: {error}", path.display()),
     }
 }
 
-/// Sends the warnings of a mesh file to `warn`.
-pub fn warn_of(warnings: &[GmshWarning], path: &Path, warn: &dyn Fn(String)) {
-    for warning in warnings {
-        warn(format!("warning: {}: {warning}", path.display()));
-    }
-}
-
 /// A mesh of a file whose boundary groups have these conditions besides those that they name.
-pub fn with_conditions<const D: usize>(
+fn with_conditions<const D: usize>(
     mesh: Mesh<D>,
     path: &Path,
     boundary: &[(String, BoundaryCondition)],

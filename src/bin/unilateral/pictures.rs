@@ -133,6 +133,6 @@ fn draw_one<const D: usize>(
         title += &format!(", NOT CONVERGED: {}", solved.outcome());
     }
     let problem = solved.discretisation().problem();
-    let picture = Picture::of(&title, problem, solved.mesh(), &fields, None)?;
+    let picture = Picture::of(&title, problem, solved.mesh(), &fields)?;
     Ok(vec![picture.write(&options.out, stem)?])
 }

@@ -41,40 +41,6 @@ use crate::mesh::edge_vertices;
 use crate::problem::{Datum, Field};
 use crate::real::Point;
 
-/// The contribution of one cell to the bound.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct CellTerms {
-    /// The square of the mismatch.
-    pub mismatch: f64,
-    /// The square of the mismatch with the oscillation added.
-    pub with_oscillation: f64,
-    /// The square of the distance of the discrete function from the midpoint of the two pairs, with half of the
-    /// oscillation added.
-    pub from_midpoint: f64,
-    /// Twice the complementarity of obstacles.
-    pub obstacle: f64,
-    /// Twice the complementarity of contact.
-    pub contact: f64,
-    /// The square of the norm of what the solver left: the mean of what the flux leaves of the load where no obstacle
-    /// presses in its direction.
-    pub unbalanced: f64,
-    /// The square of the distance of the two functions.
-    pub distance: f64,
-    /// The least value of the coefficient.
-    pub least_coefficient: f64,
-    /// The least value of the reaction at points, vertices and midpoints of edges.
-    pub least_reaction: f64,
-    /// A bound from below for a reaction of degree two.
-    pub reaction_from_below: f64,
-}
-
-impl CellTerms {
-    /// The contribution of the cell to the square of the bound, without the term of the solver.
-    pub fn square(&self) -> f64 {
-        self.with_oscillation + self.obstacle + self.contact
-    }
-}
-
 /// The data that the integrals of a cell read.
 struct CellInputs<'a, const D: usize> {
     flux: CellFlux<D>,
@@ -90,12 +56,12 @@ struct CellInputs<'a, const D: usize> {
 }
 
 impl<const D: usize> CellInputs<'_, D> {
-    /// The gradient of the discrete function at a point.
-    fn gradient_of(&self, basis: &BasisAt) -> Point<D> {
+    /// The gradient of the discrete function at a point, by the `n` basis functions of the cell.
+    fn gradient_of(&self, n: usize, basis: &BasisAt) -> Point<D> {
         let mut gradient = Point::zeros();
         for k in 0..=D {
-            let derivatives = basis.derivatives.iter();
-            let slope: f64 = self.values.iter().zip(derivatives).map(|(c, d)| c * d[k]).sum();
+            let terms = self.values[..n].iter().zip(&basis.derivatives);
+            let slope: f64 = terms.map(|(c, d)| c * d[k]).sum();
             gradient += self.admissible.gradients[k] * slope;
         }
         gradient
@@ -273,7 +239,7 @@ impl<const D: usize> Space<'_, D> {
             sums.mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
             let discrete = basis.value(&data.values);
             sums.from_values += weight * reaction * (discrete - value).powi(2);
-            let slope = data.slope.unwrap_or_else(|| data.gradient_of(basis));
+            let slope = data.slope.unwrap_or_else(|| data.gradient_of(self.per_cell(), basis));
             sums.distance += weight * alpha * (gradient - slope).norm_squared();
             let from_midpoint = (gradient * alpha + q) * 0.5 - slope * alpha;
             sums.from_midpoint += weight * from_midpoint.norm_squared() / alpha;
@@ -303,7 +269,7 @@ impl<const D: usize> Space<'_, D> {
         cell: usize,
         (table, cut): (&CellTable, Option<&CutRule>),
         boundary: &BoundaryTerms,
-    ) -> CellTerms {
+    ) -> Totals {
         let data = self.cell_inputs(pair, u, cell, table);
         let sums = self
             .integrals_of_constants(cell, &data, table)
@@ -335,7 +301,7 @@ impl<const D: usize> Space<'_, D> {
             true => [of_trace, by_value * of_load],
             false => [by_gradient * of_load + of_trace, 0.0],
         };
-        CellTerms {
+        Totals {
             mismatch: mismatch + from_values,
             with_oscillation: with_share([mismatch, from_values], 1.0, oscillation),
             from_midpoint: with_share([from_midpoint, 0.25 * from_values], 0.5, oscillation),
@@ -349,8 +315,8 @@ impl<const D: usize> Space<'_, D> {
         }
     }
 
-    /// The least value of a datum at vertices and midpoints of edges and, for a datum of degree two, its least Bernstein
-    /// coefficient, which is a bound from below.
+    /// The least value of a datum at vertices and midpoints of edges and, for a datum of degree two, its least
+    /// Bernstein coefficient, which is a bound from below.
     fn least_values(&self, cell: usize, datum: &Datum<D>) -> [f64; 2] {
         if let Some(constant) = datum.constant() {
             return [constant; 2];
@@ -393,7 +359,7 @@ impl<const D: usize> Space<'_, D> {
             volume,
         };
         // the derivatives of linear functions are those at any point
-        data.slope = (pair.degree == 1).then(|| data.gradient_of(&table.basis[0]));
+        data.slope = (pair.degree == 1).then(|| data.gradient_of(self.per_cell(), &table.basis[0]));
         data
     }
 }

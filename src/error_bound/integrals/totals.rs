@@ -1,10 +1,9 @@
-//! Sums and least values of the terms of cells.
+//! What one cell, or several cells together, add to the bound.
 
-use super::CellTerms;
 use crate::algebra::Distribution;
 use crate::error_bound::NoBound;
 
-/// Sums over cells, and least values.
+/// The terms of a cell, or of some cells: sums, and least values.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::error_bound) struct Totals {
     /// The square of the mismatch.
@@ -19,7 +18,8 @@ pub(in crate::error_bound) struct Totals {
     pub obstacle: f64,
     /// Twice the complementarity of contact.
     pub contact: f64,
-    /// The square of the norm of what the solver left.
+    /// The square of the norm of what the solver left: the mean of what the flux leaves of the load where no obstacle
+    /// presses in its direction.
     pub unbalanced: f64,
     /// The least value of the coefficient.
     pub least_coefficient: f64,
@@ -30,33 +30,37 @@ pub(in crate::error_bound) struct Totals {
 }
 
 impl Totals {
-    /// Those of some cells.
-    pub fn of(terms: &[Vec<CellTerms>]) -> Self {
-        let mut totals = Self {
-            mismatch: 0.0,
-            with_oscillation: 0.0,
-            from_midpoint: 0.0,
-            distance: 0.0,
-            obstacle: 0.0,
-            contact: 0.0,
-            unbalanced: 0.0,
-            least_coefficient: f64::INFINITY,
-            least_reaction: f64::INFINITY,
-            reaction_from_below: f64::INFINITY,
-        };
-        for t in terms.iter().flatten() {
-            totals.mismatch += t.mismatch;
-            totals.with_oscillation += t.with_oscillation;
-            totals.from_midpoint += t.from_midpoint;
-            totals.distance += t.distance;
-            totals.obstacle += t.obstacle;
-            totals.contact += t.contact;
-            totals.unbalanced += t.unbalanced;
-            totals.least_coefficient = t.least_coefficient.min(totals.least_coefficient);
-            totals.least_reaction = t.least_reaction.min(totals.least_reaction);
-            totals.reaction_from_below = t.reaction_from_below.min(totals.reaction_from_below);
-        }
-        totals
+    /// Those of no cells.
+    pub const NONE: Self = Self {
+        mismatch: 0.0,
+        with_oscillation: 0.0,
+        from_midpoint: 0.0,
+        distance: 0.0,
+        obstacle: 0.0,
+        contact: 0.0,
+        unbalanced: 0.0,
+        least_coefficient: f64::INFINITY,
+        least_reaction: f64::INFINITY,
+        reaction_from_below: f64::INFINITY,
+    };
+
+    /// The contribution to the square of the bound, without the term of the solver.
+    pub fn square(&self) -> f64 {
+        self.with_oscillation + self.obstacle + self.contact
+    }
+
+    /// Adds those of other cells.
+    pub fn add(&mut self, others: &Self) {
+        self.mismatch += others.mismatch;
+        self.with_oscillation += others.with_oscillation;
+        self.from_midpoint += others.from_midpoint;
+        self.distance += others.distance;
+        self.obstacle += others.obstacle;
+        self.contact += others.contact;
+        self.unbalanced += others.unbalanced;
+        self.least_coefficient = others.least_coefficient.min(self.least_coefficient);
+        self.least_reaction = others.least_reaction.min(self.least_reaction);
+        self.reaction_from_below = others.reaction_from_below.min(self.reaction_from_below);
     }
 
     /// Those of all parts of a mesh; all parts call it.

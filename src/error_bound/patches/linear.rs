@@ -5,8 +5,10 @@ use std::ops::Range;
 
 use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
+use crate::arrays::array_of;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
+use crate::assemble::space::metric::shape;
 use crate::error_bound::NoBound;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::memory::in_large_pages;
@@ -49,17 +51,16 @@ impl<const D: usize> Space<'_, D> {
         let mut data = in_large_pages(vec![0.0; n_cells * stride]);
         let fill = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, data) in cells.zip(out.chunks_exact_mut(stride)) {
-                let metric = self.metric(cell);
+                let (volume, products) = shape(self.mesh, cell, 1.0);
                 let values = self.local_values(cell, u);
                 let alpha = self.alpha(cell);
-                let residual = self.cell_residual(cell, &metric, u, &load);
-                data[0] = metric.volume;
+                let loads = self.reaction_less_load(cell, volume, &values, &load);
+                data[0] = volume;
                 for i in 0..=D {
-                    let product = |j: usize| metric.products[i][j] * (values[j] - values[0]);
-                    let stiffness = alpha * (1..=D).map(product).sum::<f64>();
+                    let product = |j: usize| products[i][j] * (values[j] - values[0]);
                     // |F| n = -D |K| grad lambda
-                    data[1 + i] = -(D as f64) * stiffness;
-                    data[D + 2 + i] = residual[i] - stiffness;
+                    data[1 + i] = -(D as f64) * alpha * (1..=D).map(product).sum::<f64>();
+                    data[D + 2 + i] = loads[i];
                 }
             }
             Ok::<(), Infallible>(())
@@ -140,23 +141,81 @@ impl<const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, D> {
         [0.0; 3]
     }
 
+    /// Fluxes with the sum zero are constants along the facet opposite the vertex: their products are
+    /// `D^2 alpha |K| grad_a . grad_b`, the gradients within the facet of its barycentric coordinates. Orthogonal to
+    /// them are `x` less the barycentre and the constant across the facet.
     fn problem(&self, corner: Corner) -> CellProblem<3> {
-        let (cell, d) = (corner.cell(), D as f64);
+        let (cell, own, d) = (corner.cell(), corner.own(), D as f64);
+        let (_, products) = shape(self.space.mesh, cell, 1.0);
+        let vertex = self.space.mesh.cell(cell)[own] as usize;
+        let mean = self.load(corner, self.pressures[vertex]) / (d + 1.0);
+        let across = products[own].map(|product| -product / products[own][own]);
+        let scale = d * d * self.space.alpha(cell) * self.volume(cell);
         let points = self.space.mesh.corners(cell);
-        let middle = points[..=D].iter().sum::<Point<D>>() / (d + 1.0);
-        let from_middle = points.map(|p| p - middle);
-        let squares: f64 = from_middle[..=D].iter().map(|p| p.norm_squared()).sum();
-        let variance = squares / ((d + 1.0) * (d + 2.0));
-        let alpha = self.space.alpha(cell);
-        let scale = 1.0 / (d * d * self.volume(cell) * alpha);
-        let mut products = [[0.0; 3]; 3];
-        for (row, a) in products.iter_mut().zip(corner.facets::<D>()) {
-            for (product, b) in row.iter_mut().zip(corner.facets::<D>()) {
-                *product = scale * (from_middle[a].dot(&from_middle[b]) + variance);
+        let mut facet = [Point::zeros(); 3];
+        facet.iter_mut().zip(corner.facets::<D>()).for_each(|(corner, a)| *corner = points[a]);
+        let within = products_within(&facet);
+        let mut problem = CellProblem { slopes: [[0.0; 3]; 3], numbers: [0.0; 3] };
+        for (k, a) in corner.facets::<D>().enumerate() {
+            problem.numbers[k] = mean * (1.0 + across[a]);
+            problem.slopes[k] = within[k].map(|product| scale * product);
+        }
+        problem
+    }
+}
+
+/// The products of the gradients of barycentric coordinates of a facet with these corners, within the facet: from its
+/// edges, so that nothing cancels in stretched cells. A point has no gradient.
+fn products_within<const D: usize>(corners: &[Point<D>; 3]) -> [[f64; 3]; 3] {
+    // opposite each corner, in the sense of rotation
+    let edges: [Point<D>; 3] = match D {
+        2 => [corners[1] - corners[0], corners[0] - corners[1], Point::zeros()],
+        3 => array_of(|k| corners[(k + 2) % 3] - corners[(k + 1) % 3]),
+        _ => return [[0.0; 3]; 3],
+    };
+    let minor = |i: usize, j: usize| edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i];
+    let scale = match D {
+        2 => edges[0].norm_squared().powi(2),
+        _ => minor(0, 1).powi(2) + minor(1, 2).powi(2) + minor(2, 0).powi(2),
+    };
+    array_of(|a| array_of(|b| edges[a].dot(&edges[b]) / scale))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The products within a facet and those of the cell, less the part across the facet; rows have the sum zero also
+    /// for a facet whose sides differ by 1e7.
+    fn facet_of_a_cell<const D: usize>(corners: [Point<D>; 3], expected: [[f64; 3]; 3]) {
+        let products = products_within(&corners);
+        let largest = products.as_flattened().iter().fold(0.0, |m: f64, p| m.max(p.abs()));
+        for (row, expected) in products.iter().zip(&expected) {
+            assert!(row.iter().sum::<f64>().abs() < 1e-14 * largest, "{products:?}");
+            for (product, expected) in row.iter().zip(expected) {
+                assert!((product - expected).abs() < 1e-12 * largest, "{products:?}");
             }
         }
-        let vertex = self.space.mesh.cell(cell)[corner.own()] as usize;
-        let sum = self.load(corner, self.pressures[vertex]);
-        CellProblem { products, aims: [0.0; 3], sum }
+    }
+
+    #[test]
+    fn products_within_facets() {
+        let h = 1e-7;
+        let short = 1.0 / (0.09 + 0.16) / (h * h);
+        let plane = [[short, -short, 0.0], [-short, short, 0.0], [0.0; 3]];
+        facet_of_a_cell::<2>([[0.0, 0.0], [0.3 * h, 0.4 * h], [0.0, 0.0]].map(Point::from), plane);
+        // right-angled at the first corner, with legs of 2 and h
+        let legs = [0.25, 1.0 / (h * h)];
+        let space = [
+            [legs[0] + legs[1], -legs[0], -legs[1]],
+            [-legs[0], legs[0], 0.0],
+            [-legs[1], 0.0, legs[1]],
+        ];
+        let corners = [[1.0, 0.0, 3.0], [1.0, 2.0, 3.0], [1.0 + h, 0.0, 3.0]];
+        let exact_leg = corners[2][0] - 1.0;
+        let scale = (h / exact_leg).powi(2);
+        let space = space.map(|row| row.map(|p| if p.abs() > 1.0 { p * scale } else { p }));
+        facet_of_a_cell::<3>(corners.map(Point::from), space);
+        assert_eq!(products_within::<1>(&[Point::zeros(); 3]), [[0.0; 3]; 3]);
     }
 }

@@ -8,9 +8,9 @@
 //! c = S (b - m) + s t,   S = G^-1 - (G^-1 1) (G^-1 1)^T / (1 . G^-1 1)
 //! ```
 //!
-//! Where numbers are known, `G` is that of the others. What the two sides of each facet have too much gives a symmetric
-//! positive semidefinite system for the multipliers. Those of facets on the Dirichlet boundary are zero; without such
-//! facets a constant is free.
+//! Where a number is known, its own multiplier holds it. What the two sides of each facet have too much gives a
+//! symmetric positive semidefinite system for the multipliers. Those of facets on the Dirichlet boundary are zero;
+//! without such facets a constant is free.
 
 use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
@@ -31,13 +31,10 @@ enum Number {
     Given(f64),
 }
 
-/// A cell of a patch: its numbers as an affine function of the multipliers.
+/// A cell of a patch.
 struct CellOfPatch<const N: usize> {
     known: [Number; N],
-    /// `S`, minus the derivative of the numbers.
-    slopes: [[f64; N]; N],
-    /// The numbers for multipliers that vanish.
-    numbers: [f64; N],
+    problem: CellProblem<N>,
 }
 
 /// The arrays of one patch.
@@ -70,8 +67,9 @@ impl<const N: usize> Patch<N> {
             for (known, facet) in facets {
                 self.know(of, neighbours, (k, facet), corners, known);
             }
-            let cell = CellOfPatch::new(of.problem(*corner), known, D * C::PER_FACET);
-            self.cells.push(cell);
+            let mut problem = of.problem(*corner);
+            problem.hold(&known, D * C::PER_FACET);
+            self.cells.push(CellOfPatch { known, problem });
         }
         self.sums.clear();
         self.sums.extend(self.multipliers.iter().map(|excess| -excess));
@@ -141,7 +139,7 @@ impl<const N: usize> Patch<N> {
         let n = self.multipliers.len();
         self.matrix.clear();
         self.matrix.resize(n * n, 0.0);
-        for CellOfPatch { known, slopes, numbers } in &self.cells {
+        for CellOfPatch { known, problem: CellProblem { slopes, numbers } } in &self.cells {
             for (a, number) in known.iter().enumerate() {
                 let &Number::Shared(i) = number else { continue };
                 self.multipliers[i] += numbers[a];
@@ -157,51 +155,62 @@ impl<const N: usize> Patch<N> {
     }
 }
 
-impl<const N: usize> CellOfPatch<N> {
-    /// Eliminates the `n` numbers of a cell.
-    fn new(problem: CellProblem<N>, known: [Number; N], n: usize) -> Self {
-        let CellProblem { products, aims: mut force, sum: mut rest } = problem;
+impl<const N: usize> CellProblem<N> {
+    /// The problem with these products `G` of `n` fluxes with each other and `b` with what the flux aims at, and this
+    /// sum `s`.
+    pub fn new(products: [[f64; N]; N], aims: &[f64; N], sum: f64, n: usize) -> Self {
         let mut slopes = products;
-        for (a, number) in known.iter().enumerate().take(n) {
-            if let Number::Given(number) = number {
-                rest -= number;
-                for b in 0..n {
-                    force[b] -= products[b][a] * number;
-                    (slopes[a][b], slopes[b][a]) = (0.0, 0.0);
-                }
-                slopes[a][a] = 1.0;
-            }
-        }
         invert(&mut slopes, n);
-        // the numbers that a unit of the sum adds
-        let mut unit = [0.0; N];
-        for a in 0..n {
-            match known[a] {
-                Number::Given(_) => slopes[a][a] = 0.0,
-                _ => unit[a] = slopes[a][..n].iter().sum(),
-            }
-        }
-        let total: f64 = unit.iter().sum();
+        // the numbers that a unit of the sum adds, but for a factor
+        let unit = slopes.map(|row| row[..n].iter().sum::<f64>());
+        let total: f64 = unit[..n].iter().sum();
         let mut numbers = [0.0; N];
         for a in 0..n {
-            if total > 0.0 {
-                (0..n).for_each(|b| slopes[a][b] -= unit[a] * unit[b] / total);
-                numbers[a] = unit[a] / total * rest;
-            }
-            match known[a] {
-                Number::Given(number) => numbers[a] = number,
-                _ => numbers[a] += (0..n).map(|b| slopes[a][b] * force[b]).sum::<f64>(),
-            }
+            (0..n).for_each(|b| slopes[a][b] -= unit[a] * unit[b] / total);
+            let of_aims: f64 = slopes[a][..n].iter().zip(aims).map(|(s, b)| s * b).sum();
+            numbers[a] = unit[a] / total * sum + of_aims;
         }
-        Self { known, slopes, numbers }
+        Self { slopes, numbers }
     }
 
+    /// Holds the numbers that are given; the sum of the others is what it was as long as one of them is free.
+    fn hold(&mut self, known: &[Number; N], n: usize) {
+        let before = self.slopes;
+        for (a, known) in known.iter().enumerate().take(n) {
+            let &Number::Given(number) = known else { continue };
+            let row = self.slopes[a];
+            if row[a] > ZERO_PIVOT * before[a][a] {
+                let multiplier = (number - self.numbers[a]) / row[a];
+                for b in 0..n {
+                    self.numbers[b] += row[b] * multiplier;
+                    (0..n).for_each(|c| self.slopes[b][c] -= row[b] * row[c] / row[a]);
+                }
+            }
+            self.numbers[a] = number;
+            self.fix(a);
+        }
+        // what rounding leaves of numbers that the others determine is no slope
+        for a in (0..n).filter(|&a| before[a][a] > 0.0) {
+            if self.slopes[a][a] <= ZERO_PIVOT * before[a][a] {
+                self.fix(a);
+            }
+        }
+    }
+
+    /// Takes a number from the multipliers.
+    fn fix(&mut self, a: usize) {
+        self.slopes[a] = [0.0; N];
+        self.slopes.iter_mut().for_each(|row| row[a] = 0.0);
+    }
+}
+
+impl<const N: usize> CellOfPatch<N> {
     /// The numbers with these multipliers.
     fn numbers_with(&self, multipliers: &[f64]) -> [f64; N] {
-        let mut numbers = self.numbers;
+        let CellProblem { slopes, mut numbers } = self.problem;
         for (b, known) in self.known.iter().enumerate() {
             let &Number::Shared(i) = known else { continue };
-            for (number, slopes) in numbers.iter_mut().zip(&self.slopes) {
+            for (number, slopes) in numbers.iter_mut().zip(&slopes) {
                 *number -= slopes[b] * multipliers[i];
             }
         }
@@ -240,12 +249,14 @@ fn solve(a: &mut [f64], x: &mut [f64]) {
             row[k] = 0.0;
             continue;
         }
-        for (i, lower) in (k + 1..).zip(below.chunks_exact_mut(n)) {
+        // patches are sparse
+        let end = row.iter().rposition(|entry| *entry != 0.0).map_or(n, |last| last + 1);
+        for (i, lower) in (k + 1..end).zip(below.chunks_exact_mut(n)) {
             let factor = row[i] / row[k];
-            // patches are sparse
             if factor != 0.0 {
                 x[i] -= factor * x[k];
-                lower[i..].iter_mut().zip(&row[i..]).for_each(|(to, from)| *to -= factor * from);
+                let entries = lower[i..end].iter_mut().zip(&row[i..end]);
+                entries.for_each(|(to, from)| *to -= factor * from);
             }
         }
     }

@@ -3,18 +3,18 @@
 use super::corners::Corner;
 use crate::error_bound::flux::Flux;
 
-/// The numbers of the flux of a cell, on its facets at the vertex.
+/// The numbers of the flux of a cell, on its facets at the vertex, as an affine function of the multipliers: the
+/// numbers `c` with the sum `s` for which `c . G c / 2 - b . c + m . c` is least.
+#[derive(Clone, Copy)]
 pub(super) struct CellProblem<const N: usize> {
-    /// `G`: the products of the fluxes with each other.
-    pub products: [[f64; N]; N],
-    /// `b`: their products with what the flux aims at.
-    pub aims: [f64; N],
-    /// `s`: the sum that the balance of the cell asks for.
-    pub sum: f64,
+    /// `S`, minus the derivative of the numbers.
+    pub slopes: [[f64; N]; N],
+    /// The numbers for multipliers that vanish.
+    pub numbers: [f64; N],
 }
 
-/// The cells of a conforming function, as patches read them: a flux has `N` numbers at most on the facets of a cell at a
-/// vertex.
+/// The cells of a conforming function, as patches read them: a flux has `N` numbers at most on the facets of a cell at
+/// a vertex.
 pub(super) trait PatchCells<const D: usize, const N: usize>: Sync {
     /// The degree of the flux, zero or one.
     const DEGREE: usize;
@@ -33,6 +33,6 @@ pub(super) trait PatchCells<const D: usize, const N: usize>: Sync {
     fn normal(&self, corner: Corner, facet: usize) -> [f64; 3];
     /// The numbers that the flux of a vertex, with that of `phi alpha grad u . n`, has on a Neumann or contact facet.
     fn given(&self, corner: Corner, facet: usize) -> [f64; 3];
-    /// The least squares problem of a cell in the patch of a vertex.
+    /// The least squares problem of a cell in the patch of a vertex, as if all numbers were free.
     fn problem(&self, corner: Corner) -> CellProblem<N>;
 }

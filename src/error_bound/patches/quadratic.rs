@@ -252,7 +252,7 @@ impl<const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, D> {
                 products[a][b] = if j == k { 2.0 } else { 1.0 } * scale * along.dot(other);
             }
         }
-        CellProblem { products, aims, sum: d * tested[..=D].iter().sum::<f64>() }
+        CellProblem::new(products, &aims, d * tested[..=D].iter().sum::<f64>(), D * D)
     }
 }
 
@@ -273,8 +273,8 @@ fn divergence_products<const D: usize>(points: &[Point<D>; 4], tested: &[f64; 4]
     })
 }
 
-/// The integrals of the target of vertex `own` times `lambda_j` over a cell, a vector for each vertex `j`. The target is
-/// the hat function of `own` times the difference of gradients.
+/// The integrals of the target of vertex `own` times `lambda_j` over a cell, a vector for each vertex `j`. The target
+/// is the hat function of `own` times the difference of gradients.
 fn target_products<const D: usize>(own: usize, differences: &[[f64; 3]; 4]) -> [Point<D>; 4] {
     let d = D as f64;
     array_of(|j| {

@@ -51,7 +51,8 @@ fn numbers_along_a_fan_are_those_of_least_squares() {
         let largest = by_fan.iter().fold(0.0, |most: f64, (_, _, number)| most.max(number.abs()));
         for ((cell, k, one), (of_cell, of_k, other)) in by_fan.iter().zip(&by_patch) {
             assert_eq!((cell, k), (of_cell, of_k));
-            assert!((one - other).abs() < 1e-11 * largest, "{vertex}: {one} {other}");
+            // without a load some patches have no flux at all
+            assert!((one - other).abs() <= 1e-11 * largest, "{vertex}: {one} {other}");
         }
     }
 }

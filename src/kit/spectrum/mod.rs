@@ -17,10 +17,12 @@
 //! assert!((found.condition() - 3.0).abs() < 1e-9);
 //! ```
 
+mod inertia;
 mod lanczos;
 mod mean_jump;
 mod positive_definite;
 
+pub use inertia::{negative_eigenvalues, smallest_eigenvalue};
 pub use lanczos::{Extremes, Lanczos, SpectrumError};
 pub use mean_jump::MeanJump;
 pub use positive_definite::{CholeskyMatrix, Diagonal, PositiveDefinite};

@@ -26,7 +26,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         let (n, sides) = (self.penalised.block_size, self.sides(block));
         basis.clear();
         for i in (block * n..(block + 1) * n).filter(|&i| is_variable(i)) {
-            let means = sides.iter().map(|side| self.mean_coefficient(side, i));
+            let means = sides.iter().map(|&side| self.mean_coefficient(side, i));
             extend_basis(basis, means, T::EPSILON.sqrt());
         }
         basis.len() / sides.len().max(1)
@@ -61,12 +61,12 @@ impl<T: Real> StaticCondensation<'_, T> {
         let limit = least * MAX_WEIGHT / T::EPSILON;
         let may_need_limit = n_free > 0
             && (block * size..(block + 1) * size).any(|i| !is_variable(i))
-            && sides.iter().any(|side| self.side_weight(side) > limit);
+            && sides.iter().any(|&side| self.side_weight(side) > limit);
         let mut basis = Vec::new();
         let has_dependent_means =
             may_need_limit && self.rank_of_means(block, is_variable, &mut basis) < sides.len();
         let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
-        for (l, side) in (n_free..).zip(sides) {
+        for (l, &side) in (n_free..).zip(sides) {
             inverse[l * n + l] = -unit / self.side_weight(side).min(max_weight);
         }
         let is_positive = invert_in_place(inverse, n).ok_or(FactorError::Singular)?;
@@ -109,7 +109,7 @@ impl<T: Real> StaticCondensation<'_, T> {
             if let Some(&shift) = shift.get(i) {
                 matrix[k * n + k] += shift / unit;
             }
-            for (l, side) in (n_free..).zip(sides) {
+            for (l, &side) in (n_free..).zip(sides) {
                 let coefficient = self.mean_coefficient(side, i);
                 matrix[k * n + l] = coefficient;
                 matrix[l * n + k] = coefficient;

@@ -37,12 +37,13 @@ impl<T: Real> StaticCondensation<'_, T> {
     ) -> f64 {
         let mut load = vec![0.0; schur_complement.size()];
         let mut local = Vec::new();
-        for block in 0..self.starts.len() - 1 {
+        for block in 0..self.n_blocks() {
             self.block_right_side(block, is_free, r, t, &|_| 0.0, &mut local);
             let n_free = local.len() - self.sides(block).len();
-            for (k, side) in (n_free..).zip(self.sides(block)) {
-                if side.mean != NO_INDEX {
-                    load[side.mean as usize] += inverses.row_dot(block, k, &local);
+            for (k, &side) in (n_free..).zip(self.sides(block)) {
+                let mean = self.mean(side);
+                if mean != NO_INDEX {
+                    load[mean as usize] += inverses.row_dot(block, k, &local);
                 }
             }
         }
@@ -51,7 +52,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         let mean = |k: u32| if k == NO_INDEX { 0.0 } else { means[k as usize].to_f64() };
         let jump_right_side = t.to_vec();
         let mut energy = 0.0;
-        for block in 0..self.starts.len() - 1 {
+        for block in 0..self.n_blocks() {
             self.block_right_side(block, is_free, r, &jump_right_side, &mean, &mut local);
             let n = self.penalised.block_size;
             let mut k = 0;
@@ -61,12 +62,12 @@ impl<T: Real> StaticCondensation<'_, T> {
                 r[i] = value;
                 k += usize::from(is_free[i]);
             }
-            for (k, side) in (k..).zip(self.sides(block)) {
+            for (k, &side) in (k..).zip(self.sides(block)) {
                 // The multipliers of the two sides of a facet are equal up to the signs of the sides: one is used.
-                if side.sign > 0.0 || side.mean == NO_INDEX {
-                    let multiplier = side.sign * inverses.row_dot(block, k, &local);
-                    energy -= multiplier * jump_right_side[side.jump as usize];
-                    t[side.jump as usize] = multiplier;
+                if side.is_here() || self.mean(side) == NO_INDEX {
+                    let multiplier = side.sign() * inverses.row_dot(block, k, &local);
+                    energy -= multiplier * jump_right_side[side.jump()];
+                    t[side.jump()] = multiplier;
                 }
             }
         }
@@ -87,7 +88,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         out.clear();
         out.extend(self.free(block, is_free).map(|i| r[i]));
         let sides = self.sides(block).iter();
-        out.extend(sides.map(|side| mean(side.mean) + side.share() * t[side.jump as usize]));
+        out.extend(sides.map(|&s| mean(self.mean(s)) + self.share(s) * t[s.jump()]));
     }
 }
 

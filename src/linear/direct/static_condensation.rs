@@ -32,34 +32,16 @@ use super::elimination_order::OrderedMatrix;
 use super::error::FactorError;
 use super::factors::Factors;
 use super::symbolic_factor::SymbolicFactor;
-use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix};
+use crate::algebra::{JumpSide, NO_INDEX, PenalisedMatrix, SparseMatrix};
 use crate::parallel::once;
 use crate::real::Real;
 
-/// One side of a jump, in the list of its block.
-pub(super) struct JumpSide {
-    pub jump: u32,
-    /// The facet mean of the jump; [`NO_INDEX`] if the jump has one side only.
-    pub mean: u32,
-    /// The sign of this side in the jump: one for [`JumpTerm::here`], minus one for
-    /// [`JumpTerm::there`].
-    pub sign: f64,
-}
-
-impl JumpSide {
-    /// The factor of the right-hand side of the jump in the equation of this side.
-    pub fn share(&self) -> f64 {
-        if self.mean == NO_INDEX { self.sign } else { 0.5 * self.sign }
-    }
-}
-
-/// The static condensation of a matrix for all sets of free unknowns: the adjacency of blocks and jumps, and the
-/// matrix that is factored.
+/// The static condensation of a matrix for all sets of free unknowns: the facet means of jumps, and the matrix that is
+/// factored.
 pub(crate) struct StaticCondensation<'a, T> {
     pub(super) penalised: &'a PenalisedMatrix<T>,
-    /// Start of each block's list in `sides`, and its length at the end.
-    pub(super) starts: Vec<usize>,
-    sides: Vec<JumpSide>,
+    /// The facet mean of each jump; [`NO_INDEX`] if the jump has one side only.
+    means: Vec<u32>,
     reduced: ReducedMatrix<'a, T>,
 }
 
@@ -90,37 +72,19 @@ pub(crate) struct BlockInverses {
 impl<'a, T: Real> StaticCondensation<'a, T> {
     /// The condensation of a matrix, given as a sum and assembled.
     pub fn new(penalised: &'a PenalisedMatrix<T>, assembled: &'a SparseMatrix<T>) -> Self {
-        let n_blocks = penalised.size() / penalised.block_size;
-        let blocks_of_jumps: Vec<[Option<u32>; 2]> =
-            (0..penalised.n_jumps()).map(|jump| penalised.blocks_of_jump(jump)).collect();
-        let mut starts = vec![0; n_blocks + 1];
-        for block in blocks_of_jumps.iter().flatten().flatten() {
-            starts[*block as usize + 1] += 1;
-        }
-        for k in 0..n_blocks {
-            starts[k + 1] += starts[k];
-        }
-        let mut next = starts.clone();
-        let none = || JumpSide { jump: NO_INDEX, mean: NO_INDEX, sign: 0.0 };
-        let mut sides: Vec<JumpSide> = (0..starts[n_blocks]).map(|_| none()).collect();
         let mut n_means = 0;
-        for (jump, blocks) in blocks_of_jumps.iter().enumerate() {
-            let is_shared = blocks.iter().all(Option::is_some);
+        let mean = |jump: usize| {
+            let is_shared = penalised.jumps.blocks_of(jump).iter().all(Option::is_some);
             let mean = if is_shared { n_means } else { NO_INDEX };
-            for (block, sign) in blocks.iter().zip([1.0, -1.0]) {
-                if let Some(block) = block {
-                    let position = &mut next[*block as usize];
-                    sides[*position] = JumpSide { jump: jump as u32, mean, sign };
-                    *position += 1;
-                }
-            }
             n_means += u32::from(is_shared);
-        }
+            mean
+        };
+        let means = (0..penalised.n_jumps()).map(mean).collect();
         let all = (0..penalised.size() as u32).collect();
         let reduced = ReducedMatrix::Assembled(OrderedMatrix::new(assembled, all));
-        let mut condensation = Self { penalised, starts, sides, reduced };
+        let mut condensation = Self { penalised, means, reduced };
         let mut basis = Vec::new();
-        let has_independent_means = (0..n_blocks).all(|block| {
+        let has_independent_means = (0..condensation.n_blocks()).all(|block| {
             let n_sides = condensation.sides(block).len();
             condensation.rank_of_means(block, |_| true, &mut basis) == n_sides
         });
@@ -134,8 +98,9 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     /// The lower triangle of the Schur complement, all values zero: facet means of the same block are coupled.
     fn lower_pattern(&self, n_means: usize) -> SparseMatrix<T> {
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); n_means];
-        for block in 0..self.starts.len() - 1 {
-            let means = || self.sides(block).iter().map(|s| s.mean).filter(|&m| m != NO_INDEX);
+        for block in 0..self.n_blocks() {
+            let means =
+                || self.sides(block).iter().map(|s| self.mean(*s)).filter(|&m| m != NO_INDEX);
             for row in means() {
                 rows[row as usize].extend(means().filter(|&m| m <= row));
             }
@@ -151,8 +116,22 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         pattern
     }
 
+    pub(super) fn n_blocks(&self) -> usize {
+        self.penalised.jumps.n_blocks()
+    }
+
     pub(super) fn sides(&self, block: usize) -> &[JumpSide] {
-        &self.sides[self.starts[block]..self.starts[block + 1]]
+        self.penalised.jumps.sides_of(block)
+    }
+
+    /// The facet mean of the jump of a side; [`NO_INDEX`] if the jump has one side only.
+    pub(super) fn mean(&self, side: JumpSide) -> u32 {
+        self.means[side.jump()]
+    }
+
+    /// The factor of the right-hand side of the jump in the equation of a side.
+    pub(super) fn share(&self, side: JumpSide) -> f64 {
+        if self.mean(side) == NO_INDEX { side.sign() } else { 0.5 * side.sign() }
     }
 
     /// The free unknowns of a block.
@@ -167,23 +146,17 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
 
     /// The coefficient of an unknown in the mean over a side of a facet; zero if the mean does not
     /// contain the unknown.
-    pub(super) fn mean_coefficient(&self, side: &JumpSide, unknown: usize) -> f64 {
-        let is_own = |t: &&JumpTerm<T>| {
-            let i = if side.sign > 0.0 { t.here } else { t.there };
-            i as usize == unknown
-        };
-        self.penalised
-            .terms_of(side.jump as usize)
-            .iter()
-            .find(is_own)
-            .map_or(0.0, |t| t.weight.to_f64())
+    pub(super) fn mean_coefficient(&self, side: JumpSide, unknown: usize) -> f64 {
+        let terms = self.penalised.terms_of(side.jump());
+        let own = terms.iter().find(|t| side.unknown(t) as usize == unknown);
+        own.map_or(0.0, |t| t.weight.to_f64())
     }
 
     /// The weight of the difference between the mean over a side and the facet mean: twice the
     /// weight of the jump; if the jump has one side only, the weight of the jump.
-    pub(super) fn side_weight(&self, side: &JumpSide) -> f64 {
-        let weight = self.penalised.weights[side.jump as usize].to_f64();
-        if side.mean == NO_INDEX { weight } else { 2.0 * weight }
+    pub(super) fn side_weight(&self, side: JumpSide) -> f64 {
+        let weight = self.penalised.weights[side.jump()].to_f64();
+        if self.mean(side) == NO_INDEX { weight } else { 2.0 * weight }
     }
 
     /// The factors on the free unknowns.
@@ -238,15 +211,16 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     ) -> Result<(BlockInverses, SparseMatrix<T>), FactorError> {
         let (mut entries, mut starts) = (Vec::new(), vec![0]);
         let mut inverse = Vec::new();
-        for block in 0..self.starts.len() - 1 {
+        for block in 0..self.n_blocks() {
             let n_free = self.invert_block(block, is_free, shift, &mut inverse)?;
             let sides = self.sides(block);
             let n = n_free + sides.len();
-            for (i, row) in sides.iter().enumerate().filter(|(_, s)| s.mean != NO_INDEX) {
-                let columns = matrix.row(row.mean as usize).0.to_vec();
-                let start = matrix.row_starts[row.mean as usize] as usize;
-                for (j, column) in sides.iter().enumerate().filter(|(_, s)| s.mean <= row.mean) {
-                    if let Ok(k) = columns.binary_search(&column.mean) {
+            let means = || sides.iter().map(|&side| self.mean(side)).enumerate();
+            for (i, row) in means().filter(|&(_, mean)| mean != NO_INDEX) {
+                let columns = matrix.row(row as usize).0.to_vec();
+                let start = matrix.row_starts[row as usize] as usize;
+                for (j, column) in means().filter(|&(_, mean)| mean <= row) {
+                    if let Ok(k) = columns.binary_search(&column) {
                         let entry = -inverse[(n_free + i) * n + n_free + j];
                         matrix.values[start + k] += T::lit(entry);
                     }
@@ -275,8 +249,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             let size = (self.penalised.blocks[i * n + j % n].to_f64() * u(j)).abs();
             *(if is_fixed(j) { &mut fixed } else { &mut free }) += size;
         }
-        for side in self.sides(block) {
-            free += (self.mean_coefficient(side, i) * p[side.jump as usize].to_f64()).abs();
+        for &side in self.sides(block) {
+            free += (self.mean_coefficient(side, i) * p[side.jump()].to_f64()).abs();
         }
         [free, fixed]
     }

@@ -117,7 +117,7 @@ fn means<T: Real, const N: usize, const ARE_MEANS: bool>(values: &[T; N]) -> [T;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::{JumpTerm, JumpsOfBlocks, MeanJumps};
+    use crate::algebra::{JumpTerm, Jumps, MeanJumps};
 
     /// Two cells of `n` unknowns with a common facet, facet 0 of the first and facet 1 of the second, and Dirichlet
     /// data on facet 2 of the first.
@@ -134,7 +134,6 @@ mod tests {
         let boundary = boundary.map(|here| JumpTerm { here, there: NONE, weight });
         let terms: Vec<_> = interior.chain(boundary).collect();
         let half = terms.len() as u32 / 2;
-        let term_starts = vec![0, half, 2 * half];
         let entry = |k: usize| {
             let (i, j) = (k / n, k % n);
             1.0 / (1 + i % n + j) as f64 + if i % n == j { i as f64 } else { 0.0 }
@@ -142,37 +141,10 @@ mod tests {
         PenalisedMatrix {
             block_size: n,
             blocks: (0..2 * n * n).map(entry).collect(),
-            jumps_of_blocks: JumpsOfBlocks::new((2, n), &term_starts, &terms),
-            term_starts,
-            terms,
+            jumps: Jumps::new((2, n), vec![0, half, 2 * half], terms).unwrap(),
             weights: vec![7.0, 3.0],
             jump_data: vec![0.0; 2],
             mean_jumps: Some(MeanJumps { are_means, sides: vec![[0, n as u32 + 1], [2, NONE]] }),
-        }
-    }
-
-    #[test]
-    fn lists_of_other_jumps_are_malformed() {
-        for (n, are_means) in [(3, true), (4, false)] {
-            let right = two_cells(n, are_means);
-            assert!(right.is_well_formed(2 * n));
-            let half = right.term_starts[1] as usize;
-            for (starts, terms) in [
-                (&right.term_starts[..1], &right.terms[..]),
-                (&right.term_starts[..2], &right.terms[..half]),
-                (&[0, 0, half as u32], &right.terms[..half]),
-            ] {
-                let jumps_of_blocks = JumpsOfBlocks::new((2, n), starts, terms);
-                let wrong = PenalisedMatrix { jumps_of_blocks, ..right.clone() };
-                assert!(!wrong.is_well_formed(2 * n), "{starts:?}");
-            }
-            // a jump whose unknowns of one side belong to two cells, and one within a cell
-            for there in [0, 2 * n as u32 - 1] {
-                let mut wrong = right.clone();
-                wrong.terms[half].here = 2 * n as u32 - 1 - there;
-                wrong.terms[half].there = there;
-                assert!(!wrong.is_well_formed(2 * n), "{there}");
-            }
         }
     }
 

@@ -1,8 +1,8 @@
 //! Prolongations from coarse to fine functions, and their transposes.
 
-use crate::algebra::{DofLocation, RectangularMatrix, sort_by_column};
+use crate::algebra::{DofLocation, NO_INDEX, RectangularMatrix, sort_by_column};
 use crate::memory::in_large_pages;
-use crate::parallel::vectors::{for_each_chunk, zeros};
+use crate::parallel::vectors::{collect, for_each_chunk, zeros};
 use crate::real::Real;
 
 /// A prolongation `P`: a sparse matrix whose columns are the coarse basis functions in the fine basis.
@@ -21,6 +21,10 @@ enum Entries<T> {
     /// mesh. A coarse unknown has one child of weight one, its entry of `own`. Its children of weight 1/2 are the
     /// midpoints in `children` from its entry of `starts` up to the next entry.
     Midpoints { parents: Vec<[u32; 2]>, starts: Vec<u32>, children: Vec<u32>, own: Vec<u32> },
+    /// Each fine unknown has the value at one coarse unknown, its entry of `parents`. The children of a coarse unknown
+    /// are those in `children` from its entry of `starts` up to the next entry. With weights of one, cycles on
+    /// discontinuous functions take a seventh longer.
+    Injection { parents: Vec<u32>, starts: Vec<u32>, children: Vec<u32> },
     /// General weights: `P` by rows (`fine`), and its transpose by rows (`coarse`).
     Weights { fine: RectangularMatrix<T>, coarse: RectangularMatrix<T> },
 }
@@ -34,6 +38,11 @@ impl Prolongation<f64> {
                 starts: starts.clone(),
                 children: children.clone(),
                 own: own.clone(),
+            },
+            Entries::Injection { parents, starts, children } => Entries::Injection {
+                parents: parents.clone(),
+                starts: starts.clone(),
+                children: children.clone(),
             },
             Entries::Weights { fine, coarse } => {
                 Entries::Weights { fine: fine.in_precision(), coarse: coarse.in_precision() }
@@ -101,8 +110,23 @@ impl<T: Real> Prolongation<T> {
     /// is the mean of the values at the vertices of its location; `None` if a location is empty or has a
     /// vertex that is not less than `n_vertices`.
     pub(crate) fn to_element(locations: &[DofLocation], n_vertices: usize) -> Option<Self> {
-        let rows = rows_of_means(locations.iter().map(DofLocation::vertices), n_vertices)?;
-        Some(Self::from_weights(rows, n_vertices))
+        Self::injection(locations, n_vertices).or_else(|| {
+            let rows = rows_of_means(locations.iter().map(DofLocation::vertices), n_vertices)?;
+            Some(Self::from_weights(rows, n_vertices))
+        })
+    }
+
+    /// [`Prolongation::to_element`] if each location is one vertex, else `None`.
+    fn injection(locations: &[DofLocation], n_coarse: usize) -> Option<Self> {
+        let parents = collect(locations.len(), |i| match locations[i].vertices() {
+            [vertex] if (*vertex as usize) < n_coarse => *vertex,
+            _ => NO_INDEX,
+        });
+        if parents.contains(&NO_INDEX) {
+            return None;
+        }
+        let (starts, children) = children((0..).zip(parents.iter().copied()), n_coarse);
+        Some(Self { entries: Entries::Injection { parents, starts, children }, n_coarse })
     }
 
     /// The prolongation after a renumbering of the unknowns: `fine[i]` and `coarse[j]` are the new numbers of the fine
@@ -137,6 +161,7 @@ impl<T: Real> Prolongation<T> {
     pub fn n_fine(&self) -> usize {
         match &self.entries {
             Entries::Midpoints { parents, .. } => parents.len(),
+            Entries::Injection { parents, .. } => parents.len(),
             Entries::Weights { fine, .. } => fine.n_rows(),
         }
     }
@@ -151,6 +176,12 @@ impl<T: Real> Prolongation<T> {
                     let add = |s, &i: &u32| s + fine_residual[i as usize];
                     let sum = midpoints.iter().fold(S::lit(0.0), add);
                     *out = fine_residual[own[j] as usize] + half * sum;
+                }
+            }
+            Entries::Injection { starts, children, .. } => {
+                for (j, out) in range.zip(out) {
+                    let children = &children[starts[j] as usize..starts[j + 1] as usize];
+                    *out = children.iter().fold(S::lit(0.0), |s, &i| s + fine_residual[i as usize]);
                 }
             }
             Entries::Weights { coarse, .. } => {
@@ -176,6 +207,14 @@ impl<T: Real> Prolongation<T> {
                 for ((&[a, b], &mask), x) in rows.zip(out) {
                     if mask != zero {
                         *x += half * (coarse_values[a as usize] + coarse_values[b as usize]);
+                    }
+                }
+            }
+            Entries::Injection { parents, .. } => {
+                let rows = parents[range.clone()].iter().zip(&mask[range]);
+                for ((&parent, &mask), x) in rows.zip(out) {
+                    if mask != zero {
+                        *x += coarse_values[parent as usize];
                     }
                 }
             }
@@ -234,6 +273,11 @@ impl<T: Real> Prolongation<T> {
                     call(i as usize, T::lit(0.5));
                 }
             }
+            Entries::Injection { starts, children, .. } => {
+                for &i in &children[starts[j] as usize..starts[j + 1] as usize] {
+                    call(i as usize, T::lit(1.0));
+                }
+            }
             Entries::Weights { coarse, .. } => {
                 let (columns, weights) = coarse.row(j);
                 columns.iter().zip(weights).for_each(|(&i, &w)| call(i as usize, w));
@@ -251,6 +295,7 @@ impl<T: Real> Prolongation<T> {
                     call(parent, T::lit(0.5));
                 }
             }
+            Entries::Injection { parents, .. } => call(parents[i], T::lit(1.0)),
             Entries::Weights { fine, .. } => {
                 let (columns, weights) = fine.row(i);
                 columns.iter().zip(weights).for_each(|(&j, &w)| call(j, w));
@@ -308,23 +353,45 @@ pub(crate) fn rows_of_means<'v, T: Real>(
 mod tests {
     use super::*;
 
+    /// Values at one vertex each: the prolongation without weights does what the one with weights does.
+    #[test]
+    fn an_injection_is_a_prolongation_with_weights_of_one() {
+        let locations = [3, 1, 0, 3, 3, 1].map(|v| DofLocation::new(Some(0), &[v]));
+        let injection = Prolongation::<f64>::to_element(&locations, 4).unwrap();
+        assert!(matches!(injection.entries, Entries::Injection { .. }));
+        let rows = rows_of_means(locations.iter().map(DofLocation::vertices), 4).unwrap();
+        let weights = Prolongation::from_weights(rows, 4);
+        let both = [&injection, &weights].map(effects);
+        assert_eq!(both[0], both[1]);
+        assert_eq!(both[0].0, [4.0, 34.0, 0.0, 25.0]);
+        assert_eq!(both[0].2, [false, false, true, true]);
+        assert!(Prolongation::<f64>::to_element(&locations, 3).is_none());
+    }
+
     /// Values at one vertex each, and a mean over two vertices.
     #[test]
     fn unknowns_of_an_element_are_means_over_the_vertices_of_their_locations() {
         let vertices: [&[u32]; 6] = [&[3], &[1], &[0], &[3], &[3], &[0, 1]];
-        let locations: Vec<DofLocation> = vertices.map(|v| DofLocation::new(Some(0), v)).to_vec();
+        let locations = vertices.map(|v| DofLocation::new(Some(0), v));
         let prolongation = Prolongation::<f64>::to_element(&locations, 4).unwrap();
+        let (coarse, values, fixed) = effects(&prolongation);
+        assert_eq!(coarse, [20.0, 18.0, 0.0, 25.0]);
+        assert_eq!(values, [26.0, 1.0, 21.0, 26.0, 26.0, 20.0]);
+        assert_eq!(fixed, [false, false, true, true]);
+        assert!(Prolongation::<f64>::to_element(&locations, 3).is_none());
+    }
+
+    /// The coarse residual of a fine one, the fine values of that residual but for one that is not free, and what fixed
+    /// values cover.
+    fn effects(prolongation: &Prolongation<f64>) -> ([f64; 4], [f64; 6], [bool; 4]) {
         assert_eq!((prolongation.n_fine(), prolongation.n_coarse()), (6, 4));
         let mut coarse = [0.0; 4];
         prolongation.restrict(&[1.0, 2.0, 4.0, 8.0, 16.0, 32.0], &mut coarse);
-        assert_eq!(coarse, [20.0, 18.0, 0.0, 25.0]);
         let mut values = [1.0; 6];
         let mask = [1.0, 0.0, 1.0, 1.0, 1.0, 1.0];
         prolongation.add_prolongation(&coarse, &mask, &mut values);
-        assert_eq!(values, [26.0, 1.0, 21.0, 26.0, 26.0, 20.0]);
         let mut fixed = [false; 4];
-        prolongation.fix_covered(&[true, true, false, true, true, true], &mut fixed);
-        assert_eq!(fixed, [false, true, true, true]);
-        assert!(Prolongation::<f64>::to_element(&locations, 3).is_none());
+        prolongation.fix_covered(&[true, true, false, true, true, false], &mut fixed);
+        (coarse, values, fixed)
     }
 }

@@ -6,8 +6,9 @@ use super::entity::ContactEntity;
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::{Space, checks};
 use crate::error::Error;
+use crate::measure::kinks::is_far;
 use crate::parallel::cells;
-use crate::problem::Exact;
+use crate::problem::{Exact, Field};
 use crate::real::Point;
 
 /// Degree of the rule on a simplex, or on the pieces into which the free boundary cuts it.
@@ -17,15 +18,24 @@ const DEGREE: usize = 5;
 #[derive(Clone, Copy, Default)]
 pub(super) struct ExactContact {
     /// For each corner of the entity the mean over the entity of the multiplier times the hat function of the corner;
-    /// zero without a multiplier.
+    /// zero without a multiplier, and out of contact.
     pub tested: [f64; 4],
     /// The share of the entity out of contact, and the share in contact. Without a contact set the first is one.
     pub shares: [f64; 2],
 }
 
+impl ExactContact {
+    /// The exact solution on an entity out of contact.
+    pub const FREE: Self = Self { tested: [0.0; 4], shares: [1.0, 0.0] };
+
+    fn is_in_contact(&self) -> bool {
+        self.shares[1] > 0.0 || self.tested != [0.0; 4]
+    }
+}
+
 impl<const D: usize> Space<'_, D> {
     /// The exact multiplier and contact set on some entities, at the same points: a list for each chunk of entities,
-    /// because one list of all entities would be a copy.
+    /// with the positions of those that have a multiplier or a share in contact.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
@@ -33,15 +43,17 @@ impl<const D: usize> Space<'_, D> {
         &self,
         exact: &Exact<D>,
         entities: &[ContactEntity],
-    ) -> Result<Vec<Vec<ExactContact>>, Error> {
+    ) -> Result<Vec<Vec<(usize, ExactContact)>>, Error> {
         // for facets and for cells
         let rules = [D - 1, D]
             .map(|dimension| CutRule::new(dimension, DEGREE).without_needless_bisections());
         let chunks = cells::map(entities.len(), &|range: Range<usize>| {
-            let on_entity = |entity: &ContactEntity| {
-                self.exact_contact_on(exact, *entity, &rules[usize::from(entity.facet.is_none())])
+            let on_entity = |k: usize| {
+                let rule = &rules[usize::from(entities[k].facet.is_none())];
+                let found = self.exact_contact_on(exact, entities[k], rule);
+                found.map(|found| found.is_in_contact().then_some((k, found))).transpose()
             };
-            entities[range].iter().map(on_entity).collect::<Result<Vec<_>, _>>()
+            range.filter_map(on_entity).collect::<Result<Vec<_>, _>>()
         });
         chunks.into_iter().collect()
     }
@@ -71,8 +83,10 @@ impl<const D: usize> Space<'_, D> {
         };
         match &exact.contact {
             None => add_whole(false),
-            Some(set) => match rule.sign_of_uncut(&corners, &set.indicator) {
-                Some(is_in_contact) => add_whole(is_in_contact),
+            Some(set) => match self.sign_of_uncut(entity, &corners, &set.indicator, rule) {
+                Some(true) => add_whole(true),
+                // by complementarity there is no multiplier
+                Some(false) => found.shares[0] = 1.0,
                 None => {
                     let is_in_contact = |x: &Point<D>| (set.indicator)(x) > 0.0;
                     rule.visit(&corners, &set.indicator, &mut |hats, weight| {
@@ -85,5 +99,19 @@ impl<const D: usize> Space<'_, D> {
             checks::finite(density, "exact multiplier", &x, entity.cell)?;
         }
         Ok(found)
+    }
+
+    /// Whether a function is positive on an entity; none if its zeros cut the entity.
+    fn sign_of_uncut(
+        &self,
+        entity: ContactEntity,
+        corners: &[Point<D>; 4],
+        level: &Field<D>,
+        rule: &CutRule,
+    ) -> Option<bool> {
+        match is_far(level, &corners[..=entity.dimension::<D>()]) {
+            true => Some(level(&corners[0]) > 0.0),
+            false => rule.sign_of_uncut(corners, level),
+        }
     }
 }

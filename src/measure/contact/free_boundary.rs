@@ -128,25 +128,24 @@ fn sort_by_first_coordinate<const D: usize>(points: &mut [Point<D>]) {
 fn one_sided<const D: usize>(from: &[Point<D>], to: &[Point<D>]) -> f64 {
     let mut to = to.to_vec();
     sort_by_first_coordinate(&mut to);
-    let nearest = |x: &Point<D>| {
-        // on both sides only as far as the first coordinate alone does not exceed the distance known
+    // the larger one of a number and the square of the distance of a point
+    let larger = |largest: f64, x: &Point<D>| {
         let (before, after) = to.split_at(to.partition_point(|y| y[0] < x[0]));
         let mut least = f64::INFINITY;
-        for y in after {
-            if (x[0] - y[0]).powi(2) > least {
-                break;
+        for side in
+            [&mut after.iter() as &mut dyn Iterator<Item = &Point<D>>, &mut before.iter().rev()]
+        {
+            for y in side {
+                // the first coordinate alone exceeds the distance known, or the point does not count any more
+                if (x[0] - y[0]).powi(2) > least || least <= largest {
+                    break;
+                }
+                least = least.min((x - y).norm_squared());
             }
-            least = least.min((x - y).norm_squared());
         }
-        for y in before.iter().rev() {
-            if (x[0] - y[0]).powi(2) > least {
-                break;
-            }
-            least = least.min((x - y).norm_squared());
-        }
-        least
+        least.max(largest)
     };
-    let of_chunk = |range: Range<usize>| from[range].iter().map(nearest).fold(0.0, f64::max);
+    let of_chunk = |range: Range<usize>| from[range].iter().fold(0.0, larger);
     cells::map(from.len(), &of_chunk).into_iter().fold(0.0, f64::max).sqrt()
 }
 

@@ -56,16 +56,15 @@ impl<const D: usize> Discretisation<'_, D> {
     /// jump in a layer of width `h`: the L1 norm can be of order one, the L2 norm of one half at
     /// best.
     ///
-    /// *Contact set.* A vertex, edge or facet is in contact if some unknown there is: on both sides
-    /// of a facet, in all cells at a vertex. The nodal multipliers of a discontinuous scheme there
-    /// need not all have the sign of their sum (those of over-penalised schemes on curved obstacles
-    /// do not). On the Dirichlet boundary, where some schemes have no unknowns and others satisfy the datum
-    /// approximately, it is in contact if the datum is. A cell, or a facet of the contact boundary,
-    /// is in contact if all its unknowns are that have bounds and basis functions with a positive mean over
-    /// it (those of quadratics at vertices of triangles and tetrahedra have none); where no unknown has
-    /// both, if all its unknowns with bounds are. The area error is the measure of the
-    /// symmetric difference with the exact set. The distance is that of Hausdorff between the exact
-    /// free boundary and the facets between cells in contact and cells that are not.
+    /// *Contact set.* A vertex, edge or facet is in contact if some unknown there is: on both sides of a facet, in
+    /// all cells at a vertex. The nodal multipliers of a discontinuous scheme there need not all have the sign of
+    /// their sum (those of over-penalised schemes on curved obstacles do not). On the Dirichlet boundary, where some
+    /// schemes have no unknowns and others satisfy the datum approximately, it is in contact if the datum is. A cell,
+    /// or a facet of the contact boundary, is in contact if all its unknowns are that have bounds and basis functions
+    /// with a positive mean over it (those of quadratics at vertices of triangles and tetrahedra have none); where no
+    /// unknown has both, if all its unknowns with bounds are; `docs/conventions.md` says where this set is too small.
+    /// The area error is the measure of the symmetric difference with the exact set. The distance is that of
+    /// Hausdorff between the exact free boundary and the facets between cells in contact and cells that are not.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
@@ -175,12 +174,14 @@ impl<const D: usize> Space<'_, D> {
         }
         if let Some(set) = &exact.contact {
             let touching = self.in_contact(&entities, inequality, solution);
-            let wrong = |((measure, exact), touches): ((&f64, &ExactContact), &bool)| {
+            let mut exact = on_entities.iter().flatten().peekable();
+            let wrong = |(k, (measure, touches)): (usize, (&f64, &bool))| {
+                let found = exact.next_if(|(of, _)| *of == k);
+                let exact = found.map_or(ExactContact::FREE, |(_, exact)| *exact);
                 exact.shares[usize::from(!touches)] * measure
             };
-            let exact = on_entities.iter().flatten();
-            errors.contact_area_error =
-                Some(measures.iter().zip(exact).zip(&touching).map(wrong).sum());
+            let area = measures.iter().zip(&touching).enumerate().map(wrong).sum();
+            errors.contact_area_error = Some(area);
             errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
         }
         Ok(errors)

@@ -7,22 +7,23 @@ use crate::assemble::space::Space;
 use crate::inequality::Solution;
 
 impl<const D: usize> Space<'_, D> {
-    /// The errors of the density in L1 and lumped L2 against the exact multiplier on entities with these measures, which
-    /// [`Space::exact_contact`] has tested with hat functions; none if all vertices lie on the Dirichlet boundary.
+    /// The errors of the density in L1 and lumped L2 against the exact multiplier on entities with these measures,
+    /// which [`Space::exact_contact`] has tested with hat functions; none if all vertices lie on the Dirichlet
+    /// boundary.
     pub(super) fn multiplier_errors(
         &self,
         (entities, measures): (&[ContactEntity], &[f64]),
-        exact: &[Vec<ExactContact>],
+        exact: &[Vec<(usize, ExactContact)>],
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Option<[f64; 2]> {
         let weights = self.hat_integrals(entities, measures);
         let mut multipliers = self.vertex_multipliers(inequality, solution)?;
-        for ((entity, measure), exact) in entities.iter().zip(measures).zip(exact.iter().flatten())
-        {
+        for &(k, exact) in exact.iter().flatten() {
+            let (entity, measure) = (entities[k], measures[k]);
             let cell = self.mesh.cell(entity.cell);
-            for (k, local) in entity.corners::<D>().enumerate() {
-                multipliers[cell[local] as usize] -= measure * exact.tested[k];
+            for (local, tested) in entity.corners::<D>().zip(exact.tested) {
+                multipliers[cell[local] as usize] -= measure * tested;
             }
         }
         let given = self.dirichlet_groups();

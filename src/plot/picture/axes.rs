@@ -1,7 +1,7 @@
 //! Frame, ticks and labels of linear axes, and the lines of a legend.
 
 use super::colour::labels;
-use super::section::PlanePoint;
+use super::triangle::PlanePoint;
 use crate::plot::pen::{Align, Colour, PAPER, Pen, ScreenPoint};
 use crate::plot::style::{INK, colour};
 

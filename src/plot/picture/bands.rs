@@ -1,20 +1,51 @@
-//! A triangle cut along the levels of a linear function on it.
+//! Triangles cut along the levels of a function that is linear on each.
 
-use super::section::PlanePoint;
+use super::axes::Stroke;
+use super::colour::Scale;
+use super::map::Map;
+use super::triangle::PlanePoint;
 use crate::arrays::array_of;
+use crate::plot::pen::PAPER;
+use crate::plot::style::INK;
+
+/// Levels from one contour line to the next.
+const STRIDE: usize = 2;
 
 /// A point with the value of the function there.
-type Valued = (PlanePoint, f64);
+pub(crate) type Valued = (PlanePoint, f64);
 
-/// The part of a triangle on which the function lies between two levels; empty if there is none.
-pub(crate) fn band(triangle: &[Valued; 3], low: f64, high: f64) -> Vec<PlanePoint> {
-    let above = keep(triangle, |v| v - low);
-    let within = keep(&above, |v| high - v);
-    within.into_iter().map(|(at, _)| at).collect()
+/// Fills a map with the bands of a function, perhaps with its contour lines.
+pub(crate) fn shade(map: &mut Map, name: &str, triangles: &[[Valued; 3]], with_lines: bool) {
+    let values = triangles.as_flattened().iter().map(|corner| corner.1);
+    let Some(scale) = Scale::linear(name, values) else { return };
+    let mut fills: Vec<_> = triangles.iter().flat_map(|t| bands(&scale, t)).collect();
+    // those of a colour together, which keeps files short
+    fills.sort_by_key(|fill| fill.0);
+    map.fills.extend(fills.into_iter().map(|(k, area)| (scale.colour(k), area)));
+    let ink = |k: usize| if 2 * k < scale.bands() { PAPER } else { INK };
+    for k in (STRIDE..scale.bands()).step_by(STRIDE).filter(|_| with_lines) {
+        let lines = triangles.iter().filter_map(|t| contour(t, scale.levels[k]));
+        map.lines.extend(lines.map(|ends| (Stroke::Coloured(ink(k), 0.6), ends)));
+    }
+    map.scale = Some(scale);
+}
+
+/// The areas that paint a triangle: number of the band, corners. Each is the part on which the function is not below
+/// the band, the first one the whole triangle, so that neighbours leave no gap where coordinates are rounded.
+pub(crate) fn bands(scale: &Scale, triangle: &[Valued; 3]) -> Vec<(usize, Vec<PlanePoint>)> {
+    let mut values = triangle.map(|corner| scale.band(corner.1));
+    values.sort_unstable();
+    let part = |k: usize| {
+        let level = if k == values[0] { f64::NEG_INFINITY } else { scale.levels[k] };
+        (k, not_below(triangle, level))
+    };
+    let highest = triangle.map(|corner| corner.1).into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let is_painted = |&k: &usize| k == values[0] || scale.levels[k] < highest;
+    (values[0]..=values[2]).filter(is_painted).map(part).collect()
 }
 
 /// The segment on which the function has a value; none where it only touches.
-pub(crate) fn contour(triangle: &[Valued; 3], level: f64) -> Option<[PlanePoint; 2]> {
+fn contour(triangle: &[Valued; 3], level: f64) -> Option<[PlanePoint; 2]> {
     let mut ends = Vec::new();
     for k in 0..3 {
         let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
@@ -25,21 +56,17 @@ pub(crate) fn contour(triangle: &[Valued; 3], level: f64) -> Option<[PlanePoint;
     <[PlanePoint; 2]>::try_from(ends).ok()
 }
 
-/// The part of a polygon on which a measure of the values is not negative, corner by corner as by
-/// I. E. Sutherland and G. W. Hodgman, Comm. ACM 17 (1974), 32-42.
-fn keep(polygon: &[Valued], measure: impl Fn(f64) -> f64) -> Vec<Valued> {
+/// The part of a triangle on which the function is not below a level, corner by corner as by I. E. Sutherland and
+/// G. W. Hodgman, Comm. ACM 17 (1974), 32-42.
+fn not_below(triangle: &[Valued; 3], level: f64) -> Vec<PlanePoint> {
     let mut kept = Vec::new();
-    for (k, &b) in polygon.iter().enumerate() {
-        let a = polygon[(k + polygon.len() - 1) % polygon.len()];
-        let (at_a, at_b) = (measure(a.1), measure(b.1));
-        if (at_a < 0.0) != (at_b < 0.0) {
-            let share = at_a / (at_a - at_b);
-            let mix = |x: f64, y: f64| x + share * (y - x);
-            let at = [mix(a.0[0], b.0[0]), mix(a.0[1], b.0[1])];
-            kept.push((at, mix(a.1, b.1)));
+    for (k, &b) in triangle.iter().enumerate() {
+        let a = triangle[(k + 2) % 3];
+        if (a.1 < level) != (b.1 < level) {
+            kept.push(crossing(a, b, level));
         }
-        if at_b >= 0.0 {
-            kept.push(b);
+        if b.1 >= level {
+            kept.push(b.0);
         }
     }
     kept
@@ -52,19 +79,29 @@ fn crossing(a: Valued, b: Valued, level: f64) -> PlanePoint {
 
 #[cfg(test)]
 mod tests {
-    use super::{band, contour};
-    use crate::plot::picture::section::area;
+    use super::super::colour::Scale;
+    use super::{bands, contour};
+
+    /// The area of a polygon, by the formula of the shoelace.
+    fn area(corners: &[[f64; 2]]) -> f64 {
+        let next = corners.iter().cycle().skip(1);
+        let twice = corners.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
+        0.5 * twice.sum::<f64>().abs()
+    }
 
     #[test]
-    fn bands_make_up_the_triangle() {
+    fn bands_are_nested_parts_of_the_triangle() {
         let triangle = [([0.0, 0.0], -0.3), ([2.0, 0.0], 1.7), ([0.5, 1.5], 0.4)];
-        let levels = [-0.3, 0.0, 0.4, 1.0, 1.7];
-        let areas: f64 = levels.windows(2).map(|l| area(&band(&triangle, l[0], l[1]))).sum();
-        assert!((areas - 1.5).abs() < 1e-12, "{areas}");
-        assert!(band(&triangle, 2.0, 3.0).is_empty());
+        let levels = vec![-1.0, -0.5, 0.4, 1.7, 2.0];
+        let scale = Scale { name: String::new(), levels, logarithmic: false };
+        let bands = bands(&scale, &triangle);
+        let areas: Vec<(usize, f64)> = bands.iter().map(|(k, part)| (*k, area(part))).collect();
+        // the value is 0.4 on the line from (0.7, 0) to the third corner
+        assert_eq!(areas.len(), 2, "{areas:?}");
+        assert!(areas[0] == (1, 1.5) && areas[1].0 == 2, "{areas:?}");
+        assert!((areas[1].1 - 0.5 * 1.3 * 1.5).abs() < 1e-12, "{areas:?}");
         assert_eq!(contour(&triangle, 3.0), None);
         let [from, to] = contour(&triangle, 0.4).unwrap();
-        // the value grows by one along the lower side, and is that of the third corner there
         assert!((from[0] - 0.7).abs() < 1e-12 && to == [0.5, 1.5], "{from:?} {to:?}");
     }
 }

@@ -3,7 +3,7 @@
 use super::axes::{
     BOTTOM, CONTACT, Frame, LEFT, LINE, RIGHT, Stroke, Symbol, TITLE, TOP, draw_legend, draw_mark,
 };
-use super::section::PlanePoint;
+use super::triangle::PlanePoint;
 use crate::plot::pen::{Align, Pen, ScreenPoint};
 use crate::plot::style::INK;
 

@@ -1,34 +1,28 @@
 //! The line on which a function changes sign.
 
-use super::section::{Corner, PlanePoint, Section};
-use crate::arrays::array_of;
+use super::triangle::{Corner, PlanePoint, Triangle, between, quarters};
 
-/// Sections are cut into pieces no longer than this share of the picture.
+/// Triangles are cut into pieces no longer than this share of the picture.
 const FINEST: f64 = 1.0 / 120.0;
-/// Most often that a section is cut.
+/// Most often that a triangle is cut.
 const MOST: u32 = 6;
 /// Bisections of an edge on which the sign changes: the function may as well be a step.
 const BISECTIONS: usize = 24;
 
-/// Segments of the line on which the sign of a function changes within sections, in a picture of
+/// Segments of the line on which the sign of a function changes within triangles, in a picture of
 /// this size. `inside` returns the sign at a point of a cell.
-pub(crate) fn level_line(
-    sections: &[Section],
+pub(crate) fn level_line<'t>(
+    triangles: impl IntoIterator<Item = &'t Triangle>,
     size: f64,
     inside: &dyn Fn(usize, &[f64; 4]) -> bool,
 ) -> Vec<[PlanePoint; 2]> {
     let mut segments = Vec::new();
-    for section in sections {
-        let longest = section
-            .corners
-            .iter()
-            .flat_map(|a| section.corners.iter().map(|b| distance(a.at, b.at)))
-            .fold(0.0, f64::max);
+    for triangle in triangles {
+        let [a, b, c] = triangle.corners;
+        let longest = [(a, b), (b, c), (c, a)].map(|(a, b)| distance(a.at, b.at));
+        let longest = longest.into_iter().fold(0.0, f64::max);
         let cuts = (longest / (FINEST * size)).log2().ceil().clamp(0.0, f64::from(MOST)) as u32;
-        let c = &section.corners;
-        for k in 2..c.len() {
-            follow(section.cell, [c[0], c[k - 1], c[k]], cuts, inside, &mut segments);
-        }
+        follow(triangle.cell, [a, b, c], cuts, inside, &mut segments);
     }
     segments
 }
@@ -40,10 +34,8 @@ fn follow(
     inside: &dyn Fn(usize, &[f64; 4]) -> bool,
     segments: &mut Vec<[PlanePoint; 2]>,
 ) {
-    let [a, b, c] = corners;
     if cuts > 0 {
-        let (ab, bc, ca) = (between(a, b, 0.5), between(b, c, 0.5), between(c, a, 0.5));
-        for piece in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+        for piece in quarters(corners) {
             follow(cell, piece, cuts - 1, inside, segments);
         }
         return;
@@ -81,14 +73,6 @@ fn change(
     between(from, to, 0.5 * (low + high)).at
 }
 
-fn between(a: Corner, b: Corner, share: f64) -> Corner {
-    let mix = |x: f64, y: f64| (1.0 - share) * x + share * y;
-    Corner {
-        at: array_of(|k| mix(a.at[k], b.at[k])),
-        barycentric: array_of(|k| mix(a.barycentric[k], b.barycentric[k])),
-    }
-}
-
 pub(crate) fn distance(a: PlanePoint, b: PlanePoint) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
@@ -96,16 +80,16 @@ pub(crate) fn distance(a: PlanePoint, b: PlanePoint) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{distance, level_line};
-    use crate::plot::picture::section::{Corner, Section};
+    use crate::plot::picture::triangle::{Corner, Triangle};
 
     #[test]
     fn a_circle_is_found_from_its_inside_alone() {
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let corner =
             |at: [f64; 2]| Corner { at, barycentric: [1.0 - at[0] - at[1], at[0], at[1], 0.0] };
-        let section = Section { cell: 0, corners: corners.map(corner).to_vec() };
+        let triangle = Triangle { cell: 0, locals: [0, 1, 2], corners: corners.map(corner) };
         let inside = |_: usize, b: &[f64; 4]| b[1].hypot(b[2]) < 0.5;
-        let segments = level_line(&[section], 1.0, &inside);
+        let segments = level_line([&triangle], 1.0, &inside);
         let length: f64 = segments.iter().map(|s| distance(s[0], s[1])).sum();
         assert!((length - std::f64::consts::PI / 4.0).abs() < 1e-4, "{length}");
         for end in segments.as_flattened() {

@@ -32,11 +32,6 @@ impl<'a, const D: usize> Line<'a, D> {
         panels
     }
 
-    /// Length of the contact set.
-    pub fn contact_length(&self) -> f64 {
-        self.contact().iter().map(|c| c[1] - c[0]).sum()
-    }
-
     /// The ends of a cell.
     fn ends(&self, cell: usize) -> [f64; 2] {
         let cell = self.mesh.cell(cell);

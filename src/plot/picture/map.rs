@@ -1,11 +1,11 @@
-//! A panel that shows the domain, or a section of it, with equal axes.
+//! A panel that shows the domain or a part of its boundary, with equal axes.
 
 use super::axes::{
     BOTTOM, Frame, LEFT, LINE, RIGHT, Stroke, Symbol, TICK, TITLE, TOP, draw_legend, draw_mark,
     draw_quantity,
 };
 use super::colour::{Scale, labels};
-use super::section::PlanePoint;
+use super::triangle::PlanePoint;
 use crate::arrays::map_entries;
 use crate::plot::pen::{Align, Colour, Pen, ScreenPoint};
 use crate::plot::style::INK;
@@ -23,7 +23,9 @@ pub(crate) struct Map {
     pub low: PlanePoint,
     pub high: PlanePoint,
     pub axes: [&'static str; 2],
-    /// Areas of one colour each, those of the same colour together.
+    /// Where the coordinate axes of space point to, in place of the frame with numbers.
+    pub directions: Option<[PlanePoint; 3]>,
+    /// Areas of one colour each, painted in this order; one of two corners is a line.
     pub fills: Vec<(Colour, Vec<PlanePoint>)>,
     /// Lines, drawn in this order.
     pub lines: Vec<(Stroke, [PlanePoint; 2])>,
@@ -36,6 +38,18 @@ pub(crate) struct Map {
 }
 
 impl Map {
+    /// A map of the smallest box around points.
+    pub fn around(title: &str, points: impl Iterator<Item = PlanePoint>) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for at in points {
+            for k in 0..2 {
+                low[k] = low[k].min(at[k]);
+                high[k] = high[k].max(at[k]);
+            }
+        }
+        Map { title: title.to_owned(), low, high, ..Map::default() }
+    }
+
     /// Width and height of the data on paper where they may be this wide.
     fn data_size(&self, width: f64) -> (f64, f64) {
         let ratio = (self.high[1] - self.low[1]) / (self.high[0] - self.low[0]);
@@ -62,10 +76,16 @@ impl Map {
         pen.text(&self.title, (middle, at.1 + TOP / 2.0), TITLE, INK, Align::Centre);
         for (colour, corners) in &self.fills {
             let corners: Vec<ScreenPoint> = corners.iter().map(|&c| frame.place(c)).collect();
-            pen.fill(&corners, *colour);
+            match corners[..] {
+                [from, to] => pen.line(from, to, 0.8, *colour),
+                _ => pen.fill(&corners, *colour),
+            }
         }
         // below the lines, some of which run along it
-        frame.draw(pen, self.axes);
+        match self.directions {
+            Some(directions) => draw_directions(pen, &directions, (at.0, at.1 + TOP + size.1)),
+            None => frame.draw(pen, self.axes),
+        }
         let ends = |ends: &[PlanePoint; 2]| (frame.place(ends[0]), frame.place(ends[1]));
         for (stroke, segment) in &self.lines {
             let (from, to) = ends(segment);
@@ -86,6 +106,16 @@ impl Map {
             pen.text(note, (at.0 + LEFT + 0.5 * room, below + 16.0), TICK, INK, Align::Centre);
         }
         draw_legend(pen, &self.legend, (at.0 + LEFT, below + 4.0))
+    }
+}
+
+/// Draws short coordinate axes in the corner at the lower left of the data.
+fn draw_directions(pen: &mut Pen, directions: &[PlanePoint; 3], (left, bottom): ScreenPoint) {
+    let origin = (left + 30.0, bottom);
+    for (direction, name) in directions.iter().zip(["x", "y", "z"]) {
+        let at = |length: f64| (origin.0 + length * direction[0], origin.1 - length * direction[1]);
+        pen.line(origin, at(24.0), 1.2, INK);
+        pen.text(name, at(33.0), TICK, INK, Align::Centre);
     }
 }
 

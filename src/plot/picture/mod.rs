@@ -1,6 +1,7 @@
 //! Pictures of a solution: in the plane panels with the function, the contact set found against the
 //! exact free boundary, the jumps across facets, the multiplier and, if it is given, the share of each
-//! cell in the error bound; on the line curves; in space the panels of a slice.
+//! cell in the error bound; on the line curves; in space the solution on the
+//! surface and the contact set, seen from outside.
 //!
 //! A discontinuous function is drawn cell by cell as it is. The bands of a colour are cut exactly
 //! along the levels of the function on each cell, of a quadratic one on the pieces between vertices
@@ -16,8 +17,9 @@ mod line;
 mod map;
 mod panel;
 mod plane;
-mod section;
+mod space;
 mod trace;
+mod triangle;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,8 +35,8 @@ use crate::mesh::{Mesh, edge_vertices};
 use crate::problem::Problem;
 use line::Line;
 use panel::Panel;
-use plane::{Plane, default_slice};
-pub use section::Slice;
+use plane::Plane;
+use space::Space;
 
 /// Most lines and areas of an SVG file; with more it would be large and slow to show.
 const MOST_SHAPES: usize = 150_000;
@@ -67,7 +69,7 @@ struct PictureLayout<'a> {
 /// let meshes = Hierarchy::<2>::of_domain(&scene.domain, 8)?;
 /// let solved = solve(&scene.problem, &meshes, &Wopsip::default())?;
 /// if let Some(fields) = solved.fields() {
-///     let picture = Picture::of("wopsip", &scene.problem, solved.mesh(), &fields, None)?;
+///     let picture = Picture::of("wopsip", &scene.problem, solved.mesh(), &fields)?;
 ///     assert!(picture.to_svg()?.starts_with("<svg"));
 /// }
 /// # Ok(())
@@ -77,77 +79,37 @@ struct PictureLayout<'a> {
 pub struct Picture {
     title: String,
     panels: Vec<Panel>,
-    measure: f64,
-    contact_measure: f64,
 }
 
 impl Picture {
-    /// The picture of a function on a mesh, that of a scheme for this problem. In space it shows a
-    /// slice, by default along the contact boundary if that is a coordinate plane, otherwise
-    /// through the middle across the last coordinate.
+    /// The picture of a function on a mesh, that of a scheme for this problem.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the fields are not those of the mesh, and for a slice that is not
-    /// through a mesh in space.
+    /// [`Error::Parameter`] if the fields are not those of the mesh.
     pub fn of<const D: usize>(
         title: &str,
         problem: &Problem<D>,
         mesh: &Mesh<D>,
         fields: &Fields,
-        slice: Option<Slice>,
     ) -> Result<Self, Error> {
         compiled!(
-            const D: fn(
-                &str,
-                &Problem<D>,
-                &Mesh<D>,
-                &Fields,
-                Option<Slice>,
-            ) -> Result<Picture, Error>
+            const D: fn(&str, &Problem<D>, &Mesh<D>, &Fields) -> Result<Picture, Error>
                 = Picture::painted::<D>
-        )(title, problem, mesh, fields, slice)
+        )(title, problem, mesh, fields)
     }
     fn painted<const D: usize>(
         title: &str,
         problem: &Problem<D>,
         mesh: &Mesh<D>,
         fields: &Fields,
-        slice: Option<Slice>,
     ) -> Result<Self, Error> {
         check_fields(mesh, fields)?;
-        if let Some(slice) = slice.filter(|s| D != 3 || s.axis > 2 || !s.at.is_finite()) {
-            return Err(wrong_slice(
-                slice,
-                "a slice is through a mesh in space, across axis 0, 1 or 2",
-            ));
-        }
-        let title = title.to_owned();
-        if D == 1 {
-            let line = Line::new(problem, mesh, fields);
-            let measure = (0..mesh.n_cells()).map(|c| mesh.geometry(c).volume).sum();
-            let panels = line.panels().into_iter().map(Panel::Graph).collect();
-            return Ok(Picture { title, panels, measure, contact_measure: line.contact_length() });
-        }
-        let slice = (D == 3).then(|| slice.unwrap_or_else(|| default_slice(problem, mesh)));
-        let plane = Plane::new(problem, mesh, fields, slice);
-        if let (Some(slice), true) = (slice, plane.sections.is_empty()) {
-            return Err(wrong_slice(slice, "the plane misses the mesh"));
-        }
-        let measure = plane.sections.iter().map(section::Section::area).sum();
-        let contact_measure = plane.contact_area();
-        let where_cut = slice.map(|s| format!(", {} = {}", ["x", "y", "z"][s.axis], s.at));
-        let title = title + &where_cut.unwrap_or_default();
-        Ok(Picture { title, panels: plane.panels(), measure, contact_measure })
-    }
-
-    /// Length of the line or area of the domain or slice that is shown.
-    pub fn measure(&self) -> f64 {
-        self.measure
-    }
-
-    /// Length or area that is painted as in contact; that of facets seen as lines does not count.
-    pub fn contact_measure(&self) -> f64 {
-        self.contact_measure
+        let panels = match D {
+            1 => Line::new(problem, mesh, fields).panels().into_iter().map(Panel::Graph).collect(),
+            2 => Plane::of_cells(problem, mesh, fields).panels(),
+            _ => Space::new(problem, mesh, fields).panels(),
+        };
+        Ok(Picture { title: title.to_owned(), panels })
     }
 
     /// The picture as the text of an SVG file.
@@ -204,6 +166,7 @@ impl Picture {
             Panel::Map(map) => map.high[0] - map.low[0] > ELONGATED * (map.high[1] - map.low[1]),
             Panel::Graph(_) => true,
         });
+        let alone = alone || self.panels.len() == 1;
         let (columns, width) = if alone { (1, WIDE) } else { (2, NARROW) };
         let mut placed = Vec::new();
         let mut y = MARGIN + HEADING;
@@ -235,13 +198,5 @@ fn check_fields<const D: usize>(mesh: &Mesh<D>, fields: &Fields) -> Result<(), E
             value: format!("{} values", fields.u.len()),
             allowed: format!("must be those of a scheme on this mesh of {n} cells"),
         }),
-    }
-}
-
-fn wrong_slice(slice: Slice, allowed: &str) -> Error {
-    Error::Parameter {
-        parameter: "slice",
-        value: format!("axis {} at {}", slice.axis, slice.at),
-        allowed: allowed.to_owned(),
     }
 }

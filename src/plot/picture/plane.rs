@@ -1,133 +1,139 @@
-//! The panels of a picture in the plane: a domain there, or a section of one in space.
+//! The panels of a picture of a domain in the plane, and of a contact boundary in space, which is seen flat.
+
+use std::collections::BTreeSet;
 
 use super::axes::{CONTACT, FAINT, Stroke, Symbol};
-use super::bands::{band, contour};
+use super::bands::shade;
 use super::colour::Scale;
 use super::edges::{Edge, edges, mean_jump};
 use super::level_line::{distance, level_line};
 use super::map::Map;
 use super::panel::Panel;
-use super::section::{PlanePoint, Section, Slice, View};
 use super::trace;
+use super::triangle::{PlanePoint, Triangle, View};
 use crate::measure::Fields;
-use crate::mesh::{BoundaryCondition, Mesh};
-use crate::plot::pen::PAPER;
+use crate::mesh::{HalfFacet, Mesh};
 use crate::plot::style::INK;
 use crate::problem::{ContactSet, Problem};
 
-/// Most cells whose edges are drawn.
+/// Most triangles whose edges are drawn.
 const MOST_EDGES: usize = 1500;
 /// Jumps below this many roundings of the largest value are none.
 const ROUNDINGS: f64 = 256.0;
-/// Levels from one contour line to the next.
-const STRIDE: usize = 2;
 
 /// The data of the panels.
 pub(crate) struct Plane<'a, const D: usize> {
     problem: &'a Problem<D>,
-    pub view: View<'a, D>,
-    pub sections: Vec<Section>,
+    view: View<'a, D>,
+    axes: [usize; 2],
+    triangles: Vec<Triangle>,
     edges: Vec<Edge>,
-    /// Whether each cell, or in a slice along the contact boundary its facet there, is in contact.
+    /// Whether each triangle is in contact.
     touches: Vec<bool>,
-    low: PlanePoint,
-    high: PlanePoint,
+    /// Whether the contact boundary has facets that face elsewhere.
+    is_partial: bool,
 }
 
 impl<'a, const D: usize> Plane<'a, D> {
-    pub fn new(
+    /// A domain in the plane.
+    pub fn of_cells(problem: &'a Problem<D>, mesh: &'a Mesh<D>, fields: &'a Fields) -> Self {
+        let axes = [0, 1];
+        let view = View::along_coordinates(mesh, fields, axes);
+        let triangles: Vec<Triangle> = (0..mesh.n_cells()).map(|cell| view.cell(cell)).collect();
+        let mut touches = vec![false; mesh.n_cells()];
+        fields.discrete_contact.cells.iter().for_each(|&cell| touches[cell] = true);
+        let edges = edges(mesh, &triangles);
+        Plane { problem, axes, edges, view, triangles, touches, is_partial: false }
+    }
+
+    /// The facets of the contact boundary in space that face along a coordinate axis, up to half a right angle:
+    /// forwards for a positive sign.
+    pub fn of_contact_boundary(
         problem: &'a Problem<D>,
         mesh: &'a Mesh<D>,
         fields: &'a Fields,
-        slice: Option<Slice>,
+        (axis, sign): (usize, f64),
     ) -> Self {
-        let view = View::new(mesh, fields, slice);
-        let sections = view.sections();
-        let mut touches = vec![false; mesh.n_cells()];
-        fields.discrete_contact.cells.iter().for_each(|&cell| touches[cell] = true);
-        for &(cell, local) in &fields.discrete_contact.facets {
-            touches[cell] |= view.lies_in_slice(cell, local);
-        }
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for corner in sections.iter().flat_map(|s| &s.corners) {
-            for k in 0..2 {
-                low[k] = low[k].min(corner.at[k]);
-                high[k] = high[k].max(corner.at[k]);
-            }
-        }
-        let edges = edges(&sections);
-        Plane { problem, edges, view, sections, touches, low, high }
+        let axes = [[1, 2], [0, 2], [0, 1]][axis];
+        let view = View::along_coordinates(mesh, fields, axes);
+        let faces =
+            |&(cell, local): &HalfFacet| sign * mesh.geometry(cell).normal(local)[axis] > 0.7;
+        let all = trace::facets(mesh);
+        let facets: Vec<HalfFacet> = all.iter().copied().filter(faces).collect();
+        let is_partial = facets.len() < all.len();
+        let triangles: Vec<Triangle> = facets.iter().map(|&(c, k)| view.facet(c, k)).collect();
+        let touching: BTreeSet<&HalfFacet> = fields.discrete_contact.facets.iter().collect();
+        let touches = facets.iter().map(|facet| touching.contains(facet)).collect();
+        let edges = edges(mesh, &triangles);
+        Plane { problem, axes, edges, view, triangles, touches, is_partial }
     }
 
-    /// All panels that are not empty.
+    /// All panels of a domain in the plane that are not empty.
     pub fn panels(&self) -> Vec<Panel> {
         let mut panels = vec![Panel::Map(self.solution())];
         if self.problem.is_constrained() {
             panels.push(Panel::Map(self.contact()));
         }
         panels.push(Panel::Map(self.jumps()));
-        if self.problem.is_constrained() && !self.view.fields.discrete_contact.density.is_empty() {
-            panels.push(self.multiplier());
-        }
+        panels.extend(self.multiplier());
         if !self.view.fields.bound.is_empty() {
             panels.push(Panel::Map(self.bound()));
         }
         panels
     }
 
-    /// Areas in contact.
-    pub fn contact_area(&self) -> f64 {
-        let touching = self.sections.iter().filter(|s| self.touches[s.cell]);
-        touching.map(Section::area).sum()
-    }
-
-    fn size(&self) -> f64 {
-        distance(self.low, self.high)
+    /// The panels of a contact boundary.
+    pub fn panels_of_contact(&self) -> Vec<Panel> {
+        [Panel::Map(self.contact())].into_iter().chain(self.multiplier()).collect()
     }
 
     fn map(&self, title: &str) -> Map {
-        let axes = self.view.axes.map(|k| ["x", "y", "z"][k]);
-        Map { title: title.to_owned(), low: self.low, high: self.high, axes, ..Map::default() }
+        let places = self.triangles.iter().flat_map(|t| t.corners).map(|corner| corner.at);
+        Map { axes: self.axes.map(|k| ["x", "y", "z"][k]), ..Map::around(title, places) }
     }
 
-    /// Edges with a cell on one side only.
+    fn ends(&self, edge: &Edge) -> [PlanePoint; 2] {
+        self.view.places(edge.vertices)
+    }
+
+    /// Edges with a triangle on one side only.
     fn rim(&self) -> impl Iterator<Item = (Stroke, [PlanePoint; 2])> {
         let outer = self.edges.iter().filter(|e| e.sides.len() == 1);
-        outer.map(|e| (Stroke::Coloured(INK, 0.8), e.ends))
+        outer.map(|e| (Stroke::Coloured(INK, 0.8), self.ends(e)))
     }
 
     fn solution(&self) -> Map {
-        let view = &self.view;
-        let value = |piece: &Section, k: usize| {
-            let corner = &piece.corners[k];
-            (corner.at, view.value(piece.cell, &corner.barycentric))
-        };
-        let triangles: Vec<_> =
-            view.linear_pieces().iter().map(|p| [value(p, 0), value(p, 1), value(p, 2)]).collect();
+        let pieces = self.triangles.iter().flat_map(|t| self.view.linear_pieces(t));
         let mut map = self.map("solution");
-        shade(&mut map, "u", &triangles, true);
+        shade(&mut map, "u", &pieces.collect::<Vec<_>>(), true);
         map.lines.extend(self.rim());
         map
     }
 
     fn contact(&self) -> Map {
-        let mut map = self.map("contact set");
-        let touching = self.sections.iter().filter(|s| self.touches[s.cell]);
-        map.fills.extend(touching.map(|s| (CONTACT, s.corners.iter().map(|c| c.at).collect())));
-        if self.sections.len() <= MOST_EDGES {
-            map.lines.extend(self.edges.iter().map(|e| (Stroke::Mesh, e.ends)));
+        let mut map = self.map(match self.is_partial {
+            true => "contact set (one side)",
+            false => "contact set",
+        });
+        let touching = self.triangles.iter().zip(&self.touches).filter(|(_, touches)| **touches);
+        map.fills.extend(touching.map(|(triangle, _)| (CONTACT, triangle.places())));
+        if self.triangles.len() <= MOST_EDGES {
+            map.lines.extend(self.edges.iter().map(|e| (Stroke::Mesh, self.ends(e))));
         }
         map.lines.extend(self.rim());
-        let on_boundary = self.facets_seen();
-        map.lines.extend(on_boundary.iter().map(|&(_, _, ends)| (Stroke::Touching, ends)));
-        let of_contact = match on_boundary.is_empty() {
+        let before = map.lines.len();
+        if D == 2 {
+            let facets = self.view.fields.discrete_contact.facets.iter();
+            map.lines.extend(facets.map(|&facet| (Stroke::Touching, self.facet_ends(facet))));
+        }
+        let of_contact = match map.lines.len() == before {
             true => Symbol::Area(CONTACT),
             false => Symbol::Line(Stroke::Touching),
         };
         map.legend.push((of_contact, "in contact".to_owned()));
         let found = self.edges.iter().filter(|e| self.separates_contact(e));
         let before = map.lines.len();
-        map.lines.extend(found.map(|e| (Stroke::Discrete, e.ends)));
+        map.lines.extend(found.map(|e| (Stroke::Discrete, self.ends(e))));
         if map.lines.len() > before {
             map.legend.push((Symbol::Line(Stroke::Discrete), "free boundary, found".to_owned()));
         }
@@ -137,30 +143,28 @@ impl<'a, const D: usize> Plane<'a, D> {
         map
     }
 
-    /// Whether an edge separates cells in contact from cells that are not.
+    /// Whether an edge separates triangles in contact from others.
     fn separates_contact(&self, edge: &Edge) -> bool {
-        let any = |touches: bool| edge.sides.iter().any(|s| self.touches[s.cell] == touches);
+        let any = |touches: bool| edge.sides.iter().any(|&side| self.touches[side] == touches);
         any(true) && any(false)
     }
 
-    /// Facets in contact that are seen as lines: cell, number in it, ends.
-    fn facets_seen(&self) -> Vec<(usize, usize, [PlanePoint; 2])> {
-        let facets = self.view.fields.discrete_contact.facets.iter();
-        let outside = facets.filter(|&&(cell, local)| !self.view.lies_in_slice(cell, local));
-        outside.filter_map(|&(c, l)| self.view.facet(c, l).map(|ends| (c, l, ends))).collect()
+    /// The ends of a facet in the plane.
+    fn facet_ends(&self, facet: HalfFacet) -> [PlanePoint; 2] {
+        self.view.places(trace::ends(self.view.mesh, facet))
     }
 
     fn add_exact(&self, set: &ContactSet<D>, map: &mut Map) {
-        let is_boundary = !self.problem.has_obstacle();
         let inside = |x: &_| (set.indicator)(x) > 0.0;
-        if !is_boundary || self.is_along_contact() {
-            let at = |cell: usize, b: &[f64; 4]| inside(&self.view.point(cell, b));
-            let mut line = level_line(&self.sections, self.size(), &at);
+        if D == 3 || self.problem.has_obstacle() {
+            let at = |cell: usize, b: &[f64; 4]| inside(&self.view.mesh.point(cell, b));
+            let size = distance(map.low, map.high);
+            let mut line = level_line(&self.triangles, size, &at);
             if line.is_empty() && D == 2 {
                 // a set without inner points
                 let points: Vec<PlanePoint> =
                     set.free_boundary.iter().map(|x| [x[0], x[1]]).collect();
-                let near = |pair: &&[PlanePoint]| distance(pair[0], pair[1]) < 0.02 * self.size();
+                let near = |pair: &&[PlanePoint]| distance(pair[0], pair[1]) < 0.02 * size;
                 line = points.windows(2).filter(near).map(|pair| [pair[0], pair[1]]).collect();
                 if line.is_empty() {
                     map.marks = points;
@@ -171,12 +175,12 @@ impl<'a, const D: usize> Plane<'a, D> {
                 let exact = "free boundary, exact".to_owned();
                 map.legend.push((Symbol::Line(Stroke::Exact), exact));
             }
-        } else if D == 2 {
+        } else {
             let exact = trace::samples(self.view.mesh)
                 .into_iter()
-                .filter(|s| inside(&(0.5 * (s.ends[0] + s.ends[1]))));
+                .filter(|s| inside(&(0.5 * (s[0] + s[1]))));
             let before = map.lines.len();
-            map.lines.extend(exact.map(|s| (Stroke::Exact, s.ends.map(|x| [x[0], x[1]]))));
+            map.lines.extend(exact.map(|s| (Stroke::Exact, s.map(|x| [x[0], x[1]]))));
             if map.lines.len() > before {
                 map.legend.push((Symbol::Line(Stroke::Exact), "exact contact".to_owned()));
             }
@@ -187,23 +191,18 @@ impl<'a, const D: usize> Plane<'a, D> {
         }
     }
 
-    /// Whether the slice runs along the contact boundary.
-    fn is_along_contact(&self) -> bool {
-        let contact = self.view.mesh.boundary().iter();
-        let mut contact = contact.filter(|f| f.condition == BoundaryCondition::Contact);
-        contact.any(|f| self.view.lies_in_slice(f.cell as usize, usize::from(f.local)))
-    }
-
     fn jumps(&self) -> Map {
-        let title = if D == 3 { "jumps along the slice" } else { "jumps across facets" };
-        let mut map = self.map(title);
+        let mut map = self.map("jumps across facets");
         let largest = self.view.fields.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let floor = ROUNDINGS * f64::EPSILON * largest;
-        let jumps: Vec<(f64, [PlanePoint; 2])> =
-            self.edges.iter().filter_map(|e| Some((mean_jump(&self.view, e)?, e.ends))).collect();
+        let jumps: Vec<(f64, [PlanePoint; 2])> = self
+            .edges
+            .iter()
+            .filter_map(|e| Some((mean_jump(&self.view, &self.triangles, e)?, self.ends(e))))
+            .collect();
         map.scale = Scale::logarithmic("|mean jump|", jumps.iter().map(|j| j.0), floor);
         let none = jumps.iter().filter(|j| j.0 <= floor);
-        if self.sections.len() <= MOST_EDGES {
+        if self.triangles.len() <= MOST_EDGES {
             map.lines.extend(none.map(|j| (Stroke::Coloured(FAINT, 0.5), j.1)));
         }
         match &map.scale {
@@ -211,11 +210,11 @@ impl<'a, const D: usize> Plane<'a, D> {
             Some(scale) => {
                 let mean = jumps.iter().map(|j| distance(j.1[0], j.1[1])).sum::<f64>()
                     / jumps.len().max(1) as f64;
-                let on_paper = 200.0 * mean / (self.high[0] - self.low[0]);
+                let on_paper = 200.0 * mean / (map.high[0] - map.low[0]);
                 let width = (0.35 * on_paper).clamp(0.6, 3.0);
                 let mut coloured: Vec<(usize, [PlanePoint; 2])> =
                     jumps.iter().filter(|j| j.0 > floor).map(|j| (scale.band(j.0), j.1)).collect();
-                sort_by_band(&mut coloured);
+                coloured.sort_by_key(|line| line.0);
                 let stroke = |band| Stroke::Coloured(scale.colour(band), width);
                 map.lines.extend(coloured.into_iter().map(|(band, ends)| (stroke(band), ends)));
             }
@@ -224,63 +223,44 @@ impl<'a, const D: usize> Plane<'a, D> {
         map
     }
 
-    fn multiplier(&self) -> Panel {
+    /// The density of the multiplier; none where it is not known.
+    fn multiplier(&self) -> Option<Panel> {
+        if self.view.fields.discrete_contact.density.is_empty() {
+            return None;
+        }
         if !self.problem.has_obstacle() && D == 2 {
-            if let Some(graph) = trace::graph(self.problem, self.view.mesh, self.view.fields) {
-                return Panel::Graph(graph);
-            }
-            return Panel::Map(self.multiplier_on_facets());
+            let graph = trace::graph(self.problem, self.view.mesh, self.view.fields);
+            return Some(match graph {
+                Some(graph) => Panel::Graph(graph),
+                None => Panel::Map(self.multiplier_on_facets()),
+            });
         }
         let mut map = self.map("multiplier");
-        if !self.problem.has_obstacle() && !self.is_along_contact() {
-            map.note = Some("only on the contact boundary");
-            map.lines.extend(self.rim());
-            return Panel::Map(map);
-        }
-        let mut triangles = Vec::new();
-        for section in &self.sections {
-            let value = |k: usize| {
-                let corner = &section.corners[k];
-                Some((
-                    corner.at,
-                    self.view.density(
-                        section.cell,
-                        self.touches[section.cell],
-                        &corner.barycentric,
-                    )?,
-                ))
-            };
-            for k in 2..section.corners.len() {
-                if let (Some(a), Some(b), Some(c)) = (value(0), value(k - 1), value(k)) {
-                    triangles.push([a, b, c]);
-                }
-            }
-        }
-        let drawn = triangles.len();
-        shade(&mut map, "density of the multiplier", &triangles, false);
-        let all: usize = self.sections.iter().map(|s| s.corners.len() - 2).sum();
+        let with_touches = self.triangles.iter().zip(&self.touches);
+        let valued = with_touches.filter_map(|(t, touches)| self.view.density(t, *touches));
+        let valued: Vec<_> = valued.collect();
+        shade(&mut map, "density of the multiplier", &valued, false);
         if map.scale.is_none() {
-            map.note = Some("none in this slice");
-        } else if drawn < all {
+            map.note = Some("none known");
+        } else if valued.len() < self.triangles.len() {
             map.title += " (white: none known)";
         }
         map.lines.extend(self.rim());
-        Panel::Map(map)
+        Some(Panel::Map(map))
     }
 
     /// The share of each cell in the square of the error bound.
     fn bound(&self) -> Map {
         let mut map = self.map("share in the error bound");
-        let share = |section: &Section| self.view.fields.bound[section.cell];
-        let shares = self.sections.iter().map(share);
+        let share = |triangle: &Triangle| self.view.fields.bound[triangle.cell];
+        let shares = self.triangles.iter().map(share);
         map.scale = Scale::logarithmic("share in the square of the bound", shares, 0.0);
         if let Some(scale) = &map.scale {
-            let mut bands: Vec<(usize, &Section)> =
-                self.sections.iter().map(|section| (scale.band(share(section)), section)).collect();
             // those of a colour together, which keeps files short
-            sort_cells_by_band(&mut bands);
-            let area = |section: &Section| section.corners.iter().map(|c| c.at).collect();
-            map.fills.extend(bands.iter().map(|(band, s)| (scale.colour(*band), area(s))));
+            let with_band = |t: &Triangle| (scale.band(share(t)), t.places());
+            let mut fills: Vec<_> = self.triangles.iter().map(with_band).collect();
+            fills.sort_by_key(|fill| fill.0);
+            map.fills.extend(fills.into_iter().map(|(band, area)| (scale.colour(band), area)));
         }
         map.lines.extend(self.rim());
         map
@@ -291,14 +271,12 @@ impl<'a, const D: usize> Plane<'a, D> {
         let mut map = self.map("multiplier");
         let density = &self.view.fields.discrete_contact.density;
         let mut facets = Vec::new();
-        for f in
-            self.view.mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact)
-        {
-            let (cell, local) = (f.cell as usize, usize::from(f.local));
-            let ends = self.view.mesh.facet_vertices(cell, local);
+        for facet in trace::facets(self.view.mesh) {
+            let ends = self.view.mesh.facet_vertices(facet.0, facet.1);
             let values: Vec<f64> = ends.filter_map(|v| density[v as usize]).collect();
-            if let (Some(points), false) = (self.view.facet(cell, local), values.is_empty()) {
-                facets.push((values.iter().sum::<f64>() / values.len() as f64, points));
+            if !values.is_empty() {
+                let mean = values.iter().sum::<f64>() / values.len() as f64;
+                facets.push((mean, self.facet_ends(facet)));
             }
         }
         map.scale = Scale::linear("density of the multiplier", facets.iter().map(|f| f.0));
@@ -311,69 +289,4 @@ impl<'a, const D: usize> Plane<'a, D> {
         }
         map
     }
-}
-
-/// Sorts sections by the numbers of their bands; not generic, so that the sorting code is compiled once.
-fn sort_by_band(sections: &mut [(usize, [PlanePoint; 2])]) {
-    sections.sort_by_key(|section| section.0);
-}
-
-/// Sorts sections of cells in this way.
-fn sort_cells_by_band(sections: &mut [(usize, &Section)]) {
-    sections.sort_by_key(|section| section.0);
-}
-
-/// Fills a map with the bands of a function that is linear on triangles, perhaps with its contour
-/// lines.
-fn shade(map: &mut Map, name: &str, triangles: &[[(PlanePoint, f64); 3]], with_lines: bool) {
-    let values = triangles.as_flattened().iter().map(|corner| corner.1);
-    let Some(scale) = Scale::linear(name, values) else { return };
-    let mut fills = Vec::new();
-    let mut lines = Vec::new();
-    for triangle in triangles {
-        let values = triangle.map(|corner| corner.1);
-        let lowest = scale.band(values.iter().copied().fold(f64::INFINITY, f64::min));
-        let highest = scale.band(values.iter().copied().fold(f64::NEG_INFINITY, f64::max));
-        for k in lowest..=highest {
-            let low = if k == lowest { f64::NEG_INFINITY } else { scale.levels[k] };
-            let high = if k == highest { f64::INFINITY } else { scale.levels[k + 1] };
-            let area = match lowest == highest {
-                true => triangle.map(|corner| corner.0).to_vec(),
-                false => band(triangle, low, high),
-            };
-            if area.len() > 2 {
-                fills.push((k, area));
-            }
-            if with_lines && k > lowest && k % STRIDE == 0 {
-                lines.extend(contour(triangle, scale.levels[k]).map(|ends| (k, ends)));
-            }
-        }
-    }
-    // those of a colour together, which keeps files short
-    fills.sort_by_key(|fill| fill.0);
-    sort_by_band(&mut lines);
-    map.fills.extend(fills.into_iter().map(|(k, area)| (scale.colour(k), area)));
-    let ink = |k: usize| if 2 * k < scale.bands() { PAPER } else { INK };
-    map.lines.extend(lines.into_iter().map(|(k, ends)| (Stroke::Coloured(ink(k), 0.6), ends)));
-    map.scale = Some(scale);
-}
-
-/// The default slice: along the contact boundary if that is a coordinate
-/// plane, otherwise through the middle across the last coordinate.
-pub(crate) fn default_slice<const D: usize>(problem: &Problem<D>, mesh: &Mesh<D>) -> Slice {
-    let corners = || {
-        let contact = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact);
-        let vertices = contact.flat_map(|f| mesh.facet_vertices(f.cell as usize, f.local.into()));
-        vertices.map(|v| &mesh.vertices()[v as usize])
-    };
-    if let (false, Some(first)) = (problem.has_obstacle(), corners().next()) {
-        let is_flat = |axis: &usize| corners().all(|x| x[*axis] == first[*axis]);
-        if let Some(axis) = (0..D).find(is_flat) {
-            return Slice { axis, at: first[axis] };
-        }
-    }
-    let heights = || mesh.vertices().iter().map(|x| x[D - 1]);
-    let (low, high) =
-        (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
-    Slice { axis: D - 1, at: 0.5 * (low + high) }
 }

@@ -2,9 +2,9 @@
 
 use super::axes::{CONTACT, Stroke, Symbol};
 use super::graph::Graph;
-use crate::arrays::map_entries;
+use crate::arrays::{array_of, map_entries};
 use crate::measure::Fields;
-use crate::mesh::{BoundaryCondition, Mesh};
+use crate::mesh::{BoundaryCondition, HalfFacet, Mesh};
 use crate::problem::Problem;
 use crate::real::Point;
 
@@ -13,29 +13,25 @@ const PARTS: usize = 8;
 /// A boundary that departs by less than this from a line, in units of the domain, is straight.
 const STRAIGHT: f64 = 1e-9;
 
-/// A piece of a facet of the contact boundary.
-pub(crate) struct Sample<const D: usize> {
-    pub ends: [Point<D>; 2],
+/// The facets of the contact boundary.
+pub(crate) fn facets<const D: usize>(mesh: &Mesh<D>) -> Vec<HalfFacet> {
+    let contact = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact);
+    contact.map(|f| (f.cell as usize, usize::from(f.local))).collect()
 }
 
-/// The facets of the contact boundary: cell, number in it, vertices.
-fn facets<const D: usize>(mesh: &Mesh<D>) -> Vec<(usize, usize, Vec<u32>)> {
-    let contact = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact);
-    contact
-        .map(|f| {
-            let (cell, local) = (f.cell as usize, usize::from(f.local));
-            (cell, local, mesh.facet_vertices(cell, local).collect())
-        })
-        .collect()
+/// The vertices of a facet in the plane.
+pub(crate) fn ends<const D: usize>(mesh: &Mesh<D>, (cell, local): HalfFacet) -> [u32; 2] {
+    let mut vertices = mesh.facet_vertices(cell, local);
+    array_of(|_| vertices.next().expect("a facet in the plane has two vertices"))
 }
 
 /// The contact boundary in short pieces.
-pub(crate) fn samples<const D: usize>(mesh: &Mesh<D>) -> Vec<Sample<D>> {
+pub(crate) fn samples<const D: usize>(mesh: &Mesh<D>) -> Vec<[Point<D>; 2]> {
     let mut samples = Vec::new();
-    for (_, _, vertices) in facets(mesh) {
-        let [a, b] = map_entries([0, 1], |k| mesh.vertices()[vertices[k] as usize]);
+    for facet in facets(mesh) {
+        let [a, b] = map_entries(ends(mesh, facet), |v| mesh.vertices()[v as usize]);
         let at = |k: usize| a + (b - a) * (k as f64 / PARTS as f64);
-        samples.extend((0..PARTS).map(|k| Sample { ends: [at(k), at(k + 1)] }));
+        samples.extend((0..PARTS).map(|k| [at(k), at(k + 1)]));
     }
     samples
 }
@@ -46,11 +42,8 @@ pub(crate) fn graph<const D: usize>(
     mesh: &Mesh<D>,
     fields: &Fields,
 ) -> Option<Graph> {
-    let facets = facets(mesh);
-    let points = || {
-        let vertices = facets.iter().flat_map(|f| &f.2);
-        vertices.map(|&v| mesh.vertices()[v as usize])
-    };
+    let facets: Vec<[u32; 2]> = facets(mesh).into_iter().map(|facet| ends(mesh, facet)).collect();
+    let points = || facets.as_flattened().iter().map(|&v| mesh.vertices()[v as usize]);
     let extent = |axis: usize| {
         let (low, high) = points()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[axis]), h.max(x[axis])));
@@ -68,23 +61,22 @@ pub(crate) fn graph<const D: usize>(
         ..Graph::default()
     };
     let density = &fields.discrete_contact.density;
-    for (_, _, vertices) in &facets {
-        if let [Some(a), Some(b)] = map_entries([0, 1], |k| density[vertices[k] as usize]) {
-            let ends = [[along(vertices[0]), a], [along(vertices[1]), b]];
-            graph.lines.push((Stroke::Solution, ends));
+    for &[from, to] in &facets {
+        if let [Some(a), Some(b)] = [from, to].map(|v| density[v as usize]) {
+            graph.lines.push((Stroke::Solution, [[along(from), a], [along(to), b]]));
         }
     }
     let exact = problem.exact.as_ref();
     if let Some(multiplier) = exact.and_then(|e| e.multiplier.as_ref()) {
         for sample in samples(mesh) {
-            let ends = sample.ends.map(|x| [x[axis], multiplier(&x)]);
+            let ends = sample.map(|x| [x[axis], multiplier(&x)]);
             graph.lines.push((Stroke::Exact, ends));
         }
         graph.legend.push((Symbol::Line(Stroke::Exact), "exact density".to_owned()));
     }
-    for &(cell, local) in &fields.discrete_contact.facets {
-        let ends: Vec<f64> = mesh.facet_vertices(cell, local).map(along).collect();
-        graph.contact.push([ends[0].min(ends[1]), ends[0].max(ends[1])]);
+    for &facet in &fields.discrete_contact.facets {
+        let [a, b] = ends(mesh, facet).map(along);
+        graph.contact.push([a.min(b), a.max(b)]);
     }
     if !graph.contact.is_empty() {
         graph.legend.push((Symbol::Area(CONTACT), "in contact".to_owned()));

@@ -46,7 +46,7 @@ impl Allowed {
 
 /// A datum with its place, for checks.
 pub(super) struct Entry<const D: usize> {
-    /// What it is: `source of region steel`, say.
+    /// The name of the datum: `source of region steel`, say.
     pub datum: String,
     /// Region or boundary group; none for cells in no other.
     pub group: Option<String>,

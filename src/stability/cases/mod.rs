@@ -1,15 +1,88 @@
-//! The cases of the stability study, one file each.
+//! The cases of the stability study, one file each; [`CASES`] lists them in the order of reports.
 
-pub(crate) mod anisotropy;
-pub(crate) mod biactive;
-pub(crate) mod coercivity;
-pub(crate) mod condition;
-pub(crate) mod contact_ends;
-pub(crate) mod contrast;
-pub(crate) mod curved_obstacle;
-pub(crate) mod grading;
-pub(crate) mod orders;
-pub(crate) mod over_penalty;
-pub(crate) mod round_off;
-pub(crate) mod scaling;
-pub(crate) mod slivers;
+mod biactive;
+mod coercivity;
+mod condition_numbers;
+mod contact_ends;
+mod contrast;
+mod curved_obstacle;
+mod graded_meshes;
+mod orders;
+mod penalty_factor;
+mod round_off;
+mod scaling;
+mod slivers;
+mod stretched_cells;
+
+use super::case::Case;
+use super::criterion::Criterion;
+
+/// All cases.
+pub(crate) const CASES: [Case; 12] = [
+    round_off::CASE,
+    penalty_factor::CASE,
+    stretched_cells::CASE,
+    graded_meshes::CASE,
+    contrast::CASE,
+    coercivity::CASE,
+    curved_obstacle::CASE,
+    biactive::CASE,
+    scaling::CASE,
+    contact_ends::CASE,
+    orders::CASE,
+    slivers::CASE,
+];
+
+/// Names of the cases.
+pub const STABILITY_CASES: [&str; CASES.len()] = {
+    let mut names = [""; CASES.len()];
+    let mut k = 0;
+    while k < names.len() {
+        names[k] = CASES[k].name;
+        k += 1;
+    }
+    names
+};
+
+/// All criteria, each with the name of its case, in the order of reports.
+pub fn criteria() -> impl Iterator<Item = (&'static str, &'static Criterion)> {
+    CASES.into_iter().flat_map(|case| case.criteria.iter().map(move |c| (case.name, c)))
+}
+
+/// The criteria of errors, of forces and of definiteness over sweeps of a penalty factor.
+pub(crate) const OVER_FACTORS: [&Criterion; 6] = [
+    &penalty_factor::DEFINITE,
+    &penalty_factor::ERROR,
+    &penalty_factor::MULTIPLIER,
+    &penalty_factor::EQUILIBRIUM,
+    &coercivity::INERTIA,
+    &coercivity::ERROR,
+];
+
+/// The cases of these sweeps.
+pub(crate) const SWEEPS: [&str; 2] = [penalty_factor::CASE.name, coercivity::CASE.name];
+
+#[cfg(test)]
+mod tests {
+    use super::{STABILITY_CASES, criteria};
+
+    #[test]
+    fn names_are_unique_and_every_case_has_criteria() {
+        for (k, (_, c)) in criteria().enumerate() {
+            assert!(criteria().take(k).all(|(_, other)| other.name != c.name), "{}", c.name);
+        }
+        for case in STABILITY_CASES {
+            assert!(criteria().any(|of| of.0 == case), "{case}");
+        }
+    }
+
+    #[test]
+    fn sentences_state_all_limits() {
+        for (_, c) in criteria() {
+            assert_eq!(c.sentence().matches("{}").count(), 0, "{}", c.sentence());
+        }
+        let sentence = |name: &str| criteria().find(|of| of.1.name == name).unwrap().1.sentence();
+        assert!(sentence("active-sets-tried").contains("at most 40 linear systems"));
+        assert!(sentence("equilibrium").contains("at most 1e-6 of the integral"));
+    }
+}

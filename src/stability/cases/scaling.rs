@@ -5,31 +5,52 @@ use crate::nested::Hierarchy;
 use crate::problem::Datum;
 use crate::scenes;
 use crate::scenes::Scene;
-use crate::stability::choice::{Choice, Penalty};
+use crate::stability::case::Case;
+use crate::stability::choice::Choice;
+use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};
+use crate::stability::row::ExpectedRange;
 use crate::stability::row_builder::{RowBuilder, quotient};
 use crate::stability::runs::solved;
 
-pub(crate) fn plan(plan: &mut Plan<'_>) {
+const DOMAIN: Criterion = Criterion::new(
+    "size-of-domain",
+    &[ExpectedRange::at_most(1e-10)],
+    "On a domain L times as large, L from 1e-6 to 1e6, the solution is the same at corresponding points to {}. A factor eta without dimension is known to fail.",
+);
+const COEFFICIENT: Criterion = Criterion::new(
+    "size-of-coefficient",
+    &[ExpectedRange::at_most(1e-10)],
+    "With coefficient and load c times as large, c from 1e-8 to 1e8, the solution is the same to {}. A penalty that ignores the coefficient is known to fail.",
+);
+pub(crate) const CASE: Case = Case { name: "scaling", criteria: &[DOMAIN, COEFFICIENT], plan };
+
+fn plan(plan: &mut Plan<'_>) {
     let level = plan.pick(8, 32);
     let lengths: &[f64] = plan.pick(&[1e-6, 1e6], &[1e-6, 1e-3, 1e3, 1e6]);
     let factors: &[f64] = plan.pick(&[1e-8, 1e8], &[1e-8, 1e-4, 1e4, 1e8]);
-    for choice in plan.compared_and(&[
-        Choice::new("wopsip", Penalty::Eta(1.0)),
-        Choice::new("wopsip:facet-means", Penalty::Eta(1.0)),
-    ]) {
-        plan.add("scaling", choice, "size of the domain", move |c, sink| {
-            domain(c, level, lengths, sink)
+    let schemes = ["wopsip", "wopsip:facet-means"];
+    for choice in plan.compared_and(&schemes.map(|scheme| Choice::with_eta(scheme, 0))) {
+        plan.add(choice, "size of the domain", move |c, sink| {
+            let has_dimension = c.options().eta.is_some();
+            let claim = RowBuilder::new(&DOMAIN, c).known_to_fail(has_dimension);
+            compare(c, level, ("L", lengths), scenes::radial, claim, sink)
         });
     }
-    for choice in plan.compared_and(&[
-        Choice::new("wopsip", Penalty::Unweighted),
-        Choice::new("wopsip:facet-means", Penalty::Unweighted),
-    ]) {
-        plan.add("scaling", choice, "size of the coefficient", move |c, sink| {
-            coefficient(c, level, factors, sink)
+    for choice in plan.compared_and(&schemes.map(Choice::without_coefficient)) {
+        plan.add(choice, "size of the coefficient", move |c, sink| {
+            let claim = RowBuilder::new(&COEFFICIENT, c).known_to_fail(c.ignores_coefficient);
+            compare(c, level, ("c", factors), with_coefficient, claim, sink)
         });
     }
+}
+
+/// The scene of radius one with coefficient and load times a factor.
+fn with_coefficient(factor: f64) -> Scene<2> {
+    let mut scene = scenes::radial::<2>(1.0);
+    scene.problem.source.everywhere = Some(Datum::Constant(-2.0 * factor));
+    scene.problem = scene.problem.coefficient(move |_| factor);
+    scene
 }
 
 /// Values at the vertices of all cells, and how the solve ended.
@@ -39,8 +60,8 @@ fn values(
     level: usize,
 ) -> Result<(Option<Vec<f64>>, String), Error> {
     let meshes = Hierarchy::of_domain(&scene.domain, level)?;
-    let problem = choice.constrain(scene.problem.clone());
-    let found = solved(&problem, &meshes, choice, true)?;
+    let problem = choice.problem(scene);
+    let found = solved(&problem, &meshes, choice)?;
     let values = found.fields().filter(|_| found.converged()).map(|f| f.u);
     let error = found.errors()?;
     let error = error.h1.zip(error.l2);
@@ -58,45 +79,25 @@ fn difference(a: &Option<Vec<f64>>, b: &Option<Vec<f64>>) -> Option<f64> {
     quotient(Some(apart), Some(largest))
 }
 
-fn domain(choice: &Choice, level: usize, lengths: &[f64], sink: Sink<'_>) -> Result<(), Error> {
-    let (at_one, _) = values(&scenes::radial(1.0), choice, level)?;
-    for &length in lengths {
-        let (here, how) = values(&scenes::radial(length), choice, level)?;
-        sink(
-            RowBuilder::new("size-of-domain", choice)
-                .on("radial-2d")
-                .level(level)
-                .at("L", length)
-                .quantity("relative difference of solutions")
-                .at_most(1e-10)
-                .known_to_fail(choice.penalty == Penalty::Eta(1.0))
-                .detail(how)
-                .measured(difference(&here, &at_one)),
-        );
-    }
-    Ok(())
-}
-
-fn coefficient(
+/// Compares the solutions in other units with that in units of one.
+fn compare(
     choice: &Choice,
     level: usize,
-    factors: &[f64],
+    (parameter, units): (&str, &[f64]),
+    make: fn(f64) -> Scene<2>,
+    claim: RowBuilder,
     sink: Sink<'_>,
 ) -> Result<(), Error> {
     let (at_one, _) = values(&scenes::radial(1.0), choice, level)?;
-    for &factor in factors {
-        let mut scene = scenes::radial::<2>(1.0);
-        scene.problem.source.everywhere = Some(Datum::Constant(-2.0 * factor));
-        scene.problem = scene.problem.coefficient(move |_| factor);
-        let (here, how) = values(&scene, choice, level)?;
+    for &unit in units {
+        let (here, how) = values(&make(unit), choice, level)?;
         sink(
-            RowBuilder::new("size-of-coefficient", choice)
+            claim
+                .clone()
                 .on("radial-2d")
                 .level(level)
-                .at("c", factor)
+                .at(parameter, unit)
                 .quantity("relative difference of solutions")
-                .at_most(1e-10)
-                .known_to_fail(choice.penalty == Penalty::Unweighted)
                 .detail(how)
                 .measured(difference(&here, &at_one)),
         );

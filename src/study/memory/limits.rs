@@ -31,8 +31,7 @@ fn least_limit(limits: &str, reserved: u64) -> Option<u64> {
     [("Max address space", reserved), ("Max data size", 0)].iter().filter_map(left).min()
 }
 
-/// What is left to the control group of this process and to those around it, in bytes; none without
-/// a limit.
+/// The memory left to the control group of this process and to those around it, in bytes; none without a limit.
 pub(super) fn left_to_group() -> Option<u64> {
     let groups = read_to_string("/proc/self/cgroup").ok()?;
     below_groups(Path::new("/sys/fs/cgroup"), &groups)
@@ -61,7 +60,7 @@ fn below_groups(folder: &Path, groups: &str) -> Option<u64> {
     groups.lines().filter_map(of_line).min()
 }
 
-/// What is left to one group: its limit less what it uses, but for pages of files that can go.
+/// The memory left to one group: its limit less its usage, in which pages of files that can go do not count.
 fn left_in(group: &Path, [limit, usage, inactive]: [&str; 3]) -> Option<u64> {
     let number = |file: &str| read_to_string(group.join(file)).ok()?.trim().parse::<u64>().ok();
     let (limit, usage) = (number(limit)?, number(usage)?);

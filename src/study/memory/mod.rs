@@ -14,15 +14,9 @@ use limits::{left_to_group, limit_of_process};
 /// kernel keeps (`VmHWM`), elsewhere nothing.
 pub fn peak_memory_bytes() -> Option<u64> {
     #[cfg(target_os = "linux")]
-    return peak_of_status(&std::fs::read_to_string("/proc/self/status").ok()?);
+    return kilobytes(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:");
     #[cfg(not(target_os = "linux"))]
     None
-}
-
-/// The peak in the text of a status file, which gives it in units of 1024 bytes and calls them kB.
-#[cfg(any(test, target_os = "linux"))]
-fn peak_of_status(status: &str) -> Option<u64> {
-    kilobytes(status, "VmHWM:")
 }
 
 /// The memory that this process may have in all: what the crate `sysinfo` finds available.
@@ -46,12 +40,12 @@ pub(crate) fn memory_of_process() -> Option<u64> {
 
 /// Bytes a run will need, most of them for the factors of the direct solver.
 ///
-/// These grow like `N`, `N log N` and `N^(4/3)` in one, two and three dimensions. The constants are
-/// peaks of the process measured on obstacle scenes with 1e6 (1D), 5e5 and 2e6 (2D) and 5e4 to 7e5
-/// (3D) cells, and on Signorini scenes of half that size, whose factors are larger because no
-/// contact set in the interior drops out: by 1.4 in two and 1.5 in three dimensions. On these the estimate is right to a fifth; a scene with much or
-/// little contact may be off by a half. Layouts with more unknowns than linear ones were not
-/// measured, but for conforming quadratics, and are scaled by the square of their number.
+/// These grow like `N`, `N log N` and `N^(4/3)` in one, two and three dimensions. The constants are peaks of the
+/// process measured on obstacle scenes with 1e6 (1D), 5e5 and 2e6 (2D) and 5e4 to 7e5 (3D) cells, and on Signorini
+/// scenes of half that size, whose factors are larger because no contact set in the interior drops out: by 1.4 in two
+/// and 1.5 in three dimensions. On these the estimate is right to a fifth; a scene with much or little contact may be
+/// off by a half. Layouts with more unknowns than linear ones were not measured, but for conforming quadratics, and are
+/// scaled by the square of their number.
 pub(super) fn estimate(dimension: usize, layout: Layout, cells: f64, obstacle: bool) -> f64 {
     let growth = match dimension {
         1 => 1.0,
@@ -123,7 +117,7 @@ pub(super) fn estimate_without_factors(
 
 #[cfg(test)]
 mod tests {
-    use super::{estimate, estimate_without_factors, peak_of_status};
+    use super::{estimate, estimate_without_factors, kilobytes};
     use crate::element::Layout;
     use crate::real::Precision;
 
@@ -195,8 +189,8 @@ mod tests {
     #[test]
     fn the_peak_is_read_and_nothing_is_made_up() {
         let status = "VmPeak:\t  999 kB\nVmHWM:\t   2048 kB\nVmRSS:\t 12 kB\n";
-        assert_eq!(peak_of_status(status), Some(2048 * 1024));
-        assert_eq!(peak_of_status("VmRSS:\t 12 kB\n"), None);
-        assert_eq!(peak_of_status("VmHWM:\t many kB\n"), None);
+        assert_eq!(kilobytes(status, "VmHWM:"), Some(2048 * 1024));
+        assert_eq!(kilobytes("VmRSS:\t 12 kB\n", "VmHWM:"), None);
+        assert_eq!(kilobytes("VmHWM:\t many kB\n", "VmHWM:"), None);
     }
 }

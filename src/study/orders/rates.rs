@@ -1,4 +1,4 @@
-//! What adaptive steps came to, in one line for each series: rates, effectivities, times.
+//! The rates, effectivities and times of adaptive steps, in one line for each series.
 
 use crate::measure::fit_order;
 use crate::study::row::Row;

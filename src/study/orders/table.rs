@@ -7,7 +7,7 @@ use crate::measure::{ErrorNorm, FittedOrder};
 use crate::study::row::distinct;
 use crate::table::{Cell, Table};
 
-/// What the words of the tables mean.
+/// The paragraph that explains the words of the tables.
 fn reading(tolerance: f64) -> String {
     format!(
         "An order is the exponent of the power of the mesh size that is closest to the errors of all \

@@ -46,7 +46,7 @@ impl<'a, const D: usize> Study<'a, D> {
         self.named(entry, &entry.problem(&self.scene.problem), row, None)
     }
 
-    /// What the rows of a case have in common, with its level; of adaptive meshes that is zero.
+    /// The variant of the rows of a case, with its level; of adaptive meshes that is zero.
     pub(crate) fn variant(&self) -> (Variant, usize) {
         let row = self.row_not_run(String::new());
         let theta = self.adaptive.map(|of| of.theta);
@@ -62,6 +62,11 @@ impl<'a, const D: usize> Study<'a, D> {
     /// The rows of all schemes and levels against the reference of the study; none without one.
     pub(crate) fn rows_against_reference(&self) -> Result<Vec<Row>, Error> {
         self.reference.as_ref().map_or_else(|| Ok(Vec::new()), |_| Ok(self.run()?.rows))
+    }
+
+    /// The number of runs for these rows, that of the reference among them.
+    pub(crate) fn runs_against_reference(&self) -> usize {
+        self.reference.as_ref().map_or(0, |_| 1 + self.keys().len())
     }
 
     /// Says that a run begins.

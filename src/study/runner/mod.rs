@@ -271,7 +271,7 @@ impl<'a, const D: usize> Study<'a, D> {
                     let of = (entry, problem);
                     let why_not = (&crossing, available);
                     let place = (level, solver.name());
-                    let (row, solved) = self.row_or_reason(nested, of, place, measured, why_not)?;
+                    let (row, solved) = self.row(nested, of, place, measured, why_not)?;
                     let row = match &kept {
                         Some(row) => row,
                         None => self.finish(row, &mut rows)?,
@@ -307,8 +307,8 @@ impl<'a, const D: usize> Study<'a, D> {
         self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect()
     }
 
-    /// What tells the rows of the study apart, in the order in which they run; none of adaptive refinement, whose
-    /// number of steps is not known before.
+    /// The keys of all rows, in the order in which they run; none of adaptive refinement, whose number of steps is not
+    /// known before.
     pub fn keys(&self) -> Vec<RowKey> {
         let mut keys = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&self.problems()) {
@@ -338,8 +338,8 @@ impl<'a, const D: usize> Study<'a, D> {
         (None, false)
     }
 
-    /// The meshes of all levels on which some scheme fits into the available bytes; the meshes of a reference are in the
-    /// same hierarchy as these levels.
+    /// The meshes of all levels on which some scheme fits into the available bytes; the meshes of a reference are in
+    /// the same hierarchy as these levels.
     fn hierarchies(&self, available: Option<u64>) -> Result<Vec<Hierarchy<D>>, Error> {
         match &self.reference {
             None => {

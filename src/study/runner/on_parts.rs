@@ -1,17 +1,16 @@
 //! A study over the parts of a mesh, one in each process.
 
-use std::path::Path;
 use std::rc::Rc;
 
 use super::rows::with_level;
 use super::{Entry, Progress, Study};
 use crate::distributed::{Differences, Process, SolverOnParts};
-use crate::error::{Error, write_error};
+use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::mesh::{Layers, Mesh};
 use crate::nested::{Hierarchy, NestedIteration, Solved};
 use crate::problem::Problem;
-use crate::processes::{ExchangeError, agree};
+use crate::processes::{ExchangeError, agree, agree_on_data};
 use crate::real::Precision;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
@@ -21,7 +20,7 @@ use crate::study::reference::Measured;
 use crate::study::report::Report;
 use crate::study::row::{Row, Seconds};
 
-/// What a study over the parts of a mesh does besides.
+/// The options of a study over the parts of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PartChecks {
     /// Compares the rows of all parts with those of the whole mesh, which every process then has.
@@ -72,7 +71,7 @@ impl<const D: usize> Study<'_, D> {
                         .unwrap_or_else(|error| failed(&error)),
                 };
                 row.solver = nested.solver_name().to_owned();
-                self.finish_on_parts(row, &mut rows, process)?;
+                agree(self.finish(row, &mut rows).map(|_| ()), &*process.exchange)?;
                 #[cfg(feature = "report")]
                 if let Ok(solved) = &solved {
                     self.write_on_parts(entry, problem, level, solved)?;
@@ -95,13 +94,8 @@ impl<const D: usize> Study<'_, D> {
             let seen = agree(own, &*process.exchange)?;
             let size = process.exchange.largest(&[seen.size()])?[0];
             let own = seen.crossing(size);
-            let own = own.map_or(Ok(()), |found| Err(found.error().in_whole_mesh(&part.cells)));
-            agree(own, &*process.exchange).map_err(|error| match error {
-                ExchangeError::Failed { part, message, .. } => {
-                    ExchangeError::Failed { part, message, outcome: Some(Outcome::Infeasible) }
-                }
-                other => other,
-            })
+            let own = own.map_or(Ok(()), |found| Err(found.error()));
+            agree_on_data(own, &part.cells, &*process.exchange)
         };
         Ok(hierarchies.iter().try_for_each(look_at))
     }
@@ -143,26 +137,6 @@ impl<const D: usize> Study<'_, D> {
             ..Row::new(&self.scene.name, D, entry.scheme.name(), level, outcome)
         };
         self.named(entry, problem, row, None)
-    }
-
-    /// Adds a row that is finished, if no process failed to write it.
-    fn finish_on_parts(
-        &self,
-        row: Row,
-        rows: &mut Vec<Row>,
-        process: &Process,
-    ) -> Result<(), Error> {
-        let own = self.finish(row, rows);
-        let failed = [f64::from(u8::from(own.is_err()))];
-        let failed = process.exchange.largest(&failed).map_err(|error| error.to_string());
-        own?;
-        match failed {
-            Ok(failed) if failed[0] == 0.0 => Ok(()),
-            Ok(_) => {
-                Err(write_error(Path::new("the journal"), "another process failed".to_owned()))
-            }
-            Err(why) => Err(write_error(Path::new("the journal"), why)),
-        }
     }
 
     /// Refuses what parts of a mesh do not have.

@@ -41,65 +41,36 @@ impl<const D: usize> Study<'_, D> {
         Ok(&rows[rows.len() - 1])
     }
 
-    /// The row of one scheme on one level of these hierarchies, with its solution; there is none where bounds cross, or
-    /// where the solve needs more than the bytes that were available before the first row.
-    pub(super) fn row_or_reason<'p>(
+    /// The row of one scheme on one level of these hierarchies, with its solution; there is none where bounds cross,
+    /// where the data left none, or where the solve needs more than the bytes that were available before the first row.
+    pub(super) fn row<'p>(
         &self,
         nested: &mut [NestedIteration<'p, D>],
-        of: (&Entry<'_, D>, &'p Problem<D>),
+        (entry, problem): (&Entry<'_, D>, &'p Problem<D>),
         (level, solver): (usize, &str),
         measured: Measured<'_, 'p, D>,
         (crossing, available): (&Option<Crossing<D>>, Option<u64>),
     ) -> Result<(Row, Option<Solved<'p, D>>), Error> {
         // meshes that did not fit in the beginning were not built
         let available = available.and_then(|bytes| Some(bytes.min(memory_of_process()?)));
-        if let Err(error) = self.check_level(&*of.0.scheme, level, available) {
+        let of = (entry, problem);
+        if let Err(error) = self.check_level(&*entry.scheme, level, available) {
             let cells = self.scene.domain.cells(level);
             return Ok((self.row_without_memory(of, (level, cells), solver, error)?, None));
         }
-        match crossing {
-            None => self.row(nested, of, level, measured),
-            Some(crossing) => Ok((self.row_of_crossing(nested, of, level, crossing)?, None)),
-        }
-    }
-
-    /// Solves one scheme on one level of these hierarchies. Returns the row and the solution; none where the data left
-    /// none.
-    pub(super) fn row<'p>(
-        &self,
-        nested: &mut [NestedIteration<'p, D>],
-        (entry, problem): (&Entry<'_, D>, &'p Problem<D>),
-        level: usize,
-        measured: Measured<'_, 'p, D>,
-    ) -> Result<(Row, Option<Solved<'p, D>>), Error> {
         let (position, nested) = with_level(nested, level);
-        let solver = nested.solver_name();
         nested.replace_constraint_set(problem);
-        match nested.solve_on(position, &*entry.scheme) {
-            Ok(solved) => {
-                let row = self.row_of(entry, level, &solved, solver, measured)?;
-                Ok((row, Some(solved)))
-            }
+        let solved = match crossing {
+            None => nested.solve_on(position, &*entry.scheme),
+            Some(crossing) => Err(crossing.error()),
+        };
+        match solved {
+            Ok(solved) => Ok((self.row_of(entry, level, &solved, solver, measured)?, Some(solved))),
             Err(error) => {
                 let place = (level, nested.mesh(position));
-                let row =
-                    self.row_without((entry, problem), place, solver, measured.failure, error)?;
-                Ok((row, None))
+                Ok((self.row_without(of, place, solver, measured.failure, error)?, None))
             }
         }
-    }
-
-    /// The row of a problem whose bounds cross on the finest mesh, on one level of these hierarchies.
-    fn row_of_crossing<'p>(
-        &self,
-        nested: &mut [NestedIteration<'p, D>],
-        of: (&Entry<'_, D>, &'p Problem<D>),
-        level: usize,
-        crossing: &Crossing<D>,
-    ) -> Result<Row, Error> {
-        let (position, nested) = with_level(nested, level);
-        let place = (level, nested.mesh(position));
-        self.row_without(of, place, nested.solver_name(), None, crossing.error())
     }
 
     /// The row that the data of a problem leave on a mesh.
@@ -143,7 +114,7 @@ impl<const D: usize> Study<'_, D> {
         Ok(Row { solver, peak_memory_bytes, ..row })
     }
 
-    /// What tells the files of a row apart from others of its scene and level.
+    /// The name of a row in its files, after the scene: the label, with the solver where there are several.
     fn name_of_files(&self, row: &Row) -> String {
         match self.solvers.len() {
             0 | 1 => row.label.clone(),

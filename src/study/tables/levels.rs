@@ -30,9 +30,9 @@ pub(crate) fn scenes(rows: &[Row]) -> Vec<(String, Vec<&Row>)> {
 /// The tables of a scene. The first has all levels; times are in seconds. `certif.` is the largest of the four numbers
 /// of the certificate, `effect.` the error bound over the true error in the broken energy norm, `bound` the bound on
 /// that error, with a mark where a term of it is not proven; a last column says why rows did not converge. Where no
-/// error is known there are columns of error bound, energy, contact measure and resultant, and their limits below; where
-/// errors are known a second table has these, for the finest level of each series, with the stages that ran. A third
-/// one has what rows say of several processes.
+/// error is known there are columns of error bound, energy, contact measure and resultant, and their limits below;
+/// where errors are known a second table has these, for the finest level of each series, with the stages that ran. A
+/// third one has what rows say of several processes.
 pub(crate) fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
     let series = series_of(rows);
     let sorted: Vec<&Row> = series.iter().flat_map(|s| s.rows.iter().copied()).collect();
@@ -246,7 +246,7 @@ pub(super) fn marked(row: &Row, bound: String) -> String {
     if row.bound.guaranteed == Some(false) { bound + "*" } else { bound }
 }
 
-/// What the marks of bounds mean, where there are any.
+/// The remark that explains the marks of bounds, where there are any.
 pub(super) fn unproven(rows: &[&Row]) -> Option<String> {
     let sets =
         distinct(rows.iter().map(|r| r.bound.unproven_words()).filter(|words| !words.is_empty()));

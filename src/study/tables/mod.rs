@@ -18,8 +18,8 @@ impl fmt::Display for Report {
 }
 
 impl Report {
-    /// What was compared and how it ended, and for each scene one table at the finest level of every series, in
-    /// lines of this many characters.
+    /// The summary in lines of this many characters: a sentence that says what was compared and how it ended, and for
+    /// each scene a table at the finest level of every series.
     pub fn summary_to_text(&self, width: usize) -> String {
         if self.rows.is_empty() {
             return String::new();

@@ -1,4 +1,4 @@
-//! What a report says below its tables.
+//! The remarks below the tables of a report: why rows did not converge, and warnings.
 
 use crate::study::row::{Row, distinct};
 

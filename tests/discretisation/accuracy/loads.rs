@@ -97,16 +97,7 @@ fn a_load_that_jumps_at_a_sphere_is_integrated_along_it() {
 #[test]
 fn the_rule_for_smooth_loads_limits_no_scheme() {
     fn check<const D: usize>(checks: &mut Checks, n: usize) {
-        let value = |x: &Point<D>| x.iter().map(|x| (PI * x).sin()).product::<f64>();
-        let gradient = |x: &Point<D>| -> Point<D> {
-            let wave =
-                |k, j: usize| if j == k { PI * (PI * x[j]).cos() } else { (PI * x[j]).sin() };
-            Point::from_fn(|k, _| (0..D).map(|j| wave(k, j)).product())
-        };
-        let load = move |x: &Point<D>| D as f64 * PI * PI * value(x);
-        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let problem = Problem::new().source(load).exact(value, gradient);
-        let scene = scenes::Scene::new("smooth", domain, problem);
+        let scene = scenes::sines::<D>();
         for (name, degree) in [("p1", 5), ("sipg", 5), ("wopsip", 5), ("p2", 7), ("sipg-p2", 7)] {
             let run = |quadrature| {
                 let scheme = scheme_by_name::<D>(name, &Default::default()).unwrap();

@@ -4,7 +4,6 @@ use crate::runs::own_scene;
 use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
 use crate::support::scheme_lists::all_schemes;
-use std::f64::consts::PI;
 use unilateral::mesh::BoundaryCondition;
 use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
@@ -147,19 +146,6 @@ fn unit_box<const D: usize>() -> BoxDomain<D> {
     BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
 }
 
-/// Poisson's equation with the product of sines, no constraint.
-fn smooth<const D: usize>() -> Scene<D> {
-    let value = |x: &Point<D>| x.iter().map(|t| (PI * t).sin()).product::<f64>();
-    let gradient = |x: &Point<D>| {
-        let factor = |k: usize, j: usize| {
-            if j == k { PI * (PI * x[j]).cos() } else { (PI * x[j]).sin() }
-        };
-        Point::from_fn(|k, _| (0..D).map(|j| factor(k, j)).product())
-    };
-    let load = move |x: &Point<D>| D as f64 * PI * PI * value(x);
-    own_scene("smooth", unit_box(), Problem::new().source(load).exact(value, gradient))
-}
-
 /// Coefficient 3, reaction `1 + x`, Dirichlet data at the lower end of the first axis, Neumann data
 /// elsewhere, neither of them zero; the solution is the exponential of the mean of `2x - x_0`.
 fn mixed<const D: usize>() -> Scene<D> {
@@ -184,9 +170,9 @@ fn mixed<const D: usize>() -> Scene<D> {
 
 #[test]
 fn smooth_solutions() {
-    orders(smooth::<1>(), &[64, 128], TIGHT);
-    orders(smooth::<2>(), &[32, 64], TIGHT);
-    orders_in_space(smooth::<3>(), &[6, 12]);
+    orders(scenes::sines::<1>(), &[64, 128], TIGHT);
+    orders(scenes::sines::<2>(), &[32, 64], TIGHT);
+    orders_in_space(scenes::sines::<3>(), &[6, 12]);
 }
 
 #[test]

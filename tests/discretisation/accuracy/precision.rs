@@ -1,14 +1,12 @@
 //! Single precision, scaling, stretched meshes, the size of the over-penalty.
 
-use crate::runs::{own_scene, solve};
+use crate::runs::solve;
 use crate::support::checks::Checks;
 use crate::support::rows::{label, rows, rows_in};
 use crate::support::scheme_lists::all_schemes;
 use crate::support::schemes::{Entry, wopsip};
 use crate::support::tables::{DEGREE_OF_TABLES, jump_norm, norms_by_rule, solve_as_tables};
-use std::f64::consts::PI;
 use unilateral::inequality::Outcome;
-use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 use unilateral::real::Precision;
@@ -103,17 +101,6 @@ fn scaling_of_the_coefficient() {
     checks.finish();
 }
 
-/// Poisson's equation with the product of sines on the unit square.
-fn sines() -> Scene<2> {
-    let value = |x: &Point<2>| (PI * x[0]).sin() * (PI * x[1]).sin();
-    let gradient = |x: &Point<2>| {
-        let [(s, c), (t, d)] = [(PI * x[0]).sin_cos(), (PI * x[1]).sin_cos()];
-        Point::<2>::new(PI * c * t, PI * s * d)
-    };
-    let problem = Problem::new().source(move |x| 2.0 * PI * PI * value(x)).exact(value, gradient);
-    own_scene("sines", BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), problem)
-}
-
 /// On `16 x 16 r` boxes the over-penalty with heights of cells and interior penalty with its proven
 /// bound stay as good as Crouzeix-Raviart, the over-penalty with the diameter of the facet does
 /// not. H1 errors to the digits of an independent implementation, jumps of the over-penalty too.
@@ -121,7 +108,7 @@ fn sines() -> Scene<2> {
 fn stretched_meshes() {
     let ratios = [1, 4, 16, 64];
     let mut checks = Checks::default();
-    let scene = sines();
+    let scene = scenes::sines::<2>();
     let meshes =
         ratios.map(|r| Mesh::<2>::kuhn_box(&scene.domain.bounding_box(), [16, 16 * r]).unwrap());
     let mut spread = |scheme: &dyn Scheme<2>, printed: [&str; 4], jumps: [&str; 4]| {
@@ -170,7 +157,7 @@ fn stretched_meshes() {
 /// The default factor, too, is as robust with the weight by heights as without stretching.
 #[test]
 fn stretched_meshes_with_the_default_factor() {
-    let scene = sines();
+    let scene = scenes::sines::<2>();
     let robust = Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() };
     let relative: Vec<f64> = [1, 4, 16, 64]
         .map(|r| {

@@ -3,7 +3,7 @@
 mod files;
 mod synthetic;
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use crate::scratch::Scratch;
 use serde_json::Value;
@@ -304,9 +304,17 @@ fn what_takes_too_long_is_not_repeated_and_finer_levels_are_listed() {
 
 #[test]
 fn errors_are_against_a_reference_where_there_is_one() {
-    let study = tiny().levels([4, 8]).reference(ConformingP2, 32);
-    let rows = study.run().unwrap().rows;
-    for (row, alone) in Rounds::new(1).run(&[study]).unwrap().rows.iter().zip(&rows) {
+    let begun = Cell::new(0);
+    let study = || tiny().levels([4, 8]).reference(ConformingP2, 32);
+    let rows = study().run().unwrap().rows;
+    let studies = [study().observer(|progress| {
+        begun.set(begun.get() + usize::from(matches!(progress, Progress::Started(..))));
+    })];
+    // two rounds, and once against the reference, which is solved too
+    assert_eq!(Rounds::new(2).check(&studies).unwrap(), 2 * 4 + 4 + 1);
+    let found = Rounds::new(2).run(&studies).unwrap().rows;
+    assert_eq!(begun.get(), 2 * 4 + 4 + 1);
+    for (row, alone) in found.iter().zip(&rows) {
         assert_eq!(row.against.as_deref(), Some("p2 at level 32"));
         assert_eq!((&row.label, row.error), (&alone.label, alone.error));
     }

@@ -1,4 +1,4 @@
-//! What stands beside a dumped inequality for `judge`.
+//! The request beside each dumped inequality, which `judge` reads.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

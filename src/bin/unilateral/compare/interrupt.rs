@@ -1,4 +1,4 @@
-//! What an interrupt or a panic leaves: the rows that are finished, as a report.
+//! The report of the finished rows that an interrupt or a panic leaves.
 
 use std::panic::{set_hook, take_hook};
 use std::process::exit;

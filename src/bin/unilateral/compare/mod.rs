@@ -72,7 +72,7 @@ fn program(options: &Options, files: &[(&str, String)]) -> Program {
     options.linear.iter().fold(program, |program, linear| program.with_request("linear", linear))
 }
 
-/// What the options ask for, with every name found.
+/// The scenes, schemes and solvers that the options name.
 struct Chosen {
     /// The scenes, on the mesh of the command line if there is one, or the problem of a file.
     scenes: Vec<AnyScene>,

@@ -1,4 +1,4 @@
-//! What the command line asks for, checked as far as it can be without scenes and meshes.
+//! The options of the command line, checked as far as they can be without scenes and meshes.
 
 use std::path::PathBuf;
 

@@ -106,7 +106,7 @@ fn agreed<T>(result: Request<T>, process: &Process) -> Request<T> {
     })
 }
 
-/// What all runs have in common.
+/// The options, schemes, process and progress that all runs share.
 struct AllRuns<'r> {
     options: &'r Options,
     schemes: &'r [NamedScheme],

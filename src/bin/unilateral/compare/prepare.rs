@@ -1,4 +1,4 @@
-//! What is compared: a study, checked before any runs.
+//! The studies of a comparison, each checked before any runs.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ use unilateral::study::{Journal, Row, RowKey, Study, file_name};
 
 /// A study that has been checked.
 pub struct Run<'a> {
-    /// What tells its rows apart.
+    /// The keys of its rows.
     pub keys: Vec<RowKey>,
     /// Problem file, or scene and mesh, for messages.
     pub place: String,
@@ -120,7 +120,7 @@ fn draw<const D: usize>(
     let Some(fields) = fields_with_bound(solved) else { return Ok(()) };
     let title = format!("{name}, level {level}");
     let problem = solved.discretisation().problem();
-    let picture = Picture::of(&title, problem, solved.mesh(), &fields, None)?;
+    let picture = Picture::of(&title, problem, solved.mesh(), &fields)?;
     picture.write_svg(&directory.join(file_name(name) + ".svg"))
 }
 

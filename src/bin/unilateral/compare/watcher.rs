@@ -1,4 +1,4 @@
-//! What is shown while schemes run.
+//! The progress that is shown while schemes run.
 
 use std::cell::{Cell, RefCell};
 use std::fmt;
@@ -109,7 +109,7 @@ impl Watcher {
         let left = (share > 0.02).then(|| Duration::try_from_secs_f64(left.max(0.0)).ok())?;
         left.map(HumanDuration)
     }
-    /// What receives the outer steps of solves.
+    /// The counter that receives the outer steps of solves.
     pub fn steps(&self) -> StepCounter {
         self.steps.clone()
     }

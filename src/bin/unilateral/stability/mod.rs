@@ -14,12 +14,11 @@ mod options;
 pub use options::Options;
 
 use crate::asked::command;
-use crate::mesh_file::{cannot_mesh, warn_of, with_conditions};
+use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
 use crate::shared::{
     Failure, bar, check_writable, end_at_interrupt, print, tick, use_threads, warn, write,
 };
-use unilateral::mesh::gmsh;
 use unilateral::stability::{Stability, StabilityProgress, Verdict};
 
 /// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
@@ -38,12 +37,15 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
             StabilityProgress::Finished => bar.inc(1),
             _ => {}
         });
-    for path in &options.meshes {
-        let read = gmsh::read::<3>(path).map_err(|e| cannot_mesh(path, &e))?;
+    let warn = |warning: String| {
         if !options.quiet {
-            warn_of(&read.warnings, path, &|warning| warn(&warning));
+            warn(&warning);
         }
-        let mesh = with_conditions(read.mesh, path, &options.boundary)?;
+    };
+    for path in &options.meshes {
+        let of = MeshFile { path: Some(path.clone()), boundary: options.boundary.clone() };
+        let file = of.read()?.expect("a file with a path has contents");
+        let mesh = of.mesh::<3>(&file, &warn)?;
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
         study = study.mesh(&name.unwrap_or_default(), mesh);
     }

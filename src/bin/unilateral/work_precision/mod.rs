@@ -18,8 +18,8 @@ use unilateral::work_precision::{Rounds, WorkPrecision};
 
 use crate::one_run::take_directory;
 use crate::shared::{
-    Failure, Request, bar, each_once, end_at_interrupt, print, terminal_width, tick, use_threads,
-    warn,
+    Failure, Request, bar, complain, each_once, end_at_interrupt, print, terminal_width, tick,
+    use_threads, warn,
 };
 
 const SCENES: [&str; 5] = ["radial-2d", "ball-2d", "signorini-2d", "hertz-2d", "radial-3d"];
@@ -31,10 +31,12 @@ const SUBJECT: &str = "wopsip";
 type Keep<'k> = dyn FnMut(&Report) -> Result<(), Error> + 'k;
 
 /// Runs studies and adds their rows to a report.
-type RunInto<'a> = Box<dyn FnOnce(&mut Report, &mut Keep<'_>) -> Request<()> + 'a>;
+type RunInto<'a> = Box<dyn FnOnce(&mut Report, &mut Keep<'_>) -> Result<(), Error> + 'a>;
 
 /// Studies that have been checked.
 struct Run<'a> {
+    /// The scene, for messages.
+    place: String,
     labels: Vec<String>,
     run: RunInto<'a>,
 }
@@ -70,20 +72,34 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     let mut keep = |report: &Report| {
         WorkPrecision::of(report).subject(subject).write(&options.out).map(|_| ())
     };
-    // rows of an earlier request do not stand for this one
+    // files of an earlier request do not stand for this one
+    if let Ok(earlier) = Report::read(&options.out) {
+        earlier.remove_files(&options.out);
+    }
     keep(&report).map_err(Failure::of_work)?;
     tick(&bar);
-    for Run { run, .. } in runs {
-        run(&mut report, &mut keep).map_err(Failure::Work)?;
+    let mut failed = false;
+    for Run { place, run, .. } in runs {
+        match run(&mut report, &mut keep) {
+            // the next scene could not be written either
+            Err(error @ Error::Write { .. }) => return Err(Failure::of_work(error)),
+            Err(error) => {
+                bar.suspend(|| complain(&format!("{place}: {error}")));
+                failed = true;
+            }
+            Ok(()) => {}
+        }
     }
-    report.complete = true;
-    keep(&report).map_err(Failure::of_work)?;
     bar.finish_and_clear();
+    report.complete = !failed;
+    keep(&report).map_err(Failure::of_work)?;
     if !quiet {
         print(&WorkPrecision::of(&report).subject(subject).to_text(terminal_width()))?;
-        print(&format!("\nReport and plots are in {}\n", options.out.display()))?;
+        let is_whole = report.complete;
+        let files = if is_whole { "Report and plots are" } else { "The incomplete report is" };
+        print(&format!("\n{files} in {}\n", options.out.display()))?;
     }
-    Ok(report.rows.iter().all(Row::converged))
+    Ok(report.complete && report.rows.iter().all(Row::converged))
 }
 
 /// Refuses a subject that no scheme is.
@@ -101,7 +117,8 @@ fn check_subject(options: &Options, runs: &[Run<'_>]) -> Request<()> {
     }
 }
 
-/// Checks the studies of a scene: one for each linear solver, on levels and, where they are asked for, on adaptive meshes.
+/// Checks the studies of a scene: one for each linear solver, on levels and, where they are asked for, on adaptive
+/// meshes.
 fn prepare<'a, const D: usize>(
     options: &'a Options,
     schemes: &[NamedScheme],
@@ -143,8 +160,7 @@ fn prepare<'a, const D: usize>(
     let rounds = Rounds::new(options.rounds()).limit(options.limit);
     let count = rounds.check(&studies).map_err(|e| format!("{place}: {e}"))?;
     bar.inc_length(count as u64);
-    let run = move |report: &mut Report, keep: &mut Keep<'_>| {
-        rounds.run_into(&studies, report, keep).map_err(|e| format!("{place}: {e}"))
-    };
-    Ok(Run { labels, run: Box::new(run) })
+    let run =
+        move |report: &mut Report, keep: &mut Keep<'_>| rounds.run_into(&studies, report, keep);
+    Ok(Run { place, labels, run: Box::new(run) })
 }
