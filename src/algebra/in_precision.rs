@@ -57,7 +57,6 @@ impl PenalisedMatrix<f64> {
     #[must_use]
     pub fn in_precision<T: Real>(&self) -> PenalisedMatrix<T> {
         PenalisedMatrix {
-            block_size: self.block_size,
             blocks: rounded(&self.blocks),
             jumps: self.jumps.in_precision(),
             weights: rounded(&self.weights),

@@ -25,8 +25,6 @@ use crate::real::Real;
 /// them to full relative precision; computed from `u` they suffer from cancellation in `M u`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenalisedMatrix<T> {
-    /// Number of unknowns of a block of `K`.
-    pub block_size: usize,
     /// `K`: its blocks one after the other, each by rows, positive semidefinite.
     pub blocks: Vec<T>,
     /// `M`.
@@ -43,7 +41,13 @@ pub struct PenalisedMatrix<T> {
 impl<T: Real> PenalisedMatrix<T> {
     /// Number of unknowns.
     pub fn size(&self) -> usize {
-        self.blocks.len() / self.block_size
+        self.blocks.len() / self.block_size()
+    }
+
+    /// Number of unknowns of a block of `K`.
+    #[inline(always)]
+    pub fn block_size(&self) -> usize {
+        self.jumps.block_size()
     }
 
     /// Number of jumps: rows of `M`.
@@ -65,15 +69,13 @@ impl<T: Real> PenalisedMatrix<T> {
     /// Whether all vectors and matrices have consistent sizes for `size` unknowns, and weights are positive.
     pub fn is_well_formed(&self, size: usize) -> bool {
         let n = self.n_jumps();
-        self.block_size > 0
-            && size.is_multiple_of(self.block_size)
-            && self.blocks.len() == size * self.block_size
+        size.is_multiple_of(self.block_size())
+            && self.blocks.len() == size * self.block_size()
             && self.jump_data.len() == n
             && self.jumps.len() == n
-            && self.jumps.block_size() == self.block_size
-            && self.jumps.n_blocks() == size / self.block_size
+            && self.jumps.n_blocks() == size / self.block_size()
             && all(n, |k| self.weights[k] > T::lit(0.0))
-            && self.mean_jumps.as_ref().is_none_or(|m| m.is_well_formed(n, size, self.block_size))
+            && self.mean_jumps.as_ref().is_none_or(|m| m.is_well_formed(n, size, self.block_size()))
     }
 
     /// The first unknown that a jump contains.
@@ -94,7 +96,7 @@ impl<T: Real> PenalisedMatrix<T> {
     /// The entry `(K u)_i`, in `f64`.
     #[inline]
     pub fn stiffness(&self, i: usize, u: impl Fn(usize) -> f64) -> f64 {
-        let n = self.block_size;
+        let n = self.block_size();
         let first = i / n * n;
         let row = &self.blocks[i * n..(i + 1) * n];
         row.iter().enumerate().fold(0.0, |s, (j, a)| s + a.to_f64() * u(first + j))
@@ -102,7 +104,7 @@ impl<T: Real> PenalisedMatrix<T> {
 
     /// The diagonal entry `K_ii`.
     pub fn stiffness_diagonal(&self, i: usize) -> f64 {
-        self.blocks[i * self.block_size + i % self.block_size].to_f64()
+        self.blocks[i * self.block_size() + i % self.block_size()].to_f64()
     }
 
     /// The largest ratio of a penalty to the stiffness at the first unknown of a jump: `S` times the squares of the
@@ -136,7 +138,7 @@ impl<T: Real> PenalisedMatrix<T> {
         jump_multipliers: impl Fn(usize) -> f64 + Sync,
         r: &mut [f64],
     ) {
-        let n = self.block_size;
+        let n = self.block_size();
         for_each_chunk_of_groups(r, n, |range, r| {
             for (block, r) in (range.start / n..).zip(r.chunks_exact_mut(n)) {
                 let first = block * n;

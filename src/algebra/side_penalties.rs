@@ -39,7 +39,7 @@ impl<T: Real> SidePenalties<T> {
                 (opposite[one as usize], opposite[other as usize]) = (other, one);
             }
         }
-        let (cell_size, are_means) = (penalised.block_size, *are_means);
+        let (cell_size, are_means) = (penalised.block_size(), *are_means);
         Some(Self { cell_size, are_means, opposite, penalty })
     }
 

@@ -63,7 +63,6 @@ pub(crate) fn penalised_matrix<const D: usize>(
     let jumps = Jumps::new((space.mesh.n_cells(), block_size), term_starts, terms)
         .expect("each side of a facet has the unknowns of one cell");
     PenalisedMatrix {
-        block_size,
         blocks: blocks(space, metrics),
         jumps,
         weights: jump_weights,

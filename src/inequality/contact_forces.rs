@@ -120,7 +120,7 @@ fn squared_terms<T: Real>(
 }
 
 fn squared_stiffness_terms<T: Real>(penalised: &PenalisedMatrix<T>, i: usize, u: &[T]) -> f64 {
-    let n = penalised.block_size;
+    let n = penalised.block_size();
     let (row, values) = (&penalised.blocks[i * n..][..n], &u[i / n * n..][..n]);
     row.iter().zip(values).map(|(a, u)| (a.to_f64() * u.to_f64()).powi(2)).sum()
 }

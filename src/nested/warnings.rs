@@ -48,7 +48,7 @@ pub(super) fn no_digits_of_quadratics(
     precision: Precision,
 ) -> Option<String> {
     let penalised = inequality.penalised.as_ref().filter(|_| degree > 1 && dimension > 1)?;
-    let n_cells = (inequality.size() / penalised.block_size) as f64;
+    let n_cells = (inequality.size() / penalised.block_size()) as f64;
     let ratio = penalised.largest_ratio();
     let rounding = precision.epsilon() * ratio * n_cells.powf(2.0 / dimension as f64);
     // false for numbers that are not finite

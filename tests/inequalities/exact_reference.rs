@@ -78,7 +78,7 @@ impl<'a> Reference<'a> {
 
     /// `c - K u - M^T p`.
     fn residual(&self) -> Vec<Double> {
-        let PenalisedMatrix { block_size: n, blocks, .. } = self.penalised;
+        let (n, blocks) = (self.penalised.block_size(), &self.penalised.blocks);
         let load = &self.inequality.load;
         let entry = |i: usize, j: usize| -> Double { blocks[i * n + j % n].into() };
         let of_block = |i: usize| {
@@ -96,7 +96,7 @@ impl<'a> Reference<'a> {
 
     /// Solves the system of the present contact, with corrections.
     fn solve(&mut self) {
-        let n = self.penalised.block_size;
+        let n = self.penalised.block_size();
         let size = self.values.len();
         let mut number = vec![usize::MAX; size];
         let mut inactive = Vec::new();

@@ -1,4 +1,4 @@
-//! What one cell, or several cells together, add to the bound.
+//! The terms of the bound, of one cell or of several cells together.
 
 use crate::algebra::Distribution;
 use crate::error_bound::NoBound;
@@ -30,7 +30,7 @@ pub(in crate::error_bound) struct Totals {
 }
 
 impl Totals {
-    /// Those of no cells.
+    /// The terms of no cells.
     pub const NONE: Self = Self {
         mismatch: 0.0,
         with_oscillation: 0.0,
@@ -49,7 +49,7 @@ impl Totals {
         self.with_oscillation + self.obstacle + self.contact
     }
 
-    /// Adds those of other cells.
+    /// Adds the terms of other cells.
     pub fn add(&mut self, others: &Self) {
         self.mismatch += others.mismatch;
         self.with_oscillation += others.with_oscillation;
@@ -63,7 +63,7 @@ impl Totals {
         self.reaction_from_below = others.reaction_from_below.min(self.reaction_from_below);
     }
 
-    /// Those of all parts of a mesh; all parts call it.
+    /// The terms of all parts of a mesh; all parts call this function.
     pub fn add_over_parts(&mut self, distribution: &dyn Distribution) {
         let mut sums = self.sums().map(|sum| *sum);
         distribution.sum(&mut sums);

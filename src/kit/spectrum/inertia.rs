@@ -41,8 +41,9 @@ pub fn negative_eigenvalues(matrix: &SparseMatrix<f64>) -> Option<usize> {
     Some(negative)
 }
 
-/// The smallest eigenvalue of a symmetric matrix, by the method of Lanczos for the matrix shifted until it is definite:
-/// not at all, else by its largest row sum of absolute values times `2^-20` to one.
+/// The smallest eigenvalue of a symmetric matrix. Lanczos' method needs a definite matrix: the diagonal is shifted by
+/// zero or, where that does not do, by `2^-20`, `2^-19` and so on up to one times the norm, the largest row sum of
+/// absolute values.
 ///
 /// # Errors
 /// [`SpectrumError`].

@@ -23,7 +23,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         is_variable: impl Fn(usize) -> bool,
         basis: &mut Vec<f64>,
     ) -> usize {
-        let (n, sides) = (self.penalised.block_size, self.sides(block));
+        let (n, sides) = (self.penalised.block_size(), self.sides(block));
         basis.clear();
         for i in (block * n..(block + 1) * n).filter(|&i| is_variable(i)) {
             let means = sides.iter().map(|&side| self.mean_coefficient(side, i));
@@ -44,7 +44,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         shift: &[f64],
         inverse: &mut Vec<f64>,
     ) -> Result<usize, FactorError> {
-        let (size, sides) = (self.penalised.block_size, self.sides(block));
+        let (size, sides) = (self.penalised.block_size(), self.sides(block));
         let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
         let n_free = self.free(block, is_free).count();
         let n = n_free + sides.len();
@@ -97,7 +97,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         unit: f64,
         matrix: &mut Vec<f64>,
     ) {
-        let (size, sides) = (self.penalised.block_size, self.sides(block));
+        let (size, sides) = (self.penalised.block_size(), self.sides(block));
         let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
         let n = n_free + sides.len();
         matrix.clear();

@@ -54,7 +54,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         let mut energy = 0.0;
         for block in 0..self.n_blocks() {
             self.block_right_side(block, is_free, r, &jump_right_side, &mean, &mut local);
-            let n = self.penalised.block_size;
+            let n = self.penalised.block_size();
             let mut k = 0;
             for i in block * n..(block + 1) * n {
                 let value = if is_free[i] { inverses.row_dot(block, k, &local) } else { 0.0 };

@@ -140,7 +140,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         block: usize,
         is_free: &'f [bool],
     ) -> impl Iterator<Item = usize> + use<'f, T> {
-        let n = self.penalised.block_size;
+        let n = self.penalised.block_size();
         (block * n..(block + 1) * n).filter(|&i| is_free[i])
     }
 
@@ -242,7 +242,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         p: &[T],
         is_fixed: &dyn Fn(usize) -> bool,
     ) -> [f64; 2] {
-        let n = self.penalised.block_size;
+        let n = self.penalised.block_size();
         let block = i / n;
         let (mut free, mut fixed) = (0.0, load.to_f64().abs());
         for j in block * n..(block + 1) * n {

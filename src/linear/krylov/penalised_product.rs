@@ -139,7 +139,6 @@ mod tests {
             1.0 / (1 + i % n + j) as f64 + if i % n == j { i as f64 } else { 0.0 }
         };
         PenalisedMatrix {
-            block_size: n,
             blocks: (0..2 * n * n).map(entry).collect(),
             jumps: Jumps::new((2, n), vec![0, half, 2 * half], terms).unwrap(),
             weights: vec![7.0, 3.0],

@@ -35,7 +35,7 @@ pub(super) fn stiffness<T: Real>(
     [one, other]: [usize; 2],
     are_means: bool,
 ) -> T {
-    let size = penalised.block_size;
+    let size = penalised.block_size();
     let first = one / size * size;
     let entry = |i: usize, j: usize| penalised.blocks[(first + i) * size + j];
     let (one, other) = (one - first, other - first);

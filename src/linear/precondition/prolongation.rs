@@ -22,8 +22,8 @@ enum Entries<T> {
     /// midpoints in `children` from its entry of `starts` up to the next entry.
     Midpoints { parents: Vec<[u32; 2]>, starts: Vec<u32>, children: Vec<u32>, own: Vec<u32> },
     /// Each fine unknown has the value at one coarse unknown, its entry of `parents`. The children of a coarse unknown
-    /// are those in `children` from its entry of `starts` up to the next entry. With weights of one, cycles on
-    /// discontinuous functions take a seventh longer.
+    /// are those in `children` from its entry of `starts` up to the next entry. As rows with weights of one, an entry
+    /// would take three numbers in place of one, in every cycle on the finest level.
     Injection { parents: Vec<u32>, starts: Vec<u32>, children: Vec<u32> },
     /// General weights: `P` by rows (`fine`), and its transpose by rows (`coarse`).
     Weights { fine: RectangularMatrix<T>, coarse: RectangularMatrix<T> },

@@ -2,7 +2,7 @@
 
 use super::triangle::{Corner, PlanePoint, Triangle, between, quarters};
 
-/// Triangles are cut into pieces no longer than this share of the picture.
+/// The longest piece into which the edge of a triangle is cut, over the size of the picture.
 const FINEST: f64 = 1.0 / 120.0;
 /// Most often that a triangle is cut.
 const MOST: u32 = 6;

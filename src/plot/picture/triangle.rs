@@ -121,7 +121,7 @@ pub(crate) fn quarters([a, b, c]: [Corner; 3]) -> [[Corner; 3]; 4] {
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
 
-/// The point that divides a segment in this ratio.
+/// The point of a segment that has this share of the length before it, counted from the first corner.
 pub(crate) fn between(a: Corner, b: Corner, share: f64) -> Corner {
     let mix = |x: f64, y: f64| (1.0 - share) * x + share * y;
     Corner {

@@ -42,7 +42,7 @@ pub(super) fn plan(plan: &mut Plan<'_>) {
     }
 }
 
-/// The condition number of `B^-1 A`; none where it is out of reach.
+/// The condition number of `B^-1 A`; none where a factorisation fails or Lanczos' method does not converge.
 fn condition(matrix: &SparseMatrix<f64>, b: &dyn PositiveDefinite) -> Option<f64> {
     let a = CholeskyMatrix::new(matrix).ok()?;
     let lanczos = Lanczos::default().with_tolerance(1e-6);
