@@ -1,6 +1,8 @@
 //! Solvers by name.
 
-use super::{ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, ProximalPoint, in_precision};
+use super::{
+    ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, ProximalPoint, in_precision,
+};
 use crate::linear::LinearMethod;
 use crate::real::Precision;
 

@@ -85,17 +85,10 @@ impl Latent {
         self.psi = side * self.of_gap(gap);
     }
 
-    /// Sets the gap of an unknown with one bound; one with two bounds stays in the middle.
-    pub fn open(&mut self, gap: f64) {
-        if !self.has_two_bounds() {
-            self.psi = self.side() * self.of_gap(gap);
-        }
-    }
-
     /// Changes the latent variable. Away from the nearer bound it goes at most to that with the gap `most`.
     pub fn advance(&mut self, change: f64, most: f64) {
         let side = self.side();
-        let furthest = self.of_gap(most);
+        let furthest = self.of_gap(most).max(side * self.psi);
         self.psi = side * (side * (self.psi + change)).min(furthest);
     }
 }

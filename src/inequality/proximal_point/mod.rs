@@ -29,7 +29,7 @@ const GROWTH: f64 = 4.0;
 /// The number of steps by which the weight is ahead if there are starting values.
 const STEPS_AHEAD: i32 = 6;
 
-/// The least gap of starting values, times the weight of the first step.
+/// The least gap of starting values, times their first weight.
 const LEAST_GAP: f64 = 1e-3;
 
 /// The largest entry of the diagonal `D`, divided by that of `A`.
@@ -164,8 +164,8 @@ struct ProximalIterate<'h, 'a, T> {
 }
 
 impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
-    /// The solution without bounds, and latent variables: those of starting values, if there are any, else of gaps as
-    /// large as the largest violation of a bound, and of the middle between two bounds.
+    /// The solution without bounds, and the latent variables of the starting values, if there are any, else of this
+    /// solution, with gaps that are at least its largest violation of a bound.
     ///
     /// # Errors
     /// See [`NewtonSystem::factor`].
@@ -183,8 +183,8 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
         iterate.keep_if_best(&residual.values);
         let violation = iterate.set_weight(is_regular);
         match guess.values.as_ref().filter(|values| values.len() == inequality.size()) {
-            Some(values) => iterate.set_values(values),
-            None => iterate.latent.iter_mut().for_each(|of| of.latent.open(violation)),
+            Some(values) => iterate.begin_at(values),
+            None => iterate.set_latent_variables(violation),
         }
         Ok(iterate)
     }
@@ -212,11 +212,15 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
     }
 
     /// Begins at given values, several steps ahead.
-    fn set_values(&mut self, values: &[T]) {
-        let least = LEAST_GAP / self.weight;
-        self.weight *= GROWTH.powi(STEPS_AHEAD);
+    fn begin_at(&mut self, values: &[T]) {
         let given = self.point.values.iter_mut().zip(values).zip(&self.inequality.bounds);
         given.for_each(|((x, &value), bound)| *x = bound.nearest(value).to_f64());
+        self.weight *= GROWTH.powi(STEPS_AHEAD);
+        self.set_latent_variables(LEAST_GAP / self.weight);
+    }
+
+    /// Sets the latent variables to those of the values, or of values with the gap `least` that are nearer to a bound.
+    fn set_latent_variables(&mut self, least: f64) {
         for LatentUnknown { unknown, latent, .. } in &mut self.latent {
             latent.set_value(self.point.values[*unknown], least);
         }
@@ -263,8 +267,7 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
         for ((x, bound), &state) in values.iter_mut().zip(bounds).zip(&contact) {
             *x = prescribed_value(bound, state).unwrap_or(*x);
         }
-        let multipliers: Vec<T> =
-            self.point.jump_multipliers.iter().map(|&p| T::lit(p)).collect();
+        let multipliers: Vec<T> = self.point.jump_multipliers.iter().map(|&p| T::lit(p)).collect();
         let certificate = certify_with_rounding(self.inequality, &values, &multipliers).0.largest();
         if certificate < self.best.1 {
             let solution = Solution::new(values, contact, Outcome::IterationLimit);
