@@ -32,7 +32,7 @@ const STEPS_AHEAD: i32 = 6;
 /// The least gap of starting values, times their first weight.
 const LEAST_GAP: f64 = 1e-3;
 
-/// The largest entry of the diagonal `D`, divided by that of `A`.
+/// The largest entry of the diagonal `D`, divided by the weight `w` of its unknown.
 const PINNED: f64 = 1e15;
 
 /// The latent variable proximal point method, known as proximal Galerkin, for comparison with the other solvers.
@@ -42,15 +42,16 @@ const PINNED: f64 = 1e15;
 /// `A u(psi) - b = w (psi_before - psi) / alpha`, `w` a diagonal: one Newton system a step, with `A` plus the diagonal
 /// `w / (alpha u'(psi))`. Every step multiplies the weight by four. Where a step would release an unknown from its bound,
 /// the gap grows by no more than the correction of that unknown. The method applies to every matrix whose symmetric
-/// part is positive semidefinite, from any starting values. It ends as soon as the values, those near bounds on these
-/// bounds, have a certificate within its limit; else after 60 systems, with the values of the smallest certificate.
+/// part is positive semidefinite, and starts from starting values, else from the solution without bounds. It ends as soon
+/// as the values, those near bounds on these bounds, have a certificate within its limit; else after 60 systems, with the
+/// values of the smallest certificate.
 ///
 /// For symmetric matrices the steps, solved exactly, converge for every weight (G. Chen, M. Teboulle, SIAM J. Optim. 3
 /// (1993) 538-543); for one Newton system a step there is no proof. Source of the method: B. Keith, T. M. Surowiec,
 /// Found. Comput. Math. (2024), arXiv 2307.12444; there the entropy acts on functions, which makes a discretisation of
 /// its own, here on the unknowns, so that the limit is the solution of the scheme.
 ///
-/// Where gap and multiplier vanish together, the number of systems grows with the mesh; with bounds at vertices of
+/// Where gap and multiplier vanish together, the number of systems may grow with the mesh; with bounds at vertices of
 /// over-penalised schemes the limit of systems may be reached. An inequality of one part of a mesh has the outcome
 /// [`Outcome::Unsuitable`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
