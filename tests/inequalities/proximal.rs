@@ -282,12 +282,13 @@ fn a_run_that_stalls_says_so_with_its_best_iterate() {
 fn summary(runs: &[(Outcome, usize)]) -> String {
     let converged = runs.iter().filter(|run| run.0 == Outcome::Converged);
     let counts: Vec<usize> = converged.map(|run| run.1).collect();
-    let mean = counts.iter().sum::<usize>() as f64 / counts.len().max(1) as f64;
     let failures = match runs.len() - counts.len() {
         0 => String::new(),
         n => format!(" ({n})"),
     };
-    format!("{mean:.1}/{}{failures}", counts.iter().max().unwrap_or(&0))
+    let Some(most) = counts.iter().max() else { return format!("–{failures}") };
+    let mean = counts.iter().sum::<usize>() as f64 / counts.len() as f64;
+    format!("{mean:.1}/{most}{failures}")
 }
 
 #[test]
