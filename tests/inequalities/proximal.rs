@@ -72,28 +72,32 @@ fn solved(inequality: &Inequality<f64>, what: &str) -> Solution<f64> {
 /// The counts of a prototype, which are independent of the mesh where gap and multiplier do not vanish together.
 #[test]
 fn cold_starts_take_the_expected_numbers_of_systems() {
-    let expected: [(&str, &str, &[(usize, usize)]); 13] = [
-        ("radial-2d", "p1", &[(16, 9), (32, 9), (64, 9), (128, 11)]),
-        ("signorini-2d", "p1", &[(16, 10), (32, 10), (64, 11), (128, 12)]),
-        ("radial-3d", "p1", &[(8, 9)]),
-        ("radial-3d", "cr", &[(8, 9)]),
-        ("radial-3d", "sipg", &[(8, 10)]),
-        ("radial-3d", "wopsip", &[(8, 12)]),
-        ("radial-3d", "wopsip:facet-means", &[(8, 9)]),
-        ("biactive-ring-2d", "p1", &[(32, 10)]),
-        ("ball-2d", "wopsip", &[(32, 15)]),
-        ("ball-2d", "wopsip:facet-means", &[(32, 9)]),
-        ("ball-2d", "p2", &[(32, 11)]),
-        ("bilateral-1d", "p1", &[(1024, 11)]),
-        ("membrane.toml", "p1", &[(3, 9)]),
-    ];
-    let others = [("membrane.toml", "p2", &[(3, 14)][..]), ("membrane.toml", "wopsip", &[(3, 20)])];
-    for (name, scheme, counts) in expected.into_iter().chain(others) {
-        for &(level, count) in counts {
-            let what = format!("{name}, {scheme}, {level}");
-            let found = solved(&inequality_of(name, scheme, level), &what).outer;
-            assert!(found.abs_diff(count) <= 2, "{what}: {found} systems, expected {count}");
-        }
+    for (name, scheme, level, count) in [
+        ("radial-2d", "p1", 16, 9),
+        ("radial-2d", "p1", 32, 9),
+        ("radial-2d", "p1", 64, 9),
+        ("radial-2d", "p1", 128, 11),
+        ("signorini-2d", "p1", 16, 10),
+        ("signorini-2d", "p1", 32, 10),
+        ("signorini-2d", "p1", 64, 11),
+        ("signorini-2d", "p1", 128, 12),
+        ("radial-3d", "p1", 8, 9),
+        ("radial-3d", "cr", 8, 9),
+        ("radial-3d", "sipg", 8, 10),
+        ("radial-3d", "wopsip", 8, 12),
+        ("radial-3d", "wopsip:facet-means", 8, 9),
+        ("biactive-ring-2d", "p1", 32, 10),
+        ("ball-2d", "wopsip", 32, 15),
+        ("ball-2d", "wopsip:facet-means", 32, 9),
+        ("ball-2d", "p2", 32, 11),
+        ("bilateral-1d", "p1", 1024, 11),
+        ("membrane.toml", "p1", 3, 9),
+        ("membrane.toml", "p2", 3, 14),
+        ("membrane.toml", "wopsip", 3, 20),
+    ] {
+        let what = format!("{name}, {scheme}, {level}");
+        let found = solved(&inequality_of(name, scheme, level), &what).outer;
+        assert!(found.abs_diff(count) <= 2, "{what}: {found} systems, expected {count}");
     }
 }
 
