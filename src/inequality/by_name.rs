@@ -1,6 +1,8 @@
 //! Solvers by name.
 
-use super::{ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, in_precision};
+use super::{
+    ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, ProximalPoint, in_precision,
+};
 use crate::linear::LinearMethod;
 use crate::real::Precision;
 
@@ -12,6 +14,7 @@ pub const SOLVERS: &[(&str, &str)] = &[
         "truncated nonsmooth Newton multigrid, not for over-penalty with bounds at vertices",
     ),
     ("interior-point", "predictor-corrector interior point method, with factors"),
+    ("proximal", "proximal Galerkin: latent variables, one system a step, with factors"),
 ];
 
 /// The solver of this name that computes in a precision, with a method for the linear systems where it has more than
@@ -25,6 +28,7 @@ pub fn solver_by_name(
         "active-set" => Some(in_precision(precision, ActiveSet::default().linear(linear))),
         "monotone-multigrid" => Some(in_precision(precision, MonotoneMultigrid::default())),
         "interior-point" => Some(in_precision(precision, InteriorPoint)),
+        "proximal" => Some(in_precision(precision, ProximalPoint)),
         _ => None,
     }
 }

@@ -148,6 +148,15 @@ pub(crate) fn stiffness_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) 
 pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> {
     let mut residual = vec![0.0; inequality.size()];
     inequality.residual_f64(u, &mut residual);
+    contact_by_residual(inequality, u, &residual)
+}
+
+/// [`contact_of`] for the residual that a solver has, with its jump multipliers where the matrix is penalised.
+pub(super) fn contact_by_residual<T: Real>(
+    inequality: &Inequality<T>,
+    u: &[T],
+    residual: &[f64],
+) -> Vec<Contact> {
     let state = |(i, bound): (usize, &Bound<T>)| {
         if !bound.is_inequality() {
             return Contact::Inactive;

@@ -16,6 +16,7 @@
 //! | `active_set/` | [`ActiveSet`]: the primal-dual active set method, with the order of all methods in `active_set/ladder` |
 //! | `interior_point/` | [`InteriorPoint`]: Mehrotra's method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid/` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
+//! | `proximal_point/` | [`ProximalPoint`]: proximal Galerkin with one Newton system a step, for comparison |
 //! | `certificate` | [`Certificate`] |
 //! | `contact_forces` | the forces of active bounds, from which everything that shows a force takes them |
 //! | `violations/` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh; the violations at one unknown |
@@ -42,6 +43,7 @@ pub(crate) mod initial_guess;
 mod interior_point;
 mod monotone_multigrid;
 mod outcome;
+mod proximal_point;
 mod recession;
 mod scales;
 mod single_precision;
@@ -61,6 +63,7 @@ pub use initial_guess::InitialGuess;
 pub use interior_point::InteriorPoint;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
+pub use proximal_point::ProximalPoint;
 pub(crate) use recession::explanation;
 pub use single_precision::{SinglePrecision, in_precision};
 pub use solution::Solution;

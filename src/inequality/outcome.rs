@@ -20,6 +20,8 @@ pub enum Outcome {
     Stalled,
     /// Values that no solver of this library computed do not satisfy the inequality to the tolerance.
     NotASolution,
+    /// The solver does not take such an inequality.
+    Unsuitable,
     /// The matrix is not positive definite on the inactive unknowns (penalty too small).
     NotCoercive,
     /// The matrix is singular on the inactive unknowns.
@@ -54,6 +56,7 @@ impl Outcome {
             Outcome::Cycling => "cycling",
             Outcome::Stalled => "stalled",
             Outcome::NotASolution => "not-a-solution",
+            Outcome::Unsuitable => "unsuitable",
             Outcome::NotCoercive => "not-coercive",
             Outcome::Singular => "singular",
             Outcome::NoSolution => "no-solution",
@@ -70,7 +73,8 @@ impl Outcome {
     pub(crate) fn has_iterate(self) -> bool {
         !matches!(
             self,
-            Outcome::NotCoercive
+            Outcome::Unsuitable
+                | Outcome::NotCoercive
                 | Outcome::Singular
                 | Outcome::NotFinite
                 | Outcome::OutOfMemory
@@ -114,6 +118,9 @@ impl Outcome {
             }
             Outcome::NotASolution => {
                 "the values do not satisfy the inequality to the limits of the certificate"
+            }
+            Outcome::Unsuitable => {
+                "the solver does not take this matrix: monotone multigrid needs a symmetric one, the proximal method all of it in one process; use the active set method"
             }
             Outcome::NotCoercive => {
                 "the matrix is not positive definite: a penalty is too small, or a reaction too negative"

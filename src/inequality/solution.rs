@@ -10,7 +10,8 @@ use crate::real::{Precision, Real};
 #[non_exhaustive]
 pub struct Solution<T> {
     /// The values of the unknowns: the solution if converged. Else, from the active set method, the iterate with the
-    /// smallest projected Jacobi step, in the norm of the diagonal of `A`; from the other methods the last iterate.
+    /// smallest projected Jacobi step, in the norm of the diagonal of `A`; from the proximal point method the iterate with
+    /// the smallest certificate; from the other methods the last iterate.
     pub values: Vec<T>,
     /// Which bound, if any, is active at each unknown.
     pub contact: Vec<Contact>,
@@ -22,6 +23,7 @@ pub struct Solution<T> {
     ///   point method;
     /// * active set method with a Krylov method: active sets for which linear systems were solved;
     /// * monotone multigrid: cycles;
+    /// * interior point method and proximal point method alone: linear systems, the first one without bounds included;
     /// * several methods one after the other: the sum.
     pub outer: usize,
     /// Number of iterations of the linear solver: of the Krylov method, or cycles of monotone

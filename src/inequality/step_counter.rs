@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The number of the present outer step of a solver, from which another thread can display the progress. Clones share
-/// the number. Solvers of this library count linear systems with a new active set, steps of the interior point method,
-/// and cycles of monotone multigrid.
+/// the number. Solvers of this library count linear systems with a new active set, steps of the interior point method
+/// and of the proximal point method, and cycles of monotone multigrid.
 ///
 /// ```
 /// use unilateral::inequality::StepCounter;

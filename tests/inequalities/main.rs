@@ -12,6 +12,7 @@ mod monotone_multigrid;
 mod nonsymmetric;
 mod own_preconditioner;
 mod problems;
+mod proximal;
 mod recession;
 mod solvers;
 

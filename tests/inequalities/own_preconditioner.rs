@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::problems::{Random, sparse};
 use unilateral::algebra::{Bound, Distribution, Inequality};
-use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Stage, certify};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, ProximalPoint, Stage, certify};
 use unilateral::linear::{
     BuiltInPreconditioners, FactorError, LinearMethod, PreconditionedSystem, Preconditioner,
     PreconditionerFamily,
@@ -117,6 +117,8 @@ fn on_parts_values_without_a_bound_on_their_error_have_not_converged() {
         assert!(certify(&given, &solution.values).largest() <= 1e-9);
         assert_eq!(solution.outcome, outcome);
         assert_eq!(solution.algebraic_bound.is_some(), outcome == Outcome::Converged);
+        // a method of one process
+        assert_eq!(ProximalPoint.solve(&given).outcome, Outcome::Unsuitable);
     }
 }
 

@@ -1,6 +1,8 @@
 //! Domains that only their bounds hold: no solution, many solutions, or one.
 
-use unilateral::inequality::{ActiveSet, MonotoneMultigrid, Outcome, SinglePrecision};
+use unilateral::inequality::{
+    ActiveSet, MonotoneMultigrid, Outcome, ProximalPoint, SinglePrecision,
+};
 use unilateral::mesh::BoundaryCondition;
 use unilateral::nested::NestedIteration;
 use unilateral::prelude::*;
@@ -70,6 +72,8 @@ fn every_solver_says_so() {
         let solved =
             NestedIteration::new(problem, &mesh).solver(multigrid).solve(&ConformingP1).unwrap();
         assert_eq!(solved.outcome(), outcome);
+        let mut nested = NestedIteration::new(problem, &mesh).solver(ProximalPoint);
+        assert_eq!(nested.solve(&ConformingP1).unwrap().outcome(), outcome);
     }
     let fine = square(16);
     for (problem, outcome) in [(&pulled, Outcome::NoSolution), (&level, Outcome::NotUnique)] {

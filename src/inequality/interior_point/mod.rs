@@ -21,7 +21,8 @@ use crate::instances::compiled;
 use crate::linear::direct::StaticCondensation;
 use crate::real::Real;
 use bound_pairs::{BoundPair, mean_product, ratio_test};
-use newton_system::{MixedVector, NewtonFactors, NewtonSystem};
+use newton_system::NewtonFactors;
+pub(super) use newton_system::{MixedVector, NewtonSystem};
 
 /// Largest number of linear systems of a run. Runs of the file of figures take 13 in the mean and 24 at
 /// most.

@@ -1,4 +1,5 @@
-//! The linear systems of the interior point method: `A + D` with a nonnegative diagonal `D`.
+//! The linear systems of the interior point method and of the proximal point method: `A + D` with a nonnegative diagonal
+//! `D`.
 
 use crate::algebra::{Inequality, PenalisedMatrix, SparseMatrix};
 use crate::inequality::certificate::positive_diagonal;
@@ -113,6 +114,49 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         Ok(NewtonFactors::Assembled(factors))
     }
 
+    /// The solution without bounds, and true. A body that bounds alone hold has no such solution: then the solution of
+    /// `(A + D) u = b + D l`, where `D` is the diagonal of `A` at unknowns with bounds and `l` the admissible value nearest
+    /// to zero, and false.
+    ///
+    /// # Errors
+    /// See [`NewtonSystem::factor`].
+    pub fn solve_without_bounds(&mut self) -> Result<(MixedVector, bool), FactorError> {
+        let mut diagonal = vec![0.0; self.inequality.size()];
+        if self.inequality.kernel.is_empty() {
+            match self.solve_shifted(&diagonal) {
+                Err(FactorError::Singular) => {}
+                found => return found.map(|point| (point, true)),
+            }
+        }
+        for &i in &self.free {
+            let i = i as usize;
+            if self.inequality.bounds[i].is_inequality() {
+                diagonal[i] = self.diagonal_scale(i);
+            }
+        }
+        self.solve_shifted(&diagonal).map(|point| (point, false))
+    }
+
+    /// The solution of `(A + D) u = b + D l` without bounds on the unknowns that are not fixed, `l` the admissible values
+    /// nearest to zero.
+    fn solve_shifted(&mut self, diagonal: &[f64]) -> Result<MixedVector, FactorError> {
+        let factors = self.factor(diagonal)?;
+        let bounds = &self.inequality.bounds;
+        let mut point = self.zeros();
+        for (x, bound) in point.values.iter_mut().zip(bounds) {
+            *x = bound.fixed_value().map_or(0.0, T::to_f64);
+        }
+        let mut right = self.residual(&point);
+        for (i, bound) in bounds.iter().enumerate() {
+            right.values[i] += diagonal[i] * bound.nearest(T::lit(0.0)).to_f64();
+        }
+        self.solve(&factors, &mut right);
+        let MixedVector { values, jump_multipliers } = right;
+        point.values.iter_mut().zip(values).for_each(|(x, change)| *x += change);
+        point.jump_multipliers = jump_multipliers;
+        Ok(point)
+    }
+
     /// Replaces a right-hand side by the solution, with zeros for fixed unknowns. `factors` must
     /// come from [`NewtonSystem::factor`] of this system.
     pub fn solve(&self, factors: &NewtonFactors<T>, right: &mut MixedVector) {
@@ -164,5 +208,15 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
             }
         };
         (0..w.len()).filter(|&i| w[i] != 0.0).map(|i| w[i] * image(i)).sum()
+    }
+
+    /// The energy `w . A w`; a penalty by its jumps.
+    pub fn energy(&self, w: &[f64]) -> f64 {
+        let jumps = |penalised: &PenalisedMatrix<T>| {
+            let multipliers = penalised.weights.iter().enumerate();
+            let energy = multipliers.map(|(k, s)| s.to_f64() * penalised.jump(k, |i| w[i]).powi(2));
+            energy.sum::<f64>()
+        };
+        self.stiffness_energy(w) + self.penalised().map_or(0.0, jumps)
     }
 }

@@ -15,7 +15,7 @@ mod settings;
 use super::initial_guess::InitialGuess;
 use super::recession::solve_with_kernel;
 use super::validation::check;
-use super::{ActiveSet, InequalitySolver, Solution};
+use super::{ActiveSet, InequalitySolver, Outcome, Solution};
 use crate::algebra::Inequality;
 use crate::instances::compiled;
 use crate::real::Real;
@@ -47,14 +47,18 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
 
 impl MonotoneMultigrid {
     /// The solution by cycles. The counter of the guess, which contains the steps of all stages before this one, grows
-    /// by one for each cycle. A matrix that is not symmetric or is distributed has no energy, or no coarse spaces in
-    /// one process: the active set method with its default settings solves such an inequality.
+    /// by one for each cycle. A matrix that is not symmetric has no energy: the outcome is [`Outcome::Unsuitable`]. That
+    /// of one part of a mesh has no coarse spaces in one process: the active set method with its default settings solves
+    /// such an inequality.
     pub(super) fn run_cycles<T: Real>(
         &self,
         inequality: &Inequality<T>,
         guess: &InitialGuess<T>,
     ) -> Solution<T> {
-        if !inequality.symmetric || inequality.distribution.is_some() {
+        if !inequality.symmetric {
+            return Solution::without_iterate(inequality, Outcome::Unsuitable);
+        }
+        if inequality.distribution.is_some() {
             return ActiveSet::default().solve_from(inequality, guess);
         }
         if let Err(outcome) = check(inequality) {

@@ -14,7 +14,8 @@
 /// coarse spaces of the [`InitialGuess`](crate::inequality::InitialGuess); without coarse spaces it is constructed from
 /// the matrix by aggregation, which suits conforming P1 only. The method converges slowly for other matrices without
 /// coarse spaces, and for over-penalty with bounds at vertices: if a large penalty couples means of several unknowns, a
-/// sweep hardly changes any single unknown. Matrices that are not symmetric, and those of one part of a mesh, are
+/// sweep hardly changes any single unknown. Matrices that are not symmetric
+/// have the outcome [`Outcome::Unsuitable`](crate::inequality::Outcome::Unsuitable); those of one part of a mesh are
 /// solved by [`ActiveSet`](crate::inequality::ActiveSet).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

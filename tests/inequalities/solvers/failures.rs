@@ -4,7 +4,7 @@ use super::{cold, solve_from};
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Start};
 use unilateral::inequality::{
-    ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, Outcome, certify,
+    ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, Outcome, ProximalPoint, certify,
 };
 use unilateral::linear::is_positive_definite;
 use unilateral::prelude::*;
@@ -47,8 +47,9 @@ fn every_solver_checks_definiteness_first() {
         cold(&problem).outcome,
         InteriorPoint.solve(&problem).outcome,
         MonotoneMultigrid::default().solve(&problem).outcome,
+        ProximalPoint.solve(&problem).outcome,
     ];
-    assert_eq!(outcomes, [Outcome::NotCoercive; 3]);
+    assert_eq!(outcomes, [Outcome::NotCoercive; 4]);
 }
 
 #[test]
