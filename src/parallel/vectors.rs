@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::map_items;
+use super::{for_each_item, map_items, split};
 use crate::memory::in_large_pages;
 use crate::real::{Real, maximum};
 
@@ -39,7 +39,7 @@ pub(crate) fn dot<T: Real>(x: &[T], y: &mut [T]) -> f64 {
 }
 
 /// Whether a loop over `n` entries runs on the calling thread: one chunk, or one thread.
-fn is_sequential(n: usize) -> bool {
+pub(super) fn is_sequential(n: usize) -> bool {
     n <= CHUNK || rayon::current_num_threads() == 1
 }
 
@@ -89,11 +89,53 @@ pub(crate) fn map_chunks_of_groups<R: Send>(
     gather(n, group, items, |range, ()| work(range))
 }
 
+/// The values of all lists, one list after the other.
+pub(crate) fn concat<V: Copy + Default + Send + Sync>(lists: &[Vec<V>]) -> Vec<V> {
+    let n = lists.iter().map(Vec::len).sum();
+    if is_sequential(n) {
+        return lists.concat();
+    }
+    let mut all = collect(n, |_| V::default());
+    let parts = split(&mut all, lists.iter().map(Vec::len)).collect();
+    for_each_item(parts, &|k, part: &mut [V]| part.copy_from_slice(&lists[k]));
+    all
+}
+
+/// Where each entry of all lists starts, with the number of values at the end; a list has the ends of its entries, from
+/// its own beginning.
+pub(crate) fn starts(lists: &[&[u32]]) -> Vec<u32> {
+    let mut starts = vec![0; 1 + lists.iter().map(|ends| ends.len()).sum::<usize>()];
+    let mut first = 0;
+    let firsts = lists.iter().map(|ends| {
+        first += ends.last().copied().unwrap_or(0);
+        first - ends.last().copied().unwrap_or(0)
+    });
+    let parts = split(&mut starts[1..], lists.iter().map(|ends| ends.len())).zip(firsts);
+    for_each_item(parts.collect(), &|k, (part, first): (&mut [u32], u32)| {
+        part.iter_mut().zip(lists[k]).for_each(|(start, end)| *start = first + end);
+    });
+    starts
+}
+
 /// The indices below `n` for which a predicate holds, ascending.
 pub(crate) fn indices(n: usize, predicate: impl Fn(usize) -> bool + Sync) -> Vec<u32> {
     let of_chunk =
         |range: Range<usize>| range.filter(|&i| predicate(i)).map(|i| i as u32).collect::<Vec<_>>();
-    map_chunks(n, of_chunk).concat()
+    concat(&map_chunks(n, of_chunk))
+}
+
+/// The position of each index below `n` in an ascending list; `u32::MAX` for an index that the list does not have.
+pub(crate) fn positions(n: usize, list: &[u32]) -> Vec<u32> {
+    let mut positions = in_large_pages(vec![0; n]);
+    for_each_chunk(&mut positions, |range, positions| {
+        positions.fill(u32::MAX);
+        let first = list.partition_point(|&i| (i as usize) < range.start);
+        for (k, &i) in (first..).zip(&list[first..]).take_while(|(_, i)| (**i as usize) < range.end)
+        {
+            positions[i as usize - range.start] = k as u32;
+        }
+    });
+    positions
 }
 
 /// Whether a predicate holds for all indices below `n`.
@@ -151,14 +193,16 @@ pub(crate) fn for_each_chunk<A: Send>(x: &mut [A], work: impl Fn(Range<usize>, &
     for_each_chunk_of_groups(x, 1, work);
 }
 
-/// As [`for_each_chunk`], for two vectors of the same length.
+/// As [`for_each_chunk_of_groups`], for two vectors of the same length.
 pub(crate) fn for_each_chunk_of_two<A: Send, B: Send>(
     x: &mut [A],
     y: &mut [B],
+    group: usize,
     work: impl Fn(Range<usize>, &mut [A], &mut [B]) + Sync,
 ) {
-    let (n, chunks) = (x.len(), x.chunks_mut(CHUNK).zip(y.chunks_mut(CHUNK)));
-    gather(n, 1, chunks, |range, (x, y)| work(range, x, y))
+    let (n, length) = (x.len(), chunk_of_groups(group));
+    let chunks = x.chunks_mut(length).zip(y.chunks_mut(length));
+    gather(n, group, chunks, |range, (x, y)| work(range, x, y))
 }
 
 /// Calls `work` with the index range and the entries of each chunk of `x`; no chunk divides a group

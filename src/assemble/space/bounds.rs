@@ -7,6 +7,7 @@ use super::contradictions::{BoundedNode, Contradiction, DIRICHLET};
 use super::{Space, Terms, checks};
 use crate::algebra::Bound;
 use crate::assemble::count;
+use crate::assemble::shared_rows::places::for_each_place;
 use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
@@ -49,42 +50,43 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<(), Error> {
         let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let n = self.per_cell();
+        let found_by_all = Mutex::new(Vec::new());
+        let restrict = |bound: &mut Bound<f64>, cell, node| -> Result<(), Error> {
+            let mut found = Vec::new();
+            self.restrict_by_obstacles(&terms, cell, node, bound, &mut found)?;
+            if !found.is_empty() {
+                lock(&found_by_all).append(&mut found);
+            }
+            Ok(())
+        };
         if self.broken {
             // no other cell has the unknowns of a cell
-            let n = self.per_cell();
-            let found_by_all = Mutex::new(Vec::new());
             let bound_chunk =
                 |cells: Range<usize>, bounds: &mut [Bound<f64>]| -> Result<(), Error> {
-                    let mut found = Vec::new();
                     for (cell, bounds) in cells.zip(bounds.chunks_exact_mut(n)) {
                         for &node in &bounded {
-                            self.restrict_by_obstacles(
-                                &terms,
-                                cell,
-                                node,
-                                &mut bounds[node.0],
-                                &mut found,
-                            )?;
+                            restrict(&mut bounds[node.0], cell, node)?;
                         }
                     }
-                    lock(&found_by_all).append(&mut found);
                     Ok(())
                 };
             cells::for_each(self.mesh.n_cells(), &|cell| cell * n, bounds, &bound_chunk)?;
-            found.append(&mut lock(&found_by_all));
-            // the order of chunks depends on the threads
-            found.sort_unstable_by_key(|contradiction| contradiction.node.unknown);
-            return Ok(());
-        }
-        let by_region = self.data.lower.has_names() || self.data.upper.has_names();
-        for cell in 0..self.mesh.n_cells() {
-            for &node in &bounded {
-                let bound = &mut bounds[self.dofs.of(cell, node.0)];
-                if *bound == Bound::Free || by_region {
-                    self.restrict_by_obstacles(&terms, cell, node, bound, found)?;
+        } else {
+            let by_region = self.data.lower.has_names() || self.data.upper.has_names();
+            for_each_place::<D, _, _>(&self.dofs, bounds, |bound, place| {
+                let (cell, i) = (place / n, place % n);
+                match bounded.iter().find(|node| node.0 == i) {
+                    Some(&node) if *bound == Bound::Free || by_region => {
+                        restrict(bound, cell, node)
+                    }
+                    _ => Ok(()),
                 }
-            }
+            })?;
         }
+        found.append(&mut lock(&found_by_all));
+        // the order of tasks depends on the threads
+        found.sort_by_key(|contradiction| contradiction.node.cell);
         Ok(())
     }
 

@@ -7,6 +7,7 @@
 //! stiffness. Source: B. Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
 
 use std::borrow::Cow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::coarse_level::P1Level;
 use super::crouzeix_raviart_space::CrouzeixRaviartSpace;
@@ -17,7 +18,9 @@ use super::preconditioner::Preconditioner;
 use crate::algebra::{DofLocation, NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix};
 use crate::linear::direct::FactorError;
 use crate::parallel::map_items;
-use crate::parallel::vectors::{CHUNK, for_each_chunk, for_each_chunk_of_groups};
+use crate::parallel::vectors::{
+    CHUNK, all, collect, for_each_chunk, for_each_chunk_of_groups, map_chunks,
+};
 use crate::real::Real;
 
 /// The sum of a diagonal correction of jumps, a solution with factors on cells with free and fixed vertex values
@@ -137,7 +140,9 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         // the vertices of the facet of a mean, or the vertex of a value
         let length = if penalties.are_means { penalties.cell_size - 1 } else { 1 };
         let has_length = |location: &DofLocation| location.vertices().len() == length;
-        if locations.len() != penalised.size() || !locations.iter().all(has_length) {
+        if locations.len() != penalised.size()
+            || !all(locations.len(), |i| has_length(&locations[i]))
+        {
             return None;
         }
         let diagonal = diagonal(penalised, &penalties);
@@ -249,6 +254,20 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
         Ok(())
     }
 
+    /// Marks the vertices that have a fixed value in a cell.
+    fn set_fixed_vertices(&mut self) {
+        let marks = collect(self.fixed_vertices.len(), |_| AtomicBool::new(false));
+        if !marks.is_empty() {
+            map_chunks(self.fixed.len(), |range| {
+                for i in range.filter(|&i| self.fixed[i]) {
+                    let vertices = self.locations[i].vertices().iter();
+                    vertices.for_each(|&v| marks[v as usize].store(true, Ordering::Relaxed));
+                }
+            });
+        }
+        self.fixed_vertices = marks.into_iter().map(AtomicBool::into_inner).collect();
+    }
+
     /// Sets the facets without Crouzeix-Raviart functions, and the facets that conforming functions alone
     /// correct: the facets of cells with free and fixed vertex values, in which facet mean functions are not free.
     fn set_facets(&mut self) {
@@ -298,14 +317,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         let corrected = self.set_side_corrections();
         let factored = self.mixed_block.factor(self.matrix, self.penalties.cell_size);
         self.set_facets();
-        self.fixed_vertices.fill(false);
-        if !self.penalties.are_means {
-            for i in (0..fixed.len()).filter(|&i| fixed[i]) {
-                for &v in self.locations[i].vertices() {
-                    self.fixed_vertices[v as usize] = true;
-                }
-            }
-        }
+        self.set_fixed_vertices();
         let Self { fixed_facets, kept_facets, fixed_vertices, .. } = self;
         let set = self.facet_means_solver.set_fixed(fixed_facets, kept_facets, fixed_vertices);
         corrected.and(factored).and(set)

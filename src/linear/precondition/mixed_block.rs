@@ -4,6 +4,7 @@
 use super::facet_mean_form::facet_mean_function;
 use crate::algebra::{RectangularMatrix, SparseMatrix, galerkin_product};
 use crate::linear::direct::{FactorError, Factors};
+use crate::parallel::vectors::for_each_chunk;
 use crate::real::Real;
 
 /// The mixed block, with its solver.
@@ -93,16 +94,20 @@ impl<T: Real> MixedBlock<'_, T> {
             entries.extend((0..cell_size).map(at_vertex));
         }
         entries.sort_unstable_by_key(|&(i, k, _)| (i, k));
-        let mut rows =
-            RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
-        let mut rest = entries.iter().peekable();
-        for i in 0..matrix.size() as u32 {
-            while let Some(&(_, k, value)) = rest.next_if(|entry| entry.0 == i) {
-                rows.columns.push(k);
-                rows.values.push(value);
+        let mut starts = vec![0; matrix.size() + 1];
+        for_each_chunk(&mut starts, |range, starts| {
+            let mut end = entries.partition_point(|entry| (entry.0 as usize) < range.start);
+            for (i, start) in range.zip(starts) {
+                let is_before = |entry: &(u32, u32, T)| (entry.0 as usize) < i;
+                end += entries[end..].iter().take_while(|entry| is_before(entry)).count();
+                *start = end as u32;
             }
-            rows.starts.push(rows.columns.len() as u32);
-        }
+        });
+        let rows = RectangularMatrix {
+            starts,
+            columns: entries.iter().map(|entry| entry.1).collect(),
+            values: entries.iter().map(|entry| entry.2).collect(),
+        };
         let form = galerkin_product(matrix, &rows, n);
         self.solver.factor(&form, &unknowns)
     }
