@@ -1,10 +1,13 @@
 //! Values in groups, by a counting sort.
 
-use super::vectors::{CHUNK, collect, is_sequential};
+use super::vectors::{collect, is_sequential};
 use super::{for_each_item, map_groups, split};
 
 /// Most tasks of a sort: each task has a list for every range of keys.
 const MAX_TASKS: usize = 64;
+
+/// Items and keys that one task has at least.
+const LEAST: usize = 1 << 12;
 
 /// The values that `each` passes on for the items below `n_items`, grouped by their keys below `n_keys`: where the group
 /// of each key starts, with the number of values at the end, and the values, in each group in the order of items.
@@ -26,7 +29,7 @@ pub(crate) fn group_by_key<V: Copy + Default + Send + Sync>(
         return (starts, values);
     }
     // one list for each range of items and each range of keys
-    let length = |n: usize| CHUNK.max(n.div_ceil(MAX_TASKS));
+    let length = |n: usize| LEAST.max(n.div_ceil(MAX_TASKS));
     let n_ranges = n_keys.div_ceil(length(n_keys));
     let lists = map_groups(n_items, length(n_items), &|items| {
         let mut lists = vec![Vec::new(); n_ranges];
@@ -91,7 +94,7 @@ mod tests {
     /// More items and keys than one task has; some keys have no value, some items two.
     #[test]
     fn groups_are_those_of_a_sort_with_any_number_of_threads() {
-        let (n_items, n_keys) = (5 * CHUNK + 7, 3 * CHUNK + 1);
+        let (n_items, n_keys) = (5 * LEAST + 7, 3 * LEAST + 1);
         let key = |item: usize| (item * 7919 % n_keys / 2 * 2) as u32;
         let grouped = |n_items: usize| {
             group_by_key(n_items, n_keys, |item, put| {
