@@ -55,7 +55,7 @@ impl<T: Real> RectangularMatrix<T> {
         let starts = starts(&ends);
         let (columns, values): (Vec<_>, Vec<_>) =
             groups.into_iter().map(|group| (group.columns, group.values)).unzip();
-        Self { starts, columns: concat(&columns), values: concat(&values) }
+        Self { starts, columns: concat(columns), values: concat(values) }
     }
 
     /// Number of rows.

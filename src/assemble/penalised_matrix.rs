@@ -101,7 +101,7 @@ impl JumpLists {
         lists: &mut [Self],
         of: fn(&mut Self) -> &mut Vec<V>,
     ) -> Vec<V> {
-        concat(&lists.iter_mut().map(|list| std::mem::take(of(list))).collect::<Vec<_>>())
+        concat(lists.iter_mut().map(|list| std::mem::take(of(list))).collect::<Vec<_>>())
     }
 }
 

@@ -279,7 +279,7 @@ fn nodes<T: Real>(jumps: &Jumps<T>) -> Vec<u32> {
     };
     let (smallest, pairs): (Vec<_>, Vec<_>) =
         map_chunks_of_groups(n, size, of_chunk).into_iter().unzip();
-    let mut sets = Components::from_smallest(concat(&smallest));
+    let mut sets = Components::from_smallest(concat(smallest));
     pairs.into_iter().flatten().for_each(|[here, there]| sets.join(here, there));
     collect(n, |i| sets.smallest(i))
 }
