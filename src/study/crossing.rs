@@ -7,7 +7,7 @@ use crate::assemble::cut_simplices::in_space;
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoxDomain, Edges, Mesh, describe_point, edge_vertices};
 use crate::parallel::cells;
-use crate::problem::{DataOnMesh, Problem};
+use crate::problem::{DataOnMesh, Datum, Problem};
 use crate::quadrature::facet_to_cell;
 use crate::real::Point;
 use crate::scheme::Scheme;
@@ -149,9 +149,10 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             return;
         };
         let corners = self.mesh.corners(cell);
+        let at = |datum: &Datum<D>, x: &Point<D>| datum.in_cell(self.mesh, cell, x);
         for point in nodes_of_cell::<D>().chain(points.iter().copied()) {
             let x = in_space(&point, &corners);
-            seen.compare(Crossing { cell, x, lower: lower.at(&x), upper: upper.at(&x) });
+            seen.compare(Crossing { cell, x, lower: at(lower, &x), upper: at(upper, &x) });
         }
     }
 
@@ -166,9 +167,10 @@ impl<const D: usize> OnMesh<'_, '_, D> {
         let upper = self.data.upper.of(self.mesh.region(cell));
         let Some((gap, upper)) = self.data.gap.of(group).zip(upper) else { return };
         let corners = self.mesh.corners(cell);
+        let at = |datum: &Datum<D>, x: &Point<D>| datum.in_cell(self.mesh, cell, x);
         for point in points {
             let x = in_space(&facet_to_cell(point, local), &corners);
-            seen.compare(Crossing { cell, x, lower: gap.at(&x), upper: upper.at(&x) });
+            seen.compare(Crossing { cell, x, lower: at(gap, &x), upper: at(upper, &x) });
         }
     }
 
@@ -176,7 +178,7 @@ impl<const D: usize> OnMesh<'_, '_, D> {
     /// cells and contact facets have different ones.
     fn compare_at_shared_nodes(&self, seen: &mut Seen<D>) {
         let data = self.data;
-        if !(data.lower.has_names() || data.upper.has_names() || data.gap.is_given()) {
+        if !(data.obstacles_differ() || data.gap.is_given()) {
             return;
         }
         let n_vertices = self.mesh.vertices().len();
@@ -198,9 +200,10 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             let region = self.mesh.region(cell);
             let (lower, upper) = (data.lower.of(region), data.upper.of(region));
             let corners = self.mesh.corners(cell);
+            let at = |datum: &Datum<D>, x: &Point<D>| datum.in_cell(self.mesh, cell, x);
             for (k, point) in nodes_of_cell::<D>().enumerate() {
                 let x = in_space(&point, &corners);
-                add(cell, k, lower.map(|psi| psi.at(&x)), upper.map(|psi| psi.at(&x)));
+                add(cell, k, lower.map(|psi| at(psi, &x)), upper.map(|psi| at(psi, &x)));
             }
         }
         for f in self.mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
@@ -209,7 +212,7 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             let corners = self.mesh.corners(cell);
             let on_facet = nodes_of_cell::<D>().enumerate().filter(|(_, p)| p[local] == 0.0);
             for (k, point) in on_facet {
-                add(cell, k, Some(gap.at(&in_space(&point, &corners))), None);
+                add(cell, k, Some(gap.in_cell(self.mesh, cell, &in_space(&point, &corners))), None);
             }
         }
         for cell in 0..self.mesh.n_cells() {

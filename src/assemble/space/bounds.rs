@@ -76,11 +76,11 @@ impl<const D: usize> Space<'_, D> {
             found.sort_unstable_by_key(|contradiction| contradiction.node.unknown);
             return Ok(());
         }
-        let by_region = self.data.lower.has_names() || self.data.upper.has_names();
+        let differ = self.data.obstacles_differ();
         for cell in 0..self.mesh.n_cells() {
             for &node in &bounded {
                 let bound = &mut bounds[self.dofs.of(cell, node.0)];
-                if *bound == Bound::Free || by_region {
+                if *bound == Bound::Free || differ {
                     self.restrict_by_obstacles(&terms, cell, node, bound, found)?;
                 }
             }
@@ -88,8 +88,7 @@ impl<const D: usize> Space<'_, D> {
         Ok(())
     }
 
-    /// Restricts the bound of node `i` of a cell by the obstacles in the region of the cell: of the obstacles of two
-    /// regions both hold.
+    /// Restricts the bound of node `i` of a cell by the obstacles in the cell: of the obstacles of two cells both hold.
     fn restrict_by_obstacles(
         &self,
         terms: &[Terms],
@@ -134,7 +133,11 @@ impl<const D: usize> Space<'_, D> {
                 let node = node.expect("an element has nodes on facets if there is a gap");
                 let unknown = self.dofs.of(cell, node);
                 let of = (["gap", DIRICHLET], Some(dirichlet));
-                BoundedNode { unknown, cell, x }.compare(of, [gap.at(&x), datum], found);
+                BoundedNode { unknown, cell, x }.compare(
+                    of,
+                    [gap.in_cell(self.mesh, cell, &x), datum],
+                    found,
+                );
             }
             for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
@@ -162,10 +165,12 @@ impl<const D: usize> Space<'_, D> {
         datum: &Datum<D>,
     ) -> Result<f64, Error> {
         match by {
-            BoundBy::Functional => self.at_node(terms, cell, name, &|x| datum.at(x)),
+            BoundBy::Functional => {
+                self.at_node(terms, cell, name, &|x| datum.in_cell(self.mesh, cell, x))
+            }
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
-                checks::finite(datum.at(&x), name, &x, cell)
+                checks::finite(datum.in_cell(self.mesh, cell, &x), name, &x, cell)
             }
         }
     }
@@ -199,11 +204,19 @@ impl<const D: usize> Space<'_, D> {
                 // that touches it
                 if let Some(psi) = lowers.of(region) {
                     let of = (["lower obstacle", DIRICHLET], Some(group));
-                    node.compare(of, [at("obstacle", &|x| psi.at(x))?, value], found);
+                    node.compare(
+                        of,
+                        [at("obstacle", &|x| psi.in_cell(self.mesh, cell, x))?, value],
+                        found,
+                    );
                 }
                 if let Some(psi) = uppers.of(region) {
                     let of = ([DIRICHLET, "upper obstacle"], Some(group));
-                    node.compare(of, [value, at("obstacle", &|x| psi.at(x))?], found);
+                    node.compare(
+                        of,
+                        [value, at("obstacle", &|x| psi.in_cell(self.mesh, cell, x))?],
+                        found,
+                    );
                 }
                 bounds[unknown] = Bound::Fixed(value);
             }
