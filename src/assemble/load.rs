@@ -106,7 +106,7 @@ impl<const D: usize> Space<'_, D> {
             let volume = self.mesh.geometry(cell).volume;
             let mut add = |x: &Point<D>, weight: f64, basis: &BasisAt| {
                 count::source(1);
-                let value = checks::finite(f.in_cell(self.mesh, cell, x), "source", x, cell)?;
+                let value = checks::finite(self.at(f, cell, x), "source", x, cell)?;
                 let value = weight * volume * value;
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
                     *out += value * phi;

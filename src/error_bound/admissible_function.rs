@@ -166,16 +166,9 @@ impl<const D: usize> Space<'_, D> {
             let region = self.mesh.region(cell);
             let x = self.mesh.vertices()[v];
             let (low, high) = &mut bounds[v];
-            *low = self
-                .data
-                .lower
-                .of(region)
-                .map_or(*low, |psi| psi.in_cell(self.mesh, cell, &x).max(*low));
-            *high = self
-                .data
-                .upper
-                .of(region)
-                .map_or(*high, |psi| psi.in_cell(self.mesh, cell, &x).min(*high));
+            *low = self.data.lower.of(region).map_or(*low, |psi| self.at(psi, cell, &x).max(*low));
+            *high =
+                self.data.upper.of(region).map_or(*high, |psi| self.at(psi, cell, &x).min(*high));
         };
         if self.data.obstacles_differ() {
             for cell in 0..self.mesh.n_cells() {
@@ -189,7 +182,7 @@ impl<const D: usize> Space<'_, D> {
             for v in self.mesh.facet_vertices(cell, local) {
                 let x = self.mesh.vertices()[v as usize];
                 let low = &mut bounds[v as usize].0;
-                *low = low.max(gap.in_cell(self.mesh, cell, &x));
+                *low = low.max(self.at(gap, cell, &x));
             }
         }
         let groups = self.dirichlet_groups();
@@ -211,7 +204,7 @@ impl<const D: usize> Space<'_, D> {
         let least = |datum: &Datum<D>, cell: usize, &[a, b]: &[usize; 2]| {
             let ends = map_entries([a, b], |k| self.mesh.cell(cell)[k] as usize);
             let [x, y] = map_entries(ends, |v| self.mesh.vertices()[v]);
-            let at = |x: &Point<D>| datum.in_cell(self.mesh, cell, x);
+            let at = |x: &Point<D>| self.at(datum, cell, x);
             let middle = at(&midpoint(&x, &y));
             let [of_x, of_y] = map_entries(ends, |v| at_vertices[v]);
             middle + (of_x + of_y - at(&x) - at(&y)) / 4.0

@@ -109,7 +109,7 @@ impl<const D: usize> Space<'_, D> {
                 [4.0 * middle - a - b, 4.0 * middle.abs() + a.abs() + b.abs()]
             };
             let of_ends = map_entries(ends, |v| pair.function[v]);
-            let at = |x: &Point<D>| bound.in_cell(self.mesh, cell, x);
+            let at = |x: &Point<D>| self.at(bound, cell, x);
             let [own, size] = coefficient(pair.function[node], of_ends);
             let [of_bound, size_of_bound] = coefficient(at(&((x + y) * 0.5)), [at(&x), at(&y)]);
             sign * (own - of_bound) >= -AGREEMENT * size.max(size_of_bound)

@@ -121,7 +121,7 @@ impl<const D: usize> Space<'_, D> {
         let gap = group.and_then(|group| self.data.gap.of(group));
         let at = |point: &[f64; 4]| {
             let x = self.facet_point(point, cell, local);
-            let gap = gap.map_or(0.0, |gap| gap.in_cell(self.mesh, cell, &x));
+            let gap = gap.map_or(0.0, |gap| self.at(gap, cell, &x));
             self.basis_at(&facet_to_cell(point, local)).value(&values) - gap
         };
         self.facet_rule.iter().map(|(point, weight)| weight * at(point)).sum()

@@ -199,11 +199,8 @@ impl<const D: usize> Space<'_, D> {
     fn size_of_load(&self) -> f64 {
         let of_cell = |cell: usize| {
             let x = self.mesh.barycentre(cell);
-            let load = self
-                .data
-                .source
-                .of(self.mesh.region(cell))
-                .map_or(0.0, |f| f.in_cell(self.mesh, cell, &x));
+            let load =
+                self.data.source.of(self.mesh.region(cell)).map_or(0.0, |f| self.at(f, cell, &x));
             load.abs() / self.alpha(cell)
         };
         let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
@@ -229,7 +226,7 @@ impl<const D: usize> Space<'_, D> {
             let (value, x) = (basis.value(&values), in_space(point, &corners));
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
                 if let Some(bound) = bounds[k] {
-                    let bound = finite(bound.in_cell(self.mesh, cell, &x), "obstacle", &x, cell)?;
+                    let bound = finite(self.at(bound, cell, &x), "obstacle", &x, cell)?;
                     found.add(k, sign, [value, bound]);
                 }
             }
@@ -249,7 +246,7 @@ impl<const D: usize> Space<'_, D> {
         let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
         for (point, basis) in points {
             let x: Point<D> = in_space(point, &corners);
-            let gap = finite(gap.in_cell(self.mesh, cell, &x), "gap", &x, cell)?;
+            let gap = finite(self.at(gap, cell, &x), "gap", &x, cell)?;
             found.add(2, 1.0, [basis.value(&values), gap]);
         }
         Ok(())

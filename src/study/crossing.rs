@@ -141,6 +141,11 @@ struct OnMesh<'m, 'd, const D: usize> {
 }
 
 impl<const D: usize> OnMesh<'_, '_, D> {
+    /// The value of a datum at a point of a cell.
+    fn at(&self, datum: &Datum<D>, cell: usize, x: &Point<D>) -> f64 {
+        datum.in_cell(self.mesh, cell, x)
+    }
+
     /// Compares the obstacles of a cell.
     fn compare_in(&self, cell: usize, points: &[[f64; 4]], seen: &mut Seen<D>) {
         let region = self.mesh.region(cell);
@@ -149,10 +154,10 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             return;
         };
         let corners = self.mesh.corners(cell);
-        let at = |datum: &Datum<D>, x: &Point<D>| datum.in_cell(self.mesh, cell, x);
         for point in nodes_of_cell::<D>().chain(points.iter().copied()) {
             let x = in_space(&point, &corners);
-            seen.compare(Crossing { cell, x, lower: at(lower, &x), upper: at(upper, &x) });
+            let [lower, upper] = [lower, upper].map(|psi| self.at(psi, cell, &x));
+            seen.compare(Crossing { cell, x, lower, upper });
         }
     }
 
@@ -167,10 +172,10 @@ impl<const D: usize> OnMesh<'_, '_, D> {
         let upper = self.data.upper.of(self.mesh.region(cell));
         let Some((gap, upper)) = self.data.gap.of(group).zip(upper) else { return };
         let corners = self.mesh.corners(cell);
-        let at = |datum: &Datum<D>, x: &Point<D>| datum.in_cell(self.mesh, cell, x);
         for point in points {
             let x = in_space(&facet_to_cell(point, local), &corners);
-            seen.compare(Crossing { cell, x, lower: at(gap, &x), upper: at(upper, &x) });
+            let [lower, upper] = [gap, upper].map(|bound| self.at(bound, cell, &x));
+            seen.compare(Crossing { cell, x, lower, upper });
         }
     }
 
@@ -200,10 +205,10 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             let region = self.mesh.region(cell);
             let (lower, upper) = (data.lower.of(region), data.upper.of(region));
             let corners = self.mesh.corners(cell);
-            let at = |datum: &Datum<D>, x: &Point<D>| datum.in_cell(self.mesh, cell, x);
             for (k, point) in nodes_of_cell::<D>().enumerate() {
                 let x = in_space(&point, &corners);
-                add(cell, k, lower.map(|psi| at(psi, &x)), upper.map(|psi| at(psi, &x)));
+                let at = |psi: &Datum<D>| self.at(psi, cell, &x);
+                add(cell, k, lower.map(at), upper.map(at));
             }
         }
         for f in self.mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
@@ -212,7 +217,7 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             let corners = self.mesh.corners(cell);
             let on_facet = nodes_of_cell::<D>().enumerate().filter(|(_, p)| p[local] == 0.0);
             for (k, point) in on_facet {
-                add(cell, k, Some(gap.in_cell(self.mesh, cell, &in_space(&point, &corners))), None);
+                add(cell, k, Some(self.at(gap, cell, &in_space(&point, &corners))), None);
             }
         }
         for cell in 0..self.mesh.n_cells() {

@@ -204,6 +204,29 @@ fn dirichlet_data_with_jumps_are_means_at_vertices() {
     assert!(u.bound().unwrap().unproven.contains(&Unproven::Boundary));
 }
 
+/// On a finer mesh of a hierarchy an obstacle with jumps keeps to its cells: no cell falls below its own obstacle. The
+/// start on coarser meshes reads the function of the finest one.
+#[test]
+fn data_on_one_mesh_of_a_hierarchy_serve_on_all() {
+    let meshes = Hierarchy::refine(&cube::<2>(4), 2).unwrap();
+    let (coarse, fine) = (meshes.mesh(0), meshes.finest());
+    let steps: Vec<f64> = numbers(coarse.n_cells()).iter().map(|v| 0.05 * v - 0.2).collect();
+    let steps: Vec<f64> = steps.iter().flat_map(|v| [*v; 3]).collect();
+    let pressed = Problem::new().constant_source(-40.0);
+    let source = solve(&pressed, fine, &Sipg::default()).unwrap().function().unwrap();
+    let problem = Problem::new()
+        .discrete_source(source.times(10.0))
+        .discrete_obstacle_below(function("sipg", coarse, &steps));
+    for name in ["p1", "sipg"] {
+        let nested = solve(&problem, &meshes, &*scheme(name)).unwrap();
+        let flat = solve(&problem, fine, &*scheme(name)).unwrap();
+        assert!(nested.converged() && nested.active() > Some(20), "{name}: {nested:?}");
+        assert!(nested.penetration().unwrap().unwrap().largest() <= 1e-12, "{name}");
+        let differences = nested.values().iter().zip(flat.values()).map(|(a, b)| (a - b).abs());
+        assert!(differences.fold(0.0, f64::max) < 1e-9, "{name}");
+    }
+}
+
 /// A membrane on an obstacle, under this load.
 fn membrane(load: f64) -> Problem<2> {
     Problem::new().constant_source(load).obstacle_below(|_| -0.02)

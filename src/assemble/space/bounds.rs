@@ -133,11 +133,8 @@ impl<const D: usize> Space<'_, D> {
                 let node = node.expect("an element has nodes on facets if there is a gap");
                 let unknown = self.dofs.of(cell, node);
                 let of = (["gap", DIRICHLET], Some(dirichlet));
-                BoundedNode { unknown, cell, x }.compare(
-                    of,
-                    [gap.in_cell(self.mesh, cell, &x), datum],
-                    found,
-                );
+                let values = [self.at(gap, cell, &x), datum];
+                BoundedNode { unknown, cell, x }.compare(of, values, found);
             }
             for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
@@ -165,12 +162,10 @@ impl<const D: usize> Space<'_, D> {
         datum: &Datum<D>,
     ) -> Result<f64, Error> {
         match by {
-            BoundBy::Functional => {
-                self.at_node(terms, cell, name, &|x| datum.in_cell(self.mesh, cell, x))
-            }
+            BoundBy::Functional => self.at_node(terms, cell, name, &|x| self.at(datum, cell, x)),
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
-                checks::finite(datum.in_cell(self.mesh, cell, &x), name, &x, cell)
+                checks::finite(self.at(datum, cell, &x), name, &x, cell)
             }
         }
     }
@@ -204,19 +199,11 @@ impl<const D: usize> Space<'_, D> {
                 // that touches it
                 if let Some(psi) = lowers.of(region) {
                     let of = (["lower obstacle", DIRICHLET], Some(group));
-                    node.compare(
-                        of,
-                        [at("obstacle", &|x| psi.in_cell(self.mesh, cell, x))?, value],
-                        found,
-                    );
+                    node.compare(of, [at("obstacle", &|x| self.at(psi, cell, x))?, value], found);
                 }
                 if let Some(psi) = uppers.of(region) {
                     let of = ([DIRICHLET, "upper obstacle"], Some(group));
-                    node.compare(
-                        of,
-                        [value, at("obstacle", &|x| psi.in_cell(self.mesh, cell, x))?],
-                        found,
-                    );
+                    node.compare(of, [value, at("obstacle", &|x| self.at(psi, cell, x))?], found);
                 }
                 bounds[unknown] = Bound::Fixed(value);
             }

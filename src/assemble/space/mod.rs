@@ -39,7 +39,7 @@ use crate::constraint::{BoundBy, in_basis_of, offered};
 use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoundaryFacet, HalfFacet, Mesh, Neighbours};
-use crate::problem::{DataOnMesh, DiscreteFunction, Problem};
+use crate::problem::{DataOnMesh, Datum, DiscreteFunction, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::Point;
 pub(crate) use coefficient::INWARD;
@@ -268,6 +268,11 @@ impl<'a, const D: usize> Space<'a, D> {
     /// The number of the group of a boundary facet.
     pub fn group_of(&self, (cell, local): HalfFacet) -> usize {
         self.mesh.boundary_group(cell, local).expect("a boundary facet has a group")
+    }
+    /// The value of a datum at a point of a cell.
+    #[inline(always)]
+    pub fn at(&self, datum: &Datum<D>, cell: usize, x: &Point<D>) -> f64 {
+        datum.in_cell(self.mesh, cell, x)
     }
     /// The Dirichlet value at a point of a boundary group.
     pub fn dirichlet_at(&self, group: usize, x: &Point<D>) -> f64 {

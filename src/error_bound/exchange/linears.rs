@@ -172,7 +172,7 @@ impl<const D: usize> Space<'_, D> {
         let gap = |k: usize| {
             let bound = admissible.bounds[k]?;
             let distance = |value: f64, x: &Point<D>| {
-                ([1.0, -1.0][k] * (value - bound.in_cell(self.mesh, number, x))).max(0.0)
+                ([1.0, -1.0][k] * (value - self.at(bound, number, x))).max(0.0)
             };
             if bound.constant().is_some() {
                 let at_corners = (0..D + 1).map(|k| distance(admissible.values[k], &corners[k]));

@@ -319,6 +319,6 @@ impl<const D: usize> Space<'_, D> {
         bounds
             .into_iter()
             .flatten()
-            .any(|bound| (value - bound.in_cell(self.mesh, entity.cell, &x)).abs() <= slack)
+            .any(|bound| (value - self.at(bound, entity.cell, &x)).abs() <= slack)
     }
 }
