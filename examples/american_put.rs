@@ -120,11 +120,11 @@ fn main() -> Result<(), Error> {
     let tree = by_tree(8192);
     let mut curves = vec![("tree", tree.exercise.clone())];
     for scheme in &schemes {
-        let on_fine = by_steps(&**scheme, 1024, 64)?.at_strike;
+        let on_fine = by_steps(&**scheme, 2048, 16)?.at_strike;
         for (what, levels, exact) in [
             ("space and time", [(32, 16), (64, 64), (128, 256), (256, 1024)], price),
             ("time", [(1024, 16), (1024, 32), (1024, 64), (1024, 128)], price),
-            ("space, against 1024 cells", [(16, 64), (32, 64), (64, 64), (128, 64)], on_fine),
+            ("space, against 2048 cells", [(64, 16), (128, 16), (256, 16), (512, 16)], on_fine),
         ] {
             println!("\n{}, refined in {what}", scheme.name());
             println!("cells steps   price    error (order)  exercise price (error)");
@@ -132,9 +132,9 @@ fn main() -> Result<(), Error> {
             for (cells, steps) in levels {
                 let found = by_steps(&**scheme, cells, steps)?;
                 let error = (found.at_strike - exact).abs();
-                let order = before.map_or(f64::NAN, |b| (b / error).log2());
+                let order = before.map_or(String::new(), |b| format!("{:.2}", (b / error).log2()));
                 let last = [&found, &tree].map(|w| w.exercise[DRAWN][1]);
-                print!("{cells:5} {steps:5} {:.5} {error:.2e} ({order:5.2})", found.at_strike);
+                print!("{cells:5} {steps:5} {:.5} {error:.2e} ({order:>4})", found.at_strike);
                 println!("  {:.3} ({:.1e})", last[0], (last[0] - last[1]).abs());
                 before = Some(error);
                 if (cells, steps) == (256, 1024) {
