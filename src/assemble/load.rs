@@ -111,7 +111,8 @@ impl<const D: usize> Space<'_, D> {
             let volume = self.mesh.geometry(cell).volume;
             let mut add = |x: &Point<D>, weight: f64, basis: &BasisAt| {
                 count::source(1);
-                let value = weight * volume * checks::finite(f.at(x), "source", x, cell)?;
+                let value = checks::finite(self.at(f, cell, x), "source", x, cell)?;
+                let value = weight * volume * value;
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
                     *out += value * phi;
                 }

@@ -73,25 +73,22 @@ impl<const D: usize> Space<'_, D> {
                 };
             cells::for_each(self.mesh.n_cells(), &|cell| cell * n, bounds, &bound_chunk)?;
         } else {
-            let by_region = self.data.lower.has_names() || self.data.upper.has_names();
+            let differ = self.data.obstacles_differ();
             for_each_place::<D, _, _>(&self.dofs, bounds, |bound, place| {
                 let (cell, i) = (place / n, place % n);
                 match bounded.iter().find(|node| node.0 == i) {
-                    Some(&node) if *bound == Bound::Free || by_region => {
-                        restrict(bound, cell, node)
-                    }
+                    Some(&node) if *bound == Bound::Free || differ => restrict(bound, cell, node),
                     _ => Ok(()),
                 }
             })?;
         }
         found.append(&mut lock(&found_by_all));
         // the order of tasks depends on the threads
-        found.sort_by_key(|contradiction| contradiction.node.cell);
+        found.sort_by_key(|contradiction| (contradiction.node.cell, contradiction.node.unknown));
         Ok(())
     }
 
-    /// Restricts the bound of node `i` of a cell by the obstacles in the region of the cell: of the obstacles of two
-    /// regions both hold.
+    /// Restricts the bound of node `i` of a cell by the obstacles in the cell: of the obstacles of two cells both hold.
     fn restrict_by_obstacles(
         &self,
         terms: &[Terms],
@@ -136,7 +133,8 @@ impl<const D: usize> Space<'_, D> {
                 let node = node.expect("an element has nodes on facets if there is a gap");
                 let unknown = self.dofs.of(cell, node);
                 let of = (["gap", DIRICHLET], Some(dirichlet));
-                BoundedNode { unknown, cell, x }.compare(of, [gap.at(&x), datum], found);
+                let values = [self.at(gap, cell, &x), datum];
+                BoundedNode { unknown, cell, x }.compare(of, values, found);
             }
             for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
@@ -164,10 +162,10 @@ impl<const D: usize> Space<'_, D> {
         datum: &Datum<D>,
     ) -> Result<f64, Error> {
         match by {
-            BoundBy::Functional => self.at_node(terms, cell, name, &|x| datum.at(x)),
+            BoundBy::Functional => self.at_node(terms, cell, name, &|x| self.at(datum, cell, x)),
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
-                checks::finite(datum.at(&x), name, &x, cell)
+                checks::finite(self.at(datum, cell, &x), name, &x, cell)
             }
         }
     }
@@ -201,11 +199,11 @@ impl<const D: usize> Space<'_, D> {
                 // that touches it
                 if let Some(psi) = lowers.of(region) {
                     let of = (["lower obstacle", DIRICHLET], Some(group));
-                    node.compare(of, [at("obstacle", &|x| psi.at(x))?, value], found);
+                    node.compare(of, [at("obstacle", &|x| self.at(psi, cell, x))?, value], found);
                 }
                 if let Some(psi) = uppers.of(region) {
                     let of = ([DIRICHLET, "upper obstacle"], Some(group));
-                    node.compare(of, [value, at("obstacle", &|x| psi.at(x))?], found);
+                    node.compare(of, [value, at("obstacle", &|x| self.at(psi, cell, x))?], found);
                 }
                 bounds[unknown] = Bound::Fixed(value);
             }

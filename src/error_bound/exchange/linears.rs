@@ -171,8 +171,9 @@ impl<const D: usize> Space<'_, D> {
         (0..D + 1).for_each(|k| at_centre[k] = (centre - corners[k]) * per_volume);
         let gap = |k: usize| {
             let bound = admissible.bounds[k]?;
-            let distance =
-                |value: f64, x: &Point<D>| ([1.0, -1.0][k] * (value - bound.at(x))).max(0.0);
+            let distance = |value: f64, x: &Point<D>| {
+                ([1.0, -1.0][k] * (value - self.at(bound, number, x))).max(0.0)
+            };
             if bound.constant().is_some() {
                 let at_corners = (0..D + 1).map(|k| distance(admissible.values[k], &corners[k]));
                 return Some(at_corners.sum::<f64>() / (D + 1) as f64);

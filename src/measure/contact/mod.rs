@@ -316,6 +316,9 @@ impl<const D: usize> Space<'_, D> {
         let gap = contact.and_then(|group| self.data.gap.of(group));
         let bounds = [self.data.lower.of(region), self.data.upper.of(region), gap];
         let value = self.dirichlet_at(group, &x);
-        bounds.into_iter().flatten().any(|bound| (value - bound.at(&x)).abs() <= slack)
+        bounds
+            .into_iter()
+            .flatten()
+            .any(|bound| (value - self.at(bound, entity.cell, &x)).abs() <= slack)
     }
 }
