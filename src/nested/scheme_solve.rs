@@ -10,8 +10,8 @@ use super::phase::Phase;
 use super::solved::Solved;
 use super::system::System;
 use super::warnings::{
-    UNPROVEN, active_sets, dirichlet_jumps, no_digits_of_quadratics, no_digits_of_stiffness,
-    rounding_of_data, short_edges,
+    UNPROVEN, active_sets, data_beyond_coefficients, dirichlet_jumps, no_digits_of_quadratics,
+    no_digits_of_stiffness, rounding_of_data, short_edges,
 };
 use crate::algebra::{Contact, Inequality, Start};
 use crate::error::Error;
@@ -110,6 +110,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         }
         let (mesh, discretisation) = (system.mesh(), system.discretisation());
         let mut warnings = dirichlet_jumps(self.p1.problem, mesh);
+        warnings.extend(data_beyond_coefficients(discretisation));
         if !inequality.is_definite {
             warnings.extend(discretisation.penalty_below_bound().map(|below| below.to_string()));
         }

@@ -186,6 +186,25 @@ pub(super) fn dirichlet_jumps<const D: usize>(problem: &Problem<D>, mesh: &Mesh<
     sentences
 }
 
+/// Dirichlet values that lie beyond an obstacle in Bernstein coefficients, as admissible ones may: a quadratic that touches
+/// an obstacle between nodes has a coefficient beyond it.
+pub(super) fn data_beyond_coefficients<const D: usize>(
+    discretisation: &Discretisation<'_, D>,
+) -> Option<String> {
+    // data that are not finite are errors of the assembly
+    let (beyond, x) = discretisation.space.data_beyond_coefficients().ok()??;
+    let so = match discretisation.space.pins {
+        true => {
+            "coefficients that data fix have no bound, and the solution may lie beyond the obstacle near them"
+        }
+        false => "the solution, whose coefficients are bounded, does not take these values",
+    };
+    let at = describe_point(&x);
+    Some(format!(
+        "Dirichlet values lie beyond an obstacle by {beyond:.1e} in the Bernstein coefficient at {at}: {so}"
+    ))
+}
+
 /// Advice for a solution that took many active sets, or whose active sets changed to the end.
 pub(super) fn active_sets<const D: usize>(
     solution: &Solution<f64>,

@@ -1,6 +1,8 @@
-//! Quadratic elements and their three sets of constraints.
+//! Quadratic elements and their four sets of constraints.
 
+mod bernstein;
 mod sets;
+
 use crate::runs::{own_scene, small_mesh, solve};
 use crate::support::checks::Checks;
 use crate::support::meshes::{Random, Raw, mixed_box};
@@ -23,9 +25,9 @@ fn broken<const D: usize>() -> OnElement<Sipg, D> {
     Sipg::default().on(P2)
 }
 
-/// Conforming quadratics with bounds at all nodes, and at midpoints.
+/// Conforming quadratics with bounds at all nodes, at midpoints, and on Bernstein coefficients.
 fn conforming<const D: usize>() -> Vec<Entry<D>> {
-    vec![entry(ConformingP2, Nodes), entry(ConformingP2, Midpoints)]
+    vec![entry(ConformingP2, Nodes), entry(ConformingP2, Midpoints), entry(ConformingP2, Bernstein)]
 }
 
 /// Conforming and discontinuous quadratics with every set of constraints.
@@ -34,6 +36,7 @@ fn all<const D: usize>() -> Vec<Entry<D>> {
     schemes.push(entry(broken(), Nodes));
     schemes.push(entry(broken(), Midpoints));
     schemes.push(entry(broken(), CellMeans));
+    schemes.push(entry(broken(), Bernstein));
     schemes
 }
 
@@ -158,8 +161,8 @@ fn smooth<const D: usize>() -> Scene<D> {
     own_scene("smooth", domain.side(0, 0, BoundaryCondition::Dirichlet), problem)
 }
 
-/// Orders two and three where no inequality binds. The four are one space; with midpoints or cell
-/// means the basis or the constraint set is another, not the solution.
+/// Orders two and three where no inequality binds. Those with continuous functions are one space, and so are the
+/// others; the basis or the constraint set is another, not the solution.
 #[test]
 fn smooth_solutions() {
     fn check<const D: usize>(checks: &mut Checks, levels: [usize; 2]) {
@@ -343,7 +346,9 @@ fn the_basis_with_the_cell_mean_spans_the_quadratics() {
 #[test]
 fn multipliers_names_and_single_precision() {
     let names: Vec<_> = all::<2>().iter().map(|s| s.constraint()).collect();
-    assert_eq!(names, ["nodes", "midpoints", "nodes", "midpoints", "cell-means"]);
+    let of_both = ["nodes", "midpoints", "bernstein"];
+    assert_eq!(names[..3], of_both);
+    assert_eq!(names[3..], ["nodes", "midpoints", "cell-means", "bernstein"]);
     let named = scheme_by_name::<2>("p2", &SchemeOptions::default()).unwrap();
     assert_eq!((named.name(), named.constraint_on(&Nodes)), ("p2", Some("nodes".to_owned())));
     fn check<const D: usize>(checks: &mut Checks, level: usize) {
