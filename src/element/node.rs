@@ -152,7 +152,8 @@ impl Node {
             (Functional::Coefficient, Entity::Edge(k)) => {
                 let end = |v: usize| (array_of(|i| f64::from(u8::from(i == v))), -0.5);
                 let ends = edge_vertices(3)[k].map(end);
-                vec![(self.centre(3), 2.0), ends[0], ends[1]]
+                // in this order rounding leaves a constant as it is
+                vec![ends[0], ends[1], (self.centre(3), 2.0)]
             }
             (Functional::Coefficient, _) => vec![(self.centre(3), 1.0)],
             (Functional::Mean, Entity::Facet(k)) => {
