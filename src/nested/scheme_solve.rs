@@ -81,6 +81,9 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         let sent = system.sent_bytes() - sent;
         warnings.extend(refusal);
         warnings.extend(active_sets(&solution, self.p1.problem, scheme));
+        if system.part().is_none() {
+            warnings.extend(data_beyond_coefficients(system.discretisation(), &solution));
+        }
         let hierarchy = self.hierarchy(position);
         let mut solved = Solved::new(system, solution, hierarchy);
         solved.warnings = warnings;
@@ -110,7 +113,6 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         }
         let (mesh, discretisation) = (system.mesh(), system.discretisation());
         let mut warnings = dirichlet_jumps(self.p1.problem, mesh);
-        warnings.extend(data_beyond_coefficients(discretisation));
         if !inequality.is_definite {
             warnings.extend(discretisation.penalty_below_bound().map(|below| below.to_string()));
         }

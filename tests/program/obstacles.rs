@@ -96,6 +96,11 @@ fn data_may_touch_the_obstacle_within_an_edge() {
             row["warnings"].to_string().contains("by 2.8e-2 in the Bernstein coefficient");
         assert_eq!(is_said, row["constraint"] == "bernstein" && row["level"] == 3, "{what}");
     }
+    // values that vanish but for rounding, beside an obstacle of zero
+    let scratch = Scratch::new("vanishing-data");
+    let report =
+        scratch.report("--scene lshape-2d --scheme p2:bernstein,sipg-p2:bernstein --levels 8");
+    rows(&report).iter().for_each(|row| assert_eq!(row["warnings"].to_string(), "[]"));
 }
 
 /// Obstacles that cross at a point of the finest mesh leave no row of the table solved; points that see nothing claim

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Mutex;
 
-use super::contradictions::{BoundedNode, Contradiction, DIRICHLET, RELATIVE_SLACK};
+use super::contradictions::{BoundedNode, Contradiction, DIRICHLET};
 use super::{Space, Terms, checks};
 use crate::algebra::Bound;
 use crate::assemble::count;
@@ -220,13 +220,13 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// By how much Dirichlet values lie beyond an obstacle in a Bernstein coefficient at most, and where; none if they
-    /// do so nowhere, but for rounding.
+    /// do so nowhere.
     pub(crate) fn data_beyond_coefficients(&self) -> Result<Option<(f64, Point<D>)>, Error> {
         if !self.problem.has_obstacle() || !self.nodes.iter().any(Node::is_coefficient) {
             return Ok(None);
         }
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
-        let (mut largest, mut size, mut place) = (0.0, 0.0_f64, None);
+        let (mut largest, mut place) = (0.0, None);
         for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
             let region = self.mesh.region(cell);
             let sides = [(1.0, self.data.lower.of(region)), (-1.0, self.data.upper.of(region))];
@@ -235,7 +235,6 @@ impl<const D: usize> Space<'_, D> {
                 let value = self.at_node(&terms[i], cell, "dirichlet", &datum)?;
                 for (sign, psi) in sides.iter().filter_map(|(sign, psi)| Some((sign, (*psi)?))) {
                     let bound = self.at_node(&terms[i], cell, "obstacle", &|x| psi.at(x))?;
-                    size = size.max(value.abs()).max(bound.abs());
                     if sign * (bound - value) > largest {
                         largest = sign * (bound - value);
                         place = Some(self.node_point(cell, &self.nodes[i]));
@@ -243,7 +242,7 @@ impl<const D: usize> Space<'_, D> {
                 }
             }
         }
-        Ok(place.filter(|_| largest > RELATIVE_SLACK * size).map(|x| (largest, x)))
+        Ok(place.map(|x| (largest, x)))
     }
 
     /// The functional of a node at a datum.

@@ -11,7 +11,7 @@ pub(crate) const DIRICHLET: &str = "Dirichlet value";
 
 /// Two bounds contradict each other if they do so by more than this share of the largest datum: less is
 /// rounding in the data.
-pub(super) const RELATIVE_SLACK: f64 = 1e-9;
+const RELATIVE_SLACK: f64 = 1e-9;
 
 /// Two values of which the first exceeds the second, by rounding or in earnest.
 ///
