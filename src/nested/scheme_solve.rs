@@ -10,8 +10,8 @@ use super::phase::Phase;
 use super::solved::Solved;
 use super::system::System;
 use super::warnings::{
-    UNPROVEN, active_sets, dirichlet_jumps, no_digits_of_quadratics, no_digits_of_stiffness,
-    rounding_of_data, short_edges,
+    UNPROVEN, active_sets, data_beyond_coefficients, dirichlet_jumps, no_digits_of_quadratics,
+    no_digits_of_stiffness, rounding_of_data, short_edges,
 };
 use crate::algebra::{Contact, Inequality, Start};
 use crate::error::Error;
@@ -93,6 +93,9 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         let sent = system.sent_bytes() - sent;
         warnings.extend(refusal);
         warnings.extend(active_sets(&solution, self.p1.problem, scheme));
+        if system.part().is_none() {
+            warnings.extend(data_beyond_coefficients(system.discretisation(), &solution));
+        }
         let hierarchy = self.hierarchy(position);
         let mut solved = Solved::new(system, solution, hierarchy);
         solved.warnings = warnings;

@@ -193,22 +193,56 @@ impl<const D: usize> Space<'_, D> {
                     self.at_node(&terms[i], cell, name, datum)
                 };
                 let value = if zero { 0.0 } else { at("dirichlet", &datum)? };
-                let node = BoundedNode { unknown, cell, x: self.node_point(cell, &self.nodes[i]) };
+                bounds[unknown] = Bound::Fixed(value);
                 // obstacles must leave room for the datum; a mean is compared with a mean: over a
                 // curved obstacle the value at the barycentre may lie above the mean of a datum
-                // that touches it
+                // that touches it. A datum that touches an obstacle at a point may lie beyond it in a
+                // coefficient: there the values at the point are compared
+                let x = self.node_point(cell, &self.nodes[i]);
+                let is_coefficient = self.nodes[i].is_coefficient();
+                let obstacle = |psi: &Datum<D>| match is_coefficient {
+                    true => checks::finite(self.at(psi, cell, &x), "obstacle", &x, cell),
+                    false => at("obstacle", &|x| self.at(psi, cell, x)),
+                };
+                let value = if is_coefficient && !zero { datum(&x) } else { value };
+                let node = BoundedNode { unknown, cell, x };
                 if let Some(psi) = lowers.of(region) {
                     let of = (["lower obstacle", DIRICHLET], Some(group));
-                    node.compare(of, [at("obstacle", &|x| self.at(psi, cell, x))?, value], found);
+                    node.compare(of, [obstacle(psi)?, value], found);
                 }
                 if let Some(psi) = uppers.of(region) {
                     let of = ([DIRICHLET, "upper obstacle"], Some(group));
-                    node.compare(of, [value, at("obstacle", &|x| self.at(psi, cell, x))?], found);
+                    node.compare(of, [value, obstacle(psi)?], found);
                 }
-                bounds[unknown] = Bound::Fixed(value);
             }
         }
         Ok(())
+    }
+
+    /// By how much Dirichlet values lie beyond an obstacle in a Bernstein coefficient at most, and where; none if they
+    /// do so nowhere.
+    pub(crate) fn data_beyond_coefficients(&self) -> Result<Option<(f64, Point<D>)>, Error> {
+        if !self.problem.has_obstacle() || !self.nodes.iter().any(Node::is_coefficient) {
+            return Ok(None);
+        }
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let (mut largest, mut place) = (0.0, None);
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
+            let region = self.mesh.region(cell);
+            let sides = [(1.0, self.data.lower.of(region)), (-1.0, self.data.upper.of(region))];
+            for i in self.nodes_on(local) {
+                let datum = |x: &Point<D>| self.dirichlet_at(group, x);
+                let value = self.at_node(&terms[i], cell, "dirichlet", &datum)?;
+                for (sign, psi) in sides.iter().filter_map(|(sign, psi)| Some((sign, (*psi)?))) {
+                    let bound = self.at_node(&terms[i], cell, "obstacle", &|x| psi.at(x))?;
+                    if sign * (bound - value) > largest {
+                        largest = sign * (bound - value);
+                        place = Some(self.node_point(cell, &self.nodes[i]));
+                    }
+                }
+            }
+        }
+        Ok(place.map(|x| (largest, x)))
     }
 
     /// The functional of a node at a datum.
