@@ -67,7 +67,7 @@ impl<const N: usize> Patch<N> {
             for (known, facet) in facets {
                 self.know(of, neighbours, (k, facet), corners, known);
             }
-            let mut problem = of.problem(*corner);
+            let mut problem = of.problem(*corner, corners);
             problem.hold(&known, D * C::PER_FACET);
             self.cells.push(CellOfPatch { known, problem });
         }
@@ -238,7 +238,7 @@ fn invert<const N: usize>(a: &mut [[f64; N]; N], n: usize) {
 
 /// Solves with a symmetric positive semidefinite matrix, given by the upper triangle of its rows, by elimination in
 /// place. Where a pivot is zero but for rounding, the unknown is zero.
-fn solve(a: &mut [f64], x: &mut [f64]) {
+pub(super) fn solve(a: &mut [f64], x: &mut [f64]) {
     let n = x.len();
     // the lower triangle is free: its first column keeps the diagonal
     (1..n).for_each(|i| a[i * n] = a[i * n + i]);
@@ -249,10 +249,11 @@ fn solve(a: &mut [f64], x: &mut [f64]) {
             row[k] = 0.0;
             continue;
         }
+        let inverse = 1.0 / row[k];
         // patches are sparse
         let end = row.iter().rposition(|entry| *entry != 0.0).map_or(n, |last| last + 1);
         for (i, lower) in (k + 1..end).zip(below.chunks_exact_mut(n)) {
-            let factor = row[i] / row[k];
+            let factor = row[i] * inverse;
             if factor != 0.0 {
                 x[i] -= factor * x[k];
                 let entries = lower[i..end].iter_mut().zip(&row[i..end]);
