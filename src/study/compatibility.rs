@@ -81,8 +81,8 @@ pub(super) fn check_scheme<const D: usize>(
     }
 }
 
-/// Checks that the matrix of a scheme on so many cells of a level has no more entries than can be counted, before any mesh
-/// is built.
+/// Checks that the matrix of a scheme on so many cells of a level has no more entries than can be counted, before any
+/// mesh is built.
 ///
 /// # Errors
 /// [`Error::Parameter`].

@@ -1,14 +1,14 @@
 //! Patches in space whose cells fill a ball or a half ball: all fluxes follow from one number for each edge.
 //!
 //! The link of a vertex has a vertex for each edge, an edge for each facet and a triangle for each cell at it. Where it
-//! is a sphere or a disc, fluxes without divergence through the facets at the vertex are the differences of one number
-//! for each edge. In a cell with the edges 0, 1, 2 at the vertex, ending at `x_0, x_1, x_2` in a sense of rotation that
-//! is the same for all cells, the flux through the facet opposite `x_k` is `psi_(k+1) - psi_(k+2)`. On facets of one
-//! cell with a given flux both numbers are equal.
+//! is a sphere or a disc, fluxes without divergence through the facets at the vertex are differences of one number for
+//! each edge. In a cell with the edges 0, 1, 2 at the vertex, ending at `x_0, x_1, x_2` in a sense of rotation that is
+//! the same for all cells, the flux through the facet opposite `x_k` is `psi_(k+1) - psi_(k+2)`. On facets of one cell
+//! with a given flux both numbers are equal.
 //!
-//! Let `c_k` be some fluxes that balance the cells and cancel the jumps. The field of `psi_a` in a cell of volume `V` is
-//! the constant `-e_a / (3 V)`, `e_a = x_(a+2) - x_(a+1)`, that of the `c_k` has the value `sum_k c_k (m - x_k) / (3 V)`
-//! at the barycentre `m`. Hence the numbers for which the norm is least solve
+//! Let `c_k` be some fluxes that balance the cells and cancel the jumps. The field of `psi_a` in a cell of volume `V`
+//! is the constant `-e_a / (3 V)`, `e_a = x_(a+2) - x_(a+1)`, that of the `c_k` has the value
+//! `sum_k c_k (m - x_k) / (3 V)` at the barycentre `m`. Hence the numbers for which the norm is least solve
 //!
 //! ```text
 //! sum_K sum_b e_a . e_b / (9 alpha V) psi_b = sum_K e_a . sum_k c_k (m - x_k) / (9 alpha V)
@@ -47,7 +47,8 @@ struct CellOfLink {
     ends: [u8; 3],
     /// The numbers of the edges in the patch.
     edges: [u8; 3],
-    /// What is behind each side; behind the first one of all cells but the first is the cell by which the cell was found.
+    /// What is behind each side. Behind the first one of all cells but the first is the cell by which the cell was
+    /// found.
     behind: [Option<Behind>; 3],
     /// The fluxes out of the cell through the sides.
     fluxes: [f64; 3],

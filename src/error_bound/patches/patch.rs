@@ -249,11 +249,10 @@ pub(super) fn solve(a: &mut [f64], x: &mut [f64]) {
             row[k] = 0.0;
             continue;
         }
-        let inverse = 1.0 / row[k];
         // patches are sparse
         let end = row.iter().rposition(|entry| *entry != 0.0).map_or(n, |last| last + 1);
         for (i, lower) in (k + 1..end).zip(below.chunks_exact_mut(n)) {
-            let factor = row[i] * inverse;
+            let factor = row[i] / row[k];
             if factor != 0.0 {
                 x[i] -= factor * x[k];
                 let entries = lower[i..end].iter_mut().zip(&row[i..end]);

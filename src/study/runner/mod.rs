@@ -179,8 +179,8 @@ impl<'a, const D: usize> Study<'a, D> {
         )(self)
     }
 
-    /// Checks schemes, levels and domain, for so many parts of the meshes. Returns the point at which the exact solution
-    /// of the scene breaks the contact condition of a mesh.
+    /// Checks schemes, levels and domain, for so many parts of the meshes. Returns the point at which the exact
+    /// solution of the scene breaks the contact condition of a mesh.
     fn where_exact_fails(&self, parts: usize) -> Result<Option<String>, Error> {
         let levels = self.levels.len() + usize::from(self.adaptive.is_some());
         let lengths = [("schemes", self.entries.len()), ("levels", levels)];
