@@ -159,9 +159,10 @@ impl<const D: usize> Cubic<D> {
             with_d += gradient.dot(d);
         }
         let gradient = Self::TWO * linear + 2.0 * Self::THREE * with_d + self.gradient_square;
-        // both are positive but for rounding
+        // both are positive but for rounding; where the solution is not finite they are no numbers
+        let positive = |square: f64| if square < 0.0 { 0.0 } else { square };
         let share = if gradient > 0.0 { self.rest / gradient } else { 0.0 };
-        ([value.max(0.0), gradient.max(0.0)], share)
+        ([positive(value), positive(gradient)], share)
     }
 }
 
@@ -229,6 +230,19 @@ mod tests {
         assert!((of_gradient / sums[1] - 1.0).abs() < 1e-12, "{of_gradient} {}", sums[1]);
         let exact_share = 1.0 - projected / sums[1];
         assert!(exact_share > 1e-3 && (share - exact_share).abs() < 1e-12, "{share}");
+    }
+
+    /// As at the corner of a domain with a singular solution.
+    #[test]
+    fn a_gradient_that_is_no_number_leaves_no_squares() {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]].map(Point::<2>::from);
+        let coordinates = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]].map(Point::<2>::from);
+        let mut gradients = [Point::zeros(); 4];
+        gradients[0][0] = f64::NAN;
+        let at_corners = (&[0.0; 4], &gradients);
+        let cubic = Cubic::new(&corners, &coordinates, at_corners, (0.1, Point::zeros()));
+        let (squares, _) = cubic.squares(&[0.0; 4], &gradients);
+        assert!(squares.iter().all(|square| square.is_nan()), "{squares:?}");
     }
 
     #[test]
