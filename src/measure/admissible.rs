@@ -57,6 +57,19 @@ impl<const D: usize> Admissible<'_, D> {
         }
         (value, gradient)
     }
+    /// Whether the function is known to be linear in its cell: it has no values on edges, and obstacles are affine and
+    /// nowhere beyond it.
+    pub fn is_linear(&self, corners: &[Point<D>; 4]) -> bool {
+        let is_beyond = |(bound, sign): (&Datum<D>, f64)| {
+            let within = |(x, value): (&Point<D>, &f64)| sign * (value - bound.at(x)) >= 0.0;
+            bound.discrete().is_some()
+                || bound.degree_on(self.place.0, None).is_none_or(|degree| degree > 1)
+                || !corners[..=D].iter().zip(&self.values).all(within)
+        };
+        let bounds = self.bounds.into_iter().zip([1.0, -1.0]);
+        let mut given = bounds.filter_map(|(bound, sign)| Some((bound?, sign)));
+        self.excess.is_none() && !given.any(is_beyond)
+    }
     /// Whether the function has the value of an obstacle at some of the corners of its cell and not at all of them:
     /// the obstacle may exceed it in a piece of the cell that is small.
     pub fn touches_in_piece(&self, corner: impl Fn(usize) -> Point<D>) -> bool {

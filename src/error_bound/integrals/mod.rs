@@ -108,6 +108,7 @@ fn with_share(squares: [f64; 2], share: f64, others: [f64; 2]) -> f64 {
 
 impl<const D: usize> Space<'_, D> {
     /// The admissible function in a cell.
+    #[inline(always)]
     pub(super) fn admissible_in(&self, pair: &PrimalDualPair<D>, cell: usize) -> Admissible<'_, D> {
         let (geometry, region) = (self.mesh.geometry(cell), self.mesh.region(cell));
         let (mut values, mut gradients) = ([0.0; 4], [Point::zeros(); 4]);
@@ -156,8 +157,8 @@ impl<const D: usize> Space<'_, D> {
         }
     }
 
-    /// The means of the distances of a linear function from the obstacles at the points of a rule; none if it
-    /// leaves one of them at a point.
+    /// The means of the distances of a linear function from the obstacles, by the corners or at the points of a rule;
+    /// none if it leaves one of them at a point.
     fn gaps_of_linear(
         &self,
         function: &Admissible<'_, D>,
@@ -169,6 +170,16 @@ impl<const D: usize> Space<'_, D> {
             return Some(gaps);
         }
         let corners = self.mesh.corners(cell);
+        if function.is_linear(&corners) {
+            for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
+                let gap = |bound: &Datum<D>| {
+                    let at_corners = corners[..=D].iter().zip(&function.values);
+                    at_corners.map(|(x, value)| sign * (value - bound.at(x))).sum::<f64>()
+                };
+                gaps[k] = function.bounds[k].map_or(0.0, gap) / (D + 1) as f64;
+            }
+            return Some(gaps);
+        }
         for (point, weight) in table.points.iter().zip(&table.weights) {
             let x = in_space(point, &corners);
             let value: f64 = function.values.iter().zip(point).map(|(v, b)| v * b).sum();
@@ -339,6 +350,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The data that the integrals of a cell read.
+    #[inline(always)]
     fn cell_inputs(
         &self,
         pair: &PrimalDualPair<D>,

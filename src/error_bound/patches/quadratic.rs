@@ -232,7 +232,7 @@ impl<const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, D> {
         })
     }
 
-    fn problem(&self, corner: Corner) -> CellProblem<9> {
+    fn problem(&self, corner: Corner, _: &[Corner]) -> CellProblem<9> {
         let (mesh, cell, d) = (self.space.mesh, corner.cell(), D as f64);
         let points = mesh.corners(cell);
         let volume = mesh.geometry(cell).volume;

@@ -182,7 +182,10 @@ impl<const D: usize> Space<'_, D> {
             };
             let area = measures.iter().zip(&touching).enumerate().map(wrong).sum();
             errors.contact_area_error = Some(area);
-            errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
+            let near = on_entities.iter().flatten().filter(|(_, exact)| exact.is_near);
+            let near: Vec<ContactEntity> = near.map(|(k, _)| entities[*k]).collect();
+            let of_entities = (&entities[..], &touching[..]);
+            errors.free_boundary_distance = self.free_boundary_distance(set, of_entities, &near);
         }
         Ok(errors)
     }
