@@ -1,8 +1,6 @@
 //! Squares of errors, integrated over cells.
 
-mod cubic;
 mod integrand;
-mod linear;
 mod roughness;
 
 use std::ops::Range;
@@ -16,12 +14,13 @@ use super::kinks::Kinks;
 use super::squared_errors::{SquaredErrors, Squares};
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::cut_simplices::{CutRule, in_space};
-use crate::assemble::space::tables::{BasisAt, CellTable};
+use crate::assemble::space::tables::CellTable;
 use crate::assemble::space::{Space, Terms, checks};
 use crate::element::{Entity, Node};
 use crate::error::Error;
 use crate::mesh::edge_vertices;
 use crate::parallel::cells;
+use crate::parallel::vectors::collect;
 use crate::problem::Datum;
 use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule};
 use crate::real::{Point, maximum};
@@ -49,10 +48,9 @@ const fn smooth_degree(dimension: usize, basis_degree: usize) -> Option<usize> {
 
 /// The error counts as smooth in a cell if `1 - |P q|^2 / |q|^2` is at most this number: `q` is the flux of the error
 /// in the L2 norm, `P` the projection to polynomials of the degree of the basis. Let `s` be the diameter divided by the
-/// length over which derivatives of the solution change. The number is a fraction of `s^2`. The rule leaves a small part
-/// of it of the square of the error in L2, a small part of its square of that of the gradient; the cubic of linear
-/// functions a small part of it of both.
-const SMOOTH: f64 = 5e-4;
+/// length over which derivatives of the solution change. The number is a fraction of `s^2`, and the rule leaves a small
+/// part of it of the square of the error in L2, a small part of its square of that of the gradient.
+const SMOOTH: f64 = 1e-3;
 
 /// The rule of smooth cells also counts where what is not smooth of each square is less than this number times the mean
 /// of that square over all cells.
@@ -87,11 +85,8 @@ struct Measure<'m, 'r, 'f, const D: usize> {
     contact_at_vertices: Option<Vec<f64>>,
     /// The functional of each node.
     nodes: Vec<Terms>,
-    /// The exact solution at the vertices of the mesh with its gradient, for errors of linear functions; without the
-    /// gradient if all nodes are vertices.
-    at_vertices: Option<Vec<(f64, Point<D>)>>,
-    /// The basis at the vertices of a cell, for errors of linear functions.
-    linear: Option<Vec<BasisAt>>,
+    /// The exact solution at the vertices of the mesh, if all nodes are vertices.
+    at_vertices: Option<Vec<f64>>,
     u: Option<&'m [f64]>,
     function: Option<InCells<'f, D>>,
 }
@@ -135,10 +130,6 @@ impl<const D: usize> Space<'_, D> {
             [rule(), rule().without_needless_bisections()]
         });
         let table = self.cell_table(cell_rule);
-        let is_linear = self.basis_degree == 1 && smooth.is_some();
-        let linear =
-            is_linear.then(|| (0..=D).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect());
-        let at_vertices = self.exact_at_vertices(exact, is_linear);
         let measure = Measure {
             exact,
             table,
@@ -147,8 +138,7 @@ impl<const D: usize> Space<'_, D> {
             kinks,
             contact_at_vertices: self.contact_at_vertices(exact),
             nodes,
-            at_vertices,
-            linear,
+            at_vertices: self.values_at_vertices(exact),
             u,
             function,
         };
@@ -241,6 +231,15 @@ impl<const D: usize> Space<'_, D> {
         Ok(SmoothRule { table, n, polynomials })
     }
 
+    /// The values of an exact solution at the vertices of the mesh, if these are all nodes.
+    fn values_at_vertices(&self, exact: &Reference<'_, D>) -> Option<Vec<f64>> {
+        let Reference::Exact(exact) = exact else { return None };
+        let is_vertex = |node: &Node| matches!(node.entity(), Entity::Vertex(_));
+        let vertices = self.mesh.vertices();
+        let is_known = self.nodes.iter().all(is_vertex);
+        is_known.then(|| collect(vertices.len(), |v| exact.value.at(&vertices[v])))
+    }
+
     /// The squares of a cell by the rule of highest degree.
     fn squares_by(&self, of: &Measure<'_, '_, '_, D>, cell: usize) -> Result<Squares, Error> {
         let integrand = self.integrand_in(of, cell);
@@ -264,9 +263,6 @@ impl<const D: usize> Space<'_, D> {
         let corners = self.mesh.corners(cell);
         if let Some(squares) = self.squares_on_pieces(of, &integrand, &corners) {
             return Ok((0.0, squares?));
-        }
-        if let Some(found) = self.squares_of_linear(of, &integrand, &corners) {
-            return Ok(found);
         }
         let corner = |k: usize| corners[k];
         let touches_in_piece = || {
@@ -353,7 +349,7 @@ impl<const D: usize> Space<'_, D> {
                 weight * of.exact.value(cell, &self.cell_point(point, cell))
             };
             let value: f64 = match (&of.at_vertices, node.entity()) {
-                (Some(values), Entity::Vertex(k)) => values[self.mesh.cell(cell)[k] as usize].0,
+                (Some(values), Entity::Vertex(k)) => values[self.mesh.cell(cell)[k] as usize],
                 _ => terms.iter().map(at).sum(),
             };
             let value = match value.is_finite() {
