@@ -1,7 +1,9 @@
 //! The names that a program needs to compare schemes, in one import.
 
 pub use crate::assemble::Discretisation;
-pub use crate::constraint::{BoundBy, CellMeans, ConstraintSet, FacetMeans, Midpoints, Nodes};
+pub use crate::constraint::{
+    Bernstein, BoundBy, CellMeans, ConstraintSet, FacetMeans, Midpoints, Nodes,
+};
 pub use crate::element::{Broken, CrouzeixRaviart, Element, Entity, Node, P1, P2};
 pub use crate::error::Error;
 pub use crate::facet::{
@@ -11,7 +13,7 @@ pub use crate::facet::{
 pub use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
 pub use crate::nested::{AdaptiveMeshes, Adaptivity, Stop, adapt};
 pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
-pub use crate::problem::Problem;
+pub use crate::problem::{DiscreteFunction, Problem};
 pub use crate::real::Point;
 pub use crate::scenes::{self, Scene};
 pub use crate::scheme::*;

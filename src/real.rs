@@ -63,6 +63,7 @@ pub trait Real:
     + num_traits::Signed
     + PartialOrd
     + Copy
+    + Default
     + Send
     + Sync
     + Debug

@@ -183,7 +183,7 @@ impl<T: Real> Inequality<T> {
         // the residual of zero
         let mut load = vec![0.0; self.size()];
         penalised.residual(&self.load, |_| 0.0, &mut load);
-        load.into_iter().map(T::lit).collect()
+        Cow::Owned(collect(load.len(), |i| T::lit(load[i])))
     }
     /// The residual `r = b - A u` in `f64`, of the penalised matrix where there is one.
     ///

@@ -4,7 +4,7 @@ use super::NO_INDEX;
 
 /// The term `weight * (u[here] - u[there])` of a jump. The difference is computed first, so that a
 /// function without jump has none in rounded arithmetic.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JumpTerm<T> {
     /// The first unknown, or [`JumpTerm::NO_UNKNOWN`].
     pub here: u32,

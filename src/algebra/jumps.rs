@@ -1,7 +1,7 @@
 //! The jumps of a penalised matrix, by jumps and by blocks of unknowns.
 
 use super::jump_term::JumpTerm;
-use crate::memory::in_large_pages;
+use crate::parallel::grouping::group_by_key;
 use crate::parallel::vectors::{all, collect};
 use crate::real::Real;
 
@@ -22,7 +22,7 @@ pub struct Jumps<T> {
 
 /// One side of a jump: the terms with [`JumpTerm::here`], of positive sign, or those with [`JumpTerm::there`], of
 /// negative sign.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JumpSide {
     /// Twice the number of the jump, and one more for [`JumpTerm::there`].
     code: u32,
@@ -77,27 +77,18 @@ impl<T: Real> Jumps<T> {
             && term_starts.last().copied() == n_terms
             && term_starts.is_sorted()
             && term_starts.len() <= 1 << 31;
-        let (mut side_starts, sides) = (vec![0; n_blocks + 1], Vec::new());
-        let jumps = Self { block_size, term_starts, terms, side_starts: vec![0], sides };
+        let (side_starts, sides) = (vec![0], Vec::new());
+        let jumps = Self { block_size, term_starts, terms, side_starts, sides };
         if !are_starts || !all(jumps.len(), |jump| jumps.is_between_blocks(jump, n_blocks)) {
             return None;
         }
-        for block in (0..jumps.len()).flat_map(|jump| jumps.blocks_of(jump)).flatten() {
-            side_starts[block as usize + 1] += 1;
-        }
-        (0..n_blocks).for_each(|block| side_starts[block + 1] += side_starts[block]);
-        let mut next = side_starts.clone();
-        let none = JumpSide { code: 0 };
-        let mut sides = in_large_pages(vec![none; side_starts[n_blocks] as usize]);
-        for jump in 0..jumps.len() {
+        let (side_starts, sides) = group_by_key(jumps.len(), n_blocks, |jump, put| {
             for (block, is_there) in jumps.blocks_of(jump).into_iter().zip([false, true]) {
                 if let Some(block) = block {
-                    let at = &mut next[block as usize];
-                    sides[*at as usize] = JumpSide::new(jump, is_there);
-                    *at += 1;
+                    put(block, JumpSide::new(jump, is_there));
                 }
             }
-        }
+        });
         Some(Self { side_starts, sides, ..jumps })
     }
 

@@ -1,8 +1,8 @@
 //! Square sparse matrices in compressed sparse rows.
 
 use super::NO_INDEX;
-use crate::memory::in_large_pages;
-use crate::parallel::vectors::{all, for_each_chunk};
+use crate::parallel::grouping::group_by_key;
+use crate::parallel::vectors::{all, collect, for_each_chunk, positions};
 use crate::real::Real;
 
 /// A square sparse matrix in compressed sparse rows; columns ascend strictly in each row.
@@ -141,10 +141,7 @@ impl<T: Real> SparseMatrix<T> {
         self.extract(free, true)
     }
     fn extract(&self, free: &[u32], is_lower: bool) -> Self {
-        let mut position = vec![NO_INDEX; self.size()];
-        for (k, &i) in free.iter().enumerate() {
-            position[i as usize] = k as u32;
-        }
+        let position = positions(self.size(), free);
         // An upper bound on the number of entries avoids reallocation.
         let stored = free.iter().map(|&i| self.row(i as usize).0.len()).sum::<usize>();
         let capacity = if is_lower { (stored + free.len()).div_ceil(2) } else { stored };
@@ -213,27 +210,15 @@ pub(crate) fn transpose<T: Real>(
     (starts, columns, values): (&[u32], &[u32], &[T]),
     n_columns: usize,
 ) -> (Vec<u32>, Vec<u32>, Vec<T>) {
-    let mut new_starts = vec![0_u32; n_columns + 1];
-    for &j in columns {
-        new_starts[j as usize + 1] += 1;
-    }
-    for j in 0..n_columns {
-        new_starts[j + 1] += new_starts[j];
-    }
-    let mut next = new_starts.clone();
-    let mut new_columns = in_large_pages(vec![0; columns.len()]);
-    let mut new_values = in_large_pages(vec![T::lit(0.0); columns.len()]);
-    // Rows are visited in order, so that columns of the transpose ascend.
-    for (i, ends) in starts.windows(2).enumerate() {
-        let range = ends[0] as usize..ends[1] as usize;
-        for (&j, &a) in columns[range.clone()].iter().zip(&values[range]) {
-            let at = &mut next[j as usize];
-            new_columns[*at as usize] = i as u32;
-            new_values[*at as usize] = a;
-            *at += 1;
+    let n_rows = starts.len().saturating_sub(1);
+    let (starts, entries) = group_by_key(n_rows, n_columns, |i, put| {
+        for k in starts[i] as usize..starts[i + 1] as usize {
+            put(columns[k], (i as u32, values[k]));
         }
-    }
-    (new_starts, new_columns, new_values)
+    });
+    let columns = collect(entries.len(), |k| entries[k].0);
+    let values = collect(entries.len(), |k| entries[k].1);
+    (starts, columns, values)
 }
 
 #[cfg(test)]

@@ -1,6 +1,9 @@
 //! Jumps of facet means, by sides of facets.
 
 use super::NO_INDEX;
+use super::jumps::Jumps;
+use crate::parallel::vectors::all;
+use crate::real::Real;
 
 /// The jumps of a [`PenalisedMatrix`](super::PenalisedMatrix) of discontinuous linear functions that penalises on each
 /// facet the jump of the mean, and no other moment of the jump.
@@ -17,19 +20,24 @@ pub struct MeanJumps {
 }
 
 impl MeanJumps {
-    /// Whether each of `n_jumps` jumps has its sides, no side has two jumps, and cells have as many unknowns as facets
-    /// in two or three dimensions.
-    pub(super) fn is_well_formed(&self, n_jumps: usize, size: usize, cell_size: usize) -> bool {
-        let mut has_jump = vec![false; size];
-        let mut is_new = |side: u32| {
-            let known = has_jump.get_mut(side as usize);
-            known.is_some_and(|known| !std::mem::replace(known, true))
+    /// Whether cells have as many unknowns as facets in two or three dimensions, each jump has its sides in the blocks of
+    /// its unknowns, and no side has two jumps.
+    pub(super) fn is_well_formed<T: Real>(&self, jumps: &Jumps<T>) -> bool {
+        let size = jumps.block_size();
+        let has_sides = |jump: usize| {
+            let [here, there] = jumps.blocks_of(jump).map(|block| block.is_some());
+            here && there == (self.sides[jump][1] != NO_INDEX)
         };
-        (3..=4).contains(&cell_size)
-            && self.sides.len() == n_jumps
-            && self
-                .sides
-                .iter()
-                .all(|&[one, opposite]| is_new(one) && (opposite == NO_INDEX || is_new(opposite)))
+        let has_distinct_sides = |block: usize| {
+            let mut has_jump = [false; 4];
+            jumps.sides_of(block).iter().all(|side| {
+                let own = self.sides[side.jump()][usize::from(!side.is_here())] as usize;
+                own / size == block && !std::mem::replace(&mut has_jump[own % size], true)
+            })
+        };
+        (3..=4).contains(&size)
+            && self.sides.len() == jumps.len()
+            && all(jumps.len(), has_sides)
+            && all(jumps.n_blocks(), has_distinct_sides)
     }
 }

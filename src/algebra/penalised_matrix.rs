@@ -6,7 +6,7 @@ use super::jump_term::JumpTerm;
 use super::jumps::Jumps;
 use super::mean_jumps::MeanJumps;
 use crate::parallel::vectors::{
-    all, collect, for_each_chunk, for_each_chunk_of_groups, map_chunks,
+    all, collect, for_each_chunk, for_each_chunk_of_groups, largest, map_chunks,
 };
 use crate::real::Real;
 
@@ -63,7 +63,7 @@ impl<T: Real> PenalisedMatrix<T> {
 
     /// Whether each jump is that of one unknown, or the difference of two: in a basis of facet means.
     pub(crate) fn has_jumps_of_single_unknowns(&self) -> bool {
-        (0..self.n_jumps()).all(|jump| self.terms_of(jump).len() <= 1)
+        all(self.n_jumps(), |jump| self.terms_of(jump).len() <= 1)
     }
 
     /// Whether all vectors and matrices have consistent sizes for `size` unknowns, and weights are positive.
@@ -75,7 +75,7 @@ impl<T: Real> PenalisedMatrix<T> {
             && self.jumps.len() == n
             && self.jumps.n_blocks() == size / self.block_size()
             && all(n, |k| self.weights[k] > T::lit(0.0))
-            && self.mean_jumps.as_ref().is_none_or(|m| m.is_well_formed(n, size, self.block_size()))
+            && self.mean_jumps.as_ref().is_none_or(|means| means.is_well_formed(&self.jumps))
     }
 
     /// The first unknown that a jump contains.
@@ -116,7 +116,7 @@ impl<T: Real> PenalisedMatrix<T> {
             let stiffness = first.map_or(f64::INFINITY, |i| self.stiffness_diagonal(i));
             self.weights[k].to_f64() * squares / stiffness
         };
-        (0..self.n_jumps()).map(of_jump).fold(0.0, f64::max)
+        largest(self.n_jumps(), of_jump)
     }
 
     /// The jump multipliers `S (M u - g)`.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::NO_INDEX;
 use super::matrix::{SparseMatrix, sort_by_column, transpose};
 use crate::parallel::map_groups;
+use crate::parallel::vectors::{concat, starts};
 use crate::real::Real;
 
 /// Rows that one task computes at least.
@@ -45,17 +46,16 @@ impl<T: Real> RectangularMatrix<T> {
         if n_rows <= length {
             return work(0..n_rows);
         }
-        let groups = map_groups(n_rows, length, work);
-        let n_entries = groups.iter().map(|group| group.columns.len()).sum();
-        let (mut starts, mut columns) = (vec![0], Vec::with_capacity(n_entries));
-        let mut values = Vec::with_capacity(n_entries);
-        for group in groups {
-            let before = columns.len() as u32;
-            starts.extend(group.starts[1..].iter().map(|start| before + start));
-            columns.extend_from_slice(&group.columns);
-            values.extend_from_slice(&group.values);
-        }
-        Self { starts, columns, values }
+        Self::joined(map_groups(n_rows, length, work))
+    }
+
+    /// The rows of all groups, one group after the other.
+    fn joined(groups: Vec<Self>) -> Self {
+        let ends: Vec<&[u32]> = groups.iter().map(|group| &group.starts[1..]).collect();
+        let starts = starts(&ends);
+        let (columns, values): (Vec<_>, Vec<_>) =
+            groups.into_iter().map(|group| (group.columns, group.values)).unzip();
+        Self { starts, columns: concat(columns), values: concat(values) }
     }
 
     /// Number of rows.

@@ -4,6 +4,7 @@ use super::NO_INDEX;
 use super::mean_jumps::MeanJumps;
 use super::penalised_matrix::PenalisedMatrix;
 use crate::memory::in_large_pages;
+use crate::parallel::vectors::for_each_chunk_of_two;
 use crate::real::Real;
 
 /// The penalty `M^T S M` of a [`PenalisedMatrix`] with [`MeanJumps`].
@@ -26,21 +27,25 @@ impl<T: Real> SidePenalties<T> {
     /// The penalties of a matrix; `None` if it has no [`MeanJumps`].
     pub fn new(penalised: &PenalisedMatrix<T>) -> Option<Self> {
         let MeanJumps { are_means, sides } = penalised.mean_jumps.as_ref()?;
-        let n = penalised.size();
-        let mut opposite = in_large_pages(vec![NO_INDEX; n]);
+        let (n, size) = (penalised.size(), penalised.block_size());
+        let mut opposite = in_large_pages(vec![0; n]);
         let mut penalty = in_large_pages(vec![T::lit(0.0); n]);
-        for (jump, &[one, other]) in sides.iter().enumerate() {
-            let terms = penalised.terms_of(jump).iter();
-            let mean = terms.fold(T::lit(0.0), |sum, t| sum + t.weight);
-            let of_jump = penalised.weights[jump] * mean * mean;
-            penalty[one as usize] = of_jump;
-            if other != NO_INDEX {
-                penalty[other as usize] = of_jump;
-                (opposite[one as usize], opposite[other as usize]) = (other, one);
+        for_each_chunk_of_two(&mut opposite, &mut penalty, size, |range, opposite, penalty| {
+            opposite.fill(NO_INDEX);
+            for block in range.start / size..range.end / size {
+                for side in penalised.jumps.sides_of(block) {
+                    let jump = side.jump();
+                    let [one, other] = sides[jump];
+                    let (own, beyond) = if side.is_here() { (one, other) } else { (other, one) };
+                    let terms = penalised.terms_of(jump).iter();
+                    let mean = terms.fold(T::lit(0.0), |sum, t| sum + t.weight);
+                    let own = own as usize - range.start;
+                    opposite[own] = beyond;
+                    penalty[own] = penalised.weights[jump] * mean * mean;
+                }
             }
-        }
-        let (cell_size, are_means) = (penalised.block_size(), *are_means);
-        Some(Self { cell_size, are_means, opposite, penalty })
+        });
+        Some(Self { cell_size: size, are_means: *are_means, opposite, penalty })
     }
 
     /// Whether the jump over the facet of a side, or the mean on a facet with Dirichlet data, is penalised.

@@ -222,7 +222,7 @@ impl<const D: usize> Space<'_, D> {
             let is_cut =
                 cut.is_some_and(|(rule, level)| {
                     rule.visit_if_cut(self.mesh, cell, level, &mut |_, x, weight| {
-                        match checks::finite(source.at(x), "source", x, cell) {
+                        match checks::finite(self.at(source, cell, x), "source", x, cell) {
                             Ok(value) => add(&mut integrals, k, weight * volume * value),
                             Err(error) => outcome = Err(error),
                         }
@@ -234,7 +234,8 @@ impl<const D: usize> Space<'_, D> {
             }
             for (point, weight) in rules.rules[k].iter() {
                 let x = self.cell_point(point, cell);
-                let value = checks::finite(source.at(&x), "source", &x, cell)?;
+                let value = self.at(source, cell, &x);
+                let value = checks::finite(value, "source", &x, cell)?;
                 add(&mut integrals, k, weight * volume * value);
             }
         }

@@ -3,11 +3,13 @@
 //! Data are integrated in `f64` and rounded once.
 
 use std::borrow::Cow;
+use std::convert::Infallible;
 use std::ops::Range;
 
 use super::bodies::FreeBodies;
 use super::count;
 use super::cut_simplices::CutRule;
+use super::shared_rows::places::for_each_place;
 use super::space::metric::Metrics;
 use super::space::tables::BasisAt;
 use super::space::tables::FacetDatum;
@@ -67,10 +69,13 @@ impl<const D: usize> Space<'_, D> {
         if self.broken && !by_cell.is_empty() {
             return by_cell.into_owned();
         }
-        let n = self.per_cell();
-        let mut load = vec![0.0; self.dofs.size()];
-        for (k, &value) in by_cell.iter().enumerate() {
-            load[self.dofs.of(k / n, k % n)] += value;
+        let mut load = zeros(self.dofs.size());
+        if !by_cell.is_empty() {
+            let add = |sum: &mut f64, place: usize| {
+                *sum += by_cell[place];
+                Ok::<_, Infallible>(())
+            };
+            let Ok(()) = for_each_place::<D, _, _>(&self.dofs, &mut load, add);
         }
         load
     }
@@ -106,7 +111,8 @@ impl<const D: usize> Space<'_, D> {
             let volume = self.mesh.geometry(cell).volume;
             let mut add = |x: &Point<D>, weight: f64, basis: &BasisAt| {
                 count::source(1);
-                let value = weight * volume * checks::finite(f.at(x), "source", x, cell)?;
+                let value = checks::finite(self.at(f, cell, x), "source", x, cell)?;
+                let value = weight * volume * value;
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
                     *out += value * phi;
                 }

@@ -29,4 +29,5 @@ pub(crate) mod weak_dirichlet;
 
 pub use data_quadrature::DataQuadrature;
 pub use discretisation::Discretisation;
+pub(crate) use discretisation::{MOST_ENTRIES, entries_at_most};
 pub use penalty_below_bound::PenaltyBelowBound;

@@ -1,6 +1,7 @@
 //! The matrix of a form that ties cells by jumps alone, not multiplied out.
 
 use std::convert::Infallible;
+use std::ops::Range;
 
 use super::facet_coefficients::FacetCoefficients;
 use super::space::Space;
@@ -13,6 +14,7 @@ use crate::element::{MAX_BASIS, Node};
 use crate::facet::FacetForm;
 use crate::mesh::HalfFacet;
 use crate::parallel::cells;
+use crate::parallel::vectors::{concat, starts};
 
 /// Moments up to this share of the largest are what quadrature leaves of zero, and differences up to
 /// this share are none.
@@ -30,60 +32,85 @@ pub(crate) fn penalised_matrix<const D: usize>(
     (metrics, weights): (&Metrics, &FacetCoefficients),
     dirichlet: &[FacetDatum],
 ) -> PenalisedMatrix<f64> {
-    let mut dirichlet = dirichlet.iter().peekable();
     let table = space.facet_table(form.moments(space.basis_degree));
     let templates = Templates::new(D, &space.nodes, &table);
     let of_degree: Vec<f64> = table.degrees.iter().map(|&k| form.moment_weight(k)).collect();
-    let n_jumps = space.form_facets().count() * of_degree.len();
+    let n_cells = space.mesh.n_cells();
     let block_size = space.per_cell();
-    let mut term_starts = Vec::with_capacity(n_jumps + 1);
-    let mut terms = Vec::with_capacity(n_jumps * templates.most_terms());
-    let mut jump_weights = Vec::with_capacity(n_jumps);
-    let mut jump_data = Vec::with_capacity(n_jumps);
-    term_starts.push(0);
-    for facet in space.form_facets() {
-        let (cell, local) = facet.here;
-        let (other, template) = match facet.there {
-            Some((other, there)) => (other, templates.between(local, there)),
-            None => (cell, templates.on_boundary(local)),
-        };
-        match dirichlet.next_if(|datum| datum.facet == facet.here) {
-            Some(datum) => jump_data.extend(&datum.moments),
-            None => jump_data.extend(of_degree.iter().map(|_| 0.0)),
+    let has_sides = has_mean_jumps(space, &table);
+    let of_cells = |cells: Range<usize>| {
+        let first = dirichlet.partition_point(|datum| datum.facet.0 < cells.start);
+        let mut dirichlet = dirichlet[first..].iter().peekable();
+        let mut jumps = JumpLists::default();
+        for facet in cells.flat_map(|cell| space.form_facets_of(cell)) {
+            let (cell, local) = facet.here;
+            let (other, template) = match facet.there {
+                Some((other, there)) => (other, templates.between(local, there)),
+                None => (cell, templates.on_boundary(local)),
+            };
+            match dirichlet.next_if(|datum| datum.facet == facet.here) {
+                Some(datum) => jumps.data.extend(&datum.moments),
+                None => jumps.data.extend(of_degree.iter().map(|_| 0.0)),
+            }
+            let weight = weights.at::<D>(facet.here, true, facet.kind());
+            let measure = metrics.measure::<D>(facet.here);
+            for (moment, &factor) in template.iter().zip(&of_degree) {
+                jumps.terms.extend(moment.iter().map(|t| t.between(cell, other, block_size)));
+                jumps.ends.push(jumps.terms.len() as u32);
+                let jump_jump = weight.coefficients.jump_jump.at(weight.penalty * factor);
+                jumps.weights.push(measure * jump_jump);
+            }
+            if has_sides {
+                let side = |(cell, local): HalfFacet| (cell * (D + 1) + local) as u32;
+                jumps.sides.push([side(facet.here), facet.there.map_or(NO_INDEX, side)]);
+            }
         }
-        let weight = weights.at::<D>(facet.here, true, facet.kind());
-        let measure = metrics.measure::<D>(facet.here);
-        for (moment, &factor) in template.iter().zip(&of_degree) {
-            terms.extend(moment.iter().map(|t| t.between(cell, other, block_size)));
-            term_starts.push(terms.len() as u32);
-            let jump_jump = weight.coefficients.jump_jump.at(weight.penalty * factor);
-            jump_weights.push(measure * jump_jump);
-        }
-    }
-    let jumps = Jumps::new((space.mesh.n_cells(), block_size), term_starts, terms)
+        jumps
+    };
+    let mut lists = cells::map(n_cells, &of_cells);
+    let starts = starts(&lists.iter().map(|list| &list.ends[..]).collect::<Vec<_>>());
+    let terms = JumpLists::all(&mut lists, |list| &mut list.terms);
+    let jumps = Jumps::new((n_cells, block_size), starts, terms)
         .expect("each side of a facet has the unknowns of one cell");
+    let are_means = space.nodes[0] != Node::vertex(0);
+    let sides = JumpLists::all(&mut lists, |list| &mut list.sides);
     PenalisedMatrix {
         blocks: blocks(space, metrics),
         jumps,
-        weights: jump_weights,
-        jump_data,
-        mean_jumps: mean_jumps(space, &table),
+        weights: JumpLists::all(&mut lists, |list| &mut list.weights),
+        jump_data: JumpLists::all(&mut lists, |list| &mut list.data),
+        mean_jumps: has_sides.then_some(MeanJumps { are_means, sides }),
     }
 }
 
-/// The sides of facets to which the jumps belong, if the functions are linear with their values at vertices or their
-/// means over facets as unknowns, and the form acts on means of jumps alone.
-fn mean_jumps<const D: usize>(space: &Space<'_, D>, table: &FacetTable) -> Option<MeanJumps> {
-    let is_basis_of = |node: fn(usize) -> Node| space.nodes.iter().cloned().eq((0..=D).map(node));
-    let are_means = is_basis_of(Node::facet_mean);
-    if D == 1 || space.basis_degree > 1 || table.degrees.len() > 1 {
-        return None;
+/// The jumps that are counted with some cells.
+#[derive(Default)]
+struct JumpLists {
+    /// Where the terms of each jump end.
+    ends: Vec<u32>,
+    terms: Vec<JumpTerm<f64>>,
+    weights: Vec<f64>,
+    data: Vec<f64>,
+    /// See [`MeanJumps::sides`].
+    sides: Vec<[u32; 2]>,
+}
+
+impl JumpLists {
+    /// One kind of entry of all lists, one list after the other.
+    fn all<V: Copy + Default + Send + Sync>(
+        lists: &mut [Self],
+        of: fn(&mut Self) -> &mut Vec<V>,
+    ) -> Vec<V> {
+        concat(lists.iter_mut().map(|list| std::mem::take(of(list))).collect::<Vec<_>>())
     }
-    (are_means || is_basis_of(Node::vertex)).then(|| {
-        let side = |(cell, local): HalfFacet| (cell * (D + 1) + local) as u32;
-        let sides = space.form_facets().map(|f| [side(f.here), f.there.map_or(NO_INDEX, side)]);
-        MeanJumps { are_means, sides: sides.collect() }
-    })
+}
+
+/// Whether the functions are linear with their values at vertices or their means over facets as unknowns, and the form
+/// acts on means of jumps alone.
+fn has_mean_jumps<const D: usize>(space: &Space<'_, D>, table: &FacetTable) -> bool {
+    let is_basis_of = |node: fn(usize) -> Node| space.nodes.iter().cloned().eq((0..=D).map(node));
+    let is_linear = is_basis_of(Node::facet_mean) || is_basis_of(Node::vertex);
+    D > 1 && space.basis_degree == 1 && table.degrees.len() == 1 && is_linear
 }
 
 /// Stiffness and reaction of all cells.
@@ -91,7 +118,7 @@ fn blocks<const D: usize>(space: &Space<'_, D>, metrics: &Metrics) -> Vec<f64> {
     let n = space.per_cell();
     let table = space.stiffness_table();
     let mut blocks = vec![0.0; n * n * space.mesh.n_cells()];
-    let fill = |cells: std::ops::Range<usize>, chunk: &mut [f64]| {
+    let fill = |cells: Range<usize>, chunk: &mut [f64]| {
         for (cell, out) in cells.zip(chunk.chunks_exact_mut(n * n)) {
             let metric = metrics.at::<D>(cell);
             let stiffness = space.stiffness(&table, cell, &metric);
@@ -155,10 +182,6 @@ impl Templates {
     }
     fn between(&self, here: usize, there: usize) -> &[Vec<LocalTerm>] {
         &self.pairs[here * self.facets + there]
-    }
-    /// The largest number of terms of a moment.
-    fn most_terms(&self) -> usize {
-        self.pairs.iter().flatten().map(Vec::len).max().unwrap_or(0)
     }
     fn on_boundary(&self, here: usize) -> &[Vec<LocalTerm>] {
         &self.pairs[self.facets * self.facets + here]

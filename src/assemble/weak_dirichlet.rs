@@ -1,5 +1,7 @@
 //! Dirichlet data that the facet form imposes: their share of the load, and what they change in the energy of a function.
 
+use std::ops::Range;
+
 use super::count;
 use super::owned_rows::lifted::Lifting;
 use super::space::form_facets::FormFacet;
@@ -12,7 +14,11 @@ use crate::algebra::{DirichletEnergy, DirichletTerm};
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryCondition, HalfFacet};
+use crate::parallel::map_groups;
 use crate::quadrature::{OrthonormalPolynomials, Rule};
+
+/// Facets whose data one task integrates.
+const FACETS_PER_TASK: usize = 64;
 
 /// What moments of data on facets are computed with.
 pub(crate) struct FacetMoments<'r> {
@@ -97,10 +103,12 @@ impl<const D: usize> Space<'_, D> {
         }
         let degree = form.moments(self.basis_degree);
         let moments = FacetMoments::new(D, degree, &self.facet_rule);
-        let on_facet = |(facet, group)| {
+        let facets: Vec<_> = self.grouped_facets_of(BoundaryCondition::Dirichlet).collect();
+        let on_facet = |&(facet, group): &(HalfFacet, usize)| {
             Ok(FacetDatum { facet, moments: self.dirichlet_moments(&moments, facet, group)? })
         };
-        self.grouped_facets_of(BoundaryCondition::Dirichlet).map(on_facet).collect()
+        let of_group = |range: Range<usize>| facets[range].iter().map(on_facet).collect::<Vec<_>>();
+        map_groups(facets.len(), FACETS_PER_TASK, &of_group).into_iter().flatten().collect()
     }
 
     /// Visits all moments on all facets with data, one facet after the other.

@@ -12,7 +12,8 @@ pub enum BoundBy {
     /// that of a sum is its [`centre`](Node::centre).
     Value,
     /// By the functional of the node, applied to the datum: the mean over the facet or cell, the sum
-    /// of values at points times weights, at a node that is a point the value there.
+    /// of values at points times weights, the Bernstein coefficient, at a node that is a point the value
+    /// there.
     Functional,
 }
 
@@ -32,7 +33,8 @@ pub trait ConstraintSet: Send + Sync {
         let _ = nodes;
         self.name()
     }
-    /// The basis to change to if the element is broken and the set binds none of its nodes.
+    /// The basis to change to, if the element [knows](crate::element::Element::in_basis) it and the set binds none of
+    /// its nodes.
     fn basis(&self) -> Option<Basis> {
         None
     }

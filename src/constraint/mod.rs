@@ -5,8 +5,9 @@
 //! ([`Problem::on`](crate::problem::Problem::on)) or to an entry of a study
 //! ([`Study::scheme_on`](crate::study::Study::scheme_on)), never to a scheme; where nothing is said,
 //! [`Nodes`] holds. Bounds bind single unknowns, so the element must have the functionals of the set
-//! among its nodes, or know a basis of the same broken space that has.
+//! among its nodes, or know a basis of the same space that has.
 
+mod bernstein;
 mod by_name;
 mod cell_means;
 mod constraint_set;
@@ -15,6 +16,7 @@ mod midpoints;
 mod nodes;
 mod on_element;
 
+pub use bernstein::Bernstein;
 pub use by_name::{CONSTRAINT_SETS, constraint_set_by_name};
 pub use cell_means::CellMeans;
 pub use constraint_set::{BoundBy, ConstraintSet};

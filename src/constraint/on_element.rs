@@ -6,15 +6,15 @@ use super::by_name::{CONSTRAINT_SETS, constraint_set_by_name};
 use super::constraint_set::ConstraintSet;
 use crate::element::{Element, Node};
 
-/// The element, or the one of the same broken polynomials in the basis of the set, if the set binds no
-/// node of the element.
+/// The element, or the one of the same functions in the basis of the set, if the set binds no node of the
+/// element.
 pub(crate) fn in_basis_of<const D: usize>(
     set: &dyn ConstraintSet,
     element: Arc<dyn Element<D>>,
 ) -> Arc<dyn Element<D>> {
     let other = match set.basis() {
-        Some(basis) if element.layout().is_broken() && !binds_any(set, &element.nodes(), D) => {
-            element.broken_in_basis(basis)
+        Some(basis) if !binds_any(set, &element.nodes(), D) => {
+            element.in_basis(basis, element.layout().is_broken())
         }
         _ => None,
     };

@@ -85,7 +85,7 @@ impl<'a> VertexCorrection<'a> {
         locations: &[DofLocation],
     ) -> Option<Self> {
         let n = dirichlet.len();
-        let interpolation = rows_of_means(locations.iter().map(DofLocation::vertices), n)?;
+        let interpolation = rows_of_means(locations, n)?;
         let transpose = interpolation.transpose(n);
         let (residual, values) = (zeros(n), zeros(n));
         let fixed_vertices = vec![false; n];

@@ -1,6 +1,6 @@
-//! Other bases of a broken space.
+//! Other bases of a space of polynomials.
 
-/// A basis of a broken polynomial space, by the functionals that it has among its nodes.
+/// A basis of polynomials on each cell, by the functionals that it has among its nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Basis {
@@ -8,4 +8,6 @@ pub enum Basis {
     FacetMeans,
     /// The mean over the cell.
     CellMean,
+    /// The coefficients in the basis of Bernstein.
+    Bernstein,
 }

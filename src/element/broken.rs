@@ -32,7 +32,7 @@ impl<const D: usize, E: Element<D>> Element<D> for Broken<E> {
     fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]) {
         self.0.derivatives(lambda, out);
     }
-    fn broken_in_basis(&self, basis: Basis) -> Option<Arc<dyn Element<D>>> {
-        self.0.broken_in_basis(basis)
+    fn in_basis(&self, basis: Basis, _: bool) -> Option<Arc<dyn Element<D>>> {
+        self.0.in_basis(basis, true)
     }
 }

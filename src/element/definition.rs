@@ -76,11 +76,11 @@ pub trait Element<const D: usize>: Debug + Send + Sync {
     /// Writes the derivatives of the basis functions with respect to the `D + 1` barycentric
     /// coordinates, taken as independent; entries beyond these are zero already.
     fn derivatives(&self, lambda: &[f64], out: &mut [[f64; 4]]);
-    /// The broken element of the same polynomials that has this basis; none if the element knows no
-    /// such basis. Only broken elements are asked, and [`Broken`](super::Broken) passes the question to
-    /// the element inside.
-    fn broken_in_basis(&self, basis: Basis) -> Option<Arc<dyn Element<D>>> {
-        let _ = basis;
+    /// The element of the same functions that has this basis, of the discontinuous ones if the element
+    /// `is_broken`; none if the element knows no such basis. [`Broken`](super::Broken) asks the element
+    /// inside.
+    fn in_basis(&self, basis: Basis, is_broken: bool) -> Option<Arc<dyn Element<D>>> {
+        let _ = (basis, is_broken);
         None
     }
 }

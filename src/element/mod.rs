@@ -1,6 +1,7 @@
 //! Reference elements on simplices, in barycentric coordinates.
 
 mod basis;
+mod bernstein;
 mod broken;
 mod crouzeix_raviart;
 mod definition;
@@ -10,6 +11,8 @@ mod p2;
 mod quadratic_cell_mean;
 
 pub use basis::Basis;
+#[cfg(test)]
+pub(crate) use bernstein::BernsteinP2;
 pub use broken::Broken;
 pub use crouzeix_raviart::CrouzeixRaviart;
 pub(crate) use definition::MAX_BASIS;

@@ -50,6 +50,8 @@ enum Functional {
     Mean,
     /// A sum of values at points times weights.
     Sum(Vec<([f64; 4], f64)>),
+    /// The coefficient of a vertex or an edge in the basis of Bernstein.
+    Coefficient,
 }
 
 impl Node {
@@ -95,6 +97,15 @@ impl Node {
     pub fn cell_mean() -> Self {
         Self { entity: Entity::Cell, functional: Functional::Mean }
     }
+    /// The Bernstein coefficient of a quadratic at a vertex of the cell, which is the value there.
+    pub fn coefficient_of_vertex(k: usize) -> Self {
+        Self { entity: Entity::Vertex(k), functional: Functional::Coefficient }
+    }
+    /// The Bernstein coefficient of a quadratic on an edge: twice the value at the midpoint less the mean of
+    /// the values at the ends.
+    pub fn coefficient_of_edge(edge: usize) -> Self {
+        Self { entity: Entity::Edge(edge), functional: Functional::Coefficient }
+    }
     /// The value at a point of an entity.
     pub fn value(entity: Entity, point: [f64; 4]) -> Self {
         Self { entity, functional: Functional::Value(point) }
@@ -128,20 +139,31 @@ impl Node {
     pub fn is_mean(&self) -> bool {
         self.functional == Functional::Mean
     }
+    /// Whether the functional is a Bernstein coefficient.
+    pub fn is_coefficient(&self) -> bool {
+        self.functional == Functional::Coefficient
+    }
     /// The functional as points with weights. Means are taken by the rules for facets and for cells,
     /// exactly for polynomials that the rules integrate exactly.
     pub fn terms(&self, facet_rule: &Rule, cell_rule: &Rule) -> Vec<([f64; 4], f64)> {
         match (&self.functional, self.entity) {
             (Functional::Value(point), _) => vec![(*point, 1.0)],
             (Functional::Sum(terms), _) => terms.clone(),
+            (Functional::Coefficient, Entity::Edge(k)) => {
+                let end = |v: usize| (array_of(|i| f64::from(u8::from(i == v))), -0.5);
+                let ends = edge_vertices(3)[k].map(end);
+                // in this order rounding leaves a constant as it is
+                vec![ends[0], ends[1], (self.centre(3), 2.0)]
+            }
+            (Functional::Coefficient, _) => vec![(self.centre(3), 1.0)],
             (Functional::Mean, Entity::Facet(k)) => {
                 facet_rule.iter().map(|(point, w)| (facet_to_cell(point, k), w)).collect()
             }
             (Functional::Mean, _) => cell_rule.iter().map(|(point, w)| (*point, w)).collect(),
         }
     }
-    /// The point that stands for the node: where it is the value at a point that point, of a mean the
-    /// barycentre, of a sum the mean of its points with the weights' magnitudes.
+    /// The point that stands for the node: where it is the value at a point that point, of a mean and of a
+    /// Bernstein coefficient the barycentre, of a sum the mean of its points with the weights' magnitudes.
     pub fn centre(&self, dimension: usize) -> [f64; 4] {
         let mean = |terms: &mut dyn Iterator<Item = ([f64; 4], f64)>| {
             let (mut sum, mut total) = ([0.0; 4], 0.0);
@@ -154,7 +176,7 @@ impl Node {
         match &self.functional {
             Functional::Value(point) => *point,
             Functional::Sum(terms) => mean(&mut terms.iter().map(|(point, w)| (*point, w.abs()))),
-            Functional::Mean => {
+            Functional::Mean | Functional::Coefficient => {
                 let vertices = (0..dimension + 1).filter(|&k| self.entity.contains(dimension, k));
                 let vertex = |k: usize| array_of(|i| f64::from(u8::from(i == k)));
                 mean(&mut vertices.map(|k| (vertex(k), 1.0)))
@@ -190,6 +212,7 @@ impl Node {
         let functional = match &self.functional {
             Functional::Value(p) => Functional::Value(point(p)),
             Functional::Mean => Functional::Mean,
+            Functional::Coefficient => Functional::Coefficient,
             Functional::Sum(terms) => {
                 Functional::Sum(terms.iter().map(|(p, w)| (point(p), *w)).collect())
             }

@@ -31,7 +31,8 @@ impl<const D: usize> Element<D> for P1 {
     fn node(&self, i: usize) -> Node {
         Node::vertex(i)
     }
-    fn broken_in_basis(&self, basis: Basis) -> Option<Arc<dyn Element<D>>> {
-        (basis == Basis::FacetMeans).then(|| Arc::new(Broken(CrouzeixRaviart)) as _)
+    fn in_basis(&self, basis: Basis, is_broken: bool) -> Option<Arc<dyn Element<D>>> {
+        let has_means = basis == Basis::FacetMeans && is_broken;
+        has_means.then(|| Arc::new(Broken(CrouzeixRaviart)) as _)
     }
 }

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use super::basis::Basis;
+use super::bernstein::BernsteinP2;
+use super::broken::Broken;
 use super::definition::{Element, Layout};
 use super::node::Node;
 use super::quadratic_cell_mean::QuadraticCellMean;
@@ -44,7 +46,12 @@ impl<const D: usize> Element<D> for P2 {
     fn node(&self, i: usize) -> Node {
         if i <= D { Node::vertex(i) } else { Node::midpoint(i - D - 1) }
     }
-    fn broken_in_basis(&self, basis: Basis) -> Option<Arc<dyn Element<D>>> {
-        (basis == Basis::CellMean).then(|| Arc::new(QuadraticCellMean(P2)) as _)
+    fn in_basis(&self, basis: Basis, is_broken: bool) -> Option<Arc<dyn Element<D>>> {
+        match (basis, is_broken) {
+            (Basis::CellMean, true) => Some(Arc::new(QuadraticCellMean(P2))),
+            (Basis::Bernstein, true) => Some(Arc::new(Broken(BernsteinP2))),
+            (Basis::Bernstein, false) => Some(Arc::new(BernsteinP2)),
+            _ => None,
+        }
     }
 }

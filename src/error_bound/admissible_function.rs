@@ -162,18 +162,17 @@ impl<const D: usize> Space<'_, D> {
     /// Sets values at vertices to Dirichlet data, and moves the others into the constraints.
     fn clip_at_vertices(&self, values: &mut [f64]) {
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); values.len()];
-        // obstacles without names are the same in all cells
-        let by_region = self.data.lower.has_names() || self.data.upper.has_names();
-        let mut add = |v: usize, region: usize| {
+        let mut add = |v: usize, cell: usize| {
+            let region = self.mesh.region(cell);
             let x = self.mesh.vertices()[v];
             let (low, high) = &mut bounds[v];
-            *low = self.data.lower.of(region).map_or(*low, |psi| psi.at(&x).max(*low));
-            *high = self.data.upper.of(region).map_or(*high, |psi| psi.at(&x).min(*high));
+            *low = self.data.lower.of(region).map_or(*low, |psi| self.at(psi, cell, &x).max(*low));
+            *high =
+                self.data.upper.of(region).map_or(*high, |psi| self.at(psi, cell, &x).min(*high));
         };
-        if by_region {
+        if self.data.obstacles_differ() {
             for cell in 0..self.mesh.n_cells() {
-                let region = self.mesh.region(cell);
-                self.mesh.cell(cell).iter().for_each(|&v| add(v as usize, region));
+                self.mesh.cell(cell).iter().for_each(|&v| add(v as usize, cell));
             }
         } else if self.problem.has_obstacle() {
             (0..values.len()).for_each(|v| add(v, 0));
@@ -183,7 +182,7 @@ impl<const D: usize> Space<'_, D> {
             for v in self.mesh.facet_vertices(cell, local) {
                 let x = self.mesh.vertices()[v as usize];
                 let low = &mut bounds[v as usize].0;
-                *low = low.max(gap.at(&x));
+                *low = low.max(self.at(gap, cell, &x));
             }
         }
         let groups = self.dirichlet_groups();
@@ -205,9 +204,10 @@ impl<const D: usize> Space<'_, D> {
         let least = |datum: &Datum<D>, cell: usize, &[a, b]: &[usize; 2]| {
             let ends = map_entries([a, b], |k| self.mesh.cell(cell)[k] as usize);
             let [x, y] = map_entries(ends, |v| self.mesh.vertices()[v]);
-            let middle = datum.at(&midpoint(&x, &y));
+            let at = |x: &Point<D>| self.at(datum, cell, x);
+            let middle = at(&midpoint(&x, &y));
             let [of_x, of_y] = map_entries(ends, |v| at_vertices[v]);
-            middle + (of_x + of_y - datum.at(&x) - datum.at(&y)) / 4.0
+            middle + (of_x + of_y - at(&x) - at(&y)) / 4.0
         };
         for cell in 0..self.mesh.n_cells() {
             let region = self.mesh.region(cell);

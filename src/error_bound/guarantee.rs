@@ -8,6 +8,7 @@ use crate::assemble::space::Space;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::problem::{DataByGroup, Datum};
+use crate::real::Point;
 
 /// Numbers that differ by less than this share are equal but for rounding.
 const AGREEMENT: f64 = 1e-12;
@@ -46,11 +47,14 @@ impl<const D: usize> Space<'_, D> {
             && obstacles.iter().any(|d| d.is_given())
             && !self.exceeds_obstacles(pair);
         let has_data = D > 1 && self.mesh.has_condition(BoundaryCondition::Dirichlet);
+        // one with jumps is no trace of a function with finite energy
+        let is_discrete = data.dirichlet.any(&|datum| datum.discrete().is_some());
         let found = [
             (is_inexact, Unproven::Quadrature),
             (
                 has_data
-                    && !(is_below(&data.dirichlet, pair.degree)
+                    && !(!is_discrete
+                        && is_below(&data.dirichlet, pair.degree)
                         && self.takes_dirichlet_data(pair, counts)),
                 Unproven::Boundary,
             ),
@@ -63,7 +67,8 @@ impl<const D: usize> Space<'_, D> {
     /// The degree of data that are polynomials in cells, the largest one; none where one is unknown or too high to be
     /// integrated.
     pub(super) fn degree_of(&self, data: &DataByGroup<'_, D>) -> Option<usize> {
-        self.largest_degree(data.all().map(|datum| datum.degree()))
+        let stated = self.problem.data_degree;
+        self.largest_degree(data.all().map(|datum| datum.degree_on(self.mesh, stated)))
     }
     /// The degree of Neumann data on facets, likewise; that of the flux of an exact solution is unknown.
     pub(super) fn neumann_degree(&self) -> Option<usize> {
@@ -72,12 +77,13 @@ impl<const D: usize> Space<'_, D> {
         let is_exact =
             self.problem.exact.is_some() && facets.any(|(_, group)| flux(group).is_none());
         let of_exact = is_exact.then_some(None);
-        self.largest_degree(self.data.neumann.all().map(|flux| flux.degree()).chain(of_exact))
+        let stated = self.problem.data_degree;
+        let degrees = self.data.neumann.all().map(|flux| flux.degree());
+        self.largest_degree(degrees.chain(of_exact).map(|degree| degree.or(stated)))
     }
     fn largest_degree(&self, mut degrees: impl Iterator<Item = Option<usize>>) -> Option<usize> {
-        let stated = self.problem.data_degree;
         degrees
-            .try_fold(0, |largest, degree| Some(largest.max(degree.or(stated)?)))
+            .try_fold(0, |largest, degree| Some(largest.max(degree?)))
             .filter(|degree| *degree <= HIGHEST_DEGREE)
     }
 
@@ -103,9 +109,9 @@ impl<const D: usize> Space<'_, D> {
                 [4.0 * middle - a - b, 4.0 * middle.abs() + a.abs() + b.abs()]
             };
             let of_ends = map_entries(ends, |v| pair.function[v]);
+            let at = |x: &Point<D>| self.at(bound, cell, x);
             let [own, size] = coefficient(pair.function[node], of_ends);
-            let [of_bound, size_of_bound] =
-                coefficient(bound.at(&((x + y) * 0.5)), [bound.at(&x), bound.at(&y)]);
+            let [of_bound, size_of_bound] = coefficient(at(&((x + y) * 0.5)), [at(&x), at(&y)]);
             sign * (own - of_bound) >= -AGREEMENT * size.max(size_of_bound)
         };
         let exceeds_in = |cell: usize| {

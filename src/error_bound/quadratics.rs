@@ -24,6 +24,7 @@ use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::stiffness::zero_local;
+use crate::element::Node;
 use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
 use crate::parallel::cells;
 use crate::quadrature::{OrthonormalPolynomials, facet_to_cell};
@@ -63,18 +64,27 @@ pub(super) fn densities<const D: usize>(products: &[f64; 4], facet: usize) -> [f
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// Whether the unknowns of a cell are the values of a continuous quadratic at vertices and midpoints.
+    /// Whether the unknowns of a cell are those of a continuous quadratic, one for each vertex and edge.
     pub(super) fn is_conforming_quadratic(&self) -> bool {
-        !self.broken && self.has_values_of_quadratics()
+        !self.broken && self.has_nodes_of_quadratics()
     }
 
-    /// Whether the unknowns of a cell are the values of a quadratic at vertices and midpoints.
-    pub(super) fn has_values_of_quadratics(&self) -> bool {
+    /// Whether the unknowns of a cell are the values of a quadratic at vertices and midpoints, or its Bernstein
+    /// coefficients: one for each vertex and edge.
+    pub(super) fn has_nodes_of_quadratics(&self) -> bool {
         let is_vertex = |i: usize| self.nodes[i].point().is_some_and(|p| p[i] == 1.0);
-        self.basis_degree == 2
-            && self.per_cell() == D + 1 + edge_vertices(D).len()
-            && (0..D + 1).all(is_vertex)
-            && self.nodes[D + 1..].iter().all(|node| node.is_midpoint())
+        let is_lagrange = || {
+            self.basis_degree == 2
+                && self.per_cell() == D + 1 + edge_vertices(D).len()
+                && (0..D + 1).all(is_vertex)
+                && self.nodes[D + 1..].iter().all(|node| node.is_midpoint())
+        };
+        self.has_coefficients() || is_lagrange()
+    }
+
+    /// Whether the unknowns of a cell are Bernstein coefficients.
+    pub(super) fn has_coefficients(&self) -> bool {
+        self.nodes.iter().all(Node::is_coefficient)
     }
 
     /// Loads and multipliers by cell; `residual` is that of the inequality, `numbers` are those of the nodes whose

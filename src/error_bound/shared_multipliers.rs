@@ -18,10 +18,11 @@ pub(super) struct SharedNodes {
 
 impl<const D: usize> Space<'_, D> {
     /// The numbers of the nodes of quadratics, by cell and unknown of the cell: of broken functions those of vertices
-    /// and, after them, of edges; none if the unknowns are other ones than values at vertices and midpoints.
+    /// and, after them, of edges; none if the unknowns are other ones than values at vertices and midpoints, or
+    /// Bernstein coefficients.
     pub(super) fn node_numbers(&self, edges: &[u32]) -> Option<Vec<u32>> {
         let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
-        if !self.has_values_of_quadratics() {
+        if !self.has_nodes_of_quadratics() {
             return None;
         }
         let n_vertices = self.mesh.vertices().len() as u32;

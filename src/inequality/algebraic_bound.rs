@@ -2,6 +2,7 @@
 
 use super::Outcome;
 use crate::algebra::{Bound, Inequality};
+use crate::parallel::vectors::collect;
 use crate::real::Real;
 
 /// The threshold of strong activity divided by the estimate of the energy norm of the error.
@@ -55,7 +56,7 @@ pub(super) fn algebraic_bound<T: Real>(
         true => T::lit(unbalanced_residual(&bounds[i], values[i], residual[i])),
         false => T::lit(0.0),
     };
-    let unbalanced: Vec<T> = (0..values.len()).map(unbalanced).collect();
+    let unbalanced = collect(values.len(), unbalanced);
     for trial in 0..=MAX_THRESHOLDS {
         if trial == MAX_THRESHOLDS {
             threshold = f64::INFINITY;
@@ -65,7 +66,7 @@ pub(super) fn algebraic_bound<T: Real>(
                 || bounds[i].fixed_value().is_some()
                 || multiplier(&bounds[i], values[i], residual[i]) > threshold * diagonal[i].sqrt()
         };
-        let eliminated: Vec<bool> = (0..values.len()).map(is_eliminated).collect();
+        let eliminated = collect(values.len(), is_eliminated);
         let Some(bound) = dual_norm(&eliminated, &unbalanced)? else { return Ok(None) };
         if bound <= threshold {
             return Ok(Some(bound / energy_norm));

@@ -1,10 +1,16 @@
 //! The contact forces of unknowns: everything that shows a force takes it from here.
 
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::Solution;
 use super::certificate::{residual, stiffness_diagonal};
-use crate::algebra::{Contact, Inequality, JumpTerm, PenalisedMatrix};
+use crate::algebra::{Contact, Inequality, JumpTerm, Jumps, PenalisedMatrix};
 use crate::mesh::Components;
-use crate::parallel::vectors::collect;
+use crate::parallel::grouping::group_by_key;
+use crate::parallel::vectors::{
+    self, collect, concat, for_each_chunk, indices, map_chunks, map_chunks_of_groups, positions,
+};
 use crate::real::{Precision, Real};
 
 /// Forces have no digit where their errors may exceed this share of them.
@@ -66,9 +72,10 @@ impl ContactForces {
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
-        counts: impl Fn(usize) -> bool,
+        counts: impl Fn(usize) -> bool + Sync,
     ) -> bool {
-        let mut largest = [solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max)];
+        let size = |i: usize| solution.values[i].to_f64().abs();
+        let mut largest = [vectors::largest(solution.values.len(), size)];
         if let Some(distribution) = inequality.distribution() {
             distribution.largest(&mut largest);
         }
@@ -77,15 +84,20 @@ impl ContactForces {
             let bound = &inequality.bounds[i];
             bound.distances(solution.values[i].to_f64()).iter().any(|distance| *distance <= slack)
         };
-        let mut sums = [0.0; 4];
-        for i in (0..self.values.len()).filter(|&i| inequality.owns(i) && counts(i)) {
-            sums[3] += inequality.load[i].to_f64().abs();
-            sums[0] += self.values[i].abs();
-            sums[1] += self.rounding[i];
-            if is_near(i) {
-                sums[2] += stiffness_diagonal(inequality, i);
+        let of_chunk = |range: Range<usize>| {
+            let mut sums = [0.0; 4];
+            for i in range.filter(|&i| inequality.owns(i) && counts(i)) {
+                sums[3] += inequality.load[i].to_f64().abs();
+                sums[0] += self.values[i].abs();
+                sums[1] += self.rounding[i];
+                if is_near(i) {
+                    sums[2] += stiffness_diagonal(inequality, i);
+                }
             }
-        }
+            sums
+        };
+        let chunks = map_chunks(self.values.len(), of_chunk);
+        let mut sums = [0, 1, 2, 3].map(|k| chunks.iter().map(|sums| sums[k]).sum::<f64>());
         if let Some(distribution) = inequality.distribution() {
             distribution.sum(&mut sums);
         }
@@ -142,27 +154,25 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
         if inequality.distribution().is_some() {
             return None;
         }
+        let node = nodes(&penalised.jumps);
+        let is_loose = collect(node.len(), |_| AtomicBool::new(false));
+        let set_loose = |i: u32| is_loose[node[i as usize] as usize].store(true, Ordering::Relaxed);
         let no_unknown = JumpTerm::<T>::NO_UNKNOWN;
-        let mut nodes = Components::new(inequality.size());
-        for term in
-            penalised.jumps.terms().iter().filter(|t| ![t.here, t.there].contains(&no_unknown))
-        {
-            nodes.join(term.here as usize, term.there as usize);
-        }
-        let node: Vec<u32> = (0..inequality.size()).map(|i| nodes.find(i) as u32).collect();
-        let mut is_balanced = vec![true; node.len()];
-        for term in
-            penalised.jumps.terms().iter().filter(|t| [t.here, t.there].contains(&no_unknown))
-        {
-            let unknown = if term.here == no_unknown { term.there } else { term.here };
-            is_balanced[node[unknown as usize] as usize] = false;
-        }
-        // a copy with one admissible value has a force of any sign
-        for (i, bound) in inequality.bounds.iter().enumerate() {
-            if bound.fixed_value().is_some() {
-                is_balanced[node[i] as usize] = false;
+        map_chunks(penalised.n_jumps(), |jumps| {
+            for term in jumps.flat_map(|jump| penalised.terms_of(jump)) {
+                match [term.here, term.there] {
+                    [i, none] | [none, i] if none == no_unknown => set_loose(i),
+                    _ => {}
+                }
             }
-        }
+        });
+        // a copy with one admissible value has a force of any sign
+        let bounds = &inequality.bounds;
+        map_chunks(bounds.len(), |mut unknowns| {
+            let fixed = unknowns.by_ref().filter(|&i| bounds[i].fixed_value().is_some());
+            fixed.for_each(|i| set_loose(i as u32));
+        });
+        let is_balanced = collect(node.len(), |i| !is_loose[i].load(Ordering::Relaxed));
         Some(Self { penalised, load: &inequality.load, node, is_balanced })
     }
 
@@ -172,58 +182,106 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
     pub fn share(
         &self,
         u: &[T],
-        state: &impl Fn(usize) -> Contact,
+        state: &(impl Fn(usize) -> Contact + Sync),
         forces: &mut [f64],
-        mut rounding_errors: Option<(&mut Vec<f64>, Precision)>,
+        rounding_errors: Option<(&mut Vec<f64>, Precision)>,
     ) {
-        let mut sums = vec![SumOverCopies::default(); self.node.len()];
-        for (i, &node) in
-            self.node.iter().enumerate().filter(|(_, n)| self.is_balanced[**n as usize])
-        {
-            match state(i) {
-                Contact::Lower => sums[node as usize].n_lower += 1,
-                Contact::Upper => sums[node as usize].n_upper += 1,
-                Contact::Inactive => {}
+        let n = self.node.len();
+        let is_active = |i: usize| state(i) != Contact::Inactive;
+        let is_touched = collect(n, |_| AtomicBool::new(false));
+        map_chunks(n, |unknowns| {
+            for i in unknowns.filter(|&i| is_active(i)) {
+                is_touched[self.node[i] as usize].store(true, Ordering::Relaxed);
             }
-        }
-        for (i, &node) in self.node.iter().enumerate() {
-            let sum = &mut sums[node as usize];
-            if sum.n_sharing().is_some() {
-                let stiffness = self.penalised.stiffness(i, |j| u[j].to_f64());
-                sum.force += stiffness - self.load[i].to_f64();
-                sum.terms += squared_stiffness_terms(self.penalised, i, u);
+        });
+        let is_shared = |i: usize| is_touched[i].load(Ordering::Relaxed) && self.is_balanced[i];
+        let touched = indices(n, is_shared);
+        let positions = positions(n, &touched);
+        let position = |i: usize| positions[self.node[i] as usize];
+        let (starts, copies) = group_by_key(n, touched.len(), |i, put| match position(i) {
+            u32::MAX => {}
+            position => put(position, i as u32),
+        });
+        let shares = collect(touched.len(), |k| {
+            self.share_of(&copies[starts[k] as usize..starts[k + 1] as usize], u, state)
+        });
+        let share_at = |i: usize| *shares.get(position(i) as usize).filter(|_| is_active(i))?;
+        for_each_chunk(forces, |range, forces| {
+            let shared = forces.iter_mut().zip(range);
+            shared.for_each(|(force, i)| *force = share_at(i).map_or(*force, |share| share.force));
+        });
+        let Some((errors, precision)) = rounding_errors else { return };
+        for_each_chunk(errors, |range, errors| {
+            for (error, i) in errors.iter_mut().zip(range) {
+                let of_share = |share: Share| rounding(share.terms, precision) / share.number;
+                *error = share_at(i).map_or(*error, of_share);
             }
+        });
+    }
+
+    /// The share of each active copy of a node; `None` if some touch a lower and some an upper bound.
+    fn share_of(
+        &self,
+        copies: &[u32],
+        u: &[T],
+        state: &impl Fn(usize) -> Contact,
+    ) -> Option<Share> {
+        let number = |side: Contact| copies.iter().filter(|&&i| state(i as usize) == side).count();
+        let number = match (number(Contact::Lower), number(Contact::Upper)) {
+            (n, 0) | (0, n) => n as f64,
+            _ => return None,
+        };
+        let (mut force, mut terms) = (0.0, 0.0);
+        for i in copies.iter().map(|&i| i as usize) {
+            let stiffness = self.penalised.stiffness(i, |j| u[j].to_f64());
+            force += stiffness - self.load[i].to_f64();
+            terms += squared_stiffness_terms(self.penalised, i, u);
         }
-        for (i, &node) in self.node.iter().enumerate() {
-            let sum = sums[node as usize];
-            if let Some(n) = sum.n_sharing().filter(|_| state(i) != Contact::Inactive) {
-                forces[i] = sum.force / n;
-                if let Some((rounding_errors, precision)) = &mut rounding_errors {
-                    rounding_errors[i] = rounding(sum.terms, *precision) / n;
-                }
-            }
-        }
+        Some(Share { number, force: force / number, terms })
     }
 }
 
-/// The copies of a node that touch bounds, and the sums over all copies of `K u - c` and of the squares of its terms.
-#[derive(Clone, Copy, Default)]
-struct SumOverCopies {
-    n_lower: u32,
-    n_upper: u32,
+/// The share of an active copy in the balance of its node.
+#[derive(Clone, Copy)]
+struct Share {
+    /// The number of shares.
+    number: f64,
+    /// The sum of `K u - c` over all copies, divided by the number.
     force: f64,
+    /// The sum of the squares of all terms of the former sum.
     terms: f64,
 }
 
-impl SumOverCopies {
-    /// The number of copies that share the force: those of one side, none if there are some of both.
-    fn n_sharing(&self) -> Option<f64> {
-        match (self.n_lower, self.n_upper) {
-            (0, 0) => None,
-            (n, 0) | (0, n) => Some(f64::from(n)),
-            _ => None,
+/// By unknown one of the copies of its node, the same for all of them: unknowns that jumps subtract from one another
+/// are copies of a node.
+fn nodes<T: Real>(jumps: &Jumps<T>) -> Vec<u32> {
+    let size = jumps.block_size();
+    let n = jumps.n_blocks() * size;
+    // the sets that jumps within each chunk of blocks make, and the pairs with one unknown in another chunk
+    let of_chunk = |range: Range<usize>| {
+        let mut sets = Components::new(range.len());
+        let mut pairs = Vec::new();
+        for block in range.start / size..range.end / size {
+            let sides = jumps.sides_of(block).iter().filter(|side| side.is_here());
+            for term in sides.flat_map(|side| jumps.terms_of(side.jump())) {
+                if [term.here, term.there].contains(&JumpTerm::<T>::NO_UNKNOWN) {
+                    continue;
+                }
+                let [here, there] = [term.here, term.there].map(|i| i as usize);
+                match range.contains(&there) {
+                    true => sets.join(here - range.start, there - range.start),
+                    false => pairs.push([here, there]),
+                }
+            }
         }
-    }
+        let smallest = range.clone().map(|i| range.start + sets.find(i - range.start));
+        (smallest.map(|i| i as u32).collect::<Vec<_>>(), pairs)
+    };
+    let (smallest, pairs): (Vec<_>, Vec<_>) =
+        map_chunks_of_groups(n, size, of_chunk).into_iter().unzip();
+    let mut sets = Components::from_smallest(concat(smallest));
+    pairs.into_iter().flatten().for_each(|[here, there]| sets.join(here, there));
+    collect(n, |i| sets.smallest(i))
 }
 
 #[cfg(test)]

@@ -262,7 +262,7 @@ pub(super) fn within(difference: f64, tolerance: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::{Broken, CrouzeixRaviart, P1, P2, QuadraticCellMean};
+    use crate::element::{BernsteinP2, Broken, CrouzeixRaviart, P1, P2, QuadraticCellMean};
 
     /// Points inside, the vertices, and a point outside the reference simplex; their coordinates sum
     /// to one.
@@ -328,6 +328,7 @@ mod tests {
         check::<D>(&P2);
         check::<D>(&CrouzeixRaviart);
         check::<D>(&QuadraticCellMean(P2));
+        check::<D>(&BernsteinP2);
         check::<D>(&Broken(P1));
         check::<D>(&Broken(P2));
         check::<D>(&Broken(CrouzeixRaviart));

@@ -1,6 +1,6 @@
 //! Continuous functions within the constraints, evaluated in cells.
 
-use crate::mesh::edge_vertices;
+use crate::mesh::{Mesh, edge_vertices};
 use crate::problem::Datum;
 use crate::real::Point;
 
@@ -12,6 +12,8 @@ pub(crate) type InCells<'f, const D: usize> = &'f (dyn Fn(usize) -> Admissible<'
 
 /// An admissible function in a cell.
 pub(crate) struct Admissible<'d, const D: usize> {
+    /// The mesh and the number of the cell.
+    pub place: (&'d Mesh<D>, usize),
     /// At the vertices.
     pub values: [f64; 4],
     /// The gradient of the linear interpolant.
@@ -37,9 +39,11 @@ impl<const D: usize> Admissible<'_, D> {
                 gradient += (self.gradients[b] * point[a] + self.gradients[a] * point[b]) * *excess;
             }
         }
+        let (mesh, cell) = self.place;
+        let in_cell = |bound: &Datum<D>, x: &Point<D>| bound.in_cell(mesh, cell, x);
         for (bound, sign) in self.bounds.iter().zip([1.0, -1.0]) {
             let Some(bound) = bound else { continue };
-            let at = bound.at(x);
+            let at = in_cell(bound, x);
             if sign * (at - value) > 0.0 {
                 value = at;
                 let step = STEP * self.diameter;
@@ -47,17 +51,31 @@ impl<const D: usize> Admissible<'_, D> {
                     let (mut ahead, mut behind) = (*x, *x);
                     ahead[axis] += step;
                     behind[axis] -= step;
-                    (bound.at(&ahead) - bound.at(&behind)) / (2.0 * step)
+                    (in_cell(bound, &ahead) - in_cell(bound, &behind)) / (2.0 * step)
                 });
             }
         }
         (value, gradient)
     }
+    /// Whether the function is known to be linear in its cell: it has no values on edges, and obstacles are affine and
+    /// nowhere beyond it.
+    pub fn is_linear(&self, corners: &[Point<D>; 4]) -> bool {
+        let is_beyond = |(bound, sign): (&Datum<D>, f64)| {
+            let within = |(x, value): (&Point<D>, &f64)| sign * (value - bound.at(x)) >= 0.0;
+            bound.discrete().is_some()
+                || bound.degree_on(self.place.0, None).is_none_or(|degree| degree > 1)
+                || !corners[..=D].iter().zip(&self.values).all(within)
+        };
+        let bounds = self.bounds.into_iter().zip([1.0, -1.0]);
+        let mut given = bounds.filter_map(|(bound, sign)| Some((bound?, sign)));
+        self.excess.is_none() && !given.any(is_beyond)
+    }
     /// Whether the function has the value of an obstacle at some of the corners of its cell and not at all of them:
     /// the obstacle may exceed it in a piece of the cell that is small.
     pub fn touches_in_piece(&self, corner: impl Fn(usize) -> Point<D>) -> bool {
         self.bounds.iter().flatten().any(|bound| {
-            let touches = |k: &usize| bound.at(&corner(*k)) == self.values[*k];
+            let (mesh, cell) = self.place;
+            let touches = |k: &usize| bound.in_cell(mesh, cell, &corner(*k)) == self.values[*k];
             (1..=D).contains(&(0..D + 1).filter(touches).count())
         })
     }

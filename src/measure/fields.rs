@@ -120,7 +120,8 @@ impl<const D: usize> Space<'_, D> {
         let group = self.mesh.boundary_group(cell, local);
         let gap = group.and_then(|group| self.data.gap.of(group));
         let at = |point: &[f64; 4]| {
-            let gap = gap.map_or(0.0, |gap| gap.at(&self.facet_point(point, cell, local)));
+            let x = self.facet_point(point, cell, local);
+            let gap = gap.map_or(0.0, |gap| self.at(gap, cell, &x));
             self.basis_at(&facet_to_cell(point, local)).value(&values) - gap
         };
         self.facet_rule.iter().map(|(point, weight)| weight * at(point)).sum()

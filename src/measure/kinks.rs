@@ -7,6 +7,7 @@ use super::evaluation::Reference;
 use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
 use crate::mesh::Mesh;
+use crate::parallel::vectors::collect;
 use crate::problem::{Exact, Field};
 use crate::real::Point;
 
@@ -19,8 +20,17 @@ pub(super) struct Kinks<const D: usize> {
 /// one sign, and differ by less than the least of them. This is no proof: zeros are missed of a function that varies
 /// more between these points. A function that is constant at these points may jump between them.
 pub(super) fn is_far<const D: usize>(level: &Field<D>, corners: &[Point<D>]) -> bool {
+    is_far_by(level, corners, corners.iter().map(|x| level(x)))
+}
+
+/// [`is_far`] by the values of the function at the corners.
+pub(super) fn is_far_by<const D: usize>(
+    level: &Field<D>,
+    corners: &[Point<D>],
+    at_corners: impl Iterator<Item = f64>,
+) -> bool {
     let barycentre = corners.iter().sum::<Point<D>>() / corners.len() as f64;
-    let values = corners.iter().chain([&barycentre]).map(|x| level(x));
+    let values = at_corners.chain([level(&barycentre)]);
     let limits = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
     let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), limits);
     let distance = if least > 0.0 { least } else { -most };
@@ -28,9 +38,19 @@ pub(super) fn is_far<const D: usize>(level: &Field<D>, corners: &[Point<D>]) -> 
 }
 
 impl<const D: usize> Kinks<D> {
-    /// Whether all zeros are far from a simplex with these corners.
-    pub fn are_far(&self, corners: &[Point<D>]) -> bool {
-        self.levels.iter().all(|level| is_far(level, corners))
+    /// Whether all zeros are far from a simplex with these corners, by the values of the first function there if they
+    /// are known.
+    pub fn are_far(
+        &self,
+        corners: &[Point<D>],
+        of_first: Option<impl Iterator<Item = f64>>,
+    ) -> bool {
+        let Some((first, others)) = self.levels.split_first() else { return true };
+        let is_first_far = match of_first {
+            Some(values) => is_far_by(first, corners, values),
+            None => is_far(first, corners),
+        };
+        is_first_far && others.iter().all(|level| is_far(level, corners))
     }
 
     /// The function along whose zeros a cell is divided; `None` if no function is known. Of functions that have the
@@ -76,6 +96,15 @@ impl<const D: usize> Kinks<D> {
 }
 
 impl<const D: usize> Space<'_, D> {
+    /// The values at the vertices of the function whose zeros are the exact free boundary, where there is an obstacle. It
+    /// is the first one of the kinks of every region.
+    pub(super) fn contact_at_vertices(&self, exact: &Reference<'_, D>) -> Option<Vec<f64>> {
+        let Reference::Exact(exact) = exact else { return None };
+        let set = exact.contact.as_ref().filter(|_| self.problem.has_obstacle())?;
+        let vertices = self.mesh.vertices();
+        Some(collect(vertices.len(), |v| (set.indicator)(&vertices[v])))
+    }
+
     /// The functions whose zeros are the exact free boundary, where there is an obstacle, and the levels of load,
     /// coefficient and reaction of a region: first or second derivatives of the exact solution jump there.
     pub(super) fn kinks(&self, exact: &Reference<'_, D>, region: usize) -> Kinks<D> {

@@ -3,7 +3,6 @@
 
 mod admissible;
 mod cell_errors;
-mod cell_integrand;
 mod contact;
 mod energy;
 mod errors;
@@ -13,7 +12,6 @@ mod kinks;
 mod norms;
 mod order;
 mod penetration;
-mod roughness;
 mod rounding;
 mod squared_errors;
 

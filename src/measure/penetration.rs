@@ -199,7 +199,8 @@ impl<const D: usize> Space<'_, D> {
     fn size_of_load(&self) -> f64 {
         let of_cell = |cell: usize| {
             let x = self.mesh.barycentre(cell);
-            let load = self.data.source.of(self.mesh.region(cell)).map_or(0.0, |f| f.at(&x));
+            let load =
+                self.data.source.of(self.mesh.region(cell)).map_or(0.0, |f| self.at(f, cell, &x));
             load.abs() / self.alpha(cell)
         };
         let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
@@ -225,7 +226,7 @@ impl<const D: usize> Space<'_, D> {
             let (value, x) = (basis.value(&values), in_space(point, &corners));
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
                 if let Some(bound) = bounds[k] {
-                    let bound = finite(bound.at(&x), "obstacle", &x, cell)?;
+                    let bound = finite(self.at(bound, cell, &x), "obstacle", &x, cell)?;
                     found.add(k, sign, [value, bound]);
                 }
             }
@@ -245,7 +246,7 @@ impl<const D: usize> Space<'_, D> {
         let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
         for (point, basis) in points {
             let x: Point<D> = in_space(point, &corners);
-            let gap = finite(gap.at(&x), "gap", &x, cell)?;
+            let gap = finite(self.at(gap, cell, &x), "gap", &x, cell)?;
             found.add(2, 1.0, [basis.value(&values), gap]);
         }
         Ok(())
@@ -271,14 +272,15 @@ impl<const D: usize> Space<'_, D> {
         points.map(|point| (point, self.basis_at(&point))).collect()
     }
 
-    /// Whether a degree of a datum, or the one stated for all data without a degree of their own, is at most one.
+    /// Whether a degree of a flux, or the one stated for all data without a degree of their own, is at most one.
     fn is_affine_degree(&self, degree: Option<usize>) -> bool {
         degree.or(self.problem.data_degree).is_some_and(|degree| degree <= 1)
     }
 
     /// Whether a datum is known to be affine wherever it is given.
     fn is_affine(&self, data: &DataByGroup<'_, D>) -> bool {
-        data.every(&|datum| self.is_affine_degree(datum.degree()))
+        let stated = self.problem.data_degree;
+        data.every(&|datum| datum.degree_on(self.mesh, stated).is_some_and(|degree| degree <= 1))
     }
 
     /// Whether all data but obstacles and gaps are known to be affine.

@@ -12,6 +12,10 @@ impl Components {
     pub fn new(n: usize) -> Self {
         Self { parents: (0..n as u32).collect() }
     }
+    /// Sets given by the smallest member of each member's set.
+    pub fn from_smallest(smallest: Vec<u32>) -> Self {
+        Self { parents: smallest }
+    }
     /// The cells of a mesh, connected through facets.
     pub fn of_cells(neighbours: &Neighbours) -> Self {
         let mut components = Self::new(neighbours.n_cells());
@@ -27,6 +31,14 @@ impl Components {
             let above = self.parents[at] as usize;
             self.parents[at] = self.parents[above];
             at = above;
+        }
+        at
+    }
+    /// As [`Components::find`], without path halving.
+    pub fn smallest(&self, member: usize) -> u32 {
+        let mut at = member as u32;
+        while self.parents[at as usize] != at {
+            at = self.parents[at as usize];
         }
         at
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::parallel::map_indices;
-use crate::parallel::vectors::for_each_chunk_of_groups;
+use crate::parallel::vectors::{collect, concat, for_each_chunk_of_groups, starts};
 
 use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
 use super::neighbour_numbers::{LANES, NeighbourNumbers, rank};
@@ -39,17 +39,18 @@ impl Edges {
     /// second local vertex of the edge.
     pub fn with_cell_edges<const D: usize>(mesh: &Mesh<D>) -> (Self, Vec<u32>) {
         let pairs = edge_vertices(D);
-        let mut ranks = in_large_pages(Vec::with_capacity(pairs.len() * mesh.n_cells()));
-        ranks.resize_with(pairs.len() * mesh.n_cells(), AtomicU32::default);
+        let ranks = collect(pairs.len() * mesh.n_cells(), |_| AtomicU32::default());
         let edges = Self::from_cells::<D>(mesh.cells(), mesh.vertices().len(), Some(&ranks));
-        let mut numbers: Vec<u32> = ranks.into_iter().map(AtomicU32::into_inner).collect();
         // the number of an edge is that of the first edge with its lower vertex plus its rank
+        let mut numbers = in_large_pages(vec![0; ranks.len()]);
         for_each_chunk_of_groups(&mut numbers, pairs.len(), |range, numbers| {
             let first = range.start / pairs.len();
-            for (k, numbers) in numbers.chunks_exact_mut(pairs.len()).enumerate() {
+            let ranks = ranks[range].chunks_exact(pairs.len());
+            let cells = numbers.chunks_exact_mut(pairs.len()).zip(ranks).enumerate();
+            for (k, (numbers, ranks)) in cells {
                 let cell = mesh.cell(first + k);
-                for (number, &[i, _]) in numbers.iter_mut().zip(pairs) {
-                    *number += edges.starts[cell[i] as usize];
+                for ((number, rank), &[i, _]) in numbers.iter_mut().zip(ranks).zip(pairs) {
+                    *number = edges.starts[cell[i] as usize] + rank.load(Ordering::Relaxed);
                 }
             }
         });
@@ -65,21 +66,9 @@ impl Edges {
         let incidence = VertexToCells::<D>::new(cells, FirstVertices(D));
         let ranges = vertex_ranges(n_vertices);
         let found = |k: usize| upper_ends(&incidence, n_vertices, &ranges[k], ranks);
-        let mut found: Vec<(Vec<u32>, Vec<u32>)> = map_indices(ranges.len(), &found);
-        let mut starts = in_large_pages(Vec::with_capacity(n_vertices + 1));
-        starts.push(0);
-        let mut end = 0;
-        for (_, degrees) in &found {
-            starts.extend(degrees.iter().map(|degree| {
-                end += degree;
-                end
-            }));
-        }
-        let upper = match &mut found[..] {
-            [(only, _)] => std::mem::take(only),
-            _ => joined(&found),
-        };
-        Self { starts, upper }
+        let (upper, ends): (Vec<_>, Vec<_>) = map_indices(ranges.len(), &found).into_iter().unzip();
+        let ends: Vec<&[u32]> = ends.iter().map(|ends: &Vec<u32>| &ends[..]).collect();
+        Self { starts: starts(&ends), upper: concat(upper) }
     }
     /// Number of edges.
     pub fn len(&self) -> usize {
@@ -114,13 +103,8 @@ impl Edges {
     }
 }
 
-/// The upper ends in all ranges, one after the other.
-fn joined(found: &[(Vec<u32>, Vec<u32>)]) -> Vec<u32> {
-    found.iter().flat_map(|(upper, _)| upper).copied().collect()
-}
-
-/// The upper ends of the edges with a lower vertex in a range, and the number of edges of each of
-/// these vertices.
+/// The upper ends of the edges with a lower vertex in a range, and where those of each of these
+/// vertices end.
 fn upper_ends<const D: usize>(
     incidence: &VertexToCells<'_, D>,
     n_vertices: usize,
@@ -129,7 +113,7 @@ fn upper_ends<const D: usize>(
 ) -> (Vec<u32>, Vec<u32>) {
     let mut last = in_large_pages(vec![0; n_vertices]);
     let mut numbers = NeighbourNumbers::new(&mut last);
-    let (mut upper, mut degrees) = (Vec::new(), Vec::with_capacity(vertices.len()));
+    let (mut upper, mut ends_of_vertices) = (Vec::new(), Vec::with_capacity(vertices.len()));
     // of each vertex the upper ends in the order of the cells, and the edges of the cells
     let (mut ends, mut cell_edges, mut ranks) = (Vec::new(), Vec::new(), Vec::new());
     for (_, cells) in incidence.stars(vertices).of_vertices(vertices.clone()) {
@@ -157,14 +141,14 @@ fn upper_ends<const D: usize>(
         for (&end, &rank) in ends[..n].iter().zip(&ranks) {
             upper[start + rank as usize] = end;
         }
-        degrees.push(n as u32);
+        ends_of_vertices.push(upper.len() as u32);
         if let Some(ranks_of_cells) = ranks_of_cells {
             for &(edge, number) in &cell_edges {
                 ranks_of_cells[edge].store(ranks[number as usize], Ordering::Relaxed);
             }
         }
     }
-    (upper, degrees)
+    (upper, ends_of_vertices)
 }
 
 #[cfg(test)]

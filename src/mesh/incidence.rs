@@ -104,32 +104,32 @@ impl<'t, C: Columns, const K: usize> Incidence<'t, C, K> {
     /// Finds the star of each number of a range, by a counting sort.
     #[inline(always)]
     pub fn find_stars(&self, ranges: &Ranges<K>, stars: &mut Stars) {
-        let n = length(ranges);
-        let Stars { starts, places } = stars;
-        // the count of star k stands at k + 2; summed up, entry k + 1 is where star k starts, and
-        // filling the star moves it to where star k ends
-        let starts = zeros_in(starts, n + 2);
-        self.visit(ranges, |k, _| starts[k + 2] += 1);
-        for k in 0..n {
-            starts[k + 2] += starts[k + 1];
-        }
-        let places = zeros_in(places, starts[n + 1] as usize);
-        self.visit(ranges, |k, place| {
-            let at = &mut starts[k + 1];
-            places[*at as usize] = place as u32;
-            *at += 1;
-        });
-    }
-    /// Calls a function with each star and each place of a cell in it, ascending in each star.
-    #[inline(always)]
-    fn visit(&self, ranges: &Ranges<K>, mut visit: impl FnMut(usize, usize)) {
-        let columns = self.columns;
-        let width = columns.width();
         let mut n = 0;
         let offsets = map_entries(ranges.each_ref(), |range| {
             n += range.len();
             n - range.len()
         });
+        let Stars { starts, places } = stars;
+        // the count of star k stands at k + 2; summed up, entry k + 1 is where star k starts, and
+        // filling the star moves it to where star k ends
+        let starts = zeros_in(starts, n + 2);
+        self.visit(ranges, |kind, k, _| starts[offsets[kind] + k + 2] += 1);
+        for k in 0..n {
+            starts[k + 2] += starts[k + 1];
+        }
+        let places = zeros_in(places, starts[n + 1] as usize);
+        self.visit(ranges, |kind, k, place| {
+            let at = &mut starts[offsets[kind] + k + 1];
+            places[*at as usize] = place as u32;
+            *at += 1;
+        });
+    }
+    /// Calls a function with the kind of each number in the ranges, its position in the range of that kind and each
+    /// place of a cell that has it, by ascending cells.
+    #[inline(always)]
+    pub fn visit(&self, ranges: &Ranges<K>, mut visit: impl FnMut(usize, usize, usize)) {
+        let columns = self.columns;
+        let width = columns.width();
         for (cells, ..) in self.blocks.of(ranges) {
             let first = cells.start;
             let numbers = &self.table[cells.start * width..cells.end * width];
@@ -138,7 +138,7 @@ impl<'t, C: Columns, const K: usize> Incidence<'t, C, K> {
                     let kind = columns.kind(i);
                     let k = number.wrapping_sub(ranges[kind].start) as usize;
                     if k < ranges[kind].len() {
-                        visit(offsets[kind] + k, columns.place(first + c, i));
+                        visit(kind, k, columns.place(first + c, i));
                     }
                 }
             }

@@ -12,6 +12,7 @@
 
 mod bisection;
 mod boundary;
+mod box_search;
 mod components;
 mod domain;
 mod edges;
@@ -32,6 +33,7 @@ mod validate;
 
 pub use bisection::{BisectedMesh, Bisection};
 pub use boundary::{BoundaryCondition, BoundaryFacet};
+pub(crate) use box_search::BoxSearch;
 pub(crate) use components::Components;
 #[cfg(feature = "problem-files")]
 pub(crate) use domain::SIDES;

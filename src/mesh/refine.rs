@@ -1,6 +1,6 @@
 //! Uniform refinement, with the parents of vertices and cells.
 
-use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups};
+use crate::parallel::vectors::{collect, concat, for_each_chunk_of_groups, map_chunks};
 
 use super::boundary::BoundaryFacet;
 use super::edges::{Edges, edge_vertices};
@@ -10,7 +10,6 @@ use super::simplicial::Mesh;
 use super::validate::check_size;
 use crate::instances::compiled;
 use crate::memory::in_large_pages;
-use crate::real::Point;
 
 /// The parents of the vertices of a refined mesh. The parent of fine cell `c` is coarse cell
 /// `c / 2^D`; on [parts](super::Part::refine) this holds for the numbers of cells in the whole mesh.
@@ -106,7 +105,7 @@ fn children<const D: usize>(mesh: &Mesh<D>, cell: usize) -> Children {
 
 /// The regions of the children of all cells.
 fn regions_of_children(cell_regions: &[u16], n_children: usize) -> Vec<u16> {
-    cell_regions.iter().flat_map(|&region| std::iter::repeat_n(region, n_children)).collect()
+    collect(cell_regions.len() * n_children, |cell| cell_regions[cell / n_children])
 }
 
 /// The parents of the fine vertices, in lexicographic order.
@@ -114,12 +113,13 @@ fn regions_of_children(cell_regions: &[u16], n_children: usize) -> Vec<u16> {
 /// In this order of the fine vertices the lists of [`CHILDREN`] are ascending, and stand in the order
 /// on which Bey's rule depends.
 fn parents(edges: &Edges, n_vertices: usize) -> Vec<[u32; 2]> {
-    let mut parents = in_large_pages(Vec::with_capacity(n_vertices + edges.len()));
-    for a in 0..n_vertices as u32 {
-        parents.push([a, a]);
-        parents.extend(edges.upper_ends(a).iter().map(|&b| [a, b]));
-    }
-    parents
+    concat(map_chunks(n_vertices, |vertices| {
+        let with_own = |a: u32| {
+            let upper = edges.upper_ends(a).iter().map(move |&b| [a, b]);
+            std::iter::once([a, a]).chain(upper)
+        };
+        vertices.flat_map(|a| with_own(a as u32)).collect()
+    }))
 }
 
 /// The fine vertices of a coarse cell: entry `i, j` is the midpoint of its vertices `i <= j`.
@@ -153,12 +153,10 @@ impl<const D: usize> Mesh<D> {
         let parents = parents(&edges, self.vertices.len());
         check_size(n_fine, parents.len())?;
         let half = 0.5;
-        let mut vertices = vec![Point::zeros(); parents.len()];
-        for_each_chunk(&mut vertices, |range, vertices| {
-            for (vertex, &[a, b]) in vertices.iter_mut().zip(&parents[range]) {
-                let (x, y) = (self.vertices[a as usize], self.vertices[b as usize]);
-                *vertex = if a == b { x } else { (x + y) * half };
-            }
+        let vertices = collect(parents.len(), |i| {
+            let [a, b] = parents[i];
+            let (x, y) = (self.vertices[a as usize], self.vertices[b as usize]);
+            if a == b { x } else { (x + y) * half }
         });
         let mut cells = in_large_pages(vec![0; n_fine * (D + 1)]);
         let per_cell = edge_vertices(D).len();

@@ -228,7 +228,7 @@ impl<const D: usize> Hierarchy<D> {
     ) -> Result<Self, Error> {
         compiled!(const D: fn(&Domain<D>, usize, usize) -> Result<Hierarchy<D>, Error>
             = |domain, level, coarsest| {
-                check_level(domain, level)?;
+                check_level(domain, level, 1)?;
                 let levels = Hierarchy::levels_of(domain, level, coarsest);
                 let first = || Ok(Piece::Whole(domain.mesh(levels[0])?));
                 Hierarchy::build(&levels, first, domain, None)
@@ -247,7 +247,7 @@ impl<const D: usize> Hierarchy<D> {
         layers: impl Fn(&Mesh<D>) -> Layers,
         process: (u32, &Arc<dyn Exchange>),
     ) -> Result<Self, Error> {
-        check_level(domain, level)?;
+        check_level(domain, level, process.1.parts())?;
         let mut levels = Self::levels_of(domain, level, COARSEST);
         let least = CELLS_OF_PART * process.1.parts() as f64;
         while levels.len() > 1 && domain.cells(levels[0]) < least {
@@ -259,8 +259,12 @@ impl<const D: usize> Hierarchy<D> {
     }
 }
 
-/// Checks the number and size of the cells of a level of a domain before any mesh is built.
-pub(crate) fn check_level<const D: usize>(domain: &Domain<D>, level: usize) -> Result<(), Error> {
+/// Checks the number of cells of each part of a level of a domain, and the size of cells, before any mesh is built.
+pub(crate) fn check_level<const D: usize>(
+    domain: &Domain<D>,
+    level: usize,
+    parts: usize,
+) -> Result<(), Error> {
     let refuse = |parameter, value, allowed| Err(Error::Parameter { parameter, value, allowed });
     let is_mesh = domain.is_mesh();
     if !is_mesh {
@@ -271,16 +275,16 @@ pub(crate) fn check_level<const D: usize>(domain: &Domain<D>, level: usize) -> R
             return refuse("side of the domain", side.to_string(), allowed);
         }
     }
-    let cells = domain.cells(level);
-    // a scheme with more entries than 32-bit numbers count is refused when its matrix is made
+    let cells = domain.cells(level) / parts as f64;
     let limit = CELL_LIMIT as f64;
     if cells > limit {
         let kind = match is_mesh {
             true => "refinements of the mesh",
             false => "subdivisions of the shortest side",
         };
+        let place = if parts > 1 { " in each process" } else { "" };
         let allowed = format!(
-            "so many {kind} would make {cells:.1e} cells, at most {limit:.1e} are possible"
+            "so many {kind} would make {cells:.1e} cells{place}, at most {limit:.1e} are possible"
         );
         return refuse("level", level.to_string(), allowed);
     }
@@ -328,9 +332,13 @@ mod tests {
     #[test]
     fn a_level_is_refused_where_numbers_of_cells_end() {
         let scene = scenes::radial::<2>(1.0);
-        assert!(check_level(&scene.domain, 20_000).is_ok());
-        let error = check_level(&scene.domain, 30_000).unwrap_err().to_string();
+        let check = |level, parts| check_level(&scene.domain, level, parts);
+        assert!(check(20_000, 1).is_ok());
+        let error = check(30_000, 1).unwrap_err().to_string();
         assert!(error.contains("would make 1.8e9 cells, at most 1.1e9 are possible"), "{error}");
+        assert!(check(30_000, 2).is_ok());
+        let error = check(60_000, 4).unwrap_err().to_string();
+        assert!(error.contains("1.8e9 cells in each process, at most 1.1e9"), "{error}");
     }
 
     #[test]

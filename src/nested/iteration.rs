@@ -13,7 +13,7 @@ use super::solved::Solved;
 use super::system::{ByInequality, SystemSolver};
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
-use crate::inequality::{ActiveSet, InequalitySolver, StepCounter};
+use crate::inequality::{ActiveSet, InequalitySolver, Solution, StepCounter};
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
@@ -45,6 +45,8 @@ use crate::scheme::Scheme;
 pub struct NestedIteration<'a, const D: usize> {
     pub(super) p1: P1Iteration<'a, D>,
     pub(super) has_cold_start: bool,
+    /// The solution of another problem from which schemes with as many unknowns start.
+    pub(super) previous: Option<Solution<f64>>,
     observer: Box<dyn Fn(Phase) + 'a>,
 }
 
@@ -75,7 +77,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             repeat: 1,
             steps: StepCounter::default(),
         };
-        Self { p1, has_cold_start: false, observer: Box::new(|_| {}) }
+        Self { p1, has_cold_start: false, previous: None, observer: Box::new(|_| {}) }
     }
     /// Sets the solver of the inequality.
     #[must_use]
@@ -113,6 +115,14 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     #[must_use]
     pub fn cold_start(mut self, has_cold_start: bool) -> Self {
         self.has_cold_start = has_cold_start;
+        self
+    }
+
+    /// Sets the solution of a problem before, from whose contact set and values schemes start that have as many
+    /// unknowns, such as the last time step. Then conforming P1 is solved only for solvers that use coarse spaces.
+    #[must_use]
+    pub fn start_from(mut self, previous: &Solution<f64>) -> Self {
+        self.previous = Some(previous.clone());
         self
     }
 

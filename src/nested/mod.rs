@@ -28,6 +28,6 @@ pub(crate) use hierarchy::check_level;
 pub use iteration::{NestedIteration, solve};
 pub use meshes::Meshes;
 pub use phase::Phase;
-pub use solved::Solved;
+pub use solved::{KeptSolution, Solved};
 pub use system::{System, SystemSolver};
 pub(crate) use warnings::warnings_of_forces;

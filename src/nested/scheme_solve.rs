@@ -10,8 +10,8 @@ use super::phase::Phase;
 use super::solved::Solved;
 use super::system::System;
 use super::warnings::{
-    UNPROVEN, active_sets, dirichlet_jumps, no_digits_of_quadratics, no_digits_of_stiffness,
-    rounding_of_data, short_edges,
+    UNPROVEN, active_sets, data_beyond_coefficients, dirichlet_jumps, no_digits_of_quadratics,
+    no_digits_of_stiffness, rounding_of_data, short_edges,
 };
 use crate::algebra::{Contact, Inequality, Start};
 use crate::error::Error;
@@ -37,15 +37,27 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         inequality: &mut Inequality<f64>,
     ) -> InitialGuess<f64> {
         let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
+        // a start without contact stays cold: the solver must detect a body that only contact holds
+        let has_contact = |contact: &[Contact]| contact.iter().any(|&c| c != Contact::Inactive);
         if let Some(start) = start {
-            // a start without contact stays cold: the solver must detect a body that only contact holds
-            if start.contact.iter().any(|&c| c != Contact::Inactive) {
+            if has_contact(&start.contact) {
                 inequality.start = Start::Contact(start.contact_of(&inequality.locations));
             }
             guess.coarse_spaces = start.coarse_spaces.clone();
             guess.values = start.values_of(&inequality.locations);
         }
+        if let Some(previous) = self.previous(inequality.size()) {
+            if has_contact(&previous.contact) {
+                inequality.start = Start::Contact(previous.contact.clone());
+            }
+            guess.values = Some(previous.values.clone());
+        }
         guess
+    }
+
+    /// The solution of another problem from which a scheme with so many unknowns starts.
+    fn previous(&self, unknowns: usize) -> Option<&Solution<f64>> {
+        self.previous.as_ref().filter(|previous| previous.values.len() == unknowns)
     }
 
     /// The solution on a mesh.
@@ -81,6 +93,9 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         let sent = system.sent_bytes() - sent;
         warnings.extend(refusal);
         warnings.extend(active_sets(&solution, self.p1.problem, scheme));
+        if system.part().is_none() {
+            warnings.extend(data_beyond_coefficients(system.discretisation(), &solution));
+        }
         let hierarchy = self.hierarchy(position);
         let mut solved = Solved::new(system, solution, hierarchy);
         solved.warnings = warnings;
@@ -135,8 +150,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     ) -> Result<Option<Arc<P1Solution>>, Error> {
         let mesh = self.p1.meshes.mesh(position);
         let unknowns = unknowns(mesh, scheme.layout());
-        let needs_none =
-            !self.p1.problem.is_constrained() && !self.p1.solver.uses_coarse_spaces(unknowns);
+        let is_known = !self.p1.problem.is_constrained() || self.previous(unknowns).is_some();
+        let needs_none = is_known && !self.p1.solver.uses_coarse_spaces(unknowns);
         if self.has_cold_start || needs_none {
             Ok(None)
         } else if scheme.is_conforming_linear(mesh) {

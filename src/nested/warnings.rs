@@ -139,7 +139,7 @@ pub(crate) fn warnings_of_forces<const D: usize>(
     unbalanced.map(text).collect()
 }
 
-/// Dirichlet values that differ by less than this share of the largest one are equal but for rounding.
+/// Values that differ by less than this share of the largest one are equal but for rounding.
 const AGREEMENT: f64 = 1e-9;
 
 /// For each two groups whose Dirichlet values differ at a vertex where they meet a sentence with the first such vertex:
@@ -186,6 +186,30 @@ pub(super) fn dirichlet_jumps<const D: usize>(problem: &Problem<D>, mesh: &Mesh<
     sentences
 }
 
+/// Dirichlet values that lie beyond an obstacle in Bernstein coefficients, as admissible ones may: a quadratic that
+/// touches an obstacle between nodes has a coefficient beyond it. By less than a share of the solution it is rounding.
+pub(super) fn data_beyond_coefficients<const D: usize>(
+    discretisation: &Discretisation<'_, D>,
+    solution: &Solution<f64>,
+) -> Option<String> {
+    // data that are not finite are errors of the assembly
+    let (beyond, x) = discretisation.space.data_beyond_coefficients().ok()??;
+    let size = solution.values.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    if beyond <= AGREEMENT * size {
+        return None;
+    }
+    let so = match discretisation.space.pins {
+        true => {
+            "coefficients that data fix have no bound, and the solution may lie beyond the obstacle near them"
+        }
+        false => "the solution, whose coefficients are bounded, does not take these values",
+    };
+    let at = describe_point(&x);
+    Some(format!(
+        "Dirichlet values lie beyond an obstacle by {beyond:.1e} in the Bernstein coefficient at {at}: {so}"
+    ))
+}
+
 /// Advice for a solution that took many active sets, or whose active sets changed to the end.
 pub(super) fn active_sets<const D: usize>(
     solution: &Solution<f64>,
@@ -199,7 +223,7 @@ pub(super) fn active_sets<const D: usize>(
 }
 
 /// Advice for a scheme whose obstacle takes many active sets: bounds on cell means, where its element has
-/// them and nothing else is bound.
+/// them, its own nodes are bound and nothing else is.
 fn advice_on_bounds<const D: usize>(
     problem: &Problem<D>,
     scheme: &dyn Scheme<D>,
@@ -207,7 +231,8 @@ fn advice_on_bounds<const D: usize>(
     let set = problem.constraint_set();
     let present = scheme.constraint_on(set)?;
     let means = scheme.constraint_on(&CellMeans)?;
-    (problem.has_obstacle() && !problem.has_gap() && present != means).then(|| {
+    let is_at_nodes = set.basis().is_none();
+    (problem.has_obstacle() && !problem.has_gap() && is_at_nodes).then(|| {
         format!("bounds at {present} take many active sets with quadratics: bounds on {means} take fewer")
     })
 }

@@ -2,13 +2,14 @@
 //! threads.
 //!
 //! `cells`: loops of the assembly over cells or rows. `vectors`: loops of solvers over the
-//! entries of vectors, with inner products and pseudorandom signs.
+//! entries of vectors, with inner products and pseudorandom signs. `grouping`: a counting sort.
 //!
 //! Every loop but [`vectors::collect`] ends in [`for_each_index`], so that the task machinery of rayon is compiled once
 //! and not once for each loop, scalar and dimension. A task is a chunk of a thousand items or more, or of
 //! rows that take as long, beside which a virtual call and a lock cost nothing.
 
 pub(crate) mod cells;
+pub(crate) mod grouping;
 pub(crate) mod vectors;
 
 use std::ops::Range;

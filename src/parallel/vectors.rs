@@ -1,4 +1,4 @@
-//! Parallel loops over vectors in chunks of fixed length.
+//! Parallel loops over vectors in chunks, whose length follows from that of the vector.
 //!
 //! Partial sums are added in the order of chunks, and smoothers treat chunks as blocks; both are
 //! therefore independent of the number of threads.
@@ -7,13 +7,19 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::map_items;
+use super::{for_each_item, map_items, split};
 use crate::memory::in_large_pages;
 use crate::real::{Real, maximum};
 
-/// Number of entries in a chunk. Shorter chunks cost time for scheduling, and weaken smoothers that
-/// do not couple chunks.
-pub(crate) const CHUNK: usize = 1 << 14;
+/// Largest number of entries in a chunk. Longer chunks leave threads without work.
+const MOST: usize = 1 << 14;
+
+/// Smallest number. Shorter chunks cost time for scheduling, and weaken smoothers that do not couple chunks.
+const LEAST: usize = 1 << 12;
+
+/// Number of chunks of a vector whose chunks have neither the largest nor the smallest number of entries: enough for
+/// sixteen threads, some of which are late.
+const CHUNKS: usize = 128;
 
 /// A zero vector in newly allocated memory.
 pub(crate) fn zeros<T: Real>(n: usize) -> Vec<T> {
@@ -39,13 +45,14 @@ pub(crate) fn dot<T: Real>(x: &[T], y: &mut [T]) -> f64 {
 }
 
 /// Whether a loop over `n` entries runs on the calling thread: one chunk, or one thread.
-fn is_sequential(n: usize) -> bool {
-    n <= CHUNK || rayon::current_num_threads() == 1
+pub(super) fn is_sequential(n: usize) -> bool {
+    n <= LEAST || rayon::current_num_threads() == 1
 }
 
-/// The length of chunks that divide no group of `group` consecutive entries.
-pub(crate) const fn chunk_of_groups(group: usize) -> usize {
-    CHUNK / group * group
+/// The length of chunks of `n` entries that divide no group of `group` consecutive entries. It depends on nothing else:
+/// sums over chunks have the same bits on every machine.
+pub(crate) fn chunk_length(n: usize, group: usize) -> usize {
+    (n / CHUNKS).clamp(LEAST, MOST) / group * group
 }
 
 /// Gathers the values of `work` on the index range and the item of each chunk of `0..n`, in the order of chunks; no
@@ -56,7 +63,7 @@ fn gather<X: Send, R: Send, G: FromIterator<R>>(
     items: impl Iterator<Item = X>,
     work: impl Fn(Range<usize>, X) -> R + Sync,
 ) -> G {
-    let length = chunk_of_groups(group);
+    let length = chunk_length(n, group);
     let one = |k: usize, item: X| work(k * length..((k + 1) * length).min(n), item);
     if is_sequential(n) {
         items.enumerate().map(|(k, item)| one(k, item)).collect()
@@ -85,15 +92,60 @@ pub(crate) fn map_chunks_of_groups<R: Send>(
     group: usize,
     work: impl Fn(Range<usize>) -> R + Sync,
 ) -> Vec<R> {
-    let items = (0..n.div_ceil(chunk_of_groups(group))).map(|_| ());
+    let items = (0..n.div_ceil(chunk_length(n, group))).map(|_| ());
     gather(n, group, items, |range, ()| work(range))
+}
+
+/// The values of all lists, one list after the other.
+pub(crate) fn concat<V: Copy + Default + Send + Sync>(mut lists: Vec<Vec<V>>) -> Vec<V> {
+    let n = lists.iter().map(Vec::len).sum();
+    if lists.len() == 1 {
+        return lists.swap_remove(0);
+    }
+    if is_sequential(n) {
+        return lists.concat();
+    }
+    let mut all = collect(n, |_| V::default());
+    let parts = split(&mut all, lists.iter().map(Vec::len)).collect();
+    for_each_item(parts, &|k, part: &mut [V]| part.copy_from_slice(&lists[k]));
+    all
+}
+
+/// Where each entry of all lists starts, with the number of values at the end; a list has the ends of its entries, from
+/// its own beginning.
+pub(crate) fn starts(lists: &[&[u32]]) -> Vec<u32> {
+    let mut starts = vec![0; 1 + lists.iter().map(|ends| ends.len()).sum::<usize>()];
+    let mut first = 0;
+    let firsts = lists.iter().map(|ends| {
+        first += ends.last().copied().unwrap_or(0);
+        first - ends.last().copied().unwrap_or(0)
+    });
+    let parts = split(&mut starts[1..], lists.iter().map(|ends| ends.len())).zip(firsts);
+    for_each_item(parts.collect(), &|k, (part, first): (&mut [u32], u32)| {
+        part.iter_mut().zip(lists[k]).for_each(|(start, end)| *start = first + end);
+    });
+    starts
 }
 
 /// The indices below `n` for which a predicate holds, ascending.
 pub(crate) fn indices(n: usize, predicate: impl Fn(usize) -> bool + Sync) -> Vec<u32> {
     let of_chunk =
         |range: Range<usize>| range.filter(|&i| predicate(i)).map(|i| i as u32).collect::<Vec<_>>();
-    map_chunks(n, of_chunk).concat()
+    concat(map_chunks(n, of_chunk))
+}
+
+/// The position of each index below `n` in an ascending list; `u32::MAX` for an index that the list does not have.
+pub(crate) fn positions(n: usize, list: &[u32]) -> Vec<u32> {
+    let mut positions = in_large_pages(vec![0; n]);
+    for_each_chunk(&mut positions, |range, positions| {
+        positions.fill(u32::MAX);
+        let first = list.partition_point(|&i| (i as usize) < range.start);
+        for (k, &i) in (first..).zip(&list[first..]).take_while(|(_, i)| (**i as usize) < range.end)
+        {
+            positions[i as usize - range.start] = k as u32;
+        }
+    });
+    positions
 }
 
 /// Whether a predicate holds for all indices below `n`.
@@ -113,7 +165,8 @@ pub(crate) fn sum_chunks<A: Send>(
     group: usize,
     work: impl Fn(Range<usize>, &mut [A]) -> f64 + Sync,
 ) -> f64 {
-    let Total(sum) = gather(x.len(), group, x.chunks_mut(chunk_of_groups(group)), work);
+    let (n, length) = (x.len(), chunk_length(x.len(), group));
+    let Total(sum) = gather(n, group, x.chunks_mut(length), work);
     sum
 }
 
@@ -124,7 +177,7 @@ pub(crate) fn sum_chunks_of_two<A: Send, B: Send>(
     group: usize,
     work: impl Fn(Range<usize>, &mut [A], &mut [B]) -> f64 + Sync,
 ) -> f64 {
-    let (n, length) = (x.len(), chunk_of_groups(group));
+    let (n, length) = (x.len(), chunk_length(x.len(), group));
     let chunks = x.chunks_mut(length).zip(y.chunks_mut(length));
     let Total(sum) = gather(n, group, chunks, |range, (x, y)| work(range, x, y));
     sum
@@ -143,7 +196,7 @@ pub(crate) fn collect<V: Send>(n: usize, work: impl Fn(usize) -> V + Sync) -> Ve
 
 /// The parallel case of [`collect`], compiled once for each type of values.
 fn collect_in_parallel<V: Send>(n: usize, work: &(dyn Fn(usize) -> V + Sync), values: &mut Vec<V>) {
-    (0..n).into_par_iter().with_min_len(CHUNK).map(work).collect_into_vec(values);
+    (0..n).into_par_iter().with_min_len(LEAST).map(work).collect_into_vec(values);
 }
 
 /// Calls `work` with the index range and the entries of each chunk of `x`.
@@ -151,14 +204,16 @@ pub(crate) fn for_each_chunk<A: Send>(x: &mut [A], work: impl Fn(Range<usize>, &
     for_each_chunk_of_groups(x, 1, work);
 }
 
-/// As [`for_each_chunk`], for two vectors of the same length.
+/// As [`for_each_chunk_of_groups`], for two vectors of the same length.
 pub(crate) fn for_each_chunk_of_two<A: Send, B: Send>(
     x: &mut [A],
     y: &mut [B],
+    group: usize,
     work: impl Fn(Range<usize>, &mut [A], &mut [B]) + Sync,
 ) {
-    let (n, chunks) = (x.len(), x.chunks_mut(CHUNK).zip(y.chunks_mut(CHUNK)));
-    gather(n, 1, chunks, |range, (x, y)| work(range, x, y))
+    let (n, length) = (x.len(), chunk_length(x.len(), group));
+    let chunks = x.chunks_mut(length).zip(y.chunks_mut(length));
+    gather(n, group, chunks, |range, (x, y)| work(range, x, y))
 }
 
 /// Calls `work` with the index range and the entries of each chunk of `x`; no chunk divides a group
@@ -168,5 +223,6 @@ pub(crate) fn for_each_chunk_of_groups<A: Send>(
     group: usize,
     work: impl Fn(Range<usize>, &mut [A]) + Sync,
 ) {
-    gather(x.len(), group, x.chunks_mut(chunk_of_groups(group)), work)
+    let (n, length) = (x.len(), chunk_length(x.len(), group));
+    gather(n, group, x.chunks_mut(length), work)
 }

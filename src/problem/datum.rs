@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::DiscreteFunction;
+use crate::mesh::Mesh;
 use crate::real::Point;
 
 /// A scalar function of space, shared by the clones of a problem.
@@ -93,6 +95,8 @@ pub enum Datum<const D: usize> {
         /// Positive on one side, negative on the other.
         level: Field<D>,
     },
+    /// A discrete function.
+    Discrete(DiscreteFunction<D>),
 }
 
 impl<const D: usize> Datum<D> {
@@ -110,7 +114,7 @@ impl<const D: usize> Datum<D> {
     ) -> Self {
         Datum::Polynomial { value: Arc::new(value), degree }
     }
-    /// The value at a point.
+    /// The value at a point; of a discrete function the mean over the cells that contain it.
     #[inline(always)]
     pub fn at(&self, x: &Point<D>) -> f64 {
         match self {
@@ -118,6 +122,16 @@ impl<const D: usize> Datum<D> {
             Datum::Function(value)
             | Datum::Polynomial { value, .. }
             | Datum::Piecewise { value, .. } => value(x),
+            Datum::Discrete(u) => u.value_at(x).unwrap_or(f64::NAN),
+        }
+    }
+    /// The value at a point of a cell of a mesh: of a discrete function on this mesh, or on one of which this is a
+    /// uniform refinement, from the side of the cell.
+    #[inline(always)]
+    pub fn in_cell(&self, mesh: &Mesh<D>, cell: usize, x: &Point<D>) -> f64 {
+        match self {
+            Datum::Discrete(u) => u.value_in(mesh, cell, x),
+            _ => self.at(x),
         }
     }
     /// The value of a constant.
@@ -127,12 +141,21 @@ impl<const D: usize> Datum<D> {
             _ => None,
         }
     }
-    /// The degree of a polynomial, where it is known.
-    pub(crate) fn degree(&self) -> Option<usize> {
+    /// The degree in the cells of a mesh, where it is known. `stated` is that of all functions without a degree of
+    /// their own.
+    pub(crate) fn degree_on(&self, mesh: &Mesh<D>, stated: Option<usize>) -> Option<usize> {
         match self {
             Datum::Constant(_) => Some(0),
             Datum::Polynomial { degree, .. } => Some(*degree),
-            Datum::Function(_) | Datum::Piecewise { .. } => None,
+            Datum::Function(_) | Datum::Piecewise { .. } => stated,
+            Datum::Discrete(u) => u.is_polynomial_on(mesh).then(|| u.degree()),
+        }
+    }
+    /// The discrete function, if it is one.
+    pub(crate) fn discrete(&self) -> Option<&DiscreteFunction<D>> {
+        match self {
+            Datum::Discrete(u) => Some(u),
+            _ => None,
         }
     }
     /// The function whose zero set divides cells, if there is one.
@@ -147,6 +170,12 @@ impl<const D: usize> Datum<D> {
 impl<const D: usize> From<f64> for Datum<D> {
     fn from(c: f64) -> Self {
         Datum::Constant(c)
+    }
+}
+
+impl<const D: usize> From<DiscreteFunction<D>> for Datum<D> {
+    fn from(u: DiscreteFunction<D>) -> Self {
+        Datum::Discrete(u)
     }
 }
 
@@ -166,6 +195,7 @@ impl<const D: usize> fmt::Debug for Datum<D> {
             Datum::Function(_) => f.write_str("Function(..)"),
             Datum::Polynomial { degree, .. } => write!(f, "Polynomial({degree})"),
             Datum::Piecewise { .. } => f.write_str("Piecewise(..)"),
+            Datum::Discrete(u) => u.fmt(f),
         }
     }
 }

@@ -16,6 +16,7 @@
 //! [`Error::DataNotFinite`](crate::error::Error::DataNotFinite), which names the datum and the point.
 
 mod datum;
+mod discrete_function;
 mod exact;
 mod given;
 mod named;
@@ -25,6 +26,7 @@ mod on_mesh;
 pub(crate) use datum::BoundaryField;
 pub(crate) use datum::Field;
 pub use datum::{BoundaryFlux, Datum};
+pub use discrete_function::DiscreteFunction;
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
 pub use given::Given;
 pub(crate) use on_mesh::{DataByGroup, DataOnMesh};
@@ -154,6 +156,13 @@ impl<const D: usize> Problem<D> {
         self.source.everywhere = Some(Datum::piecewise(f, level));
         self
     }
+    /// Sets a load that is a discrete function. Its integrals are exact where it is a polynomial in each cell: on its
+    /// own mesh and on uniform refinements of it.
+    #[must_use]
+    pub fn discrete_source(mut self, f: DiscreteFunction<D>) -> Self {
+        self.source.everywhere = Some(f.into());
+        self
+    }
     /// Sets Dirichlet data.
     #[must_use]
     pub fn dirichlet(mut self, u: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
@@ -217,6 +226,26 @@ impl<const D: usize> Problem<D> {
         psi: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         self.upper.everywhere = Some(psi.into());
+        self
+    }
+    /// Sets an obstacle from below that is a discrete function. One with jumps bounds each cell by its own values; for
+    /// unknowns that cells share the largest of them holds.
+    #[must_use]
+    pub fn discrete_obstacle_below(mut self, psi: DiscreteFunction<D>) -> Self {
+        self.lower.everywhere = Some(psi.into());
+        self
+    }
+    /// Sets an obstacle from above that is a discrete function, as [`Problem::discrete_obstacle_below`]; for shared
+    /// unknowns the smallest value holds.
+    #[must_use]
+    pub fn discrete_obstacle_above(mut self, psi: DiscreteFunction<D>) -> Self {
+        self.upper.everywhere = Some(psi.into());
+        self
+    }
+    /// Sets Dirichlet data that are a discrete function: at a vertex the mean of its values there.
+    #[must_use]
+    pub fn discrete_dirichlet(mut self, u: DiscreteFunction<D>) -> Self {
+        self.dirichlet.everywhere = Some(u.into());
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact boundary.

@@ -1,6 +1,6 @@
 //! Compatibility of a mesh and a scene.
 
-use crate::assemble::{DataQuadrature, Discretisation};
+use crate::assemble::{DataQuadrature, Discretisation, MOST_ENTRIES, entries_at_most};
 use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoxDomain, Domain, Mesh, describe_point};
@@ -79,6 +79,32 @@ pub(super) fn check_scheme<const D: usize>(
         ) => Err(why),
         _ => Ok(()),
     }
+}
+
+/// Checks that the matrix of a scheme on so many cells of a level has no more entries than can be counted, before any
+/// mesh is built.
+///
+/// # Errors
+/// [`Error::Parameter`].
+pub(super) fn check_entries<const D: usize>(
+    scheme: &dyn Scheme<D>,
+    level: usize,
+    cells: f64,
+) -> Result<(), Error> {
+    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<D>::kuhn_box(&cube, [1; D])?;
+    let entries = entries_at_most(cells, &*scheme.element(), &*scheme.form(&mesh));
+    if entries <= MOST_ENTRIES {
+        return Ok(());
+    }
+    Err(Error::Parameter {
+        parameter: "level",
+        value: level.to_string(),
+        allowed: format!(
+            "the matrix of {} there may have {entries:.1e} entries in one process, at most {MOST_ENTRIES:.1e} are possible; choose a coarser level, a lower degree or more processes",
+            scheme.name()
+        ),
+    })
 }
 
 /// Checks that the labels of schemes and the names of solvers tell the rows of a study apart: orders are of rows of one

@@ -7,7 +7,7 @@ use crate::assemble::cut_simplices::in_space;
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoxDomain, Edges, Mesh, describe_point, edge_vertices};
 use crate::parallel::cells;
-use crate::problem::{DataOnMesh, Problem};
+use crate::problem::{DataOnMesh, Datum, Problem};
 use crate::quadrature::facet_to_cell;
 use crate::real::Point;
 use crate::scheme::Scheme;
@@ -141,6 +141,11 @@ struct OnMesh<'m, 'd, const D: usize> {
 }
 
 impl<const D: usize> OnMesh<'_, '_, D> {
+    /// The value of a datum at a point of a cell.
+    fn at(&self, datum: &Datum<D>, cell: usize, x: &Point<D>) -> f64 {
+        datum.in_cell(self.mesh, cell, x)
+    }
+
     /// Compares the obstacles of a cell.
     fn compare_in(&self, cell: usize, points: &[[f64; 4]], seen: &mut Seen<D>) {
         let region = self.mesh.region(cell);
@@ -151,7 +156,8 @@ impl<const D: usize> OnMesh<'_, '_, D> {
         let corners = self.mesh.corners(cell);
         for point in nodes_of_cell::<D>().chain(points.iter().copied()) {
             let x = in_space(&point, &corners);
-            seen.compare(Crossing { cell, x, lower: lower.at(&x), upper: upper.at(&x) });
+            let [lower, upper] = [lower, upper].map(|psi| self.at(psi, cell, &x));
+            seen.compare(Crossing { cell, x, lower, upper });
         }
     }
 
@@ -168,7 +174,8 @@ impl<const D: usize> OnMesh<'_, '_, D> {
         let corners = self.mesh.corners(cell);
         for point in points {
             let x = in_space(&facet_to_cell(point, local), &corners);
-            seen.compare(Crossing { cell, x, lower: gap.at(&x), upper: upper.at(&x) });
+            let [lower, upper] = [gap, upper].map(|bound| self.at(bound, cell, &x));
+            seen.compare(Crossing { cell, x, lower, upper });
         }
     }
 
@@ -176,7 +183,7 @@ impl<const D: usize> OnMesh<'_, '_, D> {
     /// cells and contact facets have different ones.
     fn compare_at_shared_nodes(&self, seen: &mut Seen<D>) {
         let data = self.data;
-        if !(data.lower.has_names() || data.upper.has_names() || data.gap.is_given()) {
+        if !(data.obstacles_differ() || data.gap.is_given()) {
             return;
         }
         let n_vertices = self.mesh.vertices().len();
@@ -200,7 +207,8 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             let corners = self.mesh.corners(cell);
             for (k, point) in nodes_of_cell::<D>().enumerate() {
                 let x = in_space(&point, &corners);
-                add(cell, k, lower.map(|psi| psi.at(&x)), upper.map(|psi| psi.at(&x)));
+                let at = |psi: &Datum<D>| self.at(psi, cell, &x);
+                add(cell, k, lower.map(at), upper.map(at));
             }
         }
         for f in self.mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact) {
@@ -209,7 +217,7 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             let corners = self.mesh.corners(cell);
             let on_facet = nodes_of_cell::<D>().enumerate().filter(|(_, p)| p[local] == 0.0);
             for (k, point) in on_facet {
-                add(cell, k, Some(gap.at(&in_space(&point, &corners))), None);
+                add(cell, k, Some(self.at(gap, cell, &in_space(&point, &corners))), None);
             }
         }
         for cell in 0..self.mesh.n_cells() {

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod adaptive;
+mod discrete_functions;
 mod elements;
 mod error_bounds;
 mod error_bounds_contact;

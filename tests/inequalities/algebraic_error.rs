@@ -229,8 +229,8 @@ fn choices() -> Vec<Choice<'static>> {
     let placements = |name: &str| -> &[&'static str] {
         match name {
             "p1" | "cr" => &["vertices"],
-            "p2" => &["nodes", "midpoints"],
-            name if name.ends_with("-p2") => &["nodes", "midpoints", "cell-means"],
+            "p2" => &["nodes", "midpoints", "bernstein"],
+            name if name.ends_with("-p2") => &["nodes", "midpoints", "cell-means", "bernstein"],
             _ => &["vertices", "facet-means"],
         }
     };

@@ -62,10 +62,11 @@ fn multipliers_of_regions_are_those_of_their_obstacles() {
 }
 
 /// Quadratics with bounds at nodes that touch an obstacle everywhere leave it between the nodes, and the row says so.
+/// With bounds on Bernstein coefficients they do not.
 #[test]
 fn quadratics_between_their_nodes() {
     let scratch = Scratch::new("between-nodes");
-    let schemes = "p2,p2:midpoints,sipg-p2,p1,sipg-p2:cell-means";
+    let schemes = "p2,p2:midpoints,sipg-p2,p1,sipg-p2:cell-means,p2:bernstein,sipg-p2:bernstein";
     let options = format!("{} --scheme {schemes} --levels 4", data("contact_everywhere"));
     let report = scratch.report(&options);
     for (k, row) in rows(&report).iter().enumerate() {
@@ -79,6 +80,27 @@ fn quadratics_between_their_nodes() {
             false => assert!(found.abs() < 1e-12, "{}: {found}", row["label"]),
         }
     }
+}
+
+/// Dirichlet values that touch the obstacle in the middle of an edge lie below it in a Bernstein coefficient. The problem is
+/// solved, and the row says so; where they touch it at a vertex there is nothing to say.
+#[test]
+fn data_may_touch_the_obstacle_within_an_edge() {
+    let scratch = Scratch::new("touching-data");
+    let schemes = "p2:bernstein,sipg-p2:bernstein,p2";
+    let options = format!("{} --scheme {schemes} --levels 2,3", data("touching_data"));
+    for row in rows(&scratch.report(&options)) {
+        let what = format!("{} {}: {}", row["label"], row["level"], row["warnings"]);
+        assert_eq!(row["status"], "converged", "{what}");
+        let is_said =
+            row["warnings"].to_string().contains("by 2.8e-2 in the Bernstein coefficient");
+        assert_eq!(is_said, row["constraint"] == "bernstein" && row["level"] == 3, "{what}");
+    }
+    // values that vanish but for rounding, beside an obstacle of zero
+    let scratch = Scratch::new("vanishing-data");
+    let report =
+        scratch.report("--scene lshape-2d --scheme p2:bernstein,sipg-p2:bernstein --levels 8");
+    rows(&report).iter().for_each(|row| assert_eq!(row["warnings"].to_string(), "[]"));
 }
 
 /// Obstacles that cross at a point of the finest mesh leave no row of the table solved; points that see nothing claim

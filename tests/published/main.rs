@@ -1,5 +1,6 @@
 //! Figures in print, and tables of an independent implementation.
 
+mod american_put;
 mod ball;
 mod compare;
 mod kinks;

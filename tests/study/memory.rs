@@ -1,5 +1,6 @@
 //! Runs that would not fit into the memory.
 
+use unilateral::element::P2;
 use unilateral::inequality::{ActiveSet, Outcome};
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
@@ -42,4 +43,22 @@ fn the_first_mesh_of_a_refinement_is_held_against_the_memory_before_it_is_built(
     assert!(message.contains("sipg, 1000000000 unknowns: would need about"), "{message}");
     assert!(message.ends_with("choose fewer unknowns"), "{message}");
     assert!(study.keys().is_empty());
+}
+
+/// Broken quadratics in space have 500 entries a cell: 4.3e9 at level 113.
+#[test]
+fn a_matrix_with_too_many_entries_is_refused_before_a_mesh_is_built() {
+    let study = |level: usize| {
+        let study = Study::<3>::new(scenes::radial(1.0)).scheme(ConformingP1);
+        study.scheme(Sipg::default().on(P2)).levels([2, level])
+    };
+    study(112).check().unwrap();
+    let error = study(113).check().unwrap_err();
+    assert!(matches!(error, Error::Parameter { parameter: "level", .. }), "{error}");
+    let message = error.to_string();
+    assert!(
+        message.starts_with("level = 113: the matrix of sipg-p2 there may have 4.3e9 entries"),
+        "{message}"
+    );
+    assert!(message.ends_with("a coarser level, a lower degree or more processes"), "{message}");
 }

@@ -16,6 +16,8 @@ fn labels_leave_out_what_is_default() {
         ("p1:vertices", "p1"),
         ("p2:nodes", "p2"),
         ("p2:midpoints", "p2:midpoints"),
+        ("p2:bernstein", "p2:bernstein"),
+        ("nipg-p2:bernstein@sigma=2", "nipg-p2:bernstein@sigma=2"),
         ("cr:facet-means", "cr"),
         ("wopsip:vertices@factor=1", "wopsip"),
         ("wopsip:facet-means@eta=1e2", "wopsip:facet-means@eta=100"),
@@ -71,7 +73,11 @@ fn what_a_scheme_does_not_take_is_refused_with_what_it_takes() {
     let refused = |text: &str| text.parse::<NamedScheme>().unwrap_err().kind;
     assert_eq!(refused("p7"), SchemeNameErrorKind::Unknown);
     assert_eq!(refused("sipg:edges"), SchemeNameErrorKind::UnknownPlacement);
-    assert_eq!(refused("sipg:midpoints"), SchemeNameErrorKind::UnfitPlacement);
+    for unfit in
+        ["sipg:midpoints", "p1:bernstein", "cr:bernstein", "sipg:bernstein", "p2:cell-means"]
+    {
+        assert_eq!(refused(unfit), SchemeNameErrorKind::UnfitPlacement);
+    }
     assert_eq!(refused("wopsip@sigma=1"), SchemeNameErrorKind::UnknownKey);
     assert_eq!(refused("wopsip@"), SchemeNameErrorKind::UnknownKey);
     assert_eq!(refused("wopsip@eta"), SchemeNameErrorKind::Value);

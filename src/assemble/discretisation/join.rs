@@ -70,27 +70,38 @@ fn check_fit<const D: usize>(
     Ok(())
 }
 
-/// Refuses a matrix whose entries 32-bit numbers may not count, before anything is allocated: each cell has at most the
-/// products of its unknowns with those of the cells that the form couples to it.
-fn check_size<const D: usize>(
-    n_cells: usize,
+/// The most entries that a matrix may have: as many as 32-bit numbers count.
+pub(crate) const MOST_ENTRIES: f64 = u32::MAX as f64;
+
+/// A number that the entries of the matrix on so many cells do not exceed: each cell has at most the products of its
+/// unknowns with those of the cells that the form couples to it.
+pub(crate) fn entries_at_most<const D: usize>(
+    n_cells: f64,
     element: &dyn Element<D>,
     form: &dyn FacetForm<D>,
-) -> Result<(), Error> {
+) -> f64 {
     let coupled = match form.couples() {
         true if form.is_lifted() => 1 + (D + 1) * (D + 1),
         true => D + 2,
         false => 1,
     };
-    let entries = n_cells as u128 * (element.per_cell().pow(2) * coupled) as u128;
-    let limit = u128::from(u32::MAX);
-    if entries <= limit {
+    n_cells * (element.per_cell().pow(2) * coupled) as f64
+}
+
+/// Refuses a matrix whose entries may be too many, before anything is allocated.
+fn check_size<const D: usize>(
+    n_cells: usize,
+    element: &dyn Element<D>,
+    form: &dyn FacetForm<D>,
+) -> Result<(), Error> {
+    let entries = entries_at_most(n_cells as f64, element, form);
+    if entries <= MOST_ENTRIES {
         return Ok(());
     }
     Err(Error::Parameter {
         parameter: "entries of the matrix",
         value: entries.to_string(),
-        allowed: format!("at most {limit}; choose a coarser mesh or a lower degree"),
+        allowed: format!("at most {MOST_ENTRIES}; choose a coarser mesh or a lower degree"),
     })
 }
 

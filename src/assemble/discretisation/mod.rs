@@ -9,6 +9,8 @@
 mod inequality;
 mod join;
 
+pub(crate) use join::{MOST_ENTRIES, entries_at_most};
+
 use std::sync::OnceLock;
 
 use super::facet_coefficients::FacetCoefficients;
@@ -22,7 +24,7 @@ use crate::facet::FacetForm;
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::parallel::once;
-use crate::problem::Problem;
+use crate::problem::{DiscreteFunction, Problem};
 
 /// A scheme applied to a problem on a mesh.
 ///
@@ -114,6 +116,13 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// The location of each unknown.
     pub fn locations(&self) -> Vec<DofLocation> {
         self.space.locations()
+    }
+    /// The discrete function, which is a datum of other problems.
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
+    pub fn function(&self, u: &[f64]) -> DiscreteFunction<D> {
+        self.space.function(u)
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.
     ///

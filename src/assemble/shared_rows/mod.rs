@@ -7,6 +7,7 @@
 mod cells;
 mod fill;
 pub(crate) mod pattern;
+pub(crate) mod places;
 mod unknowns;
 mod with_facets;
 

@@ -7,6 +7,7 @@ use super::contradictions::{BoundedNode, Contradiction, DIRICHLET};
 use super::{Space, Terms, checks};
 use crate::algebra::Bound;
 use crate::assemble::count;
+use crate::assemble::shared_rows::places::for_each_place;
 use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
@@ -49,47 +50,45 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<(), Error> {
         let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let n = self.per_cell();
+        let found_by_all = Mutex::new(Vec::new());
+        let restrict = |bound: &mut Bound<f64>, cell, node| -> Result<(), Error> {
+            let mut found = Vec::new();
+            self.restrict_by_obstacles(&terms, cell, node, bound, &mut found)?;
+            if !found.is_empty() {
+                lock(&found_by_all).append(&mut found);
+            }
+            Ok(())
+        };
         if self.broken {
             // no other cell has the unknowns of a cell
-            let n = self.per_cell();
-            let found_by_all = Mutex::new(Vec::new());
             let bound_chunk =
                 |cells: Range<usize>, bounds: &mut [Bound<f64>]| -> Result<(), Error> {
-                    let mut found = Vec::new();
                     for (cell, bounds) in cells.zip(bounds.chunks_exact_mut(n)) {
                         for &node in &bounded {
-                            self.restrict_by_obstacles(
-                                &terms,
-                                cell,
-                                node,
-                                &mut bounds[node.0],
-                                &mut found,
-                            )?;
+                            restrict(&mut bounds[node.0], cell, node)?;
                         }
                     }
-                    lock(&found_by_all).append(&mut found);
                     Ok(())
                 };
             cells::for_each(self.mesh.n_cells(), &|cell| cell * n, bounds, &bound_chunk)?;
-            found.append(&mut lock(&found_by_all));
-            // the order of chunks depends on the threads
-            found.sort_unstable_by_key(|contradiction| contradiction.node.unknown);
-            return Ok(());
-        }
-        let by_region = self.data.lower.has_names() || self.data.upper.has_names();
-        for cell in 0..self.mesh.n_cells() {
-            for &node in &bounded {
-                let bound = &mut bounds[self.dofs.of(cell, node.0)];
-                if *bound == Bound::Free || by_region {
-                    self.restrict_by_obstacles(&terms, cell, node, bound, found)?;
+        } else {
+            let differ = self.data.obstacles_differ();
+            for_each_place::<D, _, _>(&self.dofs, bounds, |bound, place| {
+                let (cell, i) = (place / n, place % n);
+                match bounded.iter().find(|node| node.0 == i) {
+                    Some(&node) if *bound == Bound::Free || differ => restrict(bound, cell, node),
+                    _ => Ok(()),
                 }
-            }
+            })?;
         }
+        found.append(&mut lock(&found_by_all));
+        // the order of tasks depends on the threads
+        found.sort_by_key(|contradiction| (contradiction.node.cell, contradiction.node.unknown));
         Ok(())
     }
 
-    /// Restricts the bound of node `i` of a cell by the obstacles in the region of the cell: of the obstacles of two
-    /// regions both hold.
+    /// Restricts the bound of node `i` of a cell by the obstacles in the cell: of the obstacles of two cells both hold.
     fn restrict_by_obstacles(
         &self,
         terms: &[Terms],
@@ -134,7 +133,8 @@ impl<const D: usize> Space<'_, D> {
                 let node = node.expect("an element has nodes on facets if there is a gap");
                 let unknown = self.dofs.of(cell, node);
                 let of = (["gap", DIRICHLET], Some(dirichlet));
-                BoundedNode { unknown, cell, x }.compare(of, [gap.at(&x), datum], found);
+                let values = [self.at(gap, cell, &x), datum];
+                BoundedNode { unknown, cell, x }.compare(of, values, found);
             }
             for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
@@ -162,10 +162,10 @@ impl<const D: usize> Space<'_, D> {
         datum: &Datum<D>,
     ) -> Result<f64, Error> {
         match by {
-            BoundBy::Functional => self.at_node(terms, cell, name, &|x| datum.at(x)),
+            BoundBy::Functional => self.at_node(terms, cell, name, &|x| self.at(datum, cell, x)),
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
-                checks::finite(datum.at(&x), name, &x, cell)
+                checks::finite(self.at(datum, cell, &x), name, &x, cell)
             }
         }
     }
@@ -193,22 +193,56 @@ impl<const D: usize> Space<'_, D> {
                     self.at_node(&terms[i], cell, name, datum)
                 };
                 let value = if zero { 0.0 } else { at("dirichlet", &datum)? };
-                let node = BoundedNode { unknown, cell, x: self.node_point(cell, &self.nodes[i]) };
+                bounds[unknown] = Bound::Fixed(value);
                 // obstacles must leave room for the datum; a mean is compared with a mean: over a
                 // curved obstacle the value at the barycentre may lie above the mean of a datum
-                // that touches it
+                // that touches it. A datum that touches an obstacle at a point may lie beyond it in a
+                // coefficient: there the values at the point are compared
+                let x = self.node_point(cell, &self.nodes[i]);
+                let is_coefficient = self.nodes[i].is_coefficient();
+                let obstacle = |psi: &Datum<D>| match is_coefficient {
+                    true => checks::finite(self.at(psi, cell, &x), "obstacle", &x, cell),
+                    false => at("obstacle", &|x| self.at(psi, cell, x)),
+                };
+                let value = if is_coefficient && !zero { datum(&x) } else { value };
+                let node = BoundedNode { unknown, cell, x };
                 if let Some(psi) = lowers.of(region) {
                     let of = (["lower obstacle", DIRICHLET], Some(group));
-                    node.compare(of, [at("obstacle", &|x| psi.at(x))?, value], found);
+                    node.compare(of, [obstacle(psi)?, value], found);
                 }
                 if let Some(psi) = uppers.of(region) {
                     let of = ([DIRICHLET, "upper obstacle"], Some(group));
-                    node.compare(of, [value, at("obstacle", &|x| psi.at(x))?], found);
+                    node.compare(of, [value, obstacle(psi)?], found);
                 }
-                bounds[unknown] = Bound::Fixed(value);
             }
         }
         Ok(())
+    }
+
+    /// By how much Dirichlet values lie beyond an obstacle in a Bernstein coefficient at most, and where; none if they
+    /// do so nowhere.
+    pub(crate) fn data_beyond_coefficients(&self) -> Result<Option<(f64, Point<D>)>, Error> {
+        if !self.problem.has_obstacle() || !self.nodes.iter().any(Node::is_coefficient) {
+            return Ok(None);
+        }
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let (mut largest, mut place) = (0.0, None);
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
+            let region = self.mesh.region(cell);
+            let sides = [(1.0, self.data.lower.of(region)), (-1.0, self.data.upper.of(region))];
+            for i in self.nodes_on(local) {
+                let datum = |x: &Point<D>| self.dirichlet_at(group, x);
+                let value = self.at_node(&terms[i], cell, "dirichlet", &datum)?;
+                for (sign, psi) in sides.iter().filter_map(|(sign, psi)| Some((sign, (*psi)?))) {
+                    let bound = self.at_node(&terms[i], cell, "obstacle", &|x| psi.at(x))?;
+                    if sign * (bound - value) > largest {
+                        largest = sign * (bound - value);
+                        place = Some(self.node_point(cell, &self.nodes[i]));
+                    }
+                }
+            }
+        }
+        Ok(place.map(|x| (largest, x)))
     }
 
     /// The functional of a node at a datum.

@@ -20,19 +20,19 @@ pub(crate) fn finite<const D: usize>(
     }
 }
 
-/// The diffusion coefficient at a point of a cell of a region; one that would vanish or overflow when
+/// The diffusion coefficient at a point of a cell; one that would vanish or overflow when
 /// rounded is refused.
 pub(crate) fn coefficient_at<const D: usize>(
     alpha: &DataByGroup<'_, D>,
-    region: usize,
-    x: &Point<D>,
+    mesh: &Mesh<D>,
     cell: usize,
+    x: &Point<D>,
 ) -> Result<f64, Error> {
-    let Some(alpha) = alpha.of(region) else {
+    let Some(alpha) = alpha.of(mesh.region(cell)) else {
         return Ok(1.0);
     };
     count::coefficient(1);
-    let value = alpha.at(x);
+    let value = alpha.in_cell(mesh, cell, x);
     if !(value > 0.0 && value.is_finite()) {
         return Err(Error::CoefficientNotPositive {
             value,
@@ -60,6 +60,6 @@ pub(crate) fn coefficients<const D: usize>(
     if !alpha.is_given() {
         return Ok(None);
     }
-    let at = |cell: usize| coefficient_at(alpha, mesh.region(cell), &(mesh.barycentre(cell)), cell);
+    let at = |cell: usize| coefficient_at(alpha, mesh, cell, &mesh.barycentre(cell));
     (0..mesh.n_cells()).map(at).collect::<Result<Vec<_>, _>>().map(Some)
 }

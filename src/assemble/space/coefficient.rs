@@ -80,7 +80,7 @@ impl VaryingCoefficient {
             let first = values.len();
             for point in &points {
                 let x = corners.iter().zip(point).map(|(corner, &b)| corner * b).sum();
-                values.push(coefficient_at(alpha, mesh.region(cell), &x, cell)?);
+                values.push(coefficient_at(alpha, mesh, cell, &x)?);
             }
             let constant = constants[cell];
             let is_same = |v: &f64| (v / constant - 1.0).abs() <= ROUNDINGS * f64::EPSILON;

@@ -25,7 +25,7 @@ impl<const D: usize> Space<'_, D> {
     /// The coefficient at a point of a cell.
     pub fn alpha_at(&self, cell: usize, x: &Point<D>) -> f64 {
         match self.data.coefficient.of(self.mesh.region(cell)) {
-            Some(alpha) if self.varying_in(cell).is_some() => alpha.at(x),
+            Some(alpha) if self.varying_in(cell).is_some() => self.at(alpha, cell, x),
             _ => self.alpha(cell),
         }
     }

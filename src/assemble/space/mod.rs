@@ -39,7 +39,7 @@ use crate::constraint::{BoundBy, in_basis_of, offered};
 use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoundaryFacet, HalfFacet, Mesh, Neighbours};
-use crate::problem::{DataOnMesh, Problem};
+use crate::problem::{DataOnMesh, Datum, DiscreteFunction, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::Point;
 pub(crate) use coefficient::INWARD;
@@ -117,6 +117,9 @@ impl<'a, const D: usize> Space<'a, D> {
         let dofs = Dofs::new(layout, mesh, neighbours.as_ref());
         let sum = degree + basis_degree;
         let cell_degree = quadrature.cell.unwrap_or(sum + 3).max(sum.saturating_sub(1));
+        // products of discrete functions with the basis are integrated exactly
+        let discrete = data.source.all().filter_map(|f| f.discrete());
+        let cell_degree = discrete.map(|f| f.degree() + basis_degree).fold(cell_degree, usize::max);
         let cell_rule = rule(quadrature.family, D, cell_degree)?;
         let facet_rule = rule(quadrature.family, D - 1, quadrature.facet)?;
         let reaction = match data.reaction.is_given() {
@@ -266,6 +269,11 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn group_of(&self, (cell, local): HalfFacet) -> usize {
         self.mesh.boundary_group(cell, local).expect("a boundary facet has a group")
     }
+    /// The value of a datum at a point of a cell.
+    #[inline(always)]
+    pub fn at(&self, datum: &Datum<D>, cell: usize, x: &Point<D>) -> f64 {
+        datum.in_cell(self.mesh, cell, x)
+    }
     /// The Dirichlet value at a point of a boundary group.
     pub fn dirichlet_at(&self, group: usize, x: &Point<D>) -> f64 {
         self.data.dirichlet.of(group).map_or(0.0, |u| u.at(x))
@@ -310,6 +318,13 @@ impl<'a, const D: usize> Space<'a, D> {
     /// The functional of each node, with these rules for means.
     pub fn node_terms(&self, facet_rule: &Rule, cell_rule: &Rule) -> Vec<Terms> {
         self.nodes.iter().map(|node| node.terms(facet_rule, cell_rule)).collect()
+    }
+    /// A discrete function, with a mesh of its own.
+    pub fn function(&self, u: &[f64]) -> DiscreteFunction<D> {
+        let n = self.per_cell();
+        let unknowns = (0..self.mesh.n_cells() * n).map(|k| self.dofs.of(k / n, k % n));
+        let values = unknowns.map(|unknown| u[unknown]).collect();
+        DiscreteFunction::new(self.mesh.clone(), self.element.clone(), values)
     }
     /// A discrete function at the vertices of each cell, `D + 1` values for each.
     pub fn vertex_values(&self, u: &[f64]) -> Vec<f64> {

@@ -51,13 +51,13 @@ impl<'a, const D: usize> ReactionTerm<'a, D> {
             }
         };
         if self.visit_cut(datum, mesh, cell, &mut |point, x, weight| {
-            add(datum.at(x), weight, &BasisAt::new(&*self.element, point));
+            add(datum.in_cell(mesh, cell, x), weight, &BasisAt::new(&*self.element, point));
         }) {
             return;
         }
         let table = &self.table;
         for ((point, basis), &weight) in table.points.iter().zip(&table.basis).zip(&table.weights) {
-            let at = || datum.at(&(mesh.point(cell, &point[..=D])));
+            let at = || datum.in_cell(mesh, cell, &mesh.point(cell, &point[..=D]));
             add(datum.constant().unwrap_or_else(at), weight, basis);
         }
     }
@@ -88,10 +88,11 @@ impl<'a, const D: usize> ReactionTerm<'a, D> {
     /// Visits the values of the datum at the points of the rule on a cell.
     fn visit_values(&self, mesh: &Mesh<D>, cell: usize, visit: &mut dyn FnMut(f64, &Point<D>)) {
         let Some(datum) = self.data.of(mesh.region(cell)) else { return };
-        if !self.visit_cut(datum, mesh, cell, &mut |_, x, _| visit(datum.at(x), x)) {
+        if !self.visit_cut(datum, mesh, cell, &mut |_, x, _| visit(datum.in_cell(mesh, cell, x), x))
+        {
             for point in &self.table.points {
                 let x = mesh.point(cell, &point[..=D]);
-                visit(datum.at(&x), &x);
+                visit(datum.in_cell(mesh, cell, &x), &x);
             }
         }
     }

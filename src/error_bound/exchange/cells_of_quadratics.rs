@@ -154,7 +154,8 @@ impl<const D: usize> Space<'_, D> {
             let (value, gradient) = admissible.at(point, &x);
             energy += weight * alpha * gradient.norm_squared();
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
-                let distance = admissible.bounds[k].map_or(0.0, |psi| sign * (value - psi.at(&x)));
+                let distance = admissible.bounds[k]
+                    .map_or(0.0, |psi| sign * (value - self.at(psi, number, &x)));
                 (0..D + 1).for_each(|j| gaps[k][j] += weight * point[j] * distance);
             }
             let mut fluxes = [Point::<D>::zeros(); 16];

@@ -151,7 +151,7 @@ impl<const D: usize> Space<'_, D> {
             for (point, weight) in self.facet_rule.iter() {
                 let x = self.facet_point(point, facet.0, facet.1);
                 let point = facet_to_cell(point, facet.1);
-                let distance = (admissible.at(&point, &x).0 - gap.at(&x)).max(0.0);
+                let distance = (admissible.at(&point, &x).0 - self.at(gap, facet.0, &x)).max(0.0);
                 gaps.iter_mut().zip(&point).for_each(|(gap, b)| *gap += weight * distance * b);
             }
             let alpha = self.alpha(facet.0);

@@ -10,7 +10,7 @@ use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbours};
-use crate::parallel::vectors::collect;
+use crate::parallel::vectors::{collect, indices};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -106,13 +106,14 @@ impl<const D: usize> Space<'_, D> {
             acting.map(move |i| self.dofs.of(cell, i)).filter(|&i| multipliers[i] != 0.0)
         };
         let mut of_cells = vec![0.0; n_cells];
-        for cell in (0..n_cells).filter(|&cell| pressing(cell).next().is_some()) {
+        let with_share = indices(n_cells, |cell| pressing(cell).next().is_some());
+        let with_share = || with_share.iter().map(|&cell| cell as usize);
+        for cell in with_share() {
             of_cells[cell] = weight(cell);
             pressing(cell).for_each(|i| weights[i] += of_cells[cell]);
         }
-        for (cell, of_cell) in of_cells.iter_mut().enumerate().filter(|(_, weight)| **weight > 0.0)
-        {
-            *of_cell *= pressing(cell).map(|i| multipliers[i] / weights[i]).sum::<f64>();
+        for cell in with_share() {
+            of_cells[cell] *= pressing(cell).map(|i| multipliers[i] / weights[i]).sum::<f64>();
         }
         of_cells
     }
@@ -171,8 +172,9 @@ impl<const D: usize> Space<'_, D> {
         (0..D + 1).for_each(|k| at_centre[k] = (centre - corners[k]) * per_volume);
         let gap = |k: usize| {
             let bound = admissible.bounds[k]?;
-            let distance =
-                |value: f64, x: &Point<D>| ([1.0, -1.0][k] * (value - bound.at(x))).max(0.0);
+            let distance = |value: f64, x: &Point<D>| {
+                ([1.0, -1.0][k] * (value - self.at(bound, number, x))).max(0.0)
+            };
             if bound.constant().is_some() {
                 let at_corners = (0..D + 1).map(|k| distance(admissible.values[k], &corners[k]));
                 return Some(at_corners.sum::<f64>() / (D + 1) as f64);

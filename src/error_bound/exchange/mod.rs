@@ -24,6 +24,7 @@ use crate::assemble::space::Space;
 use crate::measure::Counts;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
+use crate::parallel::vectors::indices;
 
 /// Multipliers below this share of the largest one are rounding.
 const ROUNDING: f64 = 1e-10;
@@ -102,13 +103,14 @@ impl<const D: usize> Space<'_, D> {
     /// by cell; with those inside cells if asked for.
     fn cells_of_exchange(
         &self,
-        presses: &dyn Fn(usize) -> bool,
+        presses: &(dyn Fn(usize) -> bool + Sync),
         (neighbours, counts): (&Neighbours, Counts<'_>),
         has_inner_steps: bool,
     ) -> (Vec<usize>, Vec<ExchangeStep>) {
         let n_cells = self.mesh.n_cells();
         let mut places = vec![u32::MAX; n_cells];
-        for cell in (0..n_cells).filter(|&cell| presses(cell)) {
+        for cell in indices(n_cells, presses) {
+            let cell = cell as usize;
             places[cell] = 0;
             for local in 0..=D {
                 if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
@@ -118,14 +120,11 @@ impl<const D: usize> Space<'_, D> {
                 }
             }
         }
-        let n_in_exchange = places.iter().filter(|place| **place == 0).count();
-        let mut numbers: Vec<usize> = Vec::with_capacity(n_in_exchange);
-        for (cell, place) in places.iter_mut().enumerate().filter(|(_, place)| **place == 0) {
-            *place = numbers.len() as u32;
-            numbers.push(cell);
-        }
+        let numbers = indices(n_cells, |cell| places[cell] == 0);
+        let numbers: Vec<usize> = numbers.into_iter().map(|cell| cell as usize).collect();
+        numbers.iter().enumerate().for_each(|(place, &cell)| places[cell] = place as u32);
         // about half a facet for each of a cell, and one step inside
-        let mut steps = in_large_pages(Vec::with_capacity(n_in_exchange * (D + 3) / 2));
+        let mut steps = in_large_pages(Vec::with_capacity(numbers.len() * (D + 3) / 2));
         for (here, &cell) in numbers.iter().enumerate() {
             let here = here as u32;
             for local in 0..=D {

@@ -127,7 +127,7 @@ impl<const D: usize> Space<'_, D> {
                 let x = self.facet_point(point, facet.0, facet.1);
                 let point = facet_to_cell(point, facet.1);
                 let (value, _) = admissible.at(&point, &x);
-                sum += weight * force.at(&point) * (value - gap.at(&x)).max(0.0);
+                sum += weight * force.at(&point) * (value - self.at(gap, facet.0, &x)).max(0.0);
             }
             terms.contact[facet.0] += force.scale * sum;
             if pair.degree > 1 {

@@ -99,6 +99,7 @@ pub(in crate::error_bound) fn share_of_one_sign(mean: f64, values: &[f64]) -> f6
 
 impl<const D: usize> Space<'_, D> {
     /// The flux of a pair in a cell.
+    #[inline(always)]
     pub(super) fn flux_in(
         &self,
         pair: &PrimalDualPair<D>,

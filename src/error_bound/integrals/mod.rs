@@ -108,6 +108,7 @@ fn with_share(squares: [f64; 2], share: f64, others: [f64; 2]) -> f64 {
 
 impl<const D: usize> Space<'_, D> {
     /// The admissible function in a cell.
+    #[inline(always)]
     pub(super) fn admissible_in(&self, pair: &PrimalDualPair<D>, cell: usize) -> Admissible<'_, D> {
         let (geometry, region) = (self.mesh.geometry(cell), self.mesh.region(cell));
         let (mut values, mut gradients) = ([0.0; 4], [Point::zeros(); 4]);
@@ -129,7 +130,8 @@ impl<const D: usize> Space<'_, D> {
             }
             excess
         });
-        Admissible { values, gradient, excess, gradients, bounds, diameter }
+        let place = (self.mesh, cell);
+        Admissible { place, values, gradient, excess, gradients, bounds, diameter }
     }
 
     /// Calls a function with the points of a rule on a cell, divided where a level has zeros: with barycentric
@@ -155,8 +157,8 @@ impl<const D: usize> Space<'_, D> {
         }
     }
 
-    /// The means of the distances of a linear function from the obstacles at the points of a rule; none if it
-    /// leaves one of them at a point.
+    /// The means of the distances of a linear function from the obstacles, by the corners or at the points of a rule;
+    /// none if it leaves one of them at a point.
     fn gaps_of_linear(
         &self,
         function: &Admissible<'_, D>,
@@ -168,11 +170,22 @@ impl<const D: usize> Space<'_, D> {
             return Some(gaps);
         }
         let corners = self.mesh.corners(cell);
+        if function.is_linear(&corners) {
+            for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
+                let gap = |bound: &Datum<D>| {
+                    let at_corners = corners[..=D].iter().zip(&function.values);
+                    at_corners.map(|(x, value)| sign * (value - bound.at(x))).sum::<f64>()
+                };
+                gaps[k] = function.bounds[k].map_or(0.0, gap) / (D + 1) as f64;
+            }
+            return Some(gaps);
+        }
         for (point, weight) in table.points.iter().zip(&table.weights) {
             let x = in_space(point, &corners);
             let value: f64 = function.values.iter().zip(point).map(|(v, b)| v * b).sum();
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
-                let gap = function.bounds[k].map_or(0.0, |bound| sign * (value - bound.at(&x)));
+                let gap = function.bounds[k]
+                    .map_or(0.0, |bound| sign * (value - self.at(bound, cell, &x)));
                 if gap < 0.0 {
                     return None;
                 }
@@ -232,8 +245,8 @@ impl<const D: usize> Space<'_, D> {
         let cut = cut.zip(data.source.and_then(|f| f.level()));
         self.visit_points(cell, table, cut, |point, x, weight, basis| {
             let weight = weight * data.volume;
-            let alpha = data.coefficient.map_or(1.0, |alpha| alpha.at(x));
-            let reaction = data.reaction.map_or(0.0, |c| c.at(x));
+            let alpha = data.coefficient.map_or(1.0, |alpha| self.at(alpha, cell, x));
+            let reaction = data.reaction.map_or(0.0, |c| self.at(c, cell, x));
             let (value, gradient) = admissible.at(point, x);
             let q = data.flux.at(point, x);
             sums.mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
@@ -243,12 +256,13 @@ impl<const D: usize> Space<'_, D> {
             sums.distance += weight * alpha * (gradient - slope).norm_squared();
             let from_midpoint = (gradient * alpha + q) * 0.5 - slope * alpha;
             sums.from_midpoint += weight * from_midpoint.norm_squared() / alpha;
-            let load = data.source.map_or(0.0, |f| f.at(x)) - reaction * discrete;
+            let load = data.source.map_or(0.0, |f| self.at(f, cell, x)) - reaction * discrete;
             let load = load - *sums.first_load.get_or_insert(load);
             sums.square += weight * load * load;
             let differences = map_entries([0, 1], |k| {
                 let sign = [1.0, -1.0][k];
-                admissible.bounds[k].map_or(0.0, |bound| weight * sign * (value - bound.at(x)))
+                admissible.bounds[k]
+                    .map_or(0.0, |bound| weight * sign * (value - self.at(bound, cell, x)))
             });
             for (k, share) in data.flux.shares(point).iter().enumerate() {
                 sums.means[k] += weight * load / data.volume * share;
@@ -322,11 +336,12 @@ impl<const D: usize> Space<'_, D> {
             return [constant; 2];
         }
         let corners = self.mesh.corners(cell);
+        let at = |x: &Point<D>| self.at(datum, cell, x);
         let mut at_corners = [f64::INFINITY; 4];
-        (0..D + 1).for_each(|k| at_corners[k] = datum.at(&corners[k]));
+        (0..D + 1).for_each(|k| at_corners[k] = at(&corners[k]));
         let least = at_corners.into_iter().fold(f64::INFINITY, f64::min);
         let edges = edge_vertices(D).iter().map(|&[a, b]| {
-            let middle = datum.at(&((corners[a] + corners[b]) * 0.5));
+            let middle = at(&((corners[a] + corners[b]) * 0.5));
             [middle, 2.0 * middle - 0.5 * (at_corners[a] + at_corners[b])]
         });
         edges.fold([least; 2], |[least, from_below], [middle, coefficient]| {
@@ -335,6 +350,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The data that the integrals of a cell read.
+    #[inline(always)]
     fn cell_inputs(
         &self,
         pair: &PrimalDualPair<D>,

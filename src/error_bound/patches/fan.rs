@@ -46,7 +46,8 @@ impl<const D: usize> LinearCells<'_, '_, D> {
             return false;
         }
         let mesh = self.space.mesh;
-        let mut pressure = self.pressures[vertex];
+        let carried: f64 = fan.iter().map(|of| self.carried(of.corner)).sum();
+        let mut pressure = self.multipliers[vertex] / carried;
         let normal =
             |(corner, local): (Corner, u8)| self.integrals(corner.cell())[usize::from(local)];
         // what the fluxes of a cell through a facet and of the next one through it sum to
@@ -88,7 +89,6 @@ impl<const D: usize> LinearCells<'_, '_, D> {
             (None, None) if is_closed => (force / stiffness, second - sum(end, begin)),
             (None, None) => (force / stiffness, 0.0),
         };
-        let carried: f64 = fan.iter().map(|of| self.carried(of.corner)).sum();
         pressure += left / carried;
         for (k, of) in fan.iter().enumerate() {
             let second = self.load(of.corner, pressure) - first;

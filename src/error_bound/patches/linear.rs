@@ -23,11 +23,11 @@ pub(super) struct LinearCells<'s, 'a, const D: usize> {
     /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and for each of its vertices the load
     /// that the flux of the vertex balances, without multipliers of obstacles.
     cells: Vec<f64>,
-    /// By vertex the multiplier of obstacles over the volume of the cells that carry it.
-    pub pressures: Vec<f64>,
+    /// By vertex the multiplier of obstacles, which cells carry by their volume.
+    pub multipliers: Vec<f64>,
     /// In which cells multipliers act.
     obstacles: &'s ActiveObstacles,
-    /// Of each vertex of the plane one of its cells, and how many there are.
+    /// Of each vertex one of its cells, and how many there are; empty on the line.
     pub one_cell: Vec<(u32, u32)>,
 }
 
@@ -69,38 +69,23 @@ impl<const D: usize> Space<'_, D> {
         for force in forces {
             data[force.cell * stride + D + 2 + force.node] -= force.value;
         }
-        let mut pressures = self.multipliers_of_obstacles(residual, forces);
+        let mut multipliers = self.multipliers_of_obstacles(residual, forces);
         for (cell, local) in self.facets_of(BoundaryCondition::Dirichlet) {
-            self.mesh.facet_vertices(cell, local).for_each(|v| pressures[v as usize] = 0.0);
+            self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
         }
-        let mut cells = LinearCells {
-            space: self,
-            neighbours,
-            cells: data,
-            pressures,
-            obstacles,
-            one_cell: vec![(0, 0); if D == 2 { self.mesh.vertices().len() } else { 0 }],
-        };
-        cells.divide_multipliers();
-        Ok(cells)
+        let mut one_cell = vec![(0, 0); if D > 1 { self.mesh.vertices().len() } else { 0 }];
+        for (cell, vertices) in self.mesh.cells().chunks_exact(D + 1).enumerate().filter(|_| D > 1)
+        {
+            for &v in vertices {
+                let (one, count) = &mut one_cell[v as usize];
+                (*one, *count) = (cell as u32, *count + 1);
+            }
+        }
+        Ok(LinearCells { space: self, neighbours, cells: data, multipliers, obstacles, one_cell })
     }
 }
 
 impl<const D: usize> LinearCells<'_, '_, D> {
-    /// Divides multipliers by the volumes of the cells that carry them, and finds a cell of each vertex of the plane.
-    fn divide_multipliers(&mut self) {
-        let mut carried = vec![0.0; self.pressures.len()];
-        for (k, &v) in self.space.mesh.cells().iter().enumerate() {
-            carried[v as usize] += self.carried(Corner::new(k / (D + 1), k % (D + 1)));
-            if D == 2 {
-                let (cell, count) = &mut self.one_cell[v as usize];
-                *cell = (k / (D + 1)) as u32;
-                *count += 1;
-            }
-        }
-        self.pressures.iter_mut().zip(carried).for_each(|(m, volume)| *m /= volume);
-    }
-
     pub fn volume(&self, cell: usize) -> f64 {
         self.cells[cell * known_of_cell(D)]
     }
@@ -144,11 +129,12 @@ impl<const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, D> {
     /// Fluxes with the sum zero are constants along the facet opposite the vertex: their products are
     /// `D^2 alpha |K| grad_a . grad_b`, the gradients within the facet of its barycentric coordinates. Orthogonal to
     /// them are `x` less the barycentre and the constant across the facet.
-    fn problem(&self, corner: Corner) -> CellProblem<3> {
+    fn problem(&self, corner: Corner, corners: &[Corner]) -> CellProblem<3> {
         let (cell, own, d) = (corner.cell(), corner.own(), D as f64);
         let (_, products) = shape(self.space.mesh, cell, 1.0);
         let vertex = self.space.mesh.cell(cell)[own] as usize;
-        let mean = self.load(corner, self.pressures[vertex]) / (d + 1.0);
+        let carried: f64 = corners.iter().map(|corner| self.carried(*corner)).sum();
+        let mean = self.load(corner, self.multipliers[vertex] / carried) / (d + 1.0);
         let across = products[own].map(|product| -product / products[own][own]);
         let scale = d * d * self.space.alpha(cell) * self.volume(cell);
         let points = self.space.mesh.corners(cell);

@@ -26,6 +26,7 @@
 //! | `mod` | the flux: that of all vertices added up |
 //! | `patch` | the flux of a vertex, by least squares |
 //! | `fan` | the flux of a vertex of linears in the plane, where all numbers follow from one |
+//! | `link` | the flux of a vertex of linears in space, where all numbers follow from one for each edge |
 //! | `patch_cells` | what patches ask of cells |
 //! | `linear`, `quadratic` | the cells of linears and quadratics |
 //! | `corners`, `corner_fluxes` | the cells around each vertex, and the numbers there |
@@ -34,6 +35,7 @@ mod corner_fluxes;
 mod corners;
 mod fan;
 mod linear;
+mod link;
 mod patch;
 mod patch_cells;
 mod quadratic;
@@ -72,8 +74,8 @@ impl<const D: usize> Space<'_, D> {
         neighbours: &Neighbours,
     ) -> Result<Flux<D>, NoBound> {
         let cells = self.linear_cells(u, of_solver, forces, neighbours)?;
-        let fans = (D == 2).then_some(&cells);
-        Ok(self.flux_of_patches(&cells, fans, neighbours, CELLS_AT_A_TIME))
+        let linear = (D > 1).then_some(&cells);
+        Ok(self.flux_of_patches(&cells, linear, neighbours, CELLS_AT_A_TIME))
     }
 
     /// The flux of a conforming quadratic function, without that of Neumann data and contact, and without its numbers
@@ -88,11 +90,12 @@ impl<const D: usize> Space<'_, D> {
         self.flux_of_patches(&cells, None, neighbours, CELLS_AT_A_TIME)
     }
 
-    /// The flux, with the fluxes of vertices in `length` cells at a time; in the plane the cells of linears know the fans.
+    /// The flux, with the fluxes of vertices in `length` cells at a time; in the plane and in space most patches of
+    /// linears need no least squares on facets.
     fn flux_of_patches<C: PatchCells<D, N>, const N: usize>(
         &self,
         of: &C,
-        fans: Option<&LinearCells<'_, '_, D>>,
+        linear: Option<&LinearCells<'_, '_, D>>,
         neighbours: &Neighbours,
         length: usize,
     ) -> Flux<D> {
@@ -101,8 +104,11 @@ impl<const D: usize> Space<'_, D> {
         let mut flux = Flux::zero(C::DEGREE, self.mesh.n_cells());
         for (cells, mut vertices) in self.ranges_with_vertices(length) {
             of_vertices.keep(cells.clone());
-            if let Some(of) = fans {
-                vertices = of.set_fans(&vertices, &of_vertices);
+            if let Some(of) = linear {
+                vertices = match D {
+                    2 => of.set_fans(&vertices, &of_vertices),
+                    _ => of.set_links(&vertices, &of_vertices),
+                };
             }
             if !vertices.is_empty() {
                 let corners = corners.get_or_insert_with(|| self.corners());

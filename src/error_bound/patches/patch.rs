@@ -67,7 +67,7 @@ impl<const N: usize> Patch<N> {
             for (known, facet) in facets {
                 self.know(of, neighbours, (k, facet), corners, known);
             }
-            let mut problem = of.problem(*corner);
+            let mut problem = of.problem(*corner, corners);
             problem.hold(&known, D * C::PER_FACET);
             self.cells.push(CellOfPatch { known, problem });
         }
@@ -238,7 +238,7 @@ fn invert<const N: usize>(a: &mut [[f64; N]; N], n: usize) {
 
 /// Solves with a symmetric positive semidefinite matrix, given by the upper triangle of its rows, by elimination in
 /// place. Where a pivot is zero but for rounding, the unknown is zero.
-fn solve(a: &mut [f64], x: &mut [f64]) {
+pub(super) fn solve(a: &mut [f64], x: &mut [f64]) {
     let n = x.len();
     // the lower triangle is free: its first column keeps the diagonal
     (1..n).for_each(|i| a[i * n] = a[i * n + i]);

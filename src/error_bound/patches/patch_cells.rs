@@ -33,6 +33,6 @@ pub(super) trait PatchCells<const D: usize, const N: usize>: Sync {
     fn normal(&self, corner: Corner, facet: usize) -> [f64; 3];
     /// The numbers that the flux of a vertex, with that of `phi alpha grad u . n`, has on a Neumann or contact facet.
     fn given(&self, corner: Corner, facet: usize) -> [f64; 3];
-    /// The least squares problem of a cell in the patch of a vertex, as if all numbers were free.
-    fn problem(&self, corner: Corner) -> CellProblem<N>;
+    /// The least squares problem of a cell in the patch of a vertex with these corners, as if all numbers were free.
+    fn problem(&self, corner: Corner, corners: &[Corner]) -> CellProblem<N>;
 }

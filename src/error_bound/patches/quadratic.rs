@@ -116,6 +116,9 @@ impl<const D: usize> Space<'_, D> {
         values: &mut [f64],
     ) {
         let n = self.per_cell();
+        // basis functions in products of barycentric coordinates: `square l_a^2 - own l_a` and `edge l_a l_b`
+        let [square, own, edge] =
+            if self.has_coefficients() { [1.0, 0.0, 2.0] } else { [2.0, 1.0, 4.0] };
         let is_surrounded = |k: usize| shared.surrounded[shared.numbers[k] as usize];
         let fill = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
@@ -135,10 +138,10 @@ impl<const D: usize> Space<'_, D> {
                     let products = products_on_facet::<D>(&flux, facet);
                     for a in 0..=D {
                         let hat: f64 = products[a].iter().sum();
-                        balance[a] -= 2.0 * products[a][a] - hat;
+                        balance[a] -= square * products[a][a] - own * hat;
                     }
                     for (balance, &[a, b]) in balance[D + 1..].iter_mut().zip(edge_vertices(D)) {
-                        *balance -= 4.0 * products[a][b];
+                        *balance -= edge * products[a][b];
                     }
                 }
                 for (i, out) in out.iter_mut().enumerate() {
@@ -229,7 +232,7 @@ impl<const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, D> {
         })
     }
 
-    fn problem(&self, corner: Corner) -> CellProblem<9> {
+    fn problem(&self, corner: Corner, _: &[Corner]) -> CellProblem<9> {
         let (mesh, cell, d) = (self.space.mesh, corner.cell(), D as f64);
         let points = mesh.corners(cell);
         let volume = mesh.geometry(cell).volume;

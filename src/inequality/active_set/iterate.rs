@@ -7,7 +7,7 @@ use crate::algebra::{Contact, Inequality, any_part};
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Outcome, Solution};
-use crate::parallel::vectors::{collect, for_each_chunk_of_two, sum_chunks};
+use crate::parallel::vectors::{collect, for_each_chunk, for_each_chunk_of_two, sum_chunks};
 use crate::real::Real;
 
 /// The largest certificate that is attributed to rounding, divided by machine epsilon.
@@ -60,9 +60,10 @@ impl<'a, T: Real> Iterate<'a, T> {
         let value = |i: usize| if guess.len() == n { guess[i] } else { T::lit(0.0) };
         let values: Vec<T> = collect(n, |i| bounds[i].nearest(value(i)));
         let mut states = starting_states(inequality);
-        let is_ghost = |&(i, _): &(usize, _)| !inequality.owns(i);
-        let ghosts = states.iter_mut().enumerate().filter(is_ghost);
-        ghosts.for_each(|(_, state)| *state = Contact::Inactive);
+        for_each_chunk(&mut states, |range, states| {
+            let ghosts = states.iter_mut().zip(range).filter(|(_, i)| !inequality.owns(*i));
+            ghosts.for_each(|(state, _)| *state = Contact::Inactive);
+        });
         let best = BestIterate {
             merit: f64::INFINITY,
             values: Vec::new(),
@@ -99,7 +100,7 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// Sets every fixed or active unknown to its prescribed value, exactly, and marks it as eliminated.
     fn set_prescribed_values(&mut self) {
         let Self { inequality, values, states, eliminated, .. } = &mut *self;
-        for_each_chunk_of_two(values, eliminated, |range, values, eliminated| {
+        for_each_chunk_of_two(values, eliminated, 1, |range, values, eliminated| {
             for (i, (value, eliminated)) in range.zip(values.iter_mut().zip(eliminated)) {
                 let prescribed = prescribed_value(&inequality.bounds[i], states[i]);
                 *eliminated = prescribed.is_some() || !inequality.owns(i);
@@ -172,9 +173,12 @@ impl<'a, T: Real> Iterate<'a, T> {
     pub fn keep_if_best(&mut self, merit: f64) {
         if merit < self.best.merit {
             self.best.merit = merit;
-            self.best.values.copy_from_slice(&self.values);
-            self.best.states.copy_from_slice(&self.states);
-            self.best.jump_multipliers.clone_from(&self.jump_multipliers);
+            let Self { values, states, best, .. } = self;
+            for_each_chunk_of_two(&mut best.values, &mut best.states, 1, |range, to, to_states| {
+                to.copy_from_slice(&values[range.clone()]);
+                to_states.copy_from_slice(&states[range]);
+            });
+            best.jump_multipliers.clone_from(&self.jump_multipliers);
         }
     }
 

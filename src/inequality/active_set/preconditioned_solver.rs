@@ -11,7 +11,7 @@ use crate::linear::krylov::{
     EIGENVALUE_TO_RITZ_VALUE, KrylovMethod, KrylovRun, Product, StopReason, StoppingRule,
     eigenvalue_run,
 };
-use crate::parallel::vectors::{dot, for_each_chunk, zeros};
+use crate::parallel::vectors::{collect, dot, for_each_chunk, zeros};
 use crate::real::Real;
 
 /// Estimated condition number of the preconditioned matrix (largest Ritz value divided by the smallest) above which the
@@ -240,12 +240,12 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         iterate.linear += run.iterations;
         self.check_run(&run)?;
         let multipliers_of_values = penalised.jump_multipliers(|i| iterate.values[i].to_f64());
-        let multiplier = |(jump, &multiplier): (usize, &f64)| {
+        let multiplier = |jump: usize| {
             let jump_of_correction = penalised.jump(jump, |i| correction[i].to_f64());
-            T::lit(multiplier + penalised.weights[jump].to_f64() * jump_of_correction)
+            let change = penalised.weights[jump].to_f64() * jump_of_correction;
+            T::lit(multipliers_of_values[jump] + change)
         };
-        iterate.jump_multipliers =
-            multipliers_of_values.iter().enumerate().map(multiplier).collect();
+        iterate.jump_multipliers = collect(penalised.n_jumps(), multiplier);
         let Iterate { values, jump_multipliers, residual, .. } = iterate;
         penalised.residual_with_jump_multipliers(
             &self.inequality.load,

@@ -10,7 +10,7 @@ use super::validation::data_are_in_range;
 use crate::algebra::{Distribution, Inequality, PenalisedMatrix};
 use crate::arrays::array_of;
 use crate::instances::compiled;
-use crate::parallel::vectors::{collect, map_chunks};
+use crate::parallel::vectors::{collect, largest, map_chunks};
 use crate::real::{Precision, Real, maximum};
 use local_violation::{LocalViolation, touched_bound};
 
@@ -266,7 +266,7 @@ fn largest_jump_residual<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
     jump_multipliers: &[T],
-    owns: &impl Fn(usize) -> bool,
+    owns: &(impl Fn(usize) -> bool + Sync),
 ) -> f64 {
     let Some(penalised) = &inequality.penalised else { return 0.0 };
     if jump_multipliers.len() != penalised.n_jumps() {
@@ -276,8 +276,8 @@ fn largest_jump_residual<T: Real>(
         let multiplier = jump_multipliers[jump].to_f64();
         penalised.jump_residual(jump, |i| u[i].to_f64(), multiplier).abs()
     };
-    let owned = |&jump: &usize| penalised.first_unknown(jump).is_some_and(owns);
-    (0..jump_multipliers.len()).filter(owned).map(of_jump).fold(0.0, maximum)
+    let is_owned = |jump: usize| penalised.first_unknown(jump).is_some_and(owns);
+    largest(jump_multipliers.len(), |jump| if is_owned(jump) { of_jump(jump) } else { 0.0 })
 }
 
 /// By unknown that touches a bound its share in the balance of its node ([`BalancedNodes`]), zero for the others; with the

@@ -117,10 +117,31 @@ impl<T: Real> Factors<T> {
         if lower.size() == 0 {
             return Ok(Self { size: 0, factorisation: Factorisation::Empty });
         }
-        Self::try_cholesky(lower, symbolic).map_err(|error| match error {
-            FactorError::NotPositive => indefinite_or_singular(lower, symbolic),
-            other => other,
+        let factors = Self::try_cholesky(lower, symbolic);
+        factors.and_then(|factors| factors.if_regular(&row_norms(lower, true))).map_err(|error| {
+            match error {
+                FactorError::NotPositive => indefinite_or_singular(lower, symbolic),
+                other => other,
+            }
         })
+    }
+
+    /// The Cholesky factor of a symmetric matrix that belongs to a preconditioner: whether the matrix is regular to
+    /// working precision is not tested. `order` is a permutation of the rows, the order of elimination.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositive`] if a pivot is not positive; [`FactorError::OutOfMemory`].
+    pub(crate) fn of_block(matrix: &SparseMatrix<T>, order: Vec<u32>) -> Result<Self, FactorError> {
+        compiled!(
+            T: fn(&SparseMatrix<T>, Vec<u32>) -> Result<Factors<T>, FactorError>
+                = Factors::factor_block
+        )(matrix, order)
+    }
+
+    fn factor_block(matrix: &SparseMatrix<T>, order: Vec<u32>) -> Result<Self, FactorError> {
+        let all: Vec<u32> = (0..matrix.size() as u32).collect();
+        let lower = matrix.lower_triangle(&all);
+        Self::try_cholesky(&lower, &SymbolicFactor::new(&lower, Some(order))?)
     }
 
     /// Number of unknowns of the factored submatrix.
@@ -163,8 +184,7 @@ impl<T: Real> Factors<T> {
     /// The Cholesky factor of a matrix that is not empty, given by its lower triangle.
     ///
     /// # Errors
-    /// [`FactorError::NotPositive`] if a pivot is not positive, also for a singular matrix; else
-    /// [`FactorError::Singular`] if the matrix is not regular; or [`FactorError::OutOfMemory`].
+    /// [`FactorError::NotPositive`] if a pivot is not positive, also for a singular matrix; [`FactorError::OutOfMemory`].
     fn try_cholesky(
         lower: &SparseMatrix<T>,
         symbolic: &SymbolicFactor,
@@ -186,7 +206,7 @@ impl<T: Real> Factors<T> {
             )
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
         let factorisation = Factorisation::Cholesky { symbolic, values };
-        Self { size: lower.size(), factorisation }.if_regular(&row_norms(lower, true))
+        Ok(Self { size: lower.size(), factorisation })
     }
 
     /// The LU factors of a matrix.

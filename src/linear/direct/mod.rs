@@ -13,7 +13,7 @@ mod factors;
 mod static_condensation;
 mod symbolic_factor;
 
-pub(crate) use elimination_order::OrderedMatrix;
+pub(crate) use elimination_order::{OrderedMatrix, minimum_degree_of_groups};
 pub use error::FactorError;
 pub(crate) use factors::add_to_diagonal;
 pub use factors::{Factors, is_positive_definite};

@@ -17,7 +17,7 @@ use crate::algebra::dense::invert_positive_definite;
 use crate::linear::direct::FactorError;
 use crate::parallel::for_each_item;
 use crate::parallel::vectors::{
-    chunk_of_groups, for_each_chunk_of_groups, map_chunks_of_groups, sum_chunks_of_two, zeros,
+    chunk_length, for_each_chunk_of_groups, map_chunks_of_groups, sum_chunks_of_two, zeros,
 };
 use crate::real::Real;
 
@@ -198,7 +198,7 @@ impl<const N: usize> CellSmoother for CellGaussSeidel<N> {
         }
         let fixed = fixed.as_chunks::<N>().0;
         let diagonal = &self.diagonal;
-        let length = chunk_of_groups(N) / N;
+        let length = chunk_length(N * self.diagonal.len(), N) / N;
         let masks = self.mask.as_chunks_mut::<N>().0.chunks_mut(length);
         let tasks = masks.zip(self.inverses.chunks_mut(length)).collect();
         let is_positive = AtomicBool::new(true);
@@ -224,8 +224,9 @@ impl<const N: usize> CellSmoother for CellGaussSeidel<N> {
     }
 
     fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+        let length = chunk_length(x.len(), N);
         sum_chunks_of_two(x, r, N, |range, x, r| {
-            let chunk = &self.chunks[range.start / chunk_of_groups(N)];
+            let chunk = &self.chunks[range.start / length];
             let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
             let inverses = &self.inverses[range.start / N..range.end / N];
             let b = b[range].as_chunks::<N>().0;
@@ -246,7 +247,7 @@ impl<const N: usize> CellSmoother for CellGaussSeidel<N> {
         let x = x.as_chunks::<N>().0;
         for_each_chunk_of_groups(r, N, |range, r| {
             let blocks = r.as_chunks_mut::<N>().0;
-            for (cell, other, a) in &self.chunks[range.start / chunk_of_groups(N)].outside {
+            for (cell, other, a) in &self.chunks[range.start / length].outside {
                 subtract_product(a, &x[*other as usize], &mut blocks[usize::from(*cell)]);
             }
             r.iter_mut().zip(&self.mask[range]).for_each(|(r, mask)| *r *= mask);
@@ -254,16 +255,17 @@ impl<const N: usize> CellSmoother for CellGaussSeidel<N> {
     }
 
     fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+        let length = chunk_length(x.len(), N);
         let old = x.as_chunks::<N>().0;
         for_each_chunk_of_groups(r, N, |range, r| {
             r.copy_from_slice(&b[range.clone()]);
             let blocks = r.as_chunks_mut::<N>().0;
-            for (cell, other, a) in &self.chunks[range.start / chunk_of_groups(N)].outside {
+            for (cell, other, a) in &self.chunks[range.start / length].outside {
                 subtract_product(a, &old[*other as usize], &mut blocks[usize::from(*cell)]);
             }
         });
         sum_chunks_of_two(x, r, N, |range, x, r| {
-            let chunk = &self.chunks[range.start / chunk_of_groups(N)];
+            let chunk = &self.chunks[range.start / length];
             let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
             let inverses = &self.inverses[range.start / N..range.end / N];
             for (cell, inverse) in inverses.iter().enumerate().rev() {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::coarse_level::{CoarseLevel, P1Level};
 use super::prolongation::rows_of_means;
 use crate::algebra::{Bound, DofLocation, Inequality, SparseMatrix, galerkin_product};
+use crate::parallel::vectors::all;
 use crate::real::Real;
 
 /// Spaces of conforming linear functions for multigrid.
@@ -30,11 +31,9 @@ impl<T: Real> CoarseSpaces<T> {
         match self {
             Self::Unknown => false,
             Self::CoarseLevel(coarser) => coarser.prolongation.n_fine() == inequality.size(),
-            Self::SameMesh(level) => {
-                let mut vertices =
-                    inequality.locations.iter().flat_map(|location| location.vertices());
-                vertices.all(|&v| (v as usize) < level.size())
-            }
+            Self::SameMesh(level) => all(inequality.locations.len(), |i| {
+                inequality.locations[i].vertices().iter().all(|&v| (v as usize) < level.size())
+            }),
         }
     }
 
@@ -73,7 +72,7 @@ fn p1_level<T: Real>(
 ) -> Option<P1Level<T>> {
     let last = locations.iter().flat_map(|p| p.vertices()).max()?;
     let n = *last as usize + 1;
-    let rows = rows_of_means(locations.iter().map(DofLocation::vertices), n)?;
+    let rows = rows_of_means(locations, n)?;
     let mut fixed_vertices = vec![false; n];
     for (location, _) in locations.iter().zip(fixed).filter(|(_, fixed)| **fixed) {
         location.vertices().iter().for_each(|&v| fixed_vertices[v as usize] = true);

@@ -10,7 +10,7 @@ use crate::algebra::{
 };
 use crate::memory::in_large_pages;
 use crate::parallel::cells::{items, n_chunks};
-use crate::parallel::vectors::{collect, zeros};
+use crate::parallel::vectors::{collect, indices, positions, zeros};
 use crate::parallel::{for_each_item, split};
 use crate::real::Real;
 
@@ -29,21 +29,14 @@ pub(crate) struct CrouzeixRaviartSpace {
 impl CrouzeixRaviartSpace {
     /// The facets in the order of their first sides.
     pub fn new<T>(penalties: &SidePenalties<T>) -> Self {
-        let n = penalties.opposite.len();
-        let mut facet_of_side = in_large_pages(vec![0; n]);
-        let is_first =
-            |side: usize, opposite: u32| opposite == NO_INDEX || side < opposite as usize;
-        let all = penalties.opposite.iter().enumerate();
-        let n_facets = all.filter(|&(side, &opposite)| is_first(side, opposite)).count();
-        let mut sides_of_facet = in_large_pages(Vec::with_capacity(n_facets));
-        for (side, &opposite) in penalties.opposite.iter().enumerate() {
-            if is_first(side, opposite) {
-                facet_of_side[side] = sides_of_facet.len() as u32;
-                sides_of_facet.push([side as u32, opposite]);
-            } else {
-                facet_of_side[side] = facet_of_side[opposite as usize];
-            }
-        }
+        let opposite = &penalties.opposite;
+        let n = opposite.len();
+        // the index of no side is the largest
+        let firsts = indices(n, |side| side < opposite[side] as usize);
+        let sides = |side: u32| [side, opposite[side as usize]];
+        let sides_of_facet = collect(firsts.len(), |facet| sides(firsts[facet]));
+        let facets = positions(n, &firsts);
+        let facet_of_side = collect(n, |side| facets[side.min(opposite[side] as usize)]);
         Self { facet_of_side, sides_of_facet }
     }
 

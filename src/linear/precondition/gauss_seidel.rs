@@ -19,7 +19,10 @@
 //! forward and a backward iteration read a seventh of the bytes of two products with the matrix.
 
 use crate::algebra::SparseMatrix;
-use crate::parallel::vectors::{CHUNK, for_each_chunk, map_chunks, sum_chunks_of_two, zeros};
+use crate::parallel::for_each_item;
+use crate::parallel::vectors::{
+    chunk_length, for_each_chunk, map_chunks, sum_chunks_of_two, zeros,
+};
 use crate::real::Real;
 
 /// The entry of `D + 2 E`, divided by the sum of the absolute values of the entries between chunks, in rows in which
@@ -150,6 +153,11 @@ impl GaussSeidel {
         Self { chunks, inverse_diagonal: zeros(n) }
     }
 
+    /// The number of rows of a chunk.
+    fn chunk_length(&self) -> usize {
+        chunk_length(self.inverse_diagonal.len(), 1)
+    }
+
     /// Replaces the values of the given rows and of the columns with the same indices; the pattern
     /// must be the same as before. As in [`GaussSeidel::new`], of two symmetric entries the one in
     /// the row with the larger index is used, so that both functions have the same result to the
@@ -160,34 +168,36 @@ impl GaussSeidel {
         row: impl Fn(usize) -> (&'m [u32], &'m [T]),
         scale: f64,
     ) {
+        let length = self.chunk_length();
         for &i in rows {
-            let own = i as usize / CHUNK;
-            let k = i as usize % CHUNK;
+            let own = i as usize / length;
+            let k = i as usize % length;
             let (columns, values) = row(i as usize);
             let mut at = self.chunks[own].starts[k] as usize;
             for (&j, &a) in columns.iter().zip(values).take_while(|(j, _)| **j <= i) {
                 let a = to_single(a, scale);
                 if j == i {
                     self.chunks[own].diagonal[k] = a;
-                } else if j as usize / CHUNK == own {
+                } else if j as usize / length == own {
                     self.chunks[own].values[at] = a;
                     at += 1;
                 } else {
                     self.chunks[own].replace_outside(k as u16, j, a);
-                    let other = &mut self.chunks[j as usize / CHUNK];
-                    other.replace_outside((j as usize % CHUNK) as u16, i, a);
+                    let other = &mut self.chunks[j as usize / length];
+                    other.replace_outside((j as usize % length) as u16, i, a);
                 }
             }
         }
-        self.chunks.iter_mut().for_each(ChunkRows::update_added);
+        let chunks = self.chunks.iter_mut().collect();
+        for_each_item(chunks, &|_, chunk: &mut ChunkRows| chunk.update_added());
     }
 
     /// Sets the fixed unknowns, and the unknowns `kept`, which are neither fixed nor smoothed: the forward
     /// iteration returns their residuals, and the backward iteration does not change their values.
     pub fn set_fixed(&mut self, fixed: &[bool], kept: &[u32]) {
-        let chunks = &self.chunks;
+        let (length, chunks) = (self.chunk_length(), &self.chunks);
         for_each_chunk(&mut self.inverse_diagonal, |range, inverse| {
-            let ChunkRows { diagonal, added, .. } = &chunks[range.start / CHUNK];
+            let ChunkRows { diagonal, added, .. } = &chunks[range.start / length];
             for ((inverse, &d), &fixed) in inverse.iter_mut().zip(diagonal).zip(&fixed[range]) {
                 *inverse = if fixed || d == 0.0 { 0.0 } else { 1.0 / d };
             }
@@ -205,8 +215,9 @@ impl GaussSeidel {
 
     /// A forward iteration from zero: sets `x`, and `r = b - A x` on free unknowns, zero on fixed ones.
     pub fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+        let length = self.chunk_length();
         sum_chunks_of_two(x, r, 1, |range, x, r| {
-            let chunk = &self.chunks[range.start / CHUNK];
+            let chunk = &self.chunks[range.start / length];
             let equations = b[range.clone()].iter().zip(&self.inverse_diagonal[range]);
             for (k, (&b, &inverse)) in equations.enumerate() {
                 let sum = chunk.lower_row(k).fold(b, |sum, (j, a)| sum - a * x[j]);
@@ -221,7 +232,7 @@ impl GaussSeidel {
         });
         let x = &*x;
         for_each_chunk(r, |range, r| {
-            for &(k, j, a) in &self.chunks[range.start / CHUNK].outside {
+            for &(k, j, a) in &self.chunks[range.start / length].outside {
                 r[usize::from(k)] -= a * x[j as usize];
             }
             for (r, &inverse) in r.iter_mut().zip(&self.inverse_diagonal[range]) {
@@ -232,15 +243,16 @@ impl GaussSeidel {
 
     /// A backward iteration from `x`. `r` is workspace.
     pub fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+        let length = self.chunk_length();
         let old = &*x;
         for_each_chunk(r, |range, r| {
             r.copy_from_slice(&b[range.clone()]);
-            for &(k, j, a) in &self.chunks[range.start / CHUNK].outside {
+            for &(k, j, a) in &self.chunks[range.start / length].outside {
                 r[usize::from(k)] -= a * old[j as usize];
             }
         });
         sum_chunks_of_two(x, r, 1, |range, x, r| {
-            let chunk = &self.chunks[range.start / CHUNK];
+            let chunk = &self.chunks[range.start / length];
             for (k, &inverse) in self.inverse_diagonal[range].iter().enumerate().rev() {
                 let first = r[k] + chunk.added.get(k).map_or(0.0, |added| added * x[k]);
                 let sum = chunk.lower_row(k).fold(first, |sum, (j, a)| sum - a * x[j]);
@@ -257,6 +269,9 @@ impl GaussSeidel {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+
+    /// Rows of a chunk of the matrices below.
+    const LENGTH: usize = 1 << 12;
 
     fn dot(x: &[f32], y: &[f32]) -> f64 {
         x.iter().zip(y).map(|(&x, &y)| f64::from(x) * f64::from(y)).sum()
@@ -292,7 +307,7 @@ pub(super) mod tests {
 
     #[test]
     fn replaced_rows_equal_new_ones() {
-        let n = 2 * CHUNK + 1000;
+        let n = 2 * LENGTH + 1000;
         let before = matrix(n);
         let mut after = before.clone();
         for i in 0..n {
@@ -322,10 +337,10 @@ pub(super) mod tests {
     /// between chunks diverges.
     #[test]
     fn strong_couplings_between_chunks_leave_the_smoother_positive() {
-        let (n, coupling) = (3 * CHUNK, 0.9);
+        let (n, coupling) = (3 * LENGTH, 0.9);
         let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
         for i in 0..n {
-            for j in [0, 1, 2].map(|chunk| chunk * CHUNK + i % CHUNK) {
+            for j in [0, 1, 2].map(|chunk| chunk * LENGTH + i % LENGTH) {
                 matrix.columns.push(j as u32);
                 matrix.values.push(if i == j { 1.0 } else { coupling });
             }
@@ -365,7 +380,7 @@ pub(super) mod tests {
 
     #[test]
     fn forward_and_backward_iteration_are_a_symmetric_operator_and_return_the_residual() {
-        let n = 2 * CHUNK + 1000;
+        let n = 2 * LENGTH + 1000;
         let matrix = matrix(n);
         let mut smoother = GaussSeidel::new(&matrix, |i| matrix.row(i), 2.0);
         let fixed: Vec<bool> = (0..n).map(|i| i % 7 == 3).collect();

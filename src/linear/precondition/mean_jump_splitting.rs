@@ -7,6 +7,7 @@
 //! stiffness. Source: B. Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
 
 use std::borrow::Cow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::coarse_level::P1Level;
 use super::crouzeix_raviart_space::CrouzeixRaviartSpace;
@@ -17,7 +18,9 @@ use super::preconditioner::Preconditioner;
 use crate::algebra::{DofLocation, NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix};
 use crate::linear::direct::FactorError;
 use crate::parallel::map_items;
-use crate::parallel::vectors::{CHUNK, for_each_chunk, for_each_chunk_of_groups};
+use crate::parallel::vectors::{
+    all, chunk_length, collect, for_each_chunk, for_each_chunk_of_groups, map_chunks,
+};
 use crate::real::Real;
 
 /// The sum of a diagonal correction of jumps, a solution with factors on cells with free and fixed vertex values
@@ -116,7 +119,7 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
             let multigrid = Multigrid::of_element(stiffness, prolongation, level, 1);
             Some(Box::new(multigrid) as Box<dyn FacetMeansSolver<T> + 'a>)
         };
-        let factors = Box::new(BlockFactors::new());
+        let factors = Box::new(BlockFactors::new(penalised.block_size()));
         Self::with_solvers(matrix, penalised, (locations, level.size()), multigrid, factors)
     }
 
@@ -137,7 +140,9 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         // the vertices of the facet of a mean, or the vertex of a value
         let length = if penalties.are_means { penalties.cell_size - 1 } else { 1 };
         let has_length = |location: &DofLocation| location.vertices().len() == length;
-        if locations.len() != penalised.size() || !locations.iter().all(has_length) {
+        if locations.len() != penalised.size()
+            || !all(locations.len(), |i| has_length(&locations[i]))
+        {
             return None;
         }
         let diagonal = diagonal(penalised, &penalties);
@@ -211,13 +216,14 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
     /// [`FactorError::NotPositive`] if the form of a corrected function with itself is not positive.
     fn set_side_corrections(&mut self) -> Result<(), FactorError> {
         let Self { penalties, diagonal, states, sides, mixed_block, fixed, .. } = self;
+        let length = chunk_length(states.len(), 1);
         mixed_block.vertex_values.clear();
         mixed_block.sides.clear();
         // the free vertex values and the sides of the mixed block, of one chunk of sides
         let of_chunk = |k: usize, (are_pairs, inverse_jumps): (&mut [bool], &mut [T])| {
             let (mut vertex_values, mut mixed_sides) = (Vec::new(), Vec::new());
             let corrections = are_pairs.iter_mut().zip(inverse_jumps);
-            for (s, (is_pair, inverse_jump)) in (k * CHUNK..).zip(corrections) {
+            for (s, (is_pair, inverse_jump)) in (k * length..).zip(corrections) {
                 (*is_pair, *inverse_jump) = (false, T::lit(0.0));
                 if states[s] != SideState::Free {
                     if !fixed[s] {
@@ -240,7 +246,7 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
             }
             Ok((vertex_values, mixed_sides))
         };
-        let chunks = sides.is_pair.chunks_mut(CHUNK).zip(sides.inverse_jump.chunks_mut(CHUNK));
+        let chunks = sides.is_pair.chunks_mut(length).zip(sides.inverse_jump.chunks_mut(length));
         for found in map_items(chunks.collect(), &of_chunk) {
             let (vertex_values, mixed_sides) = found?;
             mixed_block.vertex_values.extend(vertex_values);
@@ -249,13 +255,28 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
         Ok(())
     }
 
+    /// Marks the vertices that have a fixed value in a cell.
+    fn set_fixed_vertices(&mut self) {
+        let marks = collect(self.fixed_vertices.len(), |_| AtomicBool::new(false));
+        if !marks.is_empty() {
+            map_chunks(self.fixed.len(), |range| {
+                for i in range.filter(|&i| self.fixed[i]) {
+                    let vertices = self.locations[i].vertices().iter();
+                    vertices.for_each(|&v| marks[v as usize].store(true, Ordering::Relaxed));
+                }
+            });
+        }
+        self.fixed_vertices = collect(marks.len(), |v| marks[v].load(Ordering::Relaxed));
+    }
+
     /// Sets the facets without Crouzeix-Raviart functions, and the facets that conforming functions alone
     /// correct: the facets of cells with free and fixed vertex values, in which facet mean functions are not free.
     fn set_facets(&mut self) {
         let Self { penalties, space, states, fixed_facets, kept_facets, .. } = self;
+        let length = chunk_length(fixed_facets.len(), 1);
         let of_chunk = |k: usize, are_fixed: &mut [bool]| {
             let mut kept = Vec::new();
-            for (facet, is_fixed) in (k * CHUNK..).zip(are_fixed) {
+            for (facet, is_fixed) in (k * length..).zip(are_fixed) {
                 let [one, other] = space.sides_of_facet[facet].map(|side| side as usize);
                 // on a facet with Dirichlet data the jump has no opposite side
                 let opposite = match states.get(other) {
@@ -271,7 +292,7 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
             }
             kept
         };
-        *kept_facets = map_items(fixed_facets.chunks_mut(CHUNK).collect(), &of_chunk).concat();
+        *kept_facets = map_items(fixed_facets.chunks_mut(length).collect(), &of_chunk).concat();
     }
 }
 
@@ -298,14 +319,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         let corrected = self.set_side_corrections();
         let factored = self.mixed_block.factor(self.matrix, self.penalties.cell_size);
         self.set_facets();
-        self.fixed_vertices.fill(false);
-        if !self.penalties.are_means {
-            for i in (0..fixed.len()).filter(|&i| fixed[i]) {
-                for &v in self.locations[i].vertices() {
-                    self.fixed_vertices[v as usize] = true;
-                }
-            }
-        }
+        self.set_fixed_vertices();
         let Self { fixed_facets, kept_facets, fixed_vertices, .. } = self;
         let set = self.facet_means_solver.set_fixed(fixed_facets, kept_facets, fixed_vertices);
         corrected.and(factored).and(set)

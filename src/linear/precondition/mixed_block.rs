@@ -3,7 +3,8 @@
 
 use super::facet_mean_form::facet_mean_function;
 use crate::algebra::{RectangularMatrix, SparseMatrix, galerkin_product};
-use crate::linear::direct::{FactorError, Factors};
+use crate::linear::direct::{FactorError, Factors, minimum_degree_of_groups};
+use crate::parallel::vectors::for_each_chunk;
 use crate::real::Real;
 
 /// The mixed block, with its solver.
@@ -29,29 +30,39 @@ pub(crate) trait BlockSolver<T>: Send + Sync {
     fn solve(&mut self, vector: &mut [T]);
 }
 
-/// Factors of a block; `None` for a block without functions.
-pub(super) struct BlockFactors<T>(Option<Factors<T>>);
+/// Factors of a block.
+pub(super) struct BlockFactors<T> {
+    /// Number of unknowns of a cell.
+    cell_size: usize,
+    /// `None` for a block without functions, and before the first block.
+    factors: Option<Factors<T>>,
+}
 
 impl<T> BlockFactors<T> {
-    /// No factors, before the first block.
-    pub fn new() -> Self {
-        Self(None)
+    /// No factors yet; consecutive groups of `cell_size` unknowns of the whole matrix belong to a cell.
+    pub fn new(cell_size: usize) -> Self {
+        Self { cell_size, factors: None }
     }
 }
 
 impl<T: Real> BlockSolver<T> for BlockFactors<T> {
-    fn factor(&mut self, block: &SparseMatrix<T>, _: &[u32]) -> Result<(), FactorError> {
+    fn factor(&mut self, block: &SparseMatrix<T>, unknowns: &[u32]) -> Result<(), FactorError> {
         // the memory of the old factors is released before the new ones are computed
-        self.0 = None;
-        let functions: Vec<u32> = (0..block.size() as u32).collect();
-        if !functions.is_empty() {
-            self.0 = Some(Factors::new(block, true, &functions)?);
+        self.factors = None;
+        if !unknowns.is_empty() {
+            // the functions of a cell stand one after the other, and are coupled to nearly the same functions
+            let cell = |k: usize| unknowns[k] as usize / self.cell_size;
+            let is_first = |k: &usize| *k == 0 || cell(*k) != cell(k - 1);
+            let firsts = (0..unknowns.len()).filter(is_first).chain([unknowns.len()]);
+            let starts: Vec<u32> = firsts.map(|k| k as u32).collect();
+            let order = minimum_degree_of_groups(block, &starts)?;
+            self.factors = Some(Factors::of_block(block, order)?);
         }
         Ok(())
     }
 
     fn solve(&mut self, x: &mut [T]) {
-        if let Some(factors) = &self.0 {
+        if let Some(factors) = &self.factors {
             factors.solve_in_place(x, 1);
         }
     }
@@ -93,16 +104,20 @@ impl<T: Real> MixedBlock<'_, T> {
             entries.extend((0..cell_size).map(at_vertex));
         }
         entries.sort_unstable_by_key(|&(i, k, _)| (i, k));
-        let mut rows =
-            RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
-        let mut rest = entries.iter().peekable();
-        for i in 0..matrix.size() as u32 {
-            while let Some(&(_, k, value)) = rest.next_if(|entry| entry.0 == i) {
-                rows.columns.push(k);
-                rows.values.push(value);
+        let mut starts = vec![0; matrix.size() + 1];
+        for_each_chunk(&mut starts, |range, starts| {
+            let mut end = entries.partition_point(|entry| (entry.0 as usize) < range.start);
+            for (i, start) in range.zip(starts) {
+                let is_before = |entry: &(u32, u32, T)| (entry.0 as usize) < i;
+                end += entries[end..].iter().take_while(|entry| is_before(entry)).count();
+                *start = end as u32;
             }
-            rows.starts.push(rows.columns.len() as u32);
-        }
+        });
+        let rows = RectangularMatrix {
+            starts,
+            columns: entries.iter().map(|entry| entry.1).collect(),
+            values: entries.iter().map(|entry| entry.2).collect(),
+        };
         let form = galerkin_product(matrix, &rows, n);
         self.solver.factor(&form, &unknowns)
     }

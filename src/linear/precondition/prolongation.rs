@@ -1,8 +1,8 @@
 //! Prolongations from coarse to fine functions, and their transposes.
 
 use crate::algebra::{DofLocation, NO_INDEX, RectangularMatrix, sort_by_column};
-use crate::memory::in_large_pages;
-use crate::parallel::vectors::{collect, for_each_chunk, zeros};
+use crate::parallel::grouping::group_by_key;
+use crate::parallel::vectors::{all, collect, for_each_chunk, zeros};
 use crate::real::Real;
 
 /// A prolongation `P`: a sparse matrix whose columns are the coarse basis functions in the fine basis.
@@ -61,13 +61,17 @@ impl<T: Real> Prolongation<T> {
     /// If a parent is not less than `n_coarse`.
     #[must_use]
     pub fn midpoints(parents: Vec<[u32; 2]>, n_coarse: usize) -> Self {
-        let mut own = vec![0_u32; n_coarse];
-        for (i, [a, _]) in parents.iter().enumerate().filter(|(_, [a, b])| a == b) {
-            own[*a as usize] = i as u32;
-        }
-        let midpoints = (0..).zip(&parents).filter(|(_, [a, b])| a != b);
-        let pairs = midpoints.flat_map(|(i, &[a, b])| [(i, a), (i, b)]);
-        let (starts, children) = children(pairs, n_coarse);
+        let (_, own) = group_by_key(parents.len(), n_coarse, |i, put| match parents[i] {
+            [a, b] if a == b => put(a, i as u32),
+            _ => {}
+        });
+        let (starts, children) = group_by_key(parents.len(), n_coarse, |i, put| {
+            let [a, b] = parents[i];
+            if a != b {
+                put(a, i as u32);
+                put(b, i as u32);
+            }
+        });
         Self { entries: Entries::Midpoints { parents, starts, children, own }, n_coarse }
     }
 
@@ -110,10 +114,8 @@ impl<T: Real> Prolongation<T> {
     /// is the mean of the values at the vertices of its location; `None` if a location is empty or has a
     /// vertex that is not less than `n_vertices`.
     pub(crate) fn to_element(locations: &[DofLocation], n_vertices: usize) -> Option<Self> {
-        Self::injection(locations, n_vertices).or_else(|| {
-            let rows = rows_of_means(locations.iter().map(DofLocation::vertices), n_vertices)?;
-            Some(Self::from_weights(rows, n_vertices))
-        })
+        Self::injection(locations, n_vertices)
+            .or_else(|| Some(Self::from_weights(rows_of_means(locations, n_vertices)?, n_vertices)))
     }
 
     /// [`Prolongation::to_element`] if each location is one vertex, else `None`.
@@ -125,7 +127,8 @@ impl<T: Real> Prolongation<T> {
         if parents.contains(&NO_INDEX) {
             return None;
         }
-        let (starts, children) = children((0..).zip(parents.iter().copied()), n_coarse);
+        let (starts, children) =
+            group_by_key(parents.len(), n_coarse, |i, put| put(parents[i], i as u32));
         Some(Self { entries: Entries::Injection { parents, starts, children }, n_coarse })
     }
 
@@ -304,49 +307,24 @@ impl<T: Real> Prolongation<T> {
     }
 }
 
-/// Where the children of each coarse unknown start, and the children, ascending for each, from pairs of a child and a
-/// parent.
-fn children(
-    pairs: impl Iterator<Item = (u32, u32)> + Clone,
-    n_coarse: usize,
-) -> (Vec<u32>, Vec<u32>) {
-    let mut starts = vec![0_u32; n_coarse + 1];
-    pairs.clone().for_each(|(_, parent)| starts[parent as usize + 1] += 1);
-    (0..n_coarse).for_each(|j| starts[j + 1] += starts[j]);
-    let mut next = starts.clone();
-    let mut children = in_large_pages(vec![0_u32; starts[n_coarse] as usize]);
-    for (child, parent) in pairs {
-        let at = &mut next[parent as usize];
-        children[*at as usize] = child;
-        *at += 1;
-    }
-    (starts, children)
-}
-
-/// The rows of the prolongation of conforming linear functions to the means over sets of vertices; `None` if a set is
-/// empty or has a vertex that is not less than `n_vertices`.
-pub(crate) fn rows_of_means<'v, T: Real>(
-    sets: impl Iterator<Item = &'v [u32]> + Clone,
+/// The rows of the prolongation of conforming linear functions to the means over the vertices of locations; `None` if a
+/// location is empty or has a vertex that is not less than `n_vertices`.
+pub(crate) fn rows_of_means<T: Real>(
+    locations: &[DofLocation],
     n_vertices: usize,
 ) -> Option<RectangularMatrix<T>> {
-    let (count, total) =
-        sets.clone().fold((0, 0), |(count, total), set| (count + 1, total + set.len()));
-    let mut rows = RectangularMatrix {
-        starts: in_large_pages(Vec::with_capacity(count + 1)),
-        columns: in_large_pages(Vec::with_capacity(total)),
-        values: in_large_pages(Vec::with_capacity(total)),
+    let is_inside = |i: usize| {
+        let vertices = locations[i].vertices();
+        !vertices.is_empty() && vertices.iter().all(|&v| (v as usize) < n_vertices)
     };
-    rows.starts.push(0);
-    for set in sets {
-        if set.is_empty() || set.iter().any(|&v| v as usize >= n_vertices) {
-            return None;
-        }
-        let weight = T::lit(1.0 / set.len() as f64);
-        rows.columns.extend(set);
-        rows.values.extend(set.iter().map(|_| weight));
-        rows.starts.push(rows.columns.len() as u32);
-    }
-    Some(rows)
+    let rows = |range| {
+        RectangularMatrix::by_rows(range, |i, columns, values| {
+            let vertices = locations[i].vertices();
+            columns.extend(vertices);
+            values.extend(vertices.iter().map(|_| T::lit(1.0 / vertices.len() as f64)));
+        })
+    };
+    all(locations.len(), is_inside).then(|| RectangularMatrix::by_groups(locations.len(), &rows))
 }
 
 #[cfg(test)]
@@ -359,7 +337,7 @@ mod tests {
         let locations = [3, 1, 0, 3, 3, 1].map(|v| DofLocation::new(Some(0), &[v]));
         let injection = Prolongation::<f64>::to_element(&locations, 4).unwrap();
         assert!(matches!(injection.entries, Entries::Injection { .. }));
-        let rows = rows_of_means(locations.iter().map(DofLocation::vertices), 4).unwrap();
+        let rows = rows_of_means(&locations, 4).unwrap();
         let weights = Prolongation::from_weights(rows, 4);
         let both = [&injection, &weights].map(effects);
         assert_eq!(both[0], both[1]);

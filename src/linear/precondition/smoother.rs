@@ -5,6 +5,7 @@ use super::gauss_seidel::GaussSeidel;
 use crate::algebra::{DofLocation, SparseMatrix};
 use crate::element::MAX_BASIS;
 use crate::linear::direct::FactorError;
+use crate::parallel::vectors::all;
 use crate::real::Real;
 
 /// The smoother of a level.
@@ -86,13 +87,13 @@ impl Smoother {
 pub(crate) fn unknowns_per_cell(locations: &[DofLocation]) -> Option<usize> {
     let first = locations.first()?.cell();
     if first.is_none() {
-        return locations.iter().all(|p| p.cell().is_none()).then_some(1);
+        return all(locations.len(), |i| locations[i].cell().is_none()).then_some(1);
     }
     let size = locations.iter().take_while(|p| p.cell() == first).count();
-    let is_one_cell = |chunk: &[DofLocation]| {
-        chunk.len() == size
-            && chunk[0].cell().is_some()
-            && chunk.iter().all(|p| p.cell() == chunk[0].cell())
+    let is_of_group = |i: usize| {
+        let cell = locations[i].cell();
+        cell.is_some() && cell == locations[i / size * size].cell()
     };
-    (size <= MAX_BASIS && locations.chunks(size).all(is_one_cell)).then_some(size)
+    let are_groups = size <= MAX_BASIS && locations.len().is_multiple_of(size);
+    (are_groups && all(locations.len(), is_of_group)).then_some(size)
 }

@@ -6,9 +6,10 @@ use super::entity::ContactEntity;
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::{Space, checks};
 use crate::error::Error;
-use crate::measure::kinks::is_far;
+use crate::measure::kinks::{is_far, is_far_by};
 use crate::parallel::cells;
-use crate::problem::{Exact, Field};
+use crate::parallel::vectors::collect;
+use crate::problem::Exact;
 use crate::real::Point;
 
 /// Degree of the rule on a simplex, or on the pieces into which the free boundary cuts it.
@@ -22,20 +23,22 @@ pub(super) struct ExactContact {
     pub tested: [f64; 4],
     /// The share of the entity out of contact, and the share in contact. Without a contact set the first is one.
     pub shares: [f64; 2],
+    /// Whether the free boundary may meet the entity.
+    pub is_near: bool,
 }
 
 impl ExactContact {
     /// The exact solution on an entity out of contact.
-    pub const FREE: Self = Self { tested: [0.0; 4], shares: [1.0, 0.0] };
+    pub const FREE: Self = Self { tested: [0.0; 4], shares: [1.0, 0.0], is_near: false };
 
-    fn is_in_contact(&self) -> bool {
-        self.shares[1] > 0.0 || self.tested != [0.0; 4]
+    fn counts(&self) -> bool {
+        self.is_near || self.shares[1] > 0.0 || self.tested != [0.0; 4]
     }
 }
 
 impl<const D: usize> Space<'_, D> {
     /// The exact multiplier and contact set on some entities, at the same points: a list for each chunk of entities,
-    /// with the positions of those that have a multiplier or a share in contact.
+    /// with the positions of those that have a multiplier or a share in contact, or are near the free boundary.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
@@ -47,11 +50,15 @@ impl<const D: usize> Space<'_, D> {
         // for facets and for cells
         let rules = [D - 1, D]
             .map(|dimension| CutRule::new(dimension, DEGREE).without_needless_bisections());
+        let are_cells = entities.first().is_some_and(|entity| entity.facet.is_none());
+        let set = exact.contact.as_ref().filter(|_| are_cells);
+        let vertices = self.mesh.vertices();
+        let at_vertices = set.map(|set| collect(vertices.len(), |v| (set.indicator)(&vertices[v])));
         let chunks = cells::map(entities.len(), &|range: Range<usize>| {
             let on_entity = |k: usize| {
                 let rule = &rules[usize::from(entities[k].facet.is_none())];
-                let found = self.exact_contact_on(exact, entities[k], rule);
-                found.map(|found| found.is_in_contact().then_some((k, found))).transpose()
+                let found = self.exact_contact_on(exact, entities[k], rule, at_vertices.as_deref());
+                found.map(|found| found.counts().then_some((k, found))).transpose()
             };
             range.filter_map(on_entity).collect::<Result<Vec<_>, _>>()
         });
@@ -63,10 +70,11 @@ impl<const D: usize> Space<'_, D> {
         exact: &Exact<D>,
         entity: ContactEntity,
         rule: &CutRule,
+        at_vertices: Option<&[f64]>,
     ) -> Result<ExactContact, Error> {
         let corners = self.corner_points(entity);
         let mut found = ExactContact::default();
-        let mut not_finite = None;
+        let (mut not_finite, mut is_near) = (None, false);
         let mut add = |hats: &[f64; 4], weight: f64, is_in_contact: &dyn Fn(&Point<D>) -> bool| {
             let x = in_space(hats, &corners);
             let is_in_contact = is_in_contact(&x);
@@ -83,35 +91,37 @@ impl<const D: usize> Space<'_, D> {
         };
         match &exact.contact {
             None => add_whole(false),
-            Some(set) => match self.sign_of_uncut(entity, &corners, &set.indicator, rule) {
-                Some(true) => add_whole(true),
-                // by complementarity there is no multiplier
-                Some(false) => found.shares[0] = 1.0,
-                None => {
-                    let is_in_contact = |x: &Point<D>| (set.indicator)(x) > 0.0;
-                    rule.visit(&corners, &set.indicator, &mut |hats, weight| {
-                        add(hats, weight, &is_in_contact);
-                    });
+            Some(set) => {
+                let level = &set.indicator;
+                let own = &corners[..=entity.dimension::<D>()];
+                let is_far = match at_vertices {
+                    Some(values) => {
+                        let of_cell = self.mesh.cell(entity.cell).iter();
+                        is_far_by(level, own, of_cell.map(|&v| values[v as usize]))
+                    }
+                    None => is_far(level, own),
+                };
+                is_near = !is_far;
+                let sign = match is_far {
+                    true => Some(level(&corners[0]) > 0.0),
+                    false => rule.sign_of_uncut(&corners, level),
+                };
+                match sign {
+                    Some(true) => add_whole(true),
+                    // by complementarity there is no multiplier
+                    Some(false) => found.shares[0] = 1.0,
+                    None => {
+                        let is_in_contact = |x: &Point<D>| level(x) > 0.0;
+                        rule.visit(&corners, level, &mut |hats, weight| {
+                            add(hats, weight, &is_in_contact);
+                        });
+                    }
                 }
-            },
+            }
         }
         if let Some((density, x)) = not_finite {
             checks::finite(density, "exact multiplier", &x, entity.cell)?;
         }
-        Ok(found)
-    }
-
-    /// Whether a function is positive on an entity; none if its zeros cut the entity.
-    fn sign_of_uncut(
-        &self,
-        entity: ContactEntity,
-        corners: &[Point<D>; 4],
-        level: &Field<D>,
-        rule: &CutRule,
-    ) -> Option<bool> {
-        match is_far(level, &corners[..=entity.dimension::<D>()]) {
-            true => Some(level(&corners[0]) > 0.0),
-            false => rule.sign_of_uncut(corners, level),
-        }
+        Ok(ExactContact { is_near, ..found })
     }
 }

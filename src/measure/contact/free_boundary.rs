@@ -15,15 +15,16 @@ use crate::real::Point;
 const SAMPLES: usize = 4;
 
 impl<const D: usize> Space<'_, D> {
-    /// The Hausdorff distance of the two free boundaries within the mesh; none if either is empty.
+    /// The Hausdorff distance of the two free boundaries within the mesh; none if either is empty. All entities that
+    /// meet the exact one are among those `near`.
     pub(super) fn free_boundary_distance(
         &self,
         set: &ContactSet<D>,
-        entities: &[ContactEntity],
-        touching: &[bool],
+        (entities, touching): (&[ContactEntity], &[bool]),
+        near: &[ContactEntity],
     ) -> Option<f64> {
         let discrete = self.discrete_free_boundary(entities, touching);
-        let exact = self.within_mesh(set, entities);
+        let exact = self.within_mesh(set, near);
         if discrete.is_empty() || exact.is_empty() {
             return None;
         }

@@ -182,7 +182,10 @@ impl<const D: usize> Space<'_, D> {
             };
             let area = measures.iter().zip(&touching).enumerate().map(wrong).sum();
             errors.contact_area_error = Some(area);
-            errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
+            let near = on_entities.iter().flatten().filter(|(_, exact)| exact.is_near);
+            let near: Vec<ContactEntity> = near.map(|(k, _)| entities[*k]).collect();
+            let of_entities = (&entities[..], &touching[..]);
+            errors.free_boundary_distance = self.free_boundary_distance(set, of_entities, &near);
         }
         Ok(errors)
     }
@@ -316,6 +319,9 @@ impl<const D: usize> Space<'_, D> {
         let gap = contact.and_then(|group| self.data.gap.of(group));
         let bounds = [self.data.lower.of(region), self.data.upper.of(region), gap];
         let value = self.dirichlet_at(group, &x);
-        bounds.into_iter().flatten().any(|bound| (value - bound.at(&x)).abs() <= slack)
+        bounds
+            .into_iter()
+            .flatten()
+            .any(|bound| (value - self.at(bound, entity.cell, &x)).abs() <= slack)
     }
 }

@@ -2,25 +2,20 @@
 //! of a domain that were meshed apart, each with nodes of its own, or at a slit.
 
 use crate::arrays::array_of;
+use crate::mesh::BoxSearch;
 use crate::real::Point;
 
 /// Points of facets that lie on each other are nearer than this share of the extent of all facets.
 const COINCIDENT: f64 = 1e-8;
 
-/// A place of a grid, whose boxes have two to the first number as their size.
-type GridBox<const D: usize> = (i32, [i64; D]);
-
-/// Facets by place: each is listed for the boxes that it touches of the grid whose boxes are as large as it is,
-/// which are few, whatever the sizes of the others.
+/// Facets of a mesh, found by points that lie in them.
 pub(crate) struct FacetSearch<const D: usize> {
     corners: Vec<[Point<D>; D]>,
-    lower: Point<D>,
     /// A point lies in a facet if it is nearer to it than this, and its barycentric coordinates are above
     /// minus the share.
     near: f64,
     share: f64,
-    places: Vec<(GridBox<D>, usize)>,
-    sizes: Vec<i32>,
+    boxes: BoxSearch<D>,
 }
 
 impl<const D: usize> FacetSearch<D> {
@@ -32,36 +27,19 @@ impl<const D: usize> FacetSearch<D> {
         };
         let lower = extreme(f64::min, &corners);
         let near = (share * (extreme(f64::max, &corners) - lower).norm()).max(f64::MIN_POSITIVE);
-        let mut found = Self { corners, lower, near, share, places: Vec::new(), sizes: Vec::new() };
-        for (number, facet) in found.corners.iter().enumerate() {
-            let [least, most] = [f64::min, f64::max].map(|of| extreme(of, &[*facet]));
-            let size = ((most - least).max() + 2.0 * near).log2().ceil() as i32;
-            let ends = [least.add_scalar(-near), most.add_scalar(near)];
-            let ends = ends.map(|end| found.place(&end, size));
-            for corner in 0..1 << D {
-                found.places.push(((size, array_of(|k| ends[corner >> k & 1][k])), number));
-            }
-        }
-        found.places.sort_unstable();
-        found.places.dedup();
-        found.sizes = found.places.iter().map(|((size, _), _)| *size).collect();
-        found.sizes.dedup();
-        found
-    }
-
-    /// The box of a point in the grid of a size.
-    fn place(&self, x: &Point<D>, size: i32) -> [i64; D] {
-        array_of(|k| ((x[k] - self.lower[k]) / f64::from(size).exp2()).floor() as i64)
+        let boxes = BoxSearch::new(
+            lower,
+            corners.iter().map(|facet| {
+                let [least, most] = [f64::min, f64::max].map(|of| extreme(of, &[*facet]));
+                [least.add_scalar(-near), most.add_scalar(near)]
+            }),
+        );
+        Self { corners, near, share, boxes }
     }
 
     /// The facets that a point lies in.
     pub fn containing(&self, x: &Point<D>) -> impl Iterator<Item = usize> {
-        self.sizes.iter().flat_map(move |&size| {
-            let key = (size, self.place(x, size));
-            let start = self.places.partition_point(|(place, _)| *place < key);
-            let here = self.places[start..].iter().take_while(move |(place, _)| *place == key);
-            here.map(|(_, facet)| *facet).filter(|&facet| self.is_in(facet, x))
-        })
+        self.boxes.candidates(x).filter(|&facet| self.is_in(facet, x))
     }
 
     fn is_in(&self, facet: usize, x: &Point<D>) -> bool {

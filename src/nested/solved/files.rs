@@ -127,7 +127,7 @@ impl<const D: usize> Solved<'_, D> {
         let bounds = [&data.lower, &data.upper].into_iter().filter(|bound| bound.is_given());
         for (name, bound) in ["obstacle", "upper_obstacle"].into_iter().zip(bounds) {
             file = file.function_in_cells(name, |cell, x| {
-                bound.of(mesh.region(cell)).map_or(f64::NAN, |bound| bound.at(x))
+                bound.of(mesh.region(cell)).map_or(f64::NAN, |bound| bound.in_cell(mesh, cell, x))
             });
         }
         if !fields.bound.is_empty() {

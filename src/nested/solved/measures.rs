@@ -12,7 +12,7 @@ use crate::real::Point;
 
 impl<const D: usize> Solved<'_, D> {
     /// The value at a point, in the first cell that contains the point; none outside the mesh. The
-    /// search takes a time proportional to the number of cells.
+    /// search takes a time proportional to the number of cells; that of [`Solved::function`] is fast.
     pub fn value_at(&self, point: &Point<D>) -> Option<f64> {
         self.discretisation().value_at(self.values(), point)
     }

@@ -2,8 +2,11 @@
 
 #[cfg(feature = "report")]
 mod files;
+mod kept;
 mod measures;
 mod totals;
+
+pub use kept::KeptSolution;
 
 use std::fmt;
 use std::sync::OnceLock;

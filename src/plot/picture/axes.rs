@@ -3,7 +3,7 @@
 use super::colour::labels;
 use super::triangle::PlanePoint;
 use crate::plot::pen::{Align, Colour, PAPER, Pen, ScreenPoint};
-use crate::plot::style::{INK, colour};
+use crate::plot::style::{self, INK, colour, segment};
 
 /// Sizes of text.
 pub(crate) const TITLE: f64 = 17.0;
@@ -42,6 +42,8 @@ pub(crate) enum Stroke {
     Given,
     /// The discrete solution in a graph.
     Solution,
+    /// A curve of several, by its number, with marks at its points.
+    Curve(usize),
 }
 
 impl Stroke {
@@ -55,6 +57,11 @@ impl Stroke {
             Stroke::Exact => pen.line(from, to, 1.8, EXACT),
             Stroke::Given => pen.line(from, to, 4.0, FAINT),
             Stroke::Solution => pen.line(from, to, 1.6, colour(0)),
+            Stroke::Curve(key) => {
+                segment(pen, key, from, to);
+                style::draw_mark(pen, key, from, 1.0);
+                style::draw_mark(pen, key, to, 1.0);
+            }
         }
     }
 

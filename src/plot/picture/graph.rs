@@ -28,6 +28,18 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
+    /// Curves with their names through points, in the order in which they are drawn.
+    pub fn of_curves(axes: [&str; 2], curves: &[(&str, Vec<PlanePoint>)]) -> Self {
+        let mut graph = Graph { axes: axes.map(str::to_owned), ..Graph::default() };
+        for (key, (name, points)) in curves.iter().enumerate() {
+            let stroke = Stroke::Curve(key);
+            let ends = points.windows(2).map(|ends| (stroke, [ends[0], ends[1]]));
+            graph.lines.extend(ends);
+            graph.legend.push((Symbol::Line(stroke), (*name).to_owned()));
+        }
+        graph
+    }
+
     /// Height of the panel.
     pub fn height(&self, width: f64) -> f64 {
         let legend = self.legend.len() as f64 * LINE + 8.0;

@@ -63,7 +63,7 @@ impl<'a, const D: usize> Line<'a, D> {
             let [a, b] = self.ends(cell);
             let at = |k: usize| {
                 let x = a + (b - a) * k as f64 / PARTS as f64;
-                [x, datum.at(&Point::repeat(x))]
+                [x, datum.in_cell(self.mesh, cell, &Point::repeat(x))]
             };
             lines.extend((0..PARTS).map(|k| (stroke, [at(k), at(k + 1)])));
         }

@@ -33,6 +33,7 @@ use crate::instances::compiled;
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
 use crate::problem::Problem;
+use graph::Graph;
 use line::Line;
 use panel::Panel;
 use plane::Plane;
@@ -110,6 +111,12 @@ impl Picture {
             _ => Space::new(problem, mesh, fields).panels(),
         };
         Ok(Picture { title: title.to_owned(), panels })
+    }
+
+    /// A picture of curves over one quantity: the names of the axes, and each curve's name with its points.
+    pub fn of_curves(title: &str, axes: [&str; 2], curves: &[(&str, Vec<[f64; 2]>)]) -> Self {
+        let panels = vec![Panel::Graph(Graph::of_curves(axes, curves))];
+        Picture { title: title.to_owned(), panels }
     }
 
     /// The picture as the text of an SVG file.

@@ -68,7 +68,7 @@ impl<const D: usize> Study<'_, D> {
             let allowed = "one with a polygon as its boundary: bisection does not follow a circle";
             return refuse("domain of an adaptive study", "a disc".to_owned(), allowed);
         }
-        check_level(&self.scene.domain, self.first_level())?;
+        check_level(&self.scene.domain, self.first_level(), 1)?;
         for entry in &self.entries {
             self.check_level(&*entry.scheme, self.first_level(), memory_of_process())?;
         }

@@ -19,7 +19,7 @@ impl<const D: usize> Study<'_, D> {
         )(self, values)
     }
     fn judge_values(&self, values: &[f64]) -> Result<Row, Error> {
-        let failure = self.where_exact_fails()?;
+        let failure = self.where_exact_fails(1)?;
         let (Some(entry), level) = (self.entries.first(), self.first_level()) else {
             unreachable!("checked above")
         };

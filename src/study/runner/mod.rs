@@ -27,7 +27,7 @@ use crate::problem::Problem;
 use crate::real::Precision;
 use crate::scenes::Scene;
 use crate::scheme::{Scheme, SchemeOptions};
-use crate::study::compatibility::{check_fit, check_names, check_scheme};
+use crate::study::compatibility::{check_entries, check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
 #[cfg(feature = "report")]
@@ -175,13 +175,13 @@ impl<'a, const D: usize> Study<'a, D> {
     /// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
         compiled!(const D: fn(&Study<'_, D>) -> Result<(), Error>
-                = |study| study.where_exact_fails().map(|_| ())
+                = |study| study.where_exact_fails(1).map(|_| ())
         )(self)
     }
 
-    /// Checks schemes, levels and domain. Returns the point at which the exact solution of the scene
-    /// breaks the contact condition of a mesh.
-    fn where_exact_fails(&self) -> Result<Option<String>, Error> {
+    /// Checks schemes, levels and domain, for so many parts of the meshes. Returns the point at which the exact
+    /// solution of the scene breaks the contact condition of a mesh.
+    fn where_exact_fails(&self, parts: usize) -> Result<Option<String>, Error> {
         let levels = self.levels.len() + usize::from(self.adaptive.is_some());
         let lengths = [("schemes", self.entries.len()), ("levels", levels)];
         if let Some(&(parameter, _)) = lengths.iter().find(|(_, length)| *length == 0) {
@@ -200,15 +200,19 @@ impl<'a, const D: usize> Study<'a, D> {
             });
         }
         let domain = &self.scene.domain;
-        self.levels.iter().try_for_each(|&level| check_level(domain, level))?;
+        self.levels.iter().try_for_each(|&level| check_level(domain, level, parts))?;
+        let largest = self.levels.iter().copied().max().unwrap_or(self.first_level());
         for (entry, problem) in self.entries.iter().zip(problems) {
             check_scheme(&*entry.scheme, problem, self.quadrature)?;
+            check_entries(&*entry.scheme, largest, domain.cells(largest) / parts as f64)?;
         }
         if let Some(adaptivity) = &self.adaptive {
             self.check_adaptive(adaptivity)?;
         } else if let Some(reference) = &self.reference {
             reference.check(domain, &self.levels)?;
-            check_level(domain, reference.level)?;
+            check_level(domain, reference.level, 1)?;
+            let cells = domain.cells(reference.level);
+            check_entries(&*reference.scheme, reference.level, cells)?;
             self.check_level(&*reference.scheme, reference.level, memory_of_process())?;
         }
         // `check` and `run` need the fit, which assembles load and bounds on a mesh
@@ -231,7 +235,7 @@ impl<'a, const D: usize> Study<'a, D> {
         )(self)
     }
     fn run_all(&self) -> Result<Report, Error> {
-        let failure = self.where_exact_fails()?;
+        let failure = self.where_exact_fails(1)?;
         if let Some(adaptivity) = self.adaptive {
             return self.run_adaptive(adaptivity, failure.as_deref());
         }

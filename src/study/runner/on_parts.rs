@@ -30,15 +30,23 @@ pub struct PartChecks {
 }
 
 impl<const D: usize> Study<'_, D> {
+    /// [`Study::check`] for a study over the parts of a mesh: limits of numbers are those of each process.
+    ///
+    /// # Errors
+    /// Those of [`Study::check`].
+    pub fn check_on_parts(&self, process: &Process) -> Result<(), Error> {
+        self.where_exact_fails(process.count()).map(|_| ())
+    }
+
     /// Runs every scheme on every level over the parts of a mesh, of which this process has one. All processes
     /// run the same study, the first with journal and observer; all get the report.
     ///
     /// # Errors
-    /// Errors of [`Self::check`]; [`Error::Parameter`] for what parts of a mesh do not have: other solvers,
+    /// Errors of [`Self::check_on_parts`]; [`Error::Parameter`] for what parts of a mesh do not have: other solvers,
     /// references, adaptive meshes, files of fields and inequalities, a journal of an earlier run. A run that
     /// fails is no error: its row has the outcome and the message.
     pub fn run_on_parts(&self, process: &Process, checks: PartChecks) -> Result<Report, Error> {
-        let failure = self.where_exact_fails()?;
+        let failure = self.where_exact_fails(process.count())?;
         self.check_parts()?;
         let problems = self.problems();
         let hierarchies = self.hierarchies_on_parts(process)?;

@@ -105,7 +105,9 @@ fn all_schemes_agree_with_the_oracle() {
     for scene in [scenes::ball_2d(), scenes::signorini_shifted_2d()] {
         let mesh = scene.domain.mesh(2).unwrap();
         for &(name, _) in SCHEMES {
-            for place in ["vertices", "facet-means", "nodes", "midpoints", "cell-means"] {
+            for place in
+                ["vertices", "facet-means", "nodes", "midpoints", "cell-means", "bernstein"]
+            {
                 let set = constraint_set_by_name(place).unwrap();
                 let scheme = scheme_by_name::<2>(name, &SchemeOptions::default()).unwrap();
                 // a scheme without such values keeps its nodes

@@ -23,8 +23,8 @@ fn choices() -> Vec<Choice> {
     for &(name, _) in SCHEMES {
         let placements: &[_] = match name {
             "p1" | "cr" => &["vertices"],
-            "p2" => &["nodes", "midpoints"],
-            name if name.ends_with("-p2") => &["nodes", "midpoints", "cell-means"],
+            "p2" => &["nodes", "midpoints", "bernstein"],
+            name if name.ends_with("-p2") => &["nodes", "midpoints", "cell-means", "bernstein"],
             _ => &["vertices", "facet-means"],
         };
         for placement in placements {

@@ -33,6 +33,9 @@ const LINEAR: &str = "p1,cr,sipg,nipg,iipg,ldg,ldg-switch,br2,bmmpr,wopsip,sipg:
 const QUADRATIC: &str = "p2,sipg-p2,nipg-p2,iipg-p2,ldg-p2,ldg-switch-p2,br2-p2,bmmpr-p2,wopsip-p2,p2:midpoints,\
     sipg-p2:midpoints,nipg-p2:midpoints,iipg-p2:midpoints,ldg-p2:midpoints,ldg-switch-p2:midpoints,\
     br2-p2:midpoints,bmmpr-p2:midpoints,wopsip-p2:midpoints";
+/// Those with bounds on Bernstein coefficients.
+const BERNSTEIN: &str = "p2:bernstein,sipg-p2:bernstein,nipg-p2:bernstein,iipg-p2:bernstein,ldg-p2:bernstein,\
+    ldg-switch-p2:bernstein,br2-p2:bernstein,bmmpr-p2:bernstein,wopsip-p2:bernstein";
 /// Two of every kind, for what does not depend on the scheme.
 const FEW: &str = "p1,p2,cr,sipg,wopsip,wopsip:facet-means,nipg";
 
@@ -65,6 +68,8 @@ const REQUESTS: &[Request] = &[
         "sipg-p2:cell-means,wopsip-p2:cell-means",
         "--levels 4,8",
     ),
+    quick("bernstein", "radial-1d,radial-2d,lshape-2d,signorini-2d", BERNSTEIN, "--levels 4,8"),
+    quick("bernstein-space", "radial-3d,signorini-line-3d", BERNSTEIN, "--levels 2"),
     quick("quick-plane", "radial-2d,hertz-2d,contrast-disc-2d", FEW, "--levels 8"),
     quick("quick-space", "radial-3d,signorini-line-3d", FEW, "--levels 2"),
     quick("single-precision", "radial-2d,signorini-2d", FEW, "--levels 8 --precision f32"),

@@ -121,7 +121,7 @@ impl AllRuns<'_> {
         let place = options.asked.place(&scene.name);
         let has_mesh = scene.domain.is_mesh();
         let mut study = study(scene, options, schemes, watcher);
-        study.check().map_err(|e| format!("{place}: {e}"))?;
+        study.check_on_parts(process).map_err(|e| format!("{place}: {e}"))?;
         watcher.expect(D, has_mesh, study.keys().iter().map(|key| key.level));
         if let Some(journal) = journal {
             study = study.journal(journal);

@@ -128,9 +128,12 @@ impl<'a, T: Real> Multigrid<'a, T> {
             let (finer, rest) = self.levels.split_at_mut(k);
             let level = &mut rest[0];
             if let Some(finer) = finer.last_mut() {
-                level.fixed.copy_from_slice(level.dirichlet);
-                let fixed_besides = level.fixed.iter_mut().zip(&level.fixed_besides);
-                fixed_besides.for_each(|(fixed, besides)| *fixed |= besides);
+                let Level { dirichlet, fixed_besides, .. } = level;
+                for_each_chunk(&mut level.fixed, |range, fixed| {
+                    fixed.copy_from_slice(&dirichlet[range.clone()]);
+                    let besides = fixed_besides.get(range).unwrap_or_default();
+                    fixed.iter_mut().zip(besides).for_each(|(fixed, besides)| *fixed |= besides);
+                });
                 let changed_rows = std::mem::take(&mut finer.changed_rows);
                 if let Some(prolongation) = &finer.prolongation {
                     // truncation sets a coarse function to zero if all its children are fixed

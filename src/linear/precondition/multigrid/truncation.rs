@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::level::Level;
 use crate::algebra::{NO_INDEX, RectangularMatrix, SparseSum};
 use crate::linear::precondition::prolongation::Prolongation;
-use crate::parallel::vectors::{collect, for_each_chunk, indices};
+use crate::parallel::vectors::{collect, indices, positions};
 use crate::parallel::{for_each_item, split};
 use crate::real::Real;
 
@@ -50,9 +50,7 @@ impl<T: Real> Level<'_, T> {
             self.changed_rows.extend_from_slice(&outdated);
         }
         self.outdated = outdated;
-        self.recomputed_indices.resize(self.matrix.size(), NO_INDEX);
-        self.recomputed_rows.iter().for_each(|&j| self.recomputed_indices[j as usize] = NO_INDEX);
-        (0..).zip(&rows).for_each(|(k, &j)| self.recomputed_indices[j as usize] = k);
+        self.recomputed_indices = positions(self.matrix.size(), &rows);
         self.recomputed_rows = rows;
         self.recomputed_starts = starts;
         self.recomputed_values = values;
@@ -146,13 +144,13 @@ struct Images<T> {
 impl<T: Real> Images<T> {
     /// The rows of all free children of the unknowns `parents`.
     fn new(finer: &Level<'_, T>, prolongation: &Prolongation<T>, parents: &[u32]) -> Self {
-        let mut numbers = vec![NO_INDEX; finer.fixed.len()];
+        let n = finer.fixed.len();
+        let mut is_child = vec![false; n];
         for &j in parents {
-            prolongation.for_each_child(j as usize, |i, _| numbers[i] = 0);
+            prolongation.for_each_child(j as usize, |i, _| is_child[i] = true);
         }
-        let children = indices(numbers.len(), |i| numbers[i] == 0 && !finer.fixed[i]);
-        for_each_chunk(&mut numbers, |_, numbers| numbers.fill(NO_INDEX));
-        (0..).zip(&children).for_each(|(k, &i)| numbers[i as usize] = k);
+        let children = indices(n, |i| is_child[i] && !finer.fixed[i]);
+        let numbers = positions(n, &children);
         let n_coarse = prolongation.n_coarse();
         let rows = RectangularMatrix::by_groups(children.len(), &|range| {
             let mut sum = SparseSum::new(n_coarse);

@@ -45,6 +45,7 @@ fn each_set_binds_its_own_nodes() {
     for nodes in [
         bounds(&ConformingP2, Nodes, &signorini, &mesh).unwrap(),
         bounds(&ConformingP2, Midpoints, &signorini, &mesh).unwrap(),
+        bounds(&ConformingP2, Bernstein, &signorini, &mesh).unwrap(),
     ] {
         // the vertex that the Dirichlet boundary shares is pinned
         assert_eq!([count(&nodes, 1), count(&nodes, 2)], [2, 2]);
@@ -58,7 +59,8 @@ fn each_set_binds_its_own_nodes() {
     // of the nine nodes of the side all but those at its middle and on its Neumann edge are pinned
     let nodes = bounds(&ConformingP2, Nodes, &signorini, &cube).unwrap();
     let midpoints = bounds(&ConformingP2, Midpoints, &signorini, &cube).unwrap();
-    assert_eq!([count(nodes), count(midpoints)], [2, 2]);
+    let coefficients = bounds(&ConformingP2, Bernstein, &signorini, &cube).unwrap();
+    assert_eq!([count(nodes), count(midpoints), count(coefficients)], [2; 3]);
     let domain = BoxDomain::above_contact();
     let line = Mesh::<1>::kuhn_box(&domain, [3]).unwrap();
     let end = bounds(&ConformingP2, Midpoints, &Problem::new().signorini(|_| 0.5), &line).unwrap();

@@ -1,12 +1,12 @@
 //! Squares of the pointwise error in a cell.
 
-use super::admissible::Admissible;
-use super::evaluation::Reference;
-use super::squared_errors::Squares;
 use crate::assemble::space::checks;
 use crate::assemble::space::tables::BasisAt;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
+use crate::measure::admissible::Admissible;
+use crate::measure::evaluation::Reference;
+use crate::measure::squared_errors::Squares;
 use crate::problem::Datum;
 use crate::real::Point;
 

@@ -1,12 +1,16 @@
 //! Squares of errors, integrated over cells.
 
+mod integrand;
+mod roughness;
+
 use std::ops::Range;
 
+use integrand::{CellIntegrand, LocalFunction};
+use roughness::{Polynomials, Roughness};
+
 use super::admissible::InCells;
-use super::cell_integrand::{CellIntegrand, LocalFunction};
 use super::evaluation::Reference;
 use super::kinks::Kinks;
-use super::roughness::{Polynomials, Roughness};
 use super::squared_errors::{SquaredErrors, Squares};
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::cut_simplices::{CutRule, in_space};
@@ -77,6 +81,8 @@ struct Measure<'m, 'r, 'f, const D: usize> {
     cut_rules: Option<[CutRule; 2]>,
     /// By region the functions whose zeros are kinks.
     kinks: Vec<Kinks<D>>,
+    /// The values at vertices of the first of these functions, where it is that of the contact set.
+    contact_at_vertices: Option<Vec<f64>>,
     /// The functional of each node.
     nodes: Vec<Terms>,
     /// The exact solution at the vertices of the mesh, if all nodes are vertices.
@@ -124,9 +130,18 @@ impl<const D: usize> Space<'_, D> {
             [rule(), rule().without_needless_bisections()]
         });
         let table = self.cell_table(cell_rule);
-        let at_vertices = self.values_at_vertices(exact);
-        let measure =
-            Measure { exact, table, smooth, cut_rules, kinks, nodes, at_vertices, u, function };
+        let measure = Measure {
+            exact,
+            table,
+            smooth,
+            cut_rules,
+            kinks,
+            contact_at_vertices: self.contact_at_vertices(exact),
+            nodes,
+            at_vertices: self.values_at_vertices(exact),
+            u,
+            function,
+        };
         let n_cells = self.mesh.n_cells();
         // partial sums are added in order, so the result does not depend on threads
         let chunks = cells::map(n_cells, &|cells: Range<usize>| {
@@ -283,7 +298,11 @@ impl<const D: usize> Space<'_, D> {
     ) -> Option<Result<Squares, Error>> {
         let (rules, cell) = (of.cut_rules.as_ref()?, integrand.cell);
         let kinks = &of.kinks[self.mesh.region(cell)];
-        if kinks.are_far(&corners[..=D]) {
+        let of_first = of
+            .contact_at_vertices
+            .as_ref()
+            .map(|values| self.mesh.cell(cell).iter().map(|&v| values[v as usize]));
+        if kinks.are_far(&corners[..=D], of_first) {
             return None;
         }
         let level = kinks.level_in(&rules[0], self.mesh, cell)?;

@@ -1,0 +1,263 @@
+//! Discrete functions as data: exact loads on nested meshes, values of each cell as obstacles, means at vertices as
+//! Dirichlet data, and results that outlive their problem.
+
+use unilateral::algebra::Bound;
+use unilateral::assemble::DataQuadrature;
+use unilateral::error::Error;
+use unilateral::error_bound::Unproven;
+use unilateral::mesh::Domain;
+use unilateral::nested::KeptSolution;
+use unilateral::prelude::*;
+use unilateral::problem::Datum;
+
+fn scheme<const D: usize>(name: &str) -> Box<dyn Scheme<D>> {
+    name.parse::<NamedScheme>().unwrap().make()
+}
+
+fn cube<const D: usize>(n: usize) -> Mesh<D> {
+    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    Mesh::kuhn_box(&cube, [n; D]).unwrap()
+}
+
+/// Numbers between minus one and one, without a pattern.
+fn numbers(n: usize) -> Vec<f64> {
+    (0..n).map(|k| (1.7 * k as f64 + 0.3).sin()).collect()
+}
+
+/// A function of a scheme with these unknowns.
+fn function<const D: usize>(name: &str, mesh: &Mesh<D>, u: &[f64]) -> DiscreteFunction<D> {
+    let problem = Problem::new();
+    let of = Discretisation::new(&*scheme(name), &problem, mesh, Default::default()).unwrap();
+    of.function(u)
+}
+
+fn unknowns<const D: usize>(name: &str, mesh: &Mesh<D>) -> usize {
+    let problem = Problem::new();
+    Discretisation::new(&*scheme(name), &problem, mesh, Default::default()).unwrap().unknowns()
+}
+
+/// The largest difference of the load with a function as source from the mass matrix times the function's interpolant,
+/// over the largest entry.
+fn difference_from_mass<const D: usize>(
+    name: &str,
+    u: &DiscreteFunction<D>,
+    mesh: &Mesh<D>,
+    quadrature: DataQuadrature,
+) -> f64 {
+    let scheme = scheme::<D>(name);
+    let discretise = |problem| Discretisation::new(&*scheme, problem, mesh, quadrature).unwrap();
+    let problem = Problem::new().discrete_source(u.clone());
+    let of = discretise(&problem);
+    let (datum, element) = (Datum::from(u.clone()), scheme.element());
+    let mut interpolant = vec![0.0; of.unknowns()];
+    for cell in 0..mesh.n_cells() {
+        for (i, unknown) in of.unknowns_of(cell).enumerate() {
+            let x = mesh.point(cell, &element.node(i).centre(D)[..=D]);
+            interpolant[unknown] = datum.in_cell(mesh, cell, &x);
+        }
+    }
+    let with_reaction = Problem::new().reaction(1.0);
+    let [form, both] = [&problem, &with_reaction].map(|problem| discretise(problem).matrix());
+    let load = of.load().unwrap();
+    let products = (0..load.len())
+        .map(|i| both.row_dot(i, &interpolant) - form.row_dot(i, &interpolant))
+        .collect::<Vec<f64>>();
+    let largest = products.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+    let differences = load.iter().zip(&products).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f64::max) / largest
+}
+
+fn loads_are_exact<const D: usize>(n: usize) {
+    let mesh = cube::<D>(n);
+    let fine = mesh.refine().unwrap().0;
+    let finest = fine.refine().unwrap().0;
+    for name in ["p1", "p2", "cr", "sipg", "sipg-p2"] {
+        let u = function(name, &mesh, &numbers(unknowns(name, &mesh)));
+        for (refinements, mesh) in [&mesh, &fine, &finest].into_iter().enumerate() {
+            // a coarse function of Crouzeix and Raviart jumps on fine facets
+            if name == "cr" && refinements > 0 {
+                continue;
+            }
+            // a rule of low degree is replaced
+            for quadrature in [DataQuadrature::default(), DataQuadrature::default().cell(1)] {
+                let difference = difference_from_mass(name, &u, mesh, quadrature);
+                assert!(difference < 1e-10, "{name}, {D}, {refinements}: {difference:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn loads_of_discrete_functions_are_exact_on_nested_meshes() {
+    loads_are_exact::<1>(5);
+    loads_are_exact::<2>(2);
+    loads_are_exact::<3>(1);
+}
+
+/// In a cell of a refinement a function with jumps has the values of its ancestor, at its vertices too.
+#[test]
+fn values_in_cells_are_those_of_the_ancestor() {
+    let coarse = cube::<2>(2);
+    let fine = coarse.refine().unwrap().0.refine().unwrap().0;
+    let values = numbers(3 * coarse.n_cells());
+    let datum = Datum::from(function("sipg", &coarse, &values));
+    for cell in 0..fine.n_cells() {
+        let ancestor = cell >> 4;
+        for &v in fine.cell(cell) {
+            let x = fine.vertices()[v as usize];
+            let corner = coarse.vertices()[coarse.cell(ancestor)[0] as usize];
+            let geometry = coarse.geometry(ancestor);
+            let own = &values[3 * ancestor..][..3];
+            let slopes = (0..3).map(|k| own[k] * geometry.gradient(k).dot(&(x - corner)));
+            let expected = own[0] + slopes.sum::<f64>();
+            assert!((datum.in_cell(&fine, cell, &x) - expected).abs() < 1e-13);
+        }
+    }
+}
+
+/// Cells of another mesh are searched for: a linear function is right there, and the bound says that its load is
+/// integrated by a rule. On the own mesh and on refinements the bound is guaranteed.
+#[test]
+fn functions_on_other_meshes_are_integrated_by_the_rule() {
+    let mesh = cube::<2>(5);
+    let linear = |x: &Point<2>| 1.0 + 2.0 * x[0] - x[1];
+    let u = function("p1", &mesh, &mesh.vertices().iter().map(linear).collect::<Vec<_>>());
+    let other = cube::<2>(7);
+    assert!(difference_from_mass("p1", &u, &other, DataQuadrature::default()) < 1e-12);
+    assert_eq!(u.times(2.0).value_at(&Point::from([0.3, 0.4])).map(|v| v.round()), Some(2.0));
+
+    let problem = Problem::new().discrete_source(u);
+    let unproven = |mesh| solve(&problem, mesh, &ConformingP1).unwrap().bound().unwrap().unproven;
+    let fine = mesh.refine().unwrap().0;
+    assert_eq!([unproven(&mesh), unproven(&fine)], [[], []]);
+    assert_eq!(unproven(&other), [Unproven::Quadrature]);
+}
+
+/// A mesh of a disc lies within the disc: the function on a coarse one is continued to a finer one, but not far.
+#[test]
+fn functions_are_continued_to_meshes_of_the_same_domain_alone() {
+    let disc = scenes::disc_2d().domain;
+    assert!(matches!(disc, Domain::Disc { .. }));
+    let [coarse, fine] = [4, 12].map(|level| disc.mesh(level).unwrap());
+    let linear = |x: &Point<2>| 3.0 - x[0];
+    let u = function("p1", &coarse, &coarse.vertices().iter().map(linear).collect::<Vec<_>>());
+    for x in fine.vertices() {
+        assert!((u.value_at(x).unwrap() - linear(x)).abs() < 1e-12, "{x}");
+    }
+    let problem = Problem::new().discrete_source(u);
+    let wide = BoxDomain::dirichlet(Point::repeat(-9.0), Point::repeat(9.0));
+    let mesh = Mesh::kuhn_box(&wide, [4; 2]).unwrap();
+    let error = solve(&problem, &mesh, &ConformingP1).unwrap_err();
+    assert!(matches!(error, Error::DataNotFinite { datum: "source", .. }), "{error}");
+}
+
+/// The values of a broken linear function at a vertex, from all cells around.
+fn values_at(mesh: &Mesh<2>, values: &[f64], v: usize) -> Vec<f64> {
+    let corners = mesh.cells().iter().zip(values);
+    corners.filter(|(at, _)| **at as usize == v).map(|(_, value)| *value).collect()
+}
+
+#[test]
+fn obstacles_with_jumps_bound_each_cell_by_its_own_values() {
+    let sides = [[BoundaryCondition::Neumann; 2]; 2];
+    let square = BoxDomain::new(Point::zeros(), Point::repeat(1.0), sides);
+    let mesh = Mesh::<2>::kuhn_box(&square, [3; 2]).unwrap();
+    let values = numbers(3 * mesh.n_cells());
+    let psi = function("sipg", &mesh, &values);
+    let above = psi.clone();
+    let lower = Problem::new().discrete_obstacle_below(psi);
+    let upper = Problem::new().discrete_obstacle_above(above);
+    let bounds = |problem: &Problem<2>, name: &str| {
+        let of = Discretisation::new(&*scheme(name), problem, &mesh, Default::default());
+        of.unwrap().bounds().unwrap()
+    };
+    for (bound, value) in bounds(&lower, "sipg").iter().zip(&values) {
+        assert!((bound.lower().unwrap() - value).abs() < 1e-14, "{bound:?} {value}");
+    }
+    let [of_lower, of_upper] = [&lower, &upper].map(|problem| bounds(problem, "p1"));
+    for v in 0..mesh.vertices().len() {
+        let around = values_at(&mesh, &values, v);
+        let largest = around.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let smallest = around.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!((of_lower[v].lower().unwrap() - largest).abs() < 1e-14);
+        assert!((of_upper[v].upper().unwrap() - smallest).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn dirichlet_data_with_jumps_are_means_at_vertices() {
+    let mesh = cube::<2>(3);
+    let values = numbers(3 * mesh.n_cells());
+    let problem = Problem::new().discrete_dirichlet(function("sipg", &mesh, &values));
+    let of = Discretisation::new(&ConformingP1, &problem, &mesh, Default::default()).unwrap();
+    let mut fixed = 0;
+    for (v, bound) in of.bounds().unwrap().iter().enumerate() {
+        let Bound::Fixed(value) = bound else { continue };
+        let around = values_at(&mesh, &values, v);
+        let mean = around.iter().sum::<f64>() / around.len() as f64;
+        assert!((value - mean).abs() < 1e-14, "{value} {mean}");
+        fixed += 1;
+    }
+    assert_eq!(fixed, 12);
+    // no function with finite energy has these data
+    let u = solve(&problem, &mesh, &ConformingP1).unwrap();
+    assert!(u.bound().unwrap().unproven.contains(&Unproven::Boundary));
+}
+
+/// On a finer mesh of a hierarchy an obstacle with jumps keeps to its cells: no cell falls below its own obstacle. The
+/// start on coarser meshes reads the function of the finest one.
+#[test]
+fn data_on_one_mesh_of_a_hierarchy_serve_on_all() {
+    let meshes = Hierarchy::refine(&cube::<2>(4), 2).unwrap();
+    let (coarse, fine) = (meshes.mesh(0), meshes.finest());
+    let steps: Vec<f64> = numbers(coarse.n_cells()).iter().map(|v| 0.05 * v - 0.2).collect();
+    let steps: Vec<f64> = steps.iter().flat_map(|v| [*v; 3]).collect();
+    let pressed = Problem::new().constant_source(-40.0);
+    let source = solve(&pressed, fine, &Sipg::default()).unwrap().function().unwrap();
+    let problem = Problem::new()
+        .discrete_source(source.times(10.0))
+        .discrete_obstacle_below(function("sipg", coarse, &steps));
+    for name in ["p1", "sipg"] {
+        let nested = solve(&problem, &meshes, &*scheme(name)).unwrap();
+        let flat = solve(&problem, fine, &*scheme(name)).unwrap();
+        assert!(nested.converged() && nested.active() > Some(20), "{name}: {nested:?}");
+        assert!(nested.penetration().unwrap().unwrap().largest() <= 1e-12, "{name}");
+        let differences = nested.values().iter().zip(flat.values()).map(|(a, b)| (a - b).abs());
+        assert!(differences.fold(0.0, f64::max) < 1e-9, "{name}");
+    }
+}
+
+/// A membrane on an obstacle, under this load.
+fn membrane(load: f64) -> Problem<2> {
+    Problem::new().constant_source(load).obstacle_below(|_| -0.02)
+}
+
+/// The result on a mesh and of a problem that end here.
+fn kept(name: &str) -> KeptSolution<2> {
+    let (mesh, problem) = (cube::<2>(24), membrane(-4.0));
+    solve(&problem, &mesh, &*scheme(name)).unwrap().keep().unwrap()
+}
+
+#[test]
+fn results_are_kept_and_the_next_solve_starts_from_their_contact() {
+    fn is_owned<T: Send + Sync + Clone + 'static>(_: &T) {}
+    for name in ["p1", "sipg", "wopsip"] {
+        let last = kept(name);
+        is_owned(&last);
+        let (mesh, problem) = (cube::<2>(24), membrane(-4.05));
+        let scheme = scheme(name);
+        let cold = NestedIteration::new(&problem, &mesh).cold_start(true).solve(&*scheme).unwrap();
+        let mut next = NestedIteration::new(&problem, &mesh).start_from(&last.solution);
+        let warm = next.solve(&*scheme).unwrap();
+        assert!(warm.converged() && cold.converged());
+        assert!(warm.outer() < cold.outer(), "{name}: {:?} {:?}", warm.outer(), cold.outer());
+        let differences = warm.values().iter().zip(cold.values()).map(|(a, b)| (a - b).abs());
+        assert!(differences.fold(0.0, f64::max) < 1e-9, "{name}");
+        // from the solution of the same problem one system is enough
+        let same = membrane(-4.0);
+        let mut again = NestedIteration::new(&same, &mesh).start_from(&last.solution);
+        assert_eq!(again.solve(&*scheme).unwrap().outer(), Some(1), "{name}");
+        let lowest = last.function.value_at(&Point::repeat(0.5)).unwrap();
+        assert!((lowest + 0.02).abs() < 1e-15, "{name}: {lowest}");
+    }
+}
