@@ -1,7 +1,6 @@
 //! The contact forces of unknowns: everything that shows a force takes it from here.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Solution;
 use super::certificate::{residual, stiffness_diagonal};
@@ -9,7 +8,8 @@ use crate::algebra::{Contact, Inequality, JumpTerm, Jumps, PenalisedMatrix};
 use crate::mesh::Components;
 use crate::parallel::grouping::group_by_key;
 use crate::parallel::vectors::{
-    self, collect, concat, for_each_chunk, indices, map_chunks, map_chunks_of_groups, positions,
+    self, collect, concat, flags, for_each_chunk, indices, map_chunks, map_chunks_of_groups,
+    positions,
 };
 use crate::real::{Precision, Real};
 
@@ -155,24 +155,25 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
             return None;
         }
         let node = nodes(&penalised.jumps);
-        let is_loose = collect(node.len(), |_| AtomicBool::new(false));
-        let set_loose = |i: u32| is_loose[node[i as usize] as usize].store(true, Ordering::Relaxed);
         let no_unknown = JumpTerm::<T>::NO_UNKNOWN;
-        map_chunks(penalised.n_jumps(), |jumps| {
-            for term in jumps.flat_map(|jump| penalised.terms_of(jump)) {
-                match [term.here, term.there] {
-                    [i, none] | [none, i] if none == no_unknown => set_loose(i),
-                    _ => {}
-                }
-            }
-        });
-        // a copy with one admissible value has a force of any sign
         let bounds = &inequality.bounds;
-        map_chunks(bounds.len(), |mut unknowns| {
-            let fixed = unknowns.by_ref().filter(|&i| bounds[i].fixed_value().is_some());
-            fixed.for_each(|i| set_loose(i as u32));
+        let is_loose = flags(node.len(), |set| {
+            let set_node = |i: u32| set(node[i as usize] as usize);
+            map_chunks(penalised.n_jumps(), |jumps| {
+                for term in jumps.flat_map(|jump| penalised.terms_of(jump)) {
+                    match [term.here, term.there] {
+                        [i, none] | [none, i] if none == no_unknown => set_node(i),
+                        _ => {}
+                    }
+                }
+            });
+            // a copy with one admissible value has a force of any sign
+            map_chunks(bounds.len(), |unknowns| {
+                let fixed = unknowns.filter(|&i| bounds[i].fixed_value().is_some());
+                fixed.for_each(|i| set_node(i as u32));
+            });
         });
-        let is_balanced = collect(node.len(), |i| !is_loose[i].load(Ordering::Relaxed));
+        let is_balanced = collect(node.len(), |i| !is_loose[i]);
         Some(Self { penalised, load: &inequality.load, node, is_balanced })
     }
 
@@ -188,13 +189,13 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
     ) {
         let n = self.node.len();
         let is_active = |i: usize| state(i) != Contact::Inactive;
-        let is_touched = collect(n, |_| AtomicBool::new(false));
-        map_chunks(n, |unknowns| {
-            for i in unknowns.filter(|&i| is_active(i)) {
-                is_touched[self.node[i] as usize].store(true, Ordering::Relaxed);
-            }
+        let is_touched = flags(n, |set| {
+            map_chunks(n, |unknowns| {
+                let active = unknowns.filter(|&i| is_active(i));
+                active.for_each(|i| set(self.node[i] as usize));
+            });
         });
-        let is_shared = |i: usize| is_touched[i].load(Ordering::Relaxed) && self.is_balanced[i];
+        let is_shared = |i: usize| is_touched[i] && self.is_balanced[i];
         let touched = indices(n, is_shared);
         let positions = positions(n, &touched);
         let position = |i: usize| positions[self.node[i] as usize];

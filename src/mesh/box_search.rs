@@ -38,7 +38,7 @@ impl<const D: usize> BoxSearch<D> {
         array_of(|k| ((x[k] - self.lower[k]) / f64::from(size).exp2()).floor() as i64)
     }
 
-    /// The numbers of boxes, among them all that contain a point.
+    /// The numbers of boxes near a point: all that contain it, and some others.
     pub fn candidates(&self, x: &Point<D>) -> impl Iterator<Item = usize> {
         self.sizes.iter().flat_map(move |&size| {
             let key = (size, self.place(x, size));

@@ -4,6 +4,7 @@
 //! therefore independent of the number of threads.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
@@ -132,6 +133,14 @@ pub(crate) fn indices(n: usize, predicate: impl Fn(usize) -> bool + Sync) -> Vec
     let of_chunk =
         |range: Range<usize>| range.filter(|&i| predicate(i)).map(|i| i as u32).collect::<Vec<_>>();
     concat(map_chunks(n, of_chunk))
+}
+
+/// Flags for the indices below `n`, of which `work` sets some, on any number of threads: it is called once, with a
+/// function that sets the flag of an index.
+pub(crate) fn flags(n: usize, work: impl FnOnce(&(dyn Fn(usize) + Sync))) -> Vec<bool> {
+    let flags = collect(n, |_| AtomicBool::new(false));
+    work(&|i| flags[i].store(true, Ordering::Relaxed));
+    collect(n, |i| flags[i].load(Ordering::Relaxed))
 }
 
 /// The position of each index below `n` in an ascending list; `u32::MAX` for an index that the list does not have.

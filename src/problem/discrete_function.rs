@@ -10,8 +10,8 @@ use crate::real::Point;
 
 /// A point lies in a cell if its barycentric coordinates are above minus this.
 const ROUNDING: f64 = 1e-8;
-/// Beyond the mesh a cell is continued as far as its barycentric coordinates are above minus this: meshes of a curved
-/// domain differ by less.
+/// Outside of the mesh the polynomial of a cell continues the function where all barycentric coordinates of the cell are
+/// above minus this number: two meshes of a curved domain differ by less.
 const BEYOND: f64 = 0.25;
 
 /// A mesh with an element, and the search for the cells that contain a point, once needed.

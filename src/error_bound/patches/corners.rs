@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use crate::assemble::space::Space;
-use crate::memory::in_large_pages;
+use crate::parallel::grouping::group_by_key;
 
 /// A cell, with the number of a vertex in it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Corner(u32);
 
 impl Corner {
@@ -44,16 +44,11 @@ impl<const D: usize> Space<'_, D> {
     /// The corners of all vertices.
     pub(super) fn corners(&self) -> Corners {
         let n_vertices = self.mesh.vertices().len();
-        let mut starts = vec![0_u32; n_vertices + 1];
-        self.mesh.cells().iter().for_each(|&v| starts[v as usize + 1] += 1);
-        (0..n_vertices).for_each(|v| starts[v + 1] += starts[v]);
-        let mut next = starts.clone();
-        let mut corners = in_large_pages(vec![Corner(0); self.mesh.cells().len()]);
-        for (k, &v) in self.mesh.cells().iter().enumerate() {
-            let at = &mut next[v as usize];
-            corners[*at as usize] = Corner::new(k / (D + 1), k % (D + 1));
-            *at += 1;
-        }
+        let (starts, corners) = group_by_key(self.mesh.n_cells(), n_vertices, |cell, put| {
+            for (own, &v) in self.mesh.cell(cell).iter().enumerate() {
+                put(v, Corner::new(cell, own));
+            }
+        });
         Corners { corners, starts }
     }
 

@@ -59,7 +59,8 @@ pub(super) struct Link {
     cells: Vec<CellOfLink>,
     /// The ends of the edges.
     ends: Vec<u32>,
-    /// For an edge `a` and an edge `b` the side, four times its cell and its number there, with `a` before `b`.
+    /// The side between edges `a` and `b`, where `b` follows `a` in the sense of rotation of a cell: four times the
+    /// number of that cell plus the number of the side in the cell. [`NONE`] where there is none.
     sides: Box<[[u16; MOST_EDGES]; MOST_EDGES]>,
     /// For each edge the first one with an equal number `psi`.
     equal: Vec<u8>,

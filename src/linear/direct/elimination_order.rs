@@ -10,6 +10,7 @@ use super::factors::Factors;
 use super::symbolic_factor::transpose_view;
 use crate::algebra::{NO_INDEX, RectangularMatrix, SparseMatrix};
 use crate::parallel::once;
+use crate::parallel::vectors::positions;
 use crate::real::Real;
 
 /// A symmetric matrix with an order of elimination, whose restriction serves each set of free unknowns: approximate
@@ -105,8 +106,7 @@ pub(crate) fn minimum_degree_of_groups<T: Real>(
 /// The restriction of an order of unknowns to the unknowns `free` of a matrix with `size` rows: positions in `free` in
 /// the order of elimination. Unknowns of `free` that are not in the order come last.
 fn restricted(order: &[u32], free: &[u32], size: usize) -> Vec<u32> {
-    let mut positions = vec![NO_INDEX; size];
-    free.iter().enumerate().for_each(|(k, &i)| positions[i as usize] = k as u32);
+    let mut positions = positions(size, free);
     let take = |&i: &u32| std::mem::replace(&mut positions[i as usize], NO_INDEX);
     order.iter().chain(free).map(take).filter(|&k| k != NO_INDEX).collect()
 }

@@ -7,7 +7,6 @@
 //! stiffness. Source: B. Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
 
 use std::borrow::Cow;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::coarse_level::P1Level;
 use super::crouzeix_raviart_space::CrouzeixRaviartSpace;
@@ -19,7 +18,7 @@ use crate::algebra::{DofLocation, NO_INDEX, PenalisedMatrix, SidePenalties, Spar
 use crate::linear::direct::FactorError;
 use crate::parallel::map_items;
 use crate::parallel::vectors::{
-    all, chunk_length, collect, for_each_chunk, for_each_chunk_of_groups, map_chunks,
+    all, chunk_length, flags, for_each_chunk, for_each_chunk_of_groups, map_chunks,
 };
 use crate::real::Real;
 
@@ -257,16 +256,17 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
 
     /// Marks the vertices that have a fixed value in a cell.
     fn set_fixed_vertices(&mut self) {
-        let marks = collect(self.fixed_vertices.len(), |_| AtomicBool::new(false));
-        if !marks.is_empty() {
+        let n = self.fixed_vertices.len();
+        if n == 0 {
+            return;
+        }
+        self.fixed_vertices = flags(n, |set| {
             map_chunks(self.fixed.len(), |range| {
                 for i in range.filter(|&i| self.fixed[i]) {
-                    let vertices = self.locations[i].vertices().iter();
-                    vertices.for_each(|&v| marks[v as usize].store(true, Ordering::Relaxed));
+                    self.locations[i].vertices().iter().for_each(|&v| set(v as usize));
                 }
             });
-        }
-        self.fixed_vertices = collect(marks.len(), |v| marks[v].load(Ordering::Relaxed));
+        });
     }
 
     /// Sets the facets without Crouzeix-Raviart functions, and the facets that conforming functions alone
