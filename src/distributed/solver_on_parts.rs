@@ -143,6 +143,7 @@ impl<const D: usize> Solve<'_, '_, D> {
         }
         by_factors.outer += solution.outer;
         by_factors.linear += solution.linear;
+        by_factors.systems = by_factors.systems.zip(solution.systems).map(|(a, b)| a + b);
         by_factors.stages.splice(0..0, solution.stages);
         Ok(by_factors)
     }
@@ -256,6 +257,7 @@ impl<const D: usize> Solve<'_, '_, D> {
         let contact = contact_of(inequality, &values);
         let solution = Solution::new(values, contact, Outcome::Converged)
             .iterations(steps.unwrap_or(0), 0)
+            .systems(steps.unwrap_or(0))
             .linear_solver("engine");
         Ok(solution)
     }

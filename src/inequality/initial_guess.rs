@@ -25,6 +25,9 @@ pub struct InitialGuess<T> {
     pub energy_tolerance: Option<f64>,
     /// The counter of outer steps, which the solver updates.
     pub steps: StepCounter,
+    /// Whether the solution has a history ([`Solution::history`](super::Solution::history)), for which a certificate is
+    /// computed after every outer step.
+    pub keeps_history: bool,
 }
 
 impl<T> Default for InitialGuess<T> {
@@ -34,6 +37,7 @@ impl<T> Default for InitialGuess<T> {
             values: None,
             energy_tolerance: None,
             steps: StepCounter::default(),
+            keeps_history: false,
         }
     }
 }
@@ -64,6 +68,12 @@ impl<T> InitialGuess<T> {
         self.steps = steps;
         self
     }
+    /// Sets whether the solution has a history.
+    #[must_use]
+    pub fn keeps_history(mut self, keeps_history: bool) -> Self {
+        self.keeps_history = keeps_history;
+        self
+    }
 }
 
 impl InitialGuess<f64> {
@@ -74,6 +84,7 @@ impl InitialGuess<f64> {
             values: self.values.as_deref().map(rounded),
             energy_tolerance: self.energy_tolerance,
             steps: self.steps.clone(),
+            keeps_history: self.keeps_history,
         }
     }
 }

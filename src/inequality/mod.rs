@@ -26,6 +26,7 @@
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
 //! | `single_precision` | [`SinglePrecision`]: a solver in `f32` for inequalities in `f64` |
 //! | `step_counter` | [`StepCounter`]: the number of the present outer step of a solver |
+//! | `history` | [`HistoryPoint`]; the number of linear systems of a solve, the certificate after each outer step |
 //! | `by_name` | [`solver_by_name`] |
 //! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`Stage`], [`StageRun`]: the result of a solver |
 //!
@@ -39,6 +40,7 @@ mod algebraic_bound;
 mod by_name;
 mod certificate;
 mod contact_forces;
+mod history;
 pub(crate) mod initial_guess;
 mod interior_point;
 mod monotone_multigrid;
@@ -59,6 +61,7 @@ pub(crate) use certificate::count_active;
 pub use certificate::{Certificate, contact_of};
 pub(crate) use certificate::{energy_norm, positive_diagonal, stiffness_diagonal};
 pub(crate) use contact_forces::ContactForces;
+pub use history::HistoryPoint;
 pub use initial_guess::InitialGuess;
 pub use interior_point::InteriorPoint;
 pub use monotone_multigrid::MonotoneMultigrid;

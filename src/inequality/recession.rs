@@ -6,6 +6,7 @@
 //! moved as far as there is room between the bounds. (Fichera, Atti Accad. Naz. Lincei 7 (1964); Lions, Stampacchia,
 //! Comm. Pure Appl. Math. 20 (1967) 493-519, section 5.)
 
+use super::history::Recorder;
 use super::validation::check_input;
 use super::{InitialGuess, Outcome, Solution};
 use crate::algebra::{Bound, FreeBody, Inequality, RESULTANT_ROUNDING};
@@ -83,7 +84,8 @@ fn present_resultant<T: Real>(body: &FreeBody, inequality: &Inequality<T>) -> f6
 }
 
 /// Solves an inequality by `solve`, unless bodies that bounds alone hold have no solution ([`Outcome::NoSolution`],
-/// with admissible values) or many ([`Outcome::NotUnique`], with one of them).
+/// with admissible values) or many ([`Outcome::NotUnique`], with one of them). The solution has the number of linear
+/// systems and the history that `solve` records, of all its calls.
 ///
 /// Bounds that the load does not press against are left out of a first solve: those of a body that the load presses
 /// against its other bounds, and all bounds of a body with an undecided resultant, of which one value is prescribed
@@ -92,9 +94,19 @@ fn present_resultant<T: Real>(body: &FreeBody, inequality: &Inequality<T>) -> f6
 pub(crate) fn solve_with_kernel<T: Real>(
     inequality: &Inequality<T>,
     guess: &InitialGuess<T>,
+    solve: impl Fn(&Inequality<T>, &Recorder<'_>) -> Solution<T>,
+) -> Solution<T> {
+    let recorder = Recorder::new(&guess.steps, guess.keeps_history);
+    let mut solution = solve_with_bodies(inequality, |inequality| solve(inequality, &recorder));
+    let (systems, history) = recorder.finish();
+    (solution.systems, solution.history) = (Some(systems), history);
+    solution
+}
+
+fn solve_with_bodies<T: Real>(
+    inequality: &Inequality<T>,
     solve: impl Fn(&Inequality<T>) -> Solution<T>,
 ) -> Solution<T> {
-    guess.steps.set(0);
     if inequality.kernel.is_empty() && inequality.bodies.is_empty() {
         return solve(inequality);
     }

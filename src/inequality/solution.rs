@@ -1,6 +1,7 @@
 //! The result of a solver.
 
 use super::Outcome;
+use super::history::HistoryPoint;
 use super::stage::StageRun;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::real::{Precision, Real};
@@ -29,6 +30,17 @@ pub struct Solution<T> {
     /// Number of iterations of the linear solver: of the Krylov method, or cycles of monotone
     /// multigrid; zero for a direct solver.
     pub linear: usize,
+    /// Number of linear systems, each solved with factors or by a Krylov method; `None` if the solver does not say:
+    ///
+    /// * active set method: active sets, those of which the system was solved again for more accuracy each time, and the
+    ///   correction that gives jump multipliers;
+    /// * monotone multigrid: cycles, each with one linear correction;
+    /// * interior point method and proximal point method: steps, whatever the right-hand sides of a step, and the start;
+    /// * several methods one after the other: the sum.
+    ///
+    /// Inequalities near a few unknowns, which the active set method solves where it makes little progress, and bounds
+    /// on the error do not count.
+    pub systems: Option<usize>,
     /// The linear solver: `direct`, or the name of a preconditioner.
     pub linear_solver: &'static str,
     /// Bound on the relative algebraic error in the energy norm, if the solver computes one: the energy norm of the
@@ -43,6 +55,10 @@ pub struct Solution<T> {
     pub(crate) dual_residual: f64,
     /// The stages of the solver that ran, in their order; empty for a solver without stages.
     pub stages: Vec<StageRun>,
+    /// A point after every outer step, all stages included, if the initial guess asks for it and the solver keeps it
+    /// ([`InitialGuess::keeps_history`](super::InitialGuess::keeps_history)); else empty. Values may still be moved onto
+    /// their bounds after the last one.
+    pub history: Vec<HistoryPoint>,
     /// The precision in which the values were computed.
     pub precision: Precision,
 }
@@ -57,19 +73,21 @@ impl Solution<f32> {
             outcome: self.outcome,
             outer: self.outer,
             linear: self.linear,
+            systems: self.systems,
             linear_solver: self.linear_solver,
             algebraic_bound: self.algebraic_bound,
             jump_multipliers: widen(self.jump_multipliers),
             dual_residual: self.dual_residual,
             stages: self.stages,
+            history: self.history,
             precision: self.precision,
         }
     }
 }
 
 impl<T: Real> Solution<T> {
-    /// A result with zero iterations, the linear solver `direct`, no algebraic bound and no jump
-    /// multipliers, to be completed by the setters.
+    /// A result with zero iterations, no number of linear systems, the linear solver `direct`, no algebraic bound and no
+    /// jump multipliers, to be completed by the setters.
     #[must_use]
     pub fn new(values: Vec<T>, contact: Vec<Contact>, outcome: Outcome) -> Self {
         Self {
@@ -78,11 +96,13 @@ impl<T: Real> Solution<T> {
             outcome,
             outer: 0,
             linear: 0,
+            systems: None,
             linear_solver: "direct",
             algebraic_bound: None,
             jump_multipliers: Vec::new(),
             dual_residual: 0.0,
             stages: Vec::new(),
+            history: Vec::new(),
             precision: T::PRECISION,
         }
     }
@@ -98,6 +118,12 @@ impl<T: Real> Solution<T> {
     #[must_use]
     pub fn iterations(mut self, outer: usize, linear: usize) -> Self {
         (self.outer, self.linear) = (outer, linear);
+        self
+    }
+    /// Sets the number of linear systems.
+    #[must_use]
+    pub fn systems(mut self, systems: usize) -> Self {
+        self.systems = Some(systems);
         self
     }
     /// Sets the name of the linear solver.

@@ -45,6 +45,8 @@ use crate::scheme::Scheme;
 pub struct NestedIteration<'a, const D: usize> {
     pub(super) p1: P1Iteration<'a, D>,
     pub(super) has_cold_start: bool,
+    /// Whether schemes are solved once more for a history.
+    pub(super) keeps_history: bool,
     /// The solution of another problem from which schemes with as many unknowns start.
     pub(super) previous: Option<Solution<f64>>,
     observer: Box<dyn Fn(Phase) + 'a>,
@@ -77,7 +79,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             repeat: 1,
             steps: StepCounter::default(),
         };
-        Self { p1, has_cold_start: false, previous: None, observer: Box::new(|_| {}) }
+        let observer = Box::new(|_| {});
+        Self { p1, has_cold_start: false, keeps_history: false, previous: None, observer }
     }
     /// Sets the solver of the inequality.
     #[must_use]
@@ -115,6 +118,14 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     #[must_use]
     pub fn cold_start(mut self, has_cold_start: bool) -> Self {
         self.has_cold_start = has_cold_start;
+        self
+    }
+
+    /// Sets whether solutions have a history ([`Solution::history`]): of one more solve of the scheme on its own mesh, from
+    /// the same start, which times of solves do not contain.
+    #[must_use]
+    pub fn history(mut self, keeps_history: bool) -> Self {
+        self.keeps_history = keeps_history;
         self
     }
 

@@ -161,7 +161,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         }
     }
 
-    /// Solves [`NestedIteration::repeat`] times and returns the last solution with the smallest time.
+    /// Solves [`NestedIteration::repeat`] times and returns the last solution with the smallest time, and with the
+    /// history of one more solve if it is asked for.
     fn run(
         &self,
         system: &System<'_, D>,
@@ -174,9 +175,11 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             last = Some(self.p1.solver.solve(system, guess)?);
             seconds = seconds.min(clock.elapsed().as_secs_f64());
         }
-        match last {
-            Some(solution) => Ok((solution, seconds)),
-            None => unreachable!("at least one run"),
+        let Some(mut solution) = last else { unreachable!("at least one run") };
+        if self.keeps_history {
+            let guess = guess.clone().keeps_history(true);
+            solution.history = self.p1.solver.solve(system, &guess)?.history;
         }
+        Ok((solution, seconds))
     }
 }

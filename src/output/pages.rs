@@ -11,6 +11,11 @@ use crate::study::tables::levels::{scenes, tables_of};
 use crate::study::tables::summary::{lead, summaries};
 use crate::study::{Report, Row, file_name};
 
+/// The file of the histories of a scene.
+pub(super) fn history_file(scene: &str) -> String {
+    file_name(&format!("{scene}-history")) + ".svg"
+}
+
 impl Report {
     /// Program, machine and settings in one line.
     pub(crate) fn heading(&self) -> String {
@@ -91,9 +96,13 @@ impl Report {
         })
     }
 
-    /// The pictures of a scene: titles and files.
+    /// The pictures of a scene: titles and files. The plot of histories is there if it has been written.
     fn pictures(&self, scene: &str, directory: &Path) -> Vec<(String, String)> {
         let mut pictures = Vec::new();
+        let history = history_file(scene);
+        if directory.join(&history).exists() {
+            pictures.push((format!("Certificates of the solves on {scene}"), history));
+        }
         let of_scene = self.rows.iter().filter(|r| r.scene == scene);
         for (label, solver) in distinct(of_scene.map(|r| (&r.label, &r.solver))) {
             let is_alone = self.rows.iter().all(|r| r.solver == *solver);

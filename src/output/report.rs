@@ -3,10 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use super::csv;
+use super::pages::history_file;
 use crate::error::Error;
 use crate::files::replace_text;
 #[cfg(feature = "plot")]
-use crate::plot::{convergence, work_precision};
+use crate::plot::{convergence, history_figure, work_precision};
+#[cfg(feature = "plot")]
+use crate::real::Precision;
+#[cfg(feature = "plot")]
+use crate::study::row::distinct;
 use crate::study::tables::summary::summaries;
 use crate::study::{Report, Series, Variant, file_name};
 use crate::table::latex_document;
@@ -31,6 +36,7 @@ impl Report {
         names.extend(["reach.csv", "convergence.svg", "work_precision.svg"].map(str::to_owned));
         for Series { variant: Variant { scene, label, solver, .. }, rows, .. } in self.series() {
             names.extend(["time", "unknowns"].map(|cost| format!("{scene}-{cost}.svg")));
+            names.push(history_file(&scene));
             for stem in [format!("{scene}-{label}"), format!("{scene}-{label}-{solver}")] {
                 let stem = file_name(&stem);
                 names.extend(["svg", "vtu", "pvd"].map(|end| format!("{stem}.{end}")));
@@ -44,9 +50,10 @@ impl Report {
     }
 
     /// Writes `report.json`, `report.csv`, `report.md`, `report.tex`, the plots `convergence.svg` and
-    /// `work_precision.svg`, and `report.html` into a directory, which is made if need be. Returns the files in
-    /// order. The page shows these plots and the pictures `SCENE-LABEL.svg` of the directory. Without the feature
-    /// `plot` there are no plots. Each file is replaced as a whole: a reader never sees a part of it.
+    /// `work_precision.svg`, where rows have a history `SCENE-history.svg`, and `report.html` into a directory, which is
+    /// made if need be. Returns the files in order. The page shows these plots and the pictures `SCENE-LABEL.svg` of the
+    /// directory. Without the feature `plot` there are no plots. Each file is replaced as a whole: a reader never sees a
+    /// part of it.
     ///
     /// # Errors
     /// [`Error::Write`] of the first file that cannot be written; the others are written all the same.
@@ -66,6 +73,14 @@ impl Report {
             ("work_precision.svg", work_precision(&self.rows)),
         ] {
             put(name, &figure.to_svg());
+        }
+        #[cfg(feature = "plot")]
+        for scene in distinct(self.rows.iter().map(|row| &*row.scene)) {
+            let precision = Precision::by_name(&self.program.precision).unwrap_or_default();
+            let limit = precision.certificate_limit();
+            if let Some(figure) = history_figure(&self.rows, scene, limit) {
+                put(&history_file(scene), &figure.to_svg());
+            }
         }
         let page = self.page(directory);
         results.push(replace_text(&directory.join("report.html"), &page.to_html()));

@@ -1,4 +1,4 @@
-//! Plots of a report: error against mesh size, and error against time; pictures of a solution.
+//! Plots of a report: error against mesh size and against time, certificates over the work; pictures of a solution.
 //!
 //! Data (`series`), positions (`axis`, `layout`) and appearance (`panel`, `style`) are separate from the format of
 //! the file (`pen`).
@@ -6,6 +6,7 @@
 mod axis;
 mod cost;
 mod figure;
+mod history;
 mod layout;
 mod panel;
 mod pen;
@@ -18,5 +19,6 @@ mod sweep;
 pub(crate) use cost::{Cost, cost_figure};
 pub(crate) use figure::overview;
 pub use figure::{Figure, convergence, work_precision};
+pub(crate) use history::history_figure;
 pub use picture::Picture;
 pub(crate) use sweep::{SweepPoint, sweep_figure};

@@ -6,7 +6,7 @@ use super::part_figures::PartFigures;
 use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
-use crate::inequality::{Certificate, Outcome, StageRun, explanation};
+use crate::inequality::{Certificate, HistoryPoint, Outcome, StageRun, explanation};
 use crate::measure::{ContactErrors, Errors, Penetration, Rounding};
 use crate::nested::{Solved, warnings_of_forces};
 use crate::scheme::ExpectedOrders;
@@ -43,6 +43,9 @@ pub struct Iterations {
     pub linear: usize,
     /// Number of coarser levels of the initial guess.
     pub levels: usize,
+    /// Linear systems solved on this level ([`Solution::systems`](crate::inequality::Solution::systems)); none without an
+    /// iterate, and where the solver does not say.
+    pub systems: Option<usize>,
     /// Cycles of monotone multigrid for the initial guess on a large mesh without coarser ones.
     pub start_cycles: usize,
     /// The stages of the solver that ran on this level, in their order.
@@ -182,6 +185,11 @@ pub struct Row {
     /// The total seconds of all runs, ascending, where the case ran in several rounds; other rows do not have the key.
     #[cfg_attr(feature = "report", serde(skip_serializing_if = "Option::is_none"))]
     pub runs: Option<Vec<f64>>,
+    /// After every outer step of one more solve, on this level alone: linear systems so far, seconds so far, and the
+    /// largest part of the certificate, null where it is not finite. In reports that ask for it; other rows do not have
+    /// the key.
+    #[cfg_attr(feature = "report", serde(skip_serializing_if = "Option::is_none"))]
+    pub history: Option<Vec<(usize, f64, Option<f64>)>>,
     /// Largest resident set of the process so far, if the system reports it.
     pub peak_memory_bytes: Option<u64>,
     /// Warnings by type, as text: a penalty below its proven bound, say.
@@ -232,6 +240,7 @@ impl Row {
             certificate: Certificate::INVALID,
             seconds: Seconds::default(),
             runs: None,
+            history: None,
             peak_memory_bytes: None,
             warnings: Vec::new(),
             ranks: None,
@@ -252,6 +261,9 @@ impl Row {
         warnings.extend(warnings_of_forces(solved, forces.as_deref()));
         let solve_seconds = solved.solve_seconds + solved.start_seconds;
         let row = Self::new(scene, D, scheme, level, solved.outcome());
+        let point = |at: &HistoryPoint| {
+            (at.systems, at.seconds, Some(at.certificate).filter(|largest| largest.is_finite()))
+        };
         let explanation = explanation(solved.inequality(), solved.outcome());
         Self {
             message: explanation.or(row.message),
@@ -270,6 +282,7 @@ impl Row {
                 outer: solved.outer(),
                 linear: solution.linear,
                 levels: solved.coarser_levels,
+                systems: solved.outer().and(solution.systems),
                 start_cycles: solved.start_cycles,
                 stages: solution.stages.clone(),
             },
@@ -279,6 +292,8 @@ impl Row {
                 start: Some(solved.start_seconds),
                 ..Seconds::new(solved.mesh_seconds, solved.system().assemble_seconds, solve_seconds)
             },
+            history: (!solution.history.is_empty())
+                .then(|| solution.history.iter().map(point).collect()),
             warnings,
             ..row
         }

@@ -5,6 +5,7 @@ mod contact_sets;
 mod double_precision;
 mod exact_reference;
 mod factors_or_krylov;
+mod history;
 mod iterations;
 mod iterative;
 mod load;

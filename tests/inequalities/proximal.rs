@@ -201,7 +201,7 @@ fn data_times_a_thousand_change_nothing() {
     }
 }
 
-/// Outcome and count of a nested iteration, or of a cold start on the finest mesh.
+/// Outcome and number of linear systems of a nested iteration, or of a cold start on the finest mesh.
 fn run(
     scene: &Scene<2>,
     scheme: &str,
@@ -213,7 +213,7 @@ fn run(
     let meshes = Hierarchy::<2>::of_domain(&scene.domain, level).unwrap();
     let nested = NestedIteration::new(&problem, &meshes).shared_solver(Arc::clone(solver));
     let solved = nested.cold_start(is_cold).solve(&*scheme.make()).unwrap();
-    (solved.outcome(), solved.solution().outer)
+    (solved.outcome(), solved.solution().systems.unwrap())
 }
 
 fn nested(
@@ -296,7 +296,7 @@ fn summary(runs: &[(Outcome, usize)]) -> String {
 }
 
 #[test]
-#[ignore = "takes minutes: prints the table of docs/solvers.md"]
+#[ignore = "takes minutes: prints a table of docs/results/solvers.md"]
 fn table_of_solvers() {
     let names: Vec<&str> = SOLVERS.iter().map(|(name, _)| *name).collect();
     println!("| scheme | level | {} |", names.join(" | "));

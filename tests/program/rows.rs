@@ -13,7 +13,7 @@ const INNER_KEYS: [(&str, &[&str], bool); 8] = [
     ("order", &["l2", "h1", "energy", "max", "bound", "multiplier_l1", "multiplier_l2"], true),
     ("expected_order", &["l2", "h1"], true),
     ("bound", &BOUND_NUMBERS, true),
-    ("iterations", &["outer", "linear", "levels", "start_cycles", "stages"], false),
+    ("iterations", &["outer", "linear", "levels", "systems", "start_cycles", "stages"], false),
     ("certificate", &["feasibility", "multiplier", "complementarity", "residual"], false),
     ("seconds", &["mesh", "assemble", "solve", "total"], false),
 ];
@@ -169,6 +169,42 @@ fn runs_have_the_same_bits_on_any_number_of_threads() {
         without_times(scratch.report(&options))
     };
     assert_eq!(report(1), report(3));
+}
+
+/// The history is that of one more solve: all else is as without it. A report without it is one of another request.
+#[test]
+fn histories_are_in_rows_and_drawn() {
+    let scratch = Scratch::new("history");
+    let out = |file: &str| scratch.0.join("out").join(file);
+    let options =
+        "--scene radial-2d --scheme p1,sipg --solver all --levels 4,8 --quiet --no-fields";
+    let mut with = scratch.report(&format!("{options} --history"));
+    for row in rows(&with) {
+        let history = row["history"].as_array().unwrap();
+        assert_eq!(Some(history.len() as u64), row["iterations"]["outer"].as_u64());
+        let last = history.last().and_then(Value::as_array).unwrap();
+        assert_eq!((last.len(), &last[0]), (3, &row["iterations"]["systems"]));
+        assert!(last[1].as_f64() > Some(0.0) && last[2].as_f64() <= Some(1e-9), "{last:?}");
+    }
+    let plot = std::fs::read_to_string(out("radial-2d-history.svg")).unwrap();
+    let names =
+        ["linear systems", "time of the solve in s", "p1, proximal", "sipg, interior-point"];
+    names.iter().for_each(|name| assert!(plot.contains(name), "{name}: {plot}"));
+    let page = std::fs::read_to_string(out("report.html")).unwrap();
+    assert!(page.contains("radial-2d-history.svg"));
+    let header = std::fs::read_to_string(out("report.csv")).unwrap();
+    assert!(header.lines().next().unwrap().split(',').any(|key| key == "history"));
+
+    let resumed = scratch.run(&format!("{options} --resume"));
+    assert_eq!(resumed.status.code(), Some(2), "{}", stderr(&resumed));
+    assert!(stderr(&resumed).contains("history after every outer step"), "{}", stderr(&resumed));
+    let without = scratch.report(options);
+    assert!(!out("radial-2d-history.svg").exists());
+    for row in with["rows"].as_array_mut().unwrap() {
+        row.as_object_mut().unwrap().remove("history").unwrap();
+    }
+    let same = |report: Value| without_times(report)["rows"].clone();
+    assert_eq!(same(with), same(without));
 }
 
 /// Two schemes on all scenes; the file of figures has all schemes, and checks the keys of every row.

@@ -36,7 +36,10 @@ fn json_has_the_keys_that_scripts_rely_on() {
     let orders = ["l2", "h1", "energy", "max", "bound", "multiplier_l1", "multiplier_l2"];
     assert_eq!(keys(&row["order"]), orders);
     assert_eq!(keys(&row["expected_order"]), ["l2", "h1"]);
-    assert_eq!(keys(&row["iterations"]), ["outer", "linear", "levels", "start_cycles", "stages"]);
+    assert_eq!(
+        keys(&row["iterations"]),
+        ["outer", "linear", "levels", "systems", "start_cycles", "stages"]
+    );
     let certificate =
         ["feasibility", "multiplier", "complementarity", "residual", "algebraic_bound"];
     assert_eq!(keys(&row["certificate"]), certificate);

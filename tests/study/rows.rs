@@ -28,6 +28,7 @@ pub fn row(scene: &str, scheme: &str, level: usize) -> Row {
     row.active = Some(level);
     row.iterations.outer = Some(3);
     row.iterations.levels = 1;
+    row.iterations.systems = Some(4);
     row.certificate = Certificate::new([0.0, 1e-16, 0.0, 2.5e-15]);
     row.seconds = Seconds::new(1e-4, 2e-4, 0.0125);
     row.seconds.total = 0.0128;

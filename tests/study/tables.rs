@@ -53,12 +53,12 @@ fn tables_are_aligned_and_say_what_failed() {
     fill_orders(&mut rows);
     let expected = "\
 radial-2d: solver active-set/direct; expected order L2 2 H1 1 (p1), H1 0.5 (wopsip)
-scheme  n       h unknowns outer      L2 order      H1 order active certif. assem.  solve
-p1      8 1.25e-1      384     3 1.09e-2     - 2.50e-1     -      8 2.5e-15 2.0e-4 0.0125
-p1     16 6.25e-2     1536     3 2.73e-3  2.00 1.25e-1  1.00     16 2.5e-15 2.0e-4 0.0125
+scheme  n       h unknowns      L2 order      H1 order active certif. systems assem.  solve
+p1      8 1.25e-1      384 1.09e-2     - 2.50e-1     -      8 2.5e-15       4 2.0e-4 0.0125
+p1     16 6.25e-2     1536 2.73e-3  2.00 1.25e-1  1.00     16 2.5e-15       4 2.0e-4 0.0125
 
-wopsip  8 1.25e-1      384     3 1.09e-2     - 2.50e-1     -      8 2.5e-15 2.0e-4 0.0125
-wopsip 16 6.25e-2     1536     3       -     -       -     -     16 2.5e-15 2.0e-4 0.0125
+wopsip  8 1.25e-1      384 1.09e-2     - 2.50e-1     -      8 2.5e-15       4 2.0e-4 0.0125
+wopsip 16 6.25e-2     1536       -     -       -     -     16 2.5e-15       4 2.0e-4 0.0125
     did not converge: iteration-limit: the limit of iterations was reached while the active set
     still changed; raise it, or use another solver
   warning, wopsip: eta below its bound

@@ -47,9 +47,8 @@ pub struct Asked {
     /// NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]], or `all`
     #[arg(help_heading = SCHEMES, long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
     pub schemes: Vec<String>,
-    /// On a box: subdivisions of its shortest side, from 1;
-    /// on a mesh of a file: refinements, from 0
-    #[arg(help_heading = MESHES, verbatim_doc_comment, long, visible_alias = "level", value_delimiter = ',',
+    /// On a box: subdivisions of its shortest side; else refinements
+    #[arg(help_heading = MESHES, long, alias = "level", value_delimiter = ',',
         value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
     pub levels: Vec<usize>,
     /// Meshes that follow the error bound, until it is GOAL or by keys:

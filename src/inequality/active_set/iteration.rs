@@ -1,12 +1,14 @@
 //! The active set iteration, for every linear solver.
 
+use super::evaluation::Evaluation;
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use super::local_inequality::solve_locally;
 use super::progress::ProgressMonitor;
 use super::settings::ActiveSet;
 use crate::algebra::{Bound, any_part};
-use crate::inequality::{Outcome, StepCounter};
+use crate::inequality::Outcome;
+use crate::inequality::history::Recorder;
 use crate::linear::direct::FactorError;
 use crate::real::Real;
 
@@ -63,8 +65,8 @@ pub(crate) struct Iteration<'s, 'i, 'a, T: Real> {
     /// Whether the certificate must be small. The residual of a solution that is only the initial guess of another
     /// solve need not be small.
     pub needs_certificate: bool,
-    /// Counts the steps.
-    pub steps: &'s StepCounter,
+    /// Counts steps and linear systems, and may keep a history.
+    pub recorder: &'s Recorder<'s>,
 }
 
 impl<T: Real> Iteration<'_, '_, '_, T> {
@@ -97,11 +99,7 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         let mut recently_changed: Vec<u32> = Vec::new();
         loop {
             self.solve_system(has_new_states, progress.accuracy())?;
-            let evaluation = self.iterate.evaluate(&*self.solver);
-            if !evaluation.is_finite() {
-                return Err(Outcome::NotFinite.into());
-            }
-            self.iterate.keep_if_best(evaluation.merit);
+            let evaluation = self.evaluate()?;
             let is_accurate = self.solver.is_accurate(evaluation.energy_norm);
             let changes = &evaluation.state_changes;
             has_new_states = evaluation.n_changes > 0;
@@ -109,7 +107,7 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                 if !self.needs_certificate || self.has_small_certificate() {
                     return Ok(());
                 }
-                if self.solver.determine_jump_multipliers(self.iterate)? {
+                if self.determine_jump_multipliers()? {
                     if self.has_small_certificate() {
                         return Ok(());
                     }
@@ -141,6 +139,27 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         }
     }
 
+    /// Evaluates the iterate after a linear system, and keeps it if it is the best one.
+    fn evaluate(&mut self) -> Result<Evaluation, End> {
+        let evaluation = self.iterate.evaluate(&*self.solver);
+        if !evaluation.is_finite() {
+            return Err(Outcome::NotFinite.into());
+        }
+        self.iterate.keep_if_best(evaluation.merit);
+        self.recorder.end_step(|| self.iterate.certificate());
+        Ok(evaluation)
+    }
+
+    /// [`LinearSolver::determine_jump_multipliers`], which solves a linear system.
+    fn determine_jump_multipliers(&mut self) -> Result<bool, End> {
+        let are_determined = self.solver.determine_jump_multipliers(self.iterate)?;
+        if are_determined {
+            self.recorder.count_system();
+            self.recorder.end_step(|| self.iterate.certificate());
+        }
+        Ok(are_determined)
+    }
+
     /// Solves the inequality near the unknowns `changed` if [`Iteration::local_solves`] is not zero; returns whether a
     /// solution was found.
     fn try_local_solve(&mut self, changed: &[u32]) -> bool {
@@ -158,7 +177,9 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                 return Err(Outcome::IterationLimit.into());
             }
             self.iterate.outer += 1;
-            self.steps.advance(1);
+            self.recorder.begin_step();
+        } else {
+            self.recorder.count_system();
         }
         let is_prepared = match has_new_states {
             true => self.solver.set_eliminated(&self.iterate.eliminated),

@@ -78,8 +78,8 @@ fn solve_with<T: Real>(
             &InitialGuess<T>,
             &dyn PreconditionerFamily<T>,
         ) -> Solution<T>
-            = |settings, inequality, guess, family| solve_with_kernel(inequality, guess, |inequality| {
-                solve(settings, inequality, guess, family)
+            = |settings, inequality, guess, family| solve_with_kernel(inequality, guess, |inequality, recorder| {
+                solve(settings, inequality, (guess, recorder), family)
             })
     )(settings, inequality, guess, family)
 }

@@ -12,10 +12,11 @@ mod newton_system;
 mod start;
 
 use super::active_set::{admissible_state, prescribed_value};
+use super::history::Recorder;
 use super::recession::solve_with_kernel;
 use super::validation::check;
 use super::violations::certify_with_rounding;
-use super::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, StepCounter};
+use super::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
 use crate::algebra::{Contact, Inequality};
 use crate::instances::compiled;
 use crate::linear::direct::StaticCondensation;
@@ -67,25 +68,23 @@ impl<T: Real> InequalitySolver<T> for InteriorPoint {
     /// Solves the inequality; starting values have no effect. [`ActiveSet`] solves the inequality of one part of a
     /// mesh.
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
+        if inequality.distribution.is_some() {
+            return ActiveSet::default().solve_from(inequality, guess);
+        }
         compiled!(
             T: fn(&Inequality<T>, &InitialGuess<T>) -> Solution<T>
-                = |inequality, guess| solve_with_kernel(inequality, guess, |inequality| {
-                    checked_run(inequality, guess)
-                })
+                = |inequality, guess| solve_with_kernel(inequality, guess, checked_run)
         )(inequality, guess)
     }
 }
 
-fn checked_run<T: Real>(inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-    if inequality.distribution.is_some() {
-        return ActiveSet::default().solve_from(inequality, guess);
-    }
+fn checked_run<T: Real>(inequality: &Inequality<T>, recorder: &Recorder<'_>) -> Solution<T> {
     if let Err(outcome) = check(inequality) {
         return Solution::without_iterate(inequality, outcome);
     }
     let penalised = inequality.penalised.as_ref();
     let condensation = penalised.map(|p| StaticCondensation::new(p, &inequality.matrix));
-    run(inequality, condensation.as_ref(), MAX_SYSTEMS, &guess.steps)
+    run(inequality, condensation.as_ref(), MAX_SYSTEMS, recorder)
 }
 
 /// A run with at most so many linear systems. If a static condensation of the penalised matrix is given, jump
@@ -94,22 +93,24 @@ pub(super) fn run<'a, T: Real>(
     inequality: &'a Inequality<T>,
     condensation: Option<&StaticCondensation<'a, T>>,
     max_systems: usize,
-    steps: &StepCounter,
+    recorder: &Recorder<'_>,
 ) -> Solution<T> {
     let system = NewtonSystem::new(inequality, condensation);
     let mut iterate = match InteriorIterate::start(inequality, system) {
         Ok(iterate) => iterate,
         Err(error) => return Solution::without_iterate(inequality, error.into()),
     };
-    steps.advance(1);
+    recorder.begin_step();
     let outcome = loop {
-        if iterate.certificate() <= T::CERTIFICATE_LIMIT {
+        let certificate = iterate.certificate();
+        recorder.end_step(|| certificate);
+        if certificate <= T::CERTIFICATE_LIMIT {
             break Outcome::Converged;
         }
         if iterate.systems >= max_systems {
             break Outcome::IterationLimit;
         }
-        steps.advance(1);
+        recorder.begin_step();
         if let Err(outcome) = iterate.step() {
             break outcome;
         }
@@ -240,6 +241,7 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
 mod tests {
     use super::*;
     use crate::algebra::{Bound, SparseMatrix};
+    use crate::inequality::StepCounter;
 
     /// Two coupled unknowns with lower bounds zero, and a load twice which overflows the scalar: the start is not
     /// finite.
@@ -249,7 +251,8 @@ mod tests {
         let matrix = SparseMatrix { row_starts, columns, values: vec![1.0, -0.9, -0.9, 1.0] };
         let bounds = vec![Bound::Lower(0.0); 2];
         let inequality = Inequality::<f32>::new(matrix, true, vec![3e38; 2], bounds);
-        let found = run(&inequality, None, 10, &StepCounter::default());
+        let steps = StepCounter::default();
+        let found = run(&inequality, None, 10, &Recorder::new(&steps, false));
         assert_ne!(found.outcome, Outcome::Converged);
         assert!(found.outer <= 2, "{}", found.outer);
     }

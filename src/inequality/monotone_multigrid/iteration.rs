@@ -6,6 +6,7 @@ use crate::algebra::Inequality;
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
 use crate::inequality::certificate::contact_of;
 use crate::inequality::certificate::positive_diagonal;
+use crate::inequality::history::Recorder;
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::scales::Scales;
 use crate::inequality::violations::certify;
@@ -44,6 +45,7 @@ impl<T: Real> MultigridIterate<'_, T> {
         &mut self,
         settings: &MonotoneMultigrid,
         guess: &InitialGuess<T>,
+        recorder: &Recorder<'_>,
     ) -> Result<Outcome, Outcome> {
         let mut aggregated = CoarseSpaces::Unknown;
         let mut preconditioner =
@@ -58,8 +60,9 @@ impl<T: Real> MultigridIterate<'_, T> {
             if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
         let (mut least_change, mut stagnant_cycles) = (f64::INFINITY, 0);
         while self.cycles < settings.max_cycles {
-            guess.steps.advance(1);
+            recorder.begin_step();
             let change = self.cycle(&mut *preconditioner)?;
+            recorder.end_step(|| certify(self.inequality, &self.values).largest());
             let has_halved = change > 0.0 && change <= 0.5 * least_change;
             stagnant_cycles = if has_halved { 0 } else { stagnant_cycles + 1 };
             least_change = if stagnant_cycles == 0 { change } else { least_change };

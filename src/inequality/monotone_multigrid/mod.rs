@@ -12,6 +12,7 @@ mod cycle;
 mod iteration;
 mod settings;
 
+use super::history::Recorder;
 use super::initial_guess::InitialGuess;
 use super::recession::solve_with_kernel;
 use super::validation::check;
@@ -31,11 +32,17 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
         self.solve_from(inequality, &InitialGuess::default())
     }
 
+    /// Solves the inequality. [`ActiveSet`] solves that of one part of a mesh, which has no coarse spaces here.
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
+        if inequality.symmetric && inequality.distribution.is_some() {
+            return ActiveSet::default().solve_from(inequality, guess);
+        }
         compiled!(
             T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
                 = |method, inequality, guess| {
-                    solve_with_kernel(inequality, guess, |inequality| method.run_cycles(inequality, guess))
+                    solve_with_kernel(inequality, guess, |inequality, recorder| {
+                        method.run_cycles(inequality, guess, recorder)
+                    })
                 }
         )(self, inequality, guess)
     }
@@ -46,26 +53,22 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
 }
 
 impl MonotoneMultigrid {
-    /// The solution by cycles. The counter of the guess, which contains the steps of all stages before this one, grows
-    /// by one for each cycle. A matrix that is not symmetric has no energy: the outcome is [`Outcome::Unsuitable`]. That
-    /// of one part of a mesh has no coarse spaces in one process: the active set method with its default settings solves
-    /// such an inequality.
+    /// The solution by cycles. The recorder contains the steps of all stages before this one. A matrix that is not
+    /// symmetric has no energy: the outcome is [`Outcome::Unsuitable`].
     pub(super) fn run_cycles<T: Real>(
         &self,
         inequality: &Inequality<T>,
         guess: &InitialGuess<T>,
+        recorder: &Recorder<'_>,
     ) -> Solution<T> {
         if !inequality.symmetric {
             return Solution::without_iterate(inequality, Outcome::Unsuitable);
-        }
-        if inequality.distribution.is_some() {
-            return ActiveSet::default().solve_from(inequality, guess);
         }
         if let Err(outcome) = check(inequality) {
             return Solution::without_iterate(inequality, outcome);
         }
         let mut iterate = MultigridIterate::new(inequality, guess);
-        let outcome = iterate.run(self, guess).unwrap_or_else(|outcome| outcome);
+        let outcome = iterate.run(self, guess, recorder).unwrap_or_else(|outcome| outcome);
         iterate.into_solution(outcome)
     }
 }
@@ -157,8 +160,9 @@ mod tests {
     #[test]
     fn the_counter_includes_the_steps_before_the_first_cycle() {
         let guess = InitialGuess::default();
+        let recorder = Recorder::new(&guess.steps, false);
         guess.steps.set(7);
-        let solution = MonotoneMultigrid::default().run_cycles(&string(200), &guess);
+        let solution = MonotoneMultigrid::default().run_cycles(&string(200), &guess, &recorder);
         assert!(solution.outer > 0);
         assert_eq!(guess.steps.get(), 7 + solution.outer);
     }

@@ -9,6 +9,7 @@ mod latent;
 
 use super::active_set::prescribed_value;
 use super::certificate::{contact_by_residual, positive_diagonal};
+use super::history::Recorder;
 use super::interior_point::{MixedVector, NewtonSystem};
 use super::recession::solve_with_kernel;
 use super::validation::check;
@@ -73,13 +74,19 @@ impl<T: Real> InequalitySolver<T> for ProximalPoint {
         compiled!(
             T: fn(&Inequality<T>, &InitialGuess<T>) -> Solution<T>
                 = |inequality, guess| {
-                    solve_with_kernel(inequality, guess, |inequality| run(inequality, guess))
+                    solve_with_kernel(inequality, guess, |inequality, recorder| {
+                        run(inequality, guess, recorder)
+                    })
                 }
         )(inequality, guess)
     }
 }
 
-fn run<T: Real>(inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
+fn run<T: Real>(
+    inequality: &Inequality<T>,
+    guess: &InitialGuess<T>,
+    recorder: &Recorder<'_>,
+) -> Solution<T> {
     if let Err(outcome) = check(inequality) {
         return Solution::without_iterate(inequality, outcome);
     }
@@ -90,14 +97,15 @@ fn run<T: Real>(inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution
         Ok(iterate) => iterate,
         Err(error) => return Solution::without_iterate(inequality, error.into()),
     };
-    guess.steps.advance(1);
+    recorder.begin_step();
     let outcome = loop {
+        recorder.end_step(|| iterate.certificate);
         match iterate.best.1 <= T::CERTIFICATE_LIMIT {
             true => break Outcome::Converged,
             // no bound is violated, so that no system differs from the first one
             false if iterate.weight.is_infinite() => break Outcome::Stalled,
             false if iterate.systems >= MAX_SYSTEMS => break Outcome::IterationLimit,
-            false => guess.steps.advance(1),
+            false => recorder.begin_step(),
         }
         if let Err(outcome) = iterate.step() {
             break outcome;
@@ -162,6 +170,8 @@ struct ProximalIterate<'h, 'a, T> {
     systems: usize,
     /// The admissible values with the smallest certificate, and the largest of its numbers.
     best: (Solution<T>, f64),
+    /// The largest of the numbers of the certificate of the last admissible values.
+    certificate: f64,
 }
 
 impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
@@ -178,8 +188,9 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
         let (point, is_regular) = system.solve_without_bounds()?;
         let latent = latent_unknowns(inequality, &system);
         let best = (Solution::without_iterate(inequality, Outcome::IterationLimit), f64::INFINITY);
+        let (weight, certificate) = (f64::INFINITY, f64::INFINITY);
         let mut iterate =
-            Self { inequality, system, point, latent, weight: f64::INFINITY, systems: 1, best };
+            Self { inequality, system, point, latent, weight, systems: 1, best, certificate };
         let residual = iterate.system.residual(&iterate.point);
         iterate.keep_if_best(&residual.values);
         let violation = iterate.set_weight(is_regular);
@@ -270,6 +281,7 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
         }
         let multipliers: Vec<T> = self.point.jump_multipliers.iter().map(|&p| T::lit(p)).collect();
         let certificate = certify_with_rounding(self.inequality, &values, &multipliers).0.largest();
+        self.certificate = certificate;
         if certificate < self.best.1 {
             let solution = Solution::new(values, contact, Outcome::IterationLimit);
             self.best = (solution.jump_multipliers(multipliers), certificate);

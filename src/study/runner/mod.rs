@@ -82,6 +82,7 @@ pub struct Study<'a, const D: usize> {
     linear_asked: Option<String>,
     quadrature: DataQuadrature,
     repeat: usize,
+    keeps_history: bool,
     #[cfg(feature = "report")]
     journal: Option<&'a Journal>,
     #[cfg(feature = "report")]
@@ -156,6 +157,7 @@ impl<'a, const D: usize> Study<'a, D> {
             linear_asked: None,
             quadrature: DataQuadrature::default(),
             repeat: 1,
+            keeps_history: false,
             #[cfg(feature = "report")]
             journal: None,
             #[cfg(feature = "report")]
@@ -392,6 +394,7 @@ impl<'a, const D: usize> Study<'a, D> {
             .shared_solver(solver.clone())
             .quadrature(self.quadrature)
             .repeat(self.repeat)
+            .history(self.keeps_history)
             .steps(self.steps.clone())
             .observer(|phase| (self.observer)(Progress::Entered(phase)))
     }

@@ -157,13 +157,14 @@ impl<const D: usize> Study<'_, D> {
             ("solver", others),
             ("adaptive meshes", self.adaptive.is_some()),
             ("reference", self.reference.is_some()),
+            ("history", self.keeps_history),
         ];
         match asked.iter().find(|(_, is_asked)| *is_asked) {
             None => Ok(()),
             Some((parameter, _)) => Err(Error::Parameter {
                 parameter,
                 value: "over several processes".to_owned(),
-                allowed: "the active set method in `f64` on uniform meshes, with errors against the exact solution"
+                allowed: "the active set method in `f64` on uniform meshes, with errors against the exact solution, without a history"
                     .to_owned(),
             }),
         }

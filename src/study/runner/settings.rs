@@ -124,6 +124,26 @@ impl<'a, const D: usize> Study<'a, D> {
         self.repeat = times.max(1);
         self
     }
+    /// Sets whether rows have the key `history`, of one more solve on their own level, from the same start. Times of
+    /// rows do not contain it, and its seconds contain neither start nor assembly.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let study = Study::<2>::new(scenes::radial(1.0)).scheme(Sipg::default()).levels([8]);
+    /// let report = study.history(true).run()?;
+    /// let history = report.rows[0].history.as_ref().unwrap();
+    /// let (systems, _seconds, certificate) = *history.last().unwrap();
+    /// assert_eq!(Some(systems), report.rows[0].iterations.systems);
+    /// assert!(certificate < Some(1e-9));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn history(mut self, keeps_history: bool) -> Self {
+        self.keeps_history = keeps_history;
+        self
+    }
     /// Writes the fields of every scheme on the finest level to this directory, as `SCENE-LABEL.vtu`, of
     /// several solvers as `SCENE-LABEL-SOLVER.vtu`, with `-` for what is neither a letter, a digit, a dot, `_` nor `-`.
     #[cfg(feature = "report")]

@@ -28,11 +28,11 @@ pub(crate) fn scenes(rows: &[Row]) -> Vec<(String, Vec<&Row>)> {
 }
 
 /// The tables of a scene. The first has all levels; times are in seconds. `certif.` is the largest of the four numbers
-/// of the certificate, `effect.` the error bound over the true error in the broken energy norm, `bound` the bound on
-/// that error, with a mark where a term of it is not proven; a last column says why rows did not converge. Where no
-/// error is known there are columns of error bound, energy, contact measure and resultant, and their limits below;
-/// where errors are known a second table has these, for the finest level of each series, with the stages that ran. A
-/// third one has what rows say of several processes.
+/// of the certificate, `systems` the number of linear systems, `effect.` the error bound over the true error in the
+/// broken energy norm, `bound` the bound on that error, with a mark where a term of it is not proven; a last column says
+/// why rows did not converge. Where no error is known there are columns of error bound, energy, contact measure and
+/// resultant, and their limits below; where errors are known a second table has these, for the finest level of each
+/// series, with the stages that ran. A third one has what rows say of several processes.
 pub(crate) fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
     let series = series_of(rows);
     let sorted: Vec<&Row> = series.iter().flat_map(|s| s.rows.iter().copied()).collect();
@@ -191,16 +191,16 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     let any = |get: fn(&Row) -> Option<f64>| rows.iter().any(|r| get(r).is_some());
     let mut columns = names(rows);
     let is_adaptive = is_adaptive(rows);
-    if !is_adaptive {
+    // the orders of errors are over it
+    if !is_adaptive && has_errors(rows) {
         columns
             .push(column("h", |r| Cell::scientific(Some(r.mesh_size).filter(|h| h.is_finite()))));
     }
     columns.push(column("unknowns", |r| Cell::whole(r.unknowns)));
-    columns.push(column("outer", |r| Cell::whole(r.iterations.outer)));
     let has_effectivity = any(|r| r.bound.effectivity);
     let has_bound = any(|r| r.bound.discrete) && (is_adaptive || !has_effectivity);
     if is_adaptive {
-        columns.push(column("bound", |r| bound(r, 2)));
+        columns.push(column("bound", |r| bound(r, 1)));
         columns.push(column("order", |r| Cell::fixed(r.order.bound)));
     } else if any(|r| r.error.l2) {
         columns.push(column("L2", |r| Cell::scientific(r.error.l2)));
@@ -228,6 +228,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     columns.push(column("certif.", |r| {
         Cell::digits(Some(r.certificate.largest()).filter(|c| c.is_finite()), 1)
     }));
+    columns.push(column("systems", |r| Cell::whole(r.iterations.systems)));
     columns.push(column("assem.", |r| Cell::seconds(r.seconds.assemble)));
     columns.push(column("solve", |r| Cell::seconds(r.seconds.solve)));
     if is_adaptive {

@@ -122,7 +122,7 @@ fn best(column: &Column, rows: &[&Row]) -> Option<f64> {
 }
 
 /// The columns between scheme and status: errors and bound where the solution is known, else the figures of the
-/// solution.
+/// solution; then seconds, beside several solvers with the number of linear systems.
 fn columns(rows: &[&Row]) -> Vec<Column> {
     let any = |cell: fn(&Row) -> Option<f64>| rows.iter().any(|r| cell(r).is_some());
     let column = |name, has_best, cell| Column { name, cell, has_best };
@@ -153,8 +153,16 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
         columns.push(column("contact", false, |r| figure(r.contact_measure, None)));
         columns.push(column("resultant", false, |r| figure(r.resultant, None)));
     }
-    columns
-        .push(column("seconds", true, |r| Some((r.seconds.total, seconds(r.seconds.total), None))));
+    if rows.iter().any(|r| r.solver != rows[0].solver) {
+        columns.push(column("seconds (systems)", true, |r| {
+            let systems = r.iterations.systems.map(|n| n.to_string());
+            Some((r.seconds.total, seconds(r.seconds.total), systems))
+        }));
+    } else {
+        columns.push(column("seconds", true, |r| {
+            Some((r.seconds.total, seconds(r.seconds.total), None))
+        }));
+    }
     columns
 }
 

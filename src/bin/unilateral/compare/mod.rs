@@ -69,6 +69,10 @@ fn program(options: &Options, files: &[(&str, String)]) -> Program {
     let threads = rayon::current_num_threads();
     let program = Program::new("compare", &options.precision, threads, options.repeat);
     let program = options.asked.stated_in(program, files);
+    let program = match options.history {
+        true => program.with_request("history", "after every outer step"),
+        false => program,
+    };
     options.linear.iter().fold(program, |program, linear| program.with_request("linear", linear))
 }
 

@@ -48,6 +48,9 @@ pub struct Options {
     /// Every time is the least of K runs
     #[arg(help_heading = SOLVER, long, value_name = "K", allow_negative_numbers = true, value_parser = whole, default_value_t = 1)]
     pub repeat: usize,
+    /// Certificates after every outer step, of one more run
+    #[arg(help_heading = SOLVER, long)]
+    pub history: bool,
     /// Over mpirun: petsc for preconditioners, or snesvi for the whole inequality
     #[arg(help_heading = SOLVER, long, value_name = "NAME", value_parser = ["petsc", "snesvi"],
         hide_possible_values = true, hide = !cfg!(feature = "petsc"))]

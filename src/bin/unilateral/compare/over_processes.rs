@@ -142,6 +142,7 @@ fn check_options(options: &Options) -> Request<()> {
         ("--resume", options.resume),
         ("--precision f32", options.precision == "f32"),
         ("--repeat", options.repeat > 1),
+        ("--history", options.history),
         ("--fields-of-all-levels", options.fields_of_all_levels),
         ("--linear direct", options.linear.as_deref() == Some("direct")),
         ("--solver", options.solvers.iter().any(|name| name != "active-set")),

@@ -63,7 +63,7 @@ pub fn prepare<'a, const D: usize>(
         None => LinearMethod::BySize,
     };
     let mut study = study(scene, options, schemes, watcher);
-    study = study.repeat(options.repeat).steps(watcher.steps());
+    study = study.repeat(options.repeat).history(options.history).steps(watcher.steps());
     let scene_name = name.clone();
     let drawn = RefCell::new(BTreeMap::new());
     study = study.each_solution(move |label, level, solved| {

@@ -6,6 +6,7 @@ use super::iteration::End;
 use super::settings::ActiveSet;
 use crate::algebra::Inequality;
 use crate::inequality::Solution;
+use crate::inequality::history::Recorder;
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::validation::check;
 use crate::linear::{CoarseSpaces, LinearMethod, PreconditionerFamily};
@@ -44,14 +45,14 @@ pub(super) const CROSSOVER: usize = 10_000;
 pub(super) fn solve<T: Real>(
     settings: &ActiveSet,
     inequality: &Inequality<T>,
-    guess: &InitialGuess<T>,
+    (guess, recorder): (&InitialGuess<T>, &Recorder<'_>),
     family: &dyn PreconditionerFamily<T>,
 ) -> Solution<T> {
     if let Err(outcome) = check(inequality) {
         return Solution::without_iterate(inequality, outcome);
     }
     let uses_krylov = uses_krylov(settings, inequality, guess);
-    let mut ladder = Ladder::new(settings, inequality, guess, uses_krylov);
+    let mut ladder = Ladder::new(settings, inequality, (guess, recorder), uses_krylov);
     let mut end = End::Unsuitable;
     if uses_krylov {
         end = ladder.active_set_by_krylov(family);

@@ -10,6 +10,7 @@ use crate::inequality::active_set::iteration::{End, Iteration};
 use crate::inequality::active_set::preconditioned_solver::PreconditionedSolver;
 use crate::inequality::active_set::progress::SYSTEMS_WITHOUT_HALVING;
 use crate::inequality::active_set::settings::ActiveSet;
+use crate::inequality::history::Recorder;
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::interior_point;
 use crate::inequality::monotone_multigrid::MonotoneMultigrid;
@@ -63,6 +64,7 @@ pub(super) struct Ladder<'s, 'a, T: Real> {
     settings: &'s ActiveSet,
     inequality: &'a Inequality<T>,
     guess: &'s InitialGuess<T>,
+    recorder: &'s Recorder<'s>,
     iterate: Iterate<'a, T>,
     /// The solver with factors; `None` before it is needed.
     direct: Option<DirectSolver<'a, T>>,
@@ -79,7 +81,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
     pub fn new(
         settings: &'s ActiveSet,
         inequality: &'a Inequality<T>,
-        guess: &'s InitialGuess<T>,
+        (guess, recorder): (&'s InitialGuess<T>, &'s Recorder<'s>),
         uses_krylov: bool,
     ) -> Self {
         let values = match &guess.values {
@@ -90,6 +92,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
             settings,
             inequality,
             guess,
+            recorder,
             iterate: Iterate::new(inequality, values),
             direct: None,
             stages: Vec::new(),
@@ -140,7 +143,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
             limit,
             local_solves: if has_local_solves { MAX_LOCAL_SOLVES } else { 0 },
             needs_certificate: guess.energy_tolerance.is_none(),
-            steps: &guess.steps,
+            recorder: self.recorder,
         };
         let end = iteration.run();
         if end != End::Outcome(Outcome::Converged) {
@@ -219,7 +222,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
             ..self.guess.clone()
         };
         let method = MonotoneMultigrid::default().stagnation_cycles(CYCLES_WITHOUT_HALVING);
-        let solution = method.run_cycles(self.inequality, &guess);
+        let solution = method.run_cycles(self.inequality, &guess, self.recorder);
         let Solution { values, mut contact, outcome, outer, linear, .. } = solution;
         self.iterate.linear += linear;
         self.record(Stage::MonotoneMultigrid, before, outer);
@@ -253,7 +256,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
             limit: Some(SYSTEMS_WITHOUT_HALVING),
             local_solves: 0,
             needs_certificate: true,
-            steps: &self.guess.steps,
+            recorder: self.recorder,
         };
         let end = iteration.run();
         self.algebraic_bound = match end {
@@ -281,8 +284,9 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
         let solver = self.direct.get_or_insert_with(new);
         let left = self.settings.max_outer.saturating_sub(self.iterate.outer);
         let max_systems = left.min(interior_point::MAX_SYSTEMS);
-        let (inequality, steps) = (self.inequality, &self.guess.steps);
-        let solution = interior_point::run(inequality, solver.condensation(), max_systems, steps);
+        let (inequality, recorder) = (self.inequality, self.recorder);
+        let solution =
+            interior_point::run(inequality, solver.condensation(), max_systems, recorder);
         self.iterate.outer += solution.outer;
         if solution.outcome.has_iterate() {
             let Solution { values, contact, jump_multipliers, outcome, .. } = solution;

@@ -1,0 +1,114 @@
+//! The work of a solve: the number of linear systems, and, where it is asked for, the certificate after every outer step.
+
+use std::cell::{Cell, RefCell};
+use std::time::Instant;
+
+use super::step_counter::StepCounter;
+
+/// The state of a solve after an outer step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HistoryPoint {
+    /// Number of linear systems so far; see [`Solution::systems`](super::Solution::systems).
+    pub systems: usize,
+    /// Seconds since the solve began, without those of certificates that only the history needs.
+    pub seconds: f64,
+    /// The largest part of the certificate of the present values; infinite where there is none.
+    pub certificate: f64,
+}
+
+/// What a solver tells of its work while it runs.
+pub(super) struct Recorder<'g> {
+    steps: &'g StepCounter,
+    systems: Cell<usize>,
+    /// Whether the history has no point of the present step yet.
+    is_new_step: Cell<bool>,
+    begin: Cell<Instant>,
+    /// The history; `None` if it is not kept.
+    history: Option<RefCell<Vec<HistoryPoint>>>,
+}
+
+impl<'g> Recorder<'g> {
+    /// A solve begins.
+    pub fn new(steps: &'g StepCounter, keeps_history: bool) -> Self {
+        steps.set(0);
+        Self {
+            steps,
+            systems: Cell::new(0),
+            is_new_step: Cell::new(true),
+            begin: Cell::new(Instant::now()),
+            history: keeps_history.then(RefCell::default),
+        }
+    }
+
+    /// An outer step begins, with a linear system.
+    pub fn begin_step(&self) {
+        self.steps.advance(1);
+        self.is_new_step.set(true);
+        self.count_system();
+    }
+
+    /// The present step has a linear system more.
+    pub fn count_system(&self) {
+        self.systems.set(self.systems.get() + 1);
+    }
+
+    /// The values after a linear system of the present step are known: they take the place of those before in this step.
+    /// Only for a history their certificate is computed, while the clock stands still.
+    pub fn end_step(&self, certificate: impl FnOnce() -> f64) {
+        let Some(history) = &self.history else { return };
+        let pause = Instant::now();
+        let seconds = (pause - self.begin.get()).as_secs_f64();
+        let (systems, certificate) = (self.systems.get(), certificate());
+        let mut history = history.borrow_mut();
+        if !self.is_new_step.replace(false) {
+            history.pop();
+        }
+        history.push(HistoryPoint { systems, seconds, certificate });
+        self.begin.set(self.begin.get() + pause.elapsed());
+    }
+
+    /// The number of linear systems, and the history, empty if it is not kept.
+    pub fn finish(self) -> (usize, Vec<HistoryPoint>) {
+        (self.systems.get(), self.history.map(RefCell::into_inner).unwrap_or_default())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn the_clock_stands_still_for_certificates() {
+        let (pause, steps, begin) =
+            (Duration::from_millis(50), StepCounter::default(), Instant::now());
+        let recorder = Recorder::new(&steps, true);
+        let certificate = || {
+            std::thread::sleep(pause);
+            0.5
+        };
+        for has_two_systems in [false, true, false] {
+            recorder.begin_step();
+            recorder.end_step(certificate);
+            if has_two_systems {
+                recorder.count_system();
+                recorder.end_step(certificate);
+            }
+        }
+        let (systems, history) = recorder.finish();
+        assert_eq!((systems, steps.get()), (4, 3));
+        assert_eq!(history.iter().map(|at| at.systems).collect::<Vec<_>>(), [1, 3, 4]);
+        // the last point is before its own certificate
+        assert!(history[2].seconds + 4.0 * pause.as_secs_f64() <= begin.elapsed().as_secs_f64());
+        assert!(history.is_sorted_by(|a, b| a.seconds < b.seconds));
+    }
+
+    #[test]
+    fn without_a_history_no_certificate_is_computed() {
+        let steps = StepCounter::default();
+        let recorder = Recorder::new(&steps, false);
+        recorder.begin_step();
+        recorder.end_step(|| panic!("nobody asked"));
+        assert_eq!(recorder.finish(), (1, Vec::new()));
+    }
+}
