@@ -71,8 +71,9 @@ impl<const D: usize> Space<'_, D> {
         }
         let mut load = zeros(self.dofs.size());
         if !by_cell.is_empty() {
-            let add = |sum: &mut f64, place: usize| {
-                *sum += by_cell[place];
+            let n = self.per_cell();
+            let add = |sum: &mut f64, (cell, i): (usize, usize)| {
+                *sum += by_cell[n * cell + i];
                 Ok::<_, Infallible>(())
             };
             let Ok(()) = for_each_place::<D, _, _>(&self.dofs, &mut load, add);

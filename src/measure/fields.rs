@@ -71,7 +71,7 @@ impl<const D: usize> Space<'_, D> {
             let region = self.mesh.region(cell);
             let psi = self.data.lower.of(region).or(self.data.upper.of(region));
             for v in self.mesh.cell(cell) {
-                obstacle.push(psi.map_or(f64::NAN, |psi| psi.at(&corner(v))));
+                obstacle.push(psi.map_or(f64::NAN, |psi| self.at(psi, cell, &corner(v))));
             }
         }
         let share = |cell| {

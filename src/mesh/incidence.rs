@@ -118,16 +118,16 @@ impl<'t, C: Columns, const K: usize> Incidence<'t, C, K> {
             starts[k + 2] += starts[k + 1];
         }
         let places = zeros_in(places, starts[n + 1] as usize);
-        self.visit(ranges, |kind, k, place| {
+        self.visit(ranges, |kind, k, (cell, i)| {
             let at = &mut starts[offsets[kind] + k + 1];
-            places[*at as usize] = place as u32;
+            places[*at as usize] = self.columns.place(cell, i) as u32;
             *at += 1;
         });
     }
-    /// Calls a function with the kind of each number in the ranges, its position in the range of that kind and each
-    /// place of a cell that has it, by ascending cells.
+    /// Calls a function with the kind of each number in the ranges, its position in the range of that kind, and each
+    /// cell that has it with the number of it in the cell, by ascending cells.
     #[inline(always)]
-    pub fn visit(&self, ranges: &Ranges<K>, mut visit: impl FnMut(usize, usize, usize)) {
+    pub fn visit(&self, ranges: &Ranges<K>, mut visit: impl FnMut(usize, usize, (usize, usize))) {
         let columns = self.columns;
         let width = columns.width();
         for (cells, ..) in self.blocks.of(ranges) {
@@ -138,7 +138,7 @@ impl<'t, C: Columns, const K: usize> Incidence<'t, C, K> {
                     let kind = columns.kind(i);
                     let k = number.wrapping_sub(ranges[kind].start) as usize;
                     if k < ranges[kind].len() {
-                        visit(kind, k, columns.place(first + c, i));
+                        visit(kind, k, (first + c, i));
                     }
                 }
             }

@@ -7,7 +7,7 @@ use crate::parallel::for_each_item;
 
 use super::cells::{CellMatrices, CellMatrix, General, Gradients};
 use super::pattern::{EntryPositions, LONGEST};
-use super::unknowns::{ANY, CellUnknowns, Rows};
+use super::unknowns::{ANY, CellUnknowns, Rows, with_constant_count};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
 use crate::assemble::space::dofs::{Dofs, KINDS};
@@ -29,15 +29,7 @@ pub(crate) fn fill<const D: usize>(
     positions: &EntryPositions,
     matrix: &mut SparseMatrix<f64>,
 ) {
-    // constant conditions: loops for another dimension are not even instantiated
-    match CellUnknowns::<D>::constant_count(&space.dofs) {
-        2 if const { D == 1 } => fill_with::<D, 2>(space, positions, matrix),
-        3 if const { D < 3 } => fill_with::<D, 3>(space, positions, matrix),
-        4 if const { D == 3 } => fill_with::<D, 4>(space, positions, matrix),
-        6 if const { D == 2 } => fill_with::<D, 6>(space, positions, matrix),
-        10 if const { D == 3 } => fill_with::<D, 10>(space, positions, matrix),
-        _ => fill_with::<D, ANY>(space, positions, matrix),
-    }
+    with_constant_count!(D, &space.dofs, N => fill_with::<D, N>(space, positions, matrix));
 }
 
 /// As [`fill`], for cells of `N` unknowns.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::parallel::{for_each_item, map_indices};
 
-use super::unknowns::{ANY, CellUnknowns, Rows};
+use super::unknowns::{ANY, CellUnknowns, Rows, with_constant_count};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::dofs::{Dofs, KINDS};
 use crate::memory::in_large_pages;
@@ -41,15 +41,7 @@ struct PatternOfRows {
 
 /// The pattern, with values zero, and the positions at which cells add to it.
 pub(crate) fn pattern<const D: usize>(dofs: &Dofs<'_>) -> (SparseMatrix<f64>, EntryPositions) {
-    // constant conditions: loops for another dimension are not even instantiated
-    match CellUnknowns::<D>::constant_count(dofs) {
-        2 if const { D == 1 } => pattern_with::<D, 2>(dofs),
-        3 if const { D < 3 } => pattern_with::<D, 3>(dofs),
-        4 if const { D == 3 } => pattern_with::<D, 4>(dofs),
-        6 if const { D == 2 } => pattern_with::<D, 6>(dofs),
-        10 if const { D == 3 } => pattern_with::<D, 10>(dofs),
-        _ => pattern_with::<D, ANY>(dofs),
-    }
+    with_constant_count!(D, dofs, N => pattern_with::<D, N>(dofs))
 }
 
 /// As [`pattern`], for cells of `N` unknowns.

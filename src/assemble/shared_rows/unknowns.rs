@@ -72,3 +72,26 @@ impl<const D: usize> CellUnknowns<D> {
         if fits { of.count } else { ANY }
     }
 }
+
+/// Calls a function with the number of unknowns of a cell as the constant `N` where loops over them are unrolled, else
+/// with [`ANY`]: `with_constant_count!(D, dofs, N => function::<D, N>(dofs))`.
+macro_rules! with_constant_count {
+    ($D:ident, $dofs:expr, $N:ident => $call:expr) => {{
+        macro_rules! with {
+            ($count:expr) => {{
+                const $N: usize = $count;
+                $call
+            }};
+        }
+        // constant conditions: loops for another dimension are not even instantiated
+        match CellUnknowns::<$D>::constant_count($dofs) {
+            2 if const { $D == 1 } => with!(2),
+            3 if const { $D < 3 } => with!(3),
+            4 if const { $D == 3 } => with!(4),
+            6 if const { $D == 2 } => with!(6),
+            10 if const { $D == 3 } => with!(10),
+            _ => with!(ANY),
+        }
+    }};
+}
+pub(super) use with_constant_count;

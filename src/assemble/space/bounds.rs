@@ -74,8 +74,7 @@ impl<const D: usize> Space<'_, D> {
             cells::for_each(self.mesh.n_cells(), &|cell| cell * n, bounds, &bound_chunk)?;
         } else {
             let differ = self.data.obstacles_differ();
-            for_each_place::<D, _, _>(&self.dofs, bounds, |bound, place| {
-                let (cell, i) = (place / n, place % n);
+            for_each_place::<D, _, _>(&self.dofs, bounds, |bound, (cell, i)| {
                 match bounded.iter().find(|node| node.0 == i) {
                     Some(&node) if *bound == Bound::Free || differ => restrict(bound, cell, node),
                     _ => Ok(()),
@@ -234,7 +233,8 @@ impl<const D: usize> Space<'_, D> {
                 let datum = |x: &Point<D>| self.dirichlet_at(group, x);
                 let value = self.at_node(&terms[i], cell, "dirichlet", &datum)?;
                 for (sign, psi) in sides.iter().filter_map(|(sign, psi)| Some((sign, (*psi)?))) {
-                    let bound = self.at_node(&terms[i], cell, "obstacle", &|x| psi.at(x))?;
+                    let bound =
+                        self.at_node(&terms[i], cell, "obstacle", &|x| self.at(psi, cell, x))?;
                     if sign * (bound - value) > largest {
                         largest = sign * (bound - value);
                         place = Some(self.node_point(cell, &self.nodes[i]));
