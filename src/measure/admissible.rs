@@ -24,8 +24,6 @@ pub(crate) struct Admissible<'d, const D: usize> {
     pub gradients: [Point<D>; 4],
     /// The obstacles, lower and upper one.
     pub bounds: [Option<&'d Datum<D>>; 2],
-    /// The diameter of the cell.
-    pub diameter: f64,
 }
 
 impl<const D: usize> Admissible<'_, D> {
@@ -46,7 +44,7 @@ impl<const D: usize> Admissible<'_, D> {
             let at = in_cell(bound, x);
             if sign * (at - value) > 0.0 {
                 value = at;
-                let step = STEP * self.diameter;
+                let step = STEP * mesh.cell_diameter(cell);
                 gradient = Point::from_fn(|axis, _| {
                     let (mut ahead, mut behind) = (*x, *x);
                     ahead[axis] += step;

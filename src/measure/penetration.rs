@@ -168,11 +168,25 @@ impl<const D: usize> Space<'_, D> {
             }
             Ok::<Penetration, Error>(found)
         };
-        let mut found = Penetration::NONE;
-        if self.problem.has_obstacle() {
-            for of_chunk in cells::map(self.mesh.n_cells(), &of_chunk) {
-                found = found.merged(&of_chunk?);
+        let at_vertices_of_mesh = |vertices: Range<usize>| {
+            let mut found = Penetration::NONE;
+            for v in vertices {
+                self.add_penetration_at((0, &self.mesh.vertices()[v]), u[v], &mut found)?;
             }
+            Ok(found)
+        };
+        // unknowns are the values at vertices
+        let is_one_value = self.is_conforming_linear() && !self.data.obstacles_differ();
+        let chunks = match self.problem.has_obstacle() {
+            true if is_one_value && at_vertices[0] && at_vertices[1] => {
+                cells::map(self.mesh.vertices().len(), &at_vertices_of_mesh)
+            }
+            true => cells::map(self.mesh.n_cells(), &of_chunk),
+            false => Vec::new(),
+        };
+        let mut found = Penetration::NONE;
+        for of_chunk in chunks {
+            found = found.merged(&of_chunk?);
         }
         let on_facets: Vec<Points> =
             (0..D + 1).map(|local| self.points_of_facet(local, at_vertices[2])).collect();
@@ -198,9 +212,9 @@ impl<const D: usize> Space<'_, D> {
     /// times the square of the diameter of the mesh.
     fn size_of_load(&self) -> f64 {
         let of_cell = |cell: usize| {
-            let x = self.mesh.barycentre(cell);
-            let load =
-                self.data.source.of(self.mesh.region(cell)).map_or(0.0, |f| self.at(f, cell, &x));
+            let at_barycentre = |f: &Datum<D>| self.at(f, cell, &self.mesh.barycentre(cell));
+            let source = self.data.source.of(self.mesh.region(cell));
+            let load = source.map_or(0.0, |f| f.constant().unwrap_or_else(|| at_barycentre(f)));
             load.abs() / self.alpha(cell)
         };
         let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
@@ -216,19 +230,26 @@ impl<const D: usize> Space<'_, D> {
         points: &Points,
         found: &mut Penetration,
     ) -> Result<(), Error> {
+        let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
+        points.iter().try_for_each(|(point, basis)| {
+            let x = in_space(point, &corners);
+            self.add_penetration_at((cell, &x), basis.value(&values), found)
+        })
+    }
+
+    /// Adds the distances of a value at a point of a cell.
+    fn add_penetration_at(
+        &self,
+        (cell, x): (usize, &Point<D>),
+        value: f64,
+        found: &mut Penetration,
+    ) -> Result<(), Error> {
         let region = self.mesh.region(cell);
         let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
-        if bounds.iter().all(Option::is_none) {
-            return Ok(());
-        }
-        let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
-        for (point, basis) in points {
-            let (value, x) = (basis.value(&values), in_space(point, &corners));
-            for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
-                if let Some(bound) = bounds[k] {
-                    let bound = finite(self.at(bound, cell, &x), "obstacle", &x, cell)?;
-                    found.add(k, sign, [value, bound]);
-                }
+        for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
+            if let Some(bound) = bounds[k] {
+                let bound = finite(self.at(bound, cell, x), "obstacle", x, cell)?;
+                found.add(k, sign, [value, bound]);
             }
         }
         Ok(())

@@ -178,7 +178,7 @@ impl<const D: usize> Space<'_, D> {
             divergence: (D + 1) as f64 * per_volume,
             is_given: admissible.bounds.map(|bound| bound.is_some()),
             energy,
-            variation: admissible.diameter / PI
+            variation: self.mesh.cell_diameter(number) / PI
                 * (volume / (alpha * ((D + 1) * (D + 2)) as f64)).sqrt(),
             has_one_sign: false,
         }

@@ -1,5 +1,6 @@
 //! The flux of a pair in a cell, and what it leaves of the load.
 
+use crate::arrays::map_entries;
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::real::Point;
@@ -35,19 +36,20 @@ impl<const D: usize> CellFlux<D> {
         }
         q * self.per_volume
     }
-    /// The mean of the square of the norm of a constant less the flux with one term, by the corners of the cell.
-    pub fn mean_square_of_difference(
+    /// The means of the squares of the norms of constants less the flux with one term, by the corners of the cell.
+    pub fn mean_squares_of_differences(
         &self,
-        gradient: Point<D>,
-        corners: impl Iterator<Item = Point<D>> + Clone,
-    ) -> f64 {
+        constants: [Point<D>; 2],
+        corners: &[Point<D>; 4],
+    ) -> [f64; 2] {
         let d = D as f64;
-        let middle = corners.clone().sum::<Point<D>>() / (d + 1.0);
-        let squares: f64 = corners.map(|x| (x - middle).norm_squared()).sum();
+        let corners = &corners[..=D];
+        let middle = corners.iter().sum::<Point<D>>() / (d + 1.0);
+        let squares: f64 = corners.iter().map(|x| (x - middle).norm_squared()).sum();
         let slope = self.sums[0] * self.per_volume;
         let at_middle = (middle * self.sums[0] - self.origins[0]) * self.per_volume;
         let of_slope = slope * slope * squares / ((d + 1.0) * (d + 2.0));
-        (gradient - at_middle).norm_squared() + of_slope
+        map_entries(constants, |constant| (constant - at_middle).norm_squared() + of_slope)
     }
     /// What the flux leaves of a load, by the means of the load less a constant times each factor of a
     /// term, and the square of its norm.

@@ -57,6 +57,7 @@ struct CellInputs<'a, const D: usize> {
 
 impl<const D: usize> CellInputs<'_, D> {
     /// The gradient of the discrete function at a point, by the `n` basis functions of the cell.
+    #[inline(always)]
     fn gradient_of(&self, n: usize, basis: &BasisAt) -> Point<D> {
         let mut gradient = Point::zeros();
         for k in 0..=D {
@@ -118,7 +119,6 @@ impl<const D: usize> Space<'_, D> {
             gradients[k] = *geometry.gradient(k);
             gradient += gradients[k] * (values[k] - values[0]);
         }
-        let diameter = self.mesh.cell_diameter(cell);
         let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
         let excess = (pair.degree > 1).then(|| {
             let midpoints = &pair.function[self.mesh.vertices().len()..];
@@ -131,7 +131,7 @@ impl<const D: usize> Space<'_, D> {
             excess
         });
         let place = (self.mesh, cell);
-        Admissible { place, values, gradient, excess, gradients, bounds, diameter }
+        Admissible { place, values, gradient, excess, gradients, bounds }
     }
 
     /// Calls a function with the points of a rule on a cell, divided where a level has zeros: with barycentric
@@ -162,15 +162,14 @@ impl<const D: usize> Space<'_, D> {
     fn gaps_of_linear(
         &self,
         function: &Admissible<'_, D>,
-        cell: usize,
+        (cell, corners): (usize, &[Point<D>; 4]),
         table: &CellTable,
     ) -> Option<[f64; 2]> {
         let mut gaps = [0.0; 2];
         if function.bounds.iter().all(Option::is_none) {
             return Some(gaps);
         }
-        let corners = self.mesh.corners(cell);
-        if function.is_linear(&corners) {
+        if function.is_linear(corners) {
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let gap = |bound: &Datum<D>| {
                     let at_corners = corners[..=D].iter().zip(&function.values);
@@ -181,7 +180,7 @@ impl<const D: usize> Space<'_, D> {
             return Some(gaps);
         }
         for (point, weight) in table.points.iter().zip(&table.weights) {
-            let x = in_space(point, &corners);
+            let x = in_space(point, corners);
             let value: f64 = function.values.iter().zip(point).map(|(v, b)| v * b).sum();
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let gap = function.bounds[k]
@@ -208,15 +207,15 @@ impl<const D: usize> Space<'_, D> {
         let alpha = constant_of(data.coefficient, 1.0)?;
         let load = constant_of(data.source, 0.0)?;
         let slope = data.slope.filter(|_| data.reaction.is_none())?;
-        let distances = self.gaps_of_linear(&data.admissible, cell, table)?;
+        let corners = self.mesh.corners(cell);
+        let distances = self.gaps_of_linear(&data.admissible, (cell, &corners), table)?;
         let gradient = data.admissible.gradient;
-        let corners = self.mesh.cell(cell).iter().map(|&v| self.mesh.vertices()[v as usize]);
-        let mean_square = |constant| data.flux.mean_square_of_difference(constant, corners.clone());
+        let constants = [gradient * alpha, (slope * 2.0 - gradient) * alpha];
+        let [mismatch, from_midpoint] = data.flux.mean_squares_of_differences(constants, &corners);
         let [lower, upper] = distances.map(|mean| data.volume * mean);
         Some(CellIntegrals {
-            mismatch: data.volume / alpha * mean_square(gradient * alpha),
-            from_midpoint: 0.25 * data.volume / alpha
-                * mean_square((slope * 2.0 - gradient) * alpha),
+            mismatch: data.volume / alpha * mismatch,
+            from_midpoint: 0.25 * data.volume / alpha * from_midpoint,
             distance: data.volume * alpha * (gradient - slope).norm_squared(),
             first_load: Some(load),
             gaps: [[lower, 0.0, 0.0, 0.0], [upper, 0.0, 0.0, 0.0]],
@@ -290,7 +289,7 @@ impl<const D: usize> Space<'_, D> {
             .unwrap_or_else(|| self.integrals_at_points(cell, &data, table, cut));
         let [mismatch, from_values, from_midpoint] =
             map_entries([sums.mismatch, sums.from_values, sums.from_midpoint], integral_of_square);
-        let by_gradient = data.admissible.diameter / (PI * sums.least_coefficient.sqrt());
+        let by_gradient = self.mesh.cell_diameter(cell) / (PI * sums.least_coefficient.sqrt());
         let by_value = sums.reaction_from_below.max(0.0).sqrt().recip();
         let load = sums.first_load.unwrap_or(0.0);
         let left = data.flux.left_of_load(data.volume, &sums.means, sums.square, load);
@@ -374,8 +373,8 @@ impl<const D: usize> Space<'_, D> {
             source,
             volume,
         };
-        // the derivatives of linear functions are those at any point
-        data.slope = (pair.degree == 1).then(|| data.gradient_of(self.per_cell(), &table.basis[0]));
+        // linear functions have one basis function for each vertex, with the same derivatives at all points
+        data.slope = (pair.degree == 1).then(|| data.gradient_of(D + 1, &table.basis[0]));
         data
     }
 }

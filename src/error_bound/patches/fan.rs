@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::corner_fluxes::CornerFluxes;
 use super::corners::Corner;
 use super::linear::LinearCells;
+use crate::arrays::map_entries;
 use crate::mesh::{BoundaryCondition, Neighbour};
 use crate::parallel::cells;
 
@@ -66,7 +67,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
             let second = self.load(of.corner, pressure) - first;
             let cell = of.corner.cell();
             let point = |local: usize| mesh.vertices()[mesh.cell(cell)[local] as usize];
-            let [a, b] = of.sides.map(|side| point(usize::from(side)));
+            let [a, b] = map_entries(of.sides, |side| point(usize::from(side)));
             let (along, middle) = (b - a, (point(of.corner.own()) + a + b) / 3.0);
             let weight = 1.0 / (self.space.alpha(cell) * self.volume(cell));
             stiffness += weight * along.norm_squared();
@@ -106,9 +107,10 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     /// result is false. On the boundary the fan begins and ends with boundary facets.
     fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
         let mesh = self.space.mesh;
+        // without an early end there are no branches
         let number_in = |cell: usize| {
-            let found = mesh.cell(cell).iter().position(|&v| v as usize == vertex);
-            found.expect("the cells of a fan have its vertex") as u8
+            let numbers = mesh.cell(cell).iter().zip(0_u8..);
+            numbers.fold(0, |found, (&v, k)| if v as usize == vertex { k } else { found })
         };
         let (cell, count) = self.one_cell[vertex];
         let own = number_in(cell as usize);

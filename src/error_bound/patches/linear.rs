@@ -20,9 +20,11 @@ use crate::real::Point;
 pub(super) struct LinearCells<'s, 'a, const D: usize> {
     pub space: &'s Space<'a, D>,
     pub neighbours: &'s Neighbours,
-    /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and for each of its vertices the load
-    /// that the flux of the vertex balances, without multipliers of obstacles.
+    /// By cell its volume and the integrals of `alpha grad u . n` over its facets.
     cells: Vec<f64>,
+    /// By cell for each of its vertices minus the load that the flux of the vertex balances, without multipliers of
+    /// obstacles.
+    loads: Vec<f64>,
     /// By vertex the multiplier of obstacles, which cells carry by their volume.
     pub multipliers: Vec<f64>,
     /// In which cells multipliers act.
@@ -33,7 +35,7 @@ pub(super) struct LinearCells<'s, 'a, const D: usize> {
 
 /// How many numbers are known of a cell before its patches are.
 const fn known_of_cell(dimension: usize) -> usize {
-    2 * dimension + 3
+    dimension + 2
 }
 
 impl<const D: usize> Space<'_, D> {
@@ -45,7 +47,7 @@ impl<const D: usize> Space<'_, D> {
         forces: &[NodeForce],
         neighbours: &'s Neighbours,
     ) -> Result<LinearCells<'s, 's, D>, NoBound> {
-        let load = self.load_by_cell()?;
+        let mut loads = self.load_by_cell()?.into_owned();
         let n_cells = self.mesh.n_cells();
         let stride = known_of_cell(D);
         let mut data = in_large_pages(vec![0.0; n_cells * stride]);
@@ -54,20 +56,32 @@ impl<const D: usize> Space<'_, D> {
                 let (volume, products) = shape(self.mesh, cell, 1.0);
                 let values = self.local_values(cell, u);
                 let alpha = self.alpha(cell);
-                let loads = self.reaction_less_load(cell, volume, &values, &load);
                 data[0] = volume;
                 for i in 0..=D {
                     let product = |j: usize| products[i][j] * (values[j] - values[0]);
                     // |F| n = -D |K| grad lambda
                     data[1 + i] = -(D as f64) * alpha * (1..=D).map(product).sum::<f64>();
-                    data[D + 2 + i] = loads[i];
                 }
             }
             Ok::<(), Infallible>(())
         };
         let Ok(()) = cells::for_each(n_cells, &|c| c * stride, &mut data, &fill);
+        // without sources the list is empty
+        loads.resize(n_cells * (D + 1), 0.0);
+        if self.reaction.is_some() {
+            let subtract = |cells: Range<usize>, out: &mut [f64]| {
+                for (cell, loads) in cells.zip(out.chunks_exact_mut(D + 1)) {
+                    let values = self.local_values(cell, u);
+                    let volume = data[cell * stride];
+                    let of_cell = self.reaction_less_load(cell, volume, &values, &[]);
+                    loads.iter_mut().zip(of_cell).for_each(|(load, reaction)| *load -= reaction);
+                }
+                Ok::<(), Infallible>(())
+            };
+            let Ok(()) = cells::for_each(n_cells, &|c| c * (D + 1), &mut loads, &subtract);
+        }
         for force in forces {
-            data[force.cell * stride + D + 2 + force.node] -= force.value;
+            loads[force.cell * (D + 1) + force.node] += force.value;
         }
         let mut multipliers = self.multipliers_of_obstacles(residual, forces);
         for (cell, local) in self.facets_of(BoundaryCondition::Dirichlet) {
@@ -81,7 +95,8 @@ impl<const D: usize> Space<'_, D> {
                 (*one, *count) = (cell as u32, *count + 1);
             }
         }
-        Ok(LinearCells { space: self, neighbours, cells: data, multipliers, obstacles, one_cell })
+        let cells = data;
+        Ok(LinearCells { space: self, neighbours, cells, loads, multipliers, obstacles, one_cell })
     }
 }
 
@@ -97,8 +112,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
 
     /// The load that the flux of a vertex balances in a cell, with a multiplier per volume.
     pub fn load(&self, corner: Corner, pressure: f64) -> f64 {
-        let load = self.cells[corner.cell() * known_of_cell(D) + D + 2 + corner.own()];
-        load - pressure * self.carried(corner)
+        -self.loads[corner.cell() * (D + 1) + corner.own()] - pressure * self.carried(corner)
     }
 
     /// The volume over which a cell carries a share of the multiplier of one of its vertices: its own, or none where

@@ -18,9 +18,9 @@ use super::corner_fluxes::CornerFluxes;
 use super::corners::Corner;
 use super::linear::LinearCells;
 use super::patch::solve;
-use crate::mesh::{BoundaryCondition, Neighbour};
+use crate::arrays::{array_of, map_entries};
+use crate::mesh::{BoundaryCondition, Neighbour, dot, with_zeros};
 use crate::parallel::cells;
-use crate::real::Point;
 use std::ops::Range;
 
 /// The most edges at a vertex whose patch is solved this way.
@@ -59,6 +59,8 @@ pub(super) struct Link {
     cells: Vec<CellOfLink>,
     /// The ends of the edges.
     ends: Vec<u32>,
+    /// The ends in space, from the vertex.
+    points: Vec<[f64; 3]>,
     /// The side between edges `a` and `b`, where `b` follows `a` in the sense of rotation of a cell: four times the
     /// number of that cell plus the number of the side in the cell. [`NONE`] where there is none.
     sides: Box<[[u16; MOST_EDGES]; MOST_EDGES]>,
@@ -73,6 +75,7 @@ impl Default for Link {
         Self {
             cells: Vec::new(),
             ends: Vec::new(),
+            points: Vec::new(),
             sides: Box::new([[NONE; MOST_EDGES]; MOST_EDGES]),
             equal: Vec::new(),
             matrix: Vec::new(),
@@ -130,7 +133,7 @@ impl Link {
         self.equal.extend(0..self.ends.len() as u8);
         for cell in &self.cells {
             for k in (0..3).filter(|&k| matches!(cell.behind[k], Some(Behind::Given))) {
-                let [a, b] = pair(&cell.edges, k).map(|edge| self.equal[edge]);
+                let [a, b] = map_entries(pair(&cell.edges, k), |edge| self.equal[edge]);
                 let (first, other) = (a.min(b), a.max(b));
                 self.equal.iter_mut().filter(|e| **e == other).for_each(|e| *e = first);
             }
@@ -167,11 +170,12 @@ impl<const D: usize> LinearCells<'_, '_, D> {
         }
         self.balance(vertex, link);
         link.find_equal();
-        self.least_squares(link);
+        self.least_squares(vertex, link);
         for cell in &link.cells {
             let own = cell.corner.own();
             for (k, &end) in cell.ends.iter().enumerate() {
-                let [a, b] = pair(&cell.edges, k).map(|e| link.psi[usize::from(link.equal[e])]);
+                let psi = |edge: usize| link.psi[usize::from(link.equal[edge])];
+                let [a, b] = map_entries(pair(&cell.edges, k), psi);
                 let place = usize::from(end) - usize::from(usize::from(end) > own);
                 set(cell.corner, place, cell.fluxes[k] + (a - b));
             }
@@ -183,9 +187,10 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     fn find_link(&self, vertex: usize, link: &mut Link) -> Option<()> {
         let mesh = self.space.mesh;
         let (cell, count) = self.one_cell[vertex];
+        // without an early end there are no branches
         let place_in = |cell: usize, vertex: u32| {
-            let found = mesh.cell(cell).iter().position(|&v| v == vertex);
-            found.expect("cells at an edge have its ends") as u8
+            let places = mesh.cell(cell).iter().zip(0_u8..);
+            places.fold(0, |found, (&v, k)| if v == vertex { k } else { found })
         };
         link.cells.clear();
         link.ends.clear();
@@ -210,7 +215,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
                                 return None;
                             }
                             let cell = cell as usize;
-                            let ends = [a, b].map(|edge| place_in(cell, link.ends[edge]));
+                            let ends = map_entries([a, b], |edge| place_in(cell, link.ends[edge]));
                             let edge = link.edge_to(mesh.cell(cell)[usize::from(local)])?;
                             // the numbers of the four vertices sum to six
                             let own = 6 - local - ends[0] - ends[1];
@@ -296,31 +301,36 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     }
 
     /// Finds the numbers of edges for which the norm is least.
-    fn least_squares(&self, link: &mut Link) {
-        let mesh = self.space.mesh;
-        let Link { cells, ends, equal, matrix, psi, .. } = link;
+    fn least_squares(&self, vertex: usize, link: &mut Link) {
+        let Link { cells, ends, points, equal, matrix, psi, .. } = link;
+        let vertices = self.space.mesh.vertices();
+        let from = &vertices[vertex];
+        points.clear();
+        points.extend(ends.iter().map(|&end| with_zeros(vertices[end as usize] - from)));
         let n = ends.len();
         matrix.clear();
         matrix.resize(n * n, 0.0);
         psi.clear();
         psi.resize(n, 0.0);
-        for CellOfLink { corner, ends, edges, fluxes, .. } in cells.iter() {
+        for CellOfLink { corner, edges, fluxes, .. } in cells.iter() {
             let cell = corner.cell();
-            let point = |local: usize| mesh.vertices()[mesh.cell(cell)[local] as usize];
-            let x = ends.map(|end| point(end.into()));
-            let middle = (point(corner.own()) + x[0] + x[1] + x[2]) * 0.25;
+            let x = map_entries(*edges, |edge| points[usize::from(edge)]);
             let weight = 1.0 / (9.0 * self.space.alpha(cell) * self.volume(cell));
-            let along = [x[2] - x[1], x[0] - x[2], x[1] - x[0]];
-            let mut field = Point::<D>::zeros();
-            for (x, flux) in x.iter().zip(fluxes) {
-                field += (middle - x) * (weight * flux);
-            }
-            let numbers = edges.map(|edge| usize::from(equal[usize::from(edge)]));
-            for (k, &a) in numbers.iter().enumerate() {
-                psi[a] += along[k].dot(&field);
-                for (l, &b) in numbers.iter().enumerate().filter(|(_, b)| a <= **b) {
-                    matrix[a * n + b] += weight * along[k].dot(&along[l]);
-                }
+            let along: [[f64; 3]; 3] =
+                array_of(|k| array_of(|axis| x[(k + 2) % 3][axis] - x[(k + 1) % 3][axis]));
+            let sum = fluxes[0] + fluxes[1] + fluxes[2];
+            let field: [f64; 3] = array_of(|axis| {
+                let [a, b, c] = map_entries(x, |x| x[axis]);
+                let through = fluxes[0] * a + fluxes[1] * b + fluxes[2] * c;
+                weight * (sum * 0.25 * (a + b + c) - through)
+            });
+            let numbers = map_entries(*edges, |edge| usize::from(equal[usize::from(edge)]));
+            for k in 0..3 {
+                let (a, b) = (numbers[k], numbers[(k + 1) % 3]);
+                psi[a] += dot::<3>(along[k], field);
+                matrix[a * n + a] += weight * dot::<3>(along[k], along[k]);
+                let product = weight * dot::<3>(along[k], along[(k + 1) % 3]);
+                matrix[a.min(b) * n + a.max(b)] += if a == b { 2.0 * product } else { product };
             }
         }
         solve(matrix, psi);

@@ -1,10 +1,12 @@
 //! Squares of errors, integrated over cells.
 
+mod data;
 mod integrand;
 mod roughness;
 
 use std::ops::Range;
 
+use data::may_jump;
 use integrand::{CellIntegrand, LocalFunction};
 use roughness::{Polynomials, Roughness};
 
@@ -18,10 +20,8 @@ use crate::assemble::space::tables::CellTable;
 use crate::assemble::space::{Space, Terms, checks};
 use crate::element::{Entity, Node};
 use crate::error::Error;
-use crate::mesh::edge_vertices;
 use crate::parallel::cells;
 use crate::parallel::vectors::collect;
-use crate::problem::Datum;
 use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule};
 use crate::real::{Point, maximum};
 
@@ -56,14 +56,6 @@ const SMOOTH: f64 = 1e-3;
 /// of that square over all cells.
 const NEGLIGIBLE: f64 = 1e-8;
 
-/// The largest ratio of two values at the corners of a cell of a coefficient or reaction that counts as smooth there.
-/// With a larger one a datum without a level, and with it the integrand, may jump within the cell.
-const SMOOTH_RATIO: f64 = 2.0;
-
-/// An obstacle is linear along an edge if its value at the middle differs from the mean of its values at the ends by at
-/// most this share.
-const LINEAR: f64 = 1e-14;
-
 /// Degree of the rule for means over facets.
 const MEAN_DEGREE: usize = 5;
 
@@ -83,6 +75,8 @@ struct Measure<'m, 'r, 'f, const D: usize> {
     kinks: Vec<Kinks<D>>,
     /// The values at vertices of the first of these functions, where it is that of the contact set.
     contact_at_vertices: Option<Vec<f64>>,
+    /// Whether the unknowns of a cell are the values of a linear function at the vertices.
+    is_conforming_linear: bool,
     /// The functional of each node.
     nodes: Vec<Terms>,
     /// The exact solution at the vertices of the mesh, if all nodes are vertices.
@@ -137,6 +131,7 @@ impl<const D: usize> Space<'_, D> {
             cut_rules,
             kinks,
             contact_at_vertices: self.contact_at_vertices(exact),
+            is_conforming_linear: self.is_conforming_linear(),
             nodes,
             at_vertices: self.values_at_vertices(exact),
             u,
@@ -147,12 +142,13 @@ impl<const D: usize> Space<'_, D> {
         let chunks = cells::map(n_cells, &|cells: Range<usize>| {
             let (mut sum, mut open) = (SquaredErrors::default(), Vec::new());
             for cell in cells.filter(|&cell| counts(cell)) {
-                let (rough, squares) = self.squares_in(&measure, cell)?;
+                let integrand = self.integrand_in(&measure, cell);
+                let (rough, squares) = self.squares_in(&measure, &integrand)?;
                 match rough <= SMOOTH {
                     true => sum.add(&squares),
                     false => open.push((cell, map_entries(squares, |s| rough * s), squares)),
                 }
-                sum.max = maximum(sum.max, self.largest_at_nodes(&measure, cell)?);
+                sum.max = maximum(sum.max, self.largest_at_nodes(&measure, &integrand)?);
             }
             Ok::<_, Error>((sum, open))
         });
@@ -173,7 +169,10 @@ impl<const D: usize> Space<'_, D> {
             for (cell, rough, squares) in &open[range] {
                 match rough.iter().zip(&negligible).all(|(rough, limit)| rough <= limit) {
                     true => sum.add(squares),
-                    false => sum.add(&self.squares_by(&measure, *cell)?),
+                    false => {
+                        let integrand = self.integrand_in(&measure, *cell);
+                        sum.add(&self.squares_by(&measure, &integrand)?);
+                    }
                 }
             }
             Ok::<_, Error>(sum)
@@ -198,21 +197,33 @@ impl<const D: usize> Space<'_, D> {
         let discrete = of.u.map(|u| {
             let (n, values) = (self.per_cell(), self.local_values(cell, u));
             let mut discrete = LocalFunction { n, values, slope: None };
-            // the derivatives of linear functions are those at any point
+            // linear functions have one basis function for each vertex, with the same derivatives at all points
             if self.basis_degree <= 1 {
-                discrete.slope = Some(discrete.gradient(&of.table.basis[0], &gradients));
+                discrete.slope = Some(discrete.gradient(D + 1, &of.table.basis[0], &gradients));
             }
             discrete
         });
         let region = self.mesh.region(cell);
         let coefficient = self.data.coefficient.of(region);
+        let mut admissible = of.function.map(|f| f(cell));
+        let mut is_admissible = false;
+        if let Some(function) = &mut admissible
+            && function.is_linear(&self.mesh.corners(cell))
+        {
+            function.bounds = [None; 2];
+            let has_same_values = |of: &LocalFunction<D>| of.values[..=D] == function.values[..=D];
+            is_admissible = of.is_conforming_linear
+                && coefficient.is_none_or(|alpha| alpha.constant().is_some())
+                && discrete.as_ref().is_some_and(has_same_values);
+        }
         CellIntegrand {
             exact: of.exact,
             cell,
             volume: geometry.volume,
             gradients,
             discrete,
-            admissible: of.function.map(|f| f(cell)),
+            admissible: admissible.filter(|_| !is_admissible),
+            is_admissible,
             alpha: self.alpha(cell),
             varying: coefficient.filter(|_| self.varying_in(cell).is_some()),
             coefficient,
@@ -241,9 +252,12 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The squares of a cell by the rule of highest degree.
-    fn squares_by(&self, of: &Measure<'_, '_, '_, D>, cell: usize) -> Result<Squares, Error> {
-        let integrand = self.integrand_in(of, cell);
-        let corners = self.mesh.corners(cell);
+    fn squares_by(
+        &self,
+        of: &Measure<'_, '_, '_, D>,
+        integrand: &CellIntegrand<'_, D>,
+    ) -> Result<Squares, Error> {
+        let corners = self.mesh.corners(integrand.cell);
         let CellTable { points, basis, weights } = &of.table;
         let mut sums = Squares::default();
         for ((point, basis), &weight) in points.iter().zip(basis).zip(weights) {
@@ -257,12 +271,14 @@ impl<const D: usize> Space<'_, D> {
     fn squares_in(
         &self,
         of: &Measure<'_, '_, '_, D>,
-        cell: usize,
+        integrand: &CellIntegrand<'_, D>,
     ) -> Result<(f64, Squares), Error> {
-        let integrand = self.integrand_in(of, cell);
-        let corners = self.mesh.corners(cell);
-        if let Some(squares) = self.squares_on_pieces(of, &integrand, &corners) {
+        let corners = self.mesh.corners(integrand.cell);
+        if let Some(squares) = self.squares_on_pieces(of, integrand, &corners) {
             return Ok((0.0, squares?));
+        }
+        if self.has_no_error(of, integrand) {
+            return Ok((0.0, Squares::default()));
         }
         let corner = |k: usize| corners[k];
         let touches_in_piece = || {
@@ -276,9 +292,10 @@ impl<const D: usize> Space<'_, D> {
             .filter(|_| data.into_iter().all(|datum| !may_jump(datum, corner)))
             .filter(|_| !touches_in_piece())
         else {
-            return Ok((0.0, self.squares_by(of, cell)?));
+            return Ok((0.0, self.squares_by(of, integrand)?));
         };
-        let (mut sums, mut rough) = (Squares::default(), Roughness::new(*n));
+        let n_fluxes = 1 + usize::from(integrand.admissible.is_some());
+        let (mut sums, mut rough) = (Squares::default(), Roughness::new(*n, n_fluxes));
         let points = table.points.iter().zip(&table.basis).zip(&table.weights);
         for (((point, basis), &weight), polynomials) in points.zip(polynomials) {
             let x = in_space(point, &corners);
@@ -287,6 +304,21 @@ impl<const D: usize> Space<'_, D> {
         }
         let points = || table.points.iter().map(|p| in_space(p, &corners)).collect();
         Ok((rough.share(), integrand.checked(sums, points)?))
+    }
+
+    /// Whether discrete and exact solution are the same linear function in a cell that no kink cuts: in contact with a
+    /// linear obstacle, and equal at the corners.
+    fn has_no_error(&self, of: &Measure<'_, '_, '_, D>, integrand: &CellIntegrand<'_, D>) -> bool {
+        let (Some(contact), Some(exact)) = (&of.contact_at_vertices, &of.at_vertices) else {
+            return false;
+        };
+        let is_equal = |discrete: &LocalFunction<D>| {
+            let corners = self.mesh.cell(integrand.cell).iter().map(|&v| v as usize);
+            let mut values = corners.zip(&discrete.values);
+            values.all(|(v, value)| contact[v] > 0.0 && exact[v] == *value)
+        };
+        // obstacles are linear where the discrete function is known to be admissible
+        integrand.is_admissible && integrand.discrete.as_ref().is_some_and(is_equal)
     }
 
     /// The squares of a cell that kinks of the exact solution cut.
@@ -324,25 +356,13 @@ impl<const D: usize> Space<'_, D> {
         Some(integrand.checked(sums, points))
     }
 
-    /// Whether obstacles are linear in a cell, as far as their values at corners and middles of edges tell. A linear
-    /// obstacle exceeds no linear admissible function within a cell.
-    fn has_linear_obstacles(&self, cell: usize) -> bool {
-        let (region, corners) = (self.mesh.region(cell), self.mesh.corners(cell));
-        let is_linear = |bound: &Datum<D>| {
-            let at_corners = corners.map(|x| bound.at(&x));
-            edge_vertices(D).iter().all(|&[a, b]| {
-                let at_middle = bound.at(&((corners[a] + corners[b]) * 0.5));
-                let deviation = (at_middle - 0.5 * (at_corners[a] + at_corners[b])).abs();
-                deviation <= LINEAR * (at_corners[a].abs() + at_corners[b].abs())
-            })
-        };
-        let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
-        bounds.into_iter().flatten().all(is_linear)
-    }
-
     /// The largest error at the nodes of a cell.
-    fn largest_at_nodes(&self, of: &Measure<'_, '_, '_, D>, cell: usize) -> Result<f64, Error> {
-        let Some(u) = of.u else { return Ok(0.0) };
+    fn largest_at_nodes(
+        &self,
+        of: &Measure<'_, '_, '_, D>,
+        integrand: &CellIntegrand<'_, D>,
+    ) -> Result<f64, Error> {
+        let (Some(discrete), cell) = (&integrand.discrete, integrand.cell) else { return Ok(0.0) };
         let mut largest = 0.0_f64;
         for (i, (node, terms)) in self.nodes.iter().zip(&of.nodes).enumerate() {
             let at = |(point, weight): &([f64; 4], f64)| {
@@ -358,23 +378,9 @@ impl<const D: usize> Space<'_, D> {
                     checks::finite(value, "exact solution", &self.node_point(cell, node), cell)?
                 }
             };
-            let error = (u[self.dofs.of(cell, i)] - value).abs();
+            let error = (discrete.values[i] - value).abs();
             largest = maximum(largest, error);
         }
         Ok(largest)
     }
-}
-
-/// Whether a coefficient may jump within a cell with these corners, though no level says so.
-fn may_jump<const D: usize>(
-    coefficient: Option<&Datum<D>>,
-    corner: impl Fn(usize) -> Point<D>,
-) -> bool {
-    let Some(alpha) = coefficient else { return false };
-    if alpha.constant().is_some() || alpha.level().is_some() {
-        return false;
-    }
-    let values = (0..=D).map(|k| alpha.at(&corner(k)));
-    let (least, most) = values.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
-    most > SMOOTH_RATIO * least
 }

@@ -7,8 +7,9 @@ pub(super) type Polynomials = [f64; 6];
 
 /// Moments of two fluxes in a cell: that of the error of the discrete function, and that of the function in cells.
 pub(super) struct Roughness<const D: usize> {
-    /// Number of polynomials.
+    /// Numbers of polynomials and of fluxes.
     n: usize,
+    n_fluxes: usize,
     /// The means of the squares.
     squares: [f64; 2],
     /// The means of the products with polynomials.
@@ -16,14 +17,14 @@ pub(super) struct Roughness<const D: usize> {
 }
 
 impl<const D: usize> Roughness<D> {
-    /// No points yet, for this number of polynomials.
-    pub fn new(n: usize) -> Self {
-        Self { n, squares: [0.0; 2], moments: [[Point::zeros(); 6]; 2] }
+    /// No points yet, for these numbers of polynomials and of fluxes.
+    pub fn new(n: usize, n_fluxes: usize) -> Self {
+        Self { n, n_fluxes, squares: [0.0; 2], moments: [[Point::zeros(); 6]; 2] }
     }
 
     /// Adds a point of a rule.
     pub fn add(&mut self, weight: f64, fluxes: &[Point<D>; 2], polynomials: &Polynomials) {
-        for (k, flux) in fluxes.iter().enumerate() {
+        for (k, flux) in fluxes.iter().enumerate().take(self.n_fluxes) {
             let flux_of_weight = flux * weight;
             self.squares[k] += flux.dot(&flux_of_weight);
             for (moment, polynomial) in self.moments[k].iter_mut().zip(polynomials).take(self.n) {

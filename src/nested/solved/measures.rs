@@ -179,12 +179,14 @@ impl<const D: usize> Solved<'_, D> {
     /// The figures of the bound.
     fn figures(&self, errors: TrueErrors) -> BoundFigures {
         let bound = self.pair_and_bound().map(|(_, bound, _)| bound);
-        BoundFigures::of_solution(bound, errors, (self.energy_norm(), self.rounding()))
+        BoundFigures::of_solution(bound, errors, (self.energy_norm, self.rounding()))
     }
     /// Rounding errors in the figures of the solution; none without an iterate.
     pub fn rounding(&self) -> Option<Rounding> {
         let [cells, ..] = self.has_iterate.then(|| self.sizes())?;
-        let of = (cells as usize, self.energy_norm());
-        self.discretisation().rounding(self.inequality(), &self.solution, of)
+        let of = (cells as usize, self.energy_norm);
+        *once(&self.rounding, || {
+            self.discretisation().rounding(self.inequality(), &self.solution, of)
+        })
     }
 }

@@ -19,7 +19,7 @@ use crate::error_bound::{ErrorBound, PrimalDualPair};
 use crate::inequality::{
     Certificate, Outcome, Solution, certify_solution, count_active, energy_norm,
 };
-use crate::measure::Fields;
+use crate::measure::{Fields, Rounding};
 use crate::mesh::{Mesh, Part};
 
 /// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
@@ -35,10 +35,14 @@ pub struct Solved<'a, const D: usize> {
     solution: Solution<f64>,
     certificate: Certificate,
     has_iterate: bool,
+    /// The energy norm to which certificates are relative.
+    energy_norm: f64,
     /// The hierarchy that has the mesh, and its position there.
     hierarchy: Option<(&'a Hierarchy<D>, usize)>,
     /// The bound with the pair that gives it and the seconds of both, once computed.
     bound: OnceLock<(PrimalDualPair<D>, ErrorBound, f64)>,
+    /// The rounding errors in the figures, once computed.
+    rounding: OnceLock<Option<Rounding>>,
     /// Seconds for the mesh and all coarser ones, if it is one of several.
     pub(crate) mesh_seconds: f64,
     /// Seconds of the solve on this mesh.
@@ -83,9 +87,9 @@ impl<'a, const D: usize> Solved<'a, D> {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
         }
+        let energy_norm = energy_norm(inequality, &solution);
         if has_iterate {
-            let norm = energy_norm(inequality, &solution);
-            solution.dual_residual = certificate.largest() * norm;
+            solution.dual_residual = certificate.largest() * energy_norm;
         }
         Self {
             mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
@@ -93,8 +97,10 @@ impl<'a, const D: usize> Solved<'a, D> {
             solution,
             certificate,
             has_iterate,
+            energy_norm,
             hierarchy,
             bound: OnceLock::new(),
+            rounding: OnceLock::new(),
             solve_seconds: 0.0,
             start_seconds: 0.0,
             coarser_levels: 0,
@@ -104,10 +110,6 @@ impl<'a, const D: usize> Solved<'a, D> {
         }
     }
 
-    /// The energy norm to which certificates are relative.
-    fn energy_norm(&self) -> f64 {
-        energy_norm(self.inequality(), &self.solution)
-    }
     /// How the solve ended.
     pub fn outcome(&self) -> Outcome {
         self.solution.outcome
