@@ -21,7 +21,7 @@ mod owned_rows;
 mod penalised_matrix;
 mod penalty_below_bound;
 mod penalty_factor;
-mod shared_rows;
+pub(crate) mod shared_rows;
 pub(crate) mod space;
 pub(crate) mod stiffness;
 mod trace;

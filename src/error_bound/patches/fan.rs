@@ -107,7 +107,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     /// result is false. On the boundary the fan begins and ends with boundary facets.
     fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
         let mesh = self.space.mesh;
-        // without an early end there are no branches
+        // the cell has the vertex; without an early end of the search there are no branches
         let number_in = |cell: usize| {
             let numbers = mesh.cell(cell).iter().zip(0_u8..);
             numbers.fold(0, |found, (&v, k)| if v as usize == vertex { k } else { found })

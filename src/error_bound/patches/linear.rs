@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
 use crate::arrays::array_of;
+use crate::assemble::shared_rows::places::for_each_place;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::space::metric::shape;
@@ -88,12 +89,12 @@ impl<const D: usize> Space<'_, D> {
             self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
         }
         let mut one_cell = vec![(0, 0); if D > 1 { self.mesh.vertices().len() } else { 0 }];
-        for (cell, vertices) in self.mesh.cells().chunks_exact(D + 1).enumerate().filter(|_| D > 1)
-        {
-            for &v in vertices {
-                let (one, count) = &mut one_cell[v as usize];
-                (*one, *count) = (cell as u32, *count + 1);
-            }
+        if D > 1 {
+            // unknowns are the values at vertices
+            let Ok(()) = for_each_place::<D, _, _>(&self.dofs, &mut one_cell, |one, (cell, _)| {
+                *one = (cell as u32, one.1 + 1);
+                Ok::<(), Infallible>(())
+            });
         }
         let cells = data;
         Ok(LinearCells { space: self, neighbours, cells, loads, multipliers, obstacles, one_cell })

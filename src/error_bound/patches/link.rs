@@ -14,6 +14,8 @@
 //! sum_K sum_b e_a . e_b / (9 alpha V) psi_b = sum_K e_a . sum_k c_k (m - x_k) / (9 alpha V)
 //! ```
 
+use std::ops::Range;
+
 use super::corner_fluxes::CornerFluxes;
 use super::corners::Corner;
 use super::linear::LinearCells;
@@ -21,7 +23,6 @@ use super::patch::solve;
 use crate::arrays::{array_of, map_entries};
 use crate::mesh::{BoundaryCondition, Neighbour, dot, with_zeros};
 use crate::parallel::cells;
-use std::ops::Range;
 
 /// The most edges at a vertex whose patch is solved this way.
 const MOST_EDGES: usize = 64;
@@ -187,7 +188,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     fn find_link(&self, vertex: usize, link: &mut Link) -> Option<()> {
         let mesh = self.space.mesh;
         let (cell, count) = self.one_cell[vertex];
-        // without an early end there are no branches
+        // the cell has the vertex; without an early end of the search there are no branches
         let place_in = |cell: usize, vertex: u32| {
             let places = mesh.cell(cell).iter().zip(0_u8..);
             places.fold(0, |found, (&v, k)| if v == vertex { k } else { found })
