@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use crate::runs::own_scene;
 use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
+use unilateral::problem::Exact;
 use unilateral::study::Row;
 
 /// The row of P1, which is zero on the obstacle everywhere, against `amplitude` times a function with zeros at all
