@@ -250,14 +250,15 @@ impl<const D: usize> Solve<'_, '_, D> {
         let steps = self.process.engine.solve_inequality(&rows, &data, &mut own_values);
         let has_method = steps.ok_or("the engine has no solver of inequalities");
         agree(has_method, &*self.process.exchange)?;
+        let steps = steps.expect("all parts have agreed that there is a method");
         self.check_engine()?;
         let mut values = vec![0.0; inequality.size()];
         own.iter().zip(&own_values).for_each(|(&i, &value)| values[i as usize] = value);
         (over_parts as &dyn Distribution).update(&mut values);
         let contact = contact_of(inequality, &values);
         let solution = Solution::new(values, contact, Outcome::Converged)
-            .iterations(steps.unwrap_or(0), 0)
-            .systems(steps.unwrap_or(0))
+            .iterations(steps, 0)
+            .systems(steps)
             .linear_solver("engine");
         Ok(solution)
     }

@@ -56,8 +56,10 @@ pub struct Solution<T> {
     /// The stages of the solver that ran, in their order; empty for a solver without stages.
     pub stages: Vec<StageRun>,
     /// A point after every outer step, all stages included, if the initial guess asks for it and the solver keeps it
-    /// ([`InitialGuess::keeps_history`](super::InitialGuess::keeps_history)); else empty. Values may still be moved onto
-    /// their bounds after the last one.
+    /// ([`InitialGuess::keeps_history`](super::InitialGuess::keeps_history)); else empty. A step whose system has no
+    /// solution has no point. The last point need not be that of `values`: these may be moved onto their bounds, or be
+    /// those of an earlier step if they are better. Where bounds alone hold a body, the points are those of the
+    /// inequalities that are solved on the way; in single precision, those of the rounded inequality.
     pub history: Vec<HistoryPoint>,
     /// The precision in which the values were computed.
     pub precision: Precision,

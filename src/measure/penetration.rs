@@ -175,14 +175,16 @@ impl<const D: usize> Space<'_, D> {
             }
             Ok(found)
         };
-        // unknowns are the values at vertices
+        // unknowns are the values at vertices; those of a part belong to cells that do not count, too
         let is_one_value = self.is_conforming_linear() && !self.data.obstacles_differ();
-        let chunks = match self.problem.has_obstacle() {
-            true if is_one_value && at_vertices[0] && at_vertices[1] => {
-                cells::map(self.mesh.vertices().len(), &at_vertices_of_mesh)
-            }
-            true => cells::map(self.mesh.n_cells(), &of_chunk),
-            false => Vec::new(),
+        let by_vertices = (is_one_value && at_vertices[0] && at_vertices[1])
+            .then(|| cells::map(self.mesh.vertices().len(), &at_vertices_of_mesh))
+            // an error names its cell
+            .filter(|chunks| chunks.iter().all(Result::is_ok));
+        let chunks = match by_vertices {
+            _ if !self.problem.has_obstacle() => Vec::new(),
+            Some(chunks) => chunks,
+            None => cells::map(self.mesh.n_cells(), &of_chunk),
         };
         let mut found = Penetration::NONE;
         for of_chunk in chunks {
@@ -230,6 +232,10 @@ impl<const D: usize> Space<'_, D> {
         points: &Points,
         found: &mut Penetration,
     ) -> Result<(), Error> {
+        let region = self.mesh.region(cell);
+        if [&self.data.lower, &self.data.upper].iter().all(|data| data.of(region).is_none()) {
+            return Ok(());
+        }
         let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
         points.iter().try_for_each(|(point, basis)| {
             let x = in_space(point, &corners);

@@ -178,7 +178,9 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         let Some(mut solution) = last else { unreachable!("at least one run") };
         if self.keeps_history {
             let guess = guess.clone().keeps_history(true);
-            solution.history = self.p1.solver.solve(system, &guess)?.history;
+            let again = self.p1.solver.solve(system, &guess)?;
+            debug_assert_eq!((again.outer, again.systems), (solution.outer, solution.systems));
+            solution.history = again.history;
         }
         Ok((solution, seconds))
     }

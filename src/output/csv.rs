@@ -11,18 +11,42 @@ pub fn to_csv(rows: &[Row]) -> String {
 
 /// Values as comma-separated values, one object a line.
 pub(crate) fn lines<R: Serialize>(rows: &[R]) -> String {
-    let mut text = String::new();
-    for (i, row) in rows.iter().enumerate() {
+    let columns_of = |row: &R| {
         let mut columns = Vec::new();
         // A row is plain data with string keys: its serialisation cannot fail, and should it ever,
         // the line would be missing and the reader's count of rows tell.
         flatten("", &serde_json::to_value(row).unwrap_or(Value::Null), &mut columns);
-        if i == 0 {
-            push_line(&mut text, columns.iter().map(|(key, _)| key.as_str()));
-        }
-        push_line(&mut text, columns.iter().map(|(_, cell)| cell.as_str()));
+        columns
+    };
+    let rows: Vec<Vec<(String, String)>> = rows.iter().map(columns_of).collect();
+    let keys = all_keys(&rows);
+    let mut text = String::new();
+    if !rows.is_empty() {
+        push_line(&mut text, keys.iter().copied());
+    }
+    for row in &rows {
+        let of_key = |key: &&str| row.iter().find(|(of, _)| of == key);
+        push_line(&mut text, keys.iter().map(|key| of_key(key).map_or("", |(_, cell)| cell)));
     }
     text
+}
+
+/// The keys of all rows: those that the first row does not have follow what stands before them in their row.
+fn all_keys(rows: &[Vec<(String, String)>]) -> Vec<&str> {
+    let mut keys: Vec<&str> = Vec::new();
+    for row in rows {
+        let mut next = 0;
+        for (key, _) in row {
+            match keys.iter().position(|known| known == key) {
+                Some(place) => next = place + 1,
+                None => {
+                    keys.insert(next, key);
+                    next += 1;
+                }
+            }
+        }
+    }
+    keys
 }
 
 /// The object whose keys differ from row to row: names of contact groups.
@@ -51,7 +75,10 @@ fn cell(value: &Value) -> String {
             let entry = |(name, value): (&String, &Value)| format!("{name}: {}", cell(value));
             map.iter().map(entry).collect::<Vec<_>>().join("; ")
         }
-        Value::Array(items) => items.iter().map(cell).collect::<Vec<_>>().join("; "),
+        Value::Array(items) => {
+            let item = |item: &Value| if item.is_array() { item.to_string() } else { cell(item) };
+            items.iter().map(item).collect::<Vec<_>>().join("; ")
+        }
         // Numbers are the shortest digits that read back to the same bits.
         other => other.to_string(),
     }

@@ -18,8 +18,8 @@ use crate::table::latex_document;
 
 impl Report {
     /// Rows as comma-separated values after a header of keys, nested keys joined by dots (`error.l2`,
-    /// `iterations.outer`). A value that does not apply is an empty cell; several warnings are
-    /// separated by `"; "`.
+    /// `iterations.outer`). A value that does not apply, or that a row does not have, is an empty cell; several
+    /// warnings, and the points of a history as in JSON, are separated by `"; "`.
     ///
     /// Lines are made from the same serialisation as the JSON report, so that the two agree in keys,
     /// order and digits. Without rows there are no keys, and the text is empty.
@@ -76,8 +76,8 @@ impl Report {
         }
         #[cfg(feature = "plot")]
         for scene in distinct(self.rows.iter().map(|row| &*row.scene)) {
-            let precision = Precision::by_name(&self.program.precision).unwrap_or_default();
-            let limit = precision.certificate_limit();
+            let precision = Precision::by_name(&self.program.precision);
+            let limit = precision.map(|precision| precision.certificate_limit());
             if let Some(figure) = history_figure(&self.rows, scene, limit) {
                 put(&history_file(scene), &figure.to_svg());
             }

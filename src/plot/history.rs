@@ -9,8 +9,9 @@ use crate::study::series::series_of;
 type At = (usize, f64, Option<f64>);
 
 /// The largest part of the certificate after each outer step on the finest level of every scheme and solver, against
-/// seconds and against linear systems, with the limit of certificates; none where no solve of the scene has a history of two points.
-pub(crate) fn history_figure(rows: &[Row], scene: &str, limit: f64) -> Option<Figure> {
+/// seconds and against linear systems, with the limit of certificates where it is known; none where no solve of the scene
+/// has a history of two points. A certificate of zero has no place on a logarithmic axis.
+pub(crate) fn history_figure(rows: &[Row], scene: &str, limit: Option<f64>) -> Option<Figure> {
     let of_scene: Vec<&Row> = rows.iter().filter(|row| row.scene == scene).collect();
     let series = series_of(&of_scene);
     let finest: Vec<&Row> = series.iter().filter_map(|of| of.rows.last().copied()).collect();
@@ -34,10 +35,10 @@ pub(crate) fn history_figure(rows: &[Row], scene: &str, limit: f64) -> Option<Fi
         let curves = finest.iter().enumerate().map(curve);
         let y = "largest part of the certificate";
         let mut panel = Panel::of(&title, (label, y), curves, Orders::default());
-        panel.limits = vec![limit];
+        panel.limits = limit.into_iter().collect();
         panel
     };
-    // no clock is finer
+    // the axis is logarithmic
     let panels = vec![
         panel("time of the solve in s", |at| at.1.max(1e-6)),
         panel("linear systems", |at| at.0 as f64),

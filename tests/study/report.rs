@@ -110,6 +110,26 @@ fn read_csv(text: &str) -> Vec<Vec<String>> {
     lines
 }
 
+/// Rows of an earlier run need not have all keys of this one.
+#[test]
+fn csv_has_the_keys_of_all_rows() {
+    let mut rows = rows();
+    rows[1].history = Some(vec![(1, 0.5, None), (2, 0.75, Some(1e-10))]);
+    rows[2].runs = Some(vec![1.0, 2.0]);
+    let levels = [0, 1, 2].map(|k| rows[k].level.to_string());
+    let csv = read_csv(&report(rows).to_csv());
+    for (key, cells) in [
+        ("history", ["", "[1,0.5,null]; [2,0.75,1e-10]", ""]),
+        ("runs", ["", "", "1.0; 2.0"]),
+        ("level", levels.each_ref().map(String::as_str)),
+    ] {
+        let column = csv[0].iter().position(|of| of == key).expect(key);
+        for (line, cell) in csv[1..].iter().zip(cells) {
+            assert_eq!((line.len(), &*line[column]), (csv[0].len(), cell), "{key}");
+        }
+    }
+}
+
 #[test]
 fn csv_reads_back_to_the_same_numbers_as_json() {
     let mut rows = rows();

@@ -7,7 +7,7 @@ use crate::parallel::for_each_item;
 
 use super::cells::{CellMatrices, CellMatrix, General, Gradients};
 use super::pattern::{EntryPositions, LONGEST};
-use super::unknowns::{ANY, CellUnknowns, Rows, with_constant_count};
+use super::unknowns::{CellUnknowns, Rows, with_constant_count};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
 use crate::assemble::space::dofs::{Dofs, KINDS};

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::parallel::{for_each_item, map_indices};
 
-use super::unknowns::{ANY, CellUnknowns, Rows, with_constant_count};
+use super::unknowns::{CellUnknowns, Rows, with_constant_count};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::dofs::{Dofs, KINDS};
 use crate::memory::in_large_pages;

@@ -1,6 +1,6 @@
 //! Loops over unknowns that cells share, each with the places at which cells have it.
 
-use super::unknowns::{ANY, CellUnknowns, with_constant_count};
+use super::unknowns::{CellUnknowns, with_constant_count};
 use crate::assemble::space::dofs::{Dofs, KINDS};
 use crate::mesh::incidence::{Incidence, partition};
 use crate::parallel::{map_items, split};

@@ -84,13 +84,13 @@ macro_rules! with_constant_count {
             }};
         }
         // constant conditions: loops for another dimension are not even instantiated
-        match CellUnknowns::<$D>::constant_count($dofs) {
+        match $crate::assemble::shared_rows::unknowns::CellUnknowns::<$D>::constant_count($dofs) {
             2 if const { $D == 1 } => with!(2),
             3 if const { $D < 3 } => with!(3),
             4 if const { $D == 3 } => with!(4),
             6 if const { $D == 2 } => with!(6),
             10 if const { $D == 3 } => with!(10),
-            _ => with!(ANY),
+            _ => with!($crate::assemble::shared_rows::unknowns::ANY),
         }
     }};
 }

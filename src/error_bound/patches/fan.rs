@@ -107,10 +107,13 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     /// result is false. On the boundary the fan begins and ends with boundary facets.
     fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
         let mesh = self.space.mesh;
-        // the cell has the vertex; without an early end of the search there are no branches
+        // without an early end of the search there are no branches
         let number_in = |cell: usize| {
             let numbers = mesh.cell(cell).iter().zip(0_u8..);
-            numbers.fold(0, |found, (&v, k)| if v as usize == vertex { k } else { found })
+            let number = |found, (&v, k): (&u32, u8)| if v as usize == vertex { k } else { found };
+            let found = numbers.fold(u8::MAX, number);
+            debug_assert_ne!(found, u8::MAX, "the cells of a fan have its vertex");
+            found
         };
         let (cell, count) = self.one_cell[vertex];
         let own = number_in(cell as usize);

@@ -188,10 +188,13 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     fn find_link(&self, vertex: usize, link: &mut Link) -> Option<()> {
         let mesh = self.space.mesh;
         let (cell, count) = self.one_cell[vertex];
-        // the cell has the vertex; without an early end of the search there are no branches
+        // without an early end of the search there are no branches
         let place_in = |cell: usize, vertex: u32| {
             let places = mesh.cell(cell).iter().zip(0_u8..);
-            places.fold(0, |found, (&v, k)| if v == vertex { k } else { found })
+            let place = |found, (&v, k): (&u32, u8)| if v == vertex { k } else { found };
+            let found = places.fold(u8::MAX, place);
+            debug_assert_ne!(found, u8::MAX, "cells at an edge have its ends");
+            found
         };
         link.cells.clear();
         link.ends.clear();

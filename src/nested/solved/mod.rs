@@ -35,7 +35,7 @@ pub struct Solved<'a, const D: usize> {
     solution: Solution<f64>,
     certificate: Certificate,
     has_iterate: bool,
-    /// The energy norm to which certificates are relative.
+    /// The energy norm to which certificates are relative; zero without an iterate.
     energy_norm: f64,
     /// The hierarchy that has the mesh, and its position there.
     hierarchy: Option<(&'a Hierarchy<D>, usize)>,
@@ -87,9 +87,10 @@ impl<'a, const D: usize> Solved<'a, D> {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
         }
-        let energy_norm = energy_norm(inequality, &solution);
+        let mut norm = 0.0;
         if has_iterate {
-            solution.dual_residual = certificate.largest() * energy_norm;
+            norm = energy_norm(inequality, &solution);
+            solution.dual_residual = certificate.largest() * norm;
         }
         Self {
             mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
@@ -97,7 +98,7 @@ impl<'a, const D: usize> Solved<'a, D> {
             solution,
             certificate,
             has_iterate,
-            energy_norm,
+            energy_norm: norm,
             hierarchy,
             bound: OnceLock::new(),
             rounding: OnceLock::new(),

@@ -1,6 +1,7 @@
 //! Errors of discrete solutions: orders, figures of other programs, exact cases.
 
 mod coefficient;
+mod contact;
 mod family;
 mod loads;
 mod meshes;
