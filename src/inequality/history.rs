@@ -52,8 +52,8 @@ impl<'g> Recorder<'g> {
         self.systems.set(self.systems.get() + 1);
     }
 
-    /// The values after a linear system of the present step are known: they take the place of those before in this step.
-    /// Only for a history their certificate is computed, while the clock stands still.
+    /// The values after a linear system are known. Their point replaces that of an earlier system of the same step. The
+    /// certificate is computed only if a history is kept, and the clock stands still meanwhile.
     pub fn end_step(&self, certificate: impl FnOnce() -> f64) {
         let Some(history) = &self.history else { return };
         let pause = Instant::now();

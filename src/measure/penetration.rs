@@ -177,14 +177,15 @@ impl<const D: usize> Space<'_, D> {
         };
         // unknowns are the values at vertices; those of a part belong to cells that do not count, too
         let is_one_value = self.is_conforming_linear() && !self.data.obstacles_differ();
-        let by_vertices = (is_one_value && at_vertices[0] && at_vertices[1])
+        let has_obstacle = self.problem.has_obstacle();
+        let by_vertices = (has_obstacle && is_one_value && at_vertices[0] && at_vertices[1])
             .then(|| cells::map(self.mesh.vertices().len(), &at_vertices_of_mesh))
             // an error names its cell
             .filter(|chunks| chunks.iter().all(Result::is_ok));
         let chunks = match by_vertices {
-            _ if !self.problem.has_obstacle() => Vec::new(),
             Some(chunks) => chunks,
-            None => cells::map(self.mesh.n_cells(), &of_chunk),
+            None if has_obstacle => cells::map(self.mesh.n_cells(), &of_chunk),
+            None => Vec::new(),
         };
         let mut found = Penetration::NONE;
         for of_chunk in chunks {

@@ -107,7 +107,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     /// result is false. On the boundary the fan begins and ends with boundary facets.
     fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
         let mesh = self.space.mesh;
-        // without an early end of the search there are no branches
+        // a search that ends early has branches that slow the loop over patches
         let number_in = |cell: usize| {
             let numbers = mesh.cell(cell).iter().zip(0_u8..);
             let number = |found, (&v, k): (&u32, u8)| if v as usize == vertex { k } else { found };

@@ -188,7 +188,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     fn find_link(&self, vertex: usize, link: &mut Link) -> Option<()> {
         let mesh = self.space.mesh;
         let (cell, count) = self.one_cell[vertex];
-        // without an early end of the search there are no branches
+        // a search that ends early has branches that slow the loop over patches
         let place_in = |cell: usize, vertex: u32| {
             let places = mesh.cell(cell).iter().zip(0_u8..);
             let place = |found, (&v, k): (&u32, u8)| if v == vertex { k } else { found };

@@ -7,8 +7,9 @@ pub(super) type Polynomials = [f64; 6];
 
 /// Moments of two fluxes in a cell: that of the error of the discrete function, and that of the function in cells.
 pub(super) struct Roughness<const D: usize> {
-    /// Numbers of polynomials and of fluxes.
+    /// Number of polynomials.
     n: usize,
+    /// Number of fluxes that have moments: one or two.
     n_fluxes: usize,
     /// The means of the squares.
     squares: [f64; 2],

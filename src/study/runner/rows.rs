@@ -219,7 +219,7 @@ impl<const D: usize> Study<'_, D> {
         Row {
             level_kind: Some(kind.to_owned()),
             linear_asked: self.linear_asked.clone(),
-            // all rows of a report have the same keys
+            // all rows of a request have the same keys
             history: row.history.or_else(|| self.keeps_history.then(Vec::new)),
             constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
             label: entry.label(problem),
