@@ -185,16 +185,22 @@ struct BlockOverParts {
     over_parts: Arc<OverParts>,
     /// `None` if the block is empty in all parts.
     solver: Option<Box<dyn EngineSolver>>,
-    /// The functions of the block that belong to own unknowns.
+    /// The unknowns of the block in this part.
+    unknowns: Vec<u32>,
+    /// The positions of own unknowns among these.
     own: Vec<u32>,
+    /// Workspace: a value at each unknown of the part.
+    values: Vec<f64>,
     right_side: Vec<f64>,
     solution: Vec<f64>,
 }
 
 impl BlockOverParts {
     fn new(engine: Arc<dyn Engine>, over_parts: Arc<OverParts>) -> Self {
-        let (own, right_side, solution) = (Vec::new(), Vec::new(), Vec::new());
-        Self { engine, over_parts, solver: None, own, right_side, solution }
+        let values = vec![0.0; over_parts.numbering.numbers().len()];
+        let (unknowns, own, right_side, solution) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { engine, over_parts, solver: None, unknowns, own, values, right_side, solution }
     }
 }
 
@@ -226,6 +232,7 @@ impl BlockSolver<f64> for BlockOverParts {
         let over_parts = &*self.over_parts;
         let is_own = |&k: &u32| over_parts.owns(unknowns[k as usize] as usize);
         self.own = (0..unknowns.len() as u32).filter(is_own).collect();
+        self.unknowns = unknowns.to_vec();
         self.right_side = vec![0.0; self.own.len()];
         self.solution = vec![0.0; self.own.len()];
         self.solver = None;
@@ -255,9 +262,12 @@ impl BlockSolver<f64> for BlockOverParts {
             *b = vector[k as usize];
         }
         solver.apply(&self.right_side, &mut self.solution);
-        vector.fill(0.0);
         for (&x, &k) in self.solution.iter().zip(&self.own) {
-            vector[k as usize] = x;
+            self.values[self.unknowns[k as usize] as usize] = x;
+        }
+        (&*self.over_parts as &dyn Distribution).update(&mut self.values);
+        for (x, &i) in vector.iter_mut().zip(&self.unknowns) {
+            *x = self.values[i as usize];
         }
     }
 }

@@ -29,8 +29,8 @@ use crate::real::Real;
 /// In a cell without fixed unknowns the basis consists of facet mean functions. On a facet between two such cells,
 /// average and jump are corrected separately. On a facet between such a cell and a cell with all unknowns fixed, and on
 /// a facet with Dirichlet data, the mean over the one side is corrected. The free vertex values of cells with free and
-/// fixed unknowns, and the means over the sides opposite to these cells, form the mixed block; conforming linear
-/// functions that vanish at all vertices with fixed values correct both as well.
+/// fixed unknowns, and the means over the sides opposite to these cells, form the mixed block, in which two means are not
+/// coupled; conforming linear functions that vanish at all vertices with fixed values correct both as well.
 pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     matrix: &'a SparseMatrix<T>,
     penalties: SidePenalties<T>,
@@ -317,7 +317,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         self.set_side_states();
         // errors are returned at the end, because calls of both solvers are collective over the parts of a mesh
         let corrected = self.set_side_corrections();
-        let factored = self.mixed_block.factor(self.matrix, self.penalties.cell_size);
+        let factored = self.mixed_block.factor(self.matrix, &self.penalties, &self.diagonal);
         self.set_facets();
         self.set_fixed_vertices();
         let Self { fixed_facets, kept_facets, fixed_vertices, .. } = self;

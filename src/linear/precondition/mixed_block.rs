@@ -1,10 +1,8 @@
 //! The mixed block: the block of the matrix of an over-penalised element on the cells with free and fixed vertex
 //! values and on the sides opposite to these cells.
 
-use super::facet_mean_form::facet_mean_function;
-use crate::algebra::{RectangularMatrix, SparseMatrix, galerkin_product};
+use crate::algebra::{NO_INDEX, SidePenalties, SparseMatrix};
 use crate::linear::direct::{FactorError, Factors, minimum_degree_of_groups};
-use crate::parallel::vectors::for_each_chunk;
 use crate::real::Real;
 
 /// The mixed block, with its solver.
@@ -13,15 +11,16 @@ pub(super) struct MixedBlock<'a, T> {
     pub vertex_values: Vec<u32>,
     /// The sides of cells without fixed unknowns that are opposite to cells with free and fixed unknowns.
     pub sides: Vec<u32>,
+    /// These sides, with what eliminates their means from the block.
+    condensed: Vec<CondensedSide<T>>,
     solver: Box<dyn BlockSolver<T> + 'a>,
-    /// Workspace: residual and correction.
+    /// Workspace: residual and correction at the vertex values.
     vector: Vec<T>,
 }
 
 /// The solver of a block of the matrix on few unknowns.
 pub(crate) trait BlockSolver<T>: Send + Sync {
-    /// Factors the matrix of a block. `unknowns[k]` is an unknown of the whole matrix that belongs to function `k` of
-    /// the block and to no other.
+    /// Factors the block of the matrix on some unknowns, ascending.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -50,7 +49,7 @@ impl<T: Real> BlockSolver<T> for BlockFactors<T> {
         // the memory of the old factors is released before the new ones are computed
         self.factors = None;
         if !unknowns.is_empty() {
-            // the functions of a cell stand one after the other, and are coupled to nearly the same functions
+            // the unknowns of a cell stand one after the other, and are coupled to nearly the same unknowns
             let cell = |k: usize| unknowns[k] as usize / self.cell_size;
             let is_first = |k: &usize| *k == 0 || cell(*k) != cell(k - 1);
             let firsts = (0..unknowns.len()).filter(is_first).chain([unknowns.len()]);
@@ -71,71 +70,105 @@ impl<T: Real> BlockSolver<T> for BlockFactors<T> {
 impl<'a, T: Real> MixedBlock<'a, T> {
     /// The empty block, with a solver.
     pub fn new(solver: Box<dyn BlockSolver<T> + 'a>) -> Self {
-        Self { vertex_values: Vec::new(), sides: Vec::new(), solver, vector: Vec::new() }
+        Self {
+            vertex_values: Vec::new(),
+            sides: Vec::new(),
+            condensed: Vec::new(),
+            solver,
+            vector: Vec::new(),
+        }
     }
 }
 
 impl<T: Real> MixedBlock<'_, T> {
-    /// Factors `P^T A P`, where the columns of `P` are the basis functions of the vertex values and
-    /// the facet mean functions of the sides.
+    /// Eliminates the means of the sides from the block, each by its entry of `diagonal`, the form of its facet mean
+    /// function with itself, and factors what remains on the vertex values.
     ///
     /// # Errors
     /// See [`FactorError`].
     pub fn factor(
         &mut self,
         matrix: &SparseMatrix<T>,
-        cell_size: usize,
+        penalties: &SidePenalties<T>,
+        diagonal: &[T],
     ) -> Result<(), FactorError> {
-        let unknowns = [&self.vertex_values[..], &self.sides].concat();
-        let n = unknowns.len();
-        if n == 0 {
-            let (columns, values) = (Vec::new(), Vec::new());
-            return self.solver.factor(&SparseMatrix { row_starts: vec![0], columns, values }, &[]);
+        let Self { vertex_values, sides, condensed, solver, .. } = self;
+        let mut block = matrix.submatrix(vertex_values);
+        condensed.clear();
+        for &side in &*sides {
+            let side = CondensedSide::new(side as usize, vertex_values, penalties, diagonal);
+            side.subtract_from(&mut block);
+            condensed.push(side);
         }
-        let mut entries: Vec<(u32, u32, T)> = Vec::new();
-        for (k, &i) in self.vertex_values.iter().enumerate() {
-            entries.push((i, k as u32, T::lit(1.0)));
-        }
-        for (k, &s) in (self.vertex_values.len()..).zip(&self.sides) {
-            let (cell, facet) = (s as usize / cell_size, s as usize % cell_size);
-            let at_vertex = |i: usize| {
-                ((cell * cell_size + i) as u32, k as u32, facet_mean_function(cell_size, i, facet))
-            };
-            entries.extend((0..cell_size).map(at_vertex));
-        }
-        entries.sort_unstable_by_key(|&(i, k, _)| (i, k));
-        let mut starts = vec![0; matrix.size() + 1];
-        for_each_chunk(&mut starts, |range, starts| {
-            let mut end = entries.partition_point(|entry| (entry.0 as usize) < range.start);
-            for (i, start) in range.zip(starts) {
-                let is_before = |entry: &(u32, u32, T)| (entry.0 as usize) < i;
-                end += entries[end..].iter().take_while(|entry| is_before(entry)).count();
-                *start = end as u32;
-            }
-        });
-        let rows = RectangularMatrix {
-            starts,
-            columns: entries.iter().map(|entry| entry.1).collect(),
-            values: entries.iter().map(|entry| entry.2).collect(),
-        };
-        let form = galerkin_product(matrix, &rows, n);
-        self.solver.factor(&form, &unknowns)
+        solver.factor(&block, vertex_values)
     }
 
     /// Solves the block for the residual with the entries `r` for vertex values and `g` for facet mean functions. Sets
     /// the entries of `z` at the vertex values of the block to the solution, and adds the solution at the sides of the
     /// block to the entries of `means`.
     pub fn solve(&mut self, r: &[T], g: &[T], means: &mut [T], z: &mut [T]) {
-        self.vector.clear();
-        self.vector.extend(self.vertex_values.iter().map(|&i| r[i as usize]));
-        self.vector.extend(self.sides.iter().map(|&s| g[s as usize]));
-        self.solver.solve(&mut self.vector);
-        let (values, side_means) = self.vector.split_at(self.vertex_values.len());
-        for (&i, &value) in self.vertex_values.iter().zip(values) {
+        let Self { vertex_values, condensed, solver, vector, .. } = self;
+        vector.clear();
+        vector.extend(vertex_values.iter().map(|&i| r[i as usize]));
+        for side in &*condensed {
+            let share = side.coupling * side.inverse * g[side.side];
+            side.values().for_each(|k| vector[k] += share);
+        }
+        solver.solve(vector);
+        for side in &*condensed {
+            let sum = side.values().fold(T::lit(0.0), |sum, k| sum + vector[k]);
+            means[side.side] += side.inverse * (g[side.side] + side.coupling * sum);
+        }
+        for (&i, &value) in vertex_values.iter().zip(&*vector) {
             z[i as usize] = value;
         }
-        for (&s, &mean) in self.sides.iter().zip(side_means) {
-            means[s as usize] += mean;
+    }
+}
+
+/// A side whose mean is eliminated from the block.
+struct CondensedSide<T> {
+    side: usize,
+    /// The positions in the block of the free vertex values on the facet, in the opposite cell; then [`NO_INDEX`].
+    values: [u32; 3],
+    /// The entry of the block of the mean with each of these values, with negative sign.
+    coupling: T,
+    /// The reciprocal of the diagonal entry of the mean.
+    inverse: T,
+}
+
+impl<T: Real> CondensedSide<T> {
+    /// The side with its opposite values among the `vertex_values` of the block, ascending.
+    fn new(
+        side: usize,
+        vertex_values: &[u32],
+        penalties: &SidePenalties<T>,
+        diagonal: &[T],
+    ) -> Self {
+        let (size, opposite) = (penalties.cell_size, penalties.opposite[side] as usize);
+        let cell = opposite - opposite % size;
+        let first = vertex_values.partition_point(|&i| (i as usize) < cell);
+        let in_cell = (first..).zip(&vertex_values[first..]);
+        let in_cell = in_cell.take_while(|(_, i)| (**i as usize) < cell + size);
+        // facet `i` of a cell has all vertices but vertex `i`
+        let on_facet = in_cell.filter(|(_, i)| **i as usize != opposite);
+        let mut values = [NO_INDEX; 3];
+        values.iter_mut().zip(on_facet).for_each(|(value, (k, _))| *value = k as u32);
+        // the mean over a facet has the same share of each of its values
+        let coupling = penalties.penalty[side] / T::lit((size - 1) as f64);
+        Self { side, values, coupling, inverse: T::lit(1.0) / diagonal[side] }
+    }
+
+    fn values(&self) -> impl Iterator<Item = usize> {
+        self.values.into_iter().filter(|&k| k != NO_INDEX).map(|k| k as usize)
+    }
+
+    /// Subtracts what the elimination of the mean subtracts from the block.
+    fn subtract_from(&self, block: &mut SparseMatrix<T>) {
+        let change = self.coupling * self.inverse * self.coupling;
+        for k in self.values() {
+            let (columns, entries) = block.row_mut(k);
+            let entries = columns.iter().zip(entries);
+            entries.filter(|(j, _)| self.values.contains(j)).for_each(|(_, a)| *a -= change);
         }
     }
 }
