@@ -4,6 +4,7 @@ use crate::algebra::{Contact, Inequality};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::{BoundaryCondition, HalfFacet};
+use crate::parallel::vectors::collect;
 use crate::quadrature::facet_to_cell;
 
 /// The share of the contact force of a node that acts on one of its contact facets.
@@ -93,7 +94,7 @@ impl<const D: usize> Space<'_, D> {
         residual: &[f64],
         forces: &[NodeForce],
     ) -> Vec<f64> {
-        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
+        let mut multipliers = collect(residual.len(), |i| -residual[i]);
         for force in forces {
             multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
         }

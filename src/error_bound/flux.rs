@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::memory::in_large_pages;
+use crate::parallel::vectors::for_each_chunk_of_groups;
 
 /// A flux `q` in the space of Raviart and Thomas of degree zero or one. Numbers `c` describe it in each cell `K`, with
 /// the functions `phi_F = (x - a_F) / (D |K|)`, `a_F` the vertex opposite the facet `F`:
@@ -110,6 +111,20 @@ impl<const D: usize> Flux<D> {
     pub(super) fn of_cell(&self, cell: usize) -> &[f64] {
         let n = self.per_cell();
         &self.numbers[cell * n..][..n]
+    }
+    /// Replaces the numbers of cells by those that `of` has for the positions of the cells in a list, ascending.
+    pub(super) fn replace_in<'n>(&mut self, cells: &[u32], of: impl Fn(usize) -> &'n [f64] + Sync) {
+        let n = self.per_cell();
+        for_each_chunk_of_groups(&mut self.numbers, n, |range, numbers| {
+            let first = (range.start / n) as u32;
+            let from = cells.partition_point(|&cell| cell < first);
+            for (k, &cell) in (from..).zip(&cells[from..]) {
+                let Some(numbers) = numbers.chunks_exact_mut(n).nth((cell - first) as usize) else {
+                    break;
+                };
+                numbers.copy_from_slice(&of(k)[..n]);
+            }
+        });
     }
     pub(super) fn of_cell_mut(&mut self, cell: usize) -> &mut [f64] {
         self.of_cells_mut(cell..cell + 1)

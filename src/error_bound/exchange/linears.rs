@@ -1,16 +1,20 @@
 //! Exchange for linears: one flux of each facet, one multiplier of each cell.
 
-use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, visit_steps};
+use std::convert::Infallible;
+
+use super::{ExchangeStep, FacetOfCell, ROUNDING, Sweeps, decrease};
 use crate::algebra::Contact;
+use crate::arrays::array_of;
 use crate::assemble::cut_simplices::in_space;
+use crate::assemble::shared_rows::places::for_each_place;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
-use crate::mesh::{BoundaryCondition, HalfFacet, Neighbours};
-use crate::parallel::vectors::{collect, indices};
+use crate::mesh::{BoundaryCondition, HalfFacet, Mesh, Neighbours};
+use crate::parallel::vectors::{collect, for_each_chunk, largest, sum_chunks};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -25,50 +29,61 @@ const DEGREE: usize = 2;
 struct CellOfLinears<const D: usize> {
     /// The number of the cell.
     number: usize,
-    /// The values at the centre of the fluxes that leave through one facet each.
-    at_centre: [Point<D>; 4],
+    /// The flux through each facet.
+    flux: [f64; 4],
+    /// One over the number of dimensions times the volume: the divergence over `D` of a flux that leaves through one
+    /// facet.
+    per_volume: f64,
     /// The mean of the square of such a flux less its value at the centre.
     variance: f64,
     /// The volume over the coefficient.
     weight: f64,
     /// The flux at the centre less the gradient of the function times the coefficient.
     difference: Point<D>,
-    /// The sum of the fluxes through the facets.
-    sum: f64,
-    /// The mean distances of the function from the lower and the upper obstacle; if they are given.
-    gaps: [Option<f64>; 2],
+    /// The mean distances of the function from the lower and the upper obstacle; infinite where none is given.
+    gaps: [f64; 2],
     /// The integral of the multiplier.
     multiplier: f64,
 }
 
 impl<const D: usize> CellOfLinears<D> {
-    /// Half of the derivative of the square of the mismatch by the flux through a facet, and half of the second
-    /// derivative.
-    fn slopes(&self, facet: usize) -> [f64; 2] {
-        let flux = &self.at_centre[facet];
+    /// The value at the centre of the flux that leaves through a facet.
+    fn at_centre(&self, mesh: &Mesh<D>, facet: usize) -> Point<D> {
+        let corners = mesh.corners(self.number);
+        let centre: Point<D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
+        (centre - corners[facet]) * self.per_volume
+    }
+
+    /// Half of the derivative of the square of the mismatch by the flux through a facet, which has this value at the
+    /// centre, and half of the second derivative.
+    fn slopes(&self, at_centre: &Point<D>) -> [f64; 2] {
         [
-            self.weight * (flux.dot(&self.difference) + self.variance * self.sum),
-            self.weight * (flux.norm_squared() + self.variance),
+            self.weight * (at_centre.dot(&self.difference) + self.variance * self.sum()),
+            self.weight * (at_centre.norm_squared() + self.variance),
         ]
+    }
+
+    /// The sum of the fluxes through the facets.
+    fn sum(&self) -> f64 {
+        self.flux.iter().sum()
     }
 
     /// The contribution of the cell to the square of the bound.
     fn square(&self) -> f64 {
-        let mismatch = self.difference.norm_squared() + self.variance * self.sum * self.sum;
+        let mismatch = self.difference.norm_squared() + self.variance * self.sum().powi(2);
         let gap = self.gap(self.multiplier.signum()).unwrap_or(0.0);
         self.weight * mismatch + 2.0 * self.multiplier.abs() * gap
     }
 
     /// The mean distance from the obstacle that presses with this sign.
     fn gap(&self, sign: f64) -> Option<f64> {
-        self.gaps[usize::from(sign < 0.0)]
+        Some(self.gaps[usize::from(sign < 0.0)]).filter(|gap| gap.is_finite())
     }
 
-    /// Adds to the flux through a facet what the multiplier gives.
-    fn add(&mut self, facet: usize, exchange: f64, flux: &mut Flux<D>) {
-        flux.add_through(self.number, facet, exchange);
-        self.difference += self.at_centre[facet] * exchange;
-        self.sum += exchange;
+    /// Adds to the flux through a facet, which has this value at the centre, what the multiplier gives.
+    fn add(&mut self, facet: usize, at_centre: &Point<D>, exchange: f64) {
+        self.flux[facet] += exchange;
+        self.difference += at_centre * exchange;
         self.multiplier -= exchange;
     }
 }
@@ -84,38 +99,41 @@ impl<const D: usize> Space<'_, D> {
         contact: &[Contact],
         forces: &[NodeForce],
     ) -> Vec<f64> {
-        let n = self.per_cell();
+        let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
         let mut multipliers = self.multipliers_of_obstacles(residual, forces);
-        let states = multipliers.iter_mut().zip(contact);
-        states.filter(|(_, state)| **state == Contact::Inactive).for_each(|(m, _)| *m = 0.0);
+        for_each_chunk(&mut multipliers, |range, multipliers| {
+            let states = multipliers.iter_mut().zip(contact.get(range).unwrap_or_default());
+            states.filter(|(_, state)| **state == Contact::Inactive).for_each(|(m, _)| *m = 0.0);
+        });
         if self.broken {
-            return multipliers.chunks_exact(n).map(|m| m.iter().sum()).collect();
+            return collect(n_cells, |cell| multipliers[cell * n..][..n].iter().sum());
         }
         for (cell, local) in self.facets_of(BoundaryCondition::Dirichlet) {
             self.nodes_on(local).for_each(|i| multipliers[self.dofs.of(cell, i)] = 0.0);
         }
-        let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
-        let is_rounding = |m: &&mut f64| m.abs() <= ROUNDING * largest;
-        multipliers.iter_mut().filter(is_rounding).for_each(|m| *m = 0.0);
+        let largest = largest(multipliers.len(), |i| multipliers[i].abs());
+        for_each_chunk(&mut multipliers, |_, multipliers| {
+            let is_rounding = |m: &&mut f64| m.abs() <= ROUNDING * largest;
+            multipliers.iter_mut().filter(is_rounding).for_each(|m| *m = 0.0);
+        });
         let by_volume = self.is_conforming_linear();
-        let n_cells = self.mesh.n_cells();
         let weight = |cell: usize| if by_volume { self.mesh.geometry(cell).volume } else { 1.0 };
-        let mut weights = vec![0.0; multipliers.len()];
-        let pressing = |cell: usize| {
-            let acting = (0..n).filter(move |&i| obstacles.act_in(cell, i));
-            acting.map(move |i| self.dofs.of(cell, i)).filter(|&i| multipliers[i] != 0.0)
+        let pressing = |cell: usize, i: usize| {
+            let unknown = self.dofs.of(cell, i);
+            (multipliers[unknown] != 0.0 && obstacles.act_in(cell, i)).then_some(unknown)
         };
-        let mut of_cells = vec![0.0; n_cells];
-        let with_share = indices(n_cells, |cell| pressing(cell).next().is_some());
-        let with_share = || with_share.iter().map(|&cell| cell as usize);
-        for cell in with_share() {
-            of_cells[cell] = weight(cell);
-            pressing(cell).for_each(|i| weights[i] += of_cells[cell]);
-        }
-        for cell in with_share() {
-            of_cells[cell] *= pressing(cell).map(|i| multipliers[i] / weights[i]).sum::<f64>();
-        }
-        of_cells
+        let mut weights = vec![0.0; multipliers.len()];
+        let Ok(()) = for_each_place::<D, _, Infallible>(&self.dofs, &mut weights, |sum, at| {
+            if pressing(at.0, at.1).is_some() {
+                *sum += weight(at.0);
+            }
+            Ok(())
+        });
+        collect(n_cells, |cell| {
+            let unknowns = (0..n).filter_map(|i| pressing(cell, i));
+            let shares: f64 = unknowns.map(|i| multipliers[i] / weights[i]).sum();
+            if shares == 0.0 { 0.0 } else { weight(cell) * shares }
+        })
     }
 
     /// Exchanges multipliers for flux of linears, in and between the cells that count.
@@ -126,32 +144,31 @@ impl<const D: usize> Space<'_, D> {
         (neighbours, counts): (&Neighbours, Counts<'_>),
         flux: &mut Flux<D>,
     ) {
-        let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
+        let largest = largest(multipliers.len(), |cell| multipliers[cell].abs());
         let presses = |cell: usize| counts(cell) && multipliers[cell].abs() > ROUNDING * largest;
         let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, counts), false);
         let rule = Rule::new(D, DEGREE);
-        let before = &*flux;
         let mut cells = collect(numbers.len(), |k| {
-            let number = numbers[k];
+            let number = numbers[k] as usize;
             let multiplier = if presses(number) { multipliers[number] } else { 0.0 };
-            let mut cell = self.cell_of_linears(number, function, multiplier, &rule);
-            for (flux, at_centre) in before.of_cell(number).iter().zip(&cell.at_centre) {
-                cell.difference += at_centre * *flux;
-                cell.sum += flux;
-            }
-            cell
+            self.cell_of_linears(number, function, multiplier, (flux.of_cell(number), &rule))
         });
-        let square: f64 = cells.iter().map(CellOfLinears::square).sum();
-        visit_steps(&steps, (cells.len(), square), SWEEPS, |step| match step {
-            ExchangeStep::Between(at) => {
-                exchange_between(&mut cells, at.map(FacetOfCell::half), flux)
+        let square =
+            sum_chunks(&mut cells, 1, |_, cells| cells.iter().map(CellOfLinears::square).sum());
+        let mesh = self.mesh;
+        let sweeps = Sweeps::new(SWEEPS, cells.len(), square);
+        sweeps.run_in_parallel(&mut cells, &steps, |cells, first, step| {
+            let of_cell = |facet: FacetOfCell| (facet.cell as usize - first, facet.local.into());
+            match step {
+                ExchangeStep::Between(at) => exchange_between(mesh, cells, at.map(of_cell)),
+                ExchangeStep::WithDirichlet(facet) => {
+                    let (k, local) = of_cell(facet);
+                    exchange_with_dirichlet(mesh, &mut cells[k], local)
+                }
+                ExchangeStep::Inside(_) => 0.0,
             }
-            ExchangeStep::WithDirichlet(facet) => {
-                let (k, local) = facet.half();
-                exchange_with_dirichlet(&mut cells[k], local, flux)
-            }
-            ExchangeStep::Inside(_) => 0.0,
         });
+        flux.replace_in(&numbers, |k| &cells[k].flux);
     }
 
     fn cell_of_linears(
@@ -159,7 +176,7 @@ impl<const D: usize> Space<'_, D> {
         number: usize,
         function: &PrimalDualPair<D>,
         multiplier: f64,
-        rule: &Rule,
+        (flux, rule): (&[f64], &Rule),
     ) -> CellOfLinears<D> {
         let volume = self.mesh.geometry(number).volume;
         let alpha = self.alpha(number);
@@ -168,30 +185,32 @@ impl<const D: usize> Space<'_, D> {
         let centre: Point<D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
         let squares: f64 = corners[..=D].iter().map(|x| (centre - x).norm_squared()).sum();
         let per_volume = 1.0 / (D as f64 * volume);
-        let mut at_centre = [Point::zeros(); 4];
-        (0..D + 1).for_each(|k| at_centre[k] = (centre - corners[k]) * per_volume);
+        let mut difference = -admissible.gradient * alpha;
+        for (flux, corner) in flux.iter().zip(&corners) {
+            difference += (centre - corner) * per_volume * *flux;
+        }
         let gap = |k: usize| {
-            let bound = admissible.bounds[k]?;
+            let Some(bound) = admissible.bounds[k] else { return f64::INFINITY };
             let distance = |value: f64, x: &Point<D>| {
                 ([1.0, -1.0][k] * (value - self.at(bound, number, x))).max(0.0)
             };
             if bound.constant().is_some() {
                 let at_corners = (0..D + 1).map(|k| distance(admissible.values[k], &corners[k]));
-                return Some(at_corners.sum::<f64>() / (D + 1) as f64);
+                return at_corners.sum::<f64>() / (D + 1) as f64;
             }
             let at_point = |point: &[f64; 4]| {
                 let value = admissible.values.iter().zip(point).map(|(v, b)| v * b).sum();
                 distance(value, &in_space(point, &corners))
             };
-            Some(rule.iter().map(|(point, weight)| weight * at_point(point)).sum())
+            rule.iter().map(|(point, weight)| weight * at_point(point)).sum()
         };
         CellOfLinears {
             number,
-            at_centre,
+            flux: array_of(|k| flux.get(k).copied().unwrap_or(0.0)),
+            per_volume,
             variance: squares * per_volume * per_volume / ((D + 1) * (D + 2)) as f64,
             weight: volume / alpha,
-            difference: -admissible.gradient * alpha,
-            sum: 0.0,
+            difference,
             gaps: [gap(0), gap(1)],
             multiplier,
         }
@@ -201,17 +220,18 @@ impl<const D: usize> Space<'_, D> {
 /// Exchanges the multipliers of two cells for the flux through their facet. The result is by how much the square of the
 /// bound falls.
 fn exchange_between<const D: usize>(
+    mesh: &Mesh<D>,
     cells: &mut [CellOfLinears<D>],
     [(here, facet_here), (there, facet_there)]: [HalfFacet; 2],
-    flux: &mut Flux<D>,
 ) -> f64 {
     let [of_here, of_there] = [&cells[here], &cells[there]];
     let sign = (of_here.multiplier + of_there.multiplier).signum();
     let gaps = of_here.gap(sign).zip(of_there.gap(sign));
     let gaps = gaps.filter(|_| of_here.multiplier * of_there.multiplier >= 0.0);
     let Some((gap_here, gap_there)) = gaps else { return 0.0 };
-    let [slope, curvature] = of_here.slopes(facet_here);
-    let [slope_there, curvature_there] = of_there.slopes(facet_there);
+    let at_centre = [of_here.at_centre(mesh, facet_here), of_there.at_centre(mesh, facet_there)];
+    let [slope, curvature] = of_here.slopes(&at_centre[0]);
+    let [slope_there, curvature_there] = of_there.slopes(&at_centre[1]);
     let slope = slope - slope_there + sign * (gap_there - gap_here);
     let curvature = curvature + curvature_there;
     let (a, b) = (-of_there.multiplier, of_here.multiplier);
@@ -219,26 +239,27 @@ fn exchange_between<const D: usize>(
     if !exchange.is_finite() {
         return 0.0;
     }
-    cells[here].add(facet_here, exchange, flux);
-    cells[there].add(facet_there, -exchange, flux);
+    cells[here].add(facet_here, &at_centre[0], exchange);
+    cells[there].add(facet_there, &at_centre[1], -exchange);
     decrease([slope, curvature], exchange)
 }
 
 /// Exchanges the multiplier of a cell for the flux through a Dirichlet facet. The result is by how much the square of
 /// the bound falls.
 fn exchange_with_dirichlet<const D: usize>(
+    mesh: &Mesh<D>,
     cell: &mut CellOfLinears<D>,
     local: usize,
-    flux: &mut Flux<D>,
 ) -> f64 {
     let sign = cell.multiplier.signum();
     let Some(gap) = cell.gap(sign) else { return 0.0 };
-    let [slope, curvature] = cell.slopes(local);
+    let at_centre = cell.at_centre(mesh, local);
+    let [slope, curvature] = cell.slopes(&at_centre);
     let slope = slope - sign * gap;
     let exchange = sign * (-sign * slope / curvature).min(sign * cell.multiplier);
     if !exchange.is_finite() {
         return 0.0;
     }
-    cell.add(local, exchange, flux);
+    cell.add(local, &at_centre, exchange);
     decrease([slope, curvature], exchange)
 }

@@ -20,11 +20,13 @@ mod forces;
 mod linears;
 mod quadratics;
 
+use crate::algebra::NO_INDEX;
 use crate::assemble::space::Space;
 use crate::measure::Counts;
-use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
-use crate::parallel::vectors::indices;
+use crate::parallel::vectors::{
+    chunk_length, flags, for_each_chunk_of_two, indices, map_chunks, positions,
+};
 
 /// Multipliers below this share of the largest one are rounding.
 const ROUNDING: f64 = 1e-10;
@@ -69,25 +71,79 @@ impl ExchangeStep {
     }
 }
 
-/// Visits the steps of an exchange in sweeps; after the first one those only one of whose cells has changed since the
-/// sweep before began. A visit returns by how much the square of the bound falls. The square of the bound is that of all
-/// cells of the exchange at the beginning.
-fn visit_steps(
-    steps: &[ExchangeStep],
-    (n_cells, square): (usize, f64),
-    n_sweeps: usize,
-    mut visit: impl FnMut(ExchangeStep) -> f64,
-) {
-    let negligible = NEGLIGIBLE * square / n_cells as f64;
-    // sweeps count from one
-    let mut last_change = vec![0; n_cells];
-    for sweep in 1..=n_sweeps {
+/// The steps of an exchange. The cells are those of chunks of equal length.
+struct ExchangeSteps {
+    /// By chunk the steps all of whose cells belong to it.
+    within: Vec<Vec<ExchangeStep>>,
+    /// The steps between cells of two chunks: few, as neighbours have near numbers.
+    between: Vec<ExchangeStep>,
+}
+
+/// The sweeps of an exchange: in one after the first those steps are visited one of whose cells has changed since the
+/// sweep before began.
+struct Sweeps {
+    /// How many.
+    n: usize,
+    /// What the square of the bound falls by if nothing has changed.
+    negligible: f64,
+}
+
+impl Sweeps {
+    /// At most `n` sweeps, where the square of the bound over all cells of the exchange is this one at the beginning.
+    fn new(n: usize, n_cells: usize, square: f64) -> Self {
+        Self { n, negligible: NEGLIGIBLE * square / n_cells as f64 }
+    }
+
+    /// Visits steps once. A visit returns by how much the square of the bound falls. `last_change` has for each cell from
+    /// `first` on the sweep in which it last changed; sweeps count from one.
+    fn visit(
+        &self,
+        sweep: usize,
+        steps: &[ExchangeStep],
+        (first, last_change): (usize, &mut [usize]),
+        mut visit: impl FnMut(ExchangeStep) -> f64,
+    ) {
         for step in steps {
-            let cells = step.cells();
+            let cells = step.cells().map(|k| k - first);
             let may_change = cells.iter().any(|&k| last_change[k] + 1 >= sweep);
-            if may_change && visit(*step) > negligible {
+            if may_change && visit(*step) > self.negligible {
                 cells.iter().for_each(|&k| last_change[k] = sweep);
             }
+        }
+    }
+
+    /// Visits all steps in sweeps, on one thread.
+    fn run(
+        &self,
+        n_cells: usize,
+        steps: &ExchangeSteps,
+        mut visit: impl FnMut(ExchangeStep) -> f64,
+    ) {
+        let mut last_change = vec![0; n_cells];
+        for sweep in 1..=self.n {
+            for steps in steps.within.iter().chain([&steps.between]) {
+                self.visit(sweep, steps, (0, &mut last_change), &mut visit);
+            }
+        }
+    }
+
+    /// Visits all steps in sweeps, those within chunks of cells in parallel. A visit has the cells from the first one of
+    /// the chunk on, and the number of that.
+    fn run_in_parallel<C: Send>(
+        &self,
+        cells: &mut [C],
+        steps: &ExchangeSteps,
+        visit: impl Fn(&mut [C], usize, ExchangeStep) -> f64 + Sync,
+    ) {
+        let mut last_change = vec![0; cells.len()];
+        let length = chunk_length(cells.len(), 1);
+        for sweep in 1..=self.n {
+            for_each_chunk_of_two(cells, &mut last_change, 1, |range, cells, last_change| {
+                let (first, within) = (range.start, &steps.within[range.start / length]);
+                let visit = |step| visit(cells, first, step);
+                self.visit(sweep, within, (first, last_change), visit);
+            });
+            self.visit(sweep, &steps.between, (0, &mut last_change), |step| visit(cells, 0, step));
         }
     }
 }
@@ -106,49 +162,57 @@ impl<const D: usize> Space<'_, D> {
         presses: &(dyn Fn(usize) -> bool + Sync),
         (neighbours, counts): (&Neighbours, Counts<'_>),
         has_inner_steps: bool,
-    ) -> (Vec<usize>, Vec<ExchangeStep>) {
+    ) -> (Vec<u32>, ExchangeSteps) {
         let n_cells = self.mesh.n_cells();
-        let mut places = vec![u32::MAX; n_cells];
-        for cell in indices(n_cells, presses) {
-            let cell = cell as usize;
-            places[cell] = 0;
-            for local in 0..=D {
-                if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
-                    && counts(other as usize)
-                {
-                    places[other as usize] = 0;
+        let is_in_exchange = flags(n_cells, |set| {
+            map_chunks(n_cells, |range| {
+                for cell in range.filter(|&cell| presses(cell)) {
+                    set(cell);
+                    for local in 0..=D {
+                        if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
+                            && counts(other as usize)
+                        {
+                            set(other as usize);
+                        }
+                    }
                 }
-            }
-        }
-        let numbers = indices(n_cells, |cell| places[cell] == 0);
-        let numbers: Vec<usize> = numbers.into_iter().map(|cell| cell as usize).collect();
-        numbers.iter().enumerate().for_each(|(place, &cell)| places[cell] = place as u32);
-        // about half a facet for each of a cell, and one step inside
-        let mut steps = in_large_pages(Vec::with_capacity(numbers.len() * (D + 3) / 2));
-        for (here, &cell) in numbers.iter().enumerate() {
-            let here = here as u32;
+            });
+        });
+        let numbers = indices(n_cells, |cell| is_in_exchange[cell]);
+        let places = positions(n_cells, &numbers);
+        let steps_of = |here: usize, add: &mut dyn FnMut(ExchangeStep)| {
+            let cell = numbers[here] as usize;
             for local in 0..=D {
-                let facet = FacetOfCell { cell: here, local: local as u8 };
+                let facet = FacetOfCell { cell: here as u32, local: local as u8 };
                 match neighbours.across(cell, local) {
                     Neighbour::Cell { cell: other, local } => {
                         let there = places[other as usize];
-                        if other as usize > cell && there != u32::MAX {
-                            steps.push(ExchangeStep::Between([
-                                facet,
-                                FacetOfCell { cell: there, local },
-                            ]));
+                        if other as usize > cell && there != NO_INDEX {
+                            let facet_there = FacetOfCell { cell: there, local };
+                            add(ExchangeStep::Between([facet, facet_there]));
                         }
                     }
                     Neighbour::Boundary(BoundaryCondition::Dirichlet) => {
-                        steps.push(ExchangeStep::WithDirichlet(facet));
+                        add(ExchangeStep::WithDirichlet(facet));
                     }
                     Neighbour::Boundary(_) | Neighbour::Cut => {}
                 }
             }
             if has_inner_steps {
-                steps.push(ExchangeStep::Inside(here));
+                add(ExchangeStep::Inside(here as u32));
             }
-        }
-        (numbers, steps)
+        };
+        let of_chunks = map_chunks(numbers.len(), |range| {
+            let (mut within, mut between) = (Vec::new(), Vec::new());
+            for here in range.clone() {
+                steps_of(here, &mut |step| match step.cells().iter().all(|k| range.contains(k)) {
+                    true => within.push(step),
+                    false => between.push(step),
+                });
+            }
+            (within, between)
+        });
+        let (within, between): (Vec<_>, Vec<_>) = of_chunks.into_iter().unzip();
+        (numbers, ExchangeSteps { within, between: between.concat() })
     }
 }

@@ -6,7 +6,7 @@
 //! added to `c_AA` and taken from `c_BB` changes the multiplier of the cell at the vertices `A` and `B` alone.
 
 use super::cells_of_quadratics::{CellOfQuadratics, CellsOfQuadratics};
-use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, visit_steps};
+use super::{ExchangeStep, FacetOfCell, ROUNDING, Sweeps, decrease};
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
@@ -123,11 +123,13 @@ impl<const D: usize> Space<'_, D> {
         let largest = (0..multipliers.len()).map(strength).fold(0.0, f64::max);
         let presses = |cell: usize| strength(cell) > ROUNDING * largest;
         let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, &|_| true), true);
+        let numbers: Vec<usize> = numbers.into_iter().map(|cell| cell as usize).collect();
         let multiplier = |cell: usize| if presses(cell) { multipliers[cell] } else { [0.0; 4] };
         let mut cells = self.cells_with_products(&numbers, multiplier, function, flux);
         (0..numbers.len()).for_each(|k| cells.make_sign_definite(k));
         let square: f64 = (0..numbers.len()).map(|k| cells.square(k)).sum();
-        visit_steps(&steps, (numbers.len(), square), SWEEPS, |step| match step {
+        let sweeps = Sweeps::new(SWEEPS, numbers.len(), square);
+        sweeps.run(numbers.len(), &steps, |step| match step {
             ExchangeStep::Between(facets) => {
                 let at = facets.map(FacetOfCell::half);
                 let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
