@@ -51,15 +51,6 @@ const MARGIN: f64 = 8.0;
 const HEADING: f64 = 28.0;
 const GAP: f64 = 10.0;
 
-/// Positions of the panels.
-struct PictureLayout<'a> {
-    /// With their upper left corners.
-    panels: Vec<(&'a Panel, ScreenPoint)>,
-    width: f64,
-    /// Width and height of the picture.
-    size: (f64, f64),
-}
-
 /// A picture of a solution.
 ///
 /// ```
@@ -134,7 +125,7 @@ impl Picture {
                 ),
             });
         }
-        let PictureLayout { panels, width, size } = self.layout();
+        let (panels, width, size) = self.layout();
         let mut pen = Pen::new(size, true);
         let heading = (0.5 * size.0, MARGIN + 0.4 * HEADING);
         pen.text(&self.title, heading, axes::TITLE + 1.0, INK, Align::Centre);
@@ -167,8 +158,8 @@ impl Picture {
         Ok(path)
     }
 
-    /// Panels row by row.
-    fn layout(&self) -> PictureLayout<'_> {
+    /// Panels row by row with their upper left corners, their width, and the size of the picture.
+    fn layout(&self) -> (Vec<(&Panel, ScreenPoint)>, f64, (f64, f64)) {
         let alone = self.panels.first().is_some_and(|panel| match panel {
             Panel::Map(map) => map.high[0] - map.low[0] > ELONGATED * (map.high[1] - map.low[1]),
             Panel::Graph(_) => true,
@@ -183,8 +174,7 @@ impl Picture {
             }
             y += row.iter().map(|p| p.height(width)).fold(0.0, f64::max) + GAP;
         }
-        let size = (2.0 * MARGIN + columns as f64 * width, y);
-        PictureLayout { panels: placed, width, size }
+        (placed, width, (2.0 * MARGIN + columns as f64 * width, y))
     }
 }
 
