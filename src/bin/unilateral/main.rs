@@ -50,19 +50,16 @@ enum Command {
 fn main() -> ExitCode {
     #[cfg(unix)]
     take_full_files_as_errors();
-    match parse().map_err(Failure::from).and_then(run) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        // of several processes the first one says why
-        Err(Failure::Work(message)) => {
-            complain_unless_empty(&message);
-            ExitCode::from(1)
-        }
-        Err(Failure::Request(message)) => {
-            complain_unless_empty(&message);
-            ExitCode::from(2)
-        }
+    let (code, message) = match parse().map_err(Failure::from).and_then(run) {
+        Ok(is_good) => (u8::from(!is_good), String::new()),
+        Err(Failure::Work(message)) => (1, message),
+        Err(Failure::Request(message)) => (2, message),
+    };
+    // of several processes the first one says why
+    if !message.is_empty() {
+        complain(&message);
     }
+    ExitCode::from(code)
 }
 
 /// Lets a write beyond the largest size of a file (`ulimit -f`) fail, as on a full disk; by default a signal ends the
@@ -72,12 +69,6 @@ fn take_full_files_as_errors() {
     let mut signals = SigSet::empty();
     signals.add(Signal::SIGXFSZ);
     signals.thread_block().expect("the signal exists");
-}
-
-fn complain_unless_empty(message: &str) {
-    if !message.is_empty() {
-        complain(message);
-    }
 }
 
 /// Runs a command; false for exit code 1.
