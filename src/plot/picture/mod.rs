@@ -21,13 +21,11 @@ mod space;
 mod trace;
 mod triangle;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::pen::{Align, Pen, ScreenPoint};
 use super::style::INK;
 use crate::error::Error;
-use crate::error::write_error;
 use crate::files::replace_text;
 use crate::instances::compiled;
 use crate::measure::Fields;
@@ -138,24 +136,12 @@ impl Picture {
         Ok(pen.finish())
     }
 
-    /// Writes the picture as an SVG file.
-    ///
-    /// # Errors
-    /// [`Error::Write`], and those of [`Self::to_svg`].
-    pub fn write_svg(&self, path: &Path) -> Result<(), Error> {
-        let svg = self.to_svg()?;
-        replace_text(path, &svg).map(|_| ())
-    }
-
     /// Writes `NAME.svg` to a directory, which is made if need be.
     ///
     /// # Errors
     /// [`Error::Write`], and those of [`Self::to_svg`].
     pub fn write(&self, directory: &Path, name: &str) -> Result<PathBuf, Error> {
-        fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
-        let path = directory.join(format!("{name}.svg"));
-        self.write_svg(&path)?;
-        Ok(path)
+        replace_text(&directory.join(format!("{name}.svg")), &self.to_svg()?)
     }
 
     /// Panels row by row with their upper left corners, their width, and the size of the picture.

@@ -24,7 +24,7 @@ use unilateral::stability::{Stability, StabilityProgress, Verdict};
 /// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
 pub fn run(options: &Options) -> Result<bool, Failure> {
     use_threads(options.threads.map(usize::from))?;
-    let bar = bar(options.quiet, 0, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}");
+    let bar = bar(options.quiet, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}");
     tick(&bar);
     let mut study = Stability::new(options.effort())
         .cases(options.cases.clone())

@@ -52,7 +52,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
             warn(&warning);
         }
     };
-    let bar = bar(quiet, 0, "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}");
+    let bar = bar(quiet, "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}");
     let (scenes, files) = options.asked.scenes(&SCENES, &warn)?;
     let mut runs = Vec::new();
     for scene in scenes {
