@@ -70,14 +70,6 @@ impl Variant {
         let linear_asked = row.linear_asked.clone();
         Self { scene, label, solver, linear_asked, meshes: Meshes::of(row) }
     }
-    /// Whether a row is of this variant.
-    pub(super) fn has(&self, row: &Row) -> bool {
-        self.scene == row.scene
-            && self.label == row.label
-            && self.solver == row.solver
-            && self.linear_asked == row.linear_asked
-            && self.meshes == Meshes::of(row)
-    }
     /// Whether the other one is the same, perhaps on another scene.
     #[cfg(feature = "report")]
     pub(crate) fn differs_in_scene_only(&self, other: &Self) -> bool {
@@ -124,12 +116,10 @@ pub struct Series<'r> {
 pub(crate) fn series_of<R: Borrow<Row>>(rows: &[R]) -> Vec<Series<'_>> {
     let mut all: Vec<Series<'_>> = Vec::new();
     for row in rows.iter().map(R::borrow) {
-        match all.iter_mut().find(|series| series.variant.has(row)) {
+        let variant = Variant::of(row);
+        match all.iter_mut().find(|series| series.variant == variant) {
             Some(series) => series.rows.push(row),
-            None => {
-                let variant = Variant::of(row);
-                all.push(Series { variant, name: String::new(), rows: vec![row] });
-            }
+            None => all.push(Series { variant, name: String::new(), rows: vec![row] }),
         }
     }
     for k in 0..all.len() {
