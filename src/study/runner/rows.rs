@@ -202,7 +202,7 @@ impl<const D: usize> Study<'_, D> {
         self.not_exact.get_or_init(found).clone()
     }
 
-    /// The row with the names of constraint set and label and the promised orders.
+    /// The row with the names of constraint set and label, the kind of meshes, and the promised orders.
     pub(super) fn named(
         &self,
         entry: &Entry<'_, D>,
@@ -218,6 +218,7 @@ impl<const D: usize> Study<'_, D> {
         };
         Row {
             level_kind: Some(kind.to_owned()),
+            theta: self.adaptive.map(|of| of.theta),
             linear_asked: self.linear_asked.clone(),
             // all rows of a request have the same keys
             history: row.history.or_else(|| self.keeps_history.then(Vec::new)),
