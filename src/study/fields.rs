@@ -66,7 +66,6 @@ impl FieldFiles {
         let files = done.into_iter().filter_map(|level| Some((level as f64, path(level)?)));
         let series: Vec<(f64, PathBuf)> = files.filter(|(_, path)| path.exists()).collect();
         let stem = file_name(&format!("{scene}-{label}"));
-        let list = directory.join(format!("{stem}.pvd"));
-        replace(&list, |draft| write_pvd(draft, &series)).map(|_| ())
+        write_pvd(&directory.join(format!("{stem}.pvd")), &series)
     }
 }
