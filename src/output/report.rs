@@ -24,7 +24,7 @@ impl Report {
     /// Lines are made from the same serialisation as the JSON report, so that the two agree in keys,
     /// order and digits. Without rows there are no keys, and the text is empty.
     pub fn to_csv(&self) -> String {
-        csv::to_csv(&self.rows)
+        csv::lines(&self.rows)
     }
 
     /// Removes the files of this report from a directory, where they are: those that [`Report::write`] and
