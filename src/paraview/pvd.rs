@@ -1,6 +1,5 @@
 //! A series of VTK files in one collection file of ParaView.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
@@ -19,16 +18,16 @@ pub fn write_pvd(path: &Path, series: &[(f64, PathBuf)]) -> Result<(), Error> {
     );
     let directory = path.parent().unwrap_or(Path::new(""));
     for (level, file) in series {
-        let name = file.strip_prefix(directory).unwrap_or(file).display().to_string();
-        // writing to a text does not fail
-        let _ = writeln!(
-            text,
-            "<DataSet timestep=\"{level}\" group=\"\" part=\"0\" file=\"{}\"/>",
-            escape(&name)
-        );
+        let name = relative_to(directory, file);
+        text += &format!("<DataSet timestep=\"{level}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
     }
     text += "</Collection>\n</VTKFile>\n";
     replace_text(path, &text).map(drop)
+}
+
+/// The name of a file as the value of an attribute, relative to a directory that it is in.
+pub(super) fn relative_to(directory: &Path, file: &Path) -> String {
+    escape(&file.strip_prefix(directory).unwrap_or(file).display().to_string())
 }
 
 /// A text as the value of an attribute.

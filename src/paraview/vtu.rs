@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use super::encode::{Arrays, doubles, integers, singles};
 use super::grid::{Grid, values_per_cell};
 use super::groups::{array_names, members};
-use super::pvd::escape;
+use super::pvd::{escape, relative_to};
 use crate::arrays::map_entries;
 use crate::error::Error;
 use crate::files::{replace, replace_text};
@@ -30,9 +30,6 @@ pub enum FieldScalar {
     /// 64 bits: no digit is lost.
     Double,
 }
-
-/// A function of space.
-type Function<'a, const D: usize> = &'a (dyn Fn(&Point<D>) -> f64 + 'a);
 
 /// A function of space that may jump between cells: of the number of a cell and a point in it.
 type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<D>) -> f64 + 'a>;
@@ -97,7 +94,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         }
     }
     /// Adds a function of space as point data.
-    pub fn function(self, name: &'a str, f: Function<'a, D>) -> Self {
+    pub fn function(self, name: &'a str, f: &'a (dyn Fn(&Point<D>) -> f64 + 'a)) -> Self {
         self.function_in_cells(name, move |_, x| f(x))
     }
     /// Adds a function of cell and point as point data. Points that cells share have the value from one of
@@ -191,10 +188,8 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         let names = names.chain(self.groups().into_iter().map(|(name, _)| name));
         of_cells.extend(names.map(|name| typed("UInt8", &name)));
         let directory = path.parent().unwrap_or(Path::new(""));
-        let source = |part: &PathBuf| {
-            let name = part.strip_prefix(directory).unwrap_or(part).display().to_string();
-            format!("<Piece Source=\"{}\"/>\n", escape(&name))
-        };
+        let source =
+            |part: &PathBuf| format!("<Piece Source=\"{}\"/>\n", relative_to(directory, part));
         let sources: String = parts.iter().map(source).collect();
         let text = format!(
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" \
