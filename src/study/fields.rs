@@ -37,9 +37,8 @@ impl FieldFiles {
         self.path(of, level, levels).is_some_and(|path| !path.exists())
     }
 
-    /// Writes the fields of a solution if its level is wanted: `SCENE-LABEL.vtu` for the finest of the
-    /// levels; with all levels also `SCENE-LABEL-LEVEL.vtu` for the others and `SCENE-LABEL.pvd`, which
-    /// lists the files that are there. Where there is a reference the error is the difference from it.
+    /// Writes the fields of a solution if its level is wanted; with all levels also `SCENE-LABEL.pvd`, which lists the
+    /// files that are there. Where there is a reference the error is the difference from it.
     pub fn write<const D: usize>(
         &self,
         (scene, label): (&str, &str),
