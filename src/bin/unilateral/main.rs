@@ -1,8 +1,8 @@
 //! Finite element schemes on variational inequalities, from the command line.
 //!
 //! `cargo run --release` compares schemes with the defaults, `cargo run --release -- --help` names
-//! the other commands. Exit codes: 0 if the command succeeded, 1 if a run did not converge or a
-//! check failed, 2 if the request was wrong.
+//! the other commands. Exit codes: 0 if the command succeeded, 1 if a run did not converge, a check
+//! failed or the work ended in an error, 2 if the request was wrong, 130 if it was interrupted.
 
 mod adaptive;
 mod asked;

@@ -1,8 +1,8 @@
 //! A solution as a picture: the function, the contact set found against the exact free boundary, the
 //! jumps across facets, the multiplier and the share of each cell in the error bound, as SVG.
 //!
-//! `cargo run --release -- pictures --help` lists the options. Exit codes: 0 if every solve converged,
-//! 1 if one did not (its last iterate is drawn, and said to be one), 2 if the request was wrong.
+//! `cargo run --release -- pictures --help` lists the options. Of a solve that did not converge the last iterate is
+//! drawn, and said to be one.
 
 use std::cell::RefCell;
 use std::path::PathBuf;

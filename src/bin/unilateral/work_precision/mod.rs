@@ -1,7 +1,6 @@
 //! Work against precision: what schemes and linear solvers take to reach a given error.
 //!
 //! `cargo run --release -- work-precision --help` lists the options; `--quick` ends within a minute.
-//! Exit codes: 0 if every run converged, 1 otherwise, 2 if the request was wrong.
 
 mod options;
 
