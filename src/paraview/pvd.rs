@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 use crate::files::replace_text;
+use crate::input::escaped;
 
 /// Writes a `.pvd` file that lists files of fields, each with its level where the format has a
 /// time, so that a slider goes from coarse to fine. Files in its own directory are named relative
@@ -27,21 +28,5 @@ pub fn write_pvd(path: &Path, series: &[(f64, PathBuf)]) -> Result<(), Error> {
 
 /// The name of a file as the value of an attribute, relative to a directory that it is in.
 pub(super) fn relative_to(directory: &Path, file: &Path) -> String {
-    escape(&file.strip_prefix(directory).unwrap_or(file).display().to_string())
-}
-
-/// A text as the value of an attribute.
-pub(super) fn escape(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;");
-    text.replace('>', "&gt;").replace('"', "&quot;")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::escape;
-
-    #[test]
-    fn names_of_files_are_valid_in_attributes() {
-        assert_eq!(escape("a<b>\"c\"&d"), "a&lt;b&gt;&quot;c&quot;&amp;d");
-    }
+    escaped(&file.strip_prefix(directory).unwrap_or(file).display().to_string())
 }

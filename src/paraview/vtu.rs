@@ -12,10 +12,11 @@ use std::path::{Path, PathBuf};
 use super::encode::{Arrays, doubles, integers, singles};
 use super::grid::{Grid, values_per_cell};
 use super::groups::{array_names, members};
-use super::pvd::{escape, relative_to};
+use super::pvd::relative_to;
 use crate::arrays::map_entries;
 use crate::error::Error;
 use crate::files::{replace, replace_text};
+use crate::input::escaped;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryFacet, Mesh};
 use crate::real::Point;
@@ -177,7 +178,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             FieldScalar::Double => "Float64",
         };
         let typed = |kind: &str, name: &str| {
-            format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escape(name))
+            format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escaped(name))
         };
         let array = |name: &str| typed(kind, name);
         let functions = self.functions.iter().map(|(name, _)| *name);
@@ -304,7 +305,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     fn push_field_data(&self, to: &mut Arrays) -> io::Result<()> {
         writeln!(to.text, "<FieldData>")?;
         for (name, value) in &self.numbers {
-            let name = escape(name);
+            let name = escaped(name);
             writeln!(
                 to.text,
                 "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" \
@@ -332,7 +333,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
         to.push("UInt8", "dimension", 1, &dimensions)?;
         for (name, group) in self.groups() {
-            to.push("UInt8", &escape(&name), 1, &members(self.mesh, group))?;
+            to.push("UInt8", &escaped(&name), 1, &members(self.mesh, group))?;
         }
         Ok(())
     }
@@ -357,6 +358,6 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             FieldScalar::Single => ("Float32", singles(values)),
             FieldScalar::Double => ("Float64", doubles(values)),
         };
-        to.push(kind, &escape(name), 1, &bytes)
+        to.push(kind, &escaped(name), 1, &bytes)
     }
 }
