@@ -5,7 +5,7 @@ use super::panel::draw_panel;
 use super::pen::Pen;
 use super::series::{Panel, Quantity, with_curves};
 use crate::study::row::distinct;
-use crate::study::series::{names, series_of};
+use crate::study::series::series_of;
 use crate::study::{Row, Series};
 
 /// A drawing that can be written as SVG.
@@ -96,6 +96,11 @@ pub fn work_precision(rows: &[Row]) -> Figure {
         .flat_map(|panel| with_curves(vec![panel]))
         .collect();
     Figure { panels, keys: names, columns }
+}
+
+/// The names of series, each once: a scheme on several scenes has one.
+fn names(series: &[Series<'_>]) -> Vec<String> {
+    distinct(series.iter().map(|series| series.name.clone()))
 }
 
 /// The series of each scene, in the order in which scenes first occur.

@@ -98,8 +98,8 @@ pub(crate) fn work_at_errors(rows: &[Row]) -> Vec<WorkAtError> {
             series.iter().filter(|of| of.variant.scene == scene).map(Curve::of).collect();
         let mut curves = run.clone();
         for other in series.iter().map(|of| &of.variant) {
-            if !curves.iter().any(|of| of.variant.differs_in_scene_only(other)) {
-                let variant = Variant { scene: scene.to_owned(), ..other.clone() };
+            let variant = Variant { scene: scene.to_owned(), ..other.clone() };
+            if !curves.iter().any(|of| of.variant == variant) {
                 curves.push(Curve { variant, rows: &[], begun: Vec::new() });
             }
         }
@@ -210,10 +210,6 @@ fn targets(curves: &[Curve<'_>], norm: ErrorNorm) -> Vec<f64> {
 mod tests {
     use super::work_at;
 
-    fn close(a: f64, b: f64) -> bool {
-        (a - b).abs() <= 1e-12 * b.abs()
-    }
-
     #[test]
     fn work_is_found_between_levels_and_not_beyond_them() {
         let points = [1e-1, 1e-3].map(|error| (Some(error), 1.0 / error));
@@ -228,7 +224,8 @@ mod tests {
             let points = [4.0, 9.0, 32.0].map(point);
             for n in [4.0, 5.0, 9.0, 20.0, 32.0] {
                 let found = work_at(&points, point(n).0.unwrap()).unwrap();
-                assert!(close(found, point(n).1), "{order} {cost} {n}: {found}");
+                let error = (found - point(n).1).abs();
+                assert!(error <= 1e-12 * point(n).1, "{order} {cost} {n}: {found}");
             }
             assert_eq!(work_at(&points, point(3.9).0.unwrap()), None);
             assert_eq!(work_at(&points, point(32.1).0.unwrap()), None);
