@@ -58,7 +58,7 @@ pub fn check_scene<const D: usize>(scene: &Scene<D>, samples: usize) -> Result<(
     }
     let samples = samples.max(2);
     let inside = samples::inside(&scene.domain, samples);
-    data::check(scene, &inside, samples)?;
+    scene.check_data(&inside, samples)?;
     let Some(exact) = &scene.problem.exact else { return Ok(()) };
     let domain = &scene.domain;
     let data = (&scene.problem, exact);
