@@ -4,8 +4,8 @@ use super::figure::Figure;
 use super::series::{Curve, Orders, Panel, Point, Quantity, title, with_curves};
 use crate::study::series::Series;
 
-/// The panels of a scene over seconds or unknowns, one for each norm in which there are errors and one for bounds, below
-/// each other; energy only where it is not the H1 seminorm.
+/// The panels of a scene over seconds or unknowns, one for each norm in which there are errors and one for bounds,
+/// below each other; energy only where it is not the H1 seminorm.
 pub(crate) fn cost_figure(scene: &str, series: &[Series<'_>], cost: Quantity) -> Figure {
     let rows = || series.iter().flat_map(|of| of.rows.iter().copied());
     let panel = |y: Quantity| {
