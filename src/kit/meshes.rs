@@ -75,7 +75,10 @@ pub(super) fn moved<const D: usize>(
 }
 
 /// The facets of the boundary by the new numbers of their vertices.
-fn tagged<const D: usize>(mesh: &Mesh<D>, number: impl Fn(u32) -> u32) -> Vec<TaggedFacet<D>> {
+pub(crate) fn tagged<const D: usize>(
+    mesh: &Mesh<D>,
+    number: impl Fn(u32) -> u32,
+) -> Vec<TaggedFacet<D>> {
     let tag = |facet: &crate::mesh::BoundaryFacet| {
         let mut vertices = [0; D];
         let old = mesh.facet_vertices(facet.cell as usize, facet.local as usize);

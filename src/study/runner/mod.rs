@@ -257,7 +257,10 @@ impl<'a, const D: usize> Study<'a, D> {
         let mut by_solver: Vec<Vec<NestedIteration<'_, D>>> = self
             .solvers()
             .iter()
-            .map(|solver| hierarchies.iter().map(|h| self.nested(h, solver)).collect())
+            .map(|solver| {
+                let nested = |h| NestedIteration::new(&self.scene.problem, h);
+                hierarchies.iter().map(|h| self.with_settings(nested(h), solver)).collect()
+            })
             .collect();
         let mut kept = kept.into_iter();
         let (mut rows, mut unwritten) = (Vec::new(), None);
@@ -377,14 +380,7 @@ impl<'a, const D: usize> Study<'a, D> {
         self.solvers()[0].precision()
     }
 
-    /// The problem of the scene on nested meshes.
-    fn nested<'s>(
-        &'s self,
-        hierarchy: &'s Hierarchy<D>,
-        solver: &Arc<dyn InequalitySolver<f64> + 's>,
-    ) -> NestedIteration<'s, D> {
-        self.with_settings(NestedIteration::new(&self.scene.problem, hierarchy), solver)
-    }
+    /// A problem on nested meshes with a solver and the settings of the study.
     fn with_settings<'s>(
         &'s self,
         nested: NestedIteration<'s, D>,
