@@ -66,9 +66,6 @@ impl<const D: usize> Space<'_, D> {
 impl<const D: usize> Discretisation<'_, D> {
     /// The value of a vector of unknowns at a point, in the first cell that contains the point; none
     /// outside the mesh. The search takes a time proportional to the number of cells.
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn value_at(&self, u: &[f64], point: &Point<D>) -> Option<f64> {
         compiled!(const D: fn(&Discretisation<'_, D>, &[f64], &Point<D>) -> Option<f64>
                 = |of, u, point| of.space.value_at(u, point)
@@ -77,7 +74,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// The value of a vector of unknowns at a point of a cell; outside the cell that of the polynomial there.
     ///
     /// # Panics
-    /// If there is no such cell, or `u` is shorter than the number of unknowns.
+    /// If there is no such cell.
     #[cfg(feature = "report")]
     pub(crate) fn value_in(&self, u: &[f64], cell: usize, point: &Point<D>) -> f64 {
         let (basis, local) = self.space.evaluate(cell, point, u);

@@ -27,9 +27,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn errors(&self, u: &[f64]) -> Result<Errors, Error> {
         match &self.space.problem.exact {
             Some(exact) => self.errors_against(exact, u),
@@ -43,9 +40,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn errors_against(&self, exact: &Exact<D>, u: &[f64]) -> Result<Errors, Error> {
         Ok(self.squared_errors(exact, u, &|_| true)?.norms())
     }
@@ -58,9 +52,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn squared_errors(
         &self,
         exact: &Exact<D>,

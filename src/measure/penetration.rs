@@ -118,9 +118,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn penetration(&self, u: &[f64]) -> Result<Option<Penetration>, Error> {
         self.penetration_of((u, Precision::Double), &|_| true)
     }

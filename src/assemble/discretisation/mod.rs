@@ -30,6 +30,9 @@ use crate::problem::{DiscreteFunction, Problem};
 ///
 /// The type names no scheme: element and facet form are held without their types, so that what it
 /// does is compiled once for each dimension.
+///
+/// # Panics
+/// Its functions of a vector of unknowns or of a solution panic if this has fewer values than there are unknowns.
 pub struct Discretisation<'a, const D: usize> {
     pub(crate) space: Space<'a, D>,
     form: Box<dyn FacetForm<D>>,
@@ -118,16 +121,10 @@ impl<'a, const D: usize> Discretisation<'a, D> {
         self.space.locations()
     }
     /// The discrete function, which is a datum of other problems.
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn function(&self, u: &[f64]) -> DiscreteFunction<D> {
         self.space.function(u)
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn vertex_values(&self, u: &[f64]) -> Vec<f64> {
         self.space.vertex_values(u)
     }

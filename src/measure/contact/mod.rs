@@ -68,9 +68,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn contact_errors(
         &self,
         inequality: &Inequality<f64>,
@@ -88,9 +85,6 @@ impl<const D: usize> Discretisation<'_, D> {
     /// The measure of the discrete contact set: the volume of the cells in contact where there are
     /// obstacles, else the area of the facets in contact (the number of points in one dimension), with the
     /// definitions of [`Discretisation::contact_errors`]; none without an inequality.
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn contact_measure(
         &self,
         inequality: &Inequality<f64>,
@@ -127,17 +121,11 @@ impl<const D: usize> Discretisation<'_, D> {
     /// Where only contact holds the body, without Dirichlet boundary and reaction, it is the negative of the
     /// total load, for every scheme: constants have no energy. It approximates the integral of the
     /// multiplier over domain and contact boundary.
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn resultant(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Option<f64> {
         self.multipliers(inequality, solution).map(|multipliers| multipliers.iter().sum())
     }
 
     /// By unknown the force of its active bound: see [`Discretisation::resultant`].
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn multipliers(
         &self,
         inequality: &Inequality<f64>,

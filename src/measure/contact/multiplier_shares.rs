@@ -34,9 +34,6 @@ impl<const D: usize> Discretisation<'_, D> {
     /// all ([`Discretisation::resultant`]). The multiplier of an unknown belongs to the datum that gives its active
     /// bound: where obstacle and gap are equal to the obstacle, where gaps of several groups are, to each by the
     /// measure of its facets there. None without an inequality, and where rounding leaves no digit.
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn resultants(
         &self,
         inequality: &Inequality<f64>,
