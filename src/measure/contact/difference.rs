@@ -24,21 +24,16 @@ pub(crate) fn contact_difference<const D: usize>(
     refinements: &[&Refinement],
 ) -> ContactErrors {
     compiled!(const D: fn(DiscreteSolution<'_, '_, D>, DiscreteSolution<'_, '_, D>, &[&Refinement]) -> ContactErrors
-            = |solved, reference, refinements| {
-                let own = (&solved.0.space, solved.1, solved.2);
-                difference(own, (&reference.0.space, reference.1, reference.2), refinements)
-            }
+            = difference
     )(solved, reference, refinements)
 }
 
-/// A solution with its inequality and what the assembler knows of its space.
-type OnSpace<'s, 'a, const D: usize> = (&'s Space<'a, D>, &'s Inequality<f64>, &'s Solution<f64>);
-
 fn difference<const D: usize>(
-    (space, inequality, solution): OnSpace<'_, '_, D>,
-    (fine, fine_inequality, fine_solution): OnSpace<'_, '_, D>,
+    (own, inequality, solution): DiscreteSolution<'_, '_, D>,
+    (fine, fine_inequality, fine_solution): DiscreteSolution<'_, '_, D>,
     refinements: &[&Refinement],
 ) -> ContactErrors {
+    let (space, fine) = (&own.space, &fine.space);
     let mut errors = ContactErrors::default();
     // with both an obstacle and a contact boundary there are two multipliers of different kind
     if space.problem.has_obstacle() == space.problem.has_gap() {
@@ -64,13 +59,7 @@ fn difference<const D: usize>(
     }
     multipliers.iter_mut().zip(own).for_each(|(m, own)| *m -= own);
     let weights = space.hat_integrals(&entities, &space.measures_of(&entities));
-    let given = space.dirichlet_groups();
-    let vertices = || (0..weights.len()).filter(|&v| weights[v] > 0.0 && given[v].is_none());
-    if vertices().next().is_some() {
-        let squares: f64 = vertices().map(|v| multipliers[v].powi(2) / weights[v]).sum();
-        errors.multiplier_l1 = Some(vertices().map(|v| multipliers[v].abs()).sum());
-        errors.multiplier_l2 = Some(squares.sqrt());
-    }
+    [errors.multiplier_l1, errors.multiplier_l2] = space.density_norms(&multipliers, &weights);
     errors
 }
 

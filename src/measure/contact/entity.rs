@@ -1,8 +1,5 @@
 //! Mesh entities that can be in contact.
 
-/// A cell, or a facet by its number in a cell.
-pub(crate) type CellOrFacet = (usize, Option<usize>);
-
 /// A mesh entity that can be in contact: a cell under an obstacle, or a facet of the contact
 /// boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

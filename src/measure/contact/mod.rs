@@ -6,7 +6,6 @@
 mod contact_set;
 mod deciding_nodes;
 mod difference;
-mod discrete_contact;
 mod entity;
 mod exact_contact;
 mod free_boundary;
@@ -15,14 +14,13 @@ mod multiplier_shares;
 mod nodal_multipliers;
 mod point_grid;
 
+pub use contact_set::DiscreteContact;
 pub(crate) use difference::contact_difference;
-pub use discrete_contact::DiscreteContact;
 
 use std::ops::Range;
 
 use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::error::Error;
@@ -142,23 +140,20 @@ impl<const D: usize> Space<'_, D> {
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Result<ContactErrors, Error> {
-        let Some(exact) = &self.problem.exact else { return Ok(ContactErrors::default()) };
-        // with both an obstacle and a contact boundary there are two multipliers of different kind
-        if self.problem.has_obstacle() == self.problem.has_gap() {
-            return Ok(ContactErrors::default());
-        }
-        let entities = self.entities();
         let mut errors = ContactErrors::default();
-        if exact.multiplier.is_none() && exact.contact.is_none() {
+        let Some(exact) = &self.problem.exact else { return Ok(errors) };
+        let is_known = exact.multiplier.is_some() || exact.contact.is_some();
+        // with both an obstacle and a contact boundary there are two multipliers of different kind
+        if !is_known || self.problem.has_obstacle() == self.problem.has_gap() {
             return Ok(errors);
         }
+        let entities = self.entities();
         let on_entities = self.exact_contact(exact, &entities)?;
         let measures = self.measures_of(&entities);
         if exact.multiplier.is_some() {
             let of_entities = (&entities[..], &measures[..]);
-            let found = self.multiplier_errors(of_entities, &on_entities, inequality, solution);
             [errors.multiplier_l1, errors.multiplier_l2] =
-                map_entries([0, 1], |k| found.map(|e| e[k]));
+                self.multiplier_errors(of_entities, &on_entities, inequality, solution);
         }
         if let Some(set) = &exact.contact {
             let touching = self.in_contact(&entities, inequality, solution);

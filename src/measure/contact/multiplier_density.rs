@@ -3,6 +3,7 @@
 use super::entity::ContactEntity;
 use super::exact_contact::ExactContact;
 use crate::algebra::Inequality;
+use crate::arrays::map_entries;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
 
@@ -16,9 +17,11 @@ impl<const D: usize> Space<'_, D> {
         exact: &[Vec<(usize, ExactContact)>],
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
-    ) -> Option<[f64; 2]> {
+    ) -> [Option<f64>; 2] {
         let weights = self.hat_integrals(entities, measures);
-        let mut multipliers = self.vertex_multipliers(inequality, solution)?;
+        let Some(mut multipliers) = self.vertex_multipliers(inequality, solution) else {
+            return [None; 2];
+        };
         for &(k, exact) in exact.iter().flatten() {
             let (entity, measure) = (entities[k], measures[k]);
             let cell = self.mesh.cell(entity.cell);
@@ -26,12 +29,17 @@ impl<const D: usize> Space<'_, D> {
                 multipliers[cell[local] as usize] -= measure * tested;
             }
         }
+        self.density_norms(&multipliers, &weights)
+    }
+
+    /// The norms in L1 and lumped L2 of the density of what is tested with hat functions of these integrals; none if all
+    /// vertices lie on the Dirichlet boundary.
+    pub(super) fn density_norms(&self, tested: &[f64], weights: &[f64]) -> [Option<f64>; 2] {
         let given = self.dirichlet_groups();
-        let counted = |v: &usize| weights[*v] > 0.0 && given[*v].is_none();
-        let vertices = || (0..weights.len()).filter(counted);
-        let squares: f64 = vertices().map(|v| multipliers[v] * multipliers[v] / weights[v]).sum();
-        let sum: f64 = vertices().map(|v| multipliers[v].abs()).sum();
-        vertices().next().map(|_| [sum, squares.sqrt()])
+        let vertices = || (0..weights.len()).filter(|&v| weights[v] > 0.0 && given[v].is_none());
+        let squares: f64 = vertices().map(|v| tested[v] * tested[v] / weights[v]).sum();
+        let sum: f64 = vertices().map(|v| tested[v].abs()).sum();
+        map_entries([sum, squares.sqrt()], |norm| vertices().next().map(|_| norm))
     }
 
     /// Nodal multipliers at vertices: that of each unknown divided equally among the vertices around its node. None

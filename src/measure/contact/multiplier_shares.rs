@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::entity::{CellOrFacet, ContactEntity};
+use super::entity::ContactEntity;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -201,7 +201,8 @@ impl<const D: usize> Space<'_, D> {
     ) -> Vec<f64> {
         let by_region = self.data.lower.has_names() || self.data.upper.has_names();
         let group = |cell: usize| if by_region { self.mesh.region(cell) } else { 0 };
-        let cells = (0..self.mesh.n_cells()).map(|cell| ((cell, None), group(cell)));
+        let entity = |cell: usize| (ContactEntity { cell, facet: None }, group(cell));
+        let cells = (0..self.mesh.n_cells()).map(entity);
         self.densities(&cells.collect::<Vec<_>>(), &self.shares_of_obstacles(of), inequality)
     }
 
@@ -212,7 +213,8 @@ impl<const D: usize> Space<'_, D> {
         of: &Multipliers,
     ) -> Vec<f64> {
         let facets = self.grouped_facets_of(BoundaryCondition::Contact);
-        let facets = facets.map(|((cell, local), group)| ((cell, Some(local)), group));
+        let entity = |(cell, local)| ContactEntity { cell, facet: Some(local) };
+        let facets = facets.map(|(facet, group)| (entity(facet), group));
         let shares = self.shares_of_gaps(&inequality.bounds, of);
         self.densities(&facets.collect::<Vec<_>>(), &shares, inequality)
     }
@@ -222,7 +224,7 @@ impl<const D: usize> Space<'_, D> {
     /// functions on the group.
     fn densities(
         &self,
-        places: &[(CellOrFacet, usize)],
+        places: &[(ContactEntity, usize)],
         shares: &[Share],
         inequality: &Inequality<f64>,
     ) -> Vec<f64> {
@@ -233,8 +235,7 @@ impl<const D: usize> Space<'_, D> {
         for group in groups {
             let of_group: Vec<usize> =
                 (0..places.len()).filter(|&k| places[k].1 == group).collect();
-            let entity = |k: usize| ContactEntity { cell: places[k].0.0, facet: places[k].0.1 };
-            let entities: Vec<ContactEntity> = of_group.iter().map(|&k| entity(k)).collect();
+            let entities: Vec<ContactEntity> = of_group.iter().map(|&k| places[k].0).collect();
             let mut at_vertices = vec![0.0; self.mesh.vertices().len()];
             for share in shares.iter().filter(|share| places[share.place].1 == group) {
                 let around = inequality.locations[share.unknown].vertices();
