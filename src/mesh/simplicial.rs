@@ -8,7 +8,7 @@ use super::geometry::simplex::{fold_edges, longest_edge};
 use super::groups::Groups;
 use super::part::extent::Extent;
 use crate::parallel::cells;
-use crate::real::Point;
+use crate::real::{Point, box_around};
 
 /// A conforming simplicial mesh of a domain in `D` dimensions (1, 2 or 3).
 #[derive(Clone, Debug)]
@@ -133,9 +133,6 @@ impl<const D: usize> Mesh<D> {
     }
     /// The ends of the smallest box around the vertices.
     pub(in crate::mesh) fn own_box(&self) -> [Point<D>; 2] {
-        let first = self.vertices[0];
-        self.vertices.iter().fold([first; 2], |[lower, upper], x| {
-            [lower.zip_map(x, f64::min), upper.zip_map(x, f64::max)]
-        })
+        box_around(&self.vertices)
     }
 }
