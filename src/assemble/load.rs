@@ -1,6 +1,4 @@
 //! The load: source, Neumann data, weak Dirichlet data. What is absent costs nothing.
-//!
-//! Data are integrated in `f64` and rounded once.
 
 use std::borrow::Cow;
 use std::convert::Infallible;

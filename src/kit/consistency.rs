@@ -55,10 +55,7 @@ fn relative_error<const D: usize>(
     let [value, gradient] =
         map_entries([judged.errors.max, judged.errors.h1], |e| e.unwrap_or(f64::NAN));
     let vertices = sample.mesh.vertices();
-    let size = vertices.iter().fold(1.0, |m, x| {
-        let value: f64 = problem.dirichlet_at(x);
-        f64::max(m, value.abs())
-    });
+    let size = vertices.iter().fold(1.0, |m, x| f64::max(m, problem.dirichlet_at(x).abs()));
     let gradient = gradient * sample.mesh.mesh_size();
     if value.is_nan() || gradient.is_nan() { f64::NAN } else { value.max(gradient) / size }
 }
@@ -73,12 +70,12 @@ fn worst_cell<const D: usize>(
     let (mut largest, mut worst) = (0.0, 0);
     for (cell, values) in judged.vertex_values.chunks_exact(D + 1).enumerate() {
         for (&v, value) in mesh.cell(cell).iter().zip(values) {
-            let exact = problem.dirichlet_at(&(mesh.vertices()[v as usize]));
+            let exact = problem.dirichlet_at(&mesh.vertices()[v as usize]);
             let error = (value - exact).abs();
             if error > largest {
                 (largest, worst) = (error, cell);
             }
         }
     }
-    (worst, describe_point(&(mesh.barycentre(worst))))
+    (worst, describe_point(&mesh.barycentre(worst)))
 }

@@ -152,11 +152,10 @@ impl<const D: usize> Mesh<D> {
         let (edges, numbers) = Edges::with_cell_edges(self);
         let parents = parents(&edges, self.vertices.len());
         check_size(n_fine, parents.len())?;
-        let half = 0.5;
         let vertices = collect(parents.len(), |i| {
             let [a, b] = parents[i];
             let (x, y) = (self.vertices[a as usize], self.vertices[b as usize]);
-            if a == b { x } else { (x + y) * half }
+            if a == b { x } else { (x + y) * 0.5 }
         });
         let mut cells = in_large_pages(vec![0; n_fine * (D + 1)]);
         let per_cell = edge_vertices(D).len();

@@ -94,14 +94,13 @@ impl<const D: usize> Mesh<D> {
         for cell in cells.chunks_exact_mut(D + 1) {
             cell.sort_unstable();
         }
-        let rounded: Vec<Point<D>> = vertices.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
-        let is_positive = check_volumes::<D>(&rounded, &cells)?;
+        let is_positive = check_volumes::<D>(&vertices, &cells)?;
         let neighbours = Neighbours::match_facets::<D>(&cells, vertices.len())?;
         check_folds::<D>(&cells, &neighbours, &is_positive)?;
         let (boundary, groups) = match_boundary(&vertices, &cells, &neighbours, (boundary, names))?;
         check_overlaps(&vertices, &cells, &boundary)?;
         let is_supported = is_supported(&neighbours, &boundary);
-        let (vertices, cells) = drop_unused(rounded, cells);
+        let (vertices, cells) = drop_unused(vertices, cells);
         let groups = Arc::new(groups);
         let cell_regions = Vec::new();
         Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole: None })

@@ -33,8 +33,7 @@ impl<const D: usize> CellMetric<D> {
         let mut measures = [0.0; 4];
         for i in 1..=D {
             // |F| = D |K| |grad lambda|
-            let square = volume * products[i][i];
-            measures[i] = (D as f64) * nalgebra::ComplexField::sqrt(square);
+            measures[i] = (D as f64) * (volume * products[i][i]).sqrt();
         }
         // the first product is a sum of the others, in which thin cells lose all digits
         measures[0] = first_facet(mesh, cell);
@@ -125,10 +124,9 @@ pub(crate) fn shape<const D: usize>(
     cell: usize,
     scale: f64,
 ) -> (f64, [[f64; 4]; 4]) {
-    let zero = 0.0;
     let corners = mesh.cell(cell);
     // loops over numbers: differences of points in place of these take half as long again
-    let mut edges = [[zero; 3]; 3];
+    let mut edges = [[0.0; 3]; 3];
     let origin = &mesh.vertices()[corners[0] as usize];
     for k in 0..D {
         let corner = &mesh.vertices()[corners[k + 1] as usize];
@@ -137,9 +135,9 @@ pub(crate) fn shape<const D: usize>(
         }
     }
     let (normals, determinant) = cofactors::<D>(edges);
-    let size = if determinant < zero { -determinant } else { determinant };
-    let scale = if size == zero { zero } else { scale / (size * FACTORIAL[D]) };
-    let mut products = [[zero; 4]; 4];
+    let size = if determinant < 0.0 { -determinant } else { determinant };
+    let scale = if size == 0.0 { 0.0 } else { scale / (size * FACTORIAL[D]) };
+    let mut products = [[0.0; 4]; 4];
     for i in 1..=D {
         // rows sum to zero
         for j in 1..=D {
@@ -151,7 +149,7 @@ pub(crate) fn shape<const D: usize>(
         }
     }
     for i in 1..=D {
-        let sum = (1..=D).fold(zero, |sum, j| sum - products[i][j]);
+        let sum = (1..=D).fold(0.0, |sum, j| sum - products[i][j]);
         products[i][0] = sum;
         products[0][i] = sum;
         products[0][0] -= sum;
@@ -191,7 +189,7 @@ fn first_facet<const D: usize>(mesh: &Mesh<D>, cell: usize) -> f64 {
     let corners = mesh.cell(cell);
     let corner = |k: usize| mesh.vertices()[corners[k.min(D)] as usize];
     let edge = |k: usize| with_zeros(corner(k) - corner(1));
-    let length = |a: [f64; 3]| nalgebra::ComplexField::sqrt(dot::<3>(a, a));
+    let length = |a: [f64; 3]| dot::<3>(a, a).sqrt();
     match D {
         1 => 1.0,
         2 => length(edge(2)),

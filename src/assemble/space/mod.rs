@@ -244,7 +244,7 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn cell_table(&self, rule: Rule) -> CellTable {
         CellTable::new(rule, &*self.element)
     }
-    /// The unknowns of a cell in `f64`.
+    /// The unknowns of a cell.
     pub fn local_values(&self, cell: usize, u: &[f64]) -> [f64; MAX_BASIS] {
         let mut local = [0.0; MAX_BASIS];
         for (i, value) in local.iter_mut().enumerate().take(self.per_cell()) {

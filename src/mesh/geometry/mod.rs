@@ -28,17 +28,16 @@ impl<const D: usize> CellGeometry<D> {
         let edge = |k: usize| corner(k + 1) - origin;
         let edges = array_of(|k| if k < D { with_zeros(edge(k)) } else { [0.0; 3] });
         let (normals, determinant) = cofactors::<D>(edges);
-        let zero = 0.0;
         let mut gradients = [Point::zeros(); 4];
-        let inverse = if determinant == zero { zero } else { 1.0 / determinant };
+        let inverse = if determinant == 0.0 { 0.0 } else { 1.0 / determinant };
         for k in 1..=D {
             let gradient = Point::from_fn(|axis, _| normals[k - 1][axis]) * inverse;
             gradients[k] = gradient;
             gradients[0] -= gradient;
         }
-        let magnitude = if determinant < zero { -determinant } else { determinant };
+        let magnitude = if determinant < 0.0 { -determinant } else { determinant };
         let volume = magnitude / FACTORIAL[D];
-        Self { volume, gradients, is_positive: determinant > zero }
+        Self { volume, gradients, is_positive: determinant > 0.0 }
     }
 
     /// Whether the determinant of the edges from corner 0 to the others is positive.

@@ -286,8 +286,7 @@ fn warnings<const D: usize>(contents: &Contents, mesh: &Mesh<D>) -> Vec<GmshWarn
         let mut vertices = mesh.facet_vertices(f.cell as usize, usize::from(f.local));
         array_of(|_| vertices.next().expect("a facet has as many vertices as dimensions"))
     });
-    let points: Vec<Point<D>> = mesh.vertices().to_vec();
-    let coincident = lie_on_others(&points, &facets.collect::<Vec<[u32; D]>>());
+    let coincident = lie_on_others(mesh.vertices(), &facets.collect::<Vec<[u32; D]>>());
     let count = coincident.iter().filter(|lies| **lies).count();
     warnings.extend((count > 0).then_some(GmshWarning::Coincident { count }));
     let on_boundary =
