@@ -114,19 +114,3 @@ pub(crate) fn facet_to_cell(facet_point: &[f64; 4], local: usize) -> [f64; 4] {
         std::cmp::Ordering::Greater => facet_point[k - 1],
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::facet_to_cell;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn points_of_a_facet_lie_on_it(local in 0_usize..4, b in prop::array::uniform3(0.0_f64..1.0)) {
-            let s = b.iter().sum::<f64>().max(1e-9);
-            let x = facet_to_cell(&[b[0] / s, b[1] / s, b[2] / s, 0.0], local);
-            prop_assert_eq!(x[local], 0.0);
-            prop_assert!((x.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-        }
-    }
-}
