@@ -5,7 +5,6 @@ use std::convert::Infallible;
 use super::tables::Derivatives;
 use crate::assemble::count;
 use crate::element::MAX_BASIS;
-use crate::facet::Side;
 use crate::memory::in_large_pages;
 use crate::mesh::{FACTORIAL, HalfFacet, Mesh, cofactors, cross, dot, with_zeros};
 use crate::parallel::cells;
@@ -42,10 +41,6 @@ impl<const D: usize> CellMetric<D> {
         }
         Self { volume, measures, products }
     }
-    #[inline(always)]
-    fn zero(volume: f64) -> Self {
-        Self { volume, measures: [0.0; 4], products: [[0.0; 4]; 4] }
-    }
     /// Sets an entry above the diagonal, with what follows for the others: rows sum to zero.
     #[inline(always)]
     fn set(&mut self, i: usize, j: usize, product: f64) {
@@ -53,20 +48,6 @@ impl<const D: usize> CellMetric<D> {
         self.products[j][i] = product;
         self.products[i][i] -= product;
         self.products[j][j] -= product;
-    }
-    /// The measure of the whole boundary.
-    #[inline(always)]
-    pub fn surface(&self) -> f64 {
-        (0..D + 1).fold(0.0, |s, i| s + self.measures[i])
-    }
-    /// The measure of facet `local` of the cell, and the cell as the facet sees it, with the largest coefficient on
-    /// the facet and the least in the cell.
-    #[inline(always)]
-    pub fn side(&self, local: usize, [coefficient, least_coefficient]: [f64; 2]) -> (f64, Side) {
-        let (volume, measure) = (self.volume, self.measures[local]);
-        let height = (D as f64) * volume / measure;
-        let surface = self.surface();
-        (measure, Side { coefficient, least_coefficient, volume, surface, height })
     }
     /// The derivatives of the first `n` basis functions along the outward normal of facet `local`, of one moment and
     /// times the measure of the facet and a factor; the other entries are zero and never read.
@@ -102,7 +83,7 @@ impl<const D: usize> CellMetric<D> {
     }
     #[inline(always)]
     fn read(kept: &[f64]) -> Self {
-        let mut metric = Self::zero(kept[0]);
+        let mut metric = Self { volume: kept[0], measures: [0.0; 4], products: [[0.0; 4]; 4] };
         metric.measures[..=D].copy_from_slice(&kept[1..D + 2]);
         let mut k = D + 2;
         for i in 0..D {
@@ -227,18 +208,11 @@ impl Metrics {
     pub fn measure<const D: usize>(&self, (cell, local): HalfFacet) -> f64 {
         self.kept[cell * CellMetric::<D>::KEPT + 1 + local]
     }
-    /// [`CellMetric::side`], without the products of gradients.
+    /// The volume of a cell and the measures of its facets.
     #[inline(always)]
-    pub fn side<const D: usize>(
-        &self,
-        (cell, local): HalfFacet,
-        [coefficient, least_coefficient]: [f64; 2],
-    ) -> (f64, Side) {
+    pub fn measures<const D: usize>(&self, cell: usize) -> (f64, &[f64]) {
         let kept = &self.kept[cell * CellMetric::<D>::KEPT..][..D + 2];
-        let (volume, measure) = (kept[0], kept[1 + local]);
-        let surface = kept[1..].iter().fold(0.0, |sum, &measure| sum + measure);
-        let height = (D as f64) * volume / measure;
-        (measure, Side { coefficient, least_coefficient, volume, surface, height })
+        (kept[0], &kept[1..])
     }
     /// The products of the gradient opposite facet `local` of a cell with all of its gradients.
     #[inline(always)]
