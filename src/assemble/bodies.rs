@@ -44,9 +44,6 @@ impl FreeBodies {
     pub fn of(&self, cell: usize) -> Option<usize> {
         self.of_cell.get(cell).filter(|&&body| body != NO_INDEX).map(|&body| body as usize)
     }
-    fn is_empty(&self) -> bool {
-        self.bodies.is_empty()
-    }
 }
 
 /// Integrals by the coarse and the fine rule, and the integral of absolute values by the fine one.
@@ -74,7 +71,7 @@ impl<const D: usize> Space<'_, D> {
             return Ok(FreeBodies::default());
         }
         let mut bodies = self.find_bodies();
-        if !bodies.is_empty() {
+        if !bodies.bodies.is_empty() {
             self.find_stops(&mut bodies);
             self.integrate_resultants(&mut bodies)?;
         }

@@ -1,10 +1,4 @@
 //! A scheme applied to a problem on a mesh: unknowns, matrix and what is known of them.
-//!
-//! | file | content |
-//! |---|---|
-//! | `mod` | [`Discretisation`]: unknowns, form, matrix |
-//! | `join` | element, facet form, problem and mesh made into one, if they fit |
-//! | `inequality` | load, bounds and the whole inequality |
 
 mod inequality;
 mod join;
