@@ -25,8 +25,7 @@ impl<const D: usize> Reference<'_, D> {
         match self {
             Self::Exact(exact) => exact.value.at(x),
             Self::Coarse { space, values, refinements } => {
-                let (basis, local) = space.evaluate(cell >> (D * refinements), x, values);
-                basis.value(&local)
+                space.value_in(values, cell >> (D * refinements), x)
             }
         }
     }
@@ -53,13 +52,15 @@ impl<const D: usize> Space<'_, D> {
     fn evaluate(&self, cell: usize, x: &Point<D>, u: &[f64]) -> (BasisAt, [f64; MAX_BASIS]) {
         (self.basis_at(&self.mesh.barycentric(cell, x)), self.local_values(cell, u))
     }
+    fn value_in(&self, u: &[f64], cell: usize, x: &Point<D>) -> f64 {
+        let (basis, local) = self.evaluate(cell, x, u);
+        basis.value(&local)
+    }
     fn value_at(&self, u: &[f64], x: &Point<D>) -> Option<f64> {
         let contains = |&cell: &usize| {
             self.mesh.barycentric(cell, x)[..=D].iter().all(|&lambda| lambda >= -ROUNDING)
         };
-        let cell = (0..self.mesh.n_cells()).find(contains)?;
-        let (basis, local) = self.evaluate(cell, x, u);
-        Some(basis.value(&local))
+        (0..self.mesh.n_cells()).find(contains).map(|cell| self.value_in(u, cell, x))
     }
 }
 
@@ -77,7 +78,6 @@ impl<const D: usize> Discretisation<'_, D> {
     /// If there is no such cell.
     #[cfg(feature = "report")]
     pub(crate) fn value_in(&self, u: &[f64], cell: usize, point: &Point<D>) -> f64 {
-        let (basis, local) = self.space.evaluate(cell, point, u);
-        basis.value(&local)
+        self.space.value_in(u, cell, point)
     }
 }

@@ -1,6 +1,7 @@
 //! Solution, obstacle, multiplier and contact set on cells, for pictures.
 
 use super::contact::DiscreteContact;
+use super::penetration::middle;
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -133,12 +134,8 @@ impl<const D: usize> Space<'_, D> {
         if self.basis_degree < 2 {
             return Vec::new();
         }
-        let middle = |&[i, j]: &[usize; 2]| {
-            let mut point = [0.0; 4];
-            (point[i], point[j]) = (0.5, 0.5);
-            self.basis_at(&point)
-        };
-        let midpoints: Vec<_> = edge_vertices(D).iter().map(middle).collect();
+        let at_middle = |ends: &[usize; 2]| self.basis_at(&middle(*ends));
+        let midpoints: Vec<_> = edge_vertices(D).iter().map(at_middle).collect();
         let mut values = Vec::with_capacity(self.mesh.n_cells() * midpoints.len());
         for cell in 0..self.mesh.n_cells() {
             let local = self.local_values(cell, u);
