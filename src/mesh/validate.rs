@@ -5,13 +5,12 @@ use std::sync::Arc;
 use super::boundary::{BoundaryCondition, BoundaryFacet};
 use super::components::Components;
 use super::error::MeshError;
-use super::facets::{CELL_LIMIT, Neighbours};
+use super::facets::{CELL_LIMIT, Neighbours, facet_of};
 use super::geometry::simplex::longest_edge;
 use super::geometry::{CellGeometry, describe_point};
 use super::groups::{BoundaryGroup, Groups, NameSets};
 use super::overlap::{check_folds, check_overlaps, lie_on_others};
 use super::simplicial::Mesh;
-use crate::arrays::array_of;
 use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::parallel::cells;
@@ -195,10 +194,7 @@ fn match_boundary<const D: usize>(
     neighbours: &Neighbours,
     (grouped, names): (&[GroupedFacet<D>], &[String]),
 ) -> Result<(Vec<BoundaryFacet>, Groups), MeshError> {
-    let facet = |c: usize, local: usize| -> [u32; D] {
-        let cell = &cells[c * (D + 1)..(c + 1) * (D + 1)];
-        array_of(|k| cell[k + usize::from(k >= local)])
-    };
+    let facet = |c: usize, local: usize| facet_of::<D>(&cells[c * (D + 1)..][..D + 1], local);
     let half_facets = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
     let mut open: Vec<OpenFacet<D>> = half_facets()
         .filter(|&(c, local)| neighbours.is_unmatched(c, local))

@@ -51,25 +51,16 @@ impl<const D: usize> CellGeometry<D> {
     pub fn gradient(&self, i: usize) -> &Point<D> {
         &self.gradients[i]
     }
-    /// The height over facet `i`: `1 / |gradient i|`.
-    #[inline(always)]
-    pub fn height(&self, i: usize) -> f64 {
-        1.0 / self.gradients[i].norm()
-    }
     /// The outward unit normal of facet `i`.
     #[inline(always)]
     pub fn normal(&self, i: usize) -> Point<D> {
-        self.gradients[i] * -self.height(i)
+        let height = 1.0 / self.gradients[i].norm();
+        self.gradients[i] * -height
     }
     /// The `(D - 1)`-dimensional measure of facet `i`; one in one dimension.
     #[inline(always)]
     pub fn facet_measure(&self, i: usize) -> f64 {
         if D == 1 { 1.0 } else { (D as f64) * self.volume * self.gradients[i].norm() }
-    }
-    /// The measure of the whole boundary of the cell.
-    #[inline(always)]
-    pub fn surface(&self) -> f64 {
-        (0..D + 1).fold(0.0, |s, i| s + self.facet_measure(i))
     }
 }
 

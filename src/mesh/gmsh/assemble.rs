@@ -4,9 +4,9 @@ use super::contents::{Contents, Membership, Simplices};
 use super::element_types::SIMPLICES;
 use super::error::{GmshError, GmshErrorKind, GmshWarning};
 use super::node_index::NodeIndex;
-use crate::arrays::array_of;
 use crate::input::excerpt;
 use crate::mesh::error::MeshError;
+use crate::mesh::facets::facet_of;
 use crate::mesh::overlap::lie_on_others;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::GroupedFacet;
@@ -275,10 +275,8 @@ fn warnings<const D: usize>(contents: &Contents, mesh: &Mesh<D>) -> Vec<GmshWarn
         curved.map(move |(&order, &count)| GmshWarning::Straightened { name, order, count })
     };
     let mut warnings: Vec<GmshWarning> = straightened(D).chain(straightened(D - 1)).collect();
-    let facets = mesh.boundary().iter().map(|f| {
-        let mut vertices = mesh.facet_vertices(f.cell as usize, usize::from(f.local));
-        array_of(|_| vertices.next().expect("a facet has as many vertices as dimensions"))
-    });
+    let facets = mesh.boundary().iter();
+    let facets = facets.map(|f| facet_of(mesh.cell(f.cell as usize), usize::from(f.local)));
     let coincident = lie_on_others(mesh.vertices(), &facets.collect::<Vec<[u32; D]>>());
     let count = coincident.iter().filter(|lies| **lies).count();
     warnings.extend((count > 0).then_some(GmshWarning::Coincident { count }));

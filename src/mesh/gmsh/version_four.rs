@@ -96,11 +96,7 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
         for (node, found) in tags.into_iter().zip(0..) {
             source.begin_record("nodes of a block", count, found)?;
             let offset = source.offset();
-            let point = [
-                source.real("coordinate x")?,
-                source.real("coordinate y")?,
-                source.real("coordinate z")?,
-            ];
+            let point = source.point()?;
             source.skip(parametric, 8, "a parametric coordinate")?;
             source.end_record()?;
             contents.nodes.push(source, offset, node, point)?;

@@ -28,11 +28,7 @@ pub(super) fn read_nodes(
         source.begin_record("nodes", announced, found)?;
         let offset = source.offset();
         let node = source.unsigned("the tag of a node")?;
-        let point = [
-            source.real("coordinate x")?,
-            source.real("coordinate y")?,
-            source.real("coordinate z")?,
-        ];
+        let point = source.point()?;
         if is_parametric {
             let dimension = entity_dimension(source)?;
             source.integer("the tag of an entity")?;
