@@ -104,6 +104,13 @@ impl Rule {
     }
 }
 
+/// The barycentric coordinates of vertex `k` of a simplex.
+pub(crate) fn vertex_point(k: usize) -> [f64; 4] {
+    let mut point = [0.0; 4];
+    point[k] = 1.0;
+    point
+}
+
 /// The barycentric coordinates in a cell of a point of the facet opposite vertex `local`, from its
 /// barycentric coordinates in the facet.
 #[inline(always)]

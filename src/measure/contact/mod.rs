@@ -202,19 +202,6 @@ impl<const D: usize> Space<'_, D> {
         contact.map(|(cell, local)| ContactEntity { cell, facet: Some(local) }).collect()
     }
 
-    /// For each vertex on the Dirichlet boundary the boundary group whose datum is given there.
-    pub(crate) fn dirichlet_groups(&self) -> Vec<Option<usize>> {
-        let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
-        let rank = |group: usize| self.data.dirichlet_rank[group];
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
-            for v in self.mesh.facet_vertices(cell, local) {
-                let old = &mut given[v as usize];
-                *old = old.filter(|&old| rank(old) <= rank(group)).or(Some(group));
-            }
-        }
-        given
-    }
-
     /// The volumes of cells and the areas of facets.
     fn measures_of(&self, entities: &[ContactEntity]) -> Vec<f64> {
         collect(entities.len(), |k| {
