@@ -13,7 +13,6 @@ use crate::parallel::cells;
 /// matrix, since only scalar products of normals and gradients do.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CellMetric<const D: usize> {
-    /// Its volume.
     pub volume: f64,
     /// Measures of its facets.
     pub measures: [f64; 4],
@@ -25,7 +24,6 @@ impl<const D: usize> CellMetric<D> {
     /// Numbers kept of a cell: volume, facet measures, products above the diagonal.
     const KEPT: usize = 1 + (D + 1) + D * (D + 1) / 2;
 
-    /// The metric of one cell.
     #[inline(always)]
     pub fn of(mesh: &Mesh<D>, cell: usize) -> Self {
         let (volume, products) = shape(mesh, cell, 1.0);
@@ -197,13 +195,11 @@ impl Metrics {
         let Ok(()) = cells::for_each(mesh.n_cells(), &|c| c * n, &mut kept, &fill);
         Self { kept }
     }
-    /// The metric of a cell.
     #[inline(always)]
     pub fn at<const D: usize>(&self, cell: usize) -> CellMetric<D> {
         let n = CellMetric::<D>::KEPT;
         CellMetric::read(&self.kept[cell * n..(cell + 1) * n])
     }
-    /// The measure of a facet.
     #[inline(always)]
     pub fn measure<const D: usize>(&self, (cell, local): HalfFacet) -> f64 {
         self.kept[cell * CellMetric::<D>::KEPT + 1 + local]
@@ -231,27 +227,5 @@ impl Metrics {
             row[k] += (1.0 - others[k]) * sum;
         }
         row
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::{BoundaryCondition, TaggedFacet};
-    use crate::real::Point;
-
-    #[test]
-    fn the_shortest_facet_of_a_thin_cell_keeps_its_digits() {
-        for short in [1e-3, 1e-6, 1e-9] {
-            let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, short]].map(Point::<2>::from);
-            let sides = [[0, 1], [0, 2], [1, 2]]
-                .map(|vertices| TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet });
-            let mesh = Mesh::new(vertices.to_vec(), vec![0, 1, 2], &sides).expect("one cell");
-            let metric: CellMetric<2> = CellMetric::of(&mesh, 0);
-            let exact = [short, (1.0 + short * short).sqrt(), 1.0];
-            for (measure, exact) in metric.measures.iter().zip(exact) {
-                assert!((measure / exact - 1.0).abs() < 4.0 * f64::EPSILON, "{short}");
-            }
-        }
     }
 }
