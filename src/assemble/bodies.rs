@@ -49,7 +49,6 @@ impl FreeBodies {
 /// Integrals by the coarse and the fine rule, and the integral of absolute values by the fine one.
 type Integrals = [f64; 3];
 
-/// The rules on cells.
 struct CellRules {
     rules: [Rule; 2],
     /// Where a datum has a level: the rules on cells that its zero set cuts.

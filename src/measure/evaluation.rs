@@ -20,7 +20,6 @@ pub(super) enum Reference<'r, const D: usize> {
 }
 
 impl<const D: usize> Reference<'_, D> {
-    /// The value at a point of a cell.
     pub fn value(&self, cell: usize, x: &Point<D>) -> f64 {
         match self {
             Self::Exact(exact) => exact.value.at(x),
@@ -29,7 +28,6 @@ impl<const D: usize> Reference<'_, D> {
             }
         }
     }
-    /// The gradient at a point of a cell.
     pub fn gradient(&self, cell: usize, x: &Point<D>) -> Point<D> {
         match self {
             Self::Exact(exact) => (exact.gradient)(x),

@@ -25,7 +25,6 @@ const SHARE_OF_VALUE: f64 = 1e-6;
 /// A distance below this many units of rounding of the size of the function is rounding.
 const ROUNDINGS: f64 = 1e3;
 
-/// The names of lower obstacles, upper obstacles and gaps.
 const NAMES: [&str; 3] = ["the lower obstacle", "the upper obstacle", "the gap"];
 
 /// How far a function lies beyond lower obstacles, upper obstacles and gaps.

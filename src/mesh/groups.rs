@@ -49,7 +49,6 @@ impl NameSets {
             self.0.len() - 1
         })
     }
-    /// The names of a set.
     pub fn names(&self, set: usize) -> &[String] {
         &self.0[set]
     }

@@ -290,11 +290,9 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn dirichlet_at(&self, group: usize, x: &Point<D>) -> f64 {
         self.data.dirichlet.of(group).map_or(0.0, |u| u.at(x))
     }
-    /// The metric of a cell, computed.
     pub fn metric(&self, cell: usize) -> CellMetric<D> {
         CellMetric::of(self.mesh, cell)
     }
-    /// The measure of a facet.
     pub fn facet_measure(&self, (cell, local): HalfFacet) -> f64 {
         self.mesh.geometry(cell).facet_measure(local)
     }

@@ -264,7 +264,8 @@ impl<const D: usize> Space<'_, D> {
         };
         let deciding = self.deciding_nodes();
         let state = |&entity: &ContactEntity| {
-            let unknowns = deciding.of(entity).iter().map(|&i| self.dofs.of(entity.cell, i));
+            let nodes = &deciding[entity.facet.unwrap_or(D + 1)];
+            let unknowns = nodes.iter().map(|&i| self.dofs.of(entity.cell, i));
             let mut unknowns =
                 unknowns.filter(|&unknown| inequality.bounds[unknown] != Bound::Free).peekable();
             unknowns.peek().is_some() && unknowns.all(|unknown| support_touches(entity, unknown))

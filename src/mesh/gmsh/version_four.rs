@@ -63,7 +63,6 @@ fn read_counts(source: &mut Source) -> Result<(u64, u64), GmshError> {
     Ok((blocks, records))
 }
 
-/// Reads the nodes.
 pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
     let (blocks, announced) = read_counts(source)?;
     source.check_room("nodes", announced, 32)?;
@@ -108,7 +107,6 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
     source.end_section("nodes", announced)
 }
 
-/// Reads the elements.
 pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
     let (blocks, announced) = read_counts(source)?;
     source.check_room("elements", announced, 16)?;

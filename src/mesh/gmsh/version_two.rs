@@ -42,7 +42,6 @@ pub(super) fn read_nodes(
     source.end_section("nodes", announced)
 }
 
-/// Reads the elements.
 pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
     let announced = read_count(source, "the number of elements")?;
     source.check_room("elements", announced, 8)?;
