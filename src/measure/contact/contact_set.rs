@@ -1,9 +1,7 @@
 //! The discrete contact set and the density of the multiplier, for pictures.
 
-use super::entity::ContactEntity;
-use crate::algebra::Inequality;
+use super::entity::{ContactEntity, Solved};
 use crate::assemble::space::Space;
-use crate::inequality::Solution;
 use crate::mesh::HalfFacet;
 
 /// The discrete contact set and multiplier, in terms that do not depend on the unknowns of a
@@ -24,17 +22,13 @@ pub struct DiscreteContact {
 impl<const D: usize> Space<'_, D> {
     /// The contact set and density of a solution, with the definitions of
     /// `Discretisation::contact_errors`.
-    pub(crate) fn discrete_contact(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-    ) -> DiscreteContact {
+    pub(crate) fn discrete_contact(&self, solved: Solved<'_>) -> DiscreteContact {
         let mut contact = DiscreteContact::default();
         if !self.problem.is_constrained() {
             return contact;
         }
         let entities = self.entities();
-        let touching = self.in_contact(&entities, inequality, solution);
+        let touching = self.in_contact(&entities, solved);
         for (entity, _) in entities.iter().zip(touching).filter(|(_, touches)| *touches) {
             match entity.facet {
                 None => contact.cells.push(entity.cell),
@@ -46,7 +40,7 @@ impl<const D: usize> Space<'_, D> {
             return contact;
         }
         let weights = self.hat_integrals(&entities, &self.measures_of(&entities));
-        let multipliers = self.vertex_multipliers(inequality, solution);
+        let multipliers = self.vertex_multipliers(solved);
         let given = self.dirichlet_groups();
         let density = |v: usize| {
             let multiplier = multipliers.as_ref().map(|multipliers| multipliers[v]);

@@ -33,15 +33,16 @@ fn difference<const D: usize>(
     (fine, fine_inequality, fine_solution): DiscreteSolution<'_, '_, D>,
     refinements: &[&Refinement],
 ) -> ContactErrors {
-    let (space, fine) = (&own.space, &fine.space);
+    let (space, solved) = (&own.space, (inequality, solution));
+    let (fine, fine_solved) = (&fine.space, (fine_inequality, fine_solution));
     let mut errors = ContactErrors::default();
     // with both an obstacle and a contact boundary there are two multipliers of different kind
     if space.problem.has_obstacle() == space.problem.has_gap() {
         return errors;
     }
     let (entities, fine_entities) = (space.entities(), fine.entities());
-    let touching = space.in_contact(&entities, inequality, solution);
-    let fine_touching = fine.in_contact(&fine_entities, fine_inequality, fine_solution);
+    let touching = space.in_contact(&entities, solved);
+    let fine_touching = fine.in_contact(&fine_entities, fine_solved);
     let measures = fine.measures_of(&fine_entities);
     let of_fine = fine_entities.iter().zip(&measures).zip(fine_touching);
     let area = of_fine.map(|((&entity, measure), touches)| {
@@ -51,8 +52,8 @@ fn difference<const D: usize>(
     });
     errors.contact_area_error = Some(area.sum());
 
-    let of_fine = fine.vertex_multipliers(fine_inequality, fine_solution);
-    let own = space.vertex_multipliers(inequality, solution);
+    let of_fine = fine.vertex_multipliers(fine_solved);
+    let own = space.vertex_multipliers(solved);
     let (Some(mut multipliers), Some(own)) = (of_fine, own) else { return errors };
     for refinement in refinements.iter().rev() {
         multipliers = tested_with_coarser_hats(&multipliers, refinement);

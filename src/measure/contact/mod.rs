@@ -31,6 +31,7 @@ use crate::parallel::cells;
 use crate::parallel::vectors::collect;
 use crate::real::Point;
 use entity::ContactEntity;
+pub(super) use entity::Solved;
 use exact_contact::ExactContact;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
@@ -76,7 +77,7 @@ impl<const D: usize> Discretisation<'_, D> {
                 &Inequality<f64>,
                 &Solution<f64>,
             ) -> Result<ContactErrors, Error>
-                = |of, inequality, solution| of.space.contact_errors(inequality, solution)
+                = |of, inequality, solution| of.space.contact_errors((inequality, solution))
         )(self, inequality, solution)
     }
 
@@ -105,7 +106,7 @@ impl<const D: usize> Discretisation<'_, D> {
                 &dyn Fn(usize) -> bool,
             ) -> Option<f64>
                 = |of, inequality, solution, counts| {
-                    of.space.contact_measure(inequality, solution, counts)
+                    of.space.contact_measure((inequality, solution), counts)
                 }
         )(self, inequality, solution, counts)
     }
@@ -129,17 +130,13 @@ impl<const D: usize> Discretisation<'_, D> {
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Option<Vec<f64>> {
-        let multipliers = || self.space.nodal_multipliers(inequality, solution);
+        let multipliers = || self.space.nodal_multipliers((inequality, solution));
         self.space.problem.is_constrained().then(multipliers).flatten()
     }
 }
 
 impl<const D: usize> Space<'_, D> {
-    fn contact_errors(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-    ) -> Result<ContactErrors, Error> {
+    fn contact_errors(&self, solved: Solved<'_>) -> Result<ContactErrors, Error> {
         let mut errors = ContactErrors::default();
         let Some(exact) = &self.problem.exact else { return Ok(errors) };
         let is_known = exact.multiplier.is_some() || exact.contact.is_some();
@@ -153,10 +150,10 @@ impl<const D: usize> Space<'_, D> {
         if exact.multiplier.is_some() {
             let of_entities = (&entities[..], &measures[..]);
             [errors.multiplier_l1, errors.multiplier_l2] =
-                self.multiplier_errors(of_entities, &on_entities, inequality, solution);
+                self.multiplier_errors(of_entities, &on_entities, solved);
         }
         if let Some(set) = &exact.contact {
-            let touching = self.in_contact(&entities, inequality, solution);
+            let touching = self.in_contact(&entities, solved);
             let mut exact = on_entities.iter().flatten().peekable();
             let wrong = |(k, (measure, touches)): (usize, (&f64, &bool))| {
                 let found = exact.next_if(|(of, _)| *of == k);
@@ -173,15 +170,10 @@ impl<const D: usize> Space<'_, D> {
         Ok(errors)
     }
 
-    fn contact_measure(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-        counts: &dyn Fn(usize) -> bool,
-    ) -> Option<f64> {
+    fn contact_measure(&self, solved: Solved<'_>, counts: &dyn Fn(usize) -> bool) -> Option<f64> {
         let mut entities = self.problem.is_constrained().then(|| self.entities())?;
         entities.retain(|entity| counts(entity.cell));
-        let touching = self.in_contact(&entities, inequality, solution);
+        let touching = self.in_contact(&entities, solved);
         let measures = self.measures_of(&entities);
         let in_contact = measures.iter().zip(touching).filter(|(_, touches)| *touches);
         Some(in_contact.fold(0.0, |sum, (measure, _)| sum + measure))
@@ -226,8 +218,7 @@ impl<const D: usize> Space<'_, D> {
     fn in_contact(
         &self,
         entities: &[ContactEntity],
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
+        (inequality, solution): Solved<'_>,
     ) -> Vec<bool> {
         // the locations where some unknown is in contact: vertices, and others sorted by their vertices
         let touches = |&k: &usize| solution.contact[k] != Contact::Inactive;

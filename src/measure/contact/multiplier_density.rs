@@ -1,11 +1,9 @@
 //! The multiplier as a density at vertices.
 
-use super::entity::ContactEntity;
+use super::entity::{ContactEntity, Solved};
 use super::exact_contact::ExactContact;
-use crate::algebra::Inequality;
 use crate::arrays::map_entries;
 use crate::assemble::space::Space;
-use crate::inequality::Solution;
 
 impl<const D: usize> Space<'_, D> {
     /// The errors of the density in L1 and lumped L2 against the exact multiplier on entities with these measures,
@@ -15,11 +13,10 @@ impl<const D: usize> Space<'_, D> {
         &self,
         (entities, measures): (&[ContactEntity], &[f64]),
         exact: &[Vec<(usize, ExactContact)>],
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
+        solved: Solved<'_>,
     ) -> [Option<f64>; 2] {
         let weights = self.hat_integrals(entities, measures);
-        let Some(mut multipliers) = self.vertex_multipliers(inequality, solution) else {
+        let Some(mut multipliers) = self.vertex_multipliers(solved) else {
             return [None; 2];
         };
         for &(k, exact) in exact.iter().flatten() {
@@ -44,15 +41,11 @@ impl<const D: usize> Space<'_, D> {
 
     /// Nodal multipliers at vertices: that of each unknown divided equally among the vertices around its node. None
     /// where rounding leaves no digit.
-    pub(crate) fn vertex_multipliers(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-    ) -> Option<Vec<f64>> {
+    pub(super) fn vertex_multipliers(&self, solved: Solved<'_>) -> Option<Vec<f64>> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
-        let of_unknowns = self.nodal_multipliers(inequality, solution)?;
+        let of_unknowns = self.nodal_multipliers(solved)?;
         for (unknown, multiplier) in of_unknowns.iter().enumerate().filter(|(_, m)| **m != 0.0) {
-            let around = inequality.locations[unknown].vertices();
+            let around = solved.0.locations[unknown].vertices();
             let share = multiplier / around.len() as f64;
             around.iter().for_each(|&v| multipliers[v as usize] += share);
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::entity::ContactEntity;
+use super::entity::{ContactEntity, Solved};
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -55,7 +55,7 @@ impl<const D: usize> Discretisation<'_, D> {
                 &Solution<f64>,
                 Own<'_>,
             ) -> Option<BTreeMap<String, f64>>
-                = |of, inequality, solution, own| of.space.resultants(inequality, solution, own)
+                = |of, inequality, solution, own| of.space.resultants((inequality, solution), own)
         )(self, inequality, solution, own)
     }
 }
@@ -63,8 +63,7 @@ impl<const D: usize> Discretisation<'_, D> {
 impl<const D: usize> Space<'_, D> {
     fn resultants(
         &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
+        solved: Solved<'_>,
         [of_unknowns, of_cells]: Own<'_>,
     ) -> Option<BTreeMap<String, f64>> {
         if !self.problem.is_constrained() {
@@ -72,7 +71,8 @@ impl<const D: usize> Space<'_, D> {
         }
         let mut sums: BTreeMap<String, f64> =
             self.names_of_resultants().into_iter().map(|name| (name, 0.0)).collect();
-        let multipliers = self.multipliers(inequality, solution)?;
+        let multipliers = self.multipliers(solved)?;
+        let (inequality, solution) = solved;
         for (unknown, value) in multipliers.by_unknown.iter().enumerate() {
             if *value != 0.0 && multipliers.obstacles.act_at(unknown) && of_unknowns(unknown) {
                 let is_upper = solution.contact[unknown] == Contact::Upper;
@@ -120,13 +120,9 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The multipliers of a solution, none where rounding leaves no digit; all parts of a mesh call it.
-    pub(crate) fn multipliers(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-    ) -> Option<Multipliers> {
-        let by_unknown = self.nodal_multipliers(inequality, solution)?;
-        let obstacles = self.active_obstacles(&inequality.bounds, &solution.contact);
+    pub(crate) fn multipliers(&self, solved: Solved<'_>) -> Option<Multipliers> {
+        let by_unknown = self.nodal_multipliers(solved)?;
+        let obstacles = self.active_obstacles(&solved.0.bounds, &solved.1.contact);
         Some(Multipliers { by_unknown, obstacles })
     }
 
