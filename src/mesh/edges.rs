@@ -90,17 +90,6 @@ impl Edges {
     pub fn upper_ends(&self, a: u32) -> &[u32] {
         &self.upper[self.first_at(a) as usize..self.first_at(a + 1) as usize]
     }
-    /// The second result of [`Edges::with_cell_edges`], by a search for every edge of every cell.
-    pub fn cell_edges<const D: usize>(&self, mesh: &Mesh<D>) -> Vec<u32> {
-        let of_cell = |cell: &[u32], [i, j]: [usize; 2]| {
-            self.number(cell[i], cell[j]).expect("every pair of a cell's vertices is an edge")
-        };
-        let mut numbers = Vec::with_capacity(mesh.n_cells() * edge_vertices(D).len());
-        for cell in mesh.cells().chunks_exact(D + 1) {
-            numbers.extend(edge_vertices(D).iter().map(|&edge| of_cell(cell, edge)));
-        }
-        numbers
-    }
 }
 
 /// The upper ends of the edges with a lower vertex in a range, and where those of each of these

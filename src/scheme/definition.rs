@@ -65,7 +65,7 @@ impl<const D: usize> dyn Scheme<D> + '_ {
         self.element().layout()
     }
     /// The nodes of its element, in the basis that a constraint set needs.
-    pub fn nodes_for(&self, set: &dyn ConstraintSet) -> Vec<Node> {
+    fn nodes_for(&self, set: &dyn ConstraintSet) -> Vec<Node> {
         in_basis_of(set, self.element()).nodes()
     }
     /// The scheme applied to a problem on a mesh.

@@ -26,7 +26,7 @@ impl<const D: usize> Discretisation<'_, D> {
         let bounds = self.bounds()?;
         let matrix = self.matrix();
         let dirichlet_energy = (!is_penalised && !data.is_empty())
-            .then(|| self.space.dirichlet_energy(self.form(), &|| &self.prepared().0, &data));
+            .then(|| self.space.dirichlet_energy(self.form(), &metrics, &data));
         let penalised = is_penalised.then(|| {
             let (metrics, weights) = self.prepared();
             penalised_matrix(&self.space, self.form(), (metrics, weights), &data)
@@ -94,7 +94,10 @@ impl<const D: usize> Discretisation<'_, D> {
     /// [`Error::DataNotFinite`].
     pub fn load(&self) -> Result<Vec<f64>, Error> {
         compiled!(const D: fn(&Discretisation<'_, D>) -> Result<Vec<f64>, Error>
-                = |of| of.space.load(of.form(), &|| &of.prepared().0)
+                = |of| {
+                    let (free, metrics) = (of.space.free_bodies()?, || &of.prepared().0);
+                    Ok(of.space.load_and_data(of.form(), &metrics, &free, true)?.0)
+                }
         )(self)
     }
 }
