@@ -67,21 +67,17 @@ impl<const D: usize> Discretisation<'_, D> {
     /// [`check_bounds`](crate::processes::check_bounds). [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<f64>>, Error> {
         compiled!(const D: fn(&Discretisation<'_, D>) -> Result<Vec<Bound<f64>>, Error>
-                = |of| of.checked_bounds()
+                = |of| {
+                    let (bounds, found) = of.space.bounds()?;
+                    if !found.is_empty() && !of.mesh().is_part() {
+                        refuse(&found, largest_datum(&bounds, &found), of.mesh(), &|_| true)?;
+                    }
+                    Ok(bounds)
+                }
         )(self)
-    }
-    fn checked_bounds(&self) -> Result<Vec<Bound<f64>>, Error> {
-        let (bounds, found) = self.space.bounds()?;
-        if !found.is_empty() && !self.mesh().is_part() {
-            refuse(&found, largest_datum(&bounds, &found), self.mesh(), &|_| true)?;
-        }
-        Ok(bounds)
     }
     /// Lower bounds that exceed upper ones, and the largest datum: two bounds contradict each other if they differ by more
     /// than rounding of the largest datum of all [parts](crate::mesh::Part) of a mesh.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
     pub(crate) fn contradictions(&self) -> Result<(Vec<Contradiction<D>>, f64), Error> {
         let (bounds, found) = self.space.bounds()?;
         let size = largest_datum(&bounds, &found);

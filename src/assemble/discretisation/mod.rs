@@ -63,15 +63,11 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// The pattern of the matrix, with values zero.
     pub fn pattern(&self) -> SparseMatrix<f64> {
         compiled!(const D: fn(&Discretisation<'_, D>) -> SparseMatrix<f64>
-                = |of| of.make_pattern()
+                = |of| match of.owns_rows() {
+                    true => owned_rows::pattern(&of.space, of.form()),
+                    false => of.shared_rows.pattern(&of.space, of.form()),
+                }
         )(self)
-    }
-    fn make_pattern(&self) -> SparseMatrix<f64> {
-        if self.owns_rows() {
-            owned_rows::pattern(&self.space, self.form())
-        } else {
-            self.shared_rows.pattern(&self.space, self.form())
-        }
     }
     /// Overwrites the values of a matrix that has this discretisation's pattern.
     ///
@@ -79,16 +75,14 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// If it has another.
     pub fn fill(&self, matrix: &mut SparseMatrix<f64>) {
         compiled!(const D: fn(&Discretisation<'_, D>, &mut SparseMatrix<f64>)
-                = |of, matrix| of.fill_values(matrix)
+                = |of, matrix| match of.owns_rows() {
+                    true => {
+                        let (metrics, weights) = of.prepared();
+                        owned_rows::fill(&of.space, of.form(), metrics, weights, matrix);
+                    }
+                    false => of.shared_rows.fill(&of.space, of.form(), matrix),
+                }
         )(self, matrix)
-    }
-    fn fill_values(&self, matrix: &mut SparseMatrix<f64>) {
-        if self.owns_rows() {
-            let (metrics, weights) = self.prepared();
-            owned_rows::fill(&self.space, self.form(), metrics, weights, matrix);
-        } else {
-            self.shared_rows.fill(&self.space, self.form(), matrix);
-        }
     }
     /// Drops what facet forms need of cells and facets, and the load by cells: a tenth of the memory of a solve. It is
     /// computed again when needed.
