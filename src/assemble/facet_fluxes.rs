@@ -27,9 +27,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// Of a form that is a penalty alone, the given multipliers are the products of weights and jumps:
     /// from differences of values they would lose their digits.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
     pub(crate) fn facet_fluxes(
         &self,
         u: &[f64],

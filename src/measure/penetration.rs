@@ -123,9 +123,6 @@ impl<const D: usize> Discretisation<'_, D> {
 
     /// The penetration of values that were computed in a precision, in the cells that count, those of a part of a mesh,
     /// and on their facets.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
     pub(crate) fn penetration_of(
         &self,
         values: (&[f64], Precision),

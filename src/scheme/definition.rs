@@ -178,7 +178,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     ///
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
-    /// [`Error::Parameter`] for a penalty factor that makes no penalty.
+    /// [`Error::Parameter`] for a penalty factor that makes no penalty, and for a matrix with too many entries.
     pub fn new(
         scheme: &dyn Scheme<D>,
         problem: &'a Problem<D>,
