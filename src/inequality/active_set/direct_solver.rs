@@ -2,7 +2,7 @@
 //! condensation.
 
 use super::iterate::Iterate;
-use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
+use super::linear_solver::{Accuracy, End, LinearSolver};
 use crate::algebra::{Inequality, PenalisedMatrix};
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
 use crate::linear::direct::{
@@ -174,7 +174,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
         0.0
     }
 
-    fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), LinearFailure> {
+    fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), End> {
         self.inactive.clear();
         let inactive = eliminated.iter().enumerate().filter(|(_, eliminated)| !**eliminated);
         self.inactive.extend(inactive.map(|(i, _)| i as u32));
@@ -190,11 +190,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
     }
 
     /// For a penalised matrix, corrects values and jump multipliers together until the corrections no longer halve.
-    fn correct(
-        &mut self,
-        iterate: &mut Iterate<'_, T>,
-        _accuracy: Accuracy,
-    ) -> Result<(), LinearFailure> {
+    fn correct(&mut self, iterate: &mut Iterate<'_, T>, _accuracy: Accuracy) -> Result<(), End> {
         match (&self.factors, &self.condensation, &self.inequality.penalised) {
             (Some(InactiveFactors::Assembled(factors)), ..) => {
                 self.correct_assembled(factors, iterate)?;
@@ -205,7 +201,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
                 let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
                 system.solve(iterate)?;
             }
-            _ => return Err(LinearFailure::Unsuitable),
+            _ => return Err(End::Unsuitable),
         }
         Ok(())
     }
