@@ -259,7 +259,7 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
             }
             previous_change = size.max_change;
         }
-        self.compute_residual(iterate);
+        iterate.compute_residual_with_jump_multipliers();
         if is_singular { Err(FactorError::Singular) } else { Ok(()) }
     }
 
@@ -293,14 +293,6 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
             let multiplier = iterate.jump_multipliers[jump].to_f64();
             *out = self.penalised.jump_residual(jump, |i| iterate.values[i].to_f64(), multiplier);
         }
-        self.compute_residual(iterate);
-    }
-
-    /// Sets the residual to `c - K u - M^T p`.
-    fn compute_residual(&self, iterate: &mut Iterate<'_, T>) {
-        let Iterate { inequality, values, jump_multipliers, residual, .. } = iterate;
-        let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-        let (load, value) = (&inequality.load, |i: usize| values[i].to_f64());
-        self.penalised.residual_with_jump_multipliers(load, value, multiplier, residual);
+        iterate.compute_residual_with_jump_multipliers();
     }
 }

@@ -239,13 +239,7 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
             T::lit(multipliers_of_values[jump] + change)
         };
         iterate.jump_multipliers = collect(penalised.n_jumps(), multiplier);
-        let Iterate { values, jump_multipliers, residual, .. } = iterate;
-        penalised.residual_with_jump_multipliers(
-            &self.inequality.load,
-            |i| values[i].to_f64(),
-            |jump| jump_multipliers[jump].to_f64(),
-            residual,
-        );
+        iterate.compute_residual_with_jump_multipliers();
         Ok(true)
     }
 
