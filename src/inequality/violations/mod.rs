@@ -220,7 +220,7 @@ impl Violations {
     pub fn to_numbers(&self) -> Vec<f64> {
         let Self { scales, feasibility, jump_residual, squares, diagonal_sum, epsilon } = *self;
         let own = [feasibility, jump_residual, diagonal_sum, epsilon];
-        [&own[..], &squares, &scales.to_numbers()].concat()
+        [&own[..], &squares, &[scales.max_norm], &scales.sums].concat()
     }
     /// The violations from the numbers of [`Violations::to_numbers`]; `None` if their number is wrong.
     #[must_use]
@@ -228,7 +228,8 @@ impl Violations {
         let (&[feasibility, jump_residual, diagonal_sum, epsilon], numbers) =
             numbers.split_first_chunk()?;
         let (&squares, numbers) = numbers.split_first_chunk()?;
-        let scales = Sums::from_numbers(numbers.try_into().ok()?);
+        let (&max_norm, sums) = numbers.split_first()?;
+        let scales = Sums { max_norm, sums: sums.try_into().ok()? };
         Some(Self { scales, feasibility, jump_residual, squares, diagonal_sum, epsilon })
     }
 
