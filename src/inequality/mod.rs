@@ -41,7 +41,7 @@ mod by_name;
 mod certificate;
 mod contact_forces;
 mod history;
-pub(crate) mod initial_guess;
+mod initial_guess;
 mod interior_point;
 mod monotone_multigrid;
 mod outcome;
