@@ -18,30 +18,33 @@ use local_violation::{LocalViolation, touched_bound};
 #[must_use]
 pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
     compiled!(
-        T: fn(&Inequality<T>, (&[T], &[T]), Precision) -> Certificate
-            = certificate_of
+        T: fn(&Inequality<T>, (&[T], &[T]), Precision) -> (Certificate, f64)
+            = certificate_with_norm
     )(inequality, (u, &[]), T::PRECISION)
+    .0
 }
 
-/// The certificate of a solution, with its jump multipliers ([`Violations::of`]), in its precision.
+/// The certificate of a solution, with its jump multipliers ([`Violations::of`]), in its precision; and the energy norm
+/// `E` to which it is relative.
 pub(crate) fn certify_solution(
     inequality: &Inequality<f64>,
     solution: &Solution<f64>,
-) -> Certificate {
+) -> (Certificate, f64) {
     let Solution { values, jump_multipliers, precision, .. } = solution;
-    certificate_of(inequality, (values, jump_multipliers), *precision)
-        .with_algebraic_bound(solution.algebraic_bound)
+    let (certificate, energy_norm) =
+        certificate_with_norm(inequality, (values, jump_multipliers), *precision);
+    (certificate.with_algebraic_bound(solution.algebraic_bound), energy_norm)
 }
 
-fn certificate_of<T: Real>(
+fn certificate_with_norm<T: Real>(
     inequality: &Inequality<T>,
-    (u, jump_multipliers): (&[T], &[T]),
+    values: (&[T], &[T]),
     precision: Precision,
-) -> Certificate {
-    match data_are_in_range(inequality, inequality.is_well_formed()) {
-        true => certify_in(precision, inequality, (u, jump_multipliers)).0,
-        false => Certificate::INVALID,
-    }
+) -> (Certificate, f64) {
+    let is_in_range = data_are_in_range(inequality, inequality.is_well_formed());
+    let violations = Violations::of_all(inequality, values, precision);
+    let certificate = if is_in_range { violations.certificate() } else { Certificate::INVALID };
+    (certificate, violations.scales.scales(violations.epsilon).energy_norm)
 }
 
 /// The certificate, and the dual norm of the vector with the entries `d_i U`, divided by `E`. The second number times
@@ -51,23 +54,7 @@ pub(crate) fn certify_with_rounding<T: Real>(
     u: &[T],
     jump_multipliers: &[T],
 ) -> (Certificate, f64) {
-    certify_in(T::PRECISION, inequality, (u, jump_multipliers))
-}
-
-/// As [`certify_with_rounding`], of values that were computed in a precision.
-fn certify_in<T: Real>(
-    precision: Precision,
-    inequality: &Inequality<T>,
-    values: (&[T], &[T]),
-) -> (Certificate, f64) {
-    let has_all_copies = inequality.distribution().is_none();
-    let owns = |i: usize| inequality.owns(i);
-    let own = Violations::at(inequality, values, &owns, (precision, has_all_copies));
-    match inequality.distribution() {
-        Some(distribution) => own.over_parts(distribution),
-        None => own,
-    }
-    .certificate_with_rounding()
+    Violations::of_all(inequality, (u, jump_multipliers), T::PRECISION).certificate_with_rounding()
 }
 
 /// The violations of the complementarity conditions at the unknowns that a part of a mesh owns: sums and maxima. Those
@@ -128,6 +115,18 @@ impl Violations {
                     Violations::at(inequality, (u, multipliers), &|i| owns(i), (T::PRECISION, false))
                 }
         )(inequality, u, jump_multipliers, owns)
+    }
+
+    /// The violations at all unknowns, of all parts, of values and jump multipliers that were computed in a precision.
+    fn of_all<T: Real>(
+        inequality: &Inequality<T>,
+        values: (&[T], &[T]),
+        precision: Precision,
+    ) -> Self {
+        let has_all_copies = inequality.distribution().is_none();
+        let owns = |i: usize| inequality.owns(i);
+        let own = Self::at(inequality, values, &owns, (precision, has_all_copies));
+        inequality.distribution().map_or(own, |distribution| own.over_parts(distribution))
     }
 
     /// [`Violations::of`] without the dispatch to a compiled instance; with the forces of nodes, whose sums over copies

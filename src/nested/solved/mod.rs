@@ -16,9 +16,7 @@ use super::system::System;
 use crate::algebra::{Contact, Inequality, any_part};
 use crate::assemble::Discretisation;
 use crate::error_bound::{ErrorBound, PrimalDualPair};
-use crate::inequality::{
-    Certificate, Outcome, Solution, certify_solution, count_active, energy_norm,
-};
+use crate::inequality::{Certificate, Outcome, Solution, certify_solution, count_active};
 use crate::measure::{Fields, Rounding};
 use crate::mesh::{Mesh, Part};
 
@@ -77,9 +75,9 @@ impl<'a, const D: usize> Solved<'a, D> {
         let is_finite = solution.values.iter().all(|v| v.is_finite());
         let has_iterate =
             solution.outcome.has_iterate() && !any_part(inequality.distribution(), !is_finite);
-        let certificate = match has_iterate {
+        let (certificate, energy_norm) = match has_iterate {
             true => certify_solution(inequality, &solution),
-            false => Certificate::INVALID,
+            false => (Certificate::INVALID, 0.0),
         };
         if solution.outcome == Outcome::Converged
             && !certificate.is_within_limits(solution.precision)
@@ -87,10 +85,8 @@ impl<'a, const D: usize> Solved<'a, D> {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
         }
-        let mut norm = 0.0;
         if has_iterate {
-            norm = energy_norm(inequality, &solution);
-            solution.dual_residual = certificate.largest() * norm;
+            solution.dual_residual = certificate.largest() * energy_norm;
         }
         Self {
             mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
@@ -98,7 +94,7 @@ impl<'a, const D: usize> Solved<'a, D> {
             solution,
             certificate,
             has_iterate,
-            energy_norm: norm,
+            energy_norm,
             hierarchy,
             bound: OnceLock::new(),
             rounding: OnceLock::new(),
