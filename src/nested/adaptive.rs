@@ -211,7 +211,7 @@ impl<'a, const D: usize> AdaptiveIteration<'a, D> {
             }
             Err(error) => return Err(error),
         };
-        if unknowns(next.mesh(), self.scheme.layout()) > self.adaptivity.unknowns {
+        if unknowns(&next.mesh, self.scheme.layout()) > self.adaptivity.unknowns {
             return Ok(Some(Stop::Unknowns));
         }
         self.meshes.add(next).map(|()| None)

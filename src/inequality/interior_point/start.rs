@@ -28,18 +28,13 @@ impl<'h, 'a, T: Real> InteriorIterate<'h, 'a, T> {
         Ok(iterate)
     }
 
-    /// The admissible value nearest to `x`.
-    fn nearest(bound: &Bound<T>, x: f64) -> f64 {
-        bound.nearest(T::lit(x)).to_f64()
-    }
-
     /// Sets slacks and dual variables from the values; `is_regular` if these are the solution without bounds.
     fn set_pairs(&mut self, is_regular: bool) {
         let Self { inequality, system, point, pairs, .. } = self;
         let bounds = inequality.bounds.iter().zip(&point.values);
         // towards the admissible values nearest to the present ones, or to zero
         let change = |(bound, &x): (&Bound<T>, &f64)| match bound.is_inequality() {
-            true => Self::nearest(bound, if is_regular { x } else { 0.0 }) - x,
+            true => bound.nearest(T::lit(if is_regular { x } else { 0.0 })).to_f64() - x,
             false => 0.0,
         };
         let change: Vec<f64> = bounds.map(change).collect();
