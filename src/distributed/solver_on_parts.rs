@@ -79,7 +79,7 @@ impl<const D: usize> SystemSolver<D> for SolverOnParts {
             true => solve.by_engine()?,
             false => solve.by_active_sets()?,
         };
-        solution.contact = over_parts.contact_of_owners(&solution.contact);
+        over_parts.update_contact(&mut solution.contact);
         Ok(solution)
     }
 }

@@ -29,21 +29,19 @@ impl OverParts {
         self.numbering.first().last().copied().unwrap_or(0)
     }
 
-    /// Contact states, those of ghosts by their owners.
-    pub fn contact_of_owners(&self, contact: &[Contact]) -> Vec<Contact> {
-        let number = |&state: &Contact| match state {
+    /// Gives ghosts the contact states that their owners have.
+    pub fn update_contact(&self, contact: &mut [Contact]) {
+        let number = |state: Contact| match state {
             Contact::Inactive => 0.0,
             Contact::Lower => 1.0,
             Contact::Upper => 2.0,
         };
-        let mut states: Vec<f64> = contact.iter().map(number).collect();
-        (self as &dyn Distribution).update(&mut states);
-        let state = |&number: &f64| match number {
+        let state = |number: f64| match number {
             1.0 => Contact::Lower,
             2.0 => Contact::Upper,
             _ => Contact::Inactive,
         };
-        states.iter().map(state).collect()
+        (self as &dyn Distribution).update_by(contact, number, state);
     }
 
     /// Replaces numbers of this part by their sums or maxima over all parts; by NaN where messages fail.
