@@ -192,14 +192,6 @@ impl<const D: usize> Hierarchy<D> {
         levels
     }
 
-    /// The fewest hierarchies that have all of these levels of a domain.
-    ///
-    /// # Errors
-    /// Those of [`Hierarchy::of_domain`].
-    pub(crate) fn all_of_domain(domain: &Domain<D>, levels: &[usize]) -> Result<Vec<Self>, Error> {
-        Self::all_by(levels, |level| Self::of_domain(domain, level))
-    }
-
     /// The fewest hierarchies that have all of these levels, each built by a function of its finest level.
     ///
     /// # Errors
@@ -345,7 +337,8 @@ mod tests {
     fn levels_that_are_refinements_of_each_other_share_a_hierarchy() {
         let scene = scenes::radial::<2>(1.0);
         let levels = [8, 12, 16, 6, 7];
-        let hierarchies = Hierarchy::<2>::all_of_domain(&scene.domain, &levels).unwrap();
+        let build = |level| Hierarchy::of_domain(&scene.domain, level);
+        let hierarchies = Hierarchy::<2>::all_by(&levels, build).unwrap();
         let levels: Vec<Vec<usize>> =
             hierarchies.iter().map(|h| h.meshes.iter().map(|m| m.level).collect()).collect();
         assert_eq!(levels, [vec![4, 8, 16], vec![6, 12], vec![7]]);

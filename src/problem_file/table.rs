@@ -69,20 +69,18 @@ impl Formula {
                 of_facets.fold(f64::NAN, f64::max)
             }));
         }
-        let degree = expression.degree(D);
-        let value: Field<D> = Arc::new(move |x| expression.on_boundary(x, &normal));
-        match degree {
-            Some(degree) => Datum::Polynomial { value, degree },
-            None => Datum::Function(value),
-        }
+        self.datum_with(normal)
     }
     /// The formula as a datum: a constant, a polynomial, or a function of the point.
     pub fn datum<const D: usize>(&self) -> Datum<D> {
+        self.datum_with(Point::zeros())
+    }
+    fn datum_with<const D: usize>(&self, normal: Point<D>) -> Datum<D> {
         match self.clone() {
             Self::Number(c) => Datum::Constant(c),
             Self::Expression(expression) => {
                 let degree = expression.degree(D);
-                let value: Field<D> = Arc::new(move |x| expression.value(x.as_slice()));
+                let value: Field<D> = Arc::new(move |x| expression.on_boundary(x, &normal));
                 match degree {
                     Some(degree) => Datum::Polynomial { value, degree },
                     None => Datum::Function(value),
