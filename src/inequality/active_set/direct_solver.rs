@@ -45,20 +45,6 @@ enum InactiveFactors<T> {
     Condensed(Box<CondensedFactors<T>>),
 }
 
-/// The sizes of a correction of values and jump multipliers.
-struct CorrectionSize {
-    /// The energy of the correction.
-    correction_energy: f64,
-    /// Largest absolute change of a value.
-    max_change: f64,
-    /// Largest absolute value after the correction.
-    max_norm: f64,
-    /// The energy scale of [`PenalisedMatrix::energy`] after the correction.
-    energy: f64,
-    /// `sum K_ii u_i^2` after the correction.
-    diagonal_energy: f64,
-}
-
 impl<'a, T: Real> DirectSolver<'a, T> {
     /// The solver of an inequality, which must be well formed.
     pub fn new(inequality: &'a Inequality<T>) -> Self {
@@ -240,51 +226,45 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
     /// [`FactorError::Singular`] if the energy of the last correction is not small: the matrix is then singular in the
     /// precision of the scalar.
     fn solve(&self, iterate: &mut Iterate<'_, T>) -> Result<(), FactorError> {
+        let penalised = self.penalised;
+        // the residuals of both equations, which the corrections overwrite
         let mut jump_residuals = vec![0.0; iterate.jump_multipliers.len()];
         let mut previous_change = f64::INFINITY;
         let mut is_singular = false;
         let squared_rounding = (CORRECTION_MULTIPLE * T::EPSILON).powi(2);
-        for correction in 0..MAX_CORRECTIONS {
-            let size = self.correct(iterate, &mut jump_residuals);
-            let is_small = size.max_change <= CORRECTION_MULTIPLE * T::EPSILON * size.max_norm;
+        for solution in 1..=MAX_CORRECTIONS {
+            self.compute_residuals(iterate, &mut jump_residuals);
+            let Iterate { inequality, values, jump_multipliers, residual, .. } = &mut *iterate;
+            let (factors, is_inactive) = (self.factors, &self.is_inactive);
+            let correction_energy =
+                self.condensation.solve(factors, is_inactive, residual, &mut jump_residuals);
+            let (mut max_change, mut max_norm, mut diagonal_energy) = (0.0_f64, 0.0_f64, 0.0);
+            for (i, (x, correction)) in values.iter_mut().zip(residual.iter()).enumerate() {
+                *x += T::lit(*correction);
+                max_change = max_change.max(correction.abs());
+                max_norm = max_norm.max(x.to_f64().abs());
+                diagonal_energy += penalised.stiffness_diagonal(i) * x.to_f64().powi(2);
+            }
+            for (multiplier, correction) in jump_multipliers.iter_mut().zip(&jump_residuals) {
+                *multiplier += T::lit(*correction);
+            }
+            let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
+            let load = &inequality.load;
+            let energy = penalised.energy(load, |i| values[i].to_f64(), multiplier);
+            let is_small = max_change <= CORRECTION_MULTIPLE * T::EPSILON * max_norm;
             // A quarter of the digits of the scalar in the energy norm: single unknowns of thin cells may have fewer
             // correct digits. The second term is for constants, whose energy is zero.
-            let tolerance =
-                T::EPSILON.sqrt() * size.energy + squared_rounding * size.diagonal_energy;
-            is_singular = size.correction_energy.abs() > tolerance;
+            let tolerance = T::EPSILON.sqrt() * energy + squared_rounding * diagonal_energy;
+            is_singular = correction_energy.abs() > tolerance;
             // false for numbers that are not finite
-            let halves = size.max_change <= 0.5 * previous_change && !is_small;
-            if correction + 1 >= SOLUTIONS && !halves {
+            let halves = max_change <= 0.5 * previous_change && !is_small;
+            if solution >= SOLUTIONS && !halves {
                 break;
             }
-            previous_change = size.max_change;
+            previous_change = max_change;
         }
         iterate.compute_residual_with_jump_multipliers();
         if is_singular { Err(FactorError::Singular) } else { Ok(()) }
-    }
-
-    /// One correction of values and jump multipliers: the solution of the system with the residuals of both equations
-    /// as right-hand sides. `jump_residuals` is workspace for the residual of the second equation; the corrections
-    /// overwrite both residuals.
-    fn correct(&self, iterate: &mut Iterate<'_, T>, jump_residuals: &mut [f64]) -> CorrectionSize {
-        let penalised = self.penalised;
-        self.compute_residuals(iterate, jump_residuals);
-        let Iterate { values, jump_multipliers, residual, .. } = iterate;
-        let correction_energy =
-            self.condensation.solve(self.factors, &self.is_inactive, residual, jump_residuals);
-        let (mut max_change, mut max_norm, mut diagonal_energy) = (0.0_f64, 0.0_f64, 0.0);
-        for (i, (x, correction)) in values.iter_mut().zip(residual.iter()).enumerate() {
-            *x += T::lit(*correction);
-            max_change = max_change.max(correction.abs());
-            max_norm = max_norm.max(x.to_f64().abs());
-            diagonal_energy += penalised.stiffness_diagonal(i) * x.to_f64().powi(2);
-        }
-        for (multiplier, correction) in jump_multipliers.iter_mut().zip(jump_residuals) {
-            *multiplier += T::lit(*correction);
-        }
-        let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-        let energy = penalised.energy(&iterate.inequality.load, |i| values[i].to_f64(), multiplier);
-        CorrectionSize { correction_energy, max_change, max_norm, energy, diagonal_energy }
     }
 
     /// Sets the residual to `c - K u - M^T p`, and `jump_residuals` to `g - M u + S^-1 p`.
