@@ -43,18 +43,15 @@ impl OverParts {
         };
         (self as &dyn Distribution).update_by(contact, number, state);
     }
-
-    /// Replaces numbers of this part by their sums or maxima over all parts; by NaN where messages fail.
-    fn join(&self, numbers: &mut [f64], joined: Joined) {
-        match joined(&*self.exchange, numbers) {
-            Ok(all) => numbers.copy_from_slice(&all),
-            Err(_) => numbers.fill(f64::NAN),
-        }
-    }
 }
 
-/// A sum or maximum over parts.
-type Joined = fn(&dyn Exchange, &[f64]) -> Result<Vec<f64>, ExchangeError>;
+/// Replaces numbers of this part by those of all parts; by NaN where messages fail.
+fn replace(of_all: Result<Vec<f64>, ExchangeError>, numbers: &mut [f64]) {
+    match of_all {
+        Ok(of_all) => numbers.copy_from_slice(&of_all),
+        Err(_) => numbers.fill(f64::NAN),
+    }
+}
 
 impl Distribution for OverParts {
     fn owns(&self, unknown: usize) -> bool {
@@ -69,9 +66,9 @@ impl Distribution for OverParts {
         }
     }
     fn sum(&self, numbers: &mut [f64]) {
-        self.join(numbers, |exchange, numbers| exchange.sum(numbers));
+        replace(self.exchange.sum(numbers), numbers);
     }
     fn largest(&self, numbers: &mut [f64]) {
-        self.join(numbers, |exchange, numbers| exchange.largest(numbers));
+        replace(self.exchange.largest(numbers), numbers);
     }
 }
