@@ -52,9 +52,11 @@ pub(super) fn algebraic_bound<T: Real>(
 ) -> Result<Option<f64>, Outcome> {
     let AdmissibleValues { inequality, values, residual, diagonal, energy_norm } = *of;
     let bounds = &inequality.bounds;
-    let unbalanced = |i: usize| match inequality.owns(i) {
-        true => T::lit(unbalanced_residual(&bounds[i], values[i], residual[i])),
-        false => T::lit(0.0),
+    let unbalanced = |i: usize| {
+        let is_balanced = !inequality.owns(i)
+            || bounds[i].fixed_value().is_some()
+            || multiplier(&bounds[i], values[i], residual[i]) >= 0.0;
+        T::lit(if is_balanced { 0.0 } else { residual[i] })
     };
     let unbalanced = collect(values.len(), unbalanced);
     for trial in 0..=MAX_THRESHOLDS {
@@ -85,11 +87,4 @@ fn multiplier<T: Real>(bound: &Bound<T>, value: T, residual: f64) -> f64 {
     } else {
         f64::NEG_INFINITY
     }
-}
-
-/// The residual `b - A u` of an unknown unless a multiplier of the right sign balances it: zero if the unknown
-/// is fixed, or at a bound where its multiplier has the right sign; else `residual`.
-fn unbalanced_residual<T: Real>(bound: &Bound<T>, value: T, residual: f64) -> f64 {
-    let is_balanced = bound.fixed_value().is_some() || multiplier(bound, value, residual) >= 0.0;
-    if is_balanced { 0.0 } else { residual }
 }

@@ -26,23 +26,9 @@ pub(crate) struct NewtonSystem<'h, 'a, T> {
     free: Vec<u32>,
     /// Whether an unknown is not fixed.
     is_free: Vec<bool>,
-    /// Set by the first factorisation of a symmetric assembled matrix.
-    lower_triangle: Option<LowerTriangle<T>>,
-}
-
-/// The lower triangle of a symmetric `A` and the symbolic analysis of its factors, which are the same
-/// for every `D`.
-struct LowerTriangle<T> {
-    matrix: SparseMatrix<T>,
-    analysis: SymbolicFactor,
-}
-
-impl<T: Real> LowerTriangle<T> {
-    fn new(inequality: &Inequality<T>, free: &[u32]) -> Result<Self, FactorError> {
-        let matrix = inequality.matrix.lower_triangle(free);
-        let analysis = SymbolicFactor::new(&matrix, None)?;
-        Ok(Self { matrix, analysis })
-    }
+    /// The lower triangle of a symmetric assembled `A` and the symbolic analysis of its factors, which are the same for
+    /// every `D`; set by the first factorisation.
+    lower_triangle: Option<(SparseMatrix<T>, SymbolicFactor)>,
 }
 
 /// Factors of `A + D`.
@@ -99,13 +85,17 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
                 .map(|factors| NewtonFactors::Condensed(Box::new(factors)));
         }
         let factors = if self.inequality.symmetric {
-            let triangle = match &mut self.lower_triangle {
-                Some(triangle) => triangle,
-                none => none.insert(LowerTriangle::new(self.inequality, &self.free)?),
+            let (triangle, analysis) = match &mut self.lower_triangle {
+                Some(known) => known,
+                none => {
+                    let triangle = self.inequality.matrix.lower_triangle(&self.free);
+                    let analysis = SymbolicFactor::new(&triangle, None)?;
+                    none.insert((triangle, analysis))
+                }
             };
-            let mut matrix = triangle.matrix.clone();
+            let mut matrix = triangle.clone();
             add_to_diagonal(&mut matrix, &self.free, diagonal)?;
-            Factors::cholesky(&mut matrix, &triangle.analysis)?
+            Factors::cholesky(&mut matrix, analysis)?
         } else {
             let mut matrix = self.inequality.matrix.submatrix(&self.free);
             add_to_diagonal(&mut matrix, &self.free, diagonal)?;
