@@ -156,10 +156,6 @@ impl<T: Real> DirectSolver<'_, T> {
 }
 
 impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
-    fn tolerance(&self) -> f64 {
-        0.0
-    }
-
     fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), End> {
         self.inactive.clear();
         let inactive = eliminated.iter().enumerate().filter(|(_, eliminated)| !**eliminated);
@@ -190,10 +186,6 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
             _ => return Err(End::Unsuitable),
         }
         Ok(())
-    }
-
-    fn is_accurate(&self, _energy_norm: f64) -> bool {
-        true
     }
 
     fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {

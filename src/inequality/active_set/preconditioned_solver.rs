@@ -247,8 +247,4 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         self.residual_norm
             <= self.full_accuracy_norm.min(TOLERANCE_MARGIN * self.tolerance * energy_norm)
     }
-
-    fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
-        iterate.residual_term_magnitudes(i)
-    }
 }
