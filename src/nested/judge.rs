@@ -55,7 +55,10 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             Solution::new(values.to_vec(), contact, Outcome::Converged).linear_solver("none");
         solution.precision = self.p1.solver.precision();
         let hierarchy = self.hierarchy(position);
-        let solved = Solved::new(system, solution, hierarchy);
-        Ok(solved.found_elsewhere())
+        let mut solved = Solved::new(system, solution, hierarchy);
+        if solved.outcome() == Outcome::Stalled {
+            solved.solution.outcome = Outcome::NotASolution;
+        }
+        Ok(solved)
     }
 }

@@ -30,7 +30,7 @@ use crate::mesh::{Mesh, Part};
 /// [`Error::Processes`](crate::error::Error::Processes) in all. Distances between two solutions are none there.
 pub struct Solved<'a, const D: usize> {
     system: System<'a, D>,
-    solution: Solution<f64>,
+    pub(super) solution: Solution<f64>,
     certificate: Certificate,
     has_iterate: bool,
     /// The energy norm to which certificates are relative; zero without an iterate.
@@ -184,13 +184,6 @@ impl<'a, const D: usize> Solved<'a, D> {
     /// Warnings by type, as text: a penalty below its proven bound, say.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
-    }
-    /// The solution with the outcome of values that no solver of the library found.
-    pub(super) fn found_elsewhere(mut self) -> Self {
-        if self.solution.outcome == Outcome::Stalled {
-            self.solution.outcome = Outcome::NotASolution;
-        }
-        self
     }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {
