@@ -69,7 +69,8 @@ impl<const D: usize> SystemSolver<D> for SolverOnParts {
         guess: &InitialGuess<f64>,
     ) -> Result<Solution<f64>, Error> {
         let Some(over_parts) = system.over_parts() else {
-            return refuse("mesh", "a whole one", "this solver is one over the parts of a mesh");
+            let allowed = "this solver is one over the parts of a mesh";
+            return Err(Error::parameter("mesh", "a whole one", allowed));
         };
         system.agreed(check(system))?;
         // a start need not be accurate
@@ -84,11 +85,6 @@ impl<const D: usize> SystemSolver<D> for SolverOnParts {
     }
 }
 
-fn refuse<V>(parameter: &'static str, value: &str, allowed: &str) -> Result<V, Error> {
-    let (value, allowed) = (value.to_owned(), allowed.to_owned());
-    Err(Error::Parameter { parameter, value, allowed })
-}
-
 /// Checks that a system has what a solve over parts needs.
 ///
 /// # Errors
@@ -96,13 +92,13 @@ fn refuse<V>(parameter: &'static str, value: &str, allowed: &str) -> Result<V, E
 fn check<const D: usize>(system: &System<'_, D>) -> Result<(), Error> {
     if !system.mesh().is_supported() {
         let allowed = "on several parts every component of the domain needs Dirichlet data";
-        return refuse("boundary", "without Dirichlet data", allowed);
+        return Err(Error::parameter("boundary", "without Dirichlet data", allowed));
     }
     let form = system.discretisation().form();
     let is_over_penalised = form.couples() && !form.uses_flux() && !form.is_lifted();
     if is_over_penalised && D > 1 && system.discretisation().degree() > 1 {
         let allowed = "they have no preconditioner on several parts";
-        return refuse("scheme", "over-penalised quadratics", allowed);
+        return Err(Error::parameter("scheme", "over-penalised quadratics", allowed));
     }
     Ok(())
 }

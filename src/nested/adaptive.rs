@@ -115,11 +115,8 @@ impl<'a, const D: usize> AdaptiveIteration<'a, D> {
     ) -> Result<Self, Error> {
         adaptivity.check()?;
         let Some(meshes) = nested.adaptive_meshes() else {
-            return Err(Error::Parameter {
-                parameter: "meshes",
-                value: "uniform".to_owned(),
-                allowed: "adaptive refinement takes AdaptiveMeshes".to_owned(),
-            });
+            let allowed = "adaptive refinement takes AdaptiveMeshes";
+            return Err(Error::parameter("meshes", "uniform", allowed));
         };
         // other errors are those of the first step
         if let Err(error @ Error::NotAdaptive { .. }) = nested.check_bound(scheme) {

@@ -152,11 +152,10 @@ impl<const D: usize> AdaptiveMeshes<D> {
     /// Adds a bisection of the finest mesh.
     pub(super) fn add(&self, step: MeshOfSequence<D>) -> Result<(), Error> {
         let finest = self.step(self.n_meshes() - 1);
-        finest.finer.set(Box::new(step)).map_err(|_| Error::Parameter {
-            parameter: "marked cells",
-            value: "of a mesh that was the finest".to_owned(),
-            allowed: "one thread adds meshes to a sequence".to_owned(),
-        })
+        let (value, allowed) =
+            ("of a mesh that was the finest", "one thread adds meshes to a sequence");
+        let added = finest.finer.set(Box::new(step));
+        added.map_err(|_| Error::parameter("marked cells", value, allowed))
     }
 
     /// Continues values at the vertices of the mesh before a position: new vertices have `middle` of the

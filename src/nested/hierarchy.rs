@@ -257,14 +257,13 @@ pub(crate) fn check_level<const D: usize>(
     level: usize,
     parts: usize,
 ) -> Result<(), Error> {
-    let refuse = |parameter, value, allowed| Err(Error::Parameter { parameter, value, allowed });
     let is_mesh = domain.is_mesh();
     if !is_mesh {
         let domain = domain.bounding_box();
         let sides = domain.upper - domain.lower;
         if let Some(side) = sides.iter().find(|side| !(**side > 0.0 && side.is_finite())) {
-            let allowed = "positive and finite, the upper corner less the lower one".to_owned();
-            return refuse("side of the domain", side.to_string(), allowed);
+            let allowed = "positive and finite, the upper corner less the lower one";
+            return Err(Error::parameter("side of the domain", side, allowed));
         }
     }
     let cells = domain.cells(level) / parts as f64;
@@ -278,26 +277,26 @@ pub(crate) fn check_level<const D: usize>(
         let allowed = format!(
             "so many {kind} would make {cells:.1e} cells{place}, at most {limit:.1e} are possible"
         );
-        return refuse("level", level.to_string(), allowed);
+        return Err(Error::parameter("level", level, allowed));
     }
     // the constructor of an input mesh checks its cells
     if is_mesh {
         return Ok(());
     }
     if level == 0 {
-        let allowed = "a built-in mesh has at least one subdivision of its shortest side; refinements, from 0, are those of a mesh file".to_owned();
-        return refuse("level", "0".to_owned(), allowed);
+        let allowed = "a built-in mesh has at least one subdivision of its shortest side; refinements, from 0, are those of a mesh file";
+        return Err(Error::parameter("level", 0, allowed));
     }
     // squares and volumes of cells, and their reciprocals, must be in the range of floating-point numbers
     let power = D.max(2) as i32;
     let outside = |&h: &f64| !(h.powi(power).is_normal() && h.powi(-power).is_normal());
     match domain.spacings(level).into_iter().find(outside) {
         None => Ok(()),
-        Some(h) => refuse(
+        Some(h) => Err(Error::parameter(
             "spacing",
             format!("{h:.1e}"),
-            "one whose powers up to the dimension are floating-point numbers; choose another scale or level".to_owned(),
-        ),
+            "one whose powers up to the dimension are floating-point numbers; choose another scale or level",
+        )),
     }
 }
 

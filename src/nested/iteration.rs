@@ -234,11 +234,10 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     pub(super) fn check_position(&self, position: usize) -> Result<(), Error> {
         match self.p1.meshes.len() {
             n if position < n => Ok(()),
-            n => Err(Error::Parameter {
-                parameter: "position",
-                value: position.to_string(),
-                allowed: format!("there are {n} meshes, of which the coarsest has position 0"),
-            }),
+            n => {
+                let allowed = format!("there are {n} meshes, of which the coarsest has position 0");
+                Err(Error::parameter("position", position, allowed))
+            }
         }
     }
 }

@@ -42,13 +42,11 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         if values.len() != inequality.size() {
             let allowed =
                 format!("{} has {} unknowns on this mesh", scheme.name(), inequality.size());
-            let value = values.len().to_string();
-            return Err(Error::Parameter { parameter: "number of values", value, allowed });
+            return Err(Error::parameter("number of values", values.len(), allowed));
         }
         if let Some(k) = values.iter().position(|x| !(*x).is_finite()) {
             let value = format!("{} at position {k}, from zero", values[k]);
-            let allowed = "finite numbers".to_owned();
-            return Err(Error::Parameter { parameter: "values", value, allowed });
+            return Err(Error::parameter("values", value, "finite numbers"));
         }
         let contact = contact_of(inequality, values);
         let mut solution =
