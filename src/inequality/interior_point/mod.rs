@@ -236,24 +236,3 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
             .jump_multipliers(self.jump_multipliers())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::algebra::{Bound, SparseMatrix};
-    use crate::inequality::StepCounter;
-
-    /// Two coupled unknowns with lower bounds zero, and a load twice which overflows the scalar: the start is not
-    /// finite.
-    #[test]
-    fn a_start_that_overflows_is_named() {
-        let (row_starts, columns) = (vec![0, 2, 4], vec![0, 1, 0, 1]);
-        let matrix = SparseMatrix { row_starts, columns, values: vec![1.0, -0.9, -0.9, 1.0] };
-        let bounds = vec![Bound::Lower(0.0); 2];
-        let inequality = Inequality::<f32>::new(matrix, true, vec![3e38; 2], bounds);
-        let steps = StepCounter::default();
-        let found = run(&inequality, None, 10, &Recorder::new(&steps, false));
-        assert_ne!(found.outcome, Outcome::Converged);
-        assert!(found.outer <= 2, "{}", found.outer);
-    }
-}
