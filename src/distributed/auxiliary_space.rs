@@ -94,9 +94,6 @@ impl<'a> VertexCorrection<'a> {
 
     /// Sets the fixed unknowns, and the fixed vertices: those with Dirichlet data, and those in the
     /// location of a fixed unknown.
-    ///
-    /// # Errors
-    /// The error of the preconditioner `C`.
     pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         let (transpose, dirichlet) = (&self.transpose, &self.dirichlet);
         for_each_chunk(&mut self.fixed_vertices, |range, out| {

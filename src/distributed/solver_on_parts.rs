@@ -86,9 +86,6 @@ impl<const D: usize> SystemSolver<D> for SolverOnParts {
 }
 
 /// Checks that a system has what a solve over parts needs.
-///
-/// # Errors
-/// [`Error::Parameter`].
 fn check<const D: usize>(system: &System<'_, D>) -> Result<(), Error> {
     if !system.mesh().is_supported() {
         let allowed = "on several parts every component of the domain needs Dirichlet data";

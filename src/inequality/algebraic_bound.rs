@@ -42,9 +42,6 @@ pub(super) struct AdmissibleValues<'v, 'a, T: Real> {
 ///    *Proven for a symmetric `A`*, where `|(A e)_i| <= sqrt(d_i) ||e||_A`; *assumed for any other*, where the
 ///    skew-symmetric part of `A` may change a multiplier by more. Otherwise the threshold, at first `threshold`, is
 ///    raised, and in the end no unknown counts as strongly active: then nothing is assumed here.
-///
-/// # Errors
-/// Those of `dual_norm`.
 pub(super) fn algebraic_bound<T: Real>(
     of: &AdmissibleValues<'_, '_, T>,
     mut threshold: f64,

@@ -193,9 +193,6 @@ impl<const D: usize> Hierarchy<D> {
     }
 
     /// The fewest hierarchies that have all of these levels, each built by a function of its finest level.
-    ///
-    /// # Errors
-    /// Those of the function.
     pub(crate) fn all_by(
         levels: &[usize],
         build: impl Fn(usize) -> Result<Self, Error>,
@@ -210,9 +207,6 @@ impl<const D: usize> Hierarchy<D> {
     }
 
     /// As [`Hierarchy::of_domain`]; no mesh of a built-in domain but the last has a level less than `coarsest`.
-    ///
-    /// # Errors
-    /// Those of [`Hierarchy::of_domain`].
     pub(crate) fn of_domain_from(
         domain: &Domain<D>,
         level: usize,
@@ -230,9 +224,6 @@ impl<const D: usize> Hierarchy<D> {
 
     /// The parts of the hierarchy that ends with a level; its coarsest mesh has enough cells for each process. All
     /// processes call it.
-    ///
-    /// # Errors
-    /// Those of [`Hierarchy::of_domain`] and of [`Hierarchy::of_parts`].
     pub(crate) fn of_domain_in_parts(
         domain: &Domain<D>,
         level: usize,

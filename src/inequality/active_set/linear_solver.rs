@@ -53,23 +53,14 @@ pub(crate) trait LinearSolver<T: Real>: Sync {
         0.0
     }
     /// Prepares the solver for the linear system in which these unknowns are eliminated.
-    ///
-    /// # Errors
-    /// See [`End`].
     fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), End>;
     /// Corrects the values of the inactive unknowns, and the jump multipliers if the solver has them as unknowns, by
     /// the solution of the linear system with the residual as right-hand side. On return the residual of the iterate is
     /// that of the corrected values on all unknowns, computed in `f64`.
-    ///
-    /// # Errors
-    /// See [`End`].
     fn correct(&mut self, iterate: &mut Iterate<'_, T>, accuracy: Accuracy) -> Result<(), End>;
     /// Computes the jump multipliers of a penalised matrix more accurately than they follow from the values, and the
     /// residual with these jump multipliers. False, without a change, if the matrix is not penalised or if
     /// [`LinearSolver::correct`] determines the jump multipliers already.
-    ///
-    /// # Errors
-    /// See [`End`].
     fn determine_jump_multipliers(&mut self, iterate: &mut Iterate<'_, T>) -> Result<bool, End> {
         let _ = iterate;
         Ok(false)

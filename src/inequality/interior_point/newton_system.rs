@@ -75,9 +75,6 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
     }
 
     /// Factors `A + D`; `diagonal` contains `D_ii` for every unknown.
-    ///
-    /// # Errors
-    /// See [`FactorError`].
     pub fn factor(&mut self, diagonal: &[f64]) -> Result<NewtonFactors<T>, FactorError> {
         if let Some(condensation) = self.condensation {
             return condensation
@@ -107,9 +104,6 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
     /// The solution without bounds, and true. A body that bounds alone hold has no such solution: then the solution of
     /// `(A + D) u = b + D l`, where `D` is the diagonal of `A` at unknowns with bounds and `l` the admissible value nearest
     /// to zero, and false.
-    ///
-    /// # Errors
-    /// See [`NewtonSystem::factor`].
     pub fn solve_without_bounds(&mut self) -> Result<(MixedVector, bool), FactorError> {
         let mut diagonal = vec![0.0; self.inequality.size()];
         if self.inequality.kernel.is_empty() {

@@ -14,9 +14,6 @@ impl<'h, 'a, T: Real> InteriorIterate<'h, 'a, T> {
     ///
     /// A body that bounds alone hold starts from the shifted solution of [`NewtonSystem::solve_without_bounds`], with
     /// slacks that are at least its largest distance from the admissible value nearest to zero.
-    ///
-    /// # Errors
-    /// See [`NewtonSystem::factor`].
     pub fn start(
         inequality: &'a Inequality<T>,
         mut system: NewtonSystem<'h, 'a, T>,
