@@ -224,15 +224,12 @@ impl<const D: usize> Solve<'_, '_, D> {
     fn by_engine(&self) -> Result<Solution<f64>, Error> {
         let (over_parts, inequality) = (&**self.over_parts, self.system.inequality());
         let own = over_parts.numbering.own();
-        let bound = |&i: &u32| &inequality.bounds[i as usize];
-        let lower = |bound: &Bound<f64>| bound.fixed_value().or(bound.lower());
-        let upper = |bound: &Bound<f64>| bound.fixed_value().or(bound.upper());
+        let ends = |side: usize| -> Vec<f64> {
+            own.iter().map(|&i| inequality.bounds[i as usize].interval()[side]).collect()
+        };
+        let (lower, upper) = (ends(0), ends(1));
         let load = inequality.assembled_load();
         let load: Vec<f64> = own.iter().map(|&i| load[i as usize]).collect();
-        let lower: Vec<f64> =
-            own.iter().map(|i| lower(bound(i)).unwrap_or(f64::NEG_INFINITY)).collect();
-        let upper: Vec<f64> =
-            own.iter().map(|i| upper(bound(i)).unwrap_or(f64::INFINITY)).collect();
         let start = |&i: &u32| {
             let value = self.guess.values.as_ref().map_or(0.0, |values| values[i as usize]);
             inequality.bounds[i as usize].nearest(value)
