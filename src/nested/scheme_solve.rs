@@ -1,7 +1,6 @@
 //! The solve of one scheme on one mesh of a nested iteration: start, assembly, initial guess, solver.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use super::iteration::NestedIteration;
 use super::meshes::{Meshes, unknowns};
@@ -168,14 +167,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         system: &System<'_, D>,
         guess: &InitialGuess<f64>,
     ) -> Result<(Solution<f64>, f64), Error> {
-        let mut seconds = f64::INFINITY;
-        let mut last = None;
-        for _ in 0..self.p1.repeat {
-            let clock = Instant::now();
-            last = Some(self.p1.solver.solve(system, guess)?);
-            seconds = seconds.min(clock.elapsed().as_secs_f64());
-        }
-        let Some(mut solution) = last else { unreachable!("at least one run") };
+        let (mut solution, seconds) = self.p1.repeated(|| self.p1.solver.solve(system, guess))?;
         if self.keeps_history {
             let guess = guess.clone().keeps_history(true);
             let again = self.p1.solver.solve(system, &guess)?;
