@@ -12,8 +12,8 @@ const THRESHOLD_FACTOR: f64 = 4.0;
 const MAX_THRESHOLDS: usize = 3;
 
 /// Values within their bounds, with what the bound on their error depends on.
-pub(super) struct AdmissibleValues<'v, 'a, T: Real> {
-    pub inequality: &'a Inequality<T>,
+pub(super) struct AdmissibleValues<'v, T: Real> {
+    pub inequality: &'v Inequality<T>,
     pub values: &'v [T],
     /// `b - A u`.
     pub residual: &'v [f64],
@@ -43,7 +43,7 @@ pub(super) struct AdmissibleValues<'v, 'a, T: Real> {
 ///    skew-symmetric part of `A` may change a multiplier by more. Otherwise the threshold, at first `threshold`, is
 ///    raised, and in the end no unknown counts as strongly active: then nothing is assumed here.
 pub(super) fn algebraic_bound<T: Real>(
-    of: &AdmissibleValues<'_, '_, T>,
+    of: &AdmissibleValues<'_, T>,
     mut threshold: f64,
     mut dual_norm: impl FnMut(&[bool], &[T]) -> Result<Option<f64>, Outcome>,
 ) -> Result<Option<f64>, Outcome> {

@@ -5,6 +5,7 @@ use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, End, LinearSolver};
 use crate::algebra::{Inequality, PenalisedMatrix};
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
+use crate::inequality::interior_point::MatrixFactors;
 use crate::linear::direct::{
     CondensedFactors, FactorError, Factors, OrderedMatrix, StaticCondensation,
 };
@@ -32,17 +33,11 @@ pub(crate) struct DirectSolver<'a, T> {
     /// The inactive unknowns, ascending.
     inactive: Vec<u32>,
     /// The factors for the inactive unknowns; `None` before the first factorisation and after one that failed.
-    factors: Option<InactiveFactors<T>>,
+    factors: Option<MatrixFactors<T>>,
     /// The static condensation of the penalised matrix, if the matrix is penalised.
     condensation: Option<StaticCondensation<'a, T>>,
     /// The assembled matrix, with one order of elimination for all active sets if it is symmetric.
     assembled: OrderedMatrix<'a, T>,
-}
-
-/// The factors of a matrix on the inactive unknowns.
-enum InactiveFactors<T> {
-    Assembled(Factors<T>),
-    Condensed(Box<CondensedFactors<T>>),
 }
 
 impl<'a, T: Real> DirectSolver<'a, T> {
@@ -132,7 +127,7 @@ impl<T: Real> DirectSolver<'_, T> {
     /// values.
     fn correction_energy(&self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
         match (&self.factors, &self.condensation, &self.inequality.penalised) {
-            (Some(InactiveFactors::Assembled(factors)), ..) => {
+            (Some(MatrixFactors::Assembled(factors)), ..) => {
                 iterate.compute_residual();
                 let residual = &iterate.residual;
                 let of_inactive = |&i: &u32| T::lit(residual[i as usize]);
@@ -141,7 +136,7 @@ impl<T: Real> DirectSolver<'_, T> {
                 let terms = self.inactive.iter().zip(&correction);
                 Some(terms.map(|(&i, e)| residual[i as usize] * e.to_f64()).sum())
             }
-            (Some(InactiveFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
+            (Some(MatrixFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
                 let is_inactive = iterate.eliminated.iter().map(|&e| !e).collect();
                 let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
                 let mut jump_residuals = vec![0.0; iterate.jump_multipliers.len()];
@@ -164,9 +159,9 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
         self.factors = Some(match &self.condensation {
             Some(condensation) => {
                 let is_inactive: Vec<bool> = eliminated.iter().map(|&e| !e).collect();
-                InactiveFactors::Condensed(Box::new(condensation.factor(&is_inactive)?))
+                MatrixFactors::Condensed(Box::new(condensation.factor(&is_inactive)?))
             }
-            None => InactiveFactors::Assembled(self.factor()?),
+            None => MatrixFactors::Assembled(self.factor()?),
         });
         Ok(())
     }
@@ -174,10 +169,10 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
     /// For a penalised matrix, corrects values and jump multipliers together until the corrections no longer halve.
     fn correct(&mut self, iterate: &mut Iterate<'_, T>, _accuracy: Accuracy) -> Result<(), End> {
         match (&self.factors, &self.condensation, &self.inequality.penalised) {
-            (Some(InactiveFactors::Assembled(factors)), ..) => {
+            (Some(MatrixFactors::Assembled(factors)), ..) => {
                 self.correct_assembled(factors, iterate)?;
             }
-            (Some(InactiveFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
+            (Some(MatrixFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
                 let is_inactive = iterate.eliminated.iter().map(|&e| !e).collect();
                 iterate.jump_multipliers.resize(penalised.n_jumps(), T::lit(0.0));
                 let system = PenalisedSystem { penalised, condensation, factors, is_inactive };

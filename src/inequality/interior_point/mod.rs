@@ -22,8 +22,7 @@ use crate::instances::compiled;
 use crate::linear::direct::StaticCondensation;
 use crate::real::Real;
 use bound_pairs::{BoundPair, mean_product, ratio_test};
-use newton_system::NewtonFactors;
-pub(super) use newton_system::{MixedVector, NewtonSystem};
+pub(super) use newton_system::{MatrixFactors, MixedVector, NewtonSystem};
 
 /// Largest number of linear systems of a run. Runs of the file of figures take 13 in the mean and 24 at
 /// most.
@@ -182,7 +181,7 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
     /// over the bounds of an unknown. Sets the changes of the pairs.
     fn direct(
         &mut self,
-        factors: &NewtonFactors<T>,
+        factors: &MatrixFactors<T>,
         mut right: MixedVector,
         product_change: impl Fn(&BoundPair) -> f64,
     ) -> MixedVector {

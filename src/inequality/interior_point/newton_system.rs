@@ -31,11 +31,11 @@ pub(crate) struct NewtonSystem<'h, 'a, T> {
     lower_triangle: Option<(SparseMatrix<T>, SymbolicFactor)>,
 }
 
-/// Factors of `A + D`.
-pub(crate) enum NewtonFactors<T> {
-    /// Factors of the assembled matrix.
+/// Factors of a matrix on some unknowns.
+pub(crate) enum MatrixFactors<T> {
+    /// Of the assembled matrix.
     Assembled(Factors<T>),
-    /// Factors of the penalised matrix by static condensation.
+    /// Of a penalised matrix by static condensation.
     Condensed(Box<CondensedFactors<T>>),
 }
 
@@ -75,11 +75,11 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
     }
 
     /// Factors `A + D`; `diagonal` contains `D_ii` for every unknown.
-    pub fn factor(&mut self, diagonal: &[f64]) -> Result<NewtonFactors<T>, FactorError> {
+    pub fn factor(&mut self, diagonal: &[f64]) -> Result<MatrixFactors<T>, FactorError> {
         if let Some(condensation) = self.condensation {
             return condensation
                 .factor_shifted(&self.is_free, diagonal)
-                .map(|factors| NewtonFactors::Condensed(Box::new(factors)));
+                .map(|factors| MatrixFactors::Condensed(Box::new(factors)));
         }
         let factors = if self.inequality.symmetric {
             let (triangle, analysis) = match &mut self.lower_triangle {
@@ -98,7 +98,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
             add_to_diagonal(&mut matrix, &self.free, diagonal)?;
             Factors::lu(&matrix)?
         };
-        Ok(NewtonFactors::Assembled(factors))
+        Ok(MatrixFactors::Assembled(factors))
     }
 
     /// The solution without bounds, and true. A body that bounds alone hold has no such solution: then the solution of
@@ -143,20 +143,20 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
 
     /// Replaces a right-hand side by the solution, with zeros for fixed unknowns. `factors` must
     /// come from [`NewtonSystem::factor`] of this system.
-    pub fn solve(&self, factors: &NewtonFactors<T>, right: &mut MixedVector) {
+    pub fn solve(&self, factors: &MatrixFactors<T>, right: &mut MixedVector) {
         match (factors, self.condensation) {
-            (NewtonFactors::Condensed(factors), Some(condensation)) => {
+            (MatrixFactors::Condensed(factors), Some(condensation)) => {
                 let MixedVector { values, jump_multipliers } = right;
                 condensation.solve(factors, &self.is_free, values, jump_multipliers);
             }
-            (NewtonFactors::Assembled(factors), _) => {
+            (MatrixFactors::Assembled(factors), _) => {
                 let free = || self.free.iter().map(|&i| i as usize);
                 let mut x: Vec<T> = free().map(|i| T::lit(right.values[i])).collect();
                 factors.solve_in_place(&mut x, 1);
                 right.values.fill(0.0);
                 free().zip(x).for_each(|(i, x)| right.values[i] = x.to_f64());
             }
-            (NewtonFactors::Condensed(_), None) => {
+            (MatrixFactors::Condensed(_), None) => {
                 unreachable!("condensed factors come from a condensation")
             }
         }
