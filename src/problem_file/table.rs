@@ -128,7 +128,8 @@ impl<'t> Source<'t> {
         kind: ProblemFileErrorKind,
         message: String,
     ) -> ProblemFileError {
-        ProblemFileError::at(self.path, self.position(offset), kind, message)
+        let place = Some(self.position(offset));
+        ProblemFileError { kind, path: self.path.into(), place, message, source: None }
     }
 
     /// The error for a mesh file that is named at an offset in bytes, with its path once.
@@ -137,7 +138,8 @@ impl<'t> Source<'t> {
             GmshErrorKind::Unreadable => error.to_string(),
             _ => format!("mesh {}: {error}", mesh.display()),
         };
-        self.error(offset, ProblemFileErrorKind::Mesh, message).caused_by(error)
+        let at_name = self.error(offset, ProblemFileErrorKind::Mesh, message);
+        ProblemFileError { source: Some(Box::new(error)), ..at_name }
     }
 
     /// The error for a key that is missing in the table at an offset in bytes.
