@@ -52,7 +52,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         let mut solution =
             Solution::new(values.to_vec(), contact, Outcome::Converged).linear_solver("none");
         solution.precision = self.p1.solver.precision();
-        let hierarchy = self.hierarchy(position);
+        let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
         let mut solved = Solved::new(system, solution, hierarchy);
         if solved.outcome() == Outcome::Stalled {
             solved.solution.outcome = Outcome::NotASolution;
