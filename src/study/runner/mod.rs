@@ -357,7 +357,7 @@ impl<'a, const D: usize> Study<'a, D> {
                     let fits = |of: &Entry<'_, D>| self.check_level(&*of.scheme, level, available);
                     self.entries.iter().any(|entry| fits(entry).is_ok())
                 });
-                Hierarchy::all_of_domain(&self.scene.domain, &levels)
+                Hierarchy::all_by(&levels, |level| Hierarchy::of_domain(&self.scene.domain, level))
             }
             Some(reference) => {
                 let coarsest = self.levels.iter().copied().min().unwrap_or(1);
