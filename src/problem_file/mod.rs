@@ -37,31 +37,19 @@
 //! have `+ - * / ^`, comparisons, `&& || !`, the constants `pi` and `e`, and functions of which an error
 //! message lists the names; `if(condition, yes, no)` among them.
 
+mod contents;
 mod data;
 mod error;
 mod expression;
 mod table;
 
+pub use contents::ProblemFile;
 pub use error::{ProblemFileError, ProblemFileErrorKind};
 
 use std::path::Path;
 
 use crate::input::read_file;
-use crate::scenes::AnyScene;
 use table::Source;
-
-/// The contents of a problem file and its mesh file.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct ProblemFile {
-    /// The problem on its box or on its mesh, with the boundary conditions that the file says. Its name is that of the
-    /// file if the file gives none.
-    pub scene: AnyScene,
-    /// The [`fingerprint`](crate::input::fingerprint)s of the files: `problem`, and `mesh` if there is one.
-    pub fingerprints: Vec<(&'static str, String)>,
-    /// Parts of the mesh file that are not used, after its path.
-    pub warnings: Vec<String>,
-}
 
 /// Reads a problem and holds its data against its mesh: names, and values at vertices and barycentres.
 ///

@@ -4,7 +4,7 @@ mod check;
 
 use toml::de::DeTable;
 
-use super::ProblemFile;
+use super::contents::ProblemFile;
 use super::error::{ProblemFileError, ProblemFileErrorKind};
 use super::table::{Formula, Place, Source, Value};
 use crate::arrays::array_of;

@@ -1,0 +1,16 @@
+//! The contents of a problem file.
+
+use crate::scenes::AnyScene;
+
+/// The contents of a problem file and its mesh file.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct ProblemFile {
+    /// The problem on its box or on its mesh, with the boundary conditions that the file says. Its name is that of the
+    /// file if the file gives none.
+    pub scene: AnyScene,
+    /// The [`fingerprint`](crate::input::fingerprint)s of the files: `problem`, and `mesh` if there is one.
+    pub fingerprints: Vec<(&'static str, String)>,
+    /// Parts of the mesh file that are not used, after its path.
+    pub warnings: Vec<String>,
+}
