@@ -44,6 +44,7 @@ pub(crate) fn penalised_matrix<const D: usize>(
         let mut jumps = JumpLists::default();
         for facet in cells.flat_map(|cell| space.form_facets_of(cell)) {
             let (cell, local) = facet.here;
+            // D + 1: no cell across
             let (other, there) = facet.there.unwrap_or((cell, D + 1));
             let template = &templates[local][there];
             match dirichlet.next_if(|datum| datum.facet == facet.here) {
@@ -157,7 +158,8 @@ impl LocalTerm {
     }
 }
 
-/// By numbers of a facet here and there, the last of which is that of no cell there, the terms of each moment.
+/// The terms of each moment, `[here][there]`, of a facet with the number `here` in its cell and `there` in the cell across;
+/// `there` is `dimension + 1` if there is no cell across.
 fn templates(
     dimension: usize,
     nodes: &[Node],

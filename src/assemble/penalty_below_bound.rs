@@ -4,7 +4,8 @@ use super::space::Space;
 use crate::facet::FacetForm;
 
 impl<const D: usize> Space<'_, D> {
-    /// See `Discretisation::penalty_below_bound`.
+    /// The facets whose penalty lies below the bound that proves coercivity: their number and the
+    /// one with the smallest quotient of penalty and bound; none if the form has no such bound.
     pub fn penalty_below_bound(&self, form: &dyn FacetForm<D>) -> Option<PenaltyBelowBound> {
         let least_penalty = form.theory().least_penalty.filter(|_| form.couples())?;
         let mut worst: Option<PenaltyBelowBound> = None;

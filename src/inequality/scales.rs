@@ -30,6 +30,10 @@ pub(crate) struct Scales {
     pub energy_norm: f64,
 }
 
+/// Positions among [`Sums::sums`].
+const LOAD_ENERGY: usize = 2;
+const DIAGONAL_ENERGY: usize = 3;
+
 /// The maximum and the sums over unknowns from which [`Scales`] are computed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
@@ -75,8 +79,8 @@ impl Sums {
                 let nearest = bounds[i].nearest(u[i]).to_f64();
                 chunk.max_norm = maximum(chunk.max_norm, maximum(x.abs(), nearest.abs()));
                 chunk.add_energy(x * (c - residual[i]));
-                chunk.sums[2] += c * c / d;
-                chunk.sums[3] += d * x * x;
+                chunk.sums[LOAD_ENERGY] += c * c / d;
+                chunk.sums[DIAGONAL_ENERGY] += d * x * x;
             }
             chunk
         });
@@ -90,7 +94,7 @@ impl Sums {
                 let i = term.unknown as usize;
                 let (x, c, d) = (u[i].to_f64(), load[i].to_f64(), diagonal(i));
                 sums.add_energy(-term.linear * x);
-                sums.sums[2] += ((c - term.load).powi(2) - c * c) / d;
+                sums.sums[LOAD_ENERGY] += ((c - term.load).powi(2) - c * c) / d;
                 sums.add_energy(term.constant);
             }
         }

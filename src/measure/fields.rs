@@ -1,6 +1,6 @@
 //! Solution, obstacle, multiplier and contact set on cells, for pictures.
 
-use super::contact::{DiscreteContact, Solved};
+use super::contact::{DiscreteContact, SolvedInequality};
 use super::penetration::middle;
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::Discretisation;
@@ -64,7 +64,7 @@ impl<const D: usize> Discretisation<'_, D> {
 
 impl<const D: usize> Space<'_, D> {
     /// Fields of a solution; see `Discretisation::fields`.
-    fn fields(&self, solved: Solved<'_>) -> Fields {
+    fn fields(&self, solved: SolvedInequality<'_>) -> Fields {
         let (inequality, solution) = solved;
         let u = &solution.values;
         let corner = |&v: &u32| self.mesh.vertices()[v as usize];

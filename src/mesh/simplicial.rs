@@ -33,6 +33,7 @@ impl<const D: usize> Mesh<D> {
     }
     /// Number of cells.
     pub fn n_cells(&self) -> usize {
+        const { assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only") };
         self.cells.len() / (D + 1)
     }
     /// Vertices of a cell, ascending.

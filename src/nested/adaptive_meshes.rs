@@ -158,7 +158,8 @@ impl<const D: usize> AdaptiveMeshes<D> {
         added.map_err(|_| Error::parameter("marked cells", value, allowed))
     }
 
-    /// As [`Meshes::continued`](super::Meshes), from the mesh before.
+    /// Continues values at the vertices of the mesh before a position: new vertices have `middle` of the
+    /// values of their parents.
     pub(super) fn continued<V: Copy>(
         &self,
         position: usize,

@@ -194,7 +194,7 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
         }
         let start = self.start(position)?;
         let problem = self.problem_at_vertices();
-        let ((System { inequality, .. }, solution), seconds) = self.repeated(|| {
+        let ((inequality, solution), seconds) = self.repeated(|| {
             let mut system = self.system(position, &problem)?;
             let guess = InitialGuess::default().steps(self.steps.clone());
             let mut guess = guess.energy_tolerance(ENERGY_TOLERANCE);
@@ -204,7 +204,7 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
                     guess.values(start.values.clone()).coarse_spaces(start.coarse_spaces.clone());
             }
             let solution = self.solver.solve(&system, &guess)?;
-            Ok((system, solution))
+            Ok((system.inequality, solution))
         })?;
         let clock = Instant::now();
         let fixed = fixed(&inequality);

@@ -73,8 +73,10 @@ impl Formula {
     }
     /// The formula as a datum: a constant, a polynomial, or a function of the point.
     pub fn datum<const D: usize>(&self) -> Datum<D> {
+        // no variable of the formula is a component of a normal
         self.datum_with(Point::zeros())
     }
+    /// The formula as a datum, with this normal where it contains one.
     fn datum_with<const D: usize>(&self, normal: Point<D>) -> Datum<D> {
         match self.clone() {
             Self::Number(c) => Datum::Constant(c),

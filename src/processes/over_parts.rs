@@ -45,7 +45,7 @@ impl OverParts {
     }
 }
 
-/// Replaces numbers of this part by those of all parts; by NaN where messages fail.
+/// Replaces numbers of this part by their sums or maxima over all parts; by NaN where messages fail.
 fn replace(of_all: Result<Vec<f64>, ExchangeError>, numbers: &mut [f64]) {
     match of_all {
         Ok(of_all) => numbers.copy_from_slice(&of_all),

@@ -1,7 +1,7 @@
 //! The monotone multigrid method: counts that do not depend on strict complementarity nor on the
 //! mesh, and the solutions of the active set.
 
-use crate::problems::{inequality, laplacian};
+use crate::problems::{inequality, laplacian, sparse};
 use unilateral::algebra::{Bound, Inequality};
 use unilateral::inequality::{
     ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SinglePrecision, Stage,
@@ -155,6 +155,15 @@ fn beside_free_string(n: usize, others: [[f64; 2]; 2]) -> Inequality<f64> {
         matrix.row_starts.push(matrix.columns.len() as u32);
     }
     inequality(matrix, &vec![-1.0; n + 2], vec![Bound::Lower(0.0); n + 2])
+}
+
+/// Both unknowns are in contact, so that no correction meets the direction (1, 1), in which the energy has negative
+/// curvature and no lower bound.
+#[test]
+fn contact_does_not_hide_an_indefinite_matrix() {
+    let matrix = sparse(&[vec![1.0, -2.0], vec![-2.0, 1.0]]);
+    let held = inequality(matrix, &[-1.0; 2], vec![Bound::Lower(0.0); 2]);
+    assert_eq!(MonotoneMultigrid::default().solve(&held).outcome, Outcome::NotCoercive);
 }
 
 /// The smallest eigenvalue of the string is zero, so that no eigenvalue bounds the error of the iterate, and both

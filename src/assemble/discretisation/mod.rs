@@ -26,7 +26,7 @@ use crate::problem::{DiscreteFunction, Problem};
 /// does is compiled once for each dimension.
 ///
 /// # Panics
-/// Its functions of a vector of unknowns or of a solution panic if this has fewer values than there are unknowns.
+/// A method that takes a vector of unknowns or a solution panics if the vector has fewer values than there are unknowns.
 pub struct Discretisation<'a, const D: usize> {
     pub(crate) space: Space<'a, D>,
     form: Box<dyn FacetForm<D>>,

@@ -5,9 +5,8 @@ use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, End, LinearSolver};
 use crate::algebra::{Inequality, PenalisedMatrix};
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
-use crate::inequality::interior_point::MatrixFactors;
 use crate::linear::direct::{
-    CondensedFactors, FactorError, Factors, OrderedMatrix, StaticCondensation,
+    CondensedFactors, FactorError, Factors, MatrixFactors, OrderedMatrix, StaticCondensation,
 };
 use crate::real::Real;
 

@@ -23,7 +23,8 @@ pub(crate) enum End {
     Stagnation,
     /// The matrix of the active set is singular, where that of another one need not be.
     Singular,
-    /// The linear solver does not fit the matrix, or its iterations do not converge within their limit.
+    /// The linear solver does not fit the matrix, its iterations do not converge within their limit, or rounding leaves
+    /// the certificate or the bound on the error too large: factors may do better.
     Unsuitable,
 }
 
@@ -33,10 +34,11 @@ impl From<Outcome> for End {
     }
 }
 
+/// For factors of the matrix of an active set, after the whole matrix has been checked.
 impl From<FactorError> for End {
     fn from(error: FactorError) -> Self {
         match error {
-            // the whole matrix has been checked: a negative pivot is one of rounding. Either bounds alone hold a part of
+            // a negative pivot is one of rounding. Either bounds alone hold a part of
             // the domain, and no unknown is active there, or large penalties leave the matrix of this active set no digit
             FactorError::Singular | FactorError::NotPositive => Self::Singular,
             FactorError::OutOfMemory => Self::Outcome(Outcome::OutOfMemory),
@@ -45,7 +47,7 @@ impl From<FactorError> for End {
 }
 
 /// A solver of the systems `A_II u_I = b_I - A_IE u_E`, where `I` are the inactive unknowns and `E`
-/// the eliminated ones, which are fixed or active.
+/// the eliminated ones, which are fixed or active. Defaults are those of a solver with factors.
 pub(crate) trait LinearSolver<T: Real>: Sync {
     /// Relative tolerance, in the energy norm, of systems solved with [`Accuracy::Full`]; zero if only
     /// rounding limits the accuracy.

@@ -19,10 +19,10 @@ use super::violations::certify_with_rounding;
 use super::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
 use crate::algebra::{Contact, Inequality};
 use crate::instances::compiled;
-use crate::linear::direct::StaticCondensation;
+use crate::linear::direct::{MatrixFactors, StaticCondensation};
 use crate::real::Real;
 use bound_pairs::{BoundPair, mean_product, ratio_test};
-pub(super) use newton_system::{MatrixFactors, MixedVector, NewtonSystem};
+pub(super) use newton_system::{MixedVector, NewtonSystem};
 
 /// Largest number of linear systems of a run. Runs of the file of figures take 13 in the mean and 24 at
 /// most.

@@ -4,7 +4,7 @@
 use crate::algebra::{Inequality, PenalisedMatrix, SparseMatrix};
 use crate::inequality::certificate::positive_diagonal;
 use crate::linear::direct::{
-    CondensedFactors, FactorError, Factors, StaticCondensation, SymbolicFactor, add_to_diagonal,
+    FactorError, Factors, MatrixFactors, StaticCondensation, SymbolicFactor, add_to_diagonal,
 };
 use crate::real::Real;
 
@@ -29,14 +29,6 @@ pub(crate) struct NewtonSystem<'h, 'a, T> {
     /// The lower triangle of a symmetric assembled `A` and the symbolic analysis of its factors, which are the same for
     /// every `D`; set by the first factorisation.
     lower_triangle: Option<(SparseMatrix<T>, SymbolicFactor)>,
-}
-
-/// Factors of a matrix on some unknowns.
-pub(crate) enum MatrixFactors<T> {
-    /// Of the assembled matrix.
-    Assembled(Factors<T>),
-    /// Of a penalised matrix by static condensation.
-    Condensed(Box<CondensedFactors<T>>),
 }
 
 impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {

@@ -44,7 +44,8 @@ fn certificate_with_norm<T: Real>(
     let is_in_range = data_are_in_range(inequality, inequality.is_well_formed());
     let violations = Violations::of_all(inequality, values, precision);
     let certificate = if is_in_range { violations.certificate() } else { Certificate::INVALID };
-    (certificate, violations.scales.scales(violations.maxima[2]).energy_norm)
+    let [_, _, epsilon] = violations.maxima;
+    (certificate, violations.scales.scales(epsilon).energy_norm)
 }
 
 /// The certificate, and the dual norm of the vector with the entries `d_i U`, divided by `E`. The second number times
@@ -56,6 +57,9 @@ pub(crate) fn certify_with_rounding<T: Real>(
 ) -> (Certificate, f64) {
     Violations::of_all(inequality, (u, jump_multipliers), T::PRECISION).certificate_with_rounding()
 }
+
+/// The position of the sum of diagonal entries among [`Violations::sums`].
+const DIAGONAL: usize = 3;
 
 /// The violations of the complementarity conditions at the unknowns that a part of a mesh owns: sums and maxima. Those
 /// of all parts are [merged](Violations::merge) into the violations at all unknowns, from which the [`Certificate`] is
@@ -152,7 +156,7 @@ impl Violations {
             let (mut feasibility, mut sums) = (0.0_f64, [0.0; 4]);
             for i in range.filter(|&i| owns(i)) {
                 let d = diagonal[i];
-                sums[3] += d;
+                sums[DIAGONAL] += d;
                 let (x, step) = (u[i].to_f64(), -r[i] / d);
                 let mut local = LocalViolation::new(&bounds[i], x, step);
                 if let Some((shares, penalised)) = &shares {

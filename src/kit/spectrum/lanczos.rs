@@ -132,7 +132,8 @@ impl Lanczos {
         self.run([a, b], [b, a]).map(|value| 1.0 / value)
     }
 
-    /// The largest eigenvalue of the product of a matrix with the inverse of another, `a` and `b` in either order.
+    /// The largest eigenvalue of `inverted^-1 applied`, which are `a` and `b` or `b` and `a`: in both cases symmetric in
+    /// the inner product of `b`, in which the vectors are orthonormal.
     fn run(
         &self,
         [a, b]: [&dyn PositiveDefinite; 2],

@@ -1,6 +1,6 @@
 //! The discrete contact set and the density of the multiplier, for pictures.
 
-use super::entity::{ContactEntity, Solved};
+use super::entity::{ContactEntity, SolvedInequality};
 use crate::assemble::space::Space;
 use crate::mesh::HalfFacet;
 
@@ -22,7 +22,7 @@ pub struct DiscreteContact {
 impl<const D: usize> Space<'_, D> {
     /// The contact set and density of a solution, with the definitions of
     /// `Discretisation::contact_errors`.
-    pub(crate) fn discrete_contact(&self, solved: Solved<'_>) -> DiscreteContact {
+    pub(crate) fn discrete_contact(&self, solved: SolvedInequality<'_>) -> DiscreteContact {
         let mut contact = DiscreteContact::default();
         if !self.problem.is_constrained() {
             return contact;

@@ -7,8 +7,8 @@ use crate::quadrature::{Rule, facet_to_cell};
 const POSITIVE: f64 = 1e-9;
 
 impl<const D: usize> Space<'_, D> {
-    /// By number of a facet, after these of the cell: of the nodes that the constraint set binds those whose basis
-    /// functions have a positive mean over it, or all if there is none.
+    /// A list for each facet, by its number, and at `D + 1` one for the cell: of the nodes that the constraint set binds
+    /// those whose basis functions have a positive mean over the facet or the cell, or all if there is none.
     ///
     /// A quadratic basis function of a vertex has a mean of zero over a triangle and a negative one over a
     /// tetrahedron: within the contact set the nodal multiplier of the vertex is zero or has the wrong

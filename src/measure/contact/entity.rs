@@ -4,7 +4,7 @@ use crate::algebra::Inequality;
 use crate::inequality::Solution;
 
 /// An inequality and its solution.
-pub(in crate::measure) type Solved<'s> = (&'s Inequality<f64>, &'s Solution<f64>);
+pub(in crate::measure) type SolvedInequality<'s> = (&'s Inequality<f64>, &'s Solution<f64>);
 
 /// A mesh entity that can be in contact: a cell under an obstacle, or a facet of the contact
 /// boundary.

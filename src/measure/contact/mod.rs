@@ -31,7 +31,7 @@ use crate::parallel::cells;
 use crate::parallel::vectors::collect;
 use crate::real::Point;
 use entity::ContactEntity;
-pub(super) use entity::Solved;
+pub(super) use entity::SolvedInequality;
 use exact_contact::ExactContact;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
@@ -136,7 +136,7 @@ impl<const D: usize> Discretisation<'_, D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    fn contact_errors(&self, solved: Solved<'_>) -> Result<ContactErrors, Error> {
+    fn contact_errors(&self, solved: SolvedInequality<'_>) -> Result<ContactErrors, Error> {
         let mut errors = ContactErrors::default();
         let Some(exact) = &self.problem.exact else { return Ok(errors) };
         let is_known = exact.multiplier.is_some() || exact.contact.is_some();
@@ -170,7 +170,11 @@ impl<const D: usize> Space<'_, D> {
         Ok(errors)
     }
 
-    fn contact_measure(&self, solved: Solved<'_>, counts: &dyn Fn(usize) -> bool) -> Option<f64> {
+    fn contact_measure(
+        &self,
+        solved: SolvedInequality<'_>,
+        counts: &dyn Fn(usize) -> bool,
+    ) -> Option<f64> {
         let mut entities = self.problem.is_constrained().then(|| self.entities())?;
         entities.retain(|entity| counts(entity.cell));
         let touching = self.in_contact(&entities, solved);
@@ -218,7 +222,7 @@ impl<const D: usize> Space<'_, D> {
     fn in_contact(
         &self,
         entities: &[ContactEntity],
-        (inequality, solution): Solved<'_>,
+        (inequality, solution): SolvedInequality<'_>,
     ) -> Vec<bool> {
         // the locations where some unknown is in contact: vertices, and others sorted by their vertices
         let touches = |&k: &usize| solution.contact[k] != Contact::Inactive;
@@ -255,6 +259,7 @@ impl<const D: usize> Space<'_, D> {
         };
         let deciding = self.deciding_nodes();
         let state = |&entity: &ContactEntity| {
+            // the list of the cell is the last one
             let nodes = &deciding[entity.facet.unwrap_or(D + 1)];
             let unknowns = nodes.iter().map(|&i| self.dofs.of(entity.cell, i));
             let mut unknowns =

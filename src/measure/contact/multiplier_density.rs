@@ -1,6 +1,6 @@
 //! The multiplier as a density at vertices.
 
-use super::entity::{ContactEntity, Solved};
+use super::entity::{ContactEntity, SolvedInequality};
 use super::exact_contact::ExactContact;
 use crate::arrays::map_entries;
 use crate::assemble::space::Space;
@@ -13,7 +13,7 @@ impl<const D: usize> Space<'_, D> {
         &self,
         (entities, measures): (&[ContactEntity], &[f64]),
         exact: &[Vec<(usize, ExactContact)>],
-        solved: Solved<'_>,
+        solved: SolvedInequality<'_>,
     ) -> [Option<f64>; 2] {
         let weights = self.hat_integrals(entities, measures);
         let Some(mut multipliers) = self.vertex_multipliers(solved) else {
@@ -29,8 +29,8 @@ impl<const D: usize> Space<'_, D> {
         self.density_norms(&multipliers, &weights)
     }
 
-    /// The norms in L1 and lumped L2 of the density of what is tested with hat functions of these integrals; none if all
-    /// vertices lie on the Dirichlet boundary.
+    /// The norms in L1 and lumped L2 of a density: `tested` are its integrals against the hat functions of vertices,
+    /// `weights` the integrals of these functions. None if no vertex off the Dirichlet boundary has a positive weight.
     pub(super) fn density_norms(&self, tested: &[f64], weights: &[f64]) -> [Option<f64>; 2] {
         let given = self.dirichlet_groups();
         let vertices = || (0..weights.len()).filter(|&v| weights[v] > 0.0 && given[v].is_none());
@@ -41,7 +41,7 @@ impl<const D: usize> Space<'_, D> {
 
     /// Nodal multipliers at vertices: that of each unknown divided equally among the vertices around its node. None
     /// where rounding leaves no digit.
-    pub(super) fn vertex_multipliers(&self, solved: Solved<'_>) -> Option<Vec<f64>> {
+    pub(super) fn vertex_multipliers(&self, solved: SolvedInequality<'_>) -> Option<Vec<f64>> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
         let of_unknowns = self.nodal_multipliers(solved)?;
         for (unknown, multiplier) in of_unknowns.iter().enumerate().filter(|(_, m)| **m != 0.0) {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::entity::{ContactEntity, Solved};
+use super::entity::{ContactEntity, SolvedInequality};
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -63,7 +63,7 @@ impl<const D: usize> Discretisation<'_, D> {
 impl<const D: usize> Space<'_, D> {
     fn resultants(
         &self,
-        solved: Solved<'_>,
+        solved: SolvedInequality<'_>,
         [of_unknowns, of_cells]: Own<'_>,
     ) -> Option<BTreeMap<String, f64>> {
         if !self.problem.is_constrained() {
@@ -120,7 +120,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The multipliers of a solution, none where rounding leaves no digit; all parts of a mesh call it.
-    pub(crate) fn multipliers(&self, solved: Solved<'_>) -> Option<Multipliers> {
+    pub(crate) fn multipliers(&self, solved: SolvedInequality<'_>) -> Option<Multipliers> {
         let by_unknown = self.nodal_multipliers(solved)?;
         let obstacles = self.active_obstacles(&solved.0.bounds, &solved.1.contact);
         Some(Multipliers { by_unknown, obstacles })
