@@ -216,6 +216,14 @@ pub enum Error {
 debug_by_display!(Error);
 
 impl Error {
+    /// A parameter outside its range.
+    pub(crate) fn parameter(
+        parameter: &'static str,
+        value: impl ToString,
+        allowed: impl Into<String>,
+    ) -> Self {
+        Self::Parameter { parameter, value: value.to_string(), allowed: allowed.into() }
+    }
     /// Two schemes of a study have one label.
     pub(crate) fn equal_schemes(label: String) -> Self {
         let by = "`Scheme::name` or `Scheme::choices`";

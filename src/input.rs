@@ -73,6 +73,13 @@ pub fn excerpts<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
     names.join(", ") + &rest
 }
 
+/// A text with the markup characters of HTML and XML escaped, also for the value of an attribute.
+#[cfg(feature = "report")]
+pub(crate) fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    text.replace('>', "&gt;").replace('"', "&quot;")
+}
+
 /// A number, NaN for null: reports have null for numbers that are not finite.
 #[cfg(feature = "report")]
 pub(crate) fn number_or_nan<'de, D: serde::Deserializer<'de>>(
@@ -92,6 +99,12 @@ pub(crate) fn number_or_infinity<'de, D: serde::Deserializer<'de>>(
 #[cfg(test)]
 mod tests {
     use super::{excerpt, excerpts};
+
+    #[cfg(feature = "report")]
+    #[test]
+    fn foreign_text_is_valid_in_attributes() {
+        assert_eq!(super::escaped("a<b>\"c\"&d"), "a&lt;b&gt;&quot;c&quot;&amp;d");
+    }
 
     #[test]
     fn foreign_text_is_short_and_printable() {

@@ -126,6 +126,17 @@ impl Real for f32 {
 /// A point or vector of `D`-dimensional space.
 pub type Point<const D: usize> = nalgebra::SVector<f64, D>;
 
+/// The ends of the smallest box around points; zero without any.
+pub(crate) fn box_around<'p, const D: usize>(
+    points: impl IntoIterator<Item = &'p Point<D>>,
+) -> [Point<D>; 2] {
+    let ends = points.into_iter().map(|x| [*x; 2]);
+    let both = |[low, high]: [Point<D>; 2], [x, _]: [Point<D>; 2]| {
+        [low.zip_map(&x, f64::min), high.zip_map(&x, f64::max)]
+    };
+    ends.reduce(both).unwrap_or([Point::zeros(); 2])
+}
+
 /// The larger number; NaN if one of the two is NaN, which [`f64::max`] drops.
 #[inline(always)]
 pub(crate) fn maximum(a: f64, b: f64) -> f64 {

@@ -70,6 +70,12 @@ impl<T: Real> Bound<T> {
             }
         }
     }
+    /// The ends of the interval of admissible values, infinite where there is no bound.
+    pub(crate) fn interval(&self) -> [f64; 2] {
+        let fixed = self.fixed_value();
+        let end = |bound: Option<T>, none: f64| bound.or(fixed).map_or(none, T::to_f64);
+        [end(self.lower(), f64::NEG_INFINITY), end(self.upper(), f64::INFINITY)]
+    }
     /// The distances of `x` from the lower and from the upper bound: negative beyond it, infinite without it.
     pub(crate) fn distances(&self, x: f64) -> [f64; 2] {
         let to_lower = self.lower().map_or(f64::INFINITY, |l| x - l.to_f64());

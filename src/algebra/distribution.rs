@@ -32,16 +32,22 @@ pub trait Distribution: Debug + Send + Sync {
 impl dyn Distribution + '_ {
     /// Gives ghosts the values that their owners have.
     pub(crate) fn update<T: Real>(&self, values: &mut [T]) {
-        let mut received: Vec<(usize, f64)> = Vec::new();
-        self.exchange(&|i| values[i].to_f64(), &mut |i, value| received.push((i, value)));
-        received.into_iter().for_each(|(i, value)| values[i] = T::lit(value));
+        self.update_by(values, |value| value.to_f64(), T::lit);
     }
     /// Gives ghosts the flags that their owners have.
     pub(crate) fn update_flags(&self, flags: &mut [bool]) {
+        self.update_by(flags, |flag| f64::from(u8::from(flag)), |number| number != 0.0);
+    }
+    /// Gives ghosts the states that their owners have; each is sent as a number.
+    pub(crate) fn update_by<V: Copy>(
+        &self,
+        states: &mut [V],
+        number: impl Fn(V) -> f64,
+        state: impl Fn(f64) -> V,
+    ) {
         let mut received: Vec<(usize, f64)> = Vec::new();
-        let value = |i: usize| f64::from(u8::from(flags[i]));
-        self.exchange(&value, &mut |i, value| received.push((i, value)));
-        received.into_iter().for_each(|(i, value)| flags[i] = value != 0.0);
+        self.exchange(&|i| number(states[i]), &mut |i, number| received.push((i, number)));
+        received.into_iter().for_each(|(i, number)| states[i] = state(number));
     }
 }
 

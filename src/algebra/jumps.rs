@@ -1,9 +1,26 @@
 //! The jumps of a penalised matrix, by jumps and by blocks of unknowns.
 
-use super::jump_term::JumpTerm;
+use super::NO_INDEX;
 use crate::parallel::grouping::group_by_key;
 use crate::parallel::vectors::{all, collect};
 use crate::real::Real;
+
+/// The term `weight * (u[here] - u[there])` of a jump. The difference is computed first, so that a
+/// function without jump has none in rounded arithmetic.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JumpTerm<T> {
+    /// The first unknown, or [`JumpTerm::NO_UNKNOWN`].
+    pub here: u32,
+    /// The second unknown, or [`JumpTerm::NO_UNKNOWN`].
+    pub there: u32,
+    /// The weight.
+    pub weight: T,
+}
+
+impl<T> JumpTerm<T> {
+    /// No unknown; its value in the difference is zero.
+    pub const NO_UNKNOWN: u32 = NO_INDEX;
+}
 
 /// The matrix `M` of the jumps `M u`: the terms of each jump, and for each block of unknowns the sides of jumps that
 /// contain some of them. Whoever computes the rows of `M^T` of a block by itself reads these sides.

@@ -141,6 +141,9 @@ impl<T: Real> SparseMatrix<T> {
         self.extract(free, true)
     }
     fn extract(&self, free: &[u32], is_lower: bool) -> Self {
+        if free.is_empty() {
+            return Self { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        }
         let position = positions(self.size(), free);
         // An upper bound on the number of entries avoids reallocation.
         let stored = free.iter().map(|&i| self.row(i as usize).0.len()).sum::<usize>();

@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use super::jump_term::JumpTerm;
-use super::jumps::Jumps;
+use super::jumps::{JumpTerm, Jumps};
 use super::mean_jumps::MeanJumps;
 use crate::parallel::vectors::{
     all, collect, for_each_chunk, for_each_chunk_of_groups, largest, map_chunks,

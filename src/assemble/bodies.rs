@@ -44,15 +44,11 @@ impl FreeBodies {
     pub fn of(&self, cell: usize) -> Option<usize> {
         self.of_cell.get(cell).filter(|&&body| body != NO_INDEX).map(|&body| body as usize)
     }
-    fn is_empty(&self) -> bool {
-        self.bodies.is_empty()
-    }
 }
 
 /// Integrals by the coarse and the fine rule, and the integral of absolute values by the fine one.
 type Integrals = [f64; 3];
 
-/// The rules on cells.
 struct CellRules {
     rules: [Rule; 2],
     /// Where a datum has a level: the rules on cells that its zero set cuts.
@@ -74,7 +70,7 @@ impl<const D: usize> Space<'_, D> {
             return Ok(FreeBodies::default());
         }
         let mut bodies = self.find_bodies();
-        if !bodies.is_empty() {
+        if !bodies.bodies.is_empty() {
             self.find_stops(&mut bodies);
             self.integrate_resultants(&mut bodies)?;
         }

@@ -8,14 +8,15 @@ use super::owned_rows::lifted::{Lifting, MAX_MOMENTS};
 use super::space::form_facets::FormFacet;
 use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
-use super::weak_dirichlet::FacetMoments;
 use crate::error::Error;
 use crate::mesh::HalfFacet;
 use crate::parallel::cells;
+use crate::quadrature::OrthonormalPolynomials;
 
-/// What all facets share: the basis functions on them, the moments of Dirichlet data, and what the form needs of cells
-/// and facets.
-type TablesOfFacets<'t> = (&'t FacetTable, &'t FacetMoments<'t>, &'t (Metrics, FacetCoefficients));
+/// What all facets share: the basis functions on them, the polynomials of moments, and what the form needs of cells and
+/// facets.
+type TablesOfFacets<'t> =
+    (&'t FacetTable, &'t OrthonormalPolynomials, &'t (Metrics, FacetCoefficients));
 
 impl<const D: usize> Discretisation<'_, D> {
     /// By facet of each cell the first `kept` moments of a flux `q.n` out of the cell, times the measure of
@@ -26,9 +27,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// Of a form that is a penalty alone, the given multipliers are the products of weights and jumps:
     /// from differences of values they would lose their digits.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
     pub(crate) fn facet_fluxes(
         &self,
         u: &[f64],
@@ -38,7 +36,7 @@ impl<const D: usize> Discretisation<'_, D> {
         let (space, form) = (&self.space, self.form());
         let degree = form.moments(space.basis_degree);
         let table = space.facet_table(degree);
-        let data = FacetMoments::new(D, degree, &space.facet_rule);
+        let polynomials = OrthonormalPolynomials::new(D - 1, degree);
         let n_lifted = if form.is_lifted() { MAX_MOMENTS } else { 0 };
         let n_cells = space.mesh.n_cells();
         let stride = kept + n_lifted;
@@ -54,7 +52,7 @@ impl<const D: usize> Discretisation<'_, D> {
                     let n = table.degrees.len();
                     let multipliers = jump_multipliers.zip(first);
                     let multipliers = multipliers.map(|(m, first)| &m[(first + k) * n..][..n]);
-                    let tables = (&table, &data, prepared);
+                    let tables = (&table, &polynomials, prepared);
                     let out = &mut out[facet.here.1 * stride..][..stride];
                     self.moments_on_facet(u, facet, tables, multipliers, kept, out)?;
                 }
@@ -97,7 +95,7 @@ impl<const D: usize> Discretisation<'_, D> {
         &self,
         u: &[f64],
         facet: FormFacet,
-        (table, data, (metrics, weights)): TablesOfFacets<'_>,
+        (table, polynomials, (metrics, weights)): TablesOfFacets<'_>,
         multipliers: Option<&[f64]>,
         kept: usize,
         out: &mut [f64],
@@ -106,7 +104,7 @@ impl<const D: usize> Discretisation<'_, D> {
         let n = space.per_cell();
         let FormFacet { here, there } = facet;
         let weight = weights.at::<D>(here, true, facet.kind());
-        let jump = space.jump_on(facet, u, (table, data))?;
+        let jump = space.jump_on(facet, u, (table, polynomials))?;
         let measure = metrics.measure::<D>(here);
         let (fluxes, lifted) = out.split_at_mut(kept);
         for (k, out) in fluxes.iter_mut().enumerate().take(table.degrees.len()) {

@@ -14,7 +14,6 @@ pub(crate) struct JumpProducts {
     own: Vec<Local>,
     /// By facet of this cell, facet of the other cell, then by class.
     other: Vec<Local>,
-    facets: usize,
 }
 
 impl JumpProducts {
@@ -50,7 +49,7 @@ impl JumpProducts {
                 }
             }
         }
-        Self { own, other: others, weights, facets: D + 1 }
+        Self { own, other: others, weights }
     }
     /// This cell with itself, by class.
     #[inline(always)]
@@ -62,7 +61,7 @@ impl JumpProducts {
     #[inline(always)]
     pub fn other(&self, local: usize, other: usize) -> &[Local] {
         let n = self.weights.len();
-        let pair = local * self.facets + other;
-        &self.other[pair * n..(pair + 1) * n]
+        let start = local * self.own.len() + other * n;
+        &self.other[start..start + n]
     }
 }

@@ -1,6 +1,4 @@
 //! The load: source, Neumann data, weak Dirichlet data. What is absent costs nothing.
-//!
-//! Data are integrated in `f64` and rounded once.
 
 use std::borrow::Cow;
 use std::convert::Infallible;
@@ -190,18 +188,8 @@ impl<const D: usize> Space<'_, D> {
         checks::finite(flux, "neumann", &x, cell)
     }
 
-    /// The load of all unknowns; the metrics of all cells are asked for only where jumps are lifted.
-    pub fn load<'m>(
-        &self,
-        form: &dyn FacetForm<D>,
-        metrics: &dyn Fn() -> &'m Metrics,
-    ) -> Result<Vec<f64>, Error> {
-        let bodies = self.free_bodies()?;
-        Ok(self.load_and_data(form, metrics, &bodies, true)?.0)
-    }
-
     /// The load of all unknowns, with or without the Dirichlet data that the facet form imposes, and these data. The
-    /// loads of free bodies have their resultants.
+    /// loads of free bodies have their resultants. The metrics of all cells are asked for only where jumps are lifted.
     pub fn load_and_data<'m>(
         &self,
         form: &dyn FacetForm<D>,

@@ -25,7 +25,7 @@ pub(crate) mod shared_rows;
 pub(crate) mod space;
 pub(crate) mod stiffness;
 mod trace;
-pub(crate) mod weak_dirichlet;
+mod weak_dirichlet;
 
 pub use data_quadrature::DataQuadrature;
 pub use discretisation::Discretisation;

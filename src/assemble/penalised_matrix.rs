@@ -33,7 +33,7 @@ pub(crate) fn penalised_matrix<const D: usize>(
     dirichlet: &[FacetDatum],
 ) -> PenalisedMatrix<f64> {
     let table = space.facet_table(form.moments(space.basis_degree));
-    let templates = Templates::new(D, &space.nodes, &table);
+    let templates = templates(D, &space.nodes, &table);
     let of_degree: Vec<f64> = table.degrees.iter().map(|&k| form.moment_weight(k)).collect();
     let n_cells = space.mesh.n_cells();
     let block_size = space.per_cell();
@@ -44,10 +44,9 @@ pub(crate) fn penalised_matrix<const D: usize>(
         let mut jumps = JumpLists::default();
         for facet in cells.flat_map(|cell| space.form_facets_of(cell)) {
             let (cell, local) = facet.here;
-            let (other, template) = match facet.there {
-                Some((other, there)) => (other, templates.between(local, there)),
-                None => (cell, templates.on_boundary(local)),
-            };
+            // D + 1: no cell across
+            let (other, there) = facet.there.unwrap_or((cell, D + 1));
+            let template = &templates[local][there];
             match dirichlet.next_if(|datum| datum.facet == facet.here) {
                 Some(datum) => jumps.data.extend(&datum.moments),
                 None => jumps.data.extend(of_degree.iter().map(|_| 0.0)),
@@ -159,33 +158,21 @@ impl LocalTerm {
     }
 }
 
-/// The terms of each moment, for each pair of facet numbers and for facets without a cell there.
-struct Templates {
-    facets: usize,
-    pairs: Vec<Vec<Vec<LocalTerm>>>,
-}
-
-impl Templates {
-    fn new(dimension: usize, nodes: &[Node], table: &FacetTable) -> Self {
-        let facets = dimension + 1;
-        let terms = |here: usize, there: Option<usize>| {
-            let moments = 0..table.degrees.len();
-            let there = |k: usize| there.map(|l| (l, &table.on(l)[k].values));
-            moments
-                .map(|k| moment(dimension, nodes, (here, &table.on(here)[k].values), there(k)))
-                .collect()
-        };
-        let pair = |k: usize| terms(k / facets, Some(k % facets));
-        let alone = |k: usize| terms(k, None);
-        let pairs = (0..facets * facets).map(pair).chain((0..facets).map(alone)).collect();
-        Self { facets, pairs }
-    }
-    fn between(&self, here: usize, there: usize) -> &[Vec<LocalTerm>] {
-        &self.pairs[here * self.facets + there]
-    }
-    fn on_boundary(&self, here: usize) -> &[Vec<LocalTerm>] {
-        &self.pairs[self.facets * self.facets + here]
-    }
+/// The terms of each moment, `[here][there]`, of a facet with the number `here` in its cell and `there` in the cell across;
+/// `there` is `dimension + 1` if there is no cell across.
+fn templates(
+    dimension: usize,
+    nodes: &[Node],
+    table: &FacetTable,
+) -> Vec<Vec<Vec<Vec<LocalTerm>>>> {
+    let facets = dimension + 1;
+    let side = |local: usize, k: usize| (local, &table.on(local)[k].values);
+    let terms = |here: usize, there: usize| {
+        let other = |k: usize| (there < facets).then(|| side(there, k));
+        let of_moment = |k: usize| moment(dimension, nodes, side(here, k), other(k));
+        (0..table.degrees.len()).map(of_moment).collect()
+    };
+    (0..facets).map(|here| (0..=facets).map(|there| terms(here, there)).collect()).collect()
 }
 
 /// A facet of a cell and the moments of the cell's functions on it.

@@ -15,23 +15,10 @@ use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::map_groups;
-use crate::quadrature::{OrthonormalPolynomials, Rule};
+use crate::quadrature::OrthonormalPolynomials;
 
 /// Facets whose data one task integrates.
 const FACETS_PER_TASK: usize = 64;
-
-/// What moments of data on facets are computed with.
-pub(crate) struct FacetMoments<'r> {
-    polynomials: OrthonormalPolynomials,
-    rule: &'r Rule,
-}
-
-impl<'r> FacetMoments<'r> {
-    /// Moments up to a degree, by a rule on facets.
-    pub fn new(dimension: usize, degree: usize, rule: &'r Rule) -> Self {
-        Self { polynomials: OrthonormalPolynomials::new(dimension - 1, degree), rule }
-    }
-}
 
 /// The form on one moment of a facet with a datum.
 struct DatumMoment<'m> {
@@ -54,38 +41,38 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// Moments of Dirichlet data on a facet.
-    pub fn dirichlet_moments(
+    fn dirichlet_moments(
         &self,
-        moments: &FacetMoments<'_>,
+        polynomials: &OrthonormalPolynomials,
         (cell, local): HalfFacet,
         group: usize,
     ) -> Result<Vec<f64>, Error> {
-        let mut sums = vec![0.0; moments.polynomials.len()];
-        for (point, w) in moments.rule.iter() {
+        let mut sums = vec![0.0; polynomials.len()];
+        for (point, w) in self.facet_rule.iter() {
             count::dirichlet(1);
             let x = self.facet_point(point, cell, local);
             let value = checks::finite(self.dirichlet_at(group, &x), "dirichlet", &x, cell)?;
             for (k, sum) in sums.iter_mut().enumerate() {
-                *sum += w * value * moments.polynomials.value(k, point);
+                *sum += w * value * polynomials.value(k, point);
             }
         }
         Ok(sums)
     }
 
     /// By moment, the jump of a discrete function over a facet that carries the form; on the boundary its difference
-    /// from the datum.
+    /// from the datum. The moments are those of the table, by these polynomials on the facet.
     pub fn jump_on(
         &self,
         facet: FormFacet,
         u: &[f64],
-        (table, data): (&FacetTable, &FacetMoments<'_>),
+        (table, polynomials): (&FacetTable, &OrthonormalPolynomials),
     ) -> Result<impl Fn(usize) -> f64, Error> {
         let FormFacet { here, there } = facet;
         let values_here = self.local_values(here.0, u);
         let values_there = there.map(|(cell, local)| (self.local_values(cell, u), local));
         let datum = match there {
             Some(_) => Vec::new(),
-            None => self.dirichlet_moments(data, here, self.group_of(here))?,
+            None => self.dirichlet_moments(polynomials, here, self.group_of(here))?,
         };
         Ok(move |k: usize| {
             let there = match &values_there {
@@ -101,11 +88,10 @@ impl<const D: usize> Space<'_, D> {
         if !self.has_weak_data() {
             return Ok(Vec::new());
         }
-        let degree = form.moments(self.basis_degree);
-        let moments = FacetMoments::new(D, degree, &self.facet_rule);
+        let polynomials = OrthonormalPolynomials::new(D - 1, form.moments(self.basis_degree));
         let facets: Vec<_> = self.grouped_facets_of(BoundaryCondition::Dirichlet).collect();
         let on_facet = |&(facet, group): &(HalfFacet, usize)| {
-            Ok(FacetDatum { facet, moments: self.dirichlet_moments(&moments, facet, group)? })
+            Ok(FacetDatum { facet, moments: self.dirichlet_moments(&polynomials, facet, group)? })
         };
         let of_group = |range: Range<usize>| facets[range].iter().map(on_facet).collect::<Vec<_>>();
         map_groups(facets.len(), FACETS_PER_TASK, &of_group).into_iter().flatten().collect()

@@ -94,9 +94,6 @@ impl<'a> VertexCorrection<'a> {
 
     /// Sets the fixed unknowns, and the fixed vertices: those with Dirichlet data, and those in the
     /// location of a fixed unknown.
-    ///
-    /// # Errors
-    /// The error of the preconditioner `C`.
     pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         let (transpose, dirichlet) = (&self.transpose, &self.dirichlet);
         for_each_chunk(&mut self.fixed_vertices, |range, out| {
@@ -114,23 +111,17 @@ impl<'a> VertexCorrection<'a> {
         let fixed_vertices = &self.fixed_vertices;
         for_each_chunk(&mut self.residual, |range, out| {
             for (v, out) in range.zip(out) {
-                *out = if fixed_vertices[v] { 0.0 } else { row_dot(transpose.row(v), r) };
+                *out = if fixed_vertices[v] { 0.0 } else { transpose.row_dot(v, r) };
             }
         });
         self.coarse.apply(&self.residual, &mut self.values);
         let values = &self.values;
         for_each_chunk(z, |range, out| {
             for (i, z) in range.zip(out) {
-                *z += row_dot(interpolation.row(i), values);
+                *z += interpolation.row_dot(i, values);
             }
         });
     }
-}
-
-/// A row times a vector.
-#[inline(always)]
-fn row_dot((columns, weights): (&[u32], &[f64]), x: &[f64]) -> f64 {
-    columns.iter().zip(weights).fold(0.0, |s, (&j, &w)| s + w * x[j as usize])
 }
 
 /// The inverses of the diagonal blocks of cells on their free unknowns.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::engine::{Engine, EngineMethod, EngineSolver, OwnRows};
-use crate::algebra::{Distribution, SparseMatrix};
+use crate::algebra::{Distribution, SparseMatrix, sum_over_parts};
 use crate::linear::{FactorError, Preconditioner};
 use crate::processes::OverParts;
 
@@ -78,9 +78,7 @@ impl OnOwnUnknowns {
             true => pairs.filter(|(one, other)| one != other).count() as f64,
             false => f64::INFINITY,
         };
-        let mut sum = [changes];
-        self.over_parts.sum(&mut sum);
-        sum[0] <= self.few_changes
+        sum_over_parts(Some(&*self.over_parts), changes) <= self.few_changes
     }
 }
 

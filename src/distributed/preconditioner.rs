@@ -265,6 +265,7 @@ impl BlockSolver<f64> for BlockOverParts {
         for (&x, &k) in self.solution.iter().zip(&self.own) {
             self.values[self.unknowns[k as usize] as usize] = x;
         }
+        // the mean over an own side needs the values of the opposite cell, which may be a ghost
         (&*self.over_parts as &dyn Distribution).update(&mut self.values);
         for (x, &i) in vector.iter_mut().zip(&self.unknowns) {
             *x = self.values[i as usize];

@@ -69,7 +69,8 @@ impl<const D: usize> SystemSolver<D> for SolverOnParts {
         guess: &InitialGuess<f64>,
     ) -> Result<Solution<f64>, Error> {
         let Some(over_parts) = system.over_parts() else {
-            return refuse("mesh", "a whole one", "this solver is one over the parts of a mesh");
+            let allowed = "this solver is one over the parts of a mesh";
+            return Err(Error::parameter("mesh", "a whole one", allowed));
         };
         system.agreed(check(system))?;
         // a start need not be accurate
@@ -79,30 +80,22 @@ impl<const D: usize> SystemSolver<D> for SolverOnParts {
             true => solve.by_engine()?,
             false => solve.by_active_sets()?,
         };
-        solution.contact = over_parts.contact_of_owners(&solution.contact);
+        over_parts.update_contact(&mut solution.contact);
         Ok(solution)
     }
 }
 
-fn refuse<V>(parameter: &'static str, value: &str, allowed: &str) -> Result<V, Error> {
-    let (value, allowed) = (value.to_owned(), allowed.to_owned());
-    Err(Error::Parameter { parameter, value, allowed })
-}
-
 /// Checks that a system has what a solve over parts needs.
-///
-/// # Errors
-/// [`Error::Parameter`].
 fn check<const D: usize>(system: &System<'_, D>) -> Result<(), Error> {
     if !system.mesh().is_supported() {
         let allowed = "on several parts every component of the domain needs Dirichlet data";
-        return refuse("boundary", "without Dirichlet data", allowed);
+        return Err(Error::parameter("boundary", "without Dirichlet data", allowed));
     }
     let form = system.discretisation().form();
     let is_over_penalised = form.couples() && !form.uses_flux() && !form.is_lifted();
     if is_over_penalised && D > 1 && system.discretisation().degree() > 1 {
         let allowed = "they have no preconditioner on several parts";
-        return refuse("scheme", "over-penalised quadratics", allowed);
+        return Err(Error::parameter("scheme", "over-penalised quadratics", allowed));
     }
     Ok(())
 }
@@ -231,15 +224,12 @@ impl<const D: usize> Solve<'_, '_, D> {
     fn by_engine(&self) -> Result<Solution<f64>, Error> {
         let (over_parts, inequality) = (&**self.over_parts, self.system.inequality());
         let own = over_parts.numbering.own();
-        let bound = |&i: &u32| &inequality.bounds[i as usize];
-        let lower = |bound: &Bound<f64>| bound.fixed_value().or(bound.lower());
-        let upper = |bound: &Bound<f64>| bound.fixed_value().or(bound.upper());
+        let ends = |side: usize| -> Vec<f64> {
+            own.iter().map(|&i| inequality.bounds[i as usize].interval()[side]).collect()
+        };
+        let (lower, upper) = (ends(0), ends(1));
         let load = inequality.assembled_load();
         let load: Vec<f64> = own.iter().map(|&i| load[i as usize]).collect();
-        let lower: Vec<f64> =
-            own.iter().map(|i| lower(bound(i)).unwrap_or(f64::NEG_INFINITY)).collect();
-        let upper: Vec<f64> =
-            own.iter().map(|i| upper(bound(i)).unwrap_or(f64::INFINITY)).collect();
         let start = |&i: &u32| {
             let value = self.guess.values.as_ref().map_or(0.0, |values| values[i as usize]);
             inequality.bounds[i as usize].nearest(value)

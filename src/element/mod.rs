@@ -11,8 +11,6 @@ mod p2;
 mod quadratic_cell_mean;
 
 pub use basis::Basis;
-#[cfg(test)]
-pub(crate) use bernstein::BernsteinP2;
 pub use broken::Broken;
 pub use crouzeix_raviart::CrouzeixRaviart;
 pub(crate) use definition::MAX_BASIS;
@@ -20,5 +18,3 @@ pub use definition::{Element, Layout};
 pub use node::{Entity, Node};
 pub use p1::P1;
 pub use p2::P2;
-#[cfg(test)]
-pub(crate) use quadratic_cell_mean::QuadraticCellMean;

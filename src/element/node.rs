@@ -2,7 +2,7 @@
 
 use crate::arrays::array_of;
 use crate::mesh::edge_vertices;
-use crate::quadrature::{Rule, facet_to_cell};
+use crate::quadrature::{Rule, facet_to_cell, vertex_point};
 
 /// A vertex, an edge or a facet of the reference simplex, or the simplex itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,9 +60,7 @@ impl Node {
     /// # Panics
     /// If the number of the vertex is above three.
     pub fn vertex(k: usize) -> Self {
-        let mut point = [0.0; 4];
-        point[k] = 1.0;
-        Self::value(Entity::Vertex(k), point)
+        Self::value(Entity::Vertex(k), vertex_point(k))
     }
     /// The value at the midpoint of an edge, in the order of [`Layout::edge`](super::Layout::edge).
     ///
@@ -150,8 +148,7 @@ impl Node {
             (Functional::Value(point), _) => vec![(*point, 1.0)],
             (Functional::Sum(terms), _) => terms.clone(),
             (Functional::Coefficient, Entity::Edge(k)) => {
-                let end = |v: usize| (array_of(|i| f64::from(u8::from(i == v))), -0.5);
-                let ends = edge_vertices(3)[k].map(end);
+                let ends = edge_vertices(3)[k].map(|v| (vertex_point(v), -0.5));
                 // in this order rounding leaves a constant as it is
                 vec![ends[0], ends[1], (self.centre(3), 2.0)]
             }
@@ -178,8 +175,7 @@ impl Node {
             Functional::Sum(terms) => mean(&mut terms.iter().map(|(point, w)| (*point, w.abs()))),
             Functional::Mean | Functional::Coefficient => {
                 let vertices = (0..dimension + 1).filter(|&k| self.entity.contains(dimension, k));
-                let vertex = |k: usize| array_of(|i| f64::from(u8::from(i == k)));
-                mean(&mut vertices.map(|k| (vertex(k), 1.0)))
+                mean(&mut vertices.map(|k| (vertex_point(k), 1.0)))
             }
         }
     }

@@ -10,7 +10,7 @@ use crate::assemble::shared_rows::places::for_each_place;
 use crate::assemble::space::Space;
 use crate::assemble::space::dofs::Dofs;
 use crate::assemble::space::tables::BasisAt;
-use crate::element::{Element, Node, P1, P2};
+use crate::element::{Layout, Node};
 use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
 use crate::parallel::vectors::{collect, for_each_chunk};
 use crate::problem::Datum;
@@ -54,9 +54,9 @@ impl<const D: usize> Space<'_, D> {
         states: (&[Bound<f64>], &[Contact]),
     ) -> PrimalDualPair<D> {
         let (degree, n_vertices) = (self.degree, self.mesh.vertices().len());
-        let element: &dyn Element<D> = if degree == 1 { &P1 } else { &P2 };
         // the nodes are the unknowns of conforming functions: vertices and, for quadratics, after them edges
-        let nodes = Dofs::new(element.layout(), self.mesh, None);
+        let layout = Layout { vertex: 1, edge: degree - 1, facet: 0, cell: 0 };
+        let nodes = Dofs::new(layout, self.mesh, None);
         let mut function = self.means(u, &nodes);
         if let Some(states) = self.states_of_nodes(states, &nodes) {
             for (value, state) in function.iter_mut().zip(states) {
@@ -196,14 +196,15 @@ impl<const D: usize> Space<'_, D> {
             middle + (of_x + of_y - at(&x) - at(&y)) / 4.0
         };
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); nodes.size()];
-        let Ok(()) = for_each_place::<D, _, Infallible>(nodes, &mut bounds, |bounds, (cell, i)| {
-            let Some(edge) = i.checked_sub(D + 1).map(|k| &pairs[k]) else { return Ok(()) };
-            let (region, (low, high)) = (self.mesh.region(cell), bounds);
-            let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
-            *low = lower.map_or(*low, |psi| least(psi, cell, edge).max(*low));
-            *high = upper.map_or(*high, |psi| least(psi, cell, edge).min(*high));
-            Ok(())
-        });
+        let Ok(()) =
+            for_each_place::<D, _, Infallible>(nodes, &mut bounds, |(low, high), (cell, i)| {
+                let Some(edge) = i.checked_sub(D + 1).map(|k| &pairs[k]) else { return Ok(()) };
+                let region = self.mesh.region(cell);
+                let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
+                *low = lower.map_or(*low, |psi| least(psi, cell, edge).max(*low));
+                *high = upper.map_or(*high, |psi| least(psi, cell, edge).min(*high));
+                Ok(())
+            });
         // the edges of a facet, with their nodes
         let edges_of = |(cell, local): HalfFacet| {
             let of_facet = pairs.iter().enumerate().filter(move |(_, ends)| !ends.contains(&local));

@@ -112,7 +112,8 @@ impl<const D: usize> Flux<D> {
         let n = self.per_cell();
         &self.numbers[cell * n..][..n]
     }
-    /// Replaces the numbers of cells by those that `of` has for the positions of the cells in a list, ascending.
+    /// Replaces the numbers of the cells of an ascending list; `of(k)` has those of the cell at position `k`, at least as
+    /// many as a cell has.
     pub(super) fn replace_in<'n>(&mut self, cells: &[u32], of: impl Fn(usize) -> &'n [f64] + Sync) {
         let n = self.per_cell();
         for_each_chunk_of_groups(&mut self.numbers, n, |range, numbers| {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::npy::{array, scalar};
 use super::npz::archive;
-use crate::algebra::{Bound, DofLocation, Inequality, SparseMatrix};
+use crate::algebra::{DofLocation, Inequality, SparseMatrix};
 use crate::error::{Error, write_error};
 use crate::files::replace;
 use crate::instances::compiled;
@@ -64,12 +64,11 @@ fn write_files_with(
     };
     text("matrix.mtx", &|file| write_matrix(file, matrix))?;
     text("places.csv", write_places)?;
-    let lower = |bound: &Bound<f64>| bound.lower().or(bound.fixed_value());
-    let upper = |bound: &Bound<f64>| bound.upper().or(bound.fixed_value());
+    let ends = |side: usize| numbers(&mut bounds.iter().map(|bound| bound.interval()[side]));
     let vectors = [
         ("load.npy", numbers(&mut load.iter().copied())),
-        ("lower.npy", numbers(&mut bounds.iter().map(|b| lower(b).unwrap_or(f64::NEG_INFINITY)))),
-        ("upper.npy", numbers(&mut bounds.iter().map(|b| upper(b).unwrap_or(f64::INFINITY)))),
+        ("lower.npy", ends(0)),
+        ("upper.npy", ends(1)),
     ];
     for (name, bytes) in &vectors {
         replace(&directory.join(name), |draft| fs::write(draft, bytes))?;

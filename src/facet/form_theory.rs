@@ -21,7 +21,7 @@ pub struct FormTheory<'f, const D: usize> {
     /// The least weight with which the form is provably coercive; none if its weights are positive and
     /// need no bound, or are chosen by that very bound.
     pub least_penalty: Option<LeastPenalty<'f, D>>,
-    /// The margin over a proven bound, where the weight is chosen by that bound.
+    /// The margin over a proven bound, where the weight is chosen by that bound: 0.5 for a penalty of 1.5 times it.
     pub margin: Option<f64>,
 }
 
@@ -35,11 +35,6 @@ impl<'f, const D: usize> FormTheory<'f, D> {
     #[must_use]
     pub fn with_coercivity(self, is_coercive: bool) -> Self {
         Self { is_coercive, ..self }
-    }
-    /// Sets the margin over a proven bound: 0.5 for a penalty of 1.5 times the bound.
-    #[must_use]
-    pub fn with_margin(self, margin: f64) -> Self {
-        Self { margin: Some(margin), ..self }
     }
     /// The parameter by which the penalty is chosen, its value, and the factor that it makes, which
     /// is linear in the penalty; none for a form that states no such parameter.

@@ -62,16 +62,14 @@ impl<const D: usize> FacetForm<D> for InteriorPenalty {
         }
     }
     fn theory(&self) -> FormTheory<'_, D> {
-        let (sigma, rule) = match self.rule {
-            PenaltyRule::Proven(margin) => (None, format!("proven bound times {}", 1.0 + margin)),
-            PenaltyRule::Diameter(sigma) => (Some(sigma), "sigma / h_F".to_owned()),
+        let (margin, sigma, rule) = match self.rule {
+            PenaltyRule::Proven(margin) => {
+                (Some(margin), None, format!("proven bound times {}", 1.0 + margin))
+            }
+            PenaltyRule::Diameter(sigma) => (None, Some(sigma), "sigma / h_F".to_owned()),
         };
         let parameters = PenaltyParameters { sigma, eta: None, rule: Some(rule) };
-        let theory = FormTheory::default().with_parameters(parameters);
-        let theory = match self.rule {
-            PenaltyRule::Proven(margin) => theory.with_margin(margin),
-            PenaltyRule::Diameter(_) => theory,
-        };
+        let theory = FormTheory { parameters, margin, ..FormTheory::default() };
         match (self.rule, self.symmetry) {
             (PenaltyRule::Proven(margin), Symmetry::NonSymmetric) => {
                 theory.with_coercivity(margin > -1.0)

@@ -74,11 +74,11 @@ impl<const D: usize> FacetForm<D> for OverPenalty {
                 (1..self.degree).fold(eta / (h * h * h), |weight, _| weight / (h * h))
             }
             WeightRule::Anisotropic => {
-                let root = nalgebra::ComplexField::sqrt(facet.here.height);
+                let root = facet.here.height.sqrt();
                 let length = match &facet.there {
                     None => facet.here.height,
                     Some(there) => {
-                        let sum = root + nalgebra::ComplexField::sqrt(there.height);
+                        let sum = root + there.height.sqrt();
                         sum * sum
                     }
                 };

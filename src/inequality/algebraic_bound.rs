@@ -12,8 +12,8 @@ const THRESHOLD_FACTOR: f64 = 4.0;
 const MAX_THRESHOLDS: usize = 3;
 
 /// Values within their bounds, with what the bound on their error depends on.
-pub(super) struct AdmissibleValues<'v, 'a, T: Real> {
-    pub inequality: &'a Inequality<T>,
+pub(super) struct AdmissibleValues<'v, T: Real> {
+    pub inequality: &'v Inequality<T>,
     pub values: &'v [T],
     /// `b - A u`.
     pub residual: &'v [f64],
@@ -42,19 +42,18 @@ pub(super) struct AdmissibleValues<'v, 'a, T: Real> {
 ///    *Proven for a symmetric `A`*, where `|(A e)_i| <= sqrt(d_i) ||e||_A`; *assumed for any other*, where the
 ///    skew-symmetric part of `A` may change a multiplier by more. Otherwise the threshold, at first `threshold`, is
 ///    raised, and in the end no unknown counts as strongly active: then nothing is assumed here.
-///
-/// # Errors
-/// Those of `dual_norm`.
 pub(super) fn algebraic_bound<T: Real>(
-    of: &AdmissibleValues<'_, '_, T>,
+    of: &AdmissibleValues<'_, T>,
     mut threshold: f64,
     mut dual_norm: impl FnMut(&[bool], &[T]) -> Result<Option<f64>, Outcome>,
 ) -> Result<Option<f64>, Outcome> {
     let AdmissibleValues { inequality, values, residual, diagonal, energy_norm } = *of;
     let bounds = &inequality.bounds;
-    let unbalanced = |i: usize| match inequality.owns(i) {
-        true => T::lit(unbalanced_residual(&bounds[i], values[i], residual[i])),
-        false => T::lit(0.0),
+    let unbalanced = |i: usize| {
+        let is_balanced = !inequality.owns(i)
+            || bounds[i].fixed_value().is_some()
+            || multiplier(&bounds[i], values[i], residual[i]) >= 0.0;
+        T::lit(if is_balanced { 0.0 } else { residual[i] })
     };
     let unbalanced = collect(values.len(), unbalanced);
     for trial in 0..=MAX_THRESHOLDS {
@@ -85,11 +84,4 @@ fn multiplier<T: Real>(bound: &Bound<T>, value: T, residual: f64) -> f64 {
     } else {
         f64::NEG_INFINITY
     }
-}
-
-/// The residual `b - A u` of an unknown unless a multiplier of the right sign balances it: zero if the unknown
-/// is fixed, or at a bound where its multiplier has the right sign; else `residual`.
-fn unbalanced_residual<T: Real>(bound: &Bound<T>, value: T, residual: f64) -> f64 {
-    let is_balanced = bound.fixed_value().is_some() || multiplier(bound, value, residual) >= 0.0;
-    if is_balanced { 0.0 } else { residual }
 }

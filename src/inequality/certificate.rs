@@ -1,7 +1,5 @@
 //! The certificate: violations of the complementarity conditions, computed from the data and `u` alone.
 
-use super::Solution;
-use super::scales::Scales;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::real::{Precision, Real, maximum};
 
@@ -91,16 +89,6 @@ impl Certificate {
         let Self { feasibility, multiplier, complementarity, residual, .. } = *self;
         [multiplier, complementarity, residual].into_iter().fold(feasibility, maximum)
     }
-}
-
-/// The energy norm `E` of a solution to which certificates and tolerances are relative.
-pub(crate) fn energy_norm(inequality: &Inequality<f64>, solution: &Solution<f64>) -> f64 {
-    let Solution { values, jump_multipliers, precision, .. } = solution;
-    let mut r = vec![0.0; inequality.size()];
-    residual(inequality, values, jump_multipliers, &mut r);
-    let diagonal = |i: usize| positive_diagonal(inequality, i);
-    let of = (&values[..], &r[..], &jump_multipliers[..]);
-    Scales::of(inequality, of, &diagonal, *precision).energy_norm
 }
 
 /// Sets `residual` to `b - A u`, or to `c - K u - M^T p` if the jump multipliers `p` are given.

@@ -42,7 +42,7 @@ impl<'g> Recorder<'g> {
 
     /// An outer step begins, with a linear system.
     pub fn begin_step(&self) {
-        self.steps.advance(1);
+        self.steps.advance();
         self.is_new_step.set(true);
         self.count_system();
     }

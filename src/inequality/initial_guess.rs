@@ -1,14 +1,9 @@
 //! The data from which a solver of an inequality starts.
 
 use super::step_counter::StepCounter;
-use crate::algebra::{Contact, DofLocation, rounded};
+use crate::algebra::rounded;
 use crate::linear::CoarseSpaces;
-use crate::parallel::vectors::collect;
 use crate::real::Real;
-
-/// Relative tolerance in the energy norm for iterative solvers of P1 if the solution is only the initial guess of
-/// another solve: below the discretisation error of all meshes that fit into memory.
-pub(crate) const P1_ENERGY_TOLERANCE: f64 = 1e-4;
 
 /// Coarse spaces, starting values and accuracy of a solve. The starting active set is part of the
 /// inequality: [`Start`](crate::algebra::Start).
@@ -87,26 +82,4 @@ impl InitialGuess<f64> {
             keeps_history: self.keeps_history,
         }
     }
-}
-
-/// The contact states of unknowns from those of vertices: a bound is active at an unknown if it is active at more than
-/// half of the vertices of its location.
-pub(crate) fn contact_of_locations(locations: &[DofLocation], contact: &[Contact]) -> Vec<Contact> {
-    collect(locations.len(), |i| {
-        let vertices = locations[i].vertices();
-        let has_most = |side: &Contact| {
-            let on = vertices.iter().filter(|&&v| contact[v as usize] == *side).count();
-            2 * on > vertices.len()
-        };
-        [Contact::Lower, Contact::Upper].into_iter().find(has_most).unwrap_or_default()
-    })
-}
-
-/// The mean of the vertex values over each location.
-pub(crate) fn means_over_locations<T: Real>(locations: &[DofLocation], values: &[T]) -> Vec<T> {
-    collect(locations.len(), |i| {
-        let vertices = locations[i].vertices();
-        let sum = vertices.iter().fold(T::lit(0.0), |s, &v| s + values[v as usize]);
-        sum / T::lit(vertices.len().max(1) as f64)
-    })
 }

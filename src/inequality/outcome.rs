@@ -71,19 +71,8 @@ impl Outcome {
     }
     /// Whether the values of a solution with this outcome are an iterate; otherwise they have no meaning.
     pub(crate) fn has_iterate(self) -> bool {
-        !matches!(
-            self,
-            Outcome::Unsuitable
-                | Outcome::NotCoercive
-                | Outcome::Singular
-                | Outcome::NotFinite
-                | Outcome::OutOfMemory
-                | Outcome::NoSolution
-                | Outcome::OutOfRange
-                | Outcome::Infeasible
-                | Outcome::Malformed
-                | Outcome::TimeLimit
-        )
+        use Outcome::{Converged, Cycling, IterationLimit, NotASolution, NotUnique, Stalled};
+        matches!(self, Converged | IterationLimit | Cycling | Stalled | NotASolution | NotUnique)
     }
     /// The outcome of a solve that corresponds to an error of the data; `None` for errors of another kind.
     pub(crate) fn of_error(error: &Error) -> Option<Self> {

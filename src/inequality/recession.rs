@@ -44,7 +44,9 @@ fn tested<T: Real>(inequality: &Inequality<T>) -> Vec<Tested> {
     };
     let free = bodies.into_iter().filter(|body| !is_held(body));
     free.map(|body| {
-        let resultant = present_resultant(&body, inequality);
+        // of the present load
+        let added = body.kernel.map_or(0.0, |k| inequality.load_along(k) - body.assembled);
+        let resultant = body.resultant + added;
         let motion = match resultant {
             r if r.abs() <= body.uncertainty => Motion::Undecided,
             r if r < 0.0 && body.stops_below => Motion::Down,
@@ -75,12 +77,6 @@ fn body_of<T: Real>(inequality: &Inequality<T>, position: usize) -> FreeBody {
         stops_above,
         assembled: resultant,
     }
-}
-
-/// The resultant of the present load on a body.
-fn present_resultant<T: Real>(body: &FreeBody, inequality: &Inequality<T>) -> f64 {
-    let added = body.kernel.map_or(0.0, |k| inequality.load_along(k) - body.assembled);
-    body.resultant + added
 }
 
 /// Solves an inequality by `solve`, unless bodies that bounds alone hold have no solution ([`Outcome::NoSolution`],

@@ -4,6 +4,7 @@
 use std::cmp::Ordering;
 
 use crate::algebra::{Distribution, Inequality};
+use crate::arrays::array_of;
 use crate::parallel::vectors::map_chunks;
 use crate::real::{Precision, Real, maximum};
 
@@ -29,19 +30,18 @@ pub(crate) struct Scales {
     pub energy_norm: f64,
 }
 
+/// Positions among [`Sums::sums`].
+const LOAD_ENERGY: usize = 2;
+const DIAGONAL_ENERGY: usize = 3;
+
 /// The maximum and the sums over unknowns from which [`Scales`] are computed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
     /// The largest `|u_i|` or `|v_i|`.
-    max_norm: f64,
-    /// The energy with data; see [`Scales::energy_norm`].
-    energy: f64,
-    /// The sum of the absolute values of the terms of `energy`.
-    terms: f64,
-    /// `sum c_i^2 / d_i`.
-    load_energy: f64,
+    pub max_norm: f64,
+    /// The energy with data ([`Scales::energy_norm`]), the sum of the absolute values of its terms, `sum c_i^2 / d_i` and
     /// `sum d_i u_i^2`.
-    diagonal_energy: f64,
+    pub sums: [f64; 4],
 }
 
 impl Scales {
@@ -72,27 +72,19 @@ impl Sums {
         owns: &(impl Fn(usize) -> bool + Sync),
     ) -> Self {
         let Inequality { load, bounds, penalised, dirichlet_energy, .. } = inequality;
-        let mut sums = Sums::default();
-        for chunk in map_chunks(u.len(), |range| {
+        let chunks = map_chunks(u.len(), |range| {
             let mut chunk = Sums::default();
             for i in range.filter(|&i| owns(i)) {
                 let (x, c, d) = (u[i].to_f64(), load[i].to_f64(), diagonal(i));
                 let nearest = bounds[i].nearest(u[i]).to_f64();
                 chunk.max_norm = maximum(chunk.max_norm, maximum(x.abs(), nearest.abs()));
-                let energy = x * (c - residual[i]);
-                chunk.energy += energy;
-                chunk.terms += energy.abs();
-                chunk.load_energy += c * c / d;
-                chunk.diagonal_energy += d * x * x;
+                chunk.add_energy(x * (c - residual[i]));
+                chunk.sums[LOAD_ENERGY] += c * c / d;
+                chunk.sums[DIAGONAL_ENERGY] += d * x * x;
             }
             chunk
-        }) {
-            sums.max_norm = maximum(sums.max_norm, chunk.max_norm);
-            sums.energy += chunk.energy;
-            sums.terms += chunk.terms;
-            sums.load_energy += chunk.load_energy;
-            sums.diagonal_energy += chunk.diagonal_energy;
-        }
+        });
+        let mut sums = chunks.into_iter().fold(Sums::default(), Sums::merge);
         if let Some(penalised) = penalised {
             // u.K u + p.(S^-1 p) = u.(c - r) - p.g, without the cancellation of penalties
             let work = penalised.work_on_data(|i| u[i].to_f64(), jump_multipliers, owns);
@@ -102,7 +94,7 @@ impl Sums {
                 let i = term.unknown as usize;
                 let (x, c, d) = (u[i].to_f64(), load[i].to_f64(), diagonal(i));
                 sums.add_energy(-term.linear * x);
-                sums.load_energy += ((c - term.load).powi(2) - c * c) / d;
+                sums.sums[LOAD_ENERGY] += ((c - term.load).powi(2) - c * c) / d;
                 sums.add_energy(term.constant);
             }
         }
@@ -110,8 +102,9 @@ impl Sums {
     }
     /// The scales; `epsilon` is machine epsilon of the precision in which the values were computed.
     pub fn scales(&self, epsilon: f64) -> Scales {
-        let least = VANISHING * epsilon * self.terms;
-        let energy = [(self.energy, least), (self.load_energy, 0.0), (self.diagonal_energy, 0.0)]
+        let [energy, terms, load_energy, diagonal_energy] = self.sums;
+        let least = VANISHING * epsilon * terms;
+        let energy = [(energy, least), (load_energy, 0.0), (diagonal_energy, 0.0)]
             .into_iter()
             // true for NaN
             .find(|(energy, least)| energy.partial_cmp(least).is_none_or(Ordering::is_gt))
@@ -122,36 +115,20 @@ impl Sums {
         }
     }
     /// The maximum and the sums over all parts.
-    pub fn over_parts(self, distribution: &dyn Distribution) -> Self {
-        let mut max_norm = [self.max_norm];
-        distribution.largest(&mut max_norm);
-        let mut sums = [self.energy, self.terms, self.load_energy, self.diagonal_energy];
-        distribution.sum(&mut sums);
-        let [energy, terms, load_energy, diagonal_energy] = sums;
-        Self { max_norm: max_norm[0], energy, terms, load_energy, diagonal_energy }
-    }
-    /// The maximum and the sums as numbers.
-    pub fn to_numbers(self) -> [f64; 5] {
-        let Self { max_norm, energy, terms, load_energy, diagonal_energy } = self;
-        [max_norm, energy, terms, load_energy, diagonal_energy]
-    }
-    /// The sums from the numbers of [`Sums::to_numbers`].
-    pub fn from_numbers(numbers: [f64; 5]) -> Self {
-        let [max_norm, energy, terms, load_energy, diagonal_energy] = numbers;
-        Self { max_norm, energy, terms, load_energy, diagonal_energy }
+    pub fn over_parts(mut self, distribution: &dyn Distribution) -> Self {
+        distribution.largest(std::slice::from_mut(&mut self.max_norm));
+        distribution.sum(&mut self.sums);
+        self
     }
     /// The sums over the unknowns of `self` and `other`.
     pub fn merge(self, other: Self) -> Self {
         Self {
             max_norm: maximum(self.max_norm, other.max_norm),
-            energy: self.energy + other.energy,
-            terms: self.terms + other.terms,
-            load_energy: self.load_energy + other.load_energy,
-            diagonal_energy: self.diagonal_energy + other.diagonal_energy,
+            sums: array_of(|k| self.sums[k] + other.sums[k]),
         }
     }
     fn add_energy(&mut self, energy: f64) {
-        self.energy += energy;
-        self.terms += energy.abs();
+        self.sums[0] += energy;
+        self.sums[1] += energy.abs();
     }
 }

@@ -26,9 +26,9 @@ impl StepCounter {
     pub fn set(&self, step: usize) {
         self.0.store(step, Ordering::Relaxed);
     }
-    /// Adds a number of steps.
-    pub(crate) fn advance(&self, steps: usize) {
-        self.0.fetch_add(steps, Ordering::Relaxed);
+    /// Adds a step.
+    pub(super) fn advance(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
     }
     /// The number; zero before the first step.
     pub fn get(&self) -> usize {

@@ -1,11 +1,12 @@
 //! The patch test.
 
-use super::discrete::{Judged, Tested, solve_and_judge};
+use super::discrete::{Tested, solve_and_judge};
 use super::error::{KitError, KitErrorKind, Law};
 use super::meshes::Sample;
 use super::report::ConsistencyReport;
 use super::{meshes, problems};
 use crate::arrays::map_entries;
+use crate::measure::Errors;
 use crate::mesh::describe_point;
 use crate::problem::Problem;
 
@@ -21,8 +22,8 @@ pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<Consistenc
     let tolerance = UNITS * f64::EPSILON;
     let mut error = if declared { 0.0 } else { f64::INFINITY };
     for sample in [meshes::regular(law, &domain, n)?, meshes::moved(law, &domain, n)?] {
-        let judged = solve_and_judge(law, scheme, &problem, &sample)?;
-        let here = relative_error(&judged, &problem, &sample);
+        let (errors, vertex_values) = solve_and_judge(law, scheme, &problem, &sample)?;
+        let here = relative_error(&errors, &problem, &sample);
         let mesh = sample.name;
         match (declared, here <= tolerance) {
             (true, true) => error = f64::max(error, here),
@@ -34,7 +35,7 @@ pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<Consistenc
                 return Err(KitError::new(law, KitErrorKind::ConsistentAfterAll, message));
             }
             (true, false) => {
-                let (cell, at) = worst_cell(&judged, &problem, &sample);
+                let (cell, at) = worst_cell(&vertex_values, &problem, &sample);
                 let message = format!(
                     "on {mesh} the error against a polynomial of degree {degree} is {here:.3e}, rounding explains {tolerance:.1e}; worst in cell {cell}, near {at}"
                 );
@@ -48,37 +49,33 @@ pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<Consistenc
 /// The larger of the errors at nodes and of mesh size times that of the gradient, relative to the
 /// polynomial; not a number where there is none.
 fn relative_error<const D: usize>(
-    judged: &Judged,
+    errors: &Errors,
     problem: &Problem<D>,
     sample: &Sample<D>,
 ) -> f64 {
-    let [value, gradient] =
-        map_entries([judged.errors.max, judged.errors.h1], |e| e.unwrap_or(f64::NAN));
+    let [value, gradient] = map_entries([errors.max, errors.h1], |e| e.unwrap_or(f64::NAN));
     let vertices = sample.mesh.vertices();
-    let size = vertices.iter().fold(1.0, |m, x| {
-        let value: f64 = problem.dirichlet_at(x);
-        f64::max(m, value.abs())
-    });
+    let size = vertices.iter().fold(1.0, |m, x| f64::max(m, problem.dirichlet_at(x).abs()));
     let gradient = gradient * sample.mesh.mesh_size();
     if value.is_nan() || gradient.is_nan() { f64::NAN } else { value.max(gradient) / size }
 }
 
 /// The cell with the largest error at a vertex, and its barycentre.
 fn worst_cell<const D: usize>(
-    judged: &Judged,
+    vertex_values: &[f64],
     problem: &Problem<D>,
     sample: &Sample<D>,
 ) -> (usize, String) {
     let mesh = &sample.mesh;
     let (mut largest, mut worst) = (0.0, 0);
-    for (cell, values) in judged.vertex_values.chunks_exact(D + 1).enumerate() {
+    for (cell, values) in vertex_values.chunks_exact(D + 1).enumerate() {
         for (&v, value) in mesh.cell(cell).iter().zip(values) {
-            let exact = problem.dirichlet_at(&(mesh.vertices()[v as usize]));
+            let exact = problem.dirichlet_at(&mesh.vertices()[v as usize]);
             let error = (value - exact).abs();
             if error > largest {
                 (largest, worst) = (error, cell);
             }
         }
     }
-    (worst, describe_point(&(mesh.barycentre(worst))))
+    (worst, describe_point(&mesh.barycentre(worst)))
 }

@@ -11,10 +11,9 @@ use crate::constraint::{ConstraintSet, Nodes};
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
 use crate::measure::Errors;
-use crate::mesh::{BoxDomain, Mesh};
+use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::real::Point;
-use crate::scheme::{ExpectedOrders, Regularity, Scheme, Setting};
+use crate::scheme::Scheme;
 
 /// A scheme under test with its constraint set.
 pub(super) struct Tested<'s, const D: usize> {
@@ -41,29 +40,10 @@ impl<'s, const D: usize> Deref for Tested<'s, D> {
     }
 }
 
-/// A discrete solution against the exact one.
-pub(super) struct Judged {
-    pub errors: Errors,
-    /// The discrete solution at the vertices of each cell.
-    pub vertex_values: Vec<f64>,
-}
-
 /// Rules for data: what a source that belongs to a polynomial of the element's degree needs, and
 /// what keeps the quadrature of a smooth one out of the orders.
 fn quadrature(degree: usize) -> DataQuadrature {
     DataQuadrature::default().cell((2 * degree + 2).max(5))
-}
-
-/// Whether the form declares itself symmetric.
-pub(super) fn is_symmetric<const D: usize>(scheme: &dyn Scheme<D>) -> bool {
-    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::kuhn_box(&domain, [1; D]);
-    mesh.is_ok_and(|mesh| scheme.form(&mesh).is_symmetric())
-}
-
-/// The orders that the scheme promises for a smooth solution without inequalities.
-pub(super) fn promised<const D: usize>(scheme: &dyn Scheme<D>) -> ExpectedOrders {
-    scheme.expected_orders(&Setting::new(D, Regularity::smooth()).with_regular_dual(true))
 }
 
 /// The inequality of a problem on a mesh.
@@ -94,21 +74,20 @@ pub(super) fn solve<const D: usize>(
     }
 }
 
-/// The discrete solution of a linear problem against the exact one.
+/// The errors of the discrete solution of a linear problem, and this solution at the vertices of each cell.
 pub(super) fn solve_and_judge<const D: usize>(
     law: Law,
     scheme: &Tested<'_, D>,
     problem: &Problem<D>,
     sample: &Sample<D>,
-) -> Result<Judged, KitError> {
+) -> Result<(Errors, Vec<f64>), KitError> {
     let inequality = assemble(law, scheme, problem, &sample.mesh)?;
     let u = solve(law, &inequality, sample)?;
     let judge = || {
         let quadrature = quadrature(scheme.degree());
         let problem = scheme.problem(problem);
         let discretisation = scheme.discretise(&problem, &sample.mesh, quadrature)?;
-        let errors = discretisation.errors(&u)?;
-        Ok(Judged { errors, vertex_values: discretisation.vertex_values(&u) })
+        Ok((discretisation.errors(&u)?, discretisation.vertex_values(&u)))
     };
     judge().map_err(|why: Error| KitError::not_assembled(law, why))
 }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::discrete::{Tested, assemble, solve};
 use super::error::{KitError, KitErrorKind, Law};
 use super::matrix::{describe, row_sizes};
-use super::meshes::{Renumbered, Sample};
+use super::meshes::Sample;
 use super::report::InvarianceReport;
 use super::{meshes, problems};
 use crate::algebra::{DofLocation, Inequality};
@@ -24,14 +24,18 @@ pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<Invariance
     let before = Numbered::new(scheme, &sample)?;
     let mut report = InvarianceReport { matrix: 0.0, load: 0.0, solution: 0.0 };
     for seed in [1, 2] {
-        let Renumbered { mesh, vertices, cells } = meshes::renumbered(law, &sample.mesh, seed)?;
+        let (mesh, vertices, cells) = meshes::renumbered(law, &sample.mesh, seed)?;
         let after = Numbered::new(scheme, &Sample { name: "a renumbered box", mesh })?;
         let new = after.numbers_of(&before, &vertices, &cells)?;
         let tolerance = ENTRY_UNITS * f64::EPSILON;
         report.matrix = report.matrix.max(before.matrix(&after, &new, tolerance)?);
-        report.load = report.load.max(before.load(&after, &new, tolerance)?);
+        let what = ("the load of", KitErrorKind::LoadDependsOnNumbering);
+        let loads = [&before.load[..], &after.load];
+        report.load = report.load.max(before.vector(what, loads, &new, tolerance)?);
         let tolerance = SOLUTION_UNITS * f64::EPSILON;
-        report.solution = report.solution.max(before.solution(&after, &new, tolerance)?);
+        let what = ("the solution at", KitErrorKind::SolutionDependsOnNumbering);
+        let solutions = [&before.solution[..], &after.solution];
+        report.solution = report.solution.max(before.vector(what, solutions, &new, tolerance)?);
     }
     Ok(report)
 }
@@ -61,11 +65,6 @@ impl Numbered {
         Ok(Self { inequality, load, solution })
     }
 
-    /// The location of an unknown, in words.
-    fn place(&self, unknown: usize) -> String {
-        describe(&self.inequality, unknown)
-    }
-
     /// The number here of every unknown there; vertices and cells have these numbers there.
     fn numbers_of(
         &self,
@@ -82,33 +81,21 @@ impl Numbered {
         for (second, location) in locations.iter().enumerate() {
             let key = key(location, |v| vertices[v as usize], |c| cells[c as usize]);
             if let Some(first) = here.insert(key, second) {
-                return Err(error(first, second, self.place(second)));
+                return Err(error(first, second, describe(&self.inequality, second)));
             }
         }
         // both meshes have the same locations, so that one that is not found is one that is there twice
         let find = |(first, location): (usize, &DofLocation)| {
             let number = here.remove(&key(location, |v| v, |c| c));
-            number.ok_or_else(|| error(first, first, there.place(first)))
+            number.ok_or_else(|| error(first, first, describe(&there.inequality, first)))
         };
         there.inequality.locations.iter().enumerate().map(find).collect()
-    }
-
-    fn load(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {
-        let kind = KitErrorKind::LoadDependsOnNumbering;
-        self.vector("the load of", kind, [&self.load, &after.load], new, tolerance)
-    }
-
-    fn solution(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {
-        let kind = KitErrorKind::SolutionDependsOnNumbering;
-        let vectors = [&self.solution[..], &after.solution];
-        self.vector("the solution at", kind, vectors, new, tolerance)
     }
 
     /// The largest change of a vector, relative to its largest entry.
     fn vector(
         &self,
-        what: &str,
-        kind: KitErrorKind,
+        (what, kind): (&str, KitErrorKind),
         [before, after]: [&[f64]; 2],
         new: &[usize],
         tolerance: f64,
@@ -119,7 +106,7 @@ impl Numbered {
         }
         let message = format!(
             "{what} unknown {unknown} ({}) changes from {:.6e} to {:.6e} {RENUMBERED}",
-            self.place(unknown),
+            describe(&self.inequality, unknown),
             before[unknown],
             after[new[unknown]],
         );
@@ -142,8 +129,8 @@ impl Numbered {
                 "the entry at ({row}, {column}) changes from {:.6e} to {:.6e} {RENUMBERED}; row: {}; column: {}",
                 entries[0],
                 entries[1],
-                self.place(row),
-                self.place(column),
+                describe(&self.inequality, row),
+                describe(&self.inequality, column),
             );
             Err(KitError::new(Law::Invariance, KitErrorKind::EntryDependsOnNumbering, message))
         };

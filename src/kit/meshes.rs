@@ -14,15 +14,6 @@ pub(super) struct Sample<const D: usize> {
     pub mesh: Mesh<D>,
 }
 
-/// A mesh with renumbered vertices and cells, and their numbers before.
-pub(super) struct Renumbered<const D: usize> {
-    pub mesh: Mesh<D>,
-    /// The old number of each vertex.
-    pub vertices: Vec<u32>,
-    /// The old number of each cell.
-    pub cells: Vec<u32>,
-}
-
 /// Subdivisions of the boxes on which matrices are tested.
 pub(super) const fn subdivisions(dimension: usize) -> usize {
     match dimension {
@@ -75,7 +66,10 @@ pub(super) fn moved<const D: usize>(
 }
 
 /// The facets of the boundary by the new numbers of their vertices.
-fn tagged<const D: usize>(mesh: &Mesh<D>, number: impl Fn(u32) -> u32) -> Vec<TaggedFacet<D>> {
+pub(crate) fn tagged<const D: usize>(
+    mesh: &Mesh<D>,
+    number: impl Fn(u32) -> u32,
+) -> Vec<TaggedFacet<D>> {
     let tag = |facet: &crate::mesh::BoundaryFacet| {
         let mut vertices = [0; D];
         let old = mesh.facet_vertices(facet.cell as usize, facet.local as usize);
@@ -85,12 +79,12 @@ fn tagged<const D: usize>(mesh: &Mesh<D>, number: impl Fn(u32) -> u32) -> Vec<Ta
     mesh.boundary().iter().map(tag).collect()
 }
 
-/// A mesh with pseudo-randomly renumbered vertices and cells.
+/// A mesh with pseudo-randomly renumbered vertices and cells, and the old number of each vertex and of each cell.
 pub(super) fn renumbered<const D: usize>(
     law: Law,
     mesh: &Mesh<D>,
     seed: u64,
-) -> Result<Renumbered<D>, KitError> {
+) -> Result<(Mesh<D>, Vec<u32>, Vec<u32>), KitError> {
     let mut random = SplitMix64(seed);
     let vertices = random.permutation(mesh.vertices().len());
     let cells = random.permutation(mesh.n_cells());
@@ -105,5 +99,5 @@ pub(super) fn renumbered<const D: usize>(
     }
     let mesh = Mesh::new(points, corners, &tagged(mesh, |v| new[v as usize]))
         .map_err(|why| KitError::not_assembled(law, why))?;
-    Ok(Renumbered { mesh, vertices, cells })
+    Ok((mesh, vertices, cells))
 }

@@ -50,7 +50,7 @@ mod element;
 mod error;
 mod invariance;
 mod matrix;
-mod meshes;
+pub(crate) mod meshes;
 mod orders;
 mod problems;
 mod quadrature;

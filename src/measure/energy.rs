@@ -25,9 +25,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn energy(&self, u: &[f64]) -> Result<f64, Error> {
         self.energy_of(u, &|_| true)
     }

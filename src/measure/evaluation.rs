@@ -20,17 +20,14 @@ pub(super) enum Reference<'r, const D: usize> {
 }
 
 impl<const D: usize> Reference<'_, D> {
-    /// The value at a point of a cell.
     pub fn value(&self, cell: usize, x: &Point<D>) -> f64 {
         match self {
             Self::Exact(exact) => exact.value.at(x),
             Self::Coarse { space, values, refinements } => {
-                let (basis, local) = space.evaluate(cell >> (D * refinements), x, values);
-                basis.value(&local)
+                space.value_in(values, cell >> (D * refinements), x)
             }
         }
     }
-    /// The gradient at a point of a cell.
     pub fn gradient(&self, cell: usize, x: &Point<D>) -> Point<D> {
         match self {
             Self::Exact(exact) => (exact.gradient)(x),
@@ -53,22 +50,21 @@ impl<const D: usize> Space<'_, D> {
     fn evaluate(&self, cell: usize, x: &Point<D>, u: &[f64]) -> (BasisAt, [f64; MAX_BASIS]) {
         (self.basis_at(&self.mesh.barycentric(cell, x)), self.local_values(cell, u))
     }
+    fn value_in(&self, u: &[f64], cell: usize, x: &Point<D>) -> f64 {
+        let (basis, local) = self.evaluate(cell, x, u);
+        basis.value(&local)
+    }
     fn value_at(&self, u: &[f64], x: &Point<D>) -> Option<f64> {
         let contains = |&cell: &usize| {
             self.mesh.barycentric(cell, x)[..=D].iter().all(|&lambda| lambda >= -ROUNDING)
         };
-        let cell = (0..self.mesh.n_cells()).find(contains)?;
-        let (basis, local) = self.evaluate(cell, x, u);
-        Some(basis.value(&local))
+        (0..self.mesh.n_cells()).find(contains).map(|cell| self.value_in(u, cell, x))
     }
 }
 
 impl<const D: usize> Discretisation<'_, D> {
     /// The value of a vector of unknowns at a point, in the first cell that contains the point; none
     /// outside the mesh. The search takes a time proportional to the number of cells.
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn value_at(&self, u: &[f64], point: &Point<D>) -> Option<f64> {
         compiled!(const D: fn(&Discretisation<'_, D>, &[f64], &Point<D>) -> Option<f64>
                 = |of, u, point| of.space.value_at(u, point)
@@ -77,10 +73,9 @@ impl<const D: usize> Discretisation<'_, D> {
     /// The value of a vector of unknowns at a point of a cell; outside the cell that of the polynomial there.
     ///
     /// # Panics
-    /// If there is no such cell, or `u` is shorter than the number of unknowns.
+    /// If there is no such cell.
     #[cfg(feature = "report")]
     pub(crate) fn value_in(&self, u: &[f64], cell: usize, point: &Point<D>) -> f64 {
-        let (basis, local) = self.space.evaluate(cell, point, u);
-        basis.value(&local)
+        self.space.value_in(u, cell, point)
     }
 }

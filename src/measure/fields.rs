@@ -1,6 +1,7 @@
 //! Solution, obstacle, multiplier and contact set on cells, for pictures.
 
-use super::contact::DiscreteContact;
+use super::contact::{DiscreteContact, SolvedInequality};
+use super::penetration::middle;
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -56,14 +57,15 @@ impl<const D: usize> Discretisation<'_, D> {
     /// Solution, obstacle, multiplier and contact set on cells, for pictures.
     pub fn fields(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Fields {
         compiled!(const D: fn(&Discretisation<'_, D>, &Inequality<f64>, &Solution<f64>) -> Fields
-                = |of, inequality, solution| of.space.fields(inequality, solution)
+                = |of, inequality, solution| of.space.fields((inequality, solution))
         )(self, inequality, solution)
     }
 }
 
 impl<const D: usize> Space<'_, D> {
     /// Fields of a solution; see `Discretisation::fields`.
-    pub fn fields(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Fields {
+    fn fields(&self, solved: SolvedInequality<'_>) -> Fields {
+        let (inequality, solution) = solved;
         let u = &solution.values;
         let corner = |&v: &u32| self.mesh.vertices()[v as usize];
         let mut obstacle = Vec::new();
@@ -89,8 +91,7 @@ impl<const D: usize> Space<'_, D> {
             true => self.facets_of(BoundaryCondition::Contact).collect(),
             false => Vec::new(),
         };
-        let multipliers =
-            self.problem.is_constrained().then(|| self.multipliers(inequality, solution)).flatten();
+        let multipliers = self.problem.is_constrained().then(|| self.multipliers(solved)).flatten();
         let of_obstacles = multipliers.as_ref().filter(|_| self.problem.has_obstacle());
         let of_gaps = multipliers.as_ref().filter(|_| self.problem.has_gap());
         Fields {
@@ -103,7 +104,7 @@ impl<const D: usize> Space<'_, D> {
             },
             contact: (0..n_cells).map(share).collect(),
             midpoints: self.midpoint_values(u),
-            discrete_contact: self.discrete_contact(inequality, solution),
+            discrete_contact: self.discrete_contact(solved),
             pressure: match of_gaps {
                 Some(of) => self.densities_of_gaps(inequality, of),
                 None => vec![f64::NAN; contact_boundary.len()],
@@ -133,12 +134,8 @@ impl<const D: usize> Space<'_, D> {
         if self.basis_degree < 2 {
             return Vec::new();
         }
-        let middle = |&[i, j]: &[usize; 2]| {
-            let mut point = [0.0; 4];
-            (point[i], point[j]) = (0.5, 0.5);
-            self.basis_at(&point)
-        };
-        let midpoints: Vec<_> = edge_vertices(D).iter().map(middle).collect();
+        let at_middle = |ends: &[usize; 2]| self.basis_at(&middle(*ends));
+        let midpoints: Vec<_> = edge_vertices(D).iter().map(at_middle).collect();
         let mut values = Vec::with_capacity(self.mesh.n_cells() * midpoints.len());
         for cell in 0..self.mesh.n_cells() {
             let local = self.local_values(cell, u);

@@ -9,12 +9,12 @@ use super::evaluation::Reference;
 use super::squared_errors::SquaredErrors;
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
-use crate::assemble::weak_dirichlet::FacetMoments;
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::instances::compiled;
 use crate::parallel::cells;
 use crate::problem::Exact;
+use crate::quadrature::OrthonormalPolynomials;
 
 impl<const D: usize> Discretisation<'_, D> {
     /// Errors of a vector of unknowns against the exact solution; none where there is no exact
@@ -27,9 +27,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn errors(&self, u: &[f64]) -> Result<Errors, Error> {
         match &self.space.problem.exact {
             Some(exact) => self.errors_against(exact, u),
@@ -43,9 +40,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn errors_against(&self, exact: &Exact<D>, u: &[f64]) -> Result<Errors, Error> {
         Ok(self.squared_errors(exact, u, &|_| true)?.norms())
     }
@@ -58,9 +52,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn squared_errors(
         &self,
         exact: &Exact<D>,
@@ -126,10 +117,10 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<f64, Error> {
         let degree = form.moments(self.basis_degree);
         let table = self.facet_table(degree);
-        let moments = FacetMoments::new(D, degree, &self.facet_rule);
+        let polynomials = OrthonormalPolynomials::new(D - 1, degree);
         let terms_of = |cell: usize, terms: &mut Vec<f64>| -> Result<(), Error> {
             for facet in self.form_facets_of(cell) {
-                let jump = self.jump_on(facet, u, (&table, &moments))?;
+                let jump = self.jump_on(facet, u, (&table, &polynomials))?;
                 let view = self.facet_view(facet, None);
                 let penalty = form.penalty(&view);
                 for (k, &degree) in table.degrees.iter().enumerate() {

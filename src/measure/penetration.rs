@@ -25,7 +25,6 @@ const SHARE_OF_VALUE: f64 = 1e-6;
 /// A distance below this many units of rounding of the size of the function is rounding.
 const ROUNDINGS: f64 = 1e3;
 
-/// The names of lower obstacles, upper obstacles and gaps.
 const NAMES: [&str; 3] = ["the lower obstacle", "the upper obstacle", "the gap"];
 
 /// How far a function lies beyond lower obstacles, upper obstacles and gaps.
@@ -118,18 +117,12 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn penetration(&self, u: &[f64]) -> Result<Option<Penetration>, Error> {
         self.penetration_of((u, Precision::Double), &|_| true)
     }
 
     /// The penetration of values that were computed in a precision, in the cells that count, those of a part of a mesh,
     /// and on their facets.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
     pub(crate) fn penetration_of(
         &self,
         values: (&[f64], Precision),
@@ -160,7 +153,7 @@ impl<const D: usize> Space<'_, D> {
         let data = [&self.data.lower, &self.data.upper, &self.data.gap];
         let is_linear = self.basis_degree == 1;
         let at_vertices = data.map(|data| is_linear && self.is_affine(data));
-        let in_cells = self.points_of_cell(at_vertices[0] && at_vertices[1]);
+        let in_cells = self.points_on(None, at_vertices[0] && at_vertices[1]);
         let of_chunk = |cells: Range<usize>| {
             let mut found = Penetration::NONE;
             for cell in cells.filter(|&cell| counts(cell)) {
@@ -192,7 +185,7 @@ impl<const D: usize> Space<'_, D> {
             found = found.merged(&of_chunk?);
         }
         let on_facets: Vec<Points> =
-            (0..D + 1).map(|local| self.points_of_facet(local, at_vertices[2])).collect();
+            (0..D + 1).map(|local| self.points_on(Some(local), at_vertices[2])).collect();
         for (facet, group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let gap = self.data.gap.of(group).filter(|_| counts(facet.0));
             if let Some(gap) = gap {
@@ -280,24 +273,19 @@ impl<const D: usize> Space<'_, D> {
         Ok(())
     }
 
-    /// The points of a cell at which a function is held against obstacles.
-    fn points_of_cell(&self, are_vertices_enough: bool) -> Points {
-        let ends = (0..D + 1).map(|k| [k; 2]);
-        let edges = edge_vertices(D).iter().copied().filter(|_| !are_vertices_enough);
-        let rule = self.cell_rule.points.iter().copied().filter(|_| !are_vertices_enough);
-        let points = ends.chain(edges).map(middle).chain(rule);
-        points.map(|point| (point, self.basis_at(&point))).collect()
-    }
-
-    /// The points of a facet at which a function is held against a gap.
-    fn points_of_facet(&self, local: usize, are_vertices_enough: bool) -> Points {
-        let on_facet = move |ends: &[usize; 2]| !ends.contains(&local);
-        let ends = (0..D + 1).map(|k| [k; 2]).filter(on_facet);
-        let edges = edge_vertices(D).iter().copied().filter(on_facet);
-        let rule = self.facet_rule.points.iter().map(|point| facet_to_cell(point, local));
-        let between = edges.map(middle).chain(rule).filter(|_| !are_vertices_enough);
-        let points = ends.map(middle).chain(between);
-        points.map(|point| (point, self.basis_at(&point))).collect()
+    /// The points of a cell, or of a facet of it, at which a function is held against obstacles or a gap.
+    fn points_on(&self, facet: Option<usize>, are_vertices_enough: bool) -> Points {
+        let is_on = |ends: &[usize; 2]| facet.is_none_or(|local| !ends.contains(&local));
+        let ends = (0..D + 1).map(|k| [k; 2]).filter(is_on);
+        let mut points: Vec<[f64; 4]> = ends.map(middle).collect();
+        if !are_vertices_enough {
+            points.extend(edge_vertices(D).iter().copied().filter(is_on).map(middle));
+            match facet {
+                None => points.extend(&self.cell_rule.points),
+                Some(k) => points.extend(self.facet_rule.iter().map(|(p, _)| facet_to_cell(p, k))),
+            }
+        }
+        points.into_iter().map(|point| (point, self.basis_at(&point))).collect()
     }
 
     /// Whether a degree of a flux, or the one stated for all data without a degree of their own, is at most one.
@@ -326,7 +314,7 @@ impl<const D: usize> Space<'_, D> {
 }
 
 /// The middle of two vertices, or a vertex.
-fn middle([a, b]: [usize; 2]) -> [f64; 4] {
+pub(super) fn middle([a, b]: [usize; 2]) -> [f64; 4] {
     let mut point = [0.0; 4];
     point[a] += 0.5;
     point[b] += 0.5;

@@ -2,7 +2,7 @@
 
 use super::simplicial::Mesh;
 use crate::arrays::array_of;
-use crate::real::Point;
+use crate::real::{Point, box_around};
 
 /// A place of a grid, whose boxes have two to the first number as their size.
 type GridBox<const D: usize> = (i32, [i64; D]);
@@ -53,12 +53,9 @@ impl<const D: usize> Mesh<D> {
     /// The search for the cells near a point, by boxes that are larger than the cells by a share of their sizes.
     pub(crate) fn cell_search(&self, share: f64) -> BoxSearch<D> {
         let around = |cell: usize| {
-            let corners = self.corners(cell);
-            let ends = corners[1..=D].iter().fold([corners[0]; 2], |[least, most], x| {
-                [least.zip_map(x, f64::min), most.zip_map(x, f64::max)]
-            });
-            let margin = share * (ends[1] - ends[0]).max();
-            [ends[0].add_scalar(-margin), ends[1].add_scalar(margin)]
+            let [low, high] = box_around(&self.corners(cell)[..=D]);
+            let margin = share * (high - low).max();
+            [low.add_scalar(-margin), high.add_scalar(margin)]
         };
         BoxSearch::new(self.own_box()[0], (0..self.n_cells()).map(around))
     }

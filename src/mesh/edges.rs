@@ -90,17 +90,6 @@ impl Edges {
     pub fn upper_ends(&self, a: u32) -> &[u32] {
         &self.upper[self.first_at(a) as usize..self.first_at(a + 1) as usize]
     }
-    /// The second result of [`Edges::with_cell_edges`], by a search for every edge of every cell.
-    pub fn cell_edges<const D: usize>(&self, mesh: &Mesh<D>) -> Vec<u32> {
-        let of_cell = |cell: &[u32], [i, j]: [usize; 2]| {
-            self.number(cell[i], cell[j]).expect("every pair of a cell's vertices is an edge")
-        };
-        let mut numbers = Vec::with_capacity(mesh.n_cells() * edge_vertices(D).len());
-        for cell in mesh.cells().chunks_exact(D + 1) {
-            numbers.extend(edge_vertices(D).iter().map(|&edge| of_cell(cell, edge)));
-        }
-        numbers
-    }
 }
 
 /// The upper ends of the edges with a lower vertex in a range, and where those of each of these
@@ -149,55 +138,4 @@ fn upper_ends<const D: usize>(
         }
     }
     (upper, ends_of_vertices)
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::{Edges, edge_vertices};
-    use crate::mesh::{BoxDomain, Facets, Mesh, Neighbours};
-    use crate::real::Point;
-
-    fn check<const D: usize>(counts: [usize; D]) -> usize {
-        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let mesh = Mesh::<D>::kuhn_box(&domain, counts).unwrap();
-        let (edges, numbers) = Edges::with_cell_edges(&mesh);
-        assert_eq!(edges, Edges::new(&mesh));
-        assert_eq!(numbers, edges.cell_edges(&mesh));
-        let pairs = mesh.cells().chunks(D + 1).flat_map(|cell| {
-            cell.iter().flat_map(|&a| cell.iter().map(move |&b| [a, b])).filter(|[a, b]| a < b)
-        });
-        // a sorted set numbers its members in lexicographic order
-        let expected: Vec<[u32; 2]> = pairs.collect::<BTreeSet<_>>().into_iter().collect();
-        assert_eq!(edges.len(), expected.len());
-        for (k, &[a, b]) in expected.iter().enumerate() {
-            assert_eq!(edges.number(a, b), Some(k as u32));
-        }
-        let last = mesh.vertices().len() as u32 - 1;
-        assert_eq!(edges.number(0, 0), None);
-        assert_eq!(edges.number(last, 0), None);
-        let per_cell = edge_vertices(D).len();
-        assert_eq!(numbers.len(), per_cell * mesh.n_cells());
-        for (cell, numbers) in mesh.cells().chunks(D + 1).zip(numbers.chunks(per_cell)) {
-            for (&[i, j], &number) in edge_vertices(D).iter().zip(numbers) {
-                assert_eq!([cell[i], cell[j]], expected[number as usize]);
-            }
-        }
-        match D {
-            1 => assert_eq!(edges.len(), mesh.n_cells()),
-            2 => assert_eq!(edges.len(), Facets::new(&mesh, &Neighbours::new(&mesh)).len()),
-            _ => {}
-        }
-        edges.len()
-    }
-
-    #[test]
-    fn every_pair_that_a_cell_joins_is_an_edge_once() {
-        assert_eq!(check([5]), 5);
-        // along the axes and diagonals
-        assert_eq!(check([3, 2]), 9 + 8 + 6);
-        // along axes, diagonals of faces, diagonals of cubes
-        assert_eq!(check([2, 1, 1]), (8 + 6 + 6) + (4 + 4 + 3) + 2);
-    }
 }

@@ -48,8 +48,9 @@ const UNKNOWN: u32 = u32::MAX;
 /// Largest number of cells the codes can name.
 pub(crate) const CELL_LIMIT: usize = (BOUNDARY as usize) / 4;
 
-fn boundary_code(condition: BoundaryCondition) -> u32 {
-    BOUNDARY + condition as u32
+/// The vertices of a facet of a cell with these vertices, in the order of the cell.
+pub(super) fn facet_of<const D: usize>(cell: &[u32], local: usize) -> [u32; D] {
+    array_of(|k| cell[k + usize::from(k >= local)])
 }
 
 /// The code of a half-facet: four times the cell plus the number of the facet in it.
@@ -115,7 +116,7 @@ impl Neighbours {
         self.codes[cell * self.per_cell + local] == UNKNOWN
     }
     pub(super) fn set(&mut self, cell: usize, local: usize, condition: BoundaryCondition) {
-        self.codes[cell * self.per_cell + local] = boundary_code(condition);
+        self.codes[cell * self.per_cell + local] = BOUNDARY + condition as u32;
     }
 }
 
@@ -184,8 +185,7 @@ fn match_facets_of<const D: usize>(
 /// with the same vertices.
 fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
     let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
-    let vertices =
-        |(c, local): HalfFacet| -> [u32; D] { array_of(|k| cell(c)[k + usize::from(k >= local)]) };
+    let vertices = |(c, local): HalfFacet| facet_of::<D>(cell(c), local);
     let mut half_facets: Vec<_> = (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1))).collect();
     half_facets.sort_unstable_by_key(|&half_facet| (vertices(half_facet), half_facet));
     for same in half_facets.chunk_by(|&a, &b| vertices(a) == vertices(b)) {

@@ -28,16 +28,6 @@ pub(in crate::mesh) struct Groups {
     pub inside: Vec<String>,
 }
 
-impl Groups {
-    /// One region without names, and boundary groups of one name each with these conditions.
-    pub fn of_boundary(boundary: impl IntoIterator<Item = (String, BoundaryCondition)>) -> Self {
-        let group =
-            |(name, condition)| BoundaryGroup { names: vec![name], condition: Some(condition) };
-        let boundary = boundary.into_iter().map(group).collect();
-        Self { regions: vec![Vec::new()], boundary, inside: Vec::new() }
-    }
-}
-
 /// Sets of names, each with a number.
 #[derive(Debug)]
 pub(in crate::mesh) struct NameSets(Vec<Vec<String>>);
@@ -59,7 +49,6 @@ impl NameSets {
             self.0.len() - 1
         })
     }
-    /// The names of a set.
     pub fn names(&self, set: usize) -> &[String] {
         &self.0[set]
     }

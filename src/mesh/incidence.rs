@@ -176,7 +176,6 @@ impl<const K: usize> Blocks<K> {
         let hulls = map_groups(n_cells.div_ceil(BLOCK), BLOCKS_PER_TASK, &of_chunk).concat();
         Self { hulls, n_cells }
     }
-    /// The cells of a block.
     fn cells(block: usize, n_cells: usize) -> Range<usize> {
         block * BLOCK..((block + 1) * BLOCK).min(n_cells)
     }
@@ -255,7 +254,6 @@ impl<const D: usize> Columns for FirstVertices<D> {
 }
 
 impl<const D: usize> VertexToCells<'_, D> {
-    /// The stars of the vertices of a range.
     pub fn stars(&self, vertices: &Range<u32>) -> Stars {
         let mut stars = Stars::default();
         self.find_stars(std::array::from_ref(vertices), &mut stars);

@@ -103,11 +103,6 @@ fn children<const D: usize>(mesh: &Mesh<D>, cell: usize) -> Children {
     best.1
 }
 
-/// The regions of the children of all cells.
-fn regions_of_children(cell_regions: &[u16], n_children: usize) -> Vec<u16> {
-    collect(cell_regions.len() * n_children, |cell| cell_regions[cell / n_children])
-}
-
 /// The parents of the fine vertices, in lexicographic order.
 ///
 /// In this order of the fine vertices the lists of [`CHILDREN`] are ascending, and stand in the order
@@ -152,11 +147,10 @@ impl<const D: usize> Mesh<D> {
         let (edges, numbers) = Edges::with_cell_edges(self);
         let parents = parents(&edges, self.vertices.len());
         check_size(n_fine, parents.len())?;
-        let half = 0.5;
         let vertices = collect(parents.len(), |i| {
             let [a, b] = parents[i];
             let (x, y) = (self.vertices[a as usize], self.vertices[b as usize]);
-            if a == b { x } else { (x + y) * half }
+            if a == b { x } else { (x + y) * 0.5 }
         });
         let mut cells = in_large_pages(vec![0; n_fine * (D + 1)]);
         let per_cell = edge_vertices(D).len();
@@ -172,13 +166,14 @@ impl<const D: usize> Mesh<D> {
             let first = range.start / group;
             cells.chunks_exact_mut(group).enumerate().for_each(|(k, out)| cut(first + k, out));
         });
+        let regions = &self.cell_regions;
         let fine = Self {
             vertices,
             cells,
             boundary: self.refined_boundary(),
             is_supported: self.is_supported,
             groups: self.groups.clone(),
-            cell_regions: regions_of_children(&self.cell_regions, n_children),
+            cell_regions: collect(regions.len() << D, |cell| regions[cell >> D]),
             whole: self.whole.map(Extent::refined),
         };
         Ok((fine, Refinement { parents }))

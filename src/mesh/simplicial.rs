@@ -8,7 +8,7 @@ use super::geometry::simplex::{fold_edges, longest_edge};
 use super::groups::Groups;
 use super::part::extent::Extent;
 use crate::parallel::cells;
-use crate::real::Point;
+use crate::real::{Point, box_around};
 
 /// A conforming simplicial mesh of a domain in `D` dimensions (1, 2 or 3).
 #[derive(Clone, Debug)]
@@ -27,23 +27,19 @@ pub struct Mesh<const D: usize> {
 }
 
 impl<const D: usize> Mesh<D> {
-    /// Number of vertices of a cell.
-    pub const CELL_VERTICES: usize = {
-        assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only");
-        D + 1
-    };
     /// Coordinates of the vertices.
     pub fn vertices(&self) -> &[Point<D>] {
         &self.vertices
     }
     /// Number of cells.
     pub fn n_cells(&self) -> usize {
-        self.cells.len() / Self::CELL_VERTICES
+        const { assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only") };
+        self.cells.len() / (D + 1)
     }
     /// Vertices of a cell, ascending.
     #[inline(always)]
     pub fn cell(&self, c: usize) -> &[u32] {
-        &self.cells[c * Self::CELL_VERTICES..(c + 1) * Self::CELL_VERTICES]
+        &self.cells[c * (D + 1)..(c + 1) * (D + 1)]
     }
     /// The points of the vertices of a cell, zero beyond the last.
     pub(crate) fn corners(&self, cell: usize) -> [Point<D>; 4] {
@@ -80,7 +76,7 @@ impl<const D: usize> Mesh<D> {
             .cell(c)
             .iter()
             .fold(Point::zeros(), |s: Point<D>, &v| s + self.vertices[v as usize]);
-        sum / (Self::CELL_VERTICES as f64)
+        sum / (D + 1) as f64
     }
     /// The largest distance of two vertices of a cell.
     pub fn cell_diameter(&self, c: usize) -> f64 {
@@ -133,9 +129,6 @@ impl<const D: usize> Mesh<D> {
     }
     /// The ends of the smallest box around the vertices.
     pub(in crate::mesh) fn own_box(&self) -> [Point<D>; 2] {
-        let first = self.vertices[0];
-        self.vertices.iter().fold([first; 2], |[lower, upper], x| {
-            [lower.zip_map(x, f64::min), upper.zip_map(x, f64::max)]
-        })
+        box_around(&self.vertices)
     }
 }

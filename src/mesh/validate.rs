@@ -5,13 +5,12 @@ use std::sync::Arc;
 use super::boundary::{BoundaryCondition, BoundaryFacet};
 use super::components::Components;
 use super::error::MeshError;
-use super::facets::{CELL_LIMIT, Neighbours};
+use super::facets::{CELL_LIMIT, Neighbours, facet_of};
 use super::geometry::simplex::longest_edge;
 use super::geometry::{CellGeometry, describe_point};
 use super::groups::{BoundaryGroup, Groups, NameSets};
 use super::overlap::{check_folds, check_overlaps, lie_on_others};
 use super::simplicial::Mesh;
-use crate::arrays::array_of;
 use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::parallel::cells;
@@ -94,14 +93,13 @@ impl<const D: usize> Mesh<D> {
         for cell in cells.chunks_exact_mut(D + 1) {
             cell.sort_unstable();
         }
-        let rounded: Vec<Point<D>> = vertices.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
-        let is_positive = check_volumes::<D>(&rounded, &cells)?;
+        let is_positive = check_volumes::<D>(&vertices, &cells)?;
         let neighbours = Neighbours::match_facets::<D>(&cells, vertices.len())?;
         check_folds::<D>(&cells, &neighbours, &is_positive)?;
         let (boundary, groups) = match_boundary(&vertices, &cells, &neighbours, (boundary, names))?;
         check_overlaps(&vertices, &cells, &boundary)?;
         let is_supported = is_supported(&neighbours, &boundary);
-        let (vertices, cells) = drop_unused(rounded, cells);
+        let (vertices, cells) = drop_unused(vertices, cells);
         let groups = Arc::new(groups);
         let cell_regions = Vec::new();
         Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole: None })
@@ -196,10 +194,7 @@ fn match_boundary<const D: usize>(
     neighbours: &Neighbours,
     (grouped, names): (&[GroupedFacet<D>], &[String]),
 ) -> Result<(Vec<BoundaryFacet>, Groups), MeshError> {
-    let facet = |c: usize, local: usize| -> [u32; D] {
-        let cell = &cells[c * (D + 1)..(c + 1) * (D + 1)];
-        array_of(|k| cell[k + usize::from(k >= local)])
-    };
+    let facet = |c: usize, local: usize| facet_of::<D>(&cells[c * (D + 1)..][..D + 1], local);
     let half_facets = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
     let mut open: Vec<OpenFacet<D>> = half_facets()
         .filter(|&(c, local)| neighbours.is_unmatched(c, local))

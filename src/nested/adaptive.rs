@@ -115,11 +115,8 @@ impl<'a, const D: usize> AdaptiveIteration<'a, D> {
     ) -> Result<Self, Error> {
         adaptivity.check()?;
         let Some(meshes) = nested.adaptive_meshes() else {
-            return Err(Error::Parameter {
-                parameter: "meshes",
-                value: "uniform".to_owned(),
-                allowed: "adaptive refinement takes AdaptiveMeshes".to_owned(),
-            });
+            let allowed = "adaptive refinement takes AdaptiveMeshes";
+            return Err(Error::parameter("meshes", "uniform", allowed));
         };
         // other errors are those of the first step
         if let Err(error @ Error::NotAdaptive { .. }) = nested.check_bound(scheme) {
@@ -211,7 +208,7 @@ impl<'a, const D: usize> AdaptiveIteration<'a, D> {
             }
             Err(error) => return Err(error),
         };
-        if unknowns(next.mesh(), self.scheme.layout()) > self.adaptivity.unknowns {
+        if unknowns(&next.mesh, self.scheme.layout()) > self.adaptivity.unknowns {
             return Ok(Some(Stop::Unknowns));
         }
         self.meshes.add(next).map(|()| None)

@@ -46,7 +46,7 @@ pub struct AdaptiveMeshes<const D: usize> {
 pub(super) struct MeshOfSequence<const D: usize> {
     /// The mesh with its vertices in the order in which they came to be.
     bisected: BisectedMesh<D>,
-    mesh: Mesh<D>,
+    pub mesh: Mesh<D>,
     /// The numbers that the vertices of `bisected` have in `mesh`.
     numbers: Vec<u32>,
     /// The parents of the vertices that the mesh before does not have, in the numbers of `bisected`.
@@ -59,9 +59,6 @@ pub(super) struct MeshOfSequence<const D: usize> {
 }
 
 impl<const D: usize> MeshOfSequence<D> {
-    pub fn mesh(&self) -> &Mesh<D> {
-        &self.mesh
-    }
     fn n_vertices(&self) -> usize {
         self.numbers.len()
     }
@@ -103,7 +100,7 @@ impl<const D: usize> AdaptiveMeshes<D> {
     /// If there is no such mesh.
     #[must_use]
     pub fn mesh(&self, position: usize) -> &Mesh<D> {
-        self.step(position).mesh()
+        &self.step(position).mesh
     }
     /// The finest mesh.
     #[must_use]
@@ -124,11 +121,8 @@ impl<const D: usize> AdaptiveMeshes<D> {
     /// meanwhile.
     pub fn bisect(&self, marked: &[usize]) -> Result<(), Error> {
         compiled!(const D: fn(&AdaptiveMeshes<D>, &[usize]) -> Result<(), Error>
-                = |meshes, marked| meshes.bisect_finest(marked)
+                = |meshes, marked| meshes.add(meshes.bisected(marked)?)
         )(self, marked)
-    }
-    fn bisect_finest(&self, marked: &[usize]) -> Result<(), Error> {
-        self.add(self.bisected(marked)?)
     }
     /// The mesh that [`Self::bisect`] adds.
     pub(super) fn bisected(&self, marked: &[usize]) -> Result<MeshOfSequence<D>, Error> {
@@ -137,7 +131,7 @@ impl<const D: usize> AdaptiveMeshes<D> {
         let (mut bisected, bisection) = finest.bisected.bisect(marked)?;
         let mut parents = bisection.parents;
         if D > 1 {
-            let halves = halves(finest.mesh(), bisected.mesh(), &bisection.ancestors, marked);
+            let halves = halves(&finest.mesh, bisected.mesh(), &bisection.ancestors, marked);
             let n = parents.len();
             let (again, bisection) = bisected.bisect(&halves)?;
             bisected = again;
@@ -158,11 +152,10 @@ impl<const D: usize> AdaptiveMeshes<D> {
     /// Adds a bisection of the finest mesh.
     pub(super) fn add(&self, step: MeshOfSequence<D>) -> Result<(), Error> {
         let finest = self.step(self.n_meshes() - 1);
-        finest.finer.set(Box::new(step)).map_err(|_| Error::Parameter {
-            parameter: "marked cells",
-            value: "of a mesh that was the finest".to_owned(),
-            allowed: "one thread adds meshes to a sequence".to_owned(),
-        })
+        let (value, allowed) =
+            ("of a mesh that was the finest", "one thread adds meshes to a sequence");
+        let added = finest.finer.set(Box::new(step));
+        added.map_err(|_| Error::parameter("marked cells", value, allowed))
     }
 
     /// Continues values at the vertices of the mesh before a position: new vertices have `middle` of the

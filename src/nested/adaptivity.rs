@@ -62,16 +62,14 @@ impl Adaptivity {
     /// # Errors
     /// [`Error::Parameter`].
     pub fn check(&self) -> Result<(), Error> {
-        let refuse = |parameter, value: f64, allowed: &str| {
-            let (value, allowed) = (format!("{value:?}"), allowed.to_owned());
-            Err(Error::Parameter { parameter, value, allowed })
-        };
         if !(self.theta > 0.0 && self.theta <= 1.0) {
-            return refuse("theta", self.theta, "the share of marked cells is in (0, 1]");
+            let allowed = "the share of marked cells is in (0, 1]";
+            return Err(Error::parameter("theta", format!("{:?}", self.theta), allowed));
         }
         match self.goal {
             Some(goal) if !(goal > 0.0 && goal.is_finite()) => {
-                refuse("goal", goal, "a bound is positive and finite")
+                let allowed = "a bound is positive and finite";
+                Err(Error::parameter("goal", format!("{goal:?}"), allowed))
             }
             _ => Ok(()),
         }

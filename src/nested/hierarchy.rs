@@ -192,18 +192,7 @@ impl<const D: usize> Hierarchy<D> {
         levels
     }
 
-    /// The fewest hierarchies that have all of these levels of a domain.
-    ///
-    /// # Errors
-    /// Those of [`Hierarchy::of_domain`].
-    pub(crate) fn all_of_domain(domain: &Domain<D>, levels: &[usize]) -> Result<Vec<Self>, Error> {
-        Self::all_by(levels, |level| Self::of_domain(domain, level))
-    }
-
     /// The fewest hierarchies that have all of these levels, each built by a function of its finest level.
-    ///
-    /// # Errors
-    /// Those of the function.
     pub(crate) fn all_by(
         levels: &[usize],
         build: impl Fn(usize) -> Result<Self, Error>,
@@ -218,9 +207,6 @@ impl<const D: usize> Hierarchy<D> {
     }
 
     /// As [`Hierarchy::of_domain`]; no mesh of a built-in domain but the last has a level less than `coarsest`.
-    ///
-    /// # Errors
-    /// Those of [`Hierarchy::of_domain`].
     pub(crate) fn of_domain_from(
         domain: &Domain<D>,
         level: usize,
@@ -238,9 +224,6 @@ impl<const D: usize> Hierarchy<D> {
 
     /// The parts of the hierarchy that ends with a level; its coarsest mesh has enough cells for each process. All
     /// processes call it.
-    ///
-    /// # Errors
-    /// Those of [`Hierarchy::of_domain`] and of [`Hierarchy::of_parts`].
     pub(crate) fn of_domain_in_parts(
         domain: &Domain<D>,
         level: usize,
@@ -265,14 +248,13 @@ pub(crate) fn check_level<const D: usize>(
     level: usize,
     parts: usize,
 ) -> Result<(), Error> {
-    let refuse = |parameter, value, allowed| Err(Error::Parameter { parameter, value, allowed });
     let is_mesh = domain.is_mesh();
     if !is_mesh {
         let domain = domain.bounding_box();
         let sides = domain.upper - domain.lower;
         if let Some(side) = sides.iter().find(|side| !(**side > 0.0 && side.is_finite())) {
-            let allowed = "positive and finite, the upper corner less the lower one".to_owned();
-            return refuse("side of the domain", side.to_string(), allowed);
+            let allowed = "positive and finite, the upper corner less the lower one";
+            return Err(Error::parameter("side of the domain", side, allowed));
         }
     }
     let cells = domain.cells(level) / parts as f64;
@@ -286,26 +268,26 @@ pub(crate) fn check_level<const D: usize>(
         let allowed = format!(
             "so many {kind} would make {cells:.1e} cells{place}, at most {limit:.1e} are possible"
         );
-        return refuse("level", level.to_string(), allowed);
+        return Err(Error::parameter("level", level, allowed));
     }
     // the constructor of an input mesh checks its cells
     if is_mesh {
         return Ok(());
     }
     if level == 0 {
-        let allowed = "a built-in mesh has at least one subdivision of its shortest side; refinements, from 0, are those of a mesh file".to_owned();
-        return refuse("level", "0".to_owned(), allowed);
+        let allowed = "a built-in mesh has at least one subdivision of its shortest side; refinements, from 0, are those of a mesh file";
+        return Err(Error::parameter("level", 0, allowed));
     }
     // squares and volumes of cells, and their reciprocals, must be in the range of floating-point numbers
     let power = D.max(2) as i32;
     let outside = |&h: &f64| !(h.powi(power).is_normal() && h.powi(-power).is_normal());
     match domain.spacings(level).into_iter().find(outside) {
         None => Ok(()),
-        Some(h) => refuse(
+        Some(h) => Err(Error::parameter(
             "spacing",
             format!("{h:.1e}"),
-            "one whose powers up to the dimension are floating-point numbers; choose another scale or level".to_owned(),
-        ),
+            "one whose powers up to the dimension are floating-point numbers; choose another scale or level",
+        )),
     }
 }
 
@@ -345,7 +327,8 @@ mod tests {
     fn levels_that_are_refinements_of_each_other_share_a_hierarchy() {
         let scene = scenes::radial::<2>(1.0);
         let levels = [8, 12, 16, 6, 7];
-        let hierarchies = Hierarchy::<2>::all_of_domain(&scene.domain, &levels).unwrap();
+        let build = |level| Hierarchy::of_domain(&scene.domain, level);
+        let hierarchies = Hierarchy::<2>::all_by(&levels, build).unwrap();
         let levels: Vec<Vec<usize>> =
             hierarchies.iter().map(|h| h.meshes.iter().map(|m| m.level).collect()).collect();
         assert_eq!(levels, [vec![4, 8, 16], vec![6, 12], vec![7]]);

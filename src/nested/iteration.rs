@@ -158,14 +158,18 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     }
     /// The position of the mesh of a level, if the meshes are nested and have it.
     pub(crate) fn position(&self, level: usize) -> Option<usize> {
-        match self.p1.meshes {
-            Meshes::Flat(_) | Meshes::Adaptive(_) => None,
-            Meshes::Nested(hierarchy) => hierarchy.position(level),
-        }
+        self.hierarchy()?.position(level)
     }
     /// A mesh, by its position.
     pub(crate) fn mesh(&self, position: usize) -> &'a Mesh<D> {
         self.p1.meshes.mesh(position)
+    }
+    /// The meshes, if they are uniform refinements.
+    pub(super) fn hierarchy(&self) -> Option<&'a Hierarchy<D>> {
+        match self.p1.meshes {
+            Meshes::Nested(hierarchy) => Some(hierarchy),
+            _ => None,
+        }
     }
     /// The meshes, if they are adaptive.
     pub(super) fn adaptive_meshes(&self) -> Option<&'a AdaptiveMeshes<D>> {
@@ -223,22 +227,13 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         )(self, position, scheme)
     }
 
-    /// The hierarchy that has the mesh, and its position there.
-    pub(super) fn hierarchy(&self, position: usize) -> Option<(&'a Hierarchy<D>, usize)> {
-        match self.p1.meshes {
-            Meshes::Flat(_) | Meshes::Adaptive(_) => None,
-            Meshes::Nested(hierarchy) => Some((hierarchy, position)),
-        }
-    }
-
     pub(super) fn check_position(&self, position: usize) -> Result<(), Error> {
         match self.p1.meshes.len() {
             n if position < n => Ok(()),
-            n => Err(Error::Parameter {
-                parameter: "position",
-                value: position.to_string(),
-                allowed: format!("there are {n} meshes, of which the coarsest has position 0"),
-            }),
+            n => {
+                let allowed = format!("there are {n} meshes, of which the coarsest has position 0");
+                Err(Error::parameter("position", position, allowed))
+            }
         }
     }
 }

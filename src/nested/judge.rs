@@ -42,20 +42,21 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         if values.len() != inequality.size() {
             let allowed =
                 format!("{} has {} unknowns on this mesh", scheme.name(), inequality.size());
-            let value = values.len().to_string();
-            return Err(Error::Parameter { parameter: "number of values", value, allowed });
+            return Err(Error::parameter("number of values", values.len(), allowed));
         }
         if let Some(k) = values.iter().position(|x| !(*x).is_finite()) {
             let value = format!("{} at position {k}, from zero", values[k]);
-            let allowed = "finite numbers".to_owned();
-            return Err(Error::Parameter { parameter: "values", value, allowed });
+            return Err(Error::parameter("values", value, "finite numbers"));
         }
         let contact = contact_of(inequality, values);
         let mut solution =
             Solution::new(values.to_vec(), contact, Outcome::Converged).linear_solver("none");
         solution.precision = self.p1.solver.precision();
-        let hierarchy = self.hierarchy(position);
-        let solved = Solved::new(system, solution, hierarchy);
-        Ok(solved.found_elsewhere())
+        let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
+        let mut solved = Solved::new(system, solution, hierarchy);
+        if solved.outcome() == Outcome::Stalled {
+            solved.solution.outcome = Outcome::NotASolution;
+        }
+        Ok(solved)
     }
 }

@@ -1,10 +1,9 @@
 //! The solve of one scheme on one mesh of a nested iteration: start, assembly, initial guess, solver.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use super::iteration::NestedIteration;
-use super::meshes::{Meshes, unknowns};
+use super::meshes::unknowns;
 use super::p1::P1Solution;
 use super::phase::Phase;
 use super::solved::Solved;
@@ -96,13 +95,13 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         if system.part().is_none() {
             warnings.extend(data_beyond_coefficients(system.discretisation(), &solution));
         }
-        let hierarchy = self.hierarchy(position);
+        let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
         let mut solved = Solved::new(system, solution, hierarchy);
         solved.warnings = warnings;
         solved.mesh_seconds = self.p1.meshes.seconds(position);
         (solved.solve_seconds, solved.sent_bytes) = (solve_seconds, sent);
         let is_p1 = scheme.is_conforming_linear(solved.mesh());
-        if is_p1 && self.is_adaptive() {
+        if is_p1 && self.adaptive_meshes().is_some() {
             // every step of an adaptive sequence is solved: the next one starts from here
             self.p1.keep_solved(position, start.as_deref(), &solved);
         }
@@ -130,16 +129,12 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         }
         let precision = self.p1.solver.precision();
         warnings.extend(rounding_of_data(inequality, precision));
-        if !self.is_adaptive() {
+        if self.adaptive_meshes().is_none() {
             let theory = discretisation.form().theory();
             let limit = theory.rounding_limit(precision.epsilon(), mesh.domain_diameter());
             warnings.extend(short_edges(mesh, (limit, precision)));
         }
         warnings
-    }
-
-    fn is_adaptive(&self) -> bool {
-        matches!(self.p1.meshes, Meshes::Adaptive(_))
     }
 
     /// The start: that of P1 for schemes with its unknowns, P1 on the same mesh for all other schemes.
@@ -168,14 +163,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         system: &System<'_, D>,
         guess: &InitialGuess<f64>,
     ) -> Result<(Solution<f64>, f64), Error> {
-        let mut seconds = f64::INFINITY;
-        let mut last = None;
-        for _ in 0..self.p1.repeat {
-            let clock = Instant::now();
-            last = Some(self.p1.solver.solve(system, guess)?);
-            seconds = seconds.min(clock.elapsed().as_secs_f64());
-        }
-        let Some(mut solution) = last else { unreachable!("at least one run") };
+        let (mut solution, seconds) = self.p1.repeated(|| self.p1.solver.solve(system, guess))?;
         if self.keeps_history {
             let guess = guess.clone().keeps_history(true);
             let again = self.p1.solver.solve(system, &guess)?;

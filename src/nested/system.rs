@@ -87,9 +87,6 @@ impl<'a, const D: usize> System<'a, D> {
     }
 
     /// The system of another scheme for another problem, in the same place; all parts call it.
-    ///
-    /// # Errors
-    /// Those of [`System::new`].
     pub(crate) fn beside<'p>(
         &self,
         scheme: &dyn Scheme<D>,
@@ -155,9 +152,6 @@ impl<'a, const D: usize> System<'a, D> {
         }
     }
     /// The squared errors of all parts, of those of this one.
-    ///
-    /// # Errors
-    /// Those of [`System::agreed`].
     pub(super) fn merged(&self, own: Result<SquaredErrors, Error>) -> Result<SquaredErrors, Error> {
         let own = self.agreed(own)?;
         match self.place.shared {

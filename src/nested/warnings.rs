@@ -94,13 +94,6 @@ pub(super) fn rounding_of_data(
     })
 }
 
-/// That contact forces are left out, in a precision of this name.
-fn no_digits_of_forces(precision: &str) -> String {
-    format!(
-        "rounding in {precision} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out"
-    )
-}
-
 /// The largest share of its load by which the contact forces on a body may differ from the load without a warning; in
 /// single precision the root of machine epsilon.
 const LARGEST_IMBALANCE: f64 = 1e-6;
@@ -116,7 +109,10 @@ pub(crate) fn warnings_of_forces<const D: usize>(
     }
     let precision = solved.solution().precision;
     let Some(forces) = forces else {
-        return vec![no_digits_of_forces(precision.name())];
+        return vec![format!(
+            "rounding in {} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out",
+            precision.name()
+        )];
     };
     let inequality = solved.inequality();
     let imbalance = |body: &Vec<(u32, f64)>| {

@@ -1,13 +1,7 @@
 //! A report as comma-separated values.
 
-use crate::study::row::Row;
 use serde::Serialize;
 use serde_json::Value;
-
-/// Rows as comma-separated values: see `Report::to_csv`.
-pub fn to_csv(rows: &[Row]) -> String {
-    lines(rows)
-}
 
 /// Values as comma-separated values, one object a line.
 pub(crate) fn lines<R: Serialize>(rows: &[R]) -> String {
@@ -53,7 +47,7 @@ fn all_keys(rows: &[Vec<(String, String)>]) -> Vec<&str> {
 const OF_NAMES: &str = "resultants";
 
 /// Keys and cells of a value, depth first; an object of names is one cell.
-pub(super) fn flatten(prefix: &str, value: &Value, columns: &mut Vec<(String, String)>) {
+fn flatten(prefix: &str, value: &Value, columns: &mut Vec<(String, String)>) {
     if let Value::Object(map) = value
         && prefix != OF_NAMES
     {

@@ -1,5 +1,6 @@
 //! A report as one page, without scripts and without a network: the comparison on the first screen, the rest below.
 
+use crate::input::escaped;
 use crate::table::{Cell, Table};
 
 /// A page.
@@ -54,26 +55,26 @@ tbody tr:nth-child(even){background:color-mix(in srgb,var(--line) 30%,transparen
 impl HtmlPage {
     /// The text of the page.
     pub fn to_html(&self) -> String {
-        let title = escape(&self.title);
+        let title = escaped(&self.title);
         let mut text = format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n\
              <style>\n{STYLE}</style>\n</head>\n<body>\n<section class=\"first\">\n<h1>{title}</h1>\n\
              <p class=\"lead\">{}</p>\n",
-            escape(&self.lead)
+            escaped(&self.lead)
         );
         text += &plots(&self.plots);
         self.summary.iter().for_each(|of| text += &table(of));
         text += "</section>\n";
         for section in &self.sections {
-            text += &format!("<section>\n<h2>{}</h2>\n", escape(&section.title));
+            text += &format!("<section>\n<h2>{}</h2>\n", escaped(&section.title));
             section.paragraphs.iter().for_each(|of| text += &paragraph("", of));
             section.tables.iter().for_each(|of| text += &table(of));
             text += &plots(&section.plots);
             if !section.pictures.is_empty() {
                 text += "<div class=\"pictures\">\n";
                 for (title, file) in &section.pictures {
-                    let (title, file) = (escape(title), escape(file));
+                    let (title, file) = (escaped(title), escaped(file));
                     text += &format!(
                         "<figure class=\"picture\"><img src=\"{file}\" alt=\"{title}\" loading=\"lazy\">\
                          <figcaption>{title}</figcaption></figure>\n"
@@ -93,7 +94,7 @@ impl HtmlPage {
 }
 
 fn paragraph(class: &str, text: &str) -> String {
-    format!("<p{class}>{}</p>\n", escape(text))
+    format!("<p{class}>{}</p>\n", escaped(text))
 }
 
 /// Drawings side by side.
@@ -104,7 +105,7 @@ fn plots(plots: &[(String, String)]) -> String {
     let mut text = "<div class=\"plots\">\n".to_owned();
     for (title, svg) in plots {
         let svg = svg[svg.find("<svg").expect("a drawing is an SVG file")..].trim_end();
-        let title = escape(title);
+        let title = escaped(title);
         text += &format!(
             "<figure class=\"plot\" role=\"img\" aria-label=\"{title}\">{svg}<figcaption>{title}</figcaption></figure>\n"
         );
@@ -117,16 +118,16 @@ fn table(table: &Table) -> String {
     let class = |k: usize| if table.is_left(k) { "w" } else { "n" };
     let mut text = format!(
         "<div class=\"scroll\" tabindex=\"0\"><table>\n<caption>{}</caption>\n<thead><tr>",
-        escape(&table.caption())
+        escaped(&table.caption())
     );
     for (k, name) in table.columns.iter().enumerate() {
-        text += &format!("<th scope=\"col\" class=\"{}\">{}</th>", class(k), escape(name));
+        text += &format!("<th scope=\"col\" class=\"{}\">{}</th>", class(k), escaped(name));
     }
     text += "</tr></thead>\n<tbody>\n";
     for row in &table.rows {
         text += "<tr>";
         for (k, cell) in row.iter().enumerate() {
-            let words = escape(&cell.plain());
+            let words = escaped(&cell.plain());
             text += &match cell {
                 Cell::Words(_) if k == 0 => format!("<th scope=\"row\">{words}</th>"),
                 Cell::Best(..) => format!("<td class=\"n best\">{words}</td>"),
@@ -138,10 +139,4 @@ fn table(table: &Table) -> String {
     text += "</tbody>\n</table></div>\n";
     table.remarks.iter().for_each(|remark| text += &paragraph(" class=\"remark\"", remark));
     text
-}
-
-/// A text with the markup characters of HTML escaped.
-fn escape(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;");
-    text.replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -24,7 +24,7 @@ impl Report {
     /// Lines are made from the same serialisation as the JSON report, so that the two agree in keys,
     /// order and digits. Without rows there are no keys, and the text is empty.
     pub fn to_csv(&self) -> String {
-        csv::to_csv(&self.rows)
+        csv::lines(&self.rows)
     }
 
     /// Removes the files of this report from a directory, where they are: those that [`Report::write`] and
@@ -68,18 +68,15 @@ impl Report {
         put("report.md", &self.to_markdown());
         put("report.tex", &latex_document(&[], &summaries(&self.rows)));
         #[cfg(feature = "plot")]
-        for (name, figure) in [
-            ("convergence.svg", convergence(&self.rows)),
-            ("work_precision.svg", work_precision(&self.rows)),
-        ] {
-            put(name, &figure.to_svg());
-        }
-        #[cfg(feature = "plot")]
-        for scene in distinct(self.rows.iter().map(|row| &*row.scene)) {
+        {
+            put("convergence.svg", &convergence(&self.rows).to_svg());
+            put("work_precision.svg", &work_precision(&self.rows).to_svg());
             let precision = Precision::by_name(&self.program.precision);
             let limit = precision.map(|precision| precision.certificate_limit());
-            if let Some(figure) = history_figure(&self.rows, scene, limit) {
-                put(&history_file(scene), &figure.to_svg());
+            for scene in distinct(self.rows.iter().map(|row| &*row.scene)) {
+                if let Some(figure) = history_figure(&self.rows, scene, limit) {
+                    put(&history_file(scene), &figure.to_svg());
+                }
             }
         }
         let page = self.page(directory);

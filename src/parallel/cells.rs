@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use super::{for_each_item, lock, map_groups, split};
 
 /// Number of items (cells or rows) in a chunk.
-pub(crate) const CHUNK: usize = 1024;
+const CHUNK: usize = 1024;
 
 /// Number of chunks of `n` items.
 pub(crate) fn n_chunks(n: usize) -> usize {

@@ -1,10 +1,10 @@
 //! A series of VTK files in one collection file of ParaView.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 use crate::files::replace_text;
+use crate::input::escaped;
 
 /// Writes a `.pvd` file that lists files of fields, each with its level where the format has a
 /// time, so that a slider goes from coarse to fine. Files in its own directory are named relative
@@ -19,30 +19,14 @@ pub fn write_pvd(path: &Path, series: &[(f64, PathBuf)]) -> Result<(), Error> {
     );
     let directory = path.parent().unwrap_or(Path::new(""));
     for (level, file) in series {
-        let name = file.strip_prefix(directory).unwrap_or(file).display().to_string();
-        // writing to a text does not fail
-        let _ = writeln!(
-            text,
-            "<DataSet timestep=\"{level}\" group=\"\" part=\"0\" file=\"{}\"/>",
-            escape(&name)
-        );
+        let name = relative_to(directory, file);
+        text += &format!("<DataSet timestep=\"{level}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
     }
     text += "</Collection>\n</VTKFile>\n";
     replace_text(path, &text).map(drop)
 }
 
-/// A text as the value of an attribute.
-pub(super) fn escape(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;");
-    text.replace('>', "&gt;").replace('"', "&quot;")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::escape;
-
-    #[test]
-    fn names_of_files_are_valid_in_attributes() {
-        assert_eq!(escape("a<b>\"c\"&d"), "a&lt;b&gt;&quot;c&quot;&amp;d");
-    }
+/// The name of a file as the value of an attribute, relative to a directory that it is in.
+pub(super) fn relative_to(directory: &Path, file: &Path) -> String {
+    escaped(&file.strip_prefix(directory).unwrap_or(file).display().to_string())
 }

@@ -12,10 +12,11 @@ use std::path::{Path, PathBuf};
 use super::encode::{Arrays, doubles, integers, singles};
 use super::grid::{Grid, values_per_cell};
 use super::groups::{array_names, members};
-use super::pvd::escape;
+use super::pvd::relative_to;
 use crate::arrays::map_entries;
 use crate::error::Error;
 use crate::files::{replace, replace_text};
+use crate::input::escaped;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryFacet, Mesh};
 use crate::real::Point;
@@ -30,9 +31,6 @@ pub enum FieldScalar {
     /// 64 bits: no digit is lost.
     Double,
 }
-
-/// A function of space.
-type Function<'a, const D: usize> = &'a (dyn Fn(&Point<D>) -> f64 + 'a);
 
 /// A function of space that may jump between cells: of the number of a cell and a point in it.
 type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<D>) -> f64 + 'a>;
@@ -97,7 +95,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         }
     }
     /// Adds a function of space as point data.
-    pub fn function(self, name: &'a str, f: Function<'a, D>) -> Self {
+    pub fn function(self, name: &'a str, f: &'a (dyn Fn(&Point<D>) -> f64 + 'a)) -> Self {
         self.function_in_cells(name, move |_, x| f(x))
     }
     /// Adds a function of cell and point as point data. Points that cells share have the value from one of
@@ -180,7 +178,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             FieldScalar::Double => "Float64",
         };
         let typed = |kind: &str, name: &str| {
-            format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escape(name))
+            format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escaped(name))
         };
         let array = |name: &str| typed(kind, name);
         let functions = self.functions.iter().map(|(name, _)| *name);
@@ -191,10 +189,8 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         let names = names.chain(self.groups().into_iter().map(|(name, _)| name));
         of_cells.extend(names.map(|name| typed("UInt8", &name)));
         let directory = path.parent().unwrap_or(Path::new(""));
-        let source = |part: &PathBuf| {
-            let name = part.strip_prefix(directory).unwrap_or(part).display().to_string();
-            format!("<Piece Source=\"{}\"/>\n", escape(&name))
-        };
+        let source =
+            |part: &PathBuf| format!("<Piece Source=\"{}\"/>\n", relative_to(directory, part));
         let sources: String = parts.iter().map(source).collect();
         let text = format!(
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" \
@@ -309,7 +305,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     fn push_field_data(&self, to: &mut Arrays) -> io::Result<()> {
         writeln!(to.text, "<FieldData>")?;
         for (name, value) in &self.numbers {
-            let name = escape(name);
+            let name = escaped(name);
             writeln!(
                 to.text,
                 "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" \
@@ -337,7 +333,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
         to.push("UInt8", "dimension", 1, &dimensions)?;
         for (name, group) in self.groups() {
-            to.push("UInt8", &escape(&name), 1, &members(self.mesh, group))?;
+            to.push("UInt8", &escaped(&name), 1, &members(self.mesh, group))?;
         }
         Ok(())
     }
@@ -362,6 +358,6 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             FieldScalar::Single => ("Float32", singles(values)),
             FieldScalar::Double => ("Float64", doubles(values)),
         };
-        to.push(kind, &escape(name), 1, &bytes)
+        to.push(kind, &escaped(name), 1, &bytes)
     }
 }

@@ -4,38 +4,14 @@ use super::figure::Figure;
 use super::series::{Curve, Orders, Panel, Point, Quantity, title, with_curves};
 use crate::study::series::Series;
 
-/// A measure of the cost of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Cost {
-    Seconds,
-    Unknowns,
-}
-
-impl Cost {
-    /// Name of the measure in names of files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Cost::Seconds => "time",
-            Cost::Unknowns => "unknowns",
-        }
-    }
-
-    fn quantity(self) -> Quantity {
-        match self {
-            Cost::Seconds => Quantity::Seconds,
-            Cost::Unknowns => Quantity::Unknowns,
-        }
-    }
-}
-
-/// The panels of a scene, one for each norm in which there are errors and one for bounds, below each other;
-/// energy only where it is not the H1 seminorm.
-pub(crate) fn cost_figure(scene: &str, series: &[Series<'_>], cost: Cost) -> Figure {
+/// The panels of a scene over seconds or unknowns, one for each norm in which there are errors and one for bounds,
+/// below each other; energy only where it is not the H1 seminorm.
+pub(crate) fn cost_figure(scene: &str, series: &[Series<'_>], cost: Quantity) -> Figure {
     let rows = || series.iter().flat_map(|of| of.rows.iter().copied());
     let panel = |y: Quantity| {
         let x = match (cost, y) {
-            (Cost::Seconds, Quantity::Bound) => Quantity::SecondsWithBound,
-            _ => cost.quantity(),
+            (Quantity::Seconds, Quantity::Bound) => Quantity::SecondsWithBound,
+            _ => cost,
         };
         let curves = series.iter().enumerate().map(|(key, of)| Curve {
             key,
@@ -43,7 +19,7 @@ pub(crate) fn cost_figure(scene: &str, series: &[Series<'_>], cost: Cost) -> Fig
         });
         // an order in the mesh size is that order over the dimension in the number of unknowns
         let dimension = rows().next().map(|r| r.dimension as u32);
-        let orders = match dimension.filter(|_| cost == Cost::Unknowns) {
+        let orders = match dimension.filter(|_| cost == Quantity::Unknowns) {
             None => Orders::default(),
             falls_over => Orders { falls_over, ..y.orders(rows()) },
         };

@@ -5,7 +5,7 @@ use super::panel::draw_panel;
 use super::pen::Pen;
 use super::series::{Panel, Quantity, with_curves};
 use crate::study::row::distinct;
-use crate::study::series::{names, series_of};
+use crate::study::series::series_of;
 use crate::study::{Row, Series};
 
 /// A drawing that can be written as SVG.
@@ -98,6 +98,11 @@ pub fn work_precision(rows: &[Row]) -> Figure {
     Figure { panels, keys: names, columns }
 }
 
+/// The names of series, each once: a scheme on several scenes has one.
+fn names(series: &[Series<'_>]) -> Vec<String> {
+    distinct(series.iter().map(|series| series.name.clone()))
+}
+
 /// The series of each scene, in the order in which scenes first occur.
 fn scenes<'s, 'r>(series: &'s [Series<'r>]) -> Vec<(&'s str, Vec<&'s Series<'r>>)> {
     let of = |scene| (scene, series.iter().filter(|s| s.variant.scene == scene).collect());
@@ -115,41 +120,22 @@ fn has_errors(series: &[&Series<'_>]) -> bool {
 }
 
 impl Figure {
-    /// Whether a run that is shown did not converge.
-    fn has_failures(&self) -> bool {
-        self.panels.iter().any(|p| p.curves.iter().any(|c| c.points.iter().any(|q| !q.converged)))
-    }
-
-    /// Whether a panel with curves shows orders, which theory promises or not.
-    fn has_orders(&self, are_promised: bool) -> bool {
-        let shows = |p: &Panel| p.has_curves() && !p.orders.orders.is_empty();
-        self.panels.iter().any(|p| shows(p) && p.orders.are_promised == are_promised)
-    }
-
-    /// Whether a panel shows limits.
-    fn has_limits(&self) -> bool {
-        self.panels.iter().any(|p| !p.limits.is_empty())
-    }
-
-    /// Whether a panel shows bands.
-    fn has_bands(&self) -> bool {
-        self.panels.iter().any(Panel::has_bands)
-    }
-
-    /// Positions of panels and legend.
-    pub(super) fn layout(&self) -> FigureLayout {
-        let mut signs = Vec::new();
-        signs.extend(self.has_failures().then_some(Sign::Failed));
-        signs.extend(self.has_orders(true).then_some(Sign::Promised));
-        signs.extend(self.has_orders(false).then_some(Sign::Compared));
-        signs.extend(self.has_limits().then_some(Sign::Limit));
-        signs.extend(self.has_bands().then_some(Sign::Band));
-        FigureLayout::new(self.panels.len(), self.columns, &self.keys, &signs)
+    /// The signs that panels show.
+    fn signs(&self) -> Vec<Sign> {
+        let has_orders = |p: &Panel| p.has_curves() && !p.orders.orders.is_empty();
+        let shows = |sign: &Sign, p: &Panel| match sign {
+            Sign::Failed => p.points().any(|point| !point.converged),
+            Sign::Promised => has_orders(p) && p.orders.are_promised,
+            Sign::Compared => has_orders(p) && !p.orders.are_promised,
+            Sign::Limit => !p.limits.is_empty(),
+            Sign::Band => p.has_bands(),
+        };
+        Sign::ALL.into_iter().filter(|sign| self.panels.iter().any(|p| shows(sign, p))).collect()
     }
 
     /// The figure as the text of an SVG file.
     pub fn to_svg(&self) -> String {
-        let layout = self.layout();
+        let layout = FigureLayout::new(self.panels.len(), self.columns, &self.keys, &self.signs());
         let mut pen = Pen::new(layout.size, false);
         for (panel, &at) in self.panels.iter().zip(&layout.panels) {
             draw_panel(&mut pen, panel, at);

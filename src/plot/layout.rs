@@ -27,6 +27,12 @@ pub(crate) enum Sign {
     Band,
 }
 
+impl Sign {
+    /// All, in the order of legends.
+    pub const ALL: [Self; 5] =
+        [Self::Failed, Self::Promised, Self::Compared, Self::Limit, Self::Band];
+}
+
 /// An entry of the legend.
 #[derive(Clone, Debug, PartialEq)]
 enum Entry {

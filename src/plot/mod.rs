@@ -16,9 +16,10 @@ mod slopes;
 mod style;
 mod sweep;
 
-pub(crate) use cost::{Cost, cost_figure};
+pub(crate) use cost::cost_figure;
 pub(crate) use figure::overview;
 pub use figure::{Figure, convergence, work_precision};
 pub(crate) use history::history_figure;
 pub use picture::Picture;
+pub(crate) use series::Quantity;
 pub(crate) use sweep::{SweepPoint, sweep_figure};

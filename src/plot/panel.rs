@@ -5,7 +5,7 @@ use super::layout::PANEL;
 use super::pen::{Align, Pen, ScreenPoint};
 use super::series::{Panel, Point};
 use super::slopes::Slopes;
-use super::style::{GRID, INK, draw_band, draw_failed, draw_limit, draw_mark, segment};
+use super::style::{GRID, INK, colour, draw_failed, draw_limit, draw_mark, segment};
 
 /// Room around the data for title, labels and ticks.
 const LEFT: f64 = 70.0;
@@ -192,7 +192,7 @@ fn draw_curves(pen: &mut Pen, frame: &Frame, origin: ScreenPoint) {
                 Some((ends[k].0, origin.1 + frame.depth(y).clamp(0.0, SIZE.1)))
             };
             if let (Some(left), Some(right)) = (bound(0), bound(1)) {
-                draw_band(pen, curve.key, [ends[0], ends[1]], [left, right]);
+                pen.fill_faintly(&[ends[0], ends[1], right, left], colour(curve.key));
             }
         }
     }

@@ -164,12 +164,12 @@ impl Pen {
                 escaped(exponent)
             ),
         };
-        self.push(&format!(
+        self.text += &format!(
             "<text x=\"{x}\" y=\"{y}\" dy=\"{:.0}\" font-size=\"{size:.0}\" text-anchor=\"{anchor}\" \
              fill=\"{colour}\"{turn}>{}{raised}</text>\n",
             0.35 * size,
             escaped(base)
-        ));
+        );
     }
 
     /// Adds a shape to the open path if that has its style, else to a new one. Steps are relative, the first one to
@@ -177,7 +177,7 @@ impl Pen {
     fn shape(&mut self, style: String, corners: &[ScreenPoint], is_closed: bool) {
         if self.open.as_ref().is_none_or(|path| path.style != style) {
             self.close_path();
-            self.push(&format!("<path {style} d=\""));
+            self.text += &format!("<path {style} d=\"");
             self.open = Some(OpenPath { style, end: None });
         }
         let Some(path) = &mut self.open else { return };
@@ -205,10 +205,6 @@ impl Pen {
         if self.open.take().is_some() {
             self.text += "\"/>\n";
         }
-    }
-
-    fn push(&mut self, text: &str) {
-        self.text += text;
     }
 }
 

@@ -65,16 +65,6 @@ pub(crate) fn segment(pen: &mut Pen, key: usize, from: ScreenPoint, to: ScreenPo
     pen.dashes(from, to, 1.4, colour(key), DASHES[key % DASHES.len()]);
 }
 
-/// The part of a band between two runs: from two errors, in their order, to the bounds on them.
-pub(crate) fn draw_band(
-    pen: &mut Pen,
-    key: usize,
-    errors: [ScreenPoint; 2],
-    bounds: [ScreenPoint; 2],
-) {
-    pen.fill_faintly(&[errors[0], errors[1], bounds[1], bounds[0]], colour(key));
-}
-
 /// The mark of a curve, `size` times its usual size.
 pub(crate) fn draw_mark(pen: &mut Pen, key: usize, at: ScreenPoint, size: f64) {
     let mark = &MARKS[key % MARKS.len()];

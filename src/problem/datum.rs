@@ -32,14 +32,6 @@ pub enum BoundaryFlux<const D: usize> {
 }
 
 impl<const D: usize> BoundaryFlux<D> {
-    /// The value of a constant.
-    #[cfg(feature = "problem-files")]
-    pub(crate) fn constant(&self) -> Option<f64> {
-        match self {
-            BoundaryFlux::Constant(c) => Some(*c),
-            BoundaryFlux::Function(_) | BoundaryFlux::Polynomial { .. } => None,
-        }
-    }
     /// The degree of a polynomial, where it is known.
     pub(crate) fn degree(&self) -> Option<usize> {
         match self {

@@ -16,23 +16,14 @@ pub struct ProblemFileError {
     pub path: PathBuf,
     /// Line and column in characters, from one, of what is wrong at one place of the file.
     pub place: Option<[usize; 2]>,
-    message: String,
+    pub(super) message: String,
     /// The error of the system, of the mesh file, or of the problem.
-    source: Option<Box<dyn Error + Send + Sync>>,
+    pub(super) source: Option<Box<dyn Error + Send + Sync>>,
 }
 
 debug_by_display!(ProblemFileError);
 
 impl ProblemFileError {
-    /// The error at a place of a file.
-    pub(super) fn at(
-        path: &Path,
-        place: [usize; 2],
-        kind: ProblemFileErrorKind,
-        message: String,
-    ) -> Self {
-        Self { kind, path: path.into(), place: Some(place), message, source: None }
-    }
     /// The error of a file that another error causes, which is its message.
     pub(super) fn of_file(
         path: &Path,
@@ -41,9 +32,6 @@ impl ProblemFileError {
     ) -> Self {
         let message = source.to_string();
         Self { kind, path: path.into(), place: None, message, source: Some(Box::new(source)) }
-    }
-    pub(super) fn caused_by(self, source: impl Error + Send + Sync + 'static) -> Self {
-        Self { source: Some(Box::new(source)), ..self }
     }
 }
 

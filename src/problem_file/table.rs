@@ -69,20 +69,20 @@ impl Formula {
                 of_facets.fold(f64::NAN, f64::max)
             }));
         }
-        let degree = expression.degree(D);
-        let value: Field<D> = Arc::new(move |x| expression.on_boundary(x, &normal));
-        match degree {
-            Some(degree) => Datum::Polynomial { value, degree },
-            None => Datum::Function(value),
-        }
+        self.datum_with(normal)
     }
     /// The formula as a datum: a constant, a polynomial, or a function of the point.
     pub fn datum<const D: usize>(&self) -> Datum<D> {
+        // no variable of the formula is a component of a normal
+        self.datum_with(Point::zeros())
+    }
+    /// The formula as a datum, with this normal where it contains one.
+    fn datum_with<const D: usize>(&self, normal: Point<D>) -> Datum<D> {
         match self.clone() {
             Self::Number(c) => Datum::Constant(c),
             Self::Expression(expression) => {
                 let degree = expression.degree(D);
-                let value: Field<D> = Arc::new(move |x| expression.value(x.as_slice()));
+                let value: Field<D> = Arc::new(move |x| expression.on_boundary(x, &normal));
                 match degree {
                     Some(degree) => Datum::Polynomial { value, degree },
                     None => Datum::Function(value),
@@ -130,7 +130,8 @@ impl<'t> Source<'t> {
         kind: ProblemFileErrorKind,
         message: String,
     ) -> ProblemFileError {
-        ProblemFileError::at(self.path, self.position(offset), kind, message)
+        let place = Some(self.position(offset));
+        ProblemFileError { kind, path: self.path.into(), place, message, source: None }
     }
 
     /// The error for a mesh file that is named at an offset in bytes, with its path once.
@@ -139,7 +140,8 @@ impl<'t> Source<'t> {
             GmshErrorKind::Unreadable => error.to_string(),
             _ => format!("mesh {}: {error}", mesh.display()),
         };
-        self.error(offset, ProblemFileErrorKind::Mesh, message).caused_by(error)
+        let at_name = self.error(offset, ProblemFileErrorKind::Mesh, message);
+        ProblemFileError { source: Some(Box::new(error)), ..at_name }
     }
 
     /// The error for a key that is missing in the table at an offset in bytes.

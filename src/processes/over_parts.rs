@@ -29,34 +29,29 @@ impl OverParts {
         self.numbering.first().last().copied().unwrap_or(0)
     }
 
-    /// Contact states, those of ghosts by their owners.
-    pub fn contact_of_owners(&self, contact: &[Contact]) -> Vec<Contact> {
-        let number = |&state: &Contact| match state {
+    /// Gives ghosts the contact states that their owners have.
+    pub fn update_contact(&self, contact: &mut [Contact]) {
+        let number = |state: Contact| match state {
             Contact::Inactive => 0.0,
             Contact::Lower => 1.0,
             Contact::Upper => 2.0,
         };
-        let mut states: Vec<f64> = contact.iter().map(number).collect();
-        (self as &dyn Distribution).update(&mut states);
-        let state = |&number: &f64| match number {
+        let state = |number: f64| match number {
             1.0 => Contact::Lower,
             2.0 => Contact::Upper,
             _ => Contact::Inactive,
         };
-        states.iter().map(state).collect()
-    }
-
-    /// Replaces numbers of this part by their sums or maxima over all parts; by NaN where messages fail.
-    fn join(&self, numbers: &mut [f64], joined: Joined) {
-        match joined(&*self.exchange, numbers) {
-            Ok(all) => numbers.copy_from_slice(&all),
-            Err(_) => numbers.fill(f64::NAN),
-        }
+        (self as &dyn Distribution).update_by(contact, number, state);
     }
 }
 
-/// A sum or maximum over parts.
-type Joined = fn(&dyn Exchange, &[f64]) -> Result<Vec<f64>, ExchangeError>;
+/// Replaces numbers of this part by their sums or maxima over all parts; by NaN where messages fail.
+fn replace(of_all: Result<Vec<f64>, ExchangeError>, numbers: &mut [f64]) {
+    match of_all {
+        Ok(of_all) => numbers.copy_from_slice(&of_all),
+        Err(_) => numbers.fill(f64::NAN),
+    }
+}
 
 impl Distribution for OverParts {
     fn owns(&self, unknown: usize) -> bool {
@@ -71,9 +66,9 @@ impl Distribution for OverParts {
         }
     }
     fn sum(&self, numbers: &mut [f64]) {
-        self.join(numbers, |exchange, numbers| exchange.sum(numbers));
+        replace(self.exchange.sum(numbers), numbers);
     }
     fn largest(&self, numbers: &mut [f64]) {
-        self.join(numbers, |exchange, numbers| exchange.largest(numbers));
+        replace(self.exchange.largest(numbers), numbers);
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use super::error::QuadratureError;
-use super::rule::Rule;
+use super::rule::{Rule, vertex_point};
 
 /// A family of quadrature rules on simplices: which rule integrates data of a given degree.
 ///
@@ -50,8 +50,7 @@ impl Quadrature for VertexRule {
         "vertices"
     }
     fn rule(&self, dimension: usize, _: usize) -> Result<Rule, QuadratureError> {
-        let vertex = |k: usize| std::array::from_fn(|i| f64::from(u8::from(i == k)));
         let n = dimension + 1;
-        Ok(Rule { points: (0..n).map(vertex).collect(), weights: vec![1.0 / n as f64; n] })
+        Ok(Rule { points: (0..n).map(vertex_point).collect(), weights: vec![1.0 / n as f64; n] })
     }
 }

@@ -15,5 +15,5 @@ pub use error::QuadratureError;
 pub use families::{ConicalProduct, Quadrature, VertexRule};
 pub(crate) use orthonormal::OrthonormalPolynomials;
 pub use rule::Rule;
-pub(crate) use rule::facet_to_cell;
+pub(crate) use rule::{facet_to_cell, vertex_point};
 pub use symmetric::FullySymmetric;

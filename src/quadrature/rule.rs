@@ -104,6 +104,13 @@ impl Rule {
     }
 }
 
+/// The barycentric coordinates of vertex `k` of a simplex.
+pub(crate) fn vertex_point(k: usize) -> [f64; 4] {
+    let mut point = [0.0; 4];
+    point[k] = 1.0;
+    point
+}
+
 /// The barycentric coordinates in a cell of a point of the facet opposite vertex `local`, from its
 /// barycentric coordinates in the facet.
 #[inline(always)]
@@ -113,20 +120,4 @@ pub(crate) fn facet_to_cell(facet_point: &[f64; 4], local: usize) -> [f64; 4] {
         std::cmp::Ordering::Equal => 0.0,
         std::cmp::Ordering::Greater => facet_point[k - 1],
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::facet_to_cell;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn points_of_a_facet_lie_on_it(local in 0_usize..4, b in prop::array::uniform3(0.0_f64..1.0)) {
-            let s = b.iter().sum::<f64>().max(1e-9);
-            let x = facet_to_cell(&[b[0] / s, b[1] / s, b[2] / s, 0.0], local);
-            prop_assert_eq!(x[local], 0.0);
-            prop_assert!((x.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-        }
-    }
 }

@@ -207,10 +207,8 @@ impl std::fmt::Debug for Entry {
     }
 }
 
-/// Scales whose squares and cubes neither overflow nor underflow.
-const SCALES: RangeInclusive<f64> = 1e-100..=1e100;
-/// Contrasts for which the solution neither overflows nor underflows.
-const CONTRASTS: RangeInclusive<f64> = 1e-100..=1e100;
+/// Scales whose squares and cubes neither overflow nor underflow, and contrasts for which the solution does not.
+const RATIOS: RangeInclusive<f64> = 1e-100..=1e100;
 
 impl Entry {
     /// A scene without parameters.
@@ -260,44 +258,22 @@ impl Entry {
     /// load that is not finite.
     pub fn make(&self, parameters: &Parameters) -> Result<AnyScene, Error> {
         let Parameters { scale, contrast, load } = *parameters;
-        self.check_parameter(
-            "scale",
-            self.accepts.scale,
-            scale,
-            "positive and finite, 1e-100 to 1e100",
-            |x| SCALES.contains(&x),
-        )?;
-        self.check_parameter(
-            "contrast",
-            self.accepts.contrast,
-            contrast,
-            "positive and finite, 1e-100 to 1e100",
-            |x| CONTRASTS.contains(&x),
-        )?;
-        self.check_parameter("load", self.accepts.load, load, "finite", f64::is_finite)?;
+        let ratio = ("positive and finite, 1e-100 to 1e100", RATIOS);
+        let finite = ("finite", f64::MIN..=f64::MAX);
+        for (parameter, accepted, value, (range, numbers)) in [
+            ("scale", self.accepts.scale, scale, ratio.clone()),
+            ("contrast", self.accepts.contrast, contrast, ratio),
+            ("load", self.accepts.load, load, finite),
+        ] {
+            let Some(value) = value else { continue };
+            let allowed = match accepted {
+                false => format!("scene {} takes no {parameter}", self.name),
+                true if numbers.contains(&value) => continue,
+                true => format!("must be {range}"),
+            };
+            let value = format!("{value:?}").trim_end_matches(".0").to_owned();
+            return Err(Error::Parameter { parameter, value, allowed });
+        }
         Ok((self.build)(parameters))
-    }
-
-    fn check_parameter(
-        &self,
-        parameter: &'static str,
-        accepted: bool,
-        value: Option<f64>,
-        range: &str,
-        is_in_range: impl Fn(f64) -> bool,
-    ) -> Result<(), Error> {
-        let Some(value) = value else { return Ok(()) };
-        let allowed = if !accepted {
-            format!("scene {} takes no {parameter}", self.name)
-        } else if !is_in_range(value) {
-            format!("must be {range}")
-        } else {
-            return Ok(());
-        };
-        Err(Error::Parameter {
-            parameter,
-            value: format!("{value:?}").trim_end_matches(".0").to_owned(),
-            allowed,
-        })
     }
 }

@@ -33,13 +33,16 @@ impl<const D: usize> DualNumber<D> {
     /// The harmonic `Re (s (x - c) + iy)^{3/2}` for the first coordinate `x` and the last one `y`;
     /// `s` is `facing`, 1 for a function that vanishes on `y = 0`, `x < c` and -1 for its mirror
     /// image.
+    ///
+    /// For holomorphic `F` the gradient of `Re F` is `(Re F', -Im F')`, and `F' = (3/2) z^(1/2)` stays
+    /// finite at the tip `z = 0`.
     pub fn three_halves(x: &Point<D>, c: f64, facing: f64) -> Self {
         let z = halfplane::point(facing * (x[0] - c), x[D - 1]);
-        let (value, [along, across]) = halfplane::three_halves(z);
+        let root = halfplane::square_root(z);
         let mut gradient = Point::zeros();
-        gradient[0] = facing * along;
-        gradient[D - 1] = across;
-        Self { value, gradient, laplacian: 0.0 }
+        gradient[0] = facing * (1.5 * root.re);
+        gradient[D - 1] = -1.5 * root.im;
+        Self { value: (z * root).re, gradient, laplacian: 0.0 }
     }
 }
 

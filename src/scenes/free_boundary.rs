@@ -44,6 +44,22 @@ pub(super) fn segment<const D: usize>(from: Point<D>, to: Point<D>, side: f64) -
     (0..=n as u32).map(|k| from + (to - from) * (f64::from(k) / n)).collect()
 }
 
+/// Points of the contact side of `(-1, 1)^(D-1) x (0, 1)` whose first coordinate is `c`: one in the plane, a segment in
+/// space.
+pub(super) fn transition_at<const D: usize>(c: f64) -> Vec<Point<D>> {
+    let end = |y: f64| {
+        Point::from_fn(|k, _| match k {
+            0 => c,
+            k if k + 1 == D => 0.0,
+            _ => y,
+        })
+    };
+    match D {
+        2 => vec![end(0.0)],
+        _ => segment(end(-1.0), end(1.0), 2.0),
+    }
+}
+
 /// Points of the circle of this radius around the origin in the plane where the last coordinate is
 /// zero, in a domain of this side.
 pub(super) fn circle(radius: f64, side: f64) -> Vec<Point<3>> {

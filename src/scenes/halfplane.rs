@@ -1,5 +1,4 @@
-//! Square root and power 3/2 in the closed upper half plane, where the contact boundary is the
-//! real axis.
+//! The square root in the closed upper half plane, where the contact boundary is the real axis.
 //!
 //! The principal branch is continuous up to the negative real axis from above and jumps just below
 //! it. Meshes put points on that axis, and rounding puts them at `-1e-17` or at `-0.0`, so every
@@ -24,13 +23,4 @@ pub(super) fn square_root(z: Complex<f64>) -> Complex<f64> {
     let larger = ((r + z.re.abs()) / 2.0).sqrt();
     let smaller = if larger == 0.0 { 0.0 } else { z.im / (2.0 * larger) };
     if z.re >= 0.0 { Complex::new(larger, smaller) } else { Complex::new(smaller, larger) }
-}
-
-/// `Re z^(3/2)`, harmonic, and its partial derivatives by `x` and `y`.
-///
-/// For holomorphic `F` the gradient of `Re F` is `(Re F', -Im F')`, and `F' = (3/2) z^(1/2)` stays
-/// finite at the tip `z = 0`.
-pub(super) fn three_halves(z: Complex<f64>) -> (f64, [f64; 2]) {
-    let root = square_root(z);
-    ((z * root).re, [1.5 * root.re, -1.5 * root.im])
 }

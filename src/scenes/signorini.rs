@@ -51,20 +51,9 @@ pub fn signorini_line_3d() -> Scene<3> {
 /// that a change of contact generically admits.
 fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> Scene<D> {
     let solution = move |x: &Point<D>| DualNumber::bubble(x) * DualNumber::three_halves(x, c, 1.0);
-    let end = |y: f64| {
-        Point::from_fn(|k, _| match k {
-            0 => c,
-            k if k + 1 == D => 0.0,
-            _ => y,
-        })
-    };
-    let transition = match D {
-        2 => vec![end(0.0)],
-        _ => free_boundary::segment(end(-1.0), end(1.0), 2.0),
-    };
     let exact = Exact::new(move |x| solution(x).value, move |x| solution(x).gradient)
         .with_multiplier(move |x| 1.5 * DualNumber::bubble(x).value * (c - x[0]).max(0.0).sqrt())
-        .with_contact(move |x| c - x[0], transition);
+        .with_contact(move |x| c - x[0], free_boundary::transition_at(c));
     Scene {
         name: name.into(),
         summary,

@@ -1,7 +1,8 @@
 //! The generic singularity of a Signorini problem, without load.
 
+use super::dual_number::DualNumber;
+use super::free_boundary;
 use super::scene::Scene;
-use super::{free_boundary, halfplane};
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -20,23 +21,10 @@ use crate::scheme::Regularity;
 /// gradient are continuous up to the tip, where both vanish. *Regularity*: `H^s` for `s < 5/2`.
 pub fn signorini_harmonic<const D: usize>() -> Scene<D> {
     const { assert!(D == 2 || D == 3, "a contact boundary needs two or three dimensions") };
-    let power = |x: &Point<D>| halfplane::three_halves(halfplane::point(x[0], x[D - 1]));
-    let gradient = move |x: &Point<D>| {
-        let (_, [along, across]) = power(x);
-        let mut gradient = Point::zeros();
-        gradient[0] = along;
-        gradient[D - 1] = across;
-        gradient
-    };
-    let transition = if D == 2 {
-        vec![Point::zeros()]
-    } else {
-        let end = |y: f64| Point::from_fn(|k, _| if k == 1 { y } else { 0.0 });
-        free_boundary::segment(end(-1.0), end(1.0), 2.0)
-    };
-    let exact = Exact::new(move |x| power(x).0, gradient)
+    let power = |x: &Point<D>| DualNumber::three_halves(x, 0.0, 1.0);
+    let exact = Exact::new(move |x| power(x).value, move |x| power(x).gradient)
         .with_multiplier(|x| 1.5 * (-x[0]).max(0.0).sqrt())
-        .with_contact(|x| -x[0], transition);
+        .with_contact(|x| -x[0], free_boundary::transition_at(0.0));
     Scene {
         name: format!("signorini-harmonic-{D}d"),
         summary: "Signorini without load, the harmonic function r^(3/2) cos(3 theta/2)",

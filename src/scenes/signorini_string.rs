@@ -46,13 +46,7 @@ pub fn signorini_open_1d() -> Scene<1> {
     let exact = Exact::new(|x| x[0] - x[0] * x[0] / 2.0, |x| Point::<1>::new(1.0 - x[0]))
         .with_multiplier(|_| 0.0)
         .with_contact(|_| -1.0, Vec::new());
-    supported(
-        "signorini-open-1d",
-        "a string lifted off its support",
-        1.0,
-        exact,
-        Regularity::smooth(),
-    )
+    supported("signorini-open-1d", "a string lifted off its support", 1.0, exact)
 }
 
 /// A string on `(0, 1)`, fixed at 0 and pressed onto the support at 1 by the load `f = -1`.
@@ -62,36 +56,18 @@ pub fn signorini_closed_1d() -> Scene<1> {
     let exact = Exact::new(|x| -x[0] * (1.0 - x[0]) / 2.0, |x| Point::<1>::new(x[0] - 0.5))
         .with_multiplier(|_| 0.5)
         .with_contact(|_| 1.0, Vec::new());
-    supported(
-        "signorini-closed-1d",
-        "a string pressed onto its support",
-        -1.0,
-        exact,
-        Regularity::smooth(),
-    )
+    supported("signorini-closed-1d", "a string pressed onto its support", -1.0, exact)
 }
 
 /// A string on `(0, 1)`, fixed at 0, without load: `u = 0`, in contact at 1 without pressure.
 pub fn signorini_grazing_1d() -> Scene<1> {
     let exact = Exact::new(|_| 0.0, |_| Point::zeros()).with_multiplier(|_| 0.0);
-    let regularity = Regularity::smooth().not_strictly_complementary();
-    supported(
-        "signorini-grazing-1d",
-        "a string that touches without pressure",
-        0.0,
-        exact,
-        regularity,
-    )
+    supported("signorini-grazing-1d", "a string that touches without pressure", 0.0, exact)
+        .regularity(Regularity::smooth().not_strictly_complementary())
 }
 
-/// A string on `(0, 1)`, fixed at 0, under a constant load, with zero gap at 1.
-fn supported(
-    name: &str,
-    summary: &'static str,
-    load: f64,
-    exact: Exact<1>,
-    regularity: Regularity,
-) -> Scene<1> {
+/// A string on `(0, 1)`, fixed at 0, under a constant load, with zero gap at 1; its solution is smooth.
+fn supported(name: &str, summary: &'static str, load: f64, exact: Exact<1>) -> Scene<1> {
     Scene {
         name: name.into(),
         summary,
@@ -104,6 +80,6 @@ fn supported(
             .obstacles_of_degree(0)
             .solved_by(exact)
             .polynomial_data(0),
-        regularity,
+        regularity: Regularity::smooth(),
     }
 }

@@ -65,7 +65,7 @@ impl<const D: usize> dyn Scheme<D> + '_ {
         self.element().layout()
     }
     /// The nodes of its element, in the basis that a constraint set needs.
-    pub fn nodes_for(&self, set: &dyn ConstraintSet) -> Vec<Node> {
+    fn nodes_for(&self, set: &dyn ConstraintSet) -> Vec<Node> {
         in_basis_of(set, self.element()).nodes()
     }
     /// The scheme applied to a problem on a mesh.
@@ -178,7 +178,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     ///
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
-    /// [`Error::Parameter`] for a penalty factor that makes no penalty.
+    /// [`Error::Parameter`] for a penalty factor that makes no penalty, and for a matrix with too many entries.
     pub fn new(
         scheme: &dyn Scheme<D>,
         problem: &'a Problem<D>,

@@ -61,7 +61,7 @@ impl Choice {
     /// The scheme.
     pub fn make<const D: usize>(&self) -> Box<dyn Scheme<D>> {
         match self.ignores_coefficient {
-            true => Box::new(UnweightedWopsip::default()),
+            true => Box::new(UnweightedWopsip),
             false => self.name.make(),
         }
     }

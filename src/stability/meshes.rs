@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use crate::error::Error;
+use crate::kit::meshes::tagged;
 use crate::mesh::{BoundaryCondition, BoxDomain, Mesh, TaggedFacet};
 use crate::real::Point;
 
@@ -12,27 +13,13 @@ pub(crate) fn stretched(n: usize, ratio: usize) -> Result<Mesh<2>, Error> {
     Ok(Mesh::kuhn_box(&square, [n, n * ratio])?)
 }
 
-/// A mesh with every vertex moved; boundary facets keep their conditions.
-pub(crate) fn moved<const D: usize>(
-    mesh: &Mesh<D>,
-    to: impl Fn(&Point<D>) -> Point<D>,
-) -> Result<Mesh<D>, Error> {
-    let tagged = |f: &crate::mesh::BoundaryFacet| {
-        let mut vertices = [0; D];
-        let around = mesh.facet_vertices(f.cell as usize, f.local as usize);
-        vertices.iter_mut().zip(around).for_each(|(place, v)| *place = v);
-        TaggedFacet { vertices, condition: f.condition }
-    };
-    let boundary: Vec<TaggedFacet<D>> = mesh.boundary().iter().map(tagged).collect();
-    let vertices = mesh.vertices().iter().map(to).collect();
-    Ok(Mesh::new(vertices, mesh.cells().to_vec(), &boundary)?)
-}
-
 /// `(-1, 1) x (0, 1)` in `n` squares for each unit, graded to the origin by `t^power`; contact
 /// below.
 pub(crate) fn graded(n: usize, power: i32) -> Result<Mesh<2>, Error> {
     let mesh = Mesh::kuhn_box(&BoxDomain::above_contact(), [2 * n, n])?;
-    moved(&mesh, |x| x.map(|t| t.signum() * t.abs().powi(power)))
+    let moved = |x: &Point<2>| x.map(|t| t.signum() * t.abs().powi(power));
+    let vertices = mesh.vertices().iter().map(moved).collect();
+    Ok(Mesh::new(vertices, mesh.cells().to_vec(), &tagged(&mesh, |v| v))?)
 }
 
 /// A mesh of tetrahedra with Dirichlet data on the whole boundary.

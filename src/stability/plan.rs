@@ -45,13 +45,9 @@ pub(crate) struct Plan<'p> {
 }
 
 impl<'p> Plan<'p> {
-    /// Whether all sweeps run.
-    pub fn is_full(&self) -> bool {
-        self.effort == Effort::Full
-    }
     /// One of two, by effort.
     pub fn pick<T>(&self, quick: T, full: T) -> T {
-        if self.is_full() { full } else { quick }
+        if self.effort == Effort::Full { full } else { quick }
     }
     /// One of three, by effort.
     pub fn pick_of<T>(&self, trial: T, quick: T, full: T) -> T {

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::choice::Choice;
-use super::row_builder::{of, quotient};
+use super::criterion::Criterion;
+use super::plan::Sink;
+use super::row_builder::{RowBuilder, of, quotient};
 use crate::algebra::{Inequality, SparseMatrix};
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
@@ -40,6 +42,35 @@ pub(crate) fn rows<const D: usize>(
     levels: &[usize],
 ) -> Result<Vec<Row>, Error> {
     Ok(study(Precision::Double, scene, choice).levels(levels.iter().copied()).run()?.rows)
+}
+
+/// A norm of the error by name. The limit of its order is the one of the criterion at the same place.
+pub(crate) type Norm = (&'static str, fn(&Row) -> Option<f64>);
+
+pub(crate) const L2: Norm = ("L2", |r| r.error.l2);
+pub(crate) const H1: Norm = ("H1", |r| r.error.h1);
+
+/// A row for the order in each norm, fitted over levels.
+pub(crate) fn fit<const D: usize>(
+    criterion: &'static Criterion,
+    scene: &Scene<D>,
+    choice: &Choice,
+    levels: &[usize],
+    norms: &[Norm],
+    sink: Sink<'_>,
+) -> Result<(), Error> {
+    let rows = rows(scene, choice, levels)?;
+    for (number, (norm, error)) in norms.iter().enumerate() {
+        let claim = RowBuilder::new(criterion, choice);
+        let claim = match criterion.limits.get(number) {
+            // a re-entrant corner limits the orders whatever the contact
+            Some(_) if scene.name != "lshape-2d" => claim.limit(number),
+            _ => claim.judged_if(false),
+        };
+        let claim = claim.on(&scene.name).quantity(&format!("order in {norm}, fitted"));
+        sink(claim.fitted(&rows, error));
+    }
+    Ok(())
 }
 
 /// The row of a scheme on one level of a scene, solved in a precision.

@@ -6,10 +6,6 @@ use super::row::{StabilityRow, Verdict, factor_in_words, short};
 use crate::study::row::distinct;
 use crate::table::{Cell, Table};
 
-fn count<'r>(rows: impl Iterator<Item = &'r StabilityRow>, verdict: Verdict) -> usize {
-    rows.filter(|row| row.verdict == verdict).count()
-}
-
 /// The heads of a table with a column for each verdict.
 fn heads(before: &str, after: &str) -> String {
     format!("{before},{}{after}", Verdict::ALL.map(Verdict::name).join(","))
@@ -17,7 +13,8 @@ fn heads(before: &str, after: &str) -> String {
 
 /// The number of rows for each verdict.
 fn counts<'r>(rows: impl Iterator<Item = &'r StabilityRow> + Clone) -> [Cell; 6] {
-    Verdict::ALL.map(|verdict| Cell::whole(Some(count(rows.clone(), verdict))))
+    let count = |verdict| rows.clone().filter(|row| row.verdict == verdict).count();
+    Verdict::ALL.map(|verdict| Cell::whole(Some(count(verdict))))
 }
 
 /// Verdicts of every scheme with its choices; all values of a factor that is swept are one line.

@@ -9,8 +9,7 @@ use crate::scheme::{Scheme, Wopsip};
 
 /// WOPSIP with the penalty `eta / h_F^3` for every coefficient, for comparison with the default:
 /// the scheme fails for coefficients that are not of size one.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct UnweightedWopsip(pub Wopsip);
+pub(crate) struct UnweightedWopsip;
 
 /// The form of [`UnweightedWopsip`].
 struct UnweightedPenalty<const D: usize>(Box<dyn FacetForm<D>>);
@@ -41,7 +40,7 @@ impl<const D: usize> Scheme<D> for UnweightedWopsip {
         Arc::new(Broken(P1))
     }
     fn form(&self, mesh: &Mesh<D>) -> Box<dyn FacetForm<D>> {
-        Box::new(UnweightedPenalty(self.0.form(mesh)))
+        Box::new(UnweightedPenalty(Wopsip::default().form(mesh)))
     }
     fn is_consistent(&self) -> bool {
         false

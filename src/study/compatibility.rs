@@ -51,6 +51,12 @@ fn check_data<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Result<(), Er
     })
 }
 
+/// The coarsest mesh of the unit cube, on which schemes are asked what they are on all meshes.
+pub(super) fn cube<const D: usize>() -> Result<Mesh<D>, Error> {
+    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    Ok(Mesh::kuhn_box(&cube, [1; D])?)
+}
+
 /// Checks that an element can impose the inequality of a problem and that the facet form is made for the
 /// element, on a cube and without evaluation of data.
 ///
@@ -69,9 +75,7 @@ pub(super) fn check_scheme<const D: usize>(
         }
     }
     let problem = Problem { coefficient: Given::default(), ..problem.in_group(&[], &[]) };
-    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<D>::kuhn_box(&cube, [1; D])?;
-    match scheme.discretise(&problem, &mesh, quadrature) {
+    match scheme.discretise(&problem, &cube()?, quadrature) {
         Err(
             why @ (Error::NothingToBound { .. }
             | Error::UnsupportedForm { .. }
@@ -91,9 +95,7 @@ pub(super) fn check_entries<const D: usize>(
     level: usize,
     cells: f64,
 ) -> Result<(), Error> {
-    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<D>::kuhn_box(&cube, [1; D])?;
-    let entries = entries_at_most(cells, &*scheme.element(), &*scheme.form(&mesh));
+    let entries = entries_at_most(cells, &*scheme.element(), &*scheme.form(&cube()?));
     if entries <= MOST_ENTRIES {
         return Ok(());
     }

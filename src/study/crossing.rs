@@ -5,12 +5,13 @@ use std::ops::Range;
 use crate::assemble::DataQuadrature;
 use crate::assemble::cut_simplices::in_space;
 use crate::error::Error;
-use crate::mesh::{BoundaryCondition, BoxDomain, Edges, Mesh, describe_point, edge_vertices};
+use crate::mesh::{BoundaryCondition, Edges, Mesh, describe_point, edge_vertices};
 use crate::parallel::cells;
 use crate::problem::{DataOnMesh, Datum, Problem};
 use crate::quadrature::facet_to_cell;
 use crate::real::Point;
 use crate::scheme::Scheme;
+use crate::study::compatibility::cube;
 
 /// Bounds cross if they do so by more than this share of the largest of them: less is rounding in the data.
 const RELATIVE_SLACK: f64 = 1e-9;
@@ -87,8 +88,7 @@ impl Points {
         without_data: &Problem<D>,
         quadrature: DataQuadrature,
     ) -> Result<(), Error> {
-        let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let mesh = Mesh::<D>::kuhn_box(&cube, [1; D])?;
+        let mesh = cube()?;
         let Ok(of) = scheme.discretise(without_data, &mesh, quadrature) else { return Ok(()) };
         let nodes = of.space.nodes.iter().map(|node| node.centre(D));
         let points = nodes.chain(of.space.cell_rule.points.iter().copied());
@@ -141,11 +141,6 @@ struct OnMesh<'m, 'd, const D: usize> {
 }
 
 impl<const D: usize> OnMesh<'_, '_, D> {
-    /// The value of a datum at a point of a cell.
-    fn at(&self, datum: &Datum<D>, cell: usize, x: &Point<D>) -> f64 {
-        datum.in_cell(self.mesh, cell, x)
-    }
-
     /// Compares the obstacles of a cell.
     fn compare_in(&self, cell: usize, points: &[[f64; 4]], seen: &mut Seen<D>) {
         let region = self.mesh.region(cell);
@@ -156,7 +151,7 @@ impl<const D: usize> OnMesh<'_, '_, D> {
         let corners = self.mesh.corners(cell);
         for point in nodes_of_cell::<D>().chain(points.iter().copied()) {
             let x = in_space(&point, &corners);
-            let [lower, upper] = [lower, upper].map(|psi| self.at(psi, cell, &x));
+            let [lower, upper] = [lower, upper].map(|psi| psi.in_cell(self.mesh, cell, &x));
             seen.compare(Crossing { cell, x, lower, upper });
         }
     }
@@ -174,7 +169,7 @@ impl<const D: usize> OnMesh<'_, '_, D> {
         let corners = self.mesh.corners(cell);
         for point in points {
             let x = in_space(&facet_to_cell(point, local), &corners);
-            let [lower, upper] = [gap, upper].map(|bound| self.at(bound, cell, &x));
+            let [lower, upper] = [gap, upper].map(|bound| bound.in_cell(self.mesh, cell, &x));
             seen.compare(Crossing { cell, x, lower, upper });
         }
     }
@@ -207,7 +202,7 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             let corners = self.mesh.corners(cell);
             for (k, point) in nodes_of_cell::<D>().enumerate() {
                 let x = in_space(&point, &corners);
-                let at = |psi: &Datum<D>| self.at(psi, cell, &x);
+                let at = |psi: &Datum<D>| psi.in_cell(self.mesh, cell, &x);
                 add(cell, k, lower.map(at), upper.map(at));
             }
         }
@@ -217,7 +212,8 @@ impl<const D: usize> OnMesh<'_, '_, D> {
             let corners = self.mesh.corners(cell);
             let on_facet = nodes_of_cell::<D>().enumerate().filter(|(_, p)| p[local] == 0.0);
             for (k, point) in on_facet {
-                add(cell, k, Some(self.at(gap, cell, &in_space(&point, &corners))), None);
+                let x = in_space(&point, &corners);
+                add(cell, k, Some(gap.in_cell(self.mesh, cell, &x)), None);
             }
         }
         for cell in 0..self.mesh.n_cells() {

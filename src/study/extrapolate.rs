@@ -24,12 +24,9 @@ const EQUAL: f64 = 1e-9;
 /// set, say, that grows by whole cells. Their extrapolation would lie far from all three.
 const ORDERS: [f64; 2] = [0.5, 12.0];
 
-/// The limit of three figures, coarsest mesh first, whose error is `C h^p`: Richardson extrapolation with
-/// the order that the figures themselves show (for halved mesh sizes the formula of Aitken). None where the
-/// figures do not tend to a limit like a power of the mesh size: where the differences change their sign or
-/// do not fall.
-#[must_use]
-pub fn limit(figures: [f64; 3], mesh_sizes: [f64; 3]) -> Option<Limit> {
+/// The limit of three figures as [`Report::extrapolated`](crate::study::Report::extrapolated) has it; for halved mesh
+/// sizes the formula of Aitken.
+fn limit(figures: [f64; 3], mesh_sizes: [f64; 3]) -> Option<Limit> {
     let ([a, b, c], [h, k, l]) = (figures, mesh_sizes);
     let is_refined = h > k && k > l && l > 0.0;
     if !is_refined || ![a, b, c].iter().all(|x| x.is_finite()) {
@@ -75,11 +72,8 @@ pub struct Extrapolated {
     pub resultant: Option<Limit>,
 }
 
-/// The limits of energy, contact measure and resultant of every series with at least three converged levels, from the
-/// three finest of them. Figures that are all rounding have no limit. Adaptive meshes have none either, because their
-/// sizes are not those of one family.
-#[must_use]
-pub fn extrapolate<R: Borrow<Row>>(rows: &[R]) -> Vec<Extrapolated> {
+/// The limits of [`Report::extrapolated`](crate::study::Report::extrapolated); figures that are all rounding have none.
+pub(crate) fn extrapolate<R: Borrow<Row>>(rows: &[R]) -> Vec<Extrapolated> {
     let of_series = |series: Series<'_>| {
         let levels: Vec<&Row> = series.rows.iter().copied().filter(|r| r.converged()).collect();
         let three: &[&Row; 3] = levels.last_chunk()?;

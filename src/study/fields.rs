@@ -37,9 +37,8 @@ impl FieldFiles {
         self.path(of, level, levels).is_some_and(|path| !path.exists())
     }
 
-    /// Writes the fields of a solution if its level is wanted: `SCENE-LABEL.vtu` for the finest of the
-    /// levels; with all levels also `SCENE-LABEL-LEVEL.vtu` for the others and `SCENE-LABEL.pvd`, which
-    /// lists the files that are there. Where there is a reference the error is the difference from it.
+    /// Writes the fields of a solution if its level is wanted; with all levels also `SCENE-LABEL.pvd`, which lists the
+    /// files that are there. Where there is a reference the error is the difference from it.
     pub fn write<const D: usize>(
         &self,
         (scene, label): (&str, &str),
@@ -66,7 +65,6 @@ impl FieldFiles {
         let files = done.into_iter().filter_map(|level| Some((level as f64, path(level)?)));
         let series: Vec<(f64, PathBuf)> = files.filter(|(_, path)| path.exists()).collect();
         let stem = file_name(&format!("{scene}-{label}"));
-        let list = directory.join(format!("{stem}.pvd"));
-        replace(&list, |draft| write_pvd(draft, &series)).map(|_| ())
+        write_pvd(&directory.join(format!("{stem}.pvd")), &series)
     }
 }

@@ -3,8 +3,6 @@
 use std::borrow::Borrow;
 
 use super::row::Row;
-#[cfg(feature = "plot")]
-use super::row::distinct;
 
 /// The meshes of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,19 +68,6 @@ impl Variant {
         let linear_asked = row.linear_asked.clone();
         Self { scene, label, solver, linear_asked, meshes: Meshes::of(row) }
     }
-    /// Whether a row is of this variant.
-    pub(super) fn has(&self, row: &Row) -> bool {
-        self.scene == row.scene
-            && self.label == row.label
-            && self.solver == row.solver
-            && self.linear_asked == row.linear_asked
-            && self.meshes == Meshes::of(row)
-    }
-    /// Whether the other one is the same, perhaps on another scene.
-    #[cfg(feature = "report")]
-    pub(crate) fn differs_in_scene_only(&self, other: &Self) -> bool {
-        Self { scene: other.scene.clone(), ..self.clone() } == *other
-    }
     /// The name of the variant among others of a report: its label, and what else varies in the report.
     pub fn name_among<'v>(&self, all: impl IntoIterator<Item = &'v Variant> + Clone) -> String {
         let varies = |differs: fn(&Variant, &Variant) -> bool| {
@@ -124,12 +109,10 @@ pub struct Series<'r> {
 pub(crate) fn series_of<R: Borrow<Row>>(rows: &[R]) -> Vec<Series<'_>> {
     let mut all: Vec<Series<'_>> = Vec::new();
     for row in rows.iter().map(R::borrow) {
-        match all.iter_mut().find(|series| series.variant.has(row)) {
+        let variant = Variant::of(row);
+        match all.iter_mut().find(|series| series.variant == variant) {
             Some(series) => series.rows.push(row),
-            None => {
-                let variant = Variant::of(row);
-                all.push(Series { variant, name: String::new(), rows: vec![row] });
-            }
+            None => all.push(Series { variant, name: String::new(), rows: vec![row] }),
         }
     }
     for k in 0..all.len() {
@@ -137,10 +120,4 @@ pub(crate) fn series_of<R: Borrow<Row>>(rows: &[R]) -> Vec<Series<'_>> {
         all[k].name = all[k].variant.name_among(all.iter().map(|series| &series.variant));
     }
     all
-}
-
-/// The names of series, each once: a scheme on several scenes has one.
-#[cfg(feature = "plot")]
-pub(crate) fn names(series: &[Series<'_>]) -> Vec<String> {
-    distinct(series.iter().map(|series| series.name.clone()))
 }

@@ -13,7 +13,7 @@ use crate::output::csv;
 use crate::output::document::Document;
 use crate::output::html::{HtmlPage, Section};
 #[cfg(feature = "plot")]
-use crate::plot::{Cost, Figure, cost_figure};
+use crate::plot::{Figure, Quantity, cost_figure};
 use crate::study::Report;
 use crate::study::row::distinct;
 use crate::table::Table;
@@ -118,8 +118,8 @@ impl<'r> WorkPrecision<'r> {
         let all = self.report.series();
         let of_scene = |scene: &str| {
             let series: Vec<_> = all.iter().filter(|s| s.variant.scene == scene).cloned().collect();
-            let file = |cost: Cost| format!("{scene}-{}", cost.name());
-            [Cost::Seconds, Cost::Unknowns].map(|of| (file(of), cost_figure(scene, &series, of)))
+            [("time", Quantity::Seconds), ("unknowns", Quantity::Unknowns)]
+                .map(|(name, of)| (format!("{scene}-{name}"), cost_figure(scene, &series, of)))
         };
         self.scenes().into_iter().flat_map(of_scene).collect()
     }

@@ -19,7 +19,7 @@ const MARKS: &str = "> t: not reached by the finest level, which takes t; < t: u
 
 /// Costs and times to reach errors, scene by scene: the summary of a report.
 pub(crate) fn summary(all: &[Row], reach: &[WorkAtError]) -> Vec<Table> {
-    let variants = variants(all);
+    let variants: Vec<Variant> = series_of(all).into_iter().map(|series| series.variant).collect();
     let mut tables = Vec::new();
     for scene in distinct(all.iter().map(|row| row.scene.as_str())) {
         tables.extend(costs(scene, &at_common_error(reach, scene), &variants));
@@ -44,11 +44,6 @@ pub(crate) fn details(all: &[Row]) -> Vec<Table> {
     let of_scene =
         |scene: &str| phases(scene, series.iter().filter(|of| of.variant.scene == scene).collect());
     scenes.into_iter().map(of_scene).collect()
-}
-
-/// The variants of rows, in the order in which they first occur.
-fn variants(rows: &[Row]) -> Vec<Variant> {
-    series_of(rows).into_iter().map(|series| series.variant).collect()
 }
 
 /// The remark that explains the column of spreads.

@@ -19,28 +19,23 @@ fn error_in(norm: ErrorNorm, row: &Row) -> Option<f64> {
     value.filter(|e| row.converged() && e.is_finite() && *e > 0.0)
 }
 
-/// Error and work of a level.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorkPoint {
-    /// The error; none where the run failed.
-    pub error: Option<f64>,
-    /// Seconds, unknowns or entries.
-    pub work: f64,
-}
+/// The error of a level, none where the run failed, and its work: seconds, unknowns or entries.
+type ErrorAndWork = (Option<f64>, f64);
 
 /// The work at which a given error is reached, on straight lines between neighbouring levels in
-/// logarithmic scales. Points are ordered from coarse to fine. None where no two neighbours that
+/// logarithmic scales. Levels are ordered from coarse to fine. None where no two neighbours that
 /// both converged have the error between them: nothing is extrapolated, and no level that failed is
 /// bridged.
-pub fn work_at(points: &[WorkPoint], error: f64) -> Option<f64> {
-    points.windows(2).find_map(|pair| {
-        let (coarse, fine) = (pair[0].error?, pair[1].error?);
-        let positive = pair[0].work > 0.0 && pair[1].work > 0.0;
+fn work_at(levels: &[ErrorAndWork], error: f64) -> Option<f64> {
+    levels.windows(2).find_map(|pair| {
+        let [(coarse, before), (fine, after)] = [pair[0], pair[1]];
+        let (coarse, fine) = (coarse?, fine?);
+        let positive = before > 0.0 && after > 0.0;
         if !(positive && fine <= error && error <= coarse && fine < coarse) {
             return None;
         }
         let share = (coarse.ln() - error.ln()) / (coarse.ln() - fine.ln());
-        let (before, after) = (pair[0].work.ln(), pair[1].work.ln());
+        let (before, after) = (before.ln(), after.ln());
         Some((before + share * (after - before)).exp())
     })
 }
@@ -103,8 +98,8 @@ pub(crate) fn work_at_errors(rows: &[Row]) -> Vec<WorkAtError> {
             series.iter().filter(|of| of.variant.scene == scene).map(Curve::of).collect();
         let mut curves = run.clone();
         for other in series.iter().map(|of| &of.variant) {
-            if !curves.iter().any(|of| of.variant.differs_in_scene_only(other)) {
-                let variant = Variant { scene: scene.to_owned(), ..other.clone() };
+            let variant = Variant { scene: scene.to_owned(), ..other.clone() };
+            if !curves.iter().any(|of| of.variant == variant) {
                 curves.push(Curve { variant, rows: &[], begun: Vec::new() });
             }
         }
@@ -138,10 +133,7 @@ fn work_of_variants_at(curves: &[Curve<'_>], norm: ErrorNorm, error: f64) -> Vec
     let at = |curve: &Curve<'_>, work: &dyn Fn(&Row) -> Option<f64>| {
         let point = |row: &&Row| {
             let work = work(row);
-            WorkPoint {
-                error: error_in(norm, row).filter(|_| work.is_some()),
-                work: work.unwrap_or(0.0),
-            }
+            (error_in(norm, row).filter(|_| work.is_some()), work.unwrap_or(0.0))
         };
         work_at(&curve.rows.iter().map(point).collect::<Vec<_>>(), error)
     };
@@ -216,15 +208,11 @@ fn targets(curves: &[Curve<'_>], norm: ErrorNorm) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{WorkPoint, work_at};
-
-    fn close(a: f64, b: f64) -> bool {
-        (a - b).abs() <= 1e-12 * b.abs()
-    }
+    use super::work_at;
 
     #[test]
     fn work_is_found_between_levels_and_not_beyond_them() {
-        let points = [1e-1, 1e-3].map(|error| WorkPoint { error: Some(error), work: 1.0 / error });
+        let points = [1e-1, 1e-3].map(|error| (Some(error), 1.0 / error));
         assert!((work_at(&points, 1e-2).unwrap() - 100.0).abs() < 1e-10);
         assert_eq!(work_at(&points, 1e-4), None);
     }
@@ -232,24 +220,23 @@ mod tests {
     #[test]
     fn interpolation_is_exact_for_power_laws_and_ends_with_the_data() {
         for (order, cost) in [(2.0, 3.0), (1.0, 2.0), (0.5, 1.1)] {
-            let point =
-                |n: f64| WorkPoint { error: Some(3.0 * n.powf(-order)), work: 7.0 * n.powf(cost) };
+            let point = |n: f64| (Some(3.0 * n.powf(-order)), 7.0 * n.powf(cost));
             let points = [4.0, 9.0, 32.0].map(point);
             for n in [4.0, 5.0, 9.0, 20.0, 32.0] {
-                let found = work_at(&points, point(n).error.unwrap()).unwrap();
-                assert!(close(found, point(n).work), "{order} {cost} {n}: {found}");
+                let found = work_at(&points, point(n).0.unwrap()).unwrap();
+                let error = (found - point(n).1).abs();
+                assert!(error <= 1e-12 * point(n).1, "{order} {cost} {n}: {found}");
             }
-            assert_eq!(work_at(&points, point(3.9).error.unwrap()), None);
-            assert_eq!(work_at(&points, point(32.1).error.unwrap()), None);
+            assert_eq!(work_at(&points, point(3.9).0.unwrap()), None);
+            assert_eq!(work_at(&points, point(32.1).0.unwrap()), None);
         }
     }
 
     #[test]
     fn a_level_that_failed_is_not_bridged_and_a_plateau_is_not_crossed_backwards() {
-        let point = |error: Option<f64>, work: f64| WorkPoint { error, work };
-        let gap = [point(Some(1e-1), 1.0), point(None, 2.0), point(Some(1e-3), 4.0)];
+        let gap = [(Some(1e-1), 1.0), (None, 2.0), (Some(1e-3), 4.0)];
         assert_eq!(work_at(&gap, 1e-2), None);
-        let up = [point(Some(1e-3), 1.0), point(Some(1e-1), 2.0)];
+        let up = [(Some(1e-3), 1.0), (Some(1e-1), 2.0)];
         assert_eq!(work_at(&up, 1e-2), None);
         assert_eq!(work_at(&[], 1e-2), None);
     }

@@ -2,6 +2,8 @@
 
 use crate::error_bounds::{bounded, placed};
 use crate::support::checks::Checks;
+use rayon::ThreadPoolBuilder;
+use unilateral::algebra::Contact;
 use unilateral::error_bound::NoBound;
 use unilateral::prelude::*;
 
@@ -60,6 +62,37 @@ fn multipliers_in_contact_carry_no_flux() {
         let (scene, scheme) = placed(&ball, name);
         let (_, bound, error) = bounded(&scene, &scene.domain.mesh(16).unwrap(), &*scheme);
         check(format!("ball-2d, {name}"), bound.total / error, 1.6);
+    }
+    checks.finish();
+}
+
+/// An exchange visits its cells in chunks: over several chunks the flux has the same bits for any number of threads, and
+/// the bound has the size that it has over one chunk on a coarser mesh.
+#[test]
+fn exchanges_over_several_chunks_of_cells_lose_nothing() {
+    let mut checks = Checks::default();
+    // most cells are in contact
+    let scene = scenes::torsion_2d(20.0);
+    for (name, levels) in [("p1", [40, 80]), ("wopsip", [32, 64]), ("sipg-p2", [28, 56])] {
+        let (scene, scheme) = placed(&scene, name);
+        let [coarse, fine] = levels.map(|n| {
+            let mesh = scene.domain.mesh(n).unwrap();
+            let solved = solve(&scene.problem, &mesh, &*scheme).unwrap();
+            let contact = solved.solution().contact.iter();
+            let n_active = contact.filter(|state| **state != Contact::Inactive).count();
+            checks.that(3 * n_active > solved.values().len(), || format!("{name}: {n_active}"));
+            let pair = |threads: usize| {
+                let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let of = solved.discretisation();
+                pool.install(|| of.primal_dual_pair(solved.inequality(), solved.solution()))
+            };
+            checks.that(pair(1).unwrap() == pair(3).unwrap(), || format!("{name}, {n}: bits"));
+            let bound = solved.bound().unwrap();
+            checks.that(bound.terms.algebra < 1e-6, || format!("{name}: {:?}", bound.terms));
+            bound.total
+        });
+        println!("{name}: {coarse:.3e}, {fine:.3e}");
+        checks.that(coarse / fine > 1.9, || format!("{name}: {coarse:e} {fine:e}"));
     }
     checks.finish();
 }

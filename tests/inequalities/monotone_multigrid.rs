@@ -1,8 +1,10 @@
 //! The monotone multigrid method: counts that do not depend on strict complementarity nor on the
 //! mesh, and the solutions of the active set.
 
+use crate::problems::{inequality, laplacian, sparse};
+use unilateral::algebra::{Bound, Inequality};
 use unilateral::inequality::{
-    ActiveSet, InequalitySolver, MonotoneMultigrid, SinglePrecision, Stage,
+    ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SinglePrecision, Stage,
 };
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
@@ -137,4 +139,55 @@ fn cycles_of_other_schemes_hardly_grow() {
         println!("| {} | {} | {} |", row.label, row.level, cycles(&row));
         assert!(cycles(&row) <= 50, "{} {}", row.label, row.level);
     }
+}
+
+/// Second differences on `n` points without fixed ends, beside the rows `others` of two further unknowns.
+fn beside_free_string(n: usize, others: [[f64; 2]; 2]) -> Inequality<f64> {
+    let mut matrix = laplacian(n, 1, 2.0);
+    for end in [0, n - 1] {
+        let k = (matrix.row_starts[end] as usize..matrix.row_starts[end + 1] as usize)
+            .find(|&k| matrix.columns[k] as usize == end);
+        matrix.values[k.unwrap()] = 1.0;
+    }
+    for row in others {
+        matrix.columns.extend([n as u32, n as u32 + 1]);
+        matrix.values.extend(row);
+        matrix.row_starts.push(matrix.columns.len() as u32);
+    }
+    inequality(matrix, &vec![-1.0; n + 2], vec![Bound::Lower(0.0); n + 2])
+}
+
+/// Both unknowns are in contact, so that no correction meets the direction (1, 1), in which the energy has negative
+/// curvature and no lower bound.
+#[test]
+fn contact_does_not_hide_an_indefinite_matrix() {
+    let matrix = sparse(&[vec![1.0, -2.0], vec![-2.0, 1.0]]);
+    let held = inequality(matrix, &[-1.0; 2], vec![Bound::Lower(0.0); 2]);
+    assert_eq!(MonotoneMultigrid::default().solve(&held).outcome, Outcome::NotCoercive);
+}
+
+/// The smallest eigenvalue of the string is zero, so that no eigenvalue bounds the error of the iterate, and both
+/// further unknowns are in contact. The matrix must be positive semidefinite on all unknowns, not on admissible
+/// directions alone.
+#[test]
+fn a_string_that_bounds_alone_hold_does_not_hide_an_indefinite_matrix() {
+    let solve = |others| MonotoneMultigrid::default().solve(&beside_free_string(1000, others));
+    assert_eq!(solve([[1.0, 2.0], [2.0, 1.0]]).outcome, Outcome::NotCoercive);
+    assert_eq!(solve([[2.0, 1.0], [1.0, 2.0]]).outcome, Outcome::Converged);
+}
+
+/// A limit of zero admits cycles until the first one that does not halve the change of the values: of second differences
+/// on `n` points, fixed at both ends, with the contact set in the middle.
+#[test]
+fn the_limit_of_stagnating_cycles_counts_cycles_that_stagnate() {
+    let n = 2000;
+    let mut bounds = vec![Bound::Lower(-1.0 / 30.0); n];
+    (bounds[0], bounds[n - 1]) = (Bound::Fixed(0.0), Bound::Fixed(0.0));
+    let string = inequality(laplacian(n, 1, 2.0), &vec![-1.0 / (n * n) as f64; n], bounds);
+    let of = |limit| MonotoneMultigrid::default().stagnation_cycles(limit).solve(&string);
+    let whole = of(200);
+    assert_eq!(whole.outcome, Outcome::Converged);
+    let short = of(0);
+    assert!(short.outer > 1 && short.outer < whole.outer, "{} {}", short.outer, whole.outer);
+    assert_eq!(short.outcome, Outcome::Stalled);
 }

@@ -1,7 +1,9 @@
 //! Meshes, quadrature rules and the files of meshes; the laws that schemes obey.
 
 mod bisection;
+mod edges;
 mod floors;
+mod geometry;
 mod gmsh;
 mod kit;
 mod locks;

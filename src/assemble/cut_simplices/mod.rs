@@ -13,7 +13,7 @@ mod tests;
 use crate::arrays::{array_of, map_entries};
 use crate::mesh::Mesh;
 use crate::problem::Field;
-use crate::quadrature::{FullySymmetric, Quadrature, Rule, facet_to_cell};
+use crate::quadrature::{FullySymmetric, Quadrature, Rule, facet_to_cell, vertex_point};
 use crate::real::Point;
 
 /// What is called with a point of a rule on a cut cell: in barycentric coordinates, in space, and with
@@ -127,8 +127,7 @@ impl CutRule {
     }
 
     fn whole(&self) -> Piece {
-        let corners = array_of(|i| array_of(|k| f64::from(u8::from(i == k))));
-        Piece { corners, share: 1.0, bisections: 0 }
+        Piece { corners: array_of(vertex_point), share: 1.0, bisections: 0 }
     }
 
     fn visit_uncut(&self, piece: &Piece, visit: &mut dyn FnMut(&[f64; 4], f64)) {

@@ -26,7 +26,7 @@ impl<const D: usize> Discretisation<'_, D> {
         let bounds = self.bounds()?;
         let matrix = self.matrix();
         let dirichlet_energy = (!is_penalised && !data.is_empty())
-            .then(|| self.space.dirichlet_energy(self.form(), &|| &self.prepared().0, &data));
+            .then(|| self.space.dirichlet_energy(self.form(), &metrics, &data));
         let penalised = is_penalised.then(|| {
             let (metrics, weights) = self.prepared();
             penalised_matrix(&self.space, self.form(), (metrics, weights), &data)
@@ -67,21 +67,17 @@ impl<const D: usize> Discretisation<'_, D> {
     /// [`check_bounds`](crate::processes::check_bounds). [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<f64>>, Error> {
         compiled!(const D: fn(&Discretisation<'_, D>) -> Result<Vec<Bound<f64>>, Error>
-                = |of| of.checked_bounds()
+                = |of| {
+                    let (bounds, found) = of.space.bounds()?;
+                    if !found.is_empty() && !of.mesh().is_part() {
+                        refuse(&found, largest_datum(&bounds, &found), of.mesh(), &|_| true)?;
+                    }
+                    Ok(bounds)
+                }
         )(self)
-    }
-    fn checked_bounds(&self) -> Result<Vec<Bound<f64>>, Error> {
-        let (bounds, found) = self.space.bounds()?;
-        if !found.is_empty() && !self.mesh().is_part() {
-            refuse(&found, largest_datum(&bounds, &found), self.mesh(), &|_| true)?;
-        }
-        Ok(bounds)
     }
     /// Lower bounds that exceed upper ones, and the largest datum: two bounds contradict each other if they differ by more
     /// than rounding of the largest datum of all [parts](crate::mesh::Part) of a mesh.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
     pub(crate) fn contradictions(&self) -> Result<(Vec<Contradiction<D>>, f64), Error> {
         let (bounds, found) = self.space.bounds()?;
         let size = largest_datum(&bounds, &found);
@@ -94,7 +90,10 @@ impl<const D: usize> Discretisation<'_, D> {
     /// [`Error::DataNotFinite`].
     pub fn load(&self) -> Result<Vec<f64>, Error> {
         compiled!(const D: fn(&Discretisation<'_, D>) -> Result<Vec<f64>, Error>
-                = |of| of.space.load(of.form(), &|| &of.prepared().0)
+                = |of| {
+                    let (free, metrics) = (of.space.free_bodies()?, || &of.prepared().0);
+                    Ok(of.space.load_and_data(of.form(), &metrics, &free, true)?.0)
+                }
         )(self)
     }
 }

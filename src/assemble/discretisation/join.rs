@@ -14,12 +14,8 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 
 impl<'a, const D: usize> Discretisation<'a, D> {
-    /// Joins an element and a facet form with a problem and a mesh; builds facets only if they are
-    /// needed.
-    ///
-    /// # Errors
-    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
-    /// [`Error::Parameter`] for a penalty factor that makes no penalty, and for a matrix with too many entries.
+    /// As [`Discretisation::new`], from the element, the facet form and the way of Dirichlet data that a scheme consists
+    /// of.
     pub(crate) fn of(
         (element, form, dirichlet): (Arc<dyn Element<D>>, Box<dyn FacetForm<D>>, DirichletBy),
         problem: &'a Problem<D>,

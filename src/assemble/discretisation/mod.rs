@@ -1,10 +1,4 @@
 //! A scheme applied to a problem on a mesh: unknowns, matrix and what is known of them.
-//!
-//! | file | content |
-//! |---|---|
-//! | `mod` | [`Discretisation`]: unknowns, form, matrix |
-//! | `join` | element, facet form, problem and mesh made into one, if they fit |
-//! | `inequality` | load, bounds and the whole inequality |
 
 mod inequality;
 mod join;
@@ -30,6 +24,9 @@ use crate::problem::{DiscreteFunction, Problem};
 ///
 /// The type names no scheme: element and facet form are held without their types, so that what it
 /// does is compiled once for each dimension.
+///
+/// # Panics
+/// A method that takes a vector of unknowns or a solution panics if the vector has fewer values than there are unknowns.
 pub struct Discretisation<'a, const D: usize> {
     pub(crate) space: Space<'a, D>,
     form: Box<dyn FacetForm<D>>,
@@ -66,15 +63,11 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// The pattern of the matrix, with values zero.
     pub fn pattern(&self) -> SparseMatrix<f64> {
         compiled!(const D: fn(&Discretisation<'_, D>) -> SparseMatrix<f64>
-                = |of| of.make_pattern()
+                = |of| match of.owns_rows() {
+                    true => owned_rows::pattern(&of.space, of.form()),
+                    false => of.shared_rows.pattern(&of.space, of.form()),
+                }
         )(self)
-    }
-    fn make_pattern(&self) -> SparseMatrix<f64> {
-        if self.owns_rows() {
-            owned_rows::pattern(&self.space, self.form())
-        } else {
-            self.shared_rows.pattern(&self.space, self.form())
-        }
     }
     /// Overwrites the values of a matrix that has this discretisation's pattern.
     ///
@@ -82,16 +75,14 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// If it has another.
     pub fn fill(&self, matrix: &mut SparseMatrix<f64>) {
         compiled!(const D: fn(&Discretisation<'_, D>, &mut SparseMatrix<f64>)
-                = |of, matrix| of.fill_values(matrix)
+                = |of, matrix| match of.owns_rows() {
+                    true => {
+                        let (metrics, weights) = of.prepared();
+                        owned_rows::fill(&of.space, of.form(), metrics, weights, matrix);
+                    }
+                    false => of.shared_rows.fill(&of.space, of.form(), matrix),
+                }
         )(self, matrix)
-    }
-    fn fill_values(&self, matrix: &mut SparseMatrix<f64>) {
-        if self.owns_rows() {
-            let (metrics, weights) = self.prepared();
-            owned_rows::fill(&self.space, self.form(), metrics, weights, matrix);
-        } else {
-            self.shared_rows.fill(&self.space, self.form(), matrix);
-        }
     }
     /// Drops what facet forms need of cells and facets, and the load by cells: a tenth of the memory of a solve. It is
     /// computed again when needed.
@@ -118,16 +109,10 @@ impl<'a, const D: usize> Discretisation<'a, D> {
         self.space.locations()
     }
     /// The discrete function, which is a datum of other problems.
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn function(&self, u: &[f64]) -> DiscreteFunction<D> {
         self.space.function(u)
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
     pub fn vertex_values(&self, u: &[f64]) -> Vec<f64> {
         self.space.vertex_values(u)
     }

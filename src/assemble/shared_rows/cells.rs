@@ -33,11 +33,10 @@ pub(crate) struct CellMatrices<'s, 'a, const D: usize> {
 
 impl<'s, 'a, const D: usize> CellMatrices<'s, 'a, D> {
     pub fn new(space: &'s Space<'a, D>) -> Self {
-        let zero = 0.0;
         let n = space.per_cell();
         let table = space.stiffness_table();
-        let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
-        let mut pairs = [[zero; TRIANGLE]; PAIRS];
+        let unit = |k, l| CellMetric { products: unit(k, l), volume: 0.0, measures: [0.0; 4] };
+        let mut pairs = [[0.0; TRIANGLE]; PAIRS];
         let mut places = [0; MAX_BASIS * MAX_BASIS];
         for (pair, (k, l)) in pairs_of::<D>().enumerate() {
             let mut place = 0;

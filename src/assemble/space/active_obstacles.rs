@@ -102,16 +102,12 @@ impl<const D: usize> Space<'_, D> {
         &self,
         terms: &[Terms],
         cell: usize,
-        (i, by): (usize, BoundBy),
+        node: (usize, BoundBy),
         bound: Bound<f64>,
         state: Option<Contact>,
     ) -> bool {
         let region = self.mesh.region(cell);
-        let gives = |psi: Option<&Datum<D>>, bound: Option<f64>| {
-            let Some((psi, bound)) = psi.zip(bound) else { return false };
-            let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), "obstacle", psi);
-            value.is_ok_and(|value| is_bound(value, bound))
-        };
+        let gives = |psi, bound| self.datum_gives(("obstacle", psi), terms, cell, node, bound);
         (state != Some(Contact::Upper) && gives(self.data.lower.of(region), bound.lower()))
             || (state != Some(Contact::Lower) && gives(self.data.upper.of(region), bound.upper()))
     }
@@ -132,17 +128,24 @@ impl<const D: usize> Space<'_, D> {
     pub(crate) fn gap_gives(
         &self,
         (cell, group): (usize, usize),
-        (i, by): (usize, BoundBy),
+        node: (usize, BoundBy),
         terms: &[Terms],
         bound: Bound<f64>,
     ) -> bool {
-        let Some((gap, bound)) = self.data.gap.of(group).zip(bound.lower()) else { return false };
-        let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), "gap", gap);
-        value.is_ok_and(|value| is_bound(value, bound))
+        self.datum_gives(("gap", self.data.gap.of(group)), terms, cell, node, bound.lower())
     }
-}
 
-/// Whether a value gives a bound, which was rounded once.
-fn is_bound(value: f64, bound: f64) -> bool {
-    (value - bound).abs() <= ROUNDINGS * f64::EPSILON * bound.abs()
+    /// Whether a datum in a cell gives a bound at a node, which was rounded once; false without a datum or a bound.
+    fn datum_gives(
+        &self,
+        (name, datum): (&'static str, Option<&Datum<D>>),
+        terms: &[Terms],
+        cell: usize,
+        (i, by): (usize, BoundBy),
+        bound: Option<f64>,
+    ) -> bool {
+        let Some((datum, bound)) = datum.zip(bound) else { return false };
+        let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), name, datum);
+        value.is_ok_and(|value| (value - bound).abs() <= ROUNDINGS * f64::EPSILON * bound.abs())
+    }
 }

@@ -22,13 +22,10 @@ fn sort_by_rank(facets: &mut [(HalfFacet, usize)], ranks: &[usize]) {
     facets.sort_by_key(|&(_, group)| ranks[group]);
 }
 
-/// The bounds of all unknowns, and the lower ones above upper ones.
-type ComparedBounds<const D: usize> = (Vec<Bound<f64>>, Vec<Contradiction<D>>);
-
 impl<const D: usize> Space<'_, D> {
     /// The bounds of all unknowns, see `Discretisation::bounds`, and those of which a lower one exceeds an upper
     /// one.
-    pub fn bounds(&self) -> Result<ComparedBounds<D>, Error> {
+    pub fn bounds(&self) -> Result<(Vec<Bound<f64>>, Vec<Contradiction<D>>), Error> {
         let mut bounds = collect(self.dofs.size(), |_| Bound::Free);
         let mut found = Vec::new();
         if self.problem.has_obstacle() {
@@ -102,13 +99,9 @@ impl<const D: usize> Space<'_, D> {
             let value = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
             psi.map(value).transpose()
         };
-        let both = |old: Option<f64>, new: Option<f64>, choose: fn(f64, f64) -> f64| {
-            new.map(|new| old.map_or(new, |old| choose(old, new))).or(old)
-        };
-        let lower = both(bound.lower(), at(self.data.lower.of(region))?, f64::max);
-        let upper = both(bound.upper(), at(self.data.upper.of(region))?, f64::min);
+        let (lower, upper) = (at(self.data.lower.of(region))?, at(self.data.upper.of(region))?);
         let (unknown, x) = (self.dofs.of(cell, i), self.node_point(cell, node));
-        *bound = between(lower, upper, BoundedNode { unknown, cell, x }, found);
+        intersect(bound, [lower, upper], BoundedNode { unknown, cell, x }, found);
         Ok(())
     }
 
@@ -139,13 +132,9 @@ impl<const D: usize> Space<'_, D> {
                 count::bounds(1);
                 let node = &self.nodes[i];
                 let value = self.bound(by, &terms[i], (cell, node), "gap", gap)?;
-                let unknown = self.dofs.of(cell, i);
-                let old = bounds[unknown];
-                let lower = old.lower().map_or(value, |l| l.max(value));
-                let upper = old.upper();
-                let x = self.node_point(cell, node);
+                let (unknown, x) = (self.dofs.of(cell, i), self.node_point(cell, node));
                 let node = BoundedNode { unknown, cell, x };
-                bounds[unknown] = between(Some(lower), upper, node, found);
+                intersect(&mut bounds[unknown], [Some(value), None], node, found);
             }
         }
         Ok(())
@@ -264,14 +253,19 @@ impl<const D: usize> Space<'_, D> {
     }
 }
 
-/// The bound between two values, of which each may be absent.
-fn between<const D: usize>(
-    lower: Option<f64>,
-    upper: Option<f64>,
+/// Narrows a bound by a lower and an upper one, of which each may be absent.
+fn intersect<const D: usize>(
+    bound: &mut Bound<f64>,
+    [lower, upper]: [Option<f64>; 2],
     node: BoundedNode<D>,
     found: &mut Vec<Contradiction<D>>,
-) -> Bound<f64> {
-    match (lower, upper) {
+) {
+    let both = |old: Option<f64>, new: Option<f64>, choose: fn(f64, f64) -> f64| {
+        new.map(|new| old.map_or(new, |old| choose(old, new))).or(old)
+    };
+    let lower = both(bound.lower(), lower, f64::max);
+    let upper = both(bound.upper(), upper, f64::min);
+    *bound = match (lower, upper) {
         (None, None) => Bound::Free,
         (Some(l), None) => Bound::Lower(l),
         (None, Some(u)) => Bound::Upper(u),
@@ -279,5 +273,5 @@ fn between<const D: usize>(
             node.compare((["lower bound", "upper bound"], None), [l, u], found);
             Bound::Both(l, l.max(u))
         }
-    }
+    };
 }

@@ -64,9 +64,6 @@ pub(crate) fn largest_datum<const D: usize>(
 }
 
 /// Refuses a contradiction in an own cell that exceeds rounding of data of which the largest is `size`.
-///
-/// # Errors
-/// [`Error::EmptyConstraint`].
 pub(crate) fn refuse<const D: usize>(
     found: &[Contradiction<D>],
     size: f64,

@@ -22,14 +22,6 @@ pub(crate) struct Dofs<'a> {
 /// Kinds of owners of unknowns: vertices, edges, facets and cells.
 pub(crate) const KINDS: usize = 4;
 
-/// Which kind owns unknown `i` of a cell.
-fn kind_of(layout: Layout, dimension: usize, i: usize) -> usize {
-    let vertices = Layout { edge: 0, facet: 0, cell: 0, ..layout }.per_cell(dimension);
-    let edges = Layout { facet: 0, cell: 0, ..layout }.per_cell(dimension);
-    let facets = Layout { cell: 0, ..layout }.per_cell(dimension);
-    usize::from(i >= vertices) + usize::from(i >= edges) + usize::from(i >= facets)
-}
-
 /// Vertices, edges, facets or cells that own unknowns.
 struct Owners<'a> {
     /// Unknowns of each.
@@ -96,7 +88,10 @@ impl<'a> Dofs<'a> {
     }
     /// Which kind owns unknown `i` of a cell of this dimension.
     pub(crate) fn kind(&self, dimension: usize, i: usize) -> usize {
-        kind_of(self.layout, dimension, i)
+        let vertices = Layout { edge: 0, facet: 0, cell: 0, ..self.layout }.per_cell(dimension);
+        let edges = Layout { facet: 0, cell: 0, ..self.layout }.per_cell(dimension);
+        let facets = Layout { cell: 0, ..self.layout }.per_cell(dimension);
+        usize::from(i >= vertices) + usize::from(i >= edges) + usize::from(i >= facets)
     }
     /// The unknowns of all cells where they are not simply consecutive.
     pub(crate) fn table(&self) -> Option<&[u32]> {

@@ -69,10 +69,18 @@ impl<'a, const D: usize> Space<'a, D> {
     /// The measure of a facet and the cell from which it is seen.
     #[inline(always)]
     fn side(&self, half: HalfFacet, kept: Option<&Metrics>) -> (f64, Side) {
-        let coefficients = self.extreme_coefficients(half);
-        match kept {
-            Some(metrics) => metrics.side::<D>(half, coefficients),
-            None => self.metric(half.0).side(half.1, coefficients),
-        }
+        let [coefficient, least_coefficient] = self.extreme_coefficients(half);
+        let metric;
+        let (volume, measures) = match kept {
+            Some(metrics) => metrics.measures::<D>(half.0),
+            None => {
+                metric = self.metric(half.0);
+                (metric.volume, &metric.measures[..=D])
+            }
+        };
+        let measure = measures[half.1];
+        let height = (D as f64) * volume / measure;
+        let surface = measures.iter().fold(0.0, |sum, &measure| sum + measure);
+        (measure, Side { coefficient, least_coefficient, volume, surface, height })
     }
 }

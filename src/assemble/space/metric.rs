@@ -5,7 +5,6 @@ use std::convert::Infallible;
 use super::tables::Derivatives;
 use crate::assemble::count;
 use crate::element::MAX_BASIS;
-use crate::facet::Side;
 use crate::memory::in_large_pages;
 use crate::mesh::{FACTORIAL, HalfFacet, Mesh, cofactors, cross, dot, with_zeros};
 use crate::parallel::cells;
@@ -14,7 +13,6 @@ use crate::parallel::cells;
 /// matrix, since only scalar products of normals and gradients do.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CellMetric<const D: usize> {
-    /// Its volume.
     pub volume: f64,
     /// Measures of its facets.
     pub measures: [f64; 4],
@@ -26,15 +24,13 @@ impl<const D: usize> CellMetric<D> {
     /// Numbers kept of a cell: volume, facet measures, products above the diagonal.
     const KEPT: usize = 1 + (D + 1) + D * (D + 1) / 2;
 
-    /// The metric of one cell.
     #[inline(always)]
     pub fn of(mesh: &Mesh<D>, cell: usize) -> Self {
         let (volume, products) = shape(mesh, cell, 1.0);
         let mut measures = [0.0; 4];
         for i in 1..=D {
             // |F| = D |K| |grad lambda|
-            let square = volume * products[i][i];
-            measures[i] = (D as f64) * nalgebra::ComplexField::sqrt(square);
+            measures[i] = (D as f64) * (volume * products[i][i]).sqrt();
         }
         // the first product is a sum of the others, in which thin cells lose all digits
         measures[0] = first_facet(mesh, cell);
@@ -43,10 +39,6 @@ impl<const D: usize> CellMetric<D> {
         }
         Self { volume, measures, products }
     }
-    #[inline(always)]
-    fn zero(volume: f64) -> Self {
-        Self { volume, measures: [0.0; 4], products: [[0.0; 4]; 4] }
-    }
     /// Sets an entry above the diagonal, with what follows for the others: rows sum to zero.
     #[inline(always)]
     fn set(&mut self, i: usize, j: usize, product: f64) {
@@ -54,20 +46,6 @@ impl<const D: usize> CellMetric<D> {
         self.products[j][i] = product;
         self.products[i][i] -= product;
         self.products[j][j] -= product;
-    }
-    /// The measure of the whole boundary.
-    #[inline(always)]
-    pub fn surface(&self) -> f64 {
-        (0..D + 1).fold(0.0, |s, i| s + self.measures[i])
-    }
-    /// The measure of facet `local` of the cell, and the cell as the facet sees it, with the largest coefficient on
-    /// the facet and the least in the cell.
-    #[inline(always)]
-    pub fn side(&self, local: usize, [coefficient, least_coefficient]: [f64; 2]) -> (f64, Side) {
-        let (volume, measure) = (self.volume, self.measures[local]);
-        let height = (D as f64) * volume / measure;
-        let surface = self.surface();
-        (measure, Side { coefficient, least_coefficient, volume, surface, height })
     }
     /// The derivatives of the first `n` basis functions along the outward normal of facet `local`, of one moment and
     /// times the measure of the facet and a factor; the other entries are zero and never read.
@@ -103,7 +81,7 @@ impl<const D: usize> CellMetric<D> {
     }
     #[inline(always)]
     fn read(kept: &[f64]) -> Self {
-        let mut metric = Self::zero(kept[0]);
+        let mut metric = Self { volume: kept[0], measures: [0.0; 4], products: [[0.0; 4]; 4] };
         metric.measures[..=D].copy_from_slice(&kept[1..D + 2]);
         let mut k = D + 2;
         for i in 0..D {
@@ -125,10 +103,9 @@ pub(crate) fn shape<const D: usize>(
     cell: usize,
     scale: f64,
 ) -> (f64, [[f64; 4]; 4]) {
-    let zero = 0.0;
     let corners = mesh.cell(cell);
     // loops over numbers: differences of points in place of these take half as long again
-    let mut edges = [[zero; 3]; 3];
+    let mut edges = [[0.0; 3]; 3];
     let origin = &mesh.vertices()[corners[0] as usize];
     for k in 0..D {
         let corner = &mesh.vertices()[corners[k + 1] as usize];
@@ -137,9 +114,9 @@ pub(crate) fn shape<const D: usize>(
         }
     }
     let (normals, determinant) = cofactors::<D>(edges);
-    let size = if determinant < zero { -determinant } else { determinant };
-    let scale = if size == zero { zero } else { scale / (size * FACTORIAL[D]) };
-    let mut products = [[zero; 4]; 4];
+    let size = if determinant < 0.0 { -determinant } else { determinant };
+    let scale = if size == 0.0 { 0.0 } else { scale / (size * FACTORIAL[D]) };
+    let mut products = [[0.0; 4]; 4];
     for i in 1..=D {
         // rows sum to zero
         for j in 1..=D {
@@ -151,7 +128,7 @@ pub(crate) fn shape<const D: usize>(
         }
     }
     for i in 1..=D {
-        let sum = (1..=D).fold(zero, |sum, j| sum - products[i][j]);
+        let sum = (1..=D).fold(0.0, |sum, j| sum - products[i][j]);
         products[i][0] = sum;
         products[0][i] = sum;
         products[0][0] -= sum;
@@ -191,7 +168,7 @@ fn first_facet<const D: usize>(mesh: &Mesh<D>, cell: usize) -> f64 {
     let corners = mesh.cell(cell);
     let corner = |k: usize| mesh.vertices()[corners[k.min(D)] as usize];
     let edge = |k: usize| with_zeros(corner(k) - corner(1));
-    let length = |a: [f64; 3]| nalgebra::ComplexField::sqrt(dot::<3>(a, a));
+    let length = |a: [f64; 3]| dot::<3>(a, a).sqrt();
     match D {
         1 => 1.0,
         2 => length(edge(2)),
@@ -218,29 +195,20 @@ impl Metrics {
         let Ok(()) = cells::for_each(mesh.n_cells(), &|c| c * n, &mut kept, &fill);
         Self { kept }
     }
-    /// The metric of a cell.
     #[inline(always)]
     pub fn at<const D: usize>(&self, cell: usize) -> CellMetric<D> {
         let n = CellMetric::<D>::KEPT;
         CellMetric::read(&self.kept[cell * n..(cell + 1) * n])
     }
-    /// The measure of a facet.
     #[inline(always)]
     pub fn measure<const D: usize>(&self, (cell, local): HalfFacet) -> f64 {
         self.kept[cell * CellMetric::<D>::KEPT + 1 + local]
     }
-    /// [`CellMetric::side`], without the products of gradients.
+    /// The volume of a cell and the measures of its facets.
     #[inline(always)]
-    pub fn side<const D: usize>(
-        &self,
-        (cell, local): HalfFacet,
-        [coefficient, least_coefficient]: [f64; 2],
-    ) -> (f64, Side) {
+    pub fn measures<const D: usize>(&self, cell: usize) -> (f64, &[f64]) {
         let kept = &self.kept[cell * CellMetric::<D>::KEPT..][..D + 2];
-        let (volume, measure) = (kept[0], kept[1 + local]);
-        let surface = kept[1..].iter().fold(0.0, |sum, &measure| sum + measure);
-        let height = (D as f64) * volume / measure;
-        (measure, Side { coefficient, least_coefficient, volume, surface, height })
+        (kept[0], &kept[1..])
     }
     /// The products of the gradient opposite facet `local` of a cell with all of its gradients.
     #[inline(always)]
@@ -259,27 +227,5 @@ impl Metrics {
             row[k] += (1.0 - others[k]) * sum;
         }
         row
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::{BoundaryCondition, TaggedFacet};
-    use crate::real::Point;
-
-    #[test]
-    fn the_shortest_facet_of_a_thin_cell_keeps_its_digits() {
-        for short in [1e-3, 1e-6, 1e-9] {
-            let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, short]].map(Point::<2>::from);
-            let sides = [[0, 1], [0, 2], [1, 2]]
-                .map(|vertices| TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet });
-            let mesh = Mesh::new(vertices.to_vec(), vec![0, 1, 2], &sides).expect("one cell");
-            let metric: CellMetric<2> = CellMetric::of(&mesh, 0);
-            let exact = [short, (1.0 + short * short).sqrt(), 1.0];
-            for (measure, exact) in metric.measures.iter().zip(exact) {
-                assert!((measure / exact - 1.0).abs() < 4.0 * f64::EPSILON, "{short}");
-            }
-        }
     }
 }

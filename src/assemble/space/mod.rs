@@ -40,7 +40,7 @@ use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoundaryFacet, HalfFacet, Mesh, Neighbours};
 use crate::problem::{DataOnMesh, Datum, DiscreteFunction, Problem};
-use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
+use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell, vertex_point};
 use crate::real::Point;
 pub(crate) use coefficient::INWARD;
 use coefficient::VaryingCoefficient;
@@ -244,7 +244,7 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn cell_table(&self, rule: Rule) -> CellTable {
         CellTable::new(rule, &*self.element)
     }
-    /// The unknowns of a cell in `f64`.
+    /// The unknowns of a cell.
     pub fn local_values(&self, cell: usize, u: &[f64]) -> [f64; MAX_BASIS] {
         let mut local = [0.0; MAX_BASIS];
         for (i, value) in local.iter_mut().enumerate().take(self.per_cell()) {
@@ -269,6 +269,18 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn group_of(&self, (cell, local): HalfFacet) -> usize {
         self.mesh.boundary_group(cell, local).expect("a boundary facet has a group")
     }
+    /// For each vertex on the Dirichlet boundary the boundary group whose datum is given there.
+    pub fn dirichlet_groups(&self) -> Vec<Option<usize>> {
+        let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
+        let rank = |group: usize| self.data.dirichlet_rank[group];
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
+            for v in self.mesh.facet_vertices(cell, local) {
+                let old = &mut given[v as usize];
+                *old = old.filter(|&old| rank(old) <= rank(group)).or(Some(group));
+            }
+        }
+        given
+    }
     /// The value of a datum at a point of a cell.
     #[inline(always)]
     pub fn at(&self, datum: &Datum<D>, cell: usize, x: &Point<D>) -> f64 {
@@ -278,11 +290,9 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn dirichlet_at(&self, group: usize, x: &Point<D>) -> f64 {
         self.data.dirichlet.of(group).map_or(0.0, |u| u.at(x))
     }
-    /// The metric of a cell, computed.
     pub fn metric(&self, cell: usize) -> CellMetric<D> {
         CellMetric::of(self.mesh, cell)
     }
-    /// The measure of a facet.
     pub fn facet_measure(&self, (cell, local): HalfFacet) -> f64 {
         self.mesh.geometry(cell).facet_measure(local)
     }
@@ -328,13 +338,7 @@ impl<'a, const D: usize> Space<'a, D> {
     }
     /// A discrete function at the vertices of each cell, `D + 1` values for each.
     pub fn vertex_values(&self, u: &[f64]) -> Vec<f64> {
-        let corners: Vec<BasisAt> = (0..=D)
-            .map(|k| {
-                let mut point = [0.0; 4];
-                point[k] = 1.0;
-                self.basis_at(&point)
-            })
-            .collect();
+        let corners: Vec<BasisAt> = (0..=D).map(|k| self.basis_at(&vertex_point(k))).collect();
         let mut out = Vec::with_capacity(self.mesh.n_cells() * (D + 1));
         for cell in 0..self.mesh.n_cells() {
             let local = self.local_values(cell, u);

@@ -22,6 +22,11 @@ impl BasisAt {
         element.derivatives(&point[..=D], &mut basis.derivatives[..n]);
         basis
     }
+    /// The function with these coefficients.
+    #[inline(always)]
+    pub fn value(&self, coefficients: &[f64; MAX_BASIS]) -> f64 {
+        coefficients.iter().zip(&self.values).map(|(c, v)| c * v).sum()
+    }
     fn zero() -> Self {
         Self { values: [0.0; MAX_BASIS], derivatives: [[0.0; 4]; MAX_BASIS] }
     }
@@ -88,14 +93,6 @@ impl FacetTable {
     pub fn on(&self, local: usize) -> &[BasisAt] {
         let n = self.degrees.len();
         &self.basis[local * n..(local + 1) * n]
-    }
-}
-
-impl BasisAt {
-    /// The function with these coefficients.
-    #[inline(always)]
-    pub fn value(&self, coefficients: &[f64; MAX_BASIS]) -> f64 {
-        coefficients.iter().zip(&self.values).map(|(c, v)| c * v).sum()
     }
 }
 

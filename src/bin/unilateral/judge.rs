@@ -1,7 +1,6 @@
 //! The judgement of a vector that another program found: certificate, errors and row.
 //!
 //! `compare --dump DIR` writes the inequalities, `judge DIR/SCENE-LABEL-LEVEL VECTOR` reads what came back.
-//! Exit codes: 0 if the certificate is within its limits, 1 if not, 2 if the request was wrong.
 
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! Finite element schemes on variational inequalities, from the command line.
 //!
 //! `cargo run --release` compares schemes with the defaults, `cargo run --release -- --help` names
-//! the other commands. Exit codes: 0 if the command succeeded, 1 if a run did not converge or a
-//! check failed, 2 if the request was wrong.
+//! the other commands. Exit codes: 0 if the command succeeded, 1 if a run did not converge, a check
+//! failed or the work ended in an error, 2 if the request was wrong, 130 if it was interrupted.
 
 mod adaptive;
 mod asked;
@@ -50,19 +50,16 @@ enum Command {
 fn main() -> ExitCode {
     #[cfg(unix)]
     take_full_files_as_errors();
-    match parse().map_err(Failure::from).and_then(run) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        // of several processes the first one says why
-        Err(Failure::Work(message)) => {
-            complain_unless_empty(&message);
-            ExitCode::from(1)
-        }
-        Err(Failure::Request(message)) => {
-            complain_unless_empty(&message);
-            ExitCode::from(2)
-        }
+    let (code, message) = match parse().map_err(Failure::from).and_then(run) {
+        Ok(is_good) => (u8::from(!is_good), String::new()),
+        Err(Failure::Work(message)) => (1, message),
+        Err(Failure::Request(message)) => (2, message),
+    };
+    // of several processes the first one says why
+    if !message.is_empty() {
+        complain(&message);
     }
+    ExitCode::from(code)
 }
 
 /// Lets a write beyond the largest size of a file (`ulimit -f`) fail, as on a full disk; by default a signal ends the
@@ -72,12 +69,6 @@ fn take_full_files_as_errors() {
     let mut signals = SigSet::empty();
     signals.add(Signal::SIGXFSZ);
     signals.thread_block().expect("the signal exists");
-}
-
-fn complain_unless_empty(message: &str) {
-    if !message.is_empty() {
-        complain(message);
-    }
 }
 
 /// Runs a command; false for exit code 1.

@@ -5,8 +5,7 @@
 //! ```
 //!
 //! Without a file the table goes to standard output. A word after the file picks the scenes whose
-//! names contain it; `--quick` halves the levels. Exit codes: 0, or 1 if the work ended in an error,
-//! 2 if the request was wrong.
+//! names contain it; `--quick` halves the levels.
 
 use std::error::Error;
 use std::path::PathBuf;

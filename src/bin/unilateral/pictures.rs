@@ -1,17 +1,15 @@
 //! A solution as a picture: the function, the contact set found against the exact free boundary, the
 //! jumps across facets, the multiplier and the share of each cell in the error bound, as SVG.
 //!
-//! `cargo run --release -- pictures --help` lists the options. Exit codes: 0 if every solve converged,
-//! 1 if one did not (its last iterate is drawn, and said to be one), 2 if the request was wrong.
+//! `cargo run --release -- pictures --help` lists the options. Of a solve that did not converge the last iterate is
+//! drawn, and said to be one.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
 
 use clap::Args;
-use unilateral::error::Error;
 use unilateral::in_its_dimension;
-use unilateral::nested::{Adaptivity, Solved};
-use unilateral::plot::Picture;
+use unilateral::nested::Adaptivity;
 use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Row, Study, file_name};
@@ -20,7 +18,7 @@ use crate::adaptive::adaptivity;
 use crate::asked::{MESHES, OUTPUT, PROBLEM, SCHEMES};
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
-use crate::shared::{Failure, end_at_interrupt, fields_with_bound, print, problem, scene, warn};
+use crate::shared::{Failure, draw_solution, end_at_interrupt, print, problem, scene, warn};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -91,8 +89,11 @@ fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Result<bool, Fail
     let picture = study().levels([level]).each_solution(|label, level, solved| {
         let stem = file_name(&format!("{}-{label}-{level}", scene.name));
         let unit = if options.adaptive.is_some() { "step" } else { "level" };
-        let title = format!("{}: {label}, {unit} {level}", scene.name);
-        written.borrow_mut().extend(draw_one(options, &title, &stem, solved)?);
+        let mut title = format!("{}: {label}, {unit} {level}", scene.name);
+        if !solved.converged() {
+            title += &format!(", NOT CONVERGED: {}", solved.outcome());
+        }
+        written.borrow_mut().extend(draw_solution(&title, solved, &options.out, &stem)?);
         Ok(())
     });
     picture.check().and_then(|()| picture.check_memory()).map_err(|e| e.to_string())?;
@@ -118,21 +119,4 @@ fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Result<bool, Fail
         print(&format!("{}\n", path.display()))?;
     }
     Ok(rows.iter().all(Row::converged))
-}
-
-/// Draws a solution and returns the files.
-fn draw_one<const D: usize>(
-    options: &Options,
-    title: &str,
-    stem: &str,
-    solved: &Solved<'_, D>,
-) -> Result<Vec<PathBuf>, Error> {
-    let Some(fields) = fields_with_bound(solved) else { return Ok(Vec::new()) };
-    let mut title = title.to_owned();
-    if !solved.converged() {
-        title += &format!(", NOT CONVERGED: {}", solved.outcome());
-    }
-    let problem = solved.discretisation().problem();
-    let picture = Picture::of(&title, problem, solved.mesh(), &fields)?;
-    Ok(vec![picture.write(&options.out, stem)?])
 }

@@ -1,4 +1,4 @@
-//! The commands share messages, printing, threads and progress.
+//! The commands share messages, printing, threads, progress and drawing.
 
 use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use unilateral::error::Error;
 use unilateral::input::{beginning, excerpt, read_file};
-use unilateral::measure::Fields;
 use unilateral::nested::Solved;
+use unilateral::plot::Picture;
 use unilateral::problem_file::{self, ProblemFile};
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters};
@@ -168,12 +169,12 @@ pub fn each_once<T: Clone + PartialEq>(items: &[T]) -> Vec<T> {
     once
 }
 
-/// A bar on a terminal, nothing elsewhere. The bar does not [`tick`] yet.
-pub fn bar(quiet: bool, length: usize, template: &str) -> ProgressBar {
+/// A bar without a length yet on a terminal, nothing elsewhere. The bar does not [`tick`] yet.
+pub fn bar(quiet: bool, template: &str) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let bar = ProgressBar::new(length as u64);
+    let bar = ProgressBar::new(0);
     match ProgressStyle::with_template(template) {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
@@ -197,9 +198,16 @@ pub fn reference(text: &str) -> Request<(NamedScheme, usize)> {
     Ok((scheme.parse().map_err(|e: unilateral::scheme::SchemeNameError| e.to_string())?, level))
 }
 
-/// The fields of a solution, with the share of each cell in the error bound where there is one; none without an iterate.
-pub fn fields_with_bound<const D: usize>(solved: &Solved<'_, D>) -> Option<Fields> {
-    let mut fields = solved.fields()?;
+/// Draws a solution as `STEM.svg`, with the share of each cell in the error bound where there is one. Returns the file;
+/// none without an iterate.
+pub fn draw_solution<const D: usize>(
+    title: &str,
+    solved: &Solved<'_, D>,
+    directory: &Path,
+    stem: &str,
+) -> Result<Option<PathBuf>, Error> {
+    let Some(mut fields) = solved.fields() else { return Ok(None) };
     fields.bound = solved.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
-    Some(fields)
+    let problem = solved.discretisation().problem();
+    Picture::of(title, problem, solved.mesh(), &fields)?.write(directory, stem).map(Some)
 }

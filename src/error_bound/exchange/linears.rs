@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::{ExchangeStep, FacetOfCell, ROUNDING, Sweeps, decrease};
+use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, negligible, visit_steps};
 use crate::algebra::Contact;
 use crate::arrays::array_of;
 use crate::assemble::cut_simplices::in_space;
@@ -14,13 +14,15 @@ use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Mesh, Neighbours};
-use crate::parallel::vectors::{collect, for_each_chunk, largest, sum_chunks};
+use crate::parallel::vectors::{
+    chunk_length, collect, for_each_chunk, for_each_chunk_of_two, largest, sum_chunks,
+};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
 /// Most visits of each facet. The matrix of the least-squares problem is the mass matrix of fluxes, whose condition
 /// does not grow with the number of cells.
-const SWEEPS: usize = 4;
+const SWEEPS: u8 = 4;
 
 /// The degree of the rule for distances from obstacles that are no constants.
 const DEGREE: usize = 2;
@@ -31,23 +33,23 @@ struct CellOfLinears<const D: usize> {
     number: usize,
     /// The flux through each facet.
     flux: [f64; 4],
-    /// One over the number of dimensions times the volume: the divergence over `D` of a flux that leaves through one
-    /// facet.
+    /// `1 / (D |K|)`.
     per_volume: f64,
-    /// The mean of the square of such a flux less its value at the centre.
+    /// The mean of the square of a flux that leaves through one facet, with the integral one, less its value at the centre.
     variance: f64,
     /// The volume over the coefficient.
     weight: f64,
     /// The flux at the centre less the gradient of the function times the coefficient.
     difference: Point<D>,
-    /// The mean distances of the function from the lower and the upper obstacle; infinite where none is given.
+    /// The mean distances of the function from the lower and the upper obstacle; infinite where none is given. A distance
+    /// that is not finite exchanges nothing.
     gaps: [f64; 2],
     /// The integral of the multiplier.
     multiplier: f64,
 }
 
 impl<const D: usize> CellOfLinears<D> {
-    /// The value at the centre of the flux that leaves through a facet.
+    /// The value at the centre of the flux that leaves through a facet, with the integral one there.
     fn at_centre(&self, mesh: &Mesh<D>, facet: usize) -> Point<D> {
         let corners = mesh.corners(self.number);
         let centre: Point<D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
@@ -102,8 +104,11 @@ impl<const D: usize> Space<'_, D> {
         let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
         let mut multipliers = self.multipliers_of_obstacles(residual, forces);
         for_each_chunk(&mut multipliers, |range, multipliers| {
-            let states = multipliers.iter_mut().zip(contact.get(range).unwrap_or_default());
-            states.filter(|(_, state)| **state == Contact::Inactive).for_each(|(m, _)| *m = 0.0);
+            for (i, multiplier) in range.zip(multipliers) {
+                if contact.get(i) == Some(&Contact::Inactive) {
+                    *multiplier = 0.0;
+                }
+            }
         });
         if self.broken {
             return collect(n_cells, |cell| multipliers[cell * n..][..n].iter().sum());
@@ -123,15 +128,17 @@ impl<const D: usize> Space<'_, D> {
             (multipliers[unknown] != 0.0 && obstacles.act_in(cell, i)).then_some(unknown)
         };
         let mut weights = vec![0.0; multipliers.len()];
-        let Ok(()) = for_each_place::<D, _, Infallible>(&self.dofs, &mut weights, |sum, at| {
-            if pressing(at.0, at.1).is_some() {
-                *sum += weight(at.0);
-            }
-            Ok(())
-        });
+        let Ok(()) =
+            for_each_place::<D, _, Infallible>(&self.dofs, &mut weights, |sum, (cell, i)| {
+                if pressing(cell, i).is_some() {
+                    *sum += weight(cell);
+                }
+                Ok(())
+            });
         collect(n_cells, |cell| {
             let unknowns = (0..n).filter_map(|i| pressing(cell, i));
             let shares: f64 = unknowns.map(|i| multipliers[i] / weights[i]).sum();
+            // the volumes of cells without a share are not computed
             if shares == 0.0 { 0.0 } else { weight(cell) * shares }
         })
     }
@@ -155,9 +162,8 @@ impl<const D: usize> Space<'_, D> {
         });
         let square =
             sum_chunks(&mut cells, 1, |_, cells| cells.iter().map(CellOfLinears::square).sum());
-        let mesh = self.mesh;
-        let sweeps = Sweeps::new(SWEEPS, cells.len(), square);
-        sweeps.run_in_parallel(&mut cells, &steps, |cells, first, step| {
+        let (mesh, negligible) = (self.mesh, negligible(cells.len(), square));
+        let visit = |cells: &mut [CellOfLinears<D>], first: usize, step: ExchangeStep| {
             let of_cell = |facet: FacetOfCell| (facet.cell as usize - first, facet.local.into());
             match step {
                 ExchangeStep::Between(at) => exchange_between(mesh, cells, at.map(of_cell)),
@@ -167,7 +173,19 @@ impl<const D: usize> Space<'_, D> {
                 }
                 ExchangeStep::Inside(_) => 0.0,
             }
-        });
+        };
+        let mut last_change = vec![0; cells.len()];
+        let length = chunk_length(cells.len(), 1);
+        for sweep in 1..=SWEEPS {
+            let at = (sweep, negligible);
+            for_each_chunk_of_two(&mut cells, &mut last_change, 1, |range, cells, last_change| {
+                let (first, steps) = (range.start, &steps.within[range.start / length]);
+                visit_steps(steps, at, (first, last_change), |step| visit(cells, first, step));
+            });
+            visit_steps(&steps.between, at, (0, &mut last_change), |step| {
+                visit(&mut cells, 0, step)
+            });
+        }
         flux.replace_in(&numbers, |k| &cells[k].flux);
     }
 
@@ -185,10 +203,6 @@ impl<const D: usize> Space<'_, D> {
         let centre: Point<D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
         let squares: f64 = corners[..=D].iter().map(|x| (centre - x).norm_squared()).sum();
         let per_volume = 1.0 / (D as f64 * volume);
-        let mut difference = -admissible.gradient * alpha;
-        for (flux, corner) in flux.iter().zip(&corners) {
-            difference += (centre - corner) * per_volume * *flux;
-        }
         let gap = |k: usize| {
             let Some(bound) = admissible.bounds[k] else { return f64::INFINITY };
             let distance = |value: f64, x: &Point<D>| {
@@ -204,16 +218,20 @@ impl<const D: usize> Space<'_, D> {
             };
             rule.iter().map(|(point, weight)| weight * at_point(point)).sum()
         };
-        CellOfLinears {
+        let mut cell = CellOfLinears {
             number,
             flux: array_of(|k| flux.get(k).copied().unwrap_or(0.0)),
             per_volume,
             variance: squares * per_volume * per_volume / ((D + 1) * (D + 2)) as f64,
             weight: volume / alpha,
-            difference,
+            difference: -admissible.gradient * alpha,
             gaps: [gap(0), gap(1)],
             multiplier,
+        };
+        for facet in 0..=D {
+            cell.difference += cell.at_centre(self.mesh, facet) * cell.flux[facet];
         }
+        cell
     }
 }
 

@@ -13,7 +13,8 @@
 //! Facet by facet the least value is taken, among those numbers that keep the signs of both multipliers. Through a
 //! Dirichlet facet the flux is free, and `K` is alone. Cells beside those in contact count, too: their multipliers
 //! may grow, if the distance costs less than the mismatch. A facet is visited again as long as visits of its cells make
-//! the square smaller by more than a negligible number.
+//! the square smaller by more than a negligible number. Facets within a chunk of cells are visited on one thread, chunks in
+//! parallel, then the facets between chunks: the order depends on the number of cells alone.
 
 mod cells_of_quadratics;
 mod forces;
@@ -24,9 +25,7 @@ use crate::algebra::NO_INDEX;
 use crate::assemble::space::Space;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
-use crate::parallel::vectors::{
-    chunk_length, flags, for_each_chunk_of_two, indices, map_chunks, positions,
-};
+use crate::parallel::vectors::{flags, indices, map_chunks, positions};
 
 /// Multipliers below this share of the largest one are rounding.
 const ROUNDING: f64 = 1e-10;
@@ -71,81 +70,35 @@ impl ExchangeStep {
     }
 }
 
-/// The steps of an exchange. The cells are those of chunks of equal length.
+/// The steps of an exchange, by the chunks of its cells ([`map_chunks`]).
 struct ExchangeSteps {
-    /// By chunk the steps all of whose cells belong to it.
+    /// For each chunk the steps all of whose cells belong to it.
     within: Vec<Vec<ExchangeStep>>,
-    /// The steps between cells of two chunks: few, as neighbours have near numbers.
+    /// The steps between cells of two chunks: few where neighbours have near numbers.
     between: Vec<ExchangeStep>,
 }
 
-/// The sweeps of an exchange: in one after the first those steps are visited one of whose cells has changed since the
-/// sweep before began.
-struct Sweeps {
-    /// How many.
-    n: usize,
-    /// What the square of the bound falls by if nothing has changed.
-    negligible: f64,
+/// Visits steps once, those one of whose cells has changed since the sweep before began. A visit returns by how much the
+/// square of the bound falls; where that is not more than `negligible`, the step changes nothing for others.
+/// `last_change` has for each cell from `first` on the sweep in which it last changed; sweeps count from one.
+fn visit_steps(
+    steps: &[ExchangeStep],
+    (sweep, negligible): (u8, f64),
+    (first, last_change): (usize, &mut [u8]),
+    mut visit: impl FnMut(ExchangeStep) -> f64,
+) {
+    for step in steps {
+        let cells = step.cells().map(|k| k - first);
+        let may_change = cells.iter().any(|&k| last_change[k] + 1 >= sweep);
+        if may_change && visit(*step) > negligible {
+            cells.iter().for_each(|&k| last_change[k] = sweep);
+        }
+    }
 }
 
-impl Sweeps {
-    /// At most `n` sweeps, where the square of the bound over all cells of the exchange is this one at the beginning.
-    fn new(n: usize, n_cells: usize, square: f64) -> Self {
-        Self { n, negligible: NEGLIGIBLE * square / n_cells as f64 }
-    }
-
-    /// Visits steps once. A visit returns by how much the square of the bound falls. `last_change` has for each cell from
-    /// `first` on the sweep in which it last changed; sweeps count from one.
-    fn visit(
-        &self,
-        sweep: usize,
-        steps: &[ExchangeStep],
-        (first, last_change): (usize, &mut [usize]),
-        mut visit: impl FnMut(ExchangeStep) -> f64,
-    ) {
-        for step in steps {
-            let cells = step.cells().map(|k| k - first);
-            let may_change = cells.iter().any(|&k| last_change[k] + 1 >= sweep);
-            if may_change && visit(*step) > self.negligible {
-                cells.iter().for_each(|&k| last_change[k] = sweep);
-            }
-        }
-    }
-
-    /// Visits all steps in sweeps, on one thread.
-    fn run(
-        &self,
-        n_cells: usize,
-        steps: &ExchangeSteps,
-        mut visit: impl FnMut(ExchangeStep) -> f64,
-    ) {
-        let mut last_change = vec![0; n_cells];
-        for sweep in 1..=self.n {
-            for steps in steps.within.iter().chain([&steps.between]) {
-                self.visit(sweep, steps, (0, &mut last_change), &mut visit);
-            }
-        }
-    }
-
-    /// Visits all steps in sweeps, those within chunks of cells in parallel. A visit has the cells from the first one of
-    /// the chunk on, and the number of that.
-    fn run_in_parallel<C: Send>(
-        &self,
-        cells: &mut [C],
-        steps: &ExchangeSteps,
-        visit: impl Fn(&mut [C], usize, ExchangeStep) -> f64 + Sync,
-    ) {
-        let mut last_change = vec![0; cells.len()];
-        let length = chunk_length(cells.len(), 1);
-        for sweep in 1..=self.n {
-            for_each_chunk_of_two(cells, &mut last_change, 1, |range, cells, last_change| {
-                let (first, within) = (range.start, &steps.within[range.start / length]);
-                let visit = |step| visit(cells, first, step);
-                self.visit(sweep, within, (first, last_change), visit);
-            });
-            self.visit(sweep, &steps.between, (0, &mut last_change), |step| visit(cells, 0, step));
-        }
-    }
+/// What is negligible of an exchange, by the square of the bound over all its cells at the beginning.
+fn negligible(n_cells: usize, square: f64) -> f64 {
+    NEGLIGIBLE * square / n_cells as f64
 }
 
 /// By how much a quadratic polynomial that vanishes at zero falls there, from half of its derivative at zero and half of
@@ -203,7 +156,9 @@ impl<const D: usize> Space<'_, D> {
             }
         };
         let of_chunks = map_chunks(numbers.len(), |range| {
-            let (mut within, mut between) = (Vec::new(), Vec::new());
+            // about half a facet for each of a cell, and one step inside
+            let capacity = range.len() * (D + 3) / 2;
+            let (mut within, mut between) = (Vec::with_capacity(capacity), Vec::new());
             for here in range.clone() {
                 steps_of(here, &mut |step| match step.cells().iter().all(|k| range.contains(k)) {
                     true => within.push(step),

@@ -6,7 +6,7 @@
 //! added to `c_AA` and taken from `c_BB` changes the multiplier of the cell at the vertices `A` and `B` alone.
 
 use super::cells_of_quadratics::{CellOfQuadratics, CellsOfQuadratics};
-use super::{ExchangeStep, FacetOfCell, ROUNDING, Sweeps, decrease};
+use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, negligible, visit_steps};
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
@@ -14,9 +14,10 @@ use crate::error_bound::flux::Flux;
 use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
 use crate::mesh::{HalfFacet, Neighbours};
+use crate::parallel::vectors::largest;
 
 /// Most visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
-const SWEEPS: usize = 8;
+const SWEEPS: u8 = 8;
 
 impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Moves the multiplier of a cell towards its mean until the multiplier has one sign. Numbers inside the cell keep
@@ -120,7 +121,7 @@ impl<const D: usize> Space<'_, D> {
         let strength = |cell: usize| {
             multipliers[cell][..=D].iter().fold(0.0, |most: f64, m| most.max(m.abs()))
         };
-        let largest = (0..multipliers.len()).map(strength).fold(0.0, f64::max);
+        let largest = largest(multipliers.len(), strength);
         let presses = |cell: usize| strength(cell) > ROUNDING * largest;
         let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, &|_| true), true);
         let numbers: Vec<usize> = numbers.into_iter().map(|cell| cell as usize).collect();
@@ -128,8 +129,8 @@ impl<const D: usize> Space<'_, D> {
         let mut cells = self.cells_with_products(&numbers, multiplier, function, flux);
         (0..numbers.len()).for_each(|k| cells.make_sign_definite(k));
         let square: f64 = (0..numbers.len()).map(|k| cells.square(k)).sum();
-        let sweeps = Sweeps::new(SWEEPS, numbers.len(), square);
-        sweeps.run(numbers.len(), &steps, |step| match step {
+        let negligible = negligible(numbers.len(), square);
+        let mut visit = |step: ExchangeStep| match step {
             ExchangeStep::Between(facets) => {
                 let at = facets.map(FacetOfCell::half);
                 let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
@@ -146,7 +147,13 @@ impl<const D: usize> Space<'_, D> {
                 let pairs = (0..D + 1).flat_map(|a| (a + 1..=D).map(move |b| [a, b]));
                 pairs.map(|pair| cells.exchange_inside(k as usize, pair)).sum()
             }
-        });
+        };
+        let mut last_change = vec![0; numbers.len()];
+        for sweep in 1..=SWEEPS {
+            for steps in steps.within.iter().chain([&steps.between]) {
+                visit_steps(steps, (sweep, negligible), (0, &mut last_change), &mut visit);
+            }
+        }
     }
 
     /// The multipliers of obstacles, projected on linear functions, at the vertices of cells.

@@ -2,11 +2,11 @@
 //! condensation.
 
 use super::iterate::Iterate;
-use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
+use super::linear_solver::{Accuracy, End, LinearSolver};
 use crate::algebra::{Inequality, PenalisedMatrix};
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
 use crate::linear::direct::{
-    CondensedFactors, FactorError, Factors, OrderedMatrix, StaticCondensation,
+    CondensedFactors, FactorError, Factors, MatrixFactors, OrderedMatrix, StaticCondensation,
 };
 use crate::real::Real;
 
@@ -32,31 +32,11 @@ pub(crate) struct DirectSolver<'a, T> {
     /// The inactive unknowns, ascending.
     inactive: Vec<u32>,
     /// The factors for the inactive unknowns; `None` before the first factorisation and after one that failed.
-    factors: Option<InactiveFactors<T>>,
+    factors: Option<MatrixFactors<T>>,
     /// The static condensation of the penalised matrix, if the matrix is penalised.
     condensation: Option<StaticCondensation<'a, T>>,
     /// The assembled matrix, with one order of elimination for all active sets if it is symmetric.
     assembled: OrderedMatrix<'a, T>,
-}
-
-/// The factors of a matrix on the inactive unknowns.
-enum InactiveFactors<T> {
-    Assembled(Factors<T>),
-    Condensed(Box<CondensedFactors<T>>),
-}
-
-/// The sizes of a correction of values and jump multipliers.
-struct CorrectionSize {
-    /// The energy of the correction.
-    correction_energy: f64,
-    /// Largest absolute change of a value.
-    max_change: f64,
-    /// Largest absolute value after the correction.
-    max_norm: f64,
-    /// The energy scale of [`PenalisedMatrix::energy`] after the correction.
-    energy: f64,
-    /// `sum K_ii u_i^2` after the correction.
-    diagonal_energy: f64,
 }
 
 impl<'a, T: Real> DirectSolver<'a, T> {
@@ -146,7 +126,7 @@ impl<T: Real> DirectSolver<'_, T> {
     /// values.
     fn correction_energy(&self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
         match (&self.factors, &self.condensation, &self.inequality.penalised) {
-            (Some(InactiveFactors::Assembled(factors)), ..) => {
+            (Some(MatrixFactors::Assembled(factors)), ..) => {
                 iterate.compute_residual();
                 let residual = &iterate.residual;
                 let of_inactive = |&i: &u32| T::lit(residual[i as usize]);
@@ -155,7 +135,7 @@ impl<T: Real> DirectSolver<'_, T> {
                 let terms = self.inactive.iter().zip(&correction);
                 Some(terms.map(|(&i, e)| residual[i as usize] * e.to_f64()).sum())
             }
-            (Some(InactiveFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
+            (Some(MatrixFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
                 let is_inactive = iterate.eliminated.iter().map(|&e| !e).collect();
                 let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
                 let mut jump_residuals = vec![0.0; iterate.jump_multipliers.len()];
@@ -170,11 +150,7 @@ impl<T: Real> DirectSolver<'_, T> {
 }
 
 impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
-    fn tolerance(&self) -> f64 {
-        0.0
-    }
-
-    fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), LinearFailure> {
+    fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), End> {
         self.inactive.clear();
         let inactive = eliminated.iter().enumerate().filter(|(_, eliminated)| !**eliminated);
         self.inactive.extend(inactive.map(|(i, _)| i as u32));
@@ -182,36 +158,28 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
         self.factors = Some(match &self.condensation {
             Some(condensation) => {
                 let is_inactive: Vec<bool> = eliminated.iter().map(|&e| !e).collect();
-                InactiveFactors::Condensed(Box::new(condensation.factor(&is_inactive)?))
+                MatrixFactors::Condensed(Box::new(condensation.factor(&is_inactive)?))
             }
-            None => InactiveFactors::Assembled(self.factor()?),
+            None => MatrixFactors::Assembled(self.factor()?),
         });
         Ok(())
     }
 
     /// For a penalised matrix, corrects values and jump multipliers together until the corrections no longer halve.
-    fn correct(
-        &mut self,
-        iterate: &mut Iterate<'_, T>,
-        _accuracy: Accuracy,
-    ) -> Result<(), LinearFailure> {
+    fn correct(&mut self, iterate: &mut Iterate<'_, T>, _accuracy: Accuracy) -> Result<(), End> {
         match (&self.factors, &self.condensation, &self.inequality.penalised) {
-            (Some(InactiveFactors::Assembled(factors)), ..) => {
+            (Some(MatrixFactors::Assembled(factors)), ..) => {
                 self.correct_assembled(factors, iterate)?;
             }
-            (Some(InactiveFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
+            (Some(MatrixFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
                 let is_inactive = iterate.eliminated.iter().map(|&e| !e).collect();
                 iterate.jump_multipliers.resize(penalised.n_jumps(), T::lit(0.0));
                 let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
                 system.solve(iterate)?;
             }
-            _ => return Err(LinearFailure::Unsuitable),
+            _ => return Err(End::Unsuitable),
         }
         Ok(())
-    }
-
-    fn is_accurate(&self, _energy_norm: f64) -> bool {
-        true
     }
 
     fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
@@ -244,51 +212,45 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
     /// [`FactorError::Singular`] if the energy of the last correction is not small: the matrix is then singular in the
     /// precision of the scalar.
     fn solve(&self, iterate: &mut Iterate<'_, T>) -> Result<(), FactorError> {
+        let penalised = self.penalised;
+        // the residuals of both equations, which the corrections overwrite
         let mut jump_residuals = vec![0.0; iterate.jump_multipliers.len()];
         let mut previous_change = f64::INFINITY;
         let mut is_singular = false;
         let squared_rounding = (CORRECTION_MULTIPLE * T::EPSILON).powi(2);
-        for correction in 0..MAX_CORRECTIONS {
-            let size = self.correct(iterate, &mut jump_residuals);
-            let is_small = size.max_change <= CORRECTION_MULTIPLE * T::EPSILON * size.max_norm;
+        for solution in 1..=MAX_CORRECTIONS {
+            self.compute_residuals(iterate, &mut jump_residuals);
+            let Iterate { inequality, values, jump_multipliers, residual, .. } = &mut *iterate;
+            let (factors, is_inactive) = (self.factors, &self.is_inactive);
+            let correction_energy =
+                self.condensation.solve(factors, is_inactive, residual, &mut jump_residuals);
+            let (mut max_change, mut max_norm, mut diagonal_energy) = (0.0_f64, 0.0_f64, 0.0);
+            for (i, (x, correction)) in values.iter_mut().zip(residual.iter()).enumerate() {
+                *x += T::lit(*correction);
+                max_change = max_change.max(correction.abs());
+                max_norm = max_norm.max(x.to_f64().abs());
+                diagonal_energy += penalised.stiffness_diagonal(i) * x.to_f64().powi(2);
+            }
+            for (multiplier, correction) in jump_multipliers.iter_mut().zip(&jump_residuals) {
+                *multiplier += T::lit(*correction);
+            }
+            let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
+            let load = &inequality.load;
+            let energy = penalised.energy(load, |i| values[i].to_f64(), multiplier);
+            let is_small = max_change <= CORRECTION_MULTIPLE * T::EPSILON * max_norm;
             // A quarter of the digits of the scalar in the energy norm: single unknowns of thin cells may have fewer
             // correct digits. The second term is for constants, whose energy is zero.
-            let tolerance =
-                T::EPSILON.sqrt() * size.energy + squared_rounding * size.diagonal_energy;
-            is_singular = size.correction_energy.abs() > tolerance;
+            let tolerance = T::EPSILON.sqrt() * energy + squared_rounding * diagonal_energy;
+            is_singular = correction_energy.abs() > tolerance;
             // false for numbers that are not finite
-            let halves = size.max_change <= 0.5 * previous_change && !is_small;
-            if correction + 1 >= SOLUTIONS && !halves {
+            let halves = max_change <= 0.5 * previous_change && !is_small;
+            if solution >= SOLUTIONS && !halves {
                 break;
             }
-            previous_change = size.max_change;
+            previous_change = max_change;
         }
-        self.compute_residual(iterate);
+        iterate.compute_residual_with_jump_multipliers();
         if is_singular { Err(FactorError::Singular) } else { Ok(()) }
-    }
-
-    /// One correction of values and jump multipliers: the solution of the system with the residuals of both equations
-    /// as right-hand sides. `jump_residuals` is workspace for the residual of the second equation; the corrections
-    /// overwrite both residuals.
-    fn correct(&self, iterate: &mut Iterate<'_, T>, jump_residuals: &mut [f64]) -> CorrectionSize {
-        let penalised = self.penalised;
-        self.compute_residuals(iterate, jump_residuals);
-        let Iterate { values, jump_multipliers, residual, .. } = iterate;
-        let correction_energy =
-            self.condensation.solve(self.factors, &self.is_inactive, residual, jump_residuals);
-        let (mut max_change, mut max_norm, mut diagonal_energy) = (0.0_f64, 0.0_f64, 0.0);
-        for (i, (x, correction)) in values.iter_mut().zip(residual.iter()).enumerate() {
-            *x += T::lit(*correction);
-            max_change = max_change.max(correction.abs());
-            max_norm = max_norm.max(x.to_f64().abs());
-            diagonal_energy += penalised.stiffness_diagonal(i) * x.to_f64().powi(2);
-        }
-        for (multiplier, correction) in jump_multipliers.iter_mut().zip(jump_residuals) {
-            *multiplier += T::lit(*correction);
-        }
-        let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-        let energy = penalised.energy(&iterate.inequality.load, |i| values[i].to_f64(), multiplier);
-        CorrectionSize { correction_energy, max_change, max_norm, energy, diagonal_energy }
     }
 
     /// Sets the residual to `c - K u - M^T p`, and `jump_residuals` to `g - M u + S^-1 p`.
@@ -297,14 +259,6 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
             let multiplier = iterate.jump_multipliers[jump].to_f64();
             *out = self.penalised.jump_residual(jump, |i| iterate.values[i].to_f64(), multiplier);
         }
-        self.compute_residual(iterate);
-    }
-
-    /// Sets the residual to `c - K u - M^T p`.
-    fn compute_residual(&self, iterate: &mut Iterate<'_, T>) {
-        let Iterate { inequality, values, jump_multipliers, residual, .. } = iterate;
-        let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-        let (load, value) = (&inequality.load, |i: usize| values[i].to_f64());
-        self.penalised.residual_with_jump_multipliers(load, value, multiplier, residual);
+        iterate.compute_residual_with_jump_multipliers();
     }
 }

@@ -4,7 +4,6 @@
 use super::iterate::Iterate;
 use super::linear_solver::LinearSolver;
 use crate::algebra::{Contact, Distribution};
-use crate::inequality::certificate;
 use crate::inequality::scales::Scales;
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
@@ -99,8 +98,7 @@ impl<T: Real> Iterate<'_, T> {
 
     /// Makes the present iterate, which another method found, the best one, whatever the merit of those before.
     pub fn set_best(&mut self, solver: &dyn LinearSolver<T>) {
-        let Self { inequality, values, jump_multipliers, residual, .. } = self;
-        certificate::residual(inequality, values, jump_multipliers, residual);
+        self.compute_residual_with_jump_multipliers();
         self.forget_best();
         let merit = self.evaluate(solver).merit;
         self.keep_if_best(merit);

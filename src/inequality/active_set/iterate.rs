@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::contact_state::{prescribed_value, starting_states};
 use crate::algebra::{Contact, Inequality, any_part};
-use crate::inequality::certificate::positive_diagonal;
+use crate::inequality::certificate::{self, positive_diagonal};
 use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Outcome, Solution};
 use crate::parallel::vectors::{collect, for_each_chunk, for_each_chunk_of_two, sum_chunks};
@@ -140,6 +140,12 @@ impl<'a, T: Real> Iterate<'a, T> {
         if let Some(distribution) = distribution {
             distribution.update(&mut self.values);
         }
+    }
+
+    /// Computes the residual from the values and the jump multipliers.
+    pub fn compute_residual_with_jump_multipliers(&mut self) {
+        let Self { inequality, values, jump_multipliers, residual, .. } = self;
+        certificate::residual(inequality, values, jump_multipliers, residual);
     }
 
     /// Computes the residual from the values.

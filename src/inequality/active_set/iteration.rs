@@ -2,14 +2,13 @@
 
 use super::evaluation::Evaluation;
 use super::iterate::Iterate;
-use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
+use super::linear_solver::{Accuracy, End, LinearSolver};
 use super::local_inequality::solve_locally;
 use super::progress::ProgressMonitor;
 use super::settings::ActiveSet;
 use crate::algebra::{Bound, any_part};
 use crate::inequality::Outcome;
 use crate::inequality::history::Recorder;
-use crate::linear::direct::FactorError;
 use crate::real::Real;
 
 /// Number of steps after which an iteration with few state changes calls [`solve_locally`]. WOPSIP with bounds at
@@ -19,35 +18,6 @@ const MANY_STEPS: usize = 8;
 
 /// Largest number of state changes, divided by the number of unknowns, that counts as few.
 const FEW_CHANGES_SHARE: f64 = 1.0 / 4000.0;
-
-/// How an iteration ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum End {
-    /// With this outcome.
-    Outcome(Outcome),
-    /// The iteration does not progress.
-    Stagnation,
-    /// The matrix of the active set is singular, where that of another one need not be.
-    Singular,
-    /// The linear solver does not fit the matrix.
-    Unsuitable,
-}
-
-impl From<Outcome> for End {
-    fn from(outcome: Outcome) -> Self {
-        Self::Outcome(outcome)
-    }
-}
-
-impl From<LinearFailure> for End {
-    fn from(failure: LinearFailure) -> Self {
-        match failure {
-            LinearFailure::Factors(error) => Self::Outcome(error.into()),
-            LinearFailure::Outcome(outcome) => Self::Outcome(outcome),
-            LinearFailure::Unsuitable => Self::Unsuitable,
-        }
-    }
-}
 
 /// The active set iteration from the contact states of an iterate.
 ///
@@ -178,22 +148,11 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             }
             self.iterate.outer += 1;
             self.recorder.begin_step();
+            self.solver.set_eliminated(&self.iterate.eliminated)?;
         } else {
             self.recorder.count_system();
         }
-        let is_prepared = match has_new_states {
-            true => self.solver.set_eliminated(&self.iterate.eliminated),
-            false => Ok(()),
-        };
-        let corrected = is_prepared.and_then(|()| self.solver.correct(self.iterate, accuracy));
-        corrected.map_err(|failure| match failure {
-            // the whole matrix has been checked: a negative pivot is one of rounding. Either bounds alone hold a part of
-            // the domain, and no unknown is active there, or large penalties leave the matrix of this active set no digit
-            LinearFailure::Factors(FactorError::Singular | FactorError::NotPositive) => {
-                End::Singular
-            }
-            failure => failure.into(),
-        })
+        self.solver.correct(self.iterate, accuracy)
     }
 
     /// The end of an iteration whose certificate remains too large because of rounding. [`End::Unsuitable`] after a

@@ -1,7 +1,7 @@
 //! Linear systems solved by a preconditioned Krylov method, without factors of the matrix.
 
 use super::iterate::Iterate;
-use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
+use super::linear_solver::{Accuracy, End, LinearSolver};
 use crate::algebra::{Inequality, SparseMatrix, any_part, sum_over_parts};
 use crate::inequality::Outcome;
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
@@ -85,25 +85,25 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
     ///
     /// # Errors
     /// The failure if the run did not converge, or if the condition number exceeds [`MAX_CONDITION`].
-    fn check_run(&mut self, run: &KrylovRun) -> Result<(), LinearFailure> {
+    fn check_run(&mut self, run: &KrylovRun) -> Result<(), End> {
         let (low, high) = run.ritz.unwrap_or((1.0, 1.0));
         self.smallest_ritz_value = self.smallest_ritz_value.min(low);
         match run.reason {
             StopReason::NotPositive if !self.inequality.symmetric => Err(self.loss_of_positivity()),
-            _ if high > MAX_CONDITION * low => Err(LinearFailure::Unsuitable),
+            _ if high > MAX_CONDITION * low => Err(End::Unsuitable),
             StopReason::NotPositive => Err(self.loss_of_positivity()),
             StopReason::Converged => Ok(()),
-            StopReason::NotFinite => Err(LinearFailure::Outcome(Outcome::NotFinite)),
-            StopReason::IterationLimit => Err(LinearFailure::Unsuitable),
+            StopReason::NotFinite => Err(End::Outcome(Outcome::NotFinite)),
+            StopReason::IterationLimit => Err(End::Unsuitable),
         }
     }
 
     /// The failure after a run or the preconditioner found the symmetric part of the matrix not to be positive
     /// definite. The check before the solve has factored a matrix that is not distributed: rounding is the reason.
-    fn loss_of_positivity(&self) -> LinearFailure {
+    fn loss_of_positivity(&self) -> End {
         match self.inequality.distribution {
-            Some(_) => LinearFailure::Outcome(Outcome::NotCoercive),
-            None => LinearFailure::Unsuitable,
+            Some(_) => End::Outcome(Outcome::NotCoercive),
+            None => End::Unsuitable,
         }
     }
 
@@ -157,12 +157,12 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
     /// but need not come close to it.
     ///
     /// # Errors
-    /// [`LinearFailure::Unsuitable`] if the condition number is too large or the run does not converge, an outcome if
+    /// [`End::Unsuitable`] if the condition number is too large or the run does not converge, an outcome if
     /// the symmetric part is not positive definite.
     pub fn estimate_smallest_eigenvalue(
         &mut self,
         iterate: &mut Iterate<'_, T>,
-    ) -> Result<(), LinearFailure> {
+    ) -> Result<(), End> {
         let run = eigenvalue_run(
             Product::Assembled(self.symmetric_part),
             self.inequality.distribution(),
@@ -181,22 +181,18 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         self.tolerance
     }
 
-    fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), LinearFailure> {
+    fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), End> {
         self.eliminated.clear();
         self.eliminated.extend_from_slice(eliminated);
         self.preconditioner.set_fixed(eliminated).map_err(|error| match error {
-            FactorError::OutOfMemory => LinearFailure::Outcome(Outcome::OutOfMemory),
+            FactorError::OutOfMemory => End::Outcome(Outcome::OutOfMemory),
             FactorError::NotPositive if !self.inequality.symmetric => self.loss_of_positivity(),
             // the stage with factors finds the reason
-            _ => LinearFailure::Unsuitable,
+            _ => End::Unsuitable,
         })
     }
 
-    fn correct(
-        &mut self,
-        iterate: &mut Iterate<'_, T>,
-        accuracy: Accuracy,
-    ) -> Result<(), LinearFailure> {
+    fn correct(&mut self, iterate: &mut Iterate<'_, T>, accuracy: Accuracy) -> Result<(), End> {
         if !iterate.residual_is_current {
             iterate.compute_residual();
         }
@@ -222,10 +218,7 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
 
     /// The jump multipliers are `S (M u - g) + S M e`, where `e` solves the system with the residual of `u`. They are
     /// those of the values `u + e` without the rounding of this sum, which large weights `S` would amplify.
-    fn determine_jump_multipliers(
-        &mut self,
-        iterate: &mut Iterate<'_, T>,
-    ) -> Result<bool, LinearFailure> {
+    fn determine_jump_multipliers(&mut self, iterate: &mut Iterate<'_, T>) -> Result<bool, End> {
         let Some(penalised) = &self.inequality.penalised else { return Ok(false) };
         iterate.compute_residual();
         self.restrict_residual(iterate);
@@ -246,22 +239,12 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
             T::lit(multipliers_of_values[jump] + change)
         };
         iterate.jump_multipliers = collect(penalised.n_jumps(), multiplier);
-        let Iterate { values, jump_multipliers, residual, .. } = iterate;
-        penalised.residual_with_jump_multipliers(
-            &self.inequality.load,
-            |i| values[i].to_f64(),
-            |jump| jump_multipliers[jump].to_f64(),
-            residual,
-        );
+        iterate.compute_residual_with_jump_multipliers();
         Ok(true)
     }
 
     fn is_accurate(&self, energy_norm: f64) -> bool {
         self.residual_norm
             <= self.full_accuracy_norm.min(TOLERANCE_MARGIN * self.tolerance * energy_norm)
-    }
-
-    fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
-        iterate.residual_term_magnitudes(i)
     }
 }

@@ -22,7 +22,7 @@ pub(crate) struct ProgressMonitor<'d> {
     limit: Option<usize>,
     /// The other parts of the mesh, if the states are those of one part.
     distribution: Option<&'d dyn Distribution>,
-    /// The fingerprint of the present active set, less that of the first; see [`FingerprintChange`].
+    /// The fingerprint of the present active set, less that of the first; see [`fingerprint_change`].
     fingerprint: u128,
     /// The fingerprints of the preceding active sets, each with whether its system was solved accurately.
     seen: Vec<(u128, bool)>,
@@ -80,8 +80,7 @@ impl<'d> ProgressMonitor<'d> {
         before: &[Contact],
         is_accurate: bool,
     ) -> bool {
-        let own = FingerprintChange::of_changes(changes, before, self.distribution);
-        let FingerprintChange { fingerprint, count } = own.over_parts(self.distribution);
+        let (fingerprint, count) = fingerprint_change(changes, before, self.distribution);
         self.next_is_accurate = count < MIN_CHANGES_FOR_REDUCED_ACCURACY;
         if count == 0 {
             return true;
@@ -125,46 +124,28 @@ impl<'d> ProgressMonitor<'d> {
     }
 }
 
-/// The difference of the fingerprints of two active sets. The fingerprint of an active set is the sum of the keys of
-/// all unknowns and has 128 bits: two different sets among a few hundred share one with a probability below 1e-33, so
-/// that sets with equal fingerprints count as equal.
-struct FingerprintChange {
-    fingerprint: u128,
-    /// The number of state changes.
-    count: usize,
-}
-
-impl FingerprintChange {
-    /// The difference by the state changes in one part.
-    fn of_changes(
-        changes: &[(u32, Contact)],
-        before: &[Contact],
-        distribution: Option<&dyn Distribution>,
-    ) -> Self {
-        let mut fingerprint = 0_u128;
-        for &(i, contact) in changes {
-            let number = number(i as usize, distribution);
-            fingerprint = fingerprint
-                .wrapping_sub(state_key(number, before[i as usize]))
-                .wrapping_add(state_key(number, contact));
-        }
-        Self { fingerprint, count: changes.len() }
+/// The difference of the fingerprints of two active sets, and the number of state changes, over all parts. The
+/// fingerprint of an active set is the sum of the keys of all unknowns and has 128 bits: two different sets among a few
+/// hundred share one with a probability below 1e-33, so that sets with equal fingerprints count as equal.
+fn fingerprint_change(
+    changes: &[(u32, Contact)],
+    before: &[Contact],
+    distribution: Option<&dyn Distribution>,
+) -> (u128, usize) {
+    let mut fingerprint = 0_u128;
+    for &(i, contact) in changes {
+        let number = distribution.map_or(u64::from(i), |of| of.number(i as usize));
+        fingerprint = fingerprint
+            .wrapping_sub(state_key(number, before[i as usize]))
+            .wrapping_add(state_key(number, contact));
     }
-
-    /// The sum over all parts. Quarters of 32 bits are added separately, so that their sums are exact in `f64`.
-    fn over_parts(self, distribution: Option<&dyn Distribution>) -> Self {
-        let Some(distribution) = distribution else { return self };
-        let quarter = |k: u32| f64::from((self.fingerprint >> (32 * k)) as u32);
-        let mut sums = [quarter(0), quarter(1), quarter(2), quarter(3), self.count as f64];
-        distribution.sum(&mut sums);
-        let quarters = (0..).zip(&sums[..4]).map(|(k, &sum)| (sum as u128) << (32 * k));
-        Self { fingerprint: quarters.fold(0, u128::wrapping_add), count: sums[4] as usize }
-    }
-}
-
-/// The number of an unknown among those of all parts.
-fn number(unknown: usize, distribution: Option<&dyn Distribution>) -> u64 {
-    distribution.map_or(unknown as u64, |distribution| distribution.number(unknown))
+    let Some(distribution) = distribution else { return (fingerprint, changes.len()) };
+    // quarters of 32 bits are added separately, so that their sums are exact in `f64`
+    let quarter = |k: u32| f64::from((fingerprint >> (32 * k)) as u32);
+    let mut sums = [quarter(0), quarter(1), quarter(2), quarter(3), changes.len() as f64];
+    distribution.sum(&mut sums);
+    let quarters = (0..).zip(&sums[..4]).map(|(k, &sum)| (sum as u128) << (32 * k));
+    (quarters.fold(0, u128::wrapping_add), sums[4] as usize)
 }
 
 /// The key of the contact state of the unknown with number `i`: a pseudo-random number determined by `i` and the active

@@ -4,7 +4,7 @@
 use crate::algebra::{Inequality, PenalisedMatrix, SparseMatrix};
 use crate::inequality::certificate::positive_diagonal;
 use crate::linear::direct::{
-    CondensedFactors, FactorError, Factors, StaticCondensation, SymbolicFactor, add_to_diagonal,
+    FactorError, Factors, MatrixFactors, StaticCondensation, SymbolicFactor, add_to_diagonal,
 };
 use crate::real::Real;
 
@@ -26,31 +26,9 @@ pub(crate) struct NewtonSystem<'h, 'a, T> {
     free: Vec<u32>,
     /// Whether an unknown is not fixed.
     is_free: Vec<bool>,
-    /// Set by the first factorisation of a symmetric assembled matrix.
-    lower_triangle: Option<LowerTriangle<T>>,
-}
-
-/// The lower triangle of a symmetric `A` and the symbolic analysis of its factors, which are the same
-/// for every `D`.
-struct LowerTriangle<T> {
-    matrix: SparseMatrix<T>,
-    analysis: SymbolicFactor,
-}
-
-impl<T: Real> LowerTriangle<T> {
-    fn new(inequality: &Inequality<T>, free: &[u32]) -> Result<Self, FactorError> {
-        let matrix = inequality.matrix.lower_triangle(free);
-        let analysis = SymbolicFactor::new(&matrix, None)?;
-        Ok(Self { matrix, analysis })
-    }
-}
-
-/// Factors of `A + D`.
-pub(crate) enum NewtonFactors<T> {
-    /// Factors of the assembled matrix.
-    Assembled(Factors<T>),
-    /// Factors of the penalised matrix by static condensation.
-    Condensed(Box<CondensedFactors<T>>),
+    /// The lower triangle of a symmetric assembled `A` and the symbolic analysis of its factors, which are the same for
+    /// every `D`; set by the first factorisation.
+    lower_triangle: Option<(SparseMatrix<T>, SymbolicFactor)>,
 }
 
 impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
@@ -89,37 +67,35 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
     }
 
     /// Factors `A + D`; `diagonal` contains `D_ii` for every unknown.
-    ///
-    /// # Errors
-    /// See [`FactorError`].
-    pub fn factor(&mut self, diagonal: &[f64]) -> Result<NewtonFactors<T>, FactorError> {
+    pub fn factor(&mut self, diagonal: &[f64]) -> Result<MatrixFactors<T>, FactorError> {
         if let Some(condensation) = self.condensation {
             return condensation
                 .factor_shifted(&self.is_free, diagonal)
-                .map(|factors| NewtonFactors::Condensed(Box::new(factors)));
+                .map(|factors| MatrixFactors::Condensed(Box::new(factors)));
         }
         let factors = if self.inequality.symmetric {
-            let triangle = match &mut self.lower_triangle {
-                Some(triangle) => triangle,
-                none => none.insert(LowerTriangle::new(self.inequality, &self.free)?),
+            let (triangle, analysis) = match &mut self.lower_triangle {
+                Some(known) => known,
+                none => {
+                    let triangle = self.inequality.matrix.lower_triangle(&self.free);
+                    let analysis = SymbolicFactor::new(&triangle, None)?;
+                    none.insert((triangle, analysis))
+                }
             };
-            let mut matrix = triangle.matrix.clone();
+            let mut matrix = triangle.clone();
             add_to_diagonal(&mut matrix, &self.free, diagonal)?;
-            Factors::cholesky(&mut matrix, &triangle.analysis)?
+            Factors::cholesky(&mut matrix, analysis)?
         } else {
             let mut matrix = self.inequality.matrix.submatrix(&self.free);
             add_to_diagonal(&mut matrix, &self.free, diagonal)?;
             Factors::lu(&matrix)?
         };
-        Ok(NewtonFactors::Assembled(factors))
+        Ok(MatrixFactors::Assembled(factors))
     }
 
     /// The solution without bounds, and true. A body that bounds alone hold has no such solution: then the solution of
     /// `(A + D) u = b + D l`, where `D` is the diagonal of `A` at unknowns with bounds and `l` the admissible value nearest
     /// to zero, and false.
-    ///
-    /// # Errors
-    /// See [`NewtonSystem::factor`].
     pub fn solve_without_bounds(&mut self) -> Result<(MixedVector, bool), FactorError> {
         let mut diagonal = vec![0.0; self.inequality.size()];
         if self.inequality.kernel.is_empty() {
@@ -159,20 +135,20 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
 
     /// Replaces a right-hand side by the solution, with zeros for fixed unknowns. `factors` must
     /// come from [`NewtonSystem::factor`] of this system.
-    pub fn solve(&self, factors: &NewtonFactors<T>, right: &mut MixedVector) {
+    pub fn solve(&self, factors: &MatrixFactors<T>, right: &mut MixedVector) {
         match (factors, self.condensation) {
-            (NewtonFactors::Condensed(factors), Some(condensation)) => {
+            (MatrixFactors::Condensed(factors), Some(condensation)) => {
                 let MixedVector { values, jump_multipliers } = right;
                 condensation.solve(factors, &self.is_free, values, jump_multipliers);
             }
-            (NewtonFactors::Assembled(factors), _) => {
+            (MatrixFactors::Assembled(factors), _) => {
                 let free = || self.free.iter().map(|&i| i as usize);
                 let mut x: Vec<T> = free().map(|i| T::lit(right.values[i])).collect();
                 factors.solve_in_place(&mut x, 1);
                 right.values.fill(0.0);
                 free().zip(x).for_each(|(i, x)| right.values[i] = x.to_f64());
             }
-            (NewtonFactors::Condensed(_), None) => {
+            (MatrixFactors::Condensed(_), None) => {
                 unreachable!("condensed factors come from a condensation")
             }
         }

@@ -14,9 +14,6 @@ impl<'h, 'a, T: Real> InteriorIterate<'h, 'a, T> {
     ///
     /// A body that bounds alone hold starts from the shifted solution of [`NewtonSystem::solve_without_bounds`], with
     /// slacks that are at least its largest distance from the admissible value nearest to zero.
-    ///
-    /// # Errors
-    /// See [`NewtonSystem::factor`].
     pub fn start(
         inequality: &'a Inequality<T>,
         mut system: NewtonSystem<'h, 'a, T>,
@@ -28,18 +25,13 @@ impl<'h, 'a, T: Real> InteriorIterate<'h, 'a, T> {
         Ok(iterate)
     }
 
-    /// The admissible value nearest to `x`.
-    fn nearest(bound: &Bound<T>, x: f64) -> f64 {
-        bound.nearest(T::lit(x)).to_f64()
-    }
-
     /// Sets slacks and dual variables from the values; `is_regular` if these are the solution without bounds.
     fn set_pairs(&mut self, is_regular: bool) {
         let Self { inequality, system, point, pairs, .. } = self;
         let bounds = inequality.bounds.iter().zip(&point.values);
         // towards the admissible values nearest to the present ones, or to zero
         let change = |(bound, &x): (&Bound<T>, &f64)| match bound.is_inequality() {
-            true => Self::nearest(bound, if is_regular { x } else { 0.0 }) - x,
+            true => bound.nearest(T::lit(if is_regular { x } else { 0.0 })).to_f64() - x,
             false => 0.0,
         };
         let change: Vec<f64> = bounds.map(change).collect();

@@ -77,7 +77,6 @@ impl MonotoneMultigrid {
 mod tests {
     use super::*;
     use crate::algebra::{Bound, SparseMatrix};
-    use crate::inequality::Outcome;
     use crate::linear::CoarseSpaces;
     use crate::linear::precondition::CoarseLevel;
 
@@ -102,59 +101,6 @@ mod tests {
             let found = MonotoneMultigrid::default().solve_from(&string, &guess);
             assert_eq!((found.outcome, found.values), (expected.outcome, expected.values.clone()));
         }
-    }
-
-    /// Both unknowns are in contact, so that no correction meets the direction (1, 1), in which the energy has negative
-    /// curvature and no lower bound.
-    #[test]
-    fn contact_does_not_hide_an_indefinite_matrix() {
-        let matrix = SparseMatrix {
-            row_starts: vec![0, 2, 4],
-            columns: vec![0, 1, 0, 1],
-            values: vec![1.0, -2.0, -2.0, 1.0],
-        };
-        let bounds = vec![Bound::Lower(0.0); 2];
-        let inequality = Inequality::new(matrix, true, vec![-1.0; 2], bounds);
-        let solution = MonotoneMultigrid::default().solve(&inequality);
-        assert_eq!(solution.outcome, Outcome::NotCoercive);
-    }
-
-    /// Second differences on `n` points without fixed ends, beside the rows `others` of two further unknowns.
-    fn beside_free_string(n: usize, others: [[f64; 2]; 2]) -> Inequality<f64> {
-        let mut matrix = SparseMatrix::second_differences(n);
-        for end in [0, n - 1] {
-            let k = (matrix.row_starts[end] as usize..matrix.row_starts[end + 1] as usize)
-                .find(|&k| matrix.columns[k] as usize == end);
-            matrix.values[k.unwrap()] = 1.0;
-        }
-        for row in others {
-            matrix.columns.extend([n as u32, n as u32 + 1]);
-            matrix.values.extend(row);
-            matrix.row_starts.push(matrix.columns.len() as u32);
-        }
-        Inequality::new(matrix, true, vec![-1.0; n + 2], vec![Bound::Lower(0.0); n + 2])
-    }
-
-    /// The smallest eigenvalue of the string is zero, so that no eigenvalue bounds the error of the iterate, and both
-    /// further unknowns are in contact. The matrix must be positive semidefinite on all unknowns, not on admissible
-    /// directions alone.
-    #[test]
-    fn a_string_that_bounds_alone_hold_does_not_hide_an_indefinite_matrix() {
-        let solve = |others| MonotoneMultigrid::default().solve(&beside_free_string(1000, others));
-        assert_eq!(solve([[1.0, 2.0], [2.0, 1.0]]).outcome, Outcome::NotCoercive);
-        assert_eq!(solve([[2.0, 1.0], [1.0, 2.0]]).outcome, Outcome::Converged);
-    }
-
-    /// A limit of zero admits cycles until the first one that does not halve the change of the values.
-    #[test]
-    fn the_limit_of_stagnating_cycles_counts_cycles_that_stagnate() {
-        let string = string(2000);
-        let of = |limit| MonotoneMultigrid::default().stagnation_cycles(limit).solve(&string);
-        let whole = of(200);
-        assert_eq!(whole.outcome, Outcome::Converged);
-        let short = of(0);
-        assert!(short.outer > 1 && short.outer < whole.outer, "{} {}", short.outer, whole.outer);
-        assert_eq!(short.outcome, Outcome::Stalled);
     }
 
     #[test]

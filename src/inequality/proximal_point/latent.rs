@@ -26,11 +26,8 @@ impl Latent {
     /// The latent variable zero of an unknown that is not fixed; `None` without bounds.
     pub fn of<T: Real>(bound: &Bound<T>) -> Option<Self> {
         let is_bounded = bound.is_inequality() && bound.fixed_value().is_none();
-        is_bounded.then(|| Self {
-            lower: bound.lower().map_or(f64::NEG_INFINITY, T::to_f64),
-            upper: bound.upper().map_or(f64::INFINITY, T::to_f64),
-            psi: 0.0,
-        })
+        let [lower, upper] = bound.interval();
+        is_bounded.then_some(Self { lower, upper, psi: 0.0 })
     }
 
     fn width(&self) -> f64 {

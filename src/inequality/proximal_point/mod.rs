@@ -177,9 +177,6 @@ struct ProximalIterate<'h, 'a, T> {
 impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
     /// The solution without bounds, and the latent variables of the starting values, if there are any, else of this
     /// solution, with gaps that are at least its largest violation of a bound.
-    ///
-    /// # Errors
-    /// See [`NewtonSystem::factor`].
     fn start(
         inequality: &'a Inequality<T>,
         mut system: NewtonSystem<'h, 'a, T>,

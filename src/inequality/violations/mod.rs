@@ -18,30 +18,34 @@ use local_violation::{LocalViolation, touched_bound};
 #[must_use]
 pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
     compiled!(
-        T: fn(&Inequality<T>, (&[T], &[T]), Precision) -> Certificate
-            = certificate_of
+        T: fn(&Inequality<T>, (&[T], &[T]), Precision) -> (Certificate, f64)
+            = certificate_with_norm
     )(inequality, (u, &[]), T::PRECISION)
+    .0
 }
 
-/// The certificate of a solution, with its jump multipliers ([`Violations::of`]), in its precision.
+/// The certificate of a solution, with its jump multipliers ([`Violations::of`]), in its precision; and the energy norm
+/// `E` to which it is relative.
 pub(crate) fn certify_solution(
     inequality: &Inequality<f64>,
     solution: &Solution<f64>,
-) -> Certificate {
+) -> (Certificate, f64) {
     let Solution { values, jump_multipliers, precision, .. } = solution;
-    certificate_of(inequality, (values, jump_multipliers), *precision)
-        .with_algebraic_bound(solution.algebraic_bound)
+    let (certificate, energy_norm) =
+        certificate_with_norm(inequality, (values, jump_multipliers), *precision);
+    (certificate.with_algebraic_bound(solution.algebraic_bound), energy_norm)
 }
 
-fn certificate_of<T: Real>(
+fn certificate_with_norm<T: Real>(
     inequality: &Inequality<T>,
-    (u, jump_multipliers): (&[T], &[T]),
+    values: (&[T], &[T]),
     precision: Precision,
-) -> Certificate {
-    match data_are_in_range(inequality, inequality.is_well_formed()) {
-        true => certify_in(precision, inequality, (u, jump_multipliers)).0,
-        false => Certificate::INVALID,
-    }
+) -> (Certificate, f64) {
+    let is_in_range = data_are_in_range(inequality, inequality.is_well_formed());
+    let violations = Violations::of_all(inequality, values, precision);
+    let certificate = if is_in_range { violations.certificate() } else { Certificate::INVALID };
+    let [_, _, epsilon] = violations.maxima;
+    (certificate, violations.scales.scales(epsilon).energy_norm)
 }
 
 /// The certificate, and the dual norm of the vector with the entries `d_i U`, divided by `E`. The second number times
@@ -51,24 +55,11 @@ pub(crate) fn certify_with_rounding<T: Real>(
     u: &[T],
     jump_multipliers: &[T],
 ) -> (Certificate, f64) {
-    certify_in(T::PRECISION, inequality, (u, jump_multipliers))
+    Violations::of_all(inequality, (u, jump_multipliers), T::PRECISION).certificate_with_rounding()
 }
 
-/// As [`certify_with_rounding`], of values that were computed in a precision.
-fn certify_in<T: Real>(
-    precision: Precision,
-    inequality: &Inequality<T>,
-    values: (&[T], &[T]),
-) -> (Certificate, f64) {
-    let has_all_copies = inequality.distribution().is_none();
-    let owns = |i: usize| inequality.owns(i);
-    let own = Violations::at(inequality, values, &owns, (precision, has_all_copies));
-    match inequality.distribution() {
-        Some(distribution) => own.over_parts(distribution),
-        None => own,
-    }
-    .certificate_with_rounding()
-}
+/// The position of the sum of diagonal entries among [`Violations::sums`].
+const DIAGONAL: usize = 3;
 
 /// The violations of the complementarity conditions at the unknowns that a part of a mesh owns: sums and maxima. Those
 /// of all parts are [merged](Violations::merge) into the violations at all unknowns, from which the [`Certificate`] is
@@ -93,16 +84,12 @@ fn certify_in<T: Real>(
 pub struct Violations {
     /// The sums for the scales of the certificate.
     scales: Sums,
-    /// The largest violation of a bound.
-    feasibility: f64,
-    /// The largest jump residual `|g - M u + p / s|`; infinite if sizes do not match.
-    jump_residual: f64,
-    /// `sum d_i v_i^2` for the violations `v_i` called `multiplier`, `complementarity` and `residual`, in this order.
-    squares: [f64; 3],
-    /// The sum of the diagonal entries `d_i`.
-    diagonal_sum: f64,
-    /// Machine epsilon.
-    epsilon: f64,
+    /// The largest violation of a bound; the largest jump residual `|g - M u + p / s|`, infinite if sizes do not match;
+    /// machine epsilon.
+    maxima: [f64; 3],
+    /// `sum d_i v_i^2` for the violations `v_i` called `multiplier`, `complementarity` and `residual`, in this order, and
+    /// the sum of the diagonal entries `d_i`.
+    sums: [f64; 4],
 }
 
 impl Violations {
@@ -130,6 +117,18 @@ impl Violations {
         )(inequality, u, jump_multipliers, owns)
     }
 
+    /// The violations at all unknowns, of all parts, of values and jump multipliers that were computed in a precision.
+    fn of_all<T: Real>(
+        inequality: &Inequality<T>,
+        values: (&[T], &[T]),
+        precision: Precision,
+    ) -> Self {
+        let has_all_copies = inequality.distribution().is_none();
+        let owns = |i: usize| inequality.owns(i);
+        let own = Self::at(inequality, values, &owns, (precision, has_all_copies));
+        inequality.distribution().map_or(own, |distribution| own.over_parts(distribution))
+    }
+
     /// [`Violations::of`] without the dispatch to a compiled instance; with the forces of nodes, whose sums over copies
     /// parts of a mesh do not have, if `has_all_copies`.
     pub(super) fn at<T: Real>(
@@ -139,31 +138,25 @@ impl Violations {
         (precision, has_all_copies): (Precision, bool),
     ) -> Self {
         let n = inequality.size();
-        let mut sums = Self {
-            scales: Sums::default(),
-            feasibility: 0.0,
-            jump_residual: 0.0,
-            squares: [0.0; 3],
-            diagonal_sum: 0.0,
-            epsilon: precision.epsilon(),
-        };
+        let epsilon = precision.epsilon();
         if !inequality.is_well_formed() || u.len() != n {
-            return Self { jump_residual: f64::INFINITY, ..sums };
+            let (scales, maxima) = (Sums::default(), [0.0, f64::INFINITY, epsilon]);
+            return Self { scales, maxima, sums: [0.0; 4] };
         }
         let bounds = &inequality.bounds;
         let mut r = vec![0.0; n];
         residual(inequality, u, jump_multipliers, &mut r);
         let diagonal = collect(n, |i| positive_diagonal(inequality, i));
         let values = (u, &r[..], jump_multipliers);
-        sums.scales = Sums::of(inequality, values, &|i| diagonal[i], owns);
-        sums.jump_residual = largest_jump_residual(inequality, u, jump_multipliers, owns);
+        let scales = Sums::of(inequality, values, &|i| diagonal[i], owns);
+        let jump_residual = largest_jump_residual(inequality, u, jump_multipliers, owns);
         let steps = |i: usize| -r[i] / diagonal[i];
         let shares = has_all_copies.then(|| shares_of_nodes(inequality, u, &steps)).flatten();
         let chunks = map_chunks(n, |range| {
-            let (mut diagonal_sum, mut feasibility, mut squares) = (0.0, 0.0_f64, [0.0; 3]);
+            let (mut feasibility, mut sums) = (0.0_f64, [0.0; 4]);
             for i in range.filter(|&i| owns(i)) {
                 let d = diagonal[i];
-                diagonal_sum += d;
+                sums[DIAGONAL] += d;
                 let (x, step) = (u[i].to_f64(), -r[i] / d);
                 let mut local = LocalViolation::new(&bounds[i], x, step);
                 if let Some((shares, penalised)) = &shares {
@@ -172,64 +165,51 @@ impl Violations {
                 }
                 feasibility = maximum(feasibility, local.feasibility);
                 let changes = [local.multiplier, local.complementarity, local.residual];
-                for (square, change) in squares.iter_mut().zip(changes) {
-                    *square += d * change.powi(2);
+                for (sum, change) in sums.iter_mut().zip(changes) {
+                    *sum += d * change.powi(2);
                 }
             }
-            (diagonal_sum, feasibility, squares)
+            (feasibility, sums)
         });
-        for (diagonal_sum, feasibility, squares) in chunks {
-            sums.diagonal_sum += diagonal_sum;
-            sums.feasibility = maximum(sums.feasibility, feasibility);
-            sums.squares.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);
+        let (mut feasibility, mut sums) = (0.0, [0.0; 4]);
+        for (of_chunk, sums_of_chunk) in chunks {
+            feasibility = maximum(feasibility, of_chunk);
+            sums.iter_mut().zip(sums_of_chunk).for_each(|(sum, of_chunk)| *sum += of_chunk);
         }
-        sums
+        Self { scales, maxima: [feasibility, jump_residual, epsilon], sums }
     }
 
     /// The violations at the unknowns of `self` and `other`, which must have no unknown in common.
     #[must_use]
     pub fn merge(self, other: Self) -> Self {
-        let (one, two) = (self, other);
         Self {
-            scales: one.scales.merge(two.scales),
-            feasibility: maximum(one.feasibility, two.feasibility),
-            jump_residual: maximum(one.jump_residual, two.jump_residual),
-            squares: array_of(|k| one.squares[k] + two.squares[k]),
-            diagonal_sum: one.diagonal_sum + two.diagonal_sum,
-            epsilon: one.epsilon.max(two.epsilon),
+            scales: self.scales.merge(other.scales),
+            maxima: array_of(|k| maximum(self.maxima[k], other.maxima[k])),
+            sums: array_of(|k| self.sums[k] + other.sums[k]),
         }
     }
 
     /// The violations at the unknowns of all parts; all parts call it and have the same result.
     #[must_use]
-    pub fn over_parts(self, distribution: &dyn Distribution) -> Self {
-        let own = self;
-        let mut largest = [own.feasibility, own.jump_residual, own.epsilon];
-        distribution.largest(&mut largest);
-        let [multiplier, complementarity, residual] = own.squares;
-        let mut sums = [multiplier, complementarity, residual, own.diagonal_sum];
-        distribution.sum(&mut sums);
-        let [multiplier, complementarity, residual, diagonal_sum] = sums;
-        let [feasibility, jump_residual, epsilon] = largest;
-        let squares = [multiplier, complementarity, residual];
-        let scales = own.scales.over_parts(distribution);
-        Self { scales, feasibility, jump_residual, squares, diagonal_sum, epsilon }
+    pub fn over_parts(mut self, distribution: &dyn Distribution) -> Self {
+        distribution.largest(&mut self.maxima);
+        distribution.sum(&mut self.sums);
+        Self { scales: self.scales.over_parts(distribution), ..self }
     }
 
     /// All sums and maxima as numbers, to be sent to another part.
     pub fn to_numbers(&self) -> Vec<f64> {
-        let Self { scales, feasibility, jump_residual, squares, diagonal_sum, epsilon } = *self;
-        let own = [feasibility, jump_residual, diagonal_sum, epsilon];
-        [&own[..], &squares, &scales.to_numbers()].concat()
+        let Self { scales, maxima, sums } = self;
+        [&maxima[..], sums, &[scales.max_norm], &scales.sums].concat()
     }
     /// The violations from the numbers of [`Violations::to_numbers`]; `None` if their number is wrong.
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
-        let (&[feasibility, jump_residual, diagonal_sum, epsilon], numbers) =
-            numbers.split_first_chunk()?;
-        let (&squares, numbers) = numbers.split_first_chunk()?;
-        let scales = Sums::from_numbers(numbers.try_into().ok()?);
-        Some(Self { scales, feasibility, jump_residual, squares, diagonal_sum, epsilon })
+        let (&maxima, numbers) = numbers.split_first_chunk()?;
+        let (&sums, numbers) = numbers.split_first_chunk()?;
+        let (&max_norm, of_scales) = numbers.split_first()?;
+        let scales = Sums { max_norm, sums: of_scales.try_into().ok()? };
+        Some(Self { scales, maxima, sums })
     }
 
     /// The certificate of the unknowns whose violations these are.
@@ -241,9 +221,9 @@ impl Violations {
     /// The certificate, and the size of rounding errors relative to machine epsilon: see
     /// `certify_with_rounding`.
     pub(super) fn certificate_with_rounding(&self) -> (Certificate, f64) {
-        let Scales { max_norm, energy_norm } = self.scales.scales(self.epsilon);
-        let [multiplier, complementarity, residual] = self.squares;
-        let Self { feasibility, jump_residual, .. } = *self;
+        let [feasibility, jump_residual, epsilon] = self.maxima;
+        let [multiplier, complementarity, residual, diagonal_sum] = self.sums;
+        let Scales { max_norm, energy_norm } = self.scales.scales(epsilon);
         // a bound that is not a number gives no other violation than of itself
         let numbers = [max_norm, energy_norm, feasibility, multiplier, residual, jump_residual];
         if !numbers.iter().all(|x| x.is_finite()) {
@@ -256,7 +236,7 @@ impl Violations {
             norm(complementarity),
             norm(residual).max(jump_residual / max_norm),
         ]);
-        (certificate, max_norm * norm(self.diagonal_sum))
+        (certificate, max_norm * norm(diagonal_sum))
     }
 }
 

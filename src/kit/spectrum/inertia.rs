@@ -69,27 +69,3 @@ pub fn smallest_eigenvalue(matrix: &SparseMatrix<f64>) -> Result<f64, SpectrumEr
     // no row is dominated by its diagonal entry then: an entry is not finite
     Err(SpectrumError::NotPositive { steps: 0 })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{negative_eigenvalues, smallest_eigenvalue};
-    use crate::algebra::SparseMatrix;
-
-    #[test]
-    fn a_matrix_with_known_eigenvalues() {
-        // eigenvalues 3 and -1, and 2
-        let matrix = SparseMatrix {
-            row_starts: vec![0, 2, 4, 5],
-            columns: vec![0, 1, 0, 1, 2],
-            values: vec![1.0, 2.0, 2.0, 1.0, 2.0],
-        };
-        assert_eq!(negative_eigenvalues(&matrix), Some(1));
-        for scale in [1.0, 1e9] {
-            let values = matrix.values.iter().map(|a| scale * a).collect();
-            let least = smallest_eigenvalue(&SparseMatrix { values, ..matrix.clone() }).unwrap();
-            assert!((least / scale + 1.0).abs() < 1e-5, "{least}");
-        }
-        let without_pivot = SparseMatrix { values: vec![0.0, 2.0, 2.0, 0.0, 2.0], ..matrix };
-        assert_eq!(negative_eigenvalues(&without_pivot), None);
-    }
-}

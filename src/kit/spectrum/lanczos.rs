@@ -117,12 +117,7 @@ impl Lanczos {
         a: &dyn PositiveDefinite,
         b: &dyn PositiveDefinite,
     ) -> Result<f64, SpectrumError> {
-        let operator = |x: &[f64]| {
-            let mut y = a.apply(x);
-            b.solve(&mut y);
-            y
-        };
-        self.run(a.size(), &operator, b)
+        self.run([a, b], [a, b])
     }
 
     /// The smallest eigenvalue of `B^-1 A`.
@@ -134,21 +129,17 @@ impl Lanczos {
         a: &dyn PositiveDefinite,
         b: &dyn PositiveDefinite,
     ) -> Result<f64, SpectrumError> {
-        let operator = |x: &[f64]| {
-            let mut y = b.apply(x);
-            a.solve(&mut y);
-            y
-        };
-        self.run(a.size(), &operator, b).map(|value| 1.0 / value)
+        self.run([a, b], [b, a]).map(|value| 1.0 / value)
     }
 
-    /// The largest eigenvalue of an operator that is symmetric in the inner product of `b`.
+    /// The largest eigenvalue of `inverted^-1 applied`, which are `a` and `b` or `b` and `a`: in both cases symmetric in
+    /// the inner product of `b`, in which the vectors are orthonormal.
     fn run(
         &self,
-        size: usize,
-        operator: &dyn Fn(&[f64]) -> Vec<f64>,
-        b: &dyn PositiveDefinite,
+        [a, b]: [&dyn PositiveDefinite; 2],
+        [applied, inverted]: [&dyn PositiveDefinite; 2],
     ) -> Result<f64, SpectrumError> {
+        let size = a.size();
         if size != b.size() || size == 0 {
             return Err(SpectrumError::Sizes { a: size, b: b.size() });
         }
@@ -164,7 +155,8 @@ impl Lanczos {
                 return Err(SpectrumError::NotPositive { steps });
             }
             next.iter_mut().for_each(|x| *x /= length);
-            let mut image = operator(&next);
+            let mut image = applied.apply(&next);
+            inverted.solve(&mut image);
             basis.push(next);
             diagonal.push(orthogonalise(&mut image, &basis, b));
             length = norm(&image, b);

@@ -17,5 +17,5 @@ pub(crate) use elimination_order::{OrderedMatrix, minimum_degree_of_groups};
 pub use error::FactorError;
 pub(crate) use factors::add_to_diagonal;
 pub use factors::{Factors, is_positive_definite};
-pub(crate) use static_condensation::{CondensedFactors, StaticCondensation};
+pub(crate) use static_condensation::{CondensedFactors, MatrixFactors, StaticCondensation};
 pub(crate) use symbolic_factor::SymbolicFactor;

@@ -54,6 +54,14 @@ enum ReducedMatrix<'a, T> {
     Assembled(OrderedMatrix<'a, T>),
 }
 
+/// Factors of a matrix on some unknowns.
+pub(crate) enum MatrixFactors<T> {
+    /// Of the assembled matrix.
+    Assembled(Factors<T>),
+    /// Of a penalised matrix by static condensation.
+    Condensed(Box<CondensedFactors<T>>),
+}
+
 /// The factors of a matrix `K + M^T S M`.
 pub(crate) enum CondensedFactors<T> {
     /// The inverses of all blocks with their jump multipliers, and the factors of the Schur complement.

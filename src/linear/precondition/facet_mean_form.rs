@@ -11,7 +11,7 @@ use crate::real::Real;
 /// The value at a vertex of the facet mean function of a facet, in a cell of `cell_size` vertices; facet `i` is
 /// opposite to vertex `i`.
 #[inline(always)]
-pub(crate) fn facet_mean_function<T: Real>(cell_size: usize, vertex: usize, facet: usize) -> T {
+pub(super) fn facet_mean_function<T: Real>(cell_size: usize, vertex: usize, facet: usize) -> T {
     T::lit(if vertex == facet { 2.0 - cell_size as f64 } else { 1.0 })
 }
 

@@ -237,7 +237,10 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
                         *is_pair = true;
                         *inverse_jump = invert(own + other + (penalty + penalty))?;
                     }
-                    Some(SideState::Mixed) => mixed_sides.push(s as u32),
+                    Some(SideState::Mixed) => {
+                        *inverse_jump = invert(own)?;
+                        mixed_sides.push(s as u32);
+                    }
                     Some(SideState::Fixed) => *inverse_jump = invert(own)?,
                     None if penalties.has_jump(s) => *inverse_jump = invert(own)?,
                     None => {}
@@ -317,7 +320,8 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         self.set_side_states();
         // errors are returned at the end, because calls of both solvers are collective over the parts of a mesh
         let corrected = self.set_side_corrections();
-        let factored = self.mixed_block.factor(self.matrix, &self.penalties, &self.diagonal);
+        let factored =
+            self.mixed_block.factor(self.matrix, &self.penalties, &self.sides.inverse_jump);
         self.set_facets();
         self.set_fixed_vertices();
         let Self { fixed_facets, kept_facets, fixed_vertices, .. } = self;

@@ -1,5 +1,9 @@
-//! The mixed block: the block of the matrix of an over-penalised element on the cells with free and fixed vertex
-//! values and on the sides opposite to these cells.
+//! The mixed block of an over-penalised element: the free vertex values of cells with free and fixed values, and the means
+//! over the sides opposite to these cells.
+//!
+//! The block has the entries of the matrix, but none between two means of one cell, so that an elimination of the means is
+//! a formula for each of them. With the penalty `p` of a jump and the stiffness `k` of a facet mean function the
+//! elimination leaves `p k / (k + p)` of the penalty: what remains is positive definite.
 
 use crate::algebra::{NO_INDEX, SidePenalties, SparseMatrix};
 use crate::linear::direct::{FactorError, Factors, minimum_degree_of_groups};
@@ -11,21 +15,23 @@ pub(super) struct MixedBlock<'a, T> {
     pub vertex_values: Vec<u32>,
     /// The sides of cells without fixed unknowns that are opposite to cells with free and fixed unknowns.
     pub sides: Vec<u32>,
-    /// These sides, with what eliminates their means from the block.
-    condensed: Vec<CondensedSide<T>>,
+    /// How the mean over each of these sides is coupled to vertex values of the block.
+    couplings: Vec<SideCoupling<T>>,
     solver: Box<dyn BlockSolver<T> + 'a>,
     /// Workspace: residual and correction at the vertex values.
     vector: Vec<T>,
 }
 
-/// The solver of a block of the matrix on few unknowns.
+/// The solver of a linear system with few of the unknowns.
 pub(crate) trait BlockSolver<T>: Send + Sync {
-    /// Factors the block of the matrix on some unknowns, ascending.
+    /// Factors a symmetric matrix with a row for each of these unknowns, ascending. Over the parts of a mesh the rows of
+    /// ghosts may be incomplete.
     ///
     /// # Errors
     /// See [`FactorError`].
     fn factor(&mut self, block: &SparseMatrix<T>, unknowns: &[u32]) -> Result<(), FactorError>;
-    /// Replaces a right-hand side by the solution.
+    /// Replaces a right-hand side by the solution; over the parts of a mesh also at ghosts, whose right-hand side is not
+    /// read.
     fn solve(&mut self, vector: &mut [T]);
 }
 
@@ -73,7 +79,7 @@ impl<'a, T: Real> MixedBlock<'a, T> {
         Self {
             vertex_values: Vec::new(),
             sides: Vec::new(),
-            condensed: Vec::new(),
+            couplings: Vec::new(),
             solver,
             vector: Vec::new(),
         }
@@ -81,8 +87,8 @@ impl<'a, T: Real> MixedBlock<'a, T> {
 }
 
 impl<T: Real> MixedBlock<'_, T> {
-    /// Eliminates the means of the sides from the block, each by its entry of `diagonal`, the form of its facet mean
-    /// function with itself, and factors what remains on the vertex values.
+    /// Eliminates the means over the sides from the block, and factors what remains on the vertex values. `inverse` has
+    /// for each of the sides the reciprocal of the form of its facet mean function with itself.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -90,34 +96,35 @@ impl<T: Real> MixedBlock<'_, T> {
         &mut self,
         matrix: &SparseMatrix<T>,
         penalties: &SidePenalties<T>,
-        diagonal: &[T],
+        inverse: &[T],
     ) -> Result<(), FactorError> {
-        let Self { vertex_values, sides, condensed, solver, .. } = self;
+        let Self { vertex_values, sides, couplings, solver, .. } = self;
         let mut block = matrix.submatrix(vertex_values);
-        condensed.clear();
+        couplings.clear();
         for &side in &*sides {
-            let side = CondensedSide::new(side as usize, vertex_values, penalties, diagonal);
-            side.subtract_from(&mut block);
-            condensed.push(side);
+            let side = side as usize;
+            let coupling = SideCoupling::new(side, vertex_values, penalties, inverse[side]);
+            coupling.eliminate_from(&mut block);
+            couplings.push(coupling);
         }
         solver.factor(&block, vertex_values)
     }
 
     /// Solves the block for the residual with the entries `r` for vertex values and `g` for facet mean functions. Sets
-    /// the entries of `z` at the vertex values of the block to the solution, and adds the solution at the sides of the
-    /// block to the entries of `means`.
+    /// the entries of `z` at the vertex values of the block to the solution. At the sides of the block the entries of
+    /// `means` have what the diagonal alone gives; what the vertex values add to that is added.
     pub fn solve(&mut self, r: &[T], g: &[T], means: &mut [T], z: &mut [T]) {
-        let Self { vertex_values, condensed, solver, vector, .. } = self;
+        let Self { vertex_values, sides, couplings, solver, vector } = self;
         vector.clear();
         vector.extend(vertex_values.iter().map(|&i| r[i as usize]));
-        for side in &*condensed {
-            let share = side.coupling * side.inverse * g[side.side];
-            side.values().for_each(|k| vector[k] += share);
+        for (&side, coupling) in sides.iter().zip(&*couplings) {
+            let share = coupling.share * g[side as usize];
+            coupling.values().for_each(|k| vector[k] += share);
         }
         solver.solve(vector);
-        for side in &*condensed {
-            let sum = side.values().fold(T::lit(0.0), |sum, k| sum + vector[k]);
-            means[side.side] += side.inverse * (g[side.side] + side.coupling * sum);
+        for (&side, coupling) in sides.iter().zip(&*couplings) {
+            let sum = coupling.values().fold(T::lit(0.0), |sum, k| sum + vector[k]);
+            means[side as usize] += coupling.share * sum;
         }
         for (&i, &value) in vertex_values.iter().zip(&*vector) {
             z[i as usize] = value;
@@ -125,25 +132,19 @@ impl<T: Real> MixedBlock<'_, T> {
     }
 }
 
-/// A side whose mean is eliminated from the block.
-struct CondensedSide<T> {
-    side: usize,
+/// The coupling of the mean over a side with the vertex values of the block in the opposite cell.
+struct SideCoupling<T> {
     /// The positions in the block of the free vertex values on the facet, in the opposite cell; then [`NO_INDEX`].
     values: [u32; 3],
-    /// The entry of the block of the mean with each of these values, with negative sign.
+    /// Minus the entry of the block of the mean with each of these values.
     coupling: T,
-    /// The reciprocal of the diagonal entry of the mean.
-    inverse: T,
+    /// `coupling` over the entry of the block of the mean with itself.
+    share: T,
 }
 
-impl<T: Real> CondensedSide<T> {
-    /// The side with its opposite values among the `vertex_values` of the block, ascending.
-    fn new(
-        side: usize,
-        vertex_values: &[u32],
-        penalties: &SidePenalties<T>,
-        diagonal: &[T],
-    ) -> Self {
+impl<T: Real> SideCoupling<T> {
+    /// The coupling of a side; `vertex_values` are those of the block, ascending.
+    fn new(side: usize, vertex_values: &[u32], penalties: &SidePenalties<T>, inverse: T) -> Self {
         let (size, opposite) = (penalties.cell_size, penalties.opposite[side] as usize);
         let cell = opposite - opposite % size;
         let first = vertex_values.partition_point(|&i| (i as usize) < cell);
@@ -155,20 +156,126 @@ impl<T: Real> CondensedSide<T> {
         values.iter_mut().zip(on_facet).for_each(|(value, (k, _))| *value = k as u32);
         // the mean over a facet has the same share of each of its values
         let coupling = penalties.penalty[side] / T::lit((size - 1) as f64);
-        Self { side, values, coupling, inverse: T::lit(1.0) / diagonal[side] }
+        Self { values, coupling, share: coupling * inverse }
     }
 
     fn values(&self) -> impl Iterator<Item = usize> {
         self.values.into_iter().filter(|&k| k != NO_INDEX).map(|k| k as usize)
     }
 
-    /// Subtracts what the elimination of the mean subtracts from the block.
-    fn subtract_from(&self, block: &mut SparseMatrix<T>) {
-        let change = self.coupling * self.inverse * self.coupling;
+    /// Eliminates the mean from the block.
+    fn eliminate_from(&self, block: &mut SparseMatrix<T>) {
+        let change = self.coupling * self.share;
         for k in self.values() {
             let (columns, entries) = block.row_mut(k);
             let entries = columns.iter().zip(entries);
             entries.filter(|(j, _)| self.values.contains(j)).for_each(|(_, a)| *a -= change);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::{
+        JumpTerm, Jumps, MeanJumps, PenalisedMatrix, RectangularMatrix, galerkin_product,
+    };
+    use crate::linear::precondition::facet_mean_form::{diagonal, facet_mean_function};
+
+    /// Three cells of `n` unknowns in a row: facet 0 of each is facet 1 of the next one.
+    fn three_cells(n: usize) -> PenalisedMatrix<f64> {
+        let weight = 1.0 / (n - 1) as f64;
+        let on_facet = |cell: usize, facet: usize| {
+            (0..n).filter(move |&i| i != facet).map(move |i| (cell * n + i) as u32)
+        };
+        let terms = |cell: usize| {
+            let pairs = on_facet(cell, 0).zip(on_facet(cell + 1, 1));
+            pairs.map(move |(here, there)| JumpTerm { here, there, weight })
+        };
+        let entry = |k: usize| {
+            let (i, j) = (k / n, k % n);
+            1.0 / (1 + i % n + j) as f64 + if i % n == j { 1.0 + i as f64 } else { 0.0 }
+        };
+        let half = (n - 1) as u32;
+        let terms = terms(0).chain(terms(1)).collect();
+        let sides = vec![[0, n as u32 + 1], [n as u32, 2 * n as u32 + 1]];
+        PenalisedMatrix {
+            blocks: (0..3 * n * n).map(entry).collect(),
+            jumps: Jumps::new((3, n), vec![0, half, 2 * half], terms).unwrap(),
+            weights: vec![700.0, 30.0],
+            jump_data: vec![0.0; 2],
+            mean_jumps: Some(MeanJumps { are_means: false, sides }),
+        }
+    }
+
+    /// The assembled matrix, with all entries, by its products with unit vectors.
+    fn assembled(penalised: &PenalisedMatrix<f64>) -> SparseMatrix<f64> {
+        let n = penalised.size();
+        let columns = (0..n as u32).cycle().take(n * n).collect();
+        let row_starts = (0..=n).map(|i| (i * n) as u32).collect();
+        let mut matrix = SparseMatrix { row_starts, columns, values: vec![0.0; n * n] };
+        for j in 0..n {
+            let mut product = vec![0.0; n];
+            penalised.residual(&vec![0.0; n], |i| if i == j { -1.0 } else { 0.0 }, &mut product);
+            (0..n).for_each(|i| matrix.values[i * n + j] = product[i]);
+        }
+        matrix
+    }
+
+    /// Values and means together solve the block of the matrix without entries between means, whatever values of the cell
+    /// in the middle are free.
+    #[test]
+    fn the_solution_is_that_of_the_block_with_its_means() {
+        for n in [3, 4] {
+            let penalised = three_cells(n);
+            let (matrix, size) = (assembled(&penalised), 3 * n);
+            let penalties = SidePenalties::new(&penalised).unwrap();
+            let of_means = diagonal(&penalised, &penalties);
+            let inverse: Vec<f64> = of_means.iter().map(|d| 1.0 / d).collect();
+            for free in 1..(1_u32 << n) - 1 {
+                let mut block = MixedBlock::new(Box::new(BlockFactors::new(n)));
+                let is_free = |i: &u32| free >> (*i as usize % n) & 1 == 1;
+                block.vertex_values = (n as u32..2 * n as u32).filter(is_free).collect();
+                block.sides = vec![0, 2 * n as u32 + 1];
+                block.factor(&matrix, &penalties, &inverse).unwrap();
+                let r: Vec<f64> = (0..size).map(|i| (1.0 + i as f64).sin()).collect();
+                let g: Vec<f64> = (0..size).map(|i| (2.0 * i as f64).cos()).collect();
+                let mut means: Vec<f64> = g.iter().zip(&inverse).map(|(g, d)| g * d).collect();
+                let mut z = vec![0.0; size];
+                block.solve(&r, &g, &mut means, &mut z);
+
+                // the columns of the basis, by rows of the matrix: the values, then the two means
+                let n_values = block.vertex_values.len();
+                let form = galerkin_product(
+                    &matrix,
+                    &RectangularMatrix::by_rows(0..size, |i, columns, values| {
+                        let value = block.vertex_values.iter().position(|&v| v as usize == i);
+                        let mean = match i / n {
+                            0 => Some((0, 0)),
+                            2 => Some((1, 1)),
+                            _ => None,
+                        };
+                        if let Some(k) = value {
+                            columns.push(k as u32);
+                            values.push(1.0);
+                        }
+                        if let Some((mean, facet)) = mean {
+                            columns.push((n_values + mean) as u32);
+                            values.push(facet_mean_function(n, i % n, facet));
+                        }
+                    }),
+                    n_values + 2,
+                );
+                let of_values = block.vertex_values.iter().map(|&i| (z[i as usize], r[i as usize]));
+                let of_means = block.sides.iter().map(|&s| (means[s as usize], g[s as usize]));
+                let (x, right): (Vec<f64>, Vec<f64>) = of_values.chain(of_means).unzip();
+                for (i, right) in right.iter().enumerate() {
+                    let (columns, entries) = form.row(i);
+                    let terms = columns.iter().zip(entries).map(|(&j, a)| a * x[j as usize]);
+                    let product: f64 = terms.sum();
+                    assert!((product - right).abs() < 1e-10, "{n} {free:b} {i}: {product} {right}");
+                }
+            }
         }
     }
 }

@@ -1,25 +1,34 @@
 //! The discrete contact set and the density of the multiplier, for pictures.
 
-use super::discrete_contact::DiscreteContact;
-use super::entity::ContactEntity;
-use crate::algebra::Inequality;
+use super::entity::{ContactEntity, SolvedInequality};
 use crate::assemble::space::Space;
-use crate::inequality::Solution;
+use crate::mesh::HalfFacet;
+
+/// The discrete contact set and multiplier, in terms that do not depend on the unknowns of a
+/// scheme.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct DiscreteContact {
+    /// Cells in contact with an obstacle as a whole.
+    pub cells: Vec<usize>,
+    /// Facets of the contact boundary in contact as a whole: cell, and number in the cell.
+    pub facets: Vec<HalfFacet>,
+    /// Density of the multiplier at every vertex: the nodal multiplier over the integral of the hat
+    /// function of the vertex, over the domain or the contact boundary. None where there is no such
+    /// integral, on the Dirichlet boundary and where rounding leaves no digit; empty without a constraint.
+    pub density: Vec<Option<f64>>,
+}
 
 impl<const D: usize> Space<'_, D> {
     /// The contact set and density of a solution, with the definitions of
     /// `Discretisation::contact_errors`.
-    pub(crate) fn discrete_contact(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-    ) -> DiscreteContact {
+    pub(crate) fn discrete_contact(&self, solved: SolvedInequality<'_>) -> DiscreteContact {
         let mut contact = DiscreteContact::default();
         if !self.problem.is_constrained() {
             return contact;
         }
         let entities = self.entities();
-        let touching = self.in_contact(&entities, inequality, solution);
+        let touching = self.in_contact(&entities, solved);
         for (entity, _) in entities.iter().zip(touching).filter(|(_, touches)| *touches) {
             match entity.facet {
                 None => contact.cells.push(entity.cell),
@@ -31,7 +40,7 @@ impl<const D: usize> Space<'_, D> {
             return contact;
         }
         let weights = self.hat_integrals(&entities, &self.measures_of(&entities));
-        let multipliers = self.vertex_multipliers(inequality, solution);
+        let multipliers = self.vertex_multipliers(solved);
         let given = self.dirichlet_groups();
         let density = |v: usize| {
             let multiplier = multipliers.as_ref().map(|multipliers| multipliers[v]);

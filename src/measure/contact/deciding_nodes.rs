@@ -1,34 +1,19 @@
 //! Which nodes of a cell or facet decide whether it is in contact.
 
-use super::entity::ContactEntity;
 use crate::assemble::space::Space;
 use crate::quadrature::{Rule, facet_to_cell};
 
 /// A mean of a basis function counts as positive above this.
 const POSITIVE: f64 = 1e-9;
 
-/// The nodes that decide whether a cell or a facet of the contact boundary is in contact.
-pub(super) struct DecidingNodes {
-    in_cell: Vec<usize>,
-    /// By number of the facet in its cell.
-    on_facet: Vec<Vec<usize>>,
-}
-
-impl DecidingNodes {
-    /// The nodes of an entity.
-    pub fn of(&self, entity: ContactEntity) -> &[usize] {
-        entity.facet.map_or(&self.in_cell, |local| &self.on_facet[local])
-    }
-}
-
 impl<const D: usize> Space<'_, D> {
-    /// Of the nodes that the constraint set binds those whose basis functions have a positive mean over the
-    /// entity, or all if there is none.
+    /// A list for each facet, by its number, and at `D + 1` one for the cell: of the nodes that the constraint set binds
+    /// those whose basis functions have a positive mean over the facet or the cell, or all if there is none.
     ///
     /// A quadratic basis function of a vertex has a mean of zero over a triangle and a negative one over a
     /// tetrahedron: within the contact set the nodal multiplier of the vertex is zero or has the wrong
     /// sign, so that the vertex is inactive there.
-    pub(super) fn deciding_nodes(&self) -> DecidingNodes {
+    pub(super) fn deciding_nodes(&self) -> Vec<Vec<usize>> {
         let positive = |points: Vec<([f64; 4], f64)>, bounded: Vec<usize>| {
             let mean = |i: usize| -> f64 {
                 points.iter().map(|(point, weight)| weight * self.basis_at(point).values[i]).sum()
@@ -44,9 +29,7 @@ impl<const D: usize> Space<'_, D> {
             let points = rule.iter().map(|(point, weight)| (facet_to_cell(point, local), weight));
             positive(points.collect(), self.bounded_nodes_on(local).map(|(i, _)| i).collect())
         };
-        DecidingNodes {
-            in_cell: positive(in_cell, self.bounded_nodes().map(|(i, _)| i).collect()),
-            on_facet: (0..D + 1).map(on_facet).collect(),
-        }
+        let in_cell = positive(in_cell, self.bounded_nodes().map(|(i, _)| i).collect());
+        (0..D + 1).map(on_facet).chain([in_cell]).collect()
     }
 }

@@ -24,29 +24,25 @@ pub(crate) fn contact_difference<const D: usize>(
     refinements: &[&Refinement],
 ) -> ContactErrors {
     compiled!(const D: fn(DiscreteSolution<'_, '_, D>, DiscreteSolution<'_, '_, D>, &[&Refinement]) -> ContactErrors
-            = |solved, reference, refinements| {
-                let own = (&solved.0.space, solved.1, solved.2);
-                difference(own, (&reference.0.space, reference.1, reference.2), refinements)
-            }
+            = difference
     )(solved, reference, refinements)
 }
 
-/// A solution with its inequality and what the assembler knows of its space.
-type OnSpace<'s, 'a, const D: usize> = (&'s Space<'a, D>, &'s Inequality<f64>, &'s Solution<f64>);
-
 fn difference<const D: usize>(
-    (space, inequality, solution): OnSpace<'_, '_, D>,
-    (fine, fine_inequality, fine_solution): OnSpace<'_, '_, D>,
+    (own, inequality, solution): DiscreteSolution<'_, '_, D>,
+    (fine, fine_inequality, fine_solution): DiscreteSolution<'_, '_, D>,
     refinements: &[&Refinement],
 ) -> ContactErrors {
+    let (space, solved) = (&own.space, (inequality, solution));
+    let (fine, fine_solved) = (&fine.space, (fine_inequality, fine_solution));
     let mut errors = ContactErrors::default();
     // with both an obstacle and a contact boundary there are two multipliers of different kind
     if space.problem.has_obstacle() == space.problem.has_gap() {
         return errors;
     }
     let (entities, fine_entities) = (space.entities(), fine.entities());
-    let touching = space.in_contact(&entities, inequality, solution);
-    let fine_touching = fine.in_contact(&fine_entities, fine_inequality, fine_solution);
+    let touching = space.in_contact(&entities, solved);
+    let fine_touching = fine.in_contact(&fine_entities, fine_solved);
     let measures = fine.measures_of(&fine_entities);
     let of_fine = fine_entities.iter().zip(&measures).zip(fine_touching);
     let area = of_fine.map(|((&entity, measure), touches)| {
@@ -56,21 +52,15 @@ fn difference<const D: usize>(
     });
     errors.contact_area_error = Some(area.sum());
 
-    let of_fine = fine.vertex_multipliers(fine_inequality, fine_solution);
-    let own = space.vertex_multipliers(inequality, solution);
+    let of_fine = fine.vertex_multipliers(fine_solved);
+    let own = space.vertex_multipliers(solved);
     let (Some(mut multipliers), Some(own)) = (of_fine, own) else { return errors };
     for refinement in refinements.iter().rev() {
         multipliers = tested_with_coarser_hats(&multipliers, refinement);
     }
     multipliers.iter_mut().zip(own).for_each(|(m, own)| *m -= own);
     let weights = space.hat_integrals(&entities, &space.measures_of(&entities));
-    let given = space.dirichlet_groups();
-    let vertices = || (0..weights.len()).filter(|&v| weights[v] > 0.0 && given[v].is_none());
-    if vertices().next().is_some() {
-        let squares: f64 = vertices().map(|v| multipliers[v].powi(2) / weights[v]).sum();
-        errors.multiplier_l1 = Some(vertices().map(|v| multipliers[v].abs()).sum());
-        errors.multiplier_l2 = Some(squares.sqrt());
-    }
+    [errors.multiplier_l1, errors.multiplier_l2] = space.density_norms(&multipliers, &weights);
     errors
 }
 

@@ -1,7 +1,10 @@
-//! Mesh entities that can be in contact.
+//! Mesh entities that can be in contact, and the solution that says whether they are.
 
-/// A cell, or a facet by its number in a cell.
-pub(crate) type CellOrFacet = (usize, Option<usize>);
+use crate::algebra::Inequality;
+use crate::inequality::Solution;
+
+/// An inequality and its solution.
+pub(in crate::measure) type SolvedInequality<'s> = (&'s Inequality<f64>, &'s Solution<f64>);
 
 /// A mesh entity that can be in contact: a cell under an obstacle, or a facet of the contact
 /// boundary.

@@ -39,9 +39,6 @@ impl ExactContact {
 impl<const D: usize> Space<'_, D> {
     /// The exact multiplier and contact set on some entities, at the same points: a list for each chunk of entities,
     /// with the positions of those that have a multiplier or a share in contact, or are near the free boundary.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
     pub(super) fn exact_contact(
         &self,
         exact: &Exact<D>,

@@ -8,7 +8,7 @@ use super::point_grid::PointGrid;
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::Space;
 use crate::problem::ContactSet;
-use crate::real::Point;
+use crate::real::{Point, box_around};
 
 /// A facet of the discrete free boundary is sampled by the points whose barycentric coordinates are
 /// multiples of one over this.
@@ -81,11 +81,7 @@ impl<const D: usize> Space<'_, D> {
         let grid = PointGrid::new(points);
         let on_entity = |entity: &ContactEntity, found: &mut Vec<usize>| {
             let corners = self.corner_points(*entity);
-            let corners = &corners[..=entity.dimension::<D>()];
-            let fold = |f: fn(f64, f64) -> f64| {
-                corners[1..].iter().fold(corners[0], |x, y| x.zip_map(y, f))
-            };
-            let (low, high) = (fold(f64::min), fold(f64::max));
+            let [low, high] = box_around(&corners[..=entity.dimension::<D>()]);
             let slack = Point::repeat(SLACK * (high - low).norm().max(f64::MIN_POSITIVE));
             grid.visit_within(&(low - slack), &(high + slack), &mut |k, x| {
                 if self.covers(*entity, x) {
@@ -120,15 +116,10 @@ impl<const D: usize> Space<'_, D> {
 /// Points this much outside a simplex, in units of its size, still count as on it.
 const SLACK: f64 = 1e-9;
 
-/// Generic over the dimension alone, so that the sorting code is not compiled for every caller.
-fn sort_by_first_coordinate<const D: usize>(points: &mut [Point<D>]) {
-    points.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
-}
-
 /// The largest distance of a point of the first set from the second.
 fn one_sided<const D: usize>(from: &[Point<D>], to: &[Point<D>]) -> f64 {
     let mut to = to.to_vec();
-    sort_by_first_coordinate(&mut to);
+    to.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
     // the larger one of a number and the square of the distance of a point
     let larger = |largest: f64, x: &Point<D>| {
         let (before, after) = to.split_at(to.partition_point(|y| y[0] < x[0]));

@@ -6,7 +6,6 @@
 mod contact_set;
 mod deciding_nodes;
 mod difference;
-mod discrete_contact;
 mod entity;
 mod exact_contact;
 mod free_boundary;
@@ -15,14 +14,13 @@ mod multiplier_shares;
 mod nodal_multipliers;
 mod point_grid;
 
+pub use contact_set::DiscreteContact;
 pub(crate) use difference::contact_difference;
-pub use discrete_contact::DiscreteContact;
 
 use std::ops::Range;
 
 use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::error::Error;
@@ -33,6 +31,7 @@ use crate::parallel::cells;
 use crate::parallel::vectors::collect;
 use crate::real::Point;
 use entity::ContactEntity;
+pub(super) use entity::SolvedInequality;
 use exact_contact::ExactContact;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
@@ -68,9 +67,6 @@ impl<const D: usize> Discretisation<'_, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn contact_errors(
         &self,
         inequality: &Inequality<f64>,
@@ -81,16 +77,13 @@ impl<const D: usize> Discretisation<'_, D> {
                 &Inequality<f64>,
                 &Solution<f64>,
             ) -> Result<ContactErrors, Error>
-                = |of, inequality, solution| of.space.contact_errors(inequality, solution)
+                = |of, inequality, solution| of.space.contact_errors((inequality, solution))
         )(self, inequality, solution)
     }
 
     /// The measure of the discrete contact set: the volume of the cells in contact where there are
     /// obstacles, else the area of the facets in contact (the number of points in one dimension), with the
     /// definitions of [`Discretisation::contact_errors`]; none without an inequality.
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn contact_measure(
         &self,
         inequality: &Inequality<f64>,
@@ -113,7 +106,7 @@ impl<const D: usize> Discretisation<'_, D> {
                 &dyn Fn(usize) -> bool,
             ) -> Option<f64>
                 = |of, inequality, solution, counts| {
-                    of.space.contact_measure(inequality, solution, counts)
+                    of.space.contact_measure((inequality, solution), counts)
                 }
         )(self, inequality, solution, counts)
     }
@@ -127,53 +120,40 @@ impl<const D: usize> Discretisation<'_, D> {
     /// Where only contact holds the body, without Dirichlet boundary and reaction, it is the negative of the
     /// total load, for every scheme: constants have no energy. It approximates the integral of the
     /// multiplier over domain and contact boundary.
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn resultant(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Option<f64> {
         self.multipliers(inequality, solution).map(|multipliers| multipliers.iter().sum())
     }
 
     /// By unknown the force of its active bound: see [`Discretisation::resultant`].
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn multipliers(
         &self,
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Option<Vec<f64>> {
-        let multipliers = || self.space.nodal_multipliers(inequality, solution);
+        let multipliers = || self.space.nodal_multipliers((inequality, solution));
         self.space.problem.is_constrained().then(multipliers).flatten()
     }
 }
 
 impl<const D: usize> Space<'_, D> {
-    fn contact_errors(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-    ) -> Result<ContactErrors, Error> {
-        let Some(exact) = &self.problem.exact else { return Ok(ContactErrors::default()) };
-        // with both an obstacle and a contact boundary there are two multipliers of different kind
-        if self.problem.has_obstacle() == self.problem.has_gap() {
-            return Ok(ContactErrors::default());
-        }
-        let entities = self.entities();
+    fn contact_errors(&self, solved: SolvedInequality<'_>) -> Result<ContactErrors, Error> {
         let mut errors = ContactErrors::default();
-        if exact.multiplier.is_none() && exact.contact.is_none() {
+        let Some(exact) = &self.problem.exact else { return Ok(errors) };
+        let is_known = exact.multiplier.is_some() || exact.contact.is_some();
+        // with both an obstacle and a contact boundary there are two multipliers of different kind
+        if !is_known || self.problem.has_obstacle() == self.problem.has_gap() {
             return Ok(errors);
         }
+        let entities = self.entities();
         let on_entities = self.exact_contact(exact, &entities)?;
         let measures = self.measures_of(&entities);
         if exact.multiplier.is_some() {
             let of_entities = (&entities[..], &measures[..]);
-            let found = self.multiplier_errors(of_entities, &on_entities, inequality, solution);
             [errors.multiplier_l1, errors.multiplier_l2] =
-                map_entries([0, 1], |k| found.map(|e| e[k]));
+                self.multiplier_errors(of_entities, &on_entities, solved);
         }
         if let Some(set) = &exact.contact {
-            let touching = self.in_contact(&entities, inequality, solution);
+            let touching = self.in_contact(&entities, solved);
             let mut exact = on_entities.iter().flatten().peekable();
             let wrong = |(k, (measure, touches)): (usize, (&f64, &bool))| {
                 let found = exact.next_if(|(of, _)| *of == k);
@@ -192,13 +172,12 @@ impl<const D: usize> Space<'_, D> {
 
     fn contact_measure(
         &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
+        solved: SolvedInequality<'_>,
         counts: &dyn Fn(usize) -> bool,
     ) -> Option<f64> {
         let mut entities = self.problem.is_constrained().then(|| self.entities())?;
         entities.retain(|entity| counts(entity.cell));
-        let touching = self.in_contact(&entities, inequality, solution);
+        let touching = self.in_contact(&entities, solved);
         let measures = self.measures_of(&entities);
         let in_contact = measures.iter().zip(touching).filter(|(_, touches)| *touches);
         Some(in_contact.fold(0.0, |sum, (measure, _)| sum + measure))
@@ -217,19 +196,6 @@ impl<const D: usize> Space<'_, D> {
         }
         let contact = self.facets_of(BoundaryCondition::Contact);
         contact.map(|(cell, local)| ContactEntity { cell, facet: Some(local) }).collect()
-    }
-
-    /// For each vertex on the Dirichlet boundary the boundary group whose datum is given there.
-    pub(crate) fn dirichlet_groups(&self) -> Vec<Option<usize>> {
-        let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
-        let rank = |group: usize| self.data.dirichlet_rank[group];
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
-            for v in self.mesh.facet_vertices(cell, local) {
-                let old = &mut given[v as usize];
-                *old = old.filter(|&old| rank(old) <= rank(group)).or(Some(group));
-            }
-        }
-        given
     }
 
     /// The volumes of cells and the areas of facets.
@@ -256,8 +222,7 @@ impl<const D: usize> Space<'_, D> {
     fn in_contact(
         &self,
         entities: &[ContactEntity],
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
+        (inequality, solution): SolvedInequality<'_>,
     ) -> Vec<bool> {
         // the locations where some unknown is in contact: vertices, and others sorted by their vertices
         let touches = |&k: &usize| solution.contact[k] != Contact::Inactive;
@@ -294,7 +259,9 @@ impl<const D: usize> Space<'_, D> {
         };
         let deciding = self.deciding_nodes();
         let state = |&entity: &ContactEntity| {
-            let unknowns = deciding.of(entity).iter().map(|&i| self.dofs.of(entity.cell, i));
+            // the list of the cell is the last one
+            let nodes = &deciding[entity.facet.unwrap_or(D + 1)];
+            let unknowns = nodes.iter().map(|&i| self.dofs.of(entity.cell, i));
             let mut unknowns =
                 unknowns.filter(|&unknown| inequality.bounds[unknown] != Bound::Free).peekable();
             unknowns.peek().is_some() && unknowns.all(|unknown| support_touches(entity, unknown))

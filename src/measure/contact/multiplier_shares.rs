@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::entity::{CellOrFacet, ContactEntity};
+use super::entity::{ContactEntity, SolvedInequality};
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -34,9 +34,6 @@ impl<const D: usize> Discretisation<'_, D> {
     /// all ([`Discretisation::resultant`]). The multiplier of an unknown belongs to the datum that gives its active
     /// bound: where obstacle and gap are equal to the obstacle, where gaps of several groups are, to each by the
     /// measure of its facets there. None without an inequality, and where rounding leaves no digit.
-    ///
-    /// # Panics
-    /// If the solution has fewer values than there are unknowns.
     pub fn resultants(
         &self,
         inequality: &Inequality<f64>,
@@ -58,7 +55,7 @@ impl<const D: usize> Discretisation<'_, D> {
                 &Solution<f64>,
                 Own<'_>,
             ) -> Option<BTreeMap<String, f64>>
-                = |of, inequality, solution, own| of.space.resultants(inequality, solution, own)
+                = |of, inequality, solution, own| of.space.resultants((inequality, solution), own)
         )(self, inequality, solution, own)
     }
 }
@@ -66,8 +63,7 @@ impl<const D: usize> Discretisation<'_, D> {
 impl<const D: usize> Space<'_, D> {
     fn resultants(
         &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
+        solved: SolvedInequality<'_>,
         [of_unknowns, of_cells]: Own<'_>,
     ) -> Option<BTreeMap<String, f64>> {
         if !self.problem.is_constrained() {
@@ -75,7 +71,8 @@ impl<const D: usize> Space<'_, D> {
         }
         let mut sums: BTreeMap<String, f64> =
             self.names_of_resultants().into_iter().map(|name| (name, 0.0)).collect();
-        let multipliers = self.multipliers(inequality, solution)?;
+        let multipliers = self.multipliers(solved)?;
+        let (inequality, solution) = solved;
         for (unknown, value) in multipliers.by_unknown.iter().enumerate() {
             if *value != 0.0 && multipliers.obstacles.act_at(unknown) && of_unknowns(unknown) {
                 let is_upper = solution.contact[unknown] == Contact::Upper;
@@ -123,13 +120,9 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The multipliers of a solution, none where rounding leaves no digit; all parts of a mesh call it.
-    pub(crate) fn multipliers(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-    ) -> Option<Multipliers> {
-        let by_unknown = self.nodal_multipliers(inequality, solution)?;
-        let obstacles = self.active_obstacles(&inequality.bounds, &solution.contact);
+    pub(crate) fn multipliers(&self, solved: SolvedInequality<'_>) -> Option<Multipliers> {
+        let by_unknown = self.nodal_multipliers(solved)?;
+        let obstacles = self.active_obstacles(&solved.0.bounds, &solved.1.contact);
         Some(Multipliers { by_unknown, obstacles })
     }
 
@@ -204,7 +197,8 @@ impl<const D: usize> Space<'_, D> {
     ) -> Vec<f64> {
         let by_region = self.data.lower.has_names() || self.data.upper.has_names();
         let group = |cell: usize| if by_region { self.mesh.region(cell) } else { 0 };
-        let cells = (0..self.mesh.n_cells()).map(|cell| ((cell, None), group(cell)));
+        let entity = |cell: usize| (ContactEntity { cell, facet: None }, group(cell));
+        let cells = (0..self.mesh.n_cells()).map(entity);
         self.densities(&cells.collect::<Vec<_>>(), &self.shares_of_obstacles(of), inequality)
     }
 
@@ -215,7 +209,8 @@ impl<const D: usize> Space<'_, D> {
         of: &Multipliers,
     ) -> Vec<f64> {
         let facets = self.grouped_facets_of(BoundaryCondition::Contact);
-        let facets = facets.map(|((cell, local), group)| ((cell, Some(local)), group));
+        let entity = |(cell, local)| ContactEntity { cell, facet: Some(local) };
+        let facets = facets.map(|(facet, group)| (entity(facet), group));
         let shares = self.shares_of_gaps(&inequality.bounds, of);
         self.densities(&facets.collect::<Vec<_>>(), &shares, inequality)
     }
@@ -225,7 +220,7 @@ impl<const D: usize> Space<'_, D> {
     /// functions on the group.
     fn densities(
         &self,
-        places: &[(CellOrFacet, usize)],
+        places: &[(ContactEntity, usize)],
         shares: &[Share],
         inequality: &Inequality<f64>,
     ) -> Vec<f64> {
@@ -236,8 +231,7 @@ impl<const D: usize> Space<'_, D> {
         for group in groups {
             let of_group: Vec<usize> =
                 (0..places.len()).filter(|&k| places[k].1 == group).collect();
-            let entity = |k: usize| ContactEntity { cell: places[k].0.0, facet: places[k].0.1 };
-            let entities: Vec<ContactEntity> = of_group.iter().map(|&k| entity(k)).collect();
+            let entities: Vec<ContactEntity> = of_group.iter().map(|&k| places[k].0).collect();
             let mut at_vertices = vec![0.0; self.mesh.vertices().len()];
             for share in shares.iter().filter(|share| places[share.place].1 == group) {
                 let around = inequality.locations[share.unknown].vertices();

@@ -1,8 +1,9 @@
 //! The multipliers of unknowns that are shown: contact forces where they are known.
 
-use crate::algebra::{DofLocation, Inequality};
+use super::entity::SolvedInequality;
+use crate::algebra::DofLocation;
 use crate::assemble::space::Space;
-use crate::inequality::{ContactForces, Solution};
+use crate::inequality::ContactForces;
 use crate::mesh::BoundaryCondition;
 use crate::parallel::vectors::collect;
 
@@ -11,11 +12,8 @@ impl<const D: usize> Space<'_, D> {
     /// contact, and at nodes on facets with weakly imposed Dirichlet data: there the entry of `A u - b` contains the
     /// flux through the boundary. None where rounding leaves no digit. On a part of a mesh ghosts have the forces of
     /// their owners, and all parts call it.
-    pub(crate) fn nodal_multipliers(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-    ) -> Option<Vec<f64>> {
+    pub(super) fn nodal_multipliers(&self, solved: SolvedInequality<'_>) -> Option<Vec<f64>> {
+        let (inequality, solution) = solved;
         let forces = ContactForces::of(inequality, solution);
         let on_data = self.on_weak_data(&inequality.locations);
         let counts = |i: usize| !on_data.get(i).is_some_and(|&is_left_out| is_left_out);

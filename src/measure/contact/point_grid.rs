@@ -1,6 +1,6 @@
 //! Points sorted into the boxes of a grid.
 
-use crate::real::Point;
+use crate::real::{Point, box_around};
 
 /// Points in the boxes of a grid, at most about as many boxes as points, for the search of points within a box.
 pub(super) struct PointGrid<const D: usize> {
@@ -16,9 +16,7 @@ pub(super) struct PointGrid<const D: usize> {
 
 impl<const D: usize> PointGrid<D> {
     pub fn new(points: &[Point<D>]) -> Self {
-        let first = points.first().copied().unwrap_or_else(Point::zeros);
-        let fold = |f: fn(f64, f64) -> f64| points.iter().fold(first, |x, y| x.zip_map(y, f));
-        let (low, high) = (fold(f64::min), fold(f64::max));
+        let [low, high] = box_around(points);
         let longest = (high - low).max();
         let along = (points.len() as f64).powf(1.0 / D as f64);
         let count = |axis: usize| {

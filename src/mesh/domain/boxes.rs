@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::arrays::array_of;
 use crate::mesh::boundary::{BoundaryCondition, BoundaryFacet};
 use crate::mesh::error::MeshError;
-use crate::mesh::groups::Groups;
+use crate::mesh::groups::{BoundaryGroup, Groups};
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::check_size;
 use crate::real::Point;
@@ -55,6 +55,13 @@ impl<const D: usize> BoxDomain<D> {
         lower[D - 1] = 0.0;
         Self::dirichlet(lower, Point::repeat(1.0)).side(D - 1, 0, BoundaryCondition::Contact)
     }
+    /// Subdivisions along each axis when the shortest side has `level` of them and all small boxes
+    /// are as close to cubes as whole numbers allow.
+    pub fn counts(&self, level: usize) -> [usize; D] {
+        let side = |k: usize| self.upper[k] - self.lower[k];
+        let shortest = (0..D).map(side).fold(f64::INFINITY, f64::min);
+        array_of(|k| (side(k) / shortest * level as f64).round() as usize)
+    }
 }
 
 /// The permutations of the axes. Each is a path along edges from the lowest to the highest corner of a
@@ -73,16 +80,6 @@ fn paths<const D: usize>() -> Vec<[usize; D]> {
             .collect();
     }
     paths.into_iter().map(|p| array_of(|k| p[k])).collect()
-}
-
-impl<const D: usize> BoxDomain<D> {
-    /// Subdivisions along each axis when the shortest side has `level` of them and all small boxes
-    /// are as close to cubes as whole numbers allow.
-    pub fn counts(&self, level: usize) -> [usize; D] {
-        let side = |k: usize| self.upper[k] - self.lower[k];
-        let shortest = (0..D).map(side).fold(f64::INFINITY, f64::min);
-        array_of(|k| (side(k) / shortest * level as f64).round() as usize)
-    }
 }
 
 impl<const D: usize> Mesh<D> {
@@ -131,8 +128,13 @@ impl<const D: usize> Mesh<D> {
             .collect();
         let (cells, boundary) = cells_and_boundary(domain, counts, strides, &paths);
         let is_supported = boundary.iter().any(|f| f.condition == BoundaryCondition::Dirichlet);
-        let side = |k: usize| (SIDES[k].to_owned(), domain.sides[k / 2][k % 2]);
-        let groups = Arc::new(Groups::of_boundary((0..2 * D).map(side)));
+        let side = |k: usize| BoundaryGroup {
+            names: vec![SIDES[k].to_owned()],
+            condition: Some(domain.sides[k / 2][k % 2]),
+        };
+        let sides = (0..2 * D).map(side).collect();
+        let groups = Groups { regions: vec![Vec::new()], boundary: sides, inside: Vec::new() };
+        let groups = Arc::new(groups);
         let cell_regions = Vec::new();
         Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole: None })
     }

@@ -55,9 +55,6 @@ impl<const D: usize> Mesh<D> {
 
     /// The uniform refinement of a mesh of a disc, with new vertices in the middle of arcs, as in
     /// [`Mesh::disc`], not of chords.
-    ///
-    /// # Errors
-    /// [`MeshError::TooLarge`].
     pub(crate) fn refine_disc(&self) -> Result<(Self, Refinement), MeshError> {
         let (mut fine, refinement) = self.refine()?;
         let hexagon: Vec<_> = self.vertices.iter().map(to_hexagon).collect();

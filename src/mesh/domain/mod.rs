@@ -57,13 +57,8 @@ impl<const D: usize> Domain<D> {
     pub fn bounding_box(&self) -> BoxDomain<D> {
         match *self {
             Domain::Mesh(ref mesh) => {
-                let corners = |of: fn(&Point<D>, &Point<D>) -> Point<D>| {
-                    let vertices = mesh.vertices().iter().copied();
-                    vertices
-                        .reduce(|a, b| of(&a, &b))
-                        .expect("a mesh has cells, a cell has vertices")
-                };
-                BoxDomain::dirichlet(corners(Point::inf), corners(Point::sup))
+                let [lower, upper] = mesh.own_box();
+                BoxDomain::dirichlet(lower, upper)
             }
             Domain::Box(ref domain) => domain.clone(),
             Domain::LShape { half } => BoxDomain::centred(half),

@@ -28,17 +28,16 @@ impl<const D: usize> CellGeometry<D> {
         let edge = |k: usize| corner(k + 1) - origin;
         let edges = array_of(|k| if k < D { with_zeros(edge(k)) } else { [0.0; 3] });
         let (normals, determinant) = cofactors::<D>(edges);
-        let zero = 0.0;
         let mut gradients = [Point::zeros(); 4];
-        let inverse = if determinant == zero { zero } else { 1.0 / determinant };
+        let inverse = if determinant == 0.0 { 0.0 } else { 1.0 / determinant };
         for k in 1..=D {
             let gradient = Point::from_fn(|axis, _| normals[k - 1][axis]) * inverse;
             gradients[k] = gradient;
             gradients[0] -= gradient;
         }
-        let magnitude = if determinant < zero { -determinant } else { determinant };
+        let magnitude = if determinant < 0.0 { -determinant } else { determinant };
         let volume = magnitude / FACTORIAL[D];
-        Self { volume, gradients, is_positive: determinant > zero }
+        Self { volume, gradients, is_positive: determinant > 0.0 }
     }
 
     /// Whether the determinant of the edges from corner 0 to the others is positive.
@@ -52,25 +51,16 @@ impl<const D: usize> CellGeometry<D> {
     pub fn gradient(&self, i: usize) -> &Point<D> {
         &self.gradients[i]
     }
-    /// The height over facet `i`: `1 / |gradient i|`.
-    #[inline(always)]
-    pub fn height(&self, i: usize) -> f64 {
-        1.0 / self.gradients[i].norm()
-    }
     /// The outward unit normal of facet `i`.
     #[inline(always)]
     pub fn normal(&self, i: usize) -> Point<D> {
-        self.gradients[i] * -self.height(i)
+        let height = 1.0 / self.gradients[i].norm();
+        self.gradients[i] * -height
     }
     /// The `(D - 1)`-dimensional measure of facet `i`; one in one dimension.
     #[inline(always)]
     pub fn facet_measure(&self, i: usize) -> f64 {
         if D == 1 { 1.0 } else { (D as f64) * self.volume * self.gradients[i].norm() }
-    }
-    /// The measure of the whole boundary of the cell.
-    #[inline(always)]
-    pub fn surface(&self) -> f64 {
-        (0..D + 1).fold(0.0, |s, i| s + self.facet_measure(i))
     }
 }
 
@@ -119,44 +109,4 @@ impl<const D: usize> Mesh<D> {
 pub(crate) fn describe_point<const D: usize>(x: &Point<D>) -> String {
     let coordinates: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
     format!("({})", coordinates.join(", "))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use approx::assert_relative_eq;
-
-    fn check<const D: usize>(corners: &[Point<D>], volume: f64) {
-        let geometry = CellGeometry::new(|k| corners[k]);
-        assert_relative_eq!(geometry.volume, volume, max_relative = 1e-14);
-        let mut closed = Point::<D>::zeros();
-        for i in 0..=D {
-            // duality with the corners, and normals that point away from the opposite vertex
-            for j in 0..=D {
-                let base = corners[(i + 1) % (D + 1)];
-                let value = geometry.gradient(i).dot(&(corners[j] - base));
-                assert_relative_eq!(value, f64::from(i == j), epsilon = 1e-14);
-            }
-            let away = corners[i] - corners[(i + 1) % (D + 1)];
-            assert!(geometry.normal(i).dot(&away) < 0.0);
-            closed += geometry.normal(i) * geometry.facet_measure(i);
-        }
-        // the normals of a closed surface, weighted by measure, vanish
-        assert_relative_eq!(closed.norm(), 0.0, epsilon = 1e-14);
-    }
-
-    #[test]
-    fn simplices_of_known_volume() {
-        check(&[Point::from([3.0]), Point::from([1.0])], 2.0);
-        check(&[Point::from([0.0, 0.0]), Point::from([2.0, 0.5]), Point::from([0.5, 1.0])], 0.875);
-        check(
-            &[
-                Point::from([0.0, 0.0, 0.0]),
-                Point::from([0.0, 2.0, 0.0]),
-                Point::from([1.0, 0.0, 0.0]),
-                Point::from([0.3, 0.2, 3.0]),
-            ],
-            1.0,
-        );
-    }
 }

@@ -61,6 +61,5 @@ pub(in crate::mesh) fn longest_edge<const D: usize>(
     corner: impl Fn(usize) -> Point<D>,
     left_out: Option<usize>,
 ) -> f64 {
-    let square = fold_edges(corner, left_out, 0.0, |a, b| if a > b { a } else { b });
-    nalgebra::ComplexField::sqrt(square)
+    fold_edges(corner, left_out, 0.0, |a, b| if a > b { a } else { b }).sqrt()
 }

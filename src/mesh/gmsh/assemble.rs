@@ -4,9 +4,9 @@ use super::contents::{Contents, Membership, Simplices};
 use super::element_types::SIMPLICES;
 use super::error::{GmshError, GmshErrorKind, GmshWarning};
 use super::node_index::NodeIndex;
-use crate::arrays::array_of;
 use crate::input::excerpt;
 use crate::mesh::error::MeshError;
+use crate::mesh::facets::facet_of;
 use crate::mesh::overlap::lie_on_others;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::GroupedFacet;
@@ -101,16 +101,14 @@ struct Cells {
     of_cells: Vec<u16>,
 }
 
-impl Cells {
-    /// The number of the region with these names.
-    fn region(&mut self, names: Vec<String>) -> Result<u16, GmshError> {
-        let known = self.regions.iter().position(|region| *region == names);
-        let number = known.unwrap_or(self.regions.len());
-        if known.is_none() {
-            self.regions.push(names);
-        }
-        u16::try_from(number).map_err(|_| GmshError::too_many_groups())
+/// The number of an item in a list, to which it is added if it is new.
+fn number_of<T: PartialEq>(all: &mut Vec<T>, item: T) -> Result<u16, GmshError> {
+    let known = all.iter().position(|other| *other == item);
+    let number = known.unwrap_or(all.len());
+    if known.is_none() {
+        all.push(item);
     }
+    u16::try_from(number).map_err(|_| GmshError::too_many_groups())
 }
 
 /// The cells, their elements and their regions.
@@ -125,7 +123,7 @@ fn cells_of<const D: usize>(contents: &Contents, index: &NodeIndex) -> Result<Ce
     let first = first_listings::<D>(simplices);
     for (run, membership) in simplices.runs() {
         let names = contents.names_of(D, membership);
-        let region = cells.region(names.clone())?;
+        let region = number_of(&mut cells.regions, names.clone())?;
         for element in run {
             if let Some(cell) =
                 first.get(element).and_then(|e| cells.elements.binary_search(e).ok())
@@ -134,7 +132,7 @@ fn cells_of<const D: usize>(contents: &Contents, index: &NodeIndex) -> Result<Ce
                 // a cell that is listed twice in one group is an error of the mesh
                 if !names.iter().all(|name| cells.regions[known].contains(name)) {
                     let both = [&cells.regions[known][..], &names].concat();
-                    cells.of_cells[cell] = cells.region(both)?;
+                    cells.of_cells[cell] = number_of(&mut cells.regions, both)?;
                     continue;
                 }
             }
@@ -198,12 +196,7 @@ fn grouped_facets<const D: usize>(
     for (run, membership) in simplices.runs() {
         let mut groups = Vec::new();
         for name in contents.names_of(D - 1, membership) {
-            let known = names.iter().position(|known| *known == name);
-            let number = known.unwrap_or(names.len());
-            if known.is_none() {
-                names.push(name);
-            }
-            groups.push(u16::try_from(number).map_err(|_| GmshError::too_many_groups())?);
+            groups.push(number_of(&mut names, name)?);
         }
         for element in run.filter(|_| !groups.is_empty()) {
             let mut vertices = [0; D];
@@ -282,12 +275,9 @@ fn warnings<const D: usize>(contents: &Contents, mesh: &Mesh<D>) -> Vec<GmshWarn
         curved.map(move |(&order, &count)| GmshWarning::Straightened { name, order, count })
     };
     let mut warnings: Vec<GmshWarning> = straightened(D).chain(straightened(D - 1)).collect();
-    let facets = mesh.boundary().iter().map(|f| {
-        let mut vertices = mesh.facet_vertices(f.cell as usize, usize::from(f.local));
-        array_of(|_| vertices.next().expect("a facet has as many vertices as dimensions"))
-    });
-    let points: Vec<Point<D>> = mesh.vertices().to_vec();
-    let coincident = lie_on_others(&points, &facets.collect::<Vec<[u32; D]>>());
+    let facets = mesh.boundary().iter();
+    let facets = facets.map(|f| facet_of(mesh.cell(f.cell as usize), usize::from(f.local)));
+    let coincident = lie_on_others(mesh.vertices(), &facets.collect::<Vec<[u32; D]>>());
     let count = coincident.iter().filter(|lies| **lies).count();
     warnings.extend((count > 0).then_some(GmshWarning::Coincident { count }));
     let on_boundary =

@@ -200,6 +200,10 @@ impl<'a> Source<'a> {
         let parse = |word: &[u8]| std::str::from_utf8(word).ok()?.parse().ok();
         self.number(expected, parse, [f64::from_le_bytes, f64::from_be_bytes])
     }
+    /// The coordinates of a node.
+    pub(super) fn point(&mut self) -> Result<[f64; 3], GmshError> {
+        Ok([self.real("coordinate x")?, self.real("coordinate y")?, self.real("coordinate z")?])
+    }
     /// Skips `count` numbers, each of `size` bytes in a binary file.
     pub(super) fn skip(
         &mut self,

@@ -63,7 +63,6 @@ fn read_counts(source: &mut Source) -> Result<(u64, u64), GmshError> {
     Ok((blocks, records))
 }
 
-/// Reads the nodes.
 pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
     let (blocks, announced) = read_counts(source)?;
     source.check_room("nodes", announced, 32)?;
@@ -96,11 +95,7 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
         for (node, found) in tags.into_iter().zip(0..) {
             source.begin_record("nodes of a block", count, found)?;
             let offset = source.offset();
-            let point = [
-                source.real("coordinate x")?,
-                source.real("coordinate y")?,
-                source.real("coordinate z")?,
-            ];
+            let point = source.point()?;
             source.skip(parametric, 8, "a parametric coordinate")?;
             source.end_record()?;
             contents.nodes.push(source, offset, node, point)?;
@@ -112,7 +107,6 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
     source.end_section("nodes", announced)
 }
 
-/// Reads the elements.
 pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
     let (blocks, announced) = read_counts(source)?;
     source.check_room("elements", announced, 16)?;

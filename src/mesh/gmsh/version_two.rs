@@ -28,11 +28,7 @@ pub(super) fn read_nodes(
         source.begin_record("nodes", announced, found)?;
         let offset = source.offset();
         let node = source.unsigned("the tag of a node")?;
-        let point = [
-            source.real("coordinate x")?,
-            source.real("coordinate y")?,
-            source.real("coordinate z")?,
-        ];
+        let point = source.point()?;
         if is_parametric {
             let dimension = entity_dimension(source)?;
             source.integer("the tag of an entity")?;
@@ -46,7 +42,6 @@ pub(super) fn read_nodes(
     source.end_section("nodes", announced)
 }
 
-/// Reads the elements.
 pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
     let announced = read_count(source, "the number of elements")?;
     source.check_room("elements", announced, 8)?;

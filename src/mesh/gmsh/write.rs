@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::error::{GmshError, GmshErrorKind};
+use crate::mesh::geometry::simplex::with_zeros;
 use crate::mesh::simplicial::Mesh;
 
 /// Element types of points, lines, triangles and tetrahedra.
@@ -51,9 +52,10 @@ pub fn to_text<const D: usize>(mesh: &Mesh<D>) -> String {
     let blocks = [(D - 1, boundary), (D, regions)];
     let mut text = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
     let names = write_names(&mut text, &blocks);
-    let coordinates = |vertex: u32| coordinates(mesh, vertex);
-    write_entities(&mut text, &blocks, &names, &coordinates);
-    write_nodes(&mut text, D, mesh.vertices().len(), &coordinates);
+    // missing coordinates are zero
+    let points: Vec<[f64; 3]> = mesh.vertices().iter().map(|x| with_zeros(*x)).collect();
+    write_entities(&mut text, &blocks, &names, &points);
+    write_nodes(&mut text, D, &points);
     write_elements(&mut text, &blocks);
     text
 }
@@ -97,7 +99,7 @@ fn write_entities(
     text: &mut String,
     blocks: &[(usize, Vec<Entity<'_>>)],
     names: &[Vec<&str>; 2],
-    coordinates: &dyn Fn(u32) -> [f64; 3],
+    points: &[[f64; 3]],
 ) {
     let count = |dimension: usize| {
         blocks.iter().find(|(d, _)| *d == dimension).map_or(0, |(_, entities)| entities.len())
@@ -105,9 +107,8 @@ fn write_entities(
     let _ = writeln!(text, "$Entities\n{} {} {} {}", count(0), count(1), count(2), count(3));
     for ((dimension, entities), names) in blocks.iter().zip(names) {
         for (k, entity) in entities.iter().enumerate() {
-            let points = entity.elements.iter().flatten().map(|&v| coordinates(v));
             let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-            for x in points {
+            for x in entity.elements.iter().flatten().map(|&v| points[v as usize]) {
                 for axis in 0..3 {
                     bounds[0][axis] = bounds[0][axis].min(x[axis]);
                     bounds[1][axis] = bounds[1][axis].max(x[axis]);
@@ -130,24 +131,13 @@ fn write_entities(
     text.push_str("$EndEntities\n");
 }
 
-/// A vertex, missing coordinates zero.
-fn coordinates<const D: usize>(mesh: &Mesh<D>, vertex: u32) -> [f64; 3] {
-    let x = mesh.vertices()[vertex as usize];
-    [0, 1, 2].map(|k| if k < D { x[k] } else { 0.0 })
-}
-
-fn write_nodes(
-    text: &mut String,
-    dimension: usize,
-    n: usize,
-    coordinates: &dyn Fn(u32) -> [f64; 3],
-) {
+fn write_nodes(text: &mut String, dimension: usize, points: &[[f64; 3]]) {
+    let n = points.len();
     let _ = writeln!(text, "$Nodes\n1 {n} 1 {n}\n{dimension} 1 0 {n}");
     for tag in 1..=n {
         let _ = writeln!(text, "{tag}");
     }
-    for vertex in 0..n as u32 {
-        let [x, y, z] = coordinates(vertex);
+    for [x, y, z] in points {
         let _ = writeln!(text, "{x:?} {y:?} {z:?}");
     }
     text.push_str("$EndNodes\n");

@@ -3,7 +3,7 @@
 
 use crate::arrays::array_of;
 use crate::mesh::BoxSearch;
-use crate::real::Point;
+use crate::real::{Point, box_around};
 
 /// Points of facets that lie on each other are nearer than this share of the extent of all facets.
 const COINCIDENT: f64 = 1e-8;
@@ -21,19 +21,13 @@ pub(crate) struct FacetSearch<const D: usize> {
 impl<const D: usize> FacetSearch<D> {
     /// The facets with these corners; points are in a facet up to a share of the extent of all.
     pub fn new(corners: Vec<[Point<D>; D]>, share: f64) -> Self {
-        let extreme = |of: fn(f64, f64) -> f64, all: &[[Point<D>; D]]| {
-            let points = all.iter().flatten().copied();
-            points.reduce(|a, x| a.zip_map(&x, of)).unwrap_or_else(Point::zeros)
+        let [lower, upper] = box_around(corners.iter().flatten());
+        let near = (share * (upper - lower).norm()).max(f64::MIN_POSITIVE);
+        let around = |facet: &[Point<D>; D]| {
+            let [low, high] = box_around(facet);
+            [low.add_scalar(-near), high.add_scalar(near)]
         };
-        let lower = extreme(f64::min, &corners);
-        let near = (share * (extreme(f64::max, &corners) - lower).norm()).max(f64::MIN_POSITIVE);
-        let boxes = BoxSearch::new(
-            lower,
-            corners.iter().map(|facet| {
-                let [least, most] = [f64::min, f64::max].map(|of| extreme(of, &[*facet]));
-                [least.add_scalar(-near), most.add_scalar(near)]
-            }),
-        );
+        let boxes = BoxSearch::new(lower, corners.iter().map(around));
         Self { corners, near, share, boxes }
     }
 

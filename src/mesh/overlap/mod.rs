@@ -8,9 +8,9 @@ pub(super) use facet_search::lie_on_others;
 
 use super::boundary::BoundaryFacet;
 use super::error::MeshError;
-use super::facets::{Neighbour, Neighbours};
+use super::facets::{Neighbour, Neighbours, facet_of};
 use super::geometry::{CellGeometry, describe_point};
-use crate::arrays::array_of;
+use crate::arrays::map_entries;
 use crate::real::Point;
 
 /// Refuses two cells on the same side of the facet that they share. `is_positive` has the sign of the
@@ -65,8 +65,8 @@ pub(super) fn check_overlaps<const D: usize>(
     let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
     let geometry = |c: usize| CellGeometry::new(|k| vertices[cell(c)[k] as usize]);
     let corners = |f: &BoundaryFacet| -> [Point<D>; D] {
-        let (cell, local) = (cell(f.cell as usize), f.local as usize);
-        array_of(|k| sheared(&vertices[cell[k + usize::from(k >= local)] as usize]))
+        let facet = facet_of::<D>(cell(f.cell as usize), f.local as usize);
+        map_entries(facet, |v| sheared(&vertices[v as usize]))
     };
     let facets: Vec<_> = boundary.iter().map(corners).collect();
     let direction = Point::<D>::from_fn(|k, _| DIRECTION[k]);

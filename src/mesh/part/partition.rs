@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::arrays::array_of;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
+use crate::real::Point;
 
 impl<const D: usize> Mesh<D> {
     /// The number of the part of each cell, for a number of parts with equally many cells, up to one: by
@@ -22,11 +22,7 @@ impl<const D: usize> Mesh<D> {
                 allowed: format!("1 to {n_cells}, the number of cells"),
             });
         }
-        let barycentre = |cell: usize| {
-            let x = self.barycentre(cell);
-            array_of(|k| x[k])
-        };
-        let barycentres: Vec<[f64; D]> = (0..n_cells).map(barycentre).collect();
+        let barycentres: Vec<Point<D>> = (0..n_cells).map(|cell| self.barycentre(cell)).collect();
         let mut cells: Vec<u32> = (0..n_cells as u32).collect();
         let mut part_of = vec![0; n_cells];
         halve(&barycentres, &mut cells, 0..parts as u32, &mut part_of);
@@ -36,7 +32,7 @@ impl<const D: usize> Mesh<D> {
 
 /// Distributes some cells among some parts.
 fn halve<const D: usize>(
-    barycentres: &[[f64; D]],
+    barycentres: &[Point<D>],
     cells: &mut [u32],
     parts: Range<u32>,
     part_of: &mut [u32],

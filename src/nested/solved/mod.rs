@@ -16,9 +16,7 @@ use super::system::System;
 use crate::algebra::{Contact, Inequality, any_part};
 use crate::assemble::Discretisation;
 use crate::error_bound::{ErrorBound, PrimalDualPair};
-use crate::inequality::{
-    Certificate, Outcome, Solution, certify_solution, count_active, energy_norm,
-};
+use crate::inequality::{Certificate, Outcome, Solution, certify_solution, count_active};
 use crate::measure::{Fields, Rounding};
 use crate::mesh::{Mesh, Part};
 
@@ -32,7 +30,7 @@ use crate::mesh::{Mesh, Part};
 /// [`Error::Processes`](crate::error::Error::Processes) in all. Distances between two solutions are none there.
 pub struct Solved<'a, const D: usize> {
     system: System<'a, D>,
-    solution: Solution<f64>,
+    pub(super) solution: Solution<f64>,
     certificate: Certificate,
     has_iterate: bool,
     /// The energy norm to which certificates are relative; zero without an iterate.
@@ -77,9 +75,9 @@ impl<'a, const D: usize> Solved<'a, D> {
         let is_finite = solution.values.iter().all(|v| v.is_finite());
         let has_iterate =
             solution.outcome.has_iterate() && !any_part(inequality.distribution(), !is_finite);
-        let certificate = match has_iterate {
+        let (certificate, energy_norm) = match has_iterate {
             true => certify_solution(inequality, &solution),
-            false => Certificate::INVALID,
+            false => (Certificate::INVALID, 0.0),
         };
         if solution.outcome == Outcome::Converged
             && !certificate.is_within_limits(solution.precision)
@@ -87,10 +85,8 @@ impl<'a, const D: usize> Solved<'a, D> {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
         }
-        let mut norm = 0.0;
         if has_iterate {
-            norm = energy_norm(inequality, &solution);
-            solution.dual_residual = certificate.largest() * norm;
+            solution.dual_residual = certificate.largest() * energy_norm;
         }
         Self {
             mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
@@ -98,7 +94,7 @@ impl<'a, const D: usize> Solved<'a, D> {
             solution,
             certificate,
             has_iterate,
-            energy_norm: norm,
+            energy_norm,
             hierarchy,
             bound: OnceLock::new(),
             rounding: OnceLock::new(),
@@ -188,13 +184,6 @@ impl<'a, const D: usize> Solved<'a, D> {
     /// Warnings by type, as text: a penalty below its proven bound, say.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
-    }
-    /// The solution with the outcome of values that no solver of the library found.
-    pub(super) fn found_elsewhere(mut self) -> Self {
-        if self.solution.outcome == Outcome::Stalled {
-            self.solution.outcome = Outcome::NotASolution;
-        }
-        self
     }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {

@@ -28,6 +28,16 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
+    /// A graph of what was found, by this name in the legend; without lines yet.
+    pub fn of_found(title: &str, axes: [&str; 2], name: &str) -> Self {
+        Graph {
+            title: title.to_owned(),
+            axes: axes.map(str::to_owned),
+            legend: vec![(Symbol::Line(Stroke::Solution), name.to_owned())],
+            ..Graph::default()
+        }
+    }
+
     /// Curves with their names through points, in the order in which they are drawn.
     pub fn of_curves(axes: [&str; 2], curves: &[(&str, Vec<PlanePoint>)]) -> Self {
         let mut graph = Graph { axes: axes.map(str::to_owned), ..Graph::default() };
@@ -38,6 +48,17 @@ impl Graph {
             graph.legend.push((Symbol::Line(stroke), (*name).to_owned()));
         }
         graph
+    }
+
+    /// Shows these intervals to be in contact, and these points of the exact free boundary.
+    pub fn mark(&mut self, contact: Vec<[f64; 2]>, free_boundary: Vec<f64>) {
+        (self.contact, self.marks) = (contact, free_boundary);
+        if !self.contact.is_empty() {
+            self.legend.push((Symbol::Area(CONTACT), "in contact".to_owned()));
+        }
+        if !self.marks.is_empty() {
+            self.legend.push((Symbol::Mark, "free boundary, exact".to_owned()));
+        }
     }
 
     /// Height of the panel.

@@ -71,24 +71,13 @@ impl<'a, const D: usize> Line<'a, D> {
     }
 
     fn mark_contact(&self, graph: &mut Graph) {
-        graph.contact = self.contact();
-        if !graph.contact.is_empty() {
-            graph.legend.push((Symbol::Area(CONTACT), "in contact".to_owned()));
-        }
         let exact = self.problem.exact.as_ref().and_then(|e| e.contact.as_ref());
-        graph.marks = exact.iter().flat_map(|set| &set.free_boundary).map(|x| x[0]).collect();
-        if !graph.marks.is_empty() {
-            graph.legend.push((Symbol::Mark, "free boundary, exact".to_owned()));
-        }
+        let marks = exact.iter().flat_map(|set| &set.free_boundary).map(|x| x[0]).collect();
+        graph.mark(self.contact(), marks);
     }
 
     fn solution(&self) -> Graph {
-        let mut graph = Graph {
-            title: "solution".to_owned(),
-            axes: ["x".to_owned(), "u".to_owned()],
-            legend: vec![(Symbol::Line(Stroke::Solution), "u".to_owned())],
-            ..Graph::default()
-        };
+        let mut graph = Graph::of_found("solution", ["x", "u"], "u");
         // a problem that was solved on the mesh has its data there
         if let Ok(data) = DataOnMesh::new(self.problem, self.mesh) {
             for obstacle in [&data.lower, &data.upper] {
@@ -137,12 +126,7 @@ impl<'a, const D: usize> Line<'a, D> {
     }
 
     fn multiplier(&self) -> Graph {
-        let mut graph = Graph {
-            title: "multiplier".to_owned(),
-            axes: ["x".to_owned(), "density".to_owned()],
-            legend: vec![(Symbol::Line(Stroke::Solution), "density found".to_owned())],
-            ..Graph::default()
-        };
+        let mut graph = Graph::of_found("multiplier", ["x", "density"], "density found");
         for cell in 0..self.mesh.n_cells() {
             let x = self.ends(cell);
             let vertices = self.mesh.cell(cell);

@@ -21,13 +21,11 @@ mod space;
 mod trace;
 mod triangle;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::pen::{Align, Pen, ScreenPoint};
 use super::style::INK;
 use crate::error::Error;
-use crate::error::write_error;
 use crate::files::replace_text;
 use crate::instances::compiled;
 use crate::measure::Fields;
@@ -50,15 +48,6 @@ const ELONGATED: f64 = 3.0;
 const MARGIN: f64 = 8.0;
 const HEADING: f64 = 28.0;
 const GAP: f64 = 10.0;
-
-/// Positions of the panels.
-struct PictureLayout<'a> {
-    /// With their upper left corners.
-    panels: Vec<(&'a Panel, ScreenPoint)>,
-    width: f64,
-    /// Width and height of the picture.
-    size: (f64, f64),
-}
 
 /// A picture of a solution.
 ///
@@ -134,7 +123,7 @@ impl Picture {
                 ),
             });
         }
-        let PictureLayout { panels, width, size } = self.layout();
+        let (panels, width, size) = self.layout();
         let mut pen = Pen::new(size, true);
         let heading = (0.5 * size.0, MARGIN + 0.4 * HEADING);
         pen.text(&self.title, heading, axes::TITLE + 1.0, INK, Align::Centre);
@@ -147,28 +136,16 @@ impl Picture {
         Ok(pen.finish())
     }
 
-    /// Writes the picture as an SVG file.
-    ///
-    /// # Errors
-    /// [`Error::Write`], and those of [`Self::to_svg`].
-    pub fn write_svg(&self, path: &Path) -> Result<(), Error> {
-        let svg = self.to_svg()?;
-        replace_text(path, &svg).map(|_| ())
-    }
-
     /// Writes `NAME.svg` to a directory, which is made if need be.
     ///
     /// # Errors
     /// [`Error::Write`], and those of [`Self::to_svg`].
     pub fn write(&self, directory: &Path, name: &str) -> Result<PathBuf, Error> {
-        fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
-        let path = directory.join(format!("{name}.svg"));
-        self.write_svg(&path)?;
-        Ok(path)
+        replace_text(&directory.join(format!("{name}.svg")), &self.to_svg()?)
     }
 
-    /// Panels row by row.
-    fn layout(&self) -> PictureLayout<'_> {
+    /// Panels row by row with their upper left corners, their width, and the size of the picture.
+    fn layout(&self) -> (Vec<(&Panel, ScreenPoint)>, f64, (f64, f64)) {
         let alone = self.panels.first().is_some_and(|panel| match panel {
             Panel::Map(map) => map.high[0] - map.low[0] > ELONGATED * (map.high[1] - map.low[1]),
             Panel::Graph(_) => true,
@@ -183,8 +160,7 @@ impl Picture {
             }
             y += row.iter().map(|p| p.height(width)).fold(0.0, f64::max) + GAP;
         }
-        let size = (2.0 * MARGIN + columns as f64 * width, y);
-        PictureLayout { panels: placed, width, size }
+        (placed, width, (2.0 * MARGIN + columns as f64 * width, y))
     }
 }
 

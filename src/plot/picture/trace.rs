@@ -1,6 +1,6 @@
 //! The contact boundary of a domain in the plane.
 
-use super::axes::{CONTACT, Stroke, Symbol};
+use super::axes::{Stroke, Symbol};
 use super::graph::Graph;
 use crate::arrays::{array_of, map_entries};
 use crate::measure::Fields;
@@ -54,12 +54,7 @@ pub(crate) fn graph<const D: usize>(
         return None;
     }
     let along = |v: u32| mesh.vertices()[v as usize][axis];
-    let mut graph = Graph {
-        title: "multiplier".to_owned(),
-        axes: [["x", "y"][axis].to_owned(), "density".to_owned()],
-        legend: vec![(Symbol::Line(Stroke::Solution), "density found".to_owned())],
-        ..Graph::default()
-    };
+    let mut graph = Graph::of_found("multiplier", [["x", "y"][axis], "density"], "density found");
     let density = &fields.discrete_contact.density;
     for &[from, to] in &facets {
         if let [Some(a), Some(b)] = [from, to].map(|v| density[v as usize]) {
@@ -74,18 +69,12 @@ pub(crate) fn graph<const D: usize>(
         }
         graph.legend.push((Symbol::Line(Stroke::Exact), "exact density".to_owned()));
     }
-    for &facet in &fields.discrete_contact.facets {
+    let contact = fields.discrete_contact.facets.iter().map(|&facet| {
         let [a, b] = ends(mesh, facet).map(along);
-        graph.contact.push([a.min(b), a.max(b)]);
-    }
-    if !graph.contact.is_empty() {
-        graph.legend.push((Symbol::Area(CONTACT), "in contact".to_owned()));
-    }
-    if let Some(set) = exact.and_then(|e| e.contact.as_ref()) {
-        graph.marks = set.free_boundary.iter().map(|x| x[axis]).collect();
-    }
-    if !graph.marks.is_empty() {
-        graph.legend.push((Symbol::Mark, "free boundary, exact".to_owned()));
-    }
+        [a.min(b), a.max(b)]
+    });
+    let set = exact.and_then(|e| e.contact.as_ref());
+    let marks = set.iter().flat_map(|set| &set.free_boundary).map(|x| x[axis]).collect();
+    graph.mark(contact.collect(), marks);
     Some(graph)
 }

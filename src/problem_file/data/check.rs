@@ -181,7 +181,7 @@ impl<const D: usize> Checks<'_, '_, D> {
             Some(name) => names.contains(name),
             None => !names.iter().any(|name| entry.others.contains(name)),
         };
-        if entry.value.constant().is_some() {
+        if matches!(entry.value, BoundaryFlux::Constant(_)) {
             return check(&Point::zeros(), &Point::zeros());
         }
         let vertex = |v: u32| mesh.vertices()[v as usize];

@@ -68,12 +68,8 @@ pub(super) fn sum(input: &mut &str) -> Parsed<Node> {
     ));
     let operator = |text: &'static str| (literal(text), multispace0);
     let logic = alt((
-        operator("||").value(Infix::Left(2, |_: &mut _, a, b| {
-            Ok(Node::Call("||".to_owned(), 0, vec![a, b]))
-        })),
-        operator("&&").value(Infix::Left(3, |_: &mut _, a, b| {
-            Ok(Node::Call("&&".to_owned(), 0, vec![a, b]))
-        })),
+        operator("||").value(Infix::Left(2, |_: &mut _, a, b| Ok(Node::or(a, b)))),
+        operator("&&").value(Infix::Left(3, |_: &mut _, a, b| Ok(Node::and(a, b)))),
         operator("<=").value(Infix::Neither(4, of_two!(|a, b| truth(a <= b)))),
         operator(">=").value(Infix::Neither(4, of_two!(|a, b| truth(a >= b)))),
         operator("==").value(Infix::Neither(4, of_two!(|a, b| truth(a == b)))),

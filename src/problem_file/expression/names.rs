@@ -24,6 +24,10 @@ pub(super) fn resolve(node: Node, length: usize, variables: &[&str]) -> Result<N
             let (a, b) = *ab;
             Node::two(f, of(a)?, of(b)?)
         }
+        Node::If(three) => {
+            let (condition, yes, no) = *three;
+            Node::If(Box::new((of(condition)?, of(yes)?, of(no)?)))
+        }
         Node::Name(name, left) => {
             if let Some(k) = variables.iter().position(|variable| *variable == name) {
                 return Ok(Node::Variable(k));
@@ -73,12 +77,6 @@ fn call(name: &str, arguments: Vec<Node>) -> Result<Node, String> {
         }
         let first = next();
         return Ok(arguments.fold(first, |a, b| Node::two(*f, a, b)));
-    }
-    // operators whose second operand is not always used
-    match name {
-        "&&" => return Ok(Node::and(next(), next())),
-        "||" => return Ok(Node::or(next(), next())),
-        _ => {}
     }
     if name == "if" {
         return match n {

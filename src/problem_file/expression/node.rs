@@ -16,7 +16,7 @@ pub(super) enum Node {
     If(Box<(Node, Node, Node)>),
     /// A name that has no meaning yet: where it ends, counted from the end of the text.
     Name(String, usize),
-    /// A function, or one of the operators `&&` and `||`, with its arguments, before it is looked up.
+    /// A function with its arguments, before it is looked up.
     Call(String, usize, Vec<Node>),
 }
 

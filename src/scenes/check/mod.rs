@@ -58,16 +58,16 @@ pub fn check_scene<const D: usize>(scene: &Scene<D>, samples: usize) -> Result<(
     }
     let samples = samples.max(2);
     let inside = samples::inside(&scene.domain, samples);
-    data::check(scene, &inside, samples)?;
+    scene.check_data(&inside, samples)?;
     let Some(exact) = &scene.problem.exact else { return Ok(()) };
     let domain = &scene.domain;
     let data = (&scene.problem, exact);
     let evaluator = Evaluator::new(&scene.name, data, domain.length(), &inside);
     let depth = |x: &Point<D>| domain.depth(x);
-    interior::check_gradient(&evaluator, &inside, &depth)?;
-    interfaces::check(&evaluator, domain, &inside)?;
-    interior::check_obstacles(&evaluator, &inside)?;
-    interior::check_multiplier(&evaluator, &inside, &depth)?;
-    boundary::check(&evaluator, domain, samples)?;
-    stated::check_free_boundary(&evaluator, &inside)
+    evaluator.check_gradient(&inside, &depth)?;
+    evaluator.check_interfaces(domain, &inside)?;
+    evaluator.check_obstacles(&inside)?;
+    evaluator.check_multiplier(&inside, &depth)?;
+    evaluator.check_boundary(domain, samples)?;
+    evaluator.check_free_boundary(&inside)
 }

@@ -1,8 +1,6 @@
 //! The conditions of an exact solution that need no built-in domain, on a mesh.
 
-use super::boundary;
 use super::evaluator::{Evaluator, Scales};
-use super::interior::{check_multiplier_at, check_obstacles};
 use super::samples::BoundaryPoint;
 use super::violation::Violation;
 use crate::mesh::Mesh;
@@ -41,12 +39,12 @@ pub(crate) fn check_exact_on<const D: usize>(
         let problem = &in_regions[mesh.region(*cell)];
         let evaluator = Evaluator { name, problem, exact, scales };
         let (geometry, x) = (mesh.geometry(*cell), middle(cell));
-        check_obstacles(&evaluator, &[x])?;
+        evaluator.check_obstacles(&[x])?;
         // the barycentre has from each facet a share of the height over it
         let volume = geometry.volume;
         let largest = (0..D + 1).map(|k| geometry.facet_measure(k)).fold(0.0, f64::max);
         let depth = D as f64 * volume / largest / (D + 1) as f64;
-        check_multiplier_at(&evaluator, &x, depth)?;
+        evaluator.check_multiplier_at(&x, depth)?;
     }
     for k in sampled(mesh.boundary().len()) {
         let facet = &mesh.boundary()[k];
@@ -56,11 +54,8 @@ pub(crate) fn check_exact_on<const D: usize>(
         let evaluator = Evaluator { name, problem, exact, scales };
         let x = mesh.facet_barycentre(cell, local);
         let normal = mesh.geometry(cell).normal(local);
-        boundary::check_at(
-            &evaluator,
-            &BoundaryPoint { x, normal, condition: facet.condition },
-            ROUNDED,
-        )?;
+        let point = BoundaryPoint { x, normal, condition: facet.condition };
+        evaluator.check_boundary_at(&point, ROUNDED)?;
     }
     Ok(())
 }

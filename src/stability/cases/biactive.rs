@@ -13,8 +13,7 @@ use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row::ExpectedRange;
 use crate::stability::row_builder::{RowBuilder, figures, of};
-use crate::stability::runs::{row, rows, solved_by, solver};
-use crate::study::Row;
+use crate::stability::runs::{H1, L2, fit, row, solved_by, solver};
 
 const ORDERS: Criterion = Criterion::new(
     "orders-on-biactive-sets",
@@ -58,37 +57,16 @@ fn plan(plan: &mut Plan<'_>) {
     for choice in plan.compared() {
         for make in plane {
             plan.add(choice, &make().name, move |c, sink| {
-                orders(&make(), c, levels, sink)?;
+                fit(&ORDERS, &make(), c, levels, &[L2, H1], sink)?;
                 levels.iter().try_for_each(|&level| steps(&make(), c, level, sink))
             });
         }
         plan.add(choice, "oscillating-1d", move |c, sink| {
-            orders(&scenes::oscillating_1d(), c, strings, sink)?;
+            fit(&ORDERS, &scenes::oscillating_1d(), c, strings, &[L2, H1], sink)?;
             steps(&scenes::oscillating_1d(), c, strings[0], sink)
         });
         plan.add(choice, "free boundary", move |c, sink| distances(c, finest, sink));
     }
-}
-
-fn orders<const D: usize>(
-    scene: &Scene<D>,
-    choice: &Choice,
-    levels: &[usize],
-    sink: Sink<'_>,
-) -> Result<(), Error> {
-    let rows = rows(scene, choice, levels)?;
-    type Norm = (&'static str, fn(&Row) -> Option<f64>);
-    let norms: [Norm; 2] = [("L2", |r| r.error.l2), ("H1", |r| r.error.h1)];
-    for (number, (norm, error)) in norms.into_iter().enumerate() {
-        let claim = RowBuilder::new(&ORDERS, choice)
-            .limit(number)
-            // a re-entrant corner limits the orders whatever the contact
-            .judged_if(scene.name != "lshape-2d")
-            .on(&scene.name)
-            .quantity(&format!("order in {norm}, fitted"));
-        sink(claim.fitted(&rows, error));
-    }
-    Ok(())
 }
 
 /// Linear systems of the library's own solver and of the interior point method from a cold start.

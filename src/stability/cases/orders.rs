@@ -9,8 +9,7 @@ use crate::stability::criterion::Criterion;
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row::ExpectedRange;
 use crate::stability::row_builder::{RowBuilder, figures, jumps};
-use crate::stability::runs::{over, row, rows};
-use crate::study::Row;
+use crate::stability::runs::{H1, L2, Norm, fit, over, row};
 
 const OVER_PENALTY: Criterion = Criterion::new(
     "orders-of-over-penalty",
@@ -40,12 +39,6 @@ const BOXES: Criterion = Criterion::new(
 pub(crate) const CASE: Case =
     Case { name: "orders", criteria: &[OVER_PENALTY, JUMPS, DUALITY, STRINGS, BOXES], plan };
 
-/// A norm of the error by name. The limit of its order is the one of the criterion at the same place.
-type Norm = (&'static str, fn(&Row) -> Option<f64>);
-
-const L2: Norm = ("L2", |r| r.error.l2);
-const H1: Norm = ("H1", |r| r.error.h1);
-
 /// Problems in the plane on which the over-penalty is to show its orders.
 const PLANE: [fn() -> Scene<2>; 8] = [
     || scenes::radial(1.0),
@@ -60,7 +53,7 @@ const PLANE: [fn() -> Scene<2>; 8] = [
 
 fn plan(plan: &mut Plan<'_>) {
     let levels: &[usize] = plan.pick_of(&[8, 16], &[16, 32, 64], &[32, 64, 128]);
-    let plane = if plan.is_full() { &PLANE[..] } else { &PLANE[..1] };
+    let plane = plan.pick(&PLANE[..1], &PLANE[..]);
     let strings: &[usize] = &[32, 64, 128, 256];
     let norms = &[L2, H1, ("jumps", jumps)];
     for scheme in ["wopsip", "wopsip:facet-means"] {
@@ -98,27 +91,6 @@ fn plan(plan: &mut Plan<'_>) {
     for scheme in ["wopsip@eta=1", "wopsip"] {
         plan.add(Choice::of(scheme), "radial-3d", move |c, sink| in_space(c, boxes, sink));
     }
-}
-
-fn fit<const D: usize>(
-    criterion: &'static Criterion,
-    scene: &Scene<D>,
-    choice: &Choice,
-    levels: &[usize],
-    norms: &[Norm],
-    sink: Sink<'_>,
-) -> Result<(), Error> {
-    let rows = rows(scene, choice, levels)?;
-    for (number, (norm, error)) in norms.iter().enumerate() {
-        let claim = RowBuilder::new(criterion, choice);
-        let claim = match criterion.limits.get(number) {
-            Some(_) => claim.limit(number),
-            None => claim.judged_if(false),
-        };
-        let claim = claim.on(&scene.name).quantity(&format!("order in {norm}, fitted"));
-        sink(claim.fitted(&rows, error));
-    }
-    Ok(())
 }
 
 fn in_space(choice: &Choice, levels: &[usize], sink: Sink<'_>) -> Result<(), Error> {

@@ -2,7 +2,7 @@
 
 use crate::measure::observed_order;
 use crate::study::row::{Orders, Row};
-use crate::study::series::series_of;
+use crate::study::series::{Variant, series_of};
 
 /// Fills in the order of every row against the previous level: the row with the next smaller level of its series. It is
 /// that in the mesh size; on adaptive meshes `-D` times the slope in unknowns.
@@ -12,7 +12,8 @@ use crate::study::series::series_of;
 pub fn fill_orders(rows: &mut [Row]) {
     let series = series_of(rows);
     let previous = |row: &Row| {
-        let own = series.iter().find(|series| series.variant.has(row))?;
+        let variant = Variant::of(row);
+        let own = series.iter().find(|series| series.variant == variant)?;
         own.rows.iter().copied().rev().find(|other| other.level < row.level)
     };
     let of = |row: &Row| previous(row).map_or_else(Orders::default, |coarse| order(coarse, row));

@@ -71,7 +71,10 @@ pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
             Cell::Words(levels_in_words(&missed.observed.levels)),
             observed(fitted),
             promised(Some(missed.promised)),
-            Cell::number(fitted.map(local_orders)),
+            Cell::number(fitted.map(|fitted| {
+                let orders = fitted.local.iter().map(|order| format!("{order:.2}"));
+                orders.collect::<Vec<_>>().join(", ")
+            })),
             Cell::Words(missed.verdict.name().to_owned()),
         ]
     };
@@ -81,7 +84,11 @@ pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
         orders.iter().flat_map(|line| line.missed(tolerance)).map(missed).collect(),
     );
     let mut text = reading(tolerance) + &counts.to_markdown() + "\n" + &not_kept.to_markdown();
-    let failures: Vec<String> = orders.iter().flat_map(failures).collect();
+    let failures = orders.iter().flat_map(|line| {
+        let of = |(level, why): &(usize, _)| format!("{} {} {level} {why}", line.scene, line.label);
+        line.failures.iter().map(of).collect::<Vec<_>>()
+    });
+    let failures: Vec<String> = failures.collect();
     if !failures.is_empty() {
         text += &format!("\nLevels that did not converge: {}.\n", failures.join("; "));
     }
@@ -92,17 +99,8 @@ fn observed(fitted: Option<&FittedOrder>) -> Cell {
     Cell::number(fitted.map(order_in_words))
 }
 
-fn local_orders(fitted: &FittedOrder) -> String {
-    fitted.local.iter().map(|order| format!("{order:.2}")).collect::<Vec<_>>().join(", ")
-}
-
 fn promised(order: Option<f64>) -> Cell {
     Cell::number(order.map(|order| order.to_string()))
-}
-
-fn failures(line: &ObservedOrders) -> Vec<String> {
-    let of = |(level, why): &(usize, _)| format!("{} {} {level} {why}", line.scene, line.label);
-    line.failures.iter().map(of).collect()
 }
 
 /// The verdict of all norms, or one after the other; norms without a promise count where no norm has

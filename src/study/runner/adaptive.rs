@@ -107,7 +107,7 @@ impl<const D: usize> Study<'_, D> {
                     if let Err(error) = self.check_step(&*entry.scheme, (level, cells)) {
                         let (of, place) = ((entry, problem), (level, cells as f64));
                         let row = self.row_without_memory(of, place, solver.name(), error)?;
-                        self.finish(Row { theta: Some(adaptivity.theta), ..row }, &mut rows)?;
+                        self.finish(row, &mut rows)?;
                         break;
                     }
                     let step = match &crossing {
@@ -121,14 +121,13 @@ impl<const D: usize> Study<'_, D> {
                             let name = solver.name();
                             let of = (entry, problem);
                             let row = self.row_without(of, place, name, failure, error)?;
-                            self.finish(Row { theta: Some(adaptivity.theta), ..row }, &mut rows)?;
+                            self.finish(row, &mut rows)?;
                             break;
                         }
                         None => break,
                     };
                     let row = self.row_of(entry, level, &step.solved, solver.name(), measured)?;
-                    let row = adaptive_row(row, &step, adaptivity.theta);
-                    let row = self.finish(row, &mut rows)?;
+                    let row = self.finish(adaptive_row(row, &step), &mut rows)?;
                     // files are named after the last step: whether there is another one is known
                     let last = level + usize::from(step.stop.is_none());
                     let levels: Vec<usize> = (0..=last).collect();
@@ -144,7 +143,7 @@ impl<const D: usize> Study<'_, D> {
 }
 
 /// The row of a step: the times of all steps so far, and no order that theory promises for uniform meshes.
-fn adaptive_row<const D: usize>(row: Row, step: &AdaptiveStep<'_, D>, theta: f64) -> Row {
+fn adaptive_row<const D: usize>(row: Row, step: &AdaptiveStep<'_, D>) -> Row {
     let seconds = Seconds {
         assemble: step.assemble_seconds,
         solve: step.solve_seconds,
@@ -153,5 +152,5 @@ fn adaptive_row<const D: usize>(row: Row, step: &AdaptiveStep<'_, D>, theta: f64
         total: step.seconds(),
         ..row.seconds
     };
-    Row { theta: Some(theta), seconds, expected_order: ExpectedOrders::default(), ..row }
+    Row { seconds, expected_order: ExpectedOrders::default(), ..row }
 }

@@ -49,9 +49,7 @@ impl<'a, const D: usize> Study<'a, D> {
     /// The variant of the rows of a case, with its level; of adaptive meshes that is zero.
     pub(crate) fn variant(&self) -> (Variant, usize) {
         let row = self.row_not_run(String::new());
-        let theta = self.adaptive.map(|of| of.theta);
-        let level = if theta.is_some() { 0 } else { row.level };
-        (Variant::of(&Row { theta, ..row }), level)
+        (Variant::of(&row), if self.is_adaptive() { 0 } else { row.level })
     }
 
     /// Whether the study runs on adaptive meshes.

@@ -63,10 +63,7 @@ impl<const D: usize> Study<'_, D> {
             Some(of) => format!("{} unknowns", of.unknowns),
             None => format!("level {level}"),
         };
-        shortage(bytes, memory_of_process(), || format!("scheme {scheme}, {what}"), self.remedy())
-    }
-    fn remedy(&self) -> &'static str {
-        if self.adaptive.is_some() { "fewer unknowns" } else { "a lower level" }
+        self.check_bytes(bytes, memory_of_process(), || format!("scheme {scheme}, {what}"))
     }
 
     /// Checks that a scheme on a level fits into so many bytes.
@@ -78,7 +75,7 @@ impl<const D: usize> Study<'_, D> {
     ) -> Result<(), Error> {
         let run = || format!("scheme {}, level {level}", scheme.name());
         let bytes = self.memory_of(scheme, self.scene.domain.cells(level));
-        shortage(bytes, available, run, self.remedy())
+        self.check_bytes(bytes, available, run)
     }
     /// Checks that a scheme on the next mesh of adaptive refinement fits into the memory.
     pub(super) fn check_step(
@@ -87,7 +84,22 @@ impl<const D: usize> Study<'_, D> {
         (step, cells): (usize, usize),
     ) -> Result<(), Error> {
         let run = || format!("scheme {}, step {step} with {cells} cells", scheme.name());
-        shortage(self.memory_of(scheme, cells as f64), memory_of_process(), run, self.remedy())
+        self.check_bytes(self.memory_of(scheme, cells as f64), memory_of_process(), run)
+    }
+    /// Refuses a run that needs more bytes than there are, where the system tells.
+    fn check_bytes(
+        &self,
+        needed: f64,
+        available: Option<u64>,
+        run: impl Fn() -> String,
+    ) -> Result<(), Error> {
+        let remedy = if self.adaptive.is_some() { "fewer unknowns" } else { "a lower level" };
+        match available.map(|bytes| bytes as f64) {
+            Some(available) if needed > available => {
+                Err(Error::NotEnoughMemory { run: run(), needed, available, remedy })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The row of a run that does not fit into the memory, on so many cells.
@@ -105,20 +117,5 @@ impl<const D: usize> Study<'_, D> {
             ..Row::new(&self.scene.name, D, entry.scheme.name(), level, Outcome::OutOfMemory)
         };
         self.named(entry, problem, row, None).with_error(error)
-    }
-}
-
-/// Refuses a run that needs more bytes than there are, where the system tells.
-fn shortage(
-    needed: f64,
-    available: Option<u64>,
-    run: impl Fn() -> String,
-    remedy: &'static str,
-) -> Result<(), Error> {
-    match available.map(|bytes| bytes as f64) {
-        Some(available) if needed > available => {
-            Err(Error::NotEnoughMemory { run: run(), needed, available, remedy })
-        }
-        _ => Ok(()),
     }
 }

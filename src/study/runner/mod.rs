@@ -257,7 +257,10 @@ impl<'a, const D: usize> Study<'a, D> {
         let mut by_solver: Vec<Vec<NestedIteration<'_, D>>> = self
             .solvers()
             .iter()
-            .map(|solver| hierarchies.iter().map(|h| self.nested(h, solver)).collect())
+            .map(|solver| {
+                let nested = |h| NestedIteration::new(&self.scene.problem, h);
+                hierarchies.iter().map(|h| self.with_settings(nested(h), solver)).collect()
+            })
             .collect();
         let mut kept = kept.into_iter();
         let (mut rows, mut unwritten) = (Vec::new(), None);
@@ -354,7 +357,7 @@ impl<'a, const D: usize> Study<'a, D> {
                     let fits = |of: &Entry<'_, D>| self.check_level(&*of.scheme, level, available);
                     self.entries.iter().any(|entry| fits(entry).is_ok())
                 });
-                Hierarchy::all_of_domain(&self.scene.domain, &levels)
+                Hierarchy::all_by(&levels, |level| Hierarchy::of_domain(&self.scene.domain, level))
             }
             Some(reference) => {
                 let coarsest = self.levels.iter().copied().min().unwrap_or(1);
@@ -377,14 +380,7 @@ impl<'a, const D: usize> Study<'a, D> {
         self.solvers()[0].precision()
     }
 
-    /// The problem of the scene on nested meshes.
-    fn nested<'s>(
-        &'s self,
-        hierarchy: &'s Hierarchy<D>,
-        solver: &Arc<dyn InequalitySolver<f64> + 's>,
-    ) -> NestedIteration<'s, D> {
-        self.with_settings(NestedIteration::new(&self.scene.problem, hierarchy), solver)
-    }
+    /// A problem on nested meshes with a solver and the settings of the study.
     fn with_settings<'s>(
         &'s self,
         nested: NestedIteration<'s, D>,

@@ -7,7 +7,7 @@ use crate::inequality::ActiveSet;
 use crate::nested::{Hierarchy, NestedIteration};
 use crate::problem::Problem;
 use crate::real::Precision;
-use crate::study::reference::{FoundReference, Reference};
+use crate::study::reference::FoundReference;
 
 impl<const D: usize> Study<'_, D> {
     /// The problem with the constraint set of the reference.
@@ -16,23 +16,14 @@ impl<const D: usize> Study<'_, D> {
         Some(with_set(&self.scene.problem, &reference.set))
     }
 
-    /// The reference on the finest mesh, where one is asked for.
+    /// The reference on the finest mesh and its name in rows, where one is asked for. Where it cannot be had, rows have
+    /// no errors and say why.
     pub(super) fn find_reference<'h>(
         &'h self,
         problem: &'h Option<Problem<D>>,
         hierarchies: &'h [Hierarchy<D>],
     ) -> Option<FoundReference<'h, D>> {
         let (reference, hierarchy) = (self.reference.as_ref()?, hierarchies.first()?);
-        Some(self.solve_reference(reference, problem.as_ref()?, hierarchy))
-    }
-
-    /// The reference and its name in rows. Where it cannot be had, rows have no errors and say why.
-    fn solve_reference<'h>(
-        &'h self,
-        reference: &Reference<'_, D>,
-        problem: &'h Problem<D>,
-        hierarchy: &'h Hierarchy<D>,
-    ) -> FoundReference<'h, D> {
         let name = reference.name(self.scene.problem.constraint_set());
         (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
         // errors in single precision are measured against a reference in double precision
@@ -40,14 +31,14 @@ impl<const D: usize> Study<'_, D> {
             Precision::Double => self.solvers()[0].clone(),
             Precision::Single => Arc::new(ActiveSet::default()),
         };
-        let mut nested = NestedIteration::new(problem, hierarchy)
+        let mut nested = NestedIteration::new(problem.as_ref()?, hierarchy)
             .shared_solver(solver)
             .quadrature(self.quadrature);
         let fails = |why: &str| format!("the reference, {name}, was not found: {why}");
-        let solved = nested.solve(&*reference.scheme).map_err(|e| fails(&e.to_string()))?;
-        match solved.converged() {
-            true => Ok((solved, name)),
-            false => Err(fails(solved.outcome().message())),
-        }
+        Some(match nested.solve(&*reference.scheme) {
+            Ok(solved) if solved.converged() => Ok((solved, name)),
+            Ok(solved) => Err(fails(solved.outcome().message())),
+            Err(error) => Err(fails(&error.to_string())),
+        })
     }
 }

@@ -1,7 +1,6 @@
 //! The rows of a study: one scheme on one level each.
 
 use super::{Entry, Progress, Study};
-use crate::constraint::ConstraintSet;
 use crate::error::Error;
 #[cfg(feature = "report")]
 use crate::exchange::write_inequality;
@@ -11,7 +10,7 @@ use crate::nested::{NestedIteration, Phase, Solved};
 use crate::problem::Problem;
 use crate::scenes::check::Violation;
 use crate::scenes::check_exact_on;
-use crate::scheme::{ExpectedOrders, Scheme};
+use crate::scheme::ExpectedOrders;
 use crate::study::crossing::Crossing;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
@@ -202,7 +201,7 @@ impl<const D: usize> Study<'_, D> {
         self.not_exact.get_or_init(found).clone()
     }
 
-    /// The row with the names of constraint set and label and the promised orders.
+    /// The row with the names of constraint set and label, the kind of meshes, and the promised orders.
     pub(super) fn named(
         &self,
         entry: &Entry<'_, D>,
@@ -216,28 +215,21 @@ impl<const D: usize> Study<'_, D> {
             true => "refinements",
             false => "subdivisions",
         };
+        let expected_order = match (failure, &self.scene.problem.exact) {
+            (None, Some(_)) => scheme.expected_orders_on(set, &setting(&self.scene)),
+            // theory promises nothing without an exact solution that holds on the mesh
+            _ => ExpectedOrders::default(),
+        };
         Row {
             level_kind: Some(kind.to_owned()),
+            theta: self.adaptive.map(|of| of.theta),
             linear_asked: self.linear_asked.clone(),
             // all rows of a request have the same keys
             history: row.history.or_else(|| self.keeps_history.then(Vec::new)),
             constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
             label: entry.label(problem),
-            expected_order: self.expected_orders(scheme, set, failure),
+            expected_order,
             ..row
-        }
-    }
-
-    /// The orders that theory proves; none without an exact solution that holds on the mesh.
-    fn expected_orders(
-        &self,
-        scheme: &dyn Scheme<D>,
-        set: &dyn ConstraintSet,
-        failure: Option<&str>,
-    ) -> ExpectedOrders {
-        match (failure, &self.scene.problem.exact) {
-            (None, Some(_)) => scheme.expected_orders_on(set, &setting(&self.scene)),
-            _ => ExpectedOrders::default(),
         }
     }
 }

@@ -39,7 +39,7 @@ pub(crate) fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
     let finest: Vec<&Row> = series.iter().filter_map(|s| s.rows.last().copied()).collect();
     let mut columns = columns(rows);
     if rows.iter().any(|row| !row.converged()) {
-        columns.push(column("", |_| Cell::Words(String::new())));
+        columns.push(("", |_| Cell::Words(String::new())));
     }
     let mut first = table(scene.to_owned(), &columns, &sorted);
     first.detail = format!(": {}", heading(rows));
@@ -73,10 +73,10 @@ pub(crate) fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
 
 /// A table without remarks.
 fn table(title: String, columns: &[Column], rows: &[&Row]) -> Table {
-    let line = |row: &&Row| columns.iter().map(|column| (column.cell)(row)).collect();
+    let line = |row: &&Row| columns.iter().map(|(_, cell)| cell(row)).collect();
     Table {
         title,
-        columns: columns.iter().map(|column| column.name.to_owned()).collect(),
+        columns: columns.iter().map(|(name, _)| (*name).to_owned()).collect(),
         rows: rows.iter().map(line).collect(),
         ..Table::default()
     }
@@ -161,28 +161,20 @@ fn heading(rows: &[&Row]) -> String {
     text
 }
 
-/// One column of a table.
-#[derive(Clone, Copy)]
-struct Column {
-    name: &'static str,
-    cell: fn(&Row) -> Cell,
-}
-
-fn column(name: &'static str, cell: fn(&Row) -> Cell) -> Column {
-    Column { name, cell }
-}
+/// The name of a column of a table, and its cell in a row.
+type Column = (&'static str, fn(&Row) -> Cell);
 
 /// The columns that tell the rows of a scene apart.
 fn names(rows: &[&Row]) -> Vec<Column> {
-    let mut columns = vec![column("scheme", |r| Cell::Words(r.label.clone()))];
+    let mut columns: Vec<Column> = vec![("scheme", |r| Cell::Words(r.label.clone()))];
     if rows.iter().any(|r| r.solver != rows[0].solver) {
-        columns.push(column("solver", |r| Cell::Words(r.solver.clone())));
+        columns.push(("solver", |r| Cell::Words(r.solver.clone())));
     }
     if rows.iter().any(|r| r.linear_asked != rows[0].linear_asked) {
-        columns.push(column("linear", |r| Cell::Words(r.linear_asked.clone().unwrap_or_default())));
+        columns.push(("linear", |r| Cell::Words(r.linear_asked.clone().unwrap_or_default())));
     }
     let name = if is_adaptive(rows) { "step" } else { "n" };
-    columns.push(column(name, |r| Cell::whole(Some(r.level))));
+    columns.push((name, |r| Cell::whole(Some(r.level))));
     columns
 }
 
@@ -193,46 +185,44 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     let is_adaptive = is_adaptive(rows);
     // the orders of errors are over it
     if !is_adaptive && has_errors(rows) {
-        columns
-            .push(column("h", |r| Cell::scientific(Some(r.mesh_size).filter(|h| h.is_finite()))));
+        columns.push(("h", |r| Cell::scientific(Some(r.mesh_size).filter(|h| h.is_finite()))));
     }
-    columns.push(column("unknowns", |r| Cell::whole(r.unknowns)));
+    columns.push(("unknowns", |r| Cell::whole(r.unknowns)));
     let has_effectivity = any(|r| r.bound.effectivity);
     let has_bound = any(|r| r.bound.discrete) && (is_adaptive || !has_effectivity);
     if is_adaptive {
-        columns.push(column("bound", |r| bound(r, 1)));
-        columns.push(column("order", |r| Cell::fixed(r.order.bound)));
+        columns.push(("bound", |r| bound(r, 1)));
+        columns.push(("order", |r| Cell::fixed(r.order.bound)));
     } else if any(|r| r.error.l2) {
-        columns.push(column("L2", |r| Cell::scientific(r.error.l2)));
-        columns.push(column("order", |r| Cell::fixed(r.order.l2)));
+        columns.push(("L2", |r| Cell::scientific(r.error.l2)));
+        columns.push(("order", |r| Cell::fixed(r.order.l2)));
     }
     if has_bound && rows.iter().any(|r| !r.error.is_energy_h1()) {
         // beside a bound only the norm that it bounds
-        columns.push(column("energy norm", |r| Cell::scientific(r.error.broken_energy)));
+        columns.push(("energy norm", |r| Cell::scientific(r.error.broken_energy)));
     } else if any(|r| r.error.h1) {
-        columns.push(column("H1", |r| Cell::scientific(r.error.h1)));
-        columns.push(column("order", |r| Cell::fixed(r.order.h1)));
+        columns.push(("H1", |r| Cell::scientific(r.error.h1)));
+        columns.push(("order", |r| Cell::fixed(r.order.h1)));
     }
     // the errors say the rest where they are known, and lines stay within their width
     if has_effectivity {
-        columns.push(column("effect.", |r| {
-            Cell::number(r.bound.effectivity.map(|x| marked(r, fixed(x))))
-        }));
+        columns
+            .push(("effect.", |r| Cell::number(r.bound.effectivity.map(|x| marked(r, fixed(x))))));
     } else if !is_adaptive && has_bound {
-        columns.push(column("bound", |r| bound(r, 1)));
+        columns.push(("bound", |r| bound(r, 1)));
     }
     if !has_errors(rows) {
         columns.extend(of_the_solution(rows));
     }
-    columns.push(column("active", |r| Cell::whole(r.active)));
-    columns.push(column("certif.", |r| {
+    columns.push(("active", |r| Cell::whole(r.active)));
+    columns.push(("certif.", |r| {
         Cell::digits(Some(r.certificate.largest()).filter(|c| c.is_finite()), 1)
     }));
-    columns.push(column("systems", |r| Cell::whole(r.iterations.systems)));
-    columns.push(column("assem.", |r| Cell::seconds(r.seconds.assemble)));
-    columns.push(column("solve", |r| Cell::seconds(r.seconds.solve)));
+    columns.push(("systems", |r| Cell::whole(r.iterations.systems)));
+    columns.push(("assem.", |r| Cell::seconds(r.seconds.assemble)));
+    columns.push(("solve", |r| Cell::seconds(r.seconds.solve)));
     if is_adaptive {
-        columns.push(column("total", |r| Cell::seconds(r.seconds.total)));
+        columns.push(("total", |r| Cell::seconds(r.seconds.total)));
     }
     columns
 }
@@ -257,28 +247,28 @@ pub(super) fn unproven(rows: &[&Row]) -> Option<String> {
 
 /// Energy, contact measure and resultant, where they are known.
 fn of_the_solution(rows: &[&Row]) -> Vec<Column> {
-    let mut columns = Vec::new();
+    let mut columns: Vec<Column> = Vec::new();
     if rows.iter().any(|r| r.energy.is_some()) {
-        columns.push(column("energy", |r| Cell::digits(r.energy, 5)));
+        columns.push(("energy", |r| Cell::digits(r.energy, 5)));
     }
     if rows.iter().any(|r| r.contact_measure.is_some()) {
-        columns.push(column("contact", |r| Cell::digits(r.contact_measure, 3)));
-        columns.push(column("resultant", |r| Cell::digits(r.resultant, 4)));
+        columns.push(("contact", |r| Cell::digits(r.contact_measure, 3)));
+        columns.push(("resultant", |r| Cell::digits(r.resultant, 4)));
     }
     columns
 }
 
 /// The columns of the figures that the first table leaves out.
 fn totals(rows: &[&Row]) -> Vec<Column> {
-    let mut columns = Vec::new();
+    let mut columns: Vec<Column> = Vec::new();
     if has_errors(rows) {
         columns.extend(of_the_solution(rows));
         if !is_adaptive(rows) && rows.iter().any(|r| r.bound.discrete.is_some()) {
-            columns.push(column("bound", |r| bound(r, 2)));
+            columns.push(("bound", |r| bound(r, 2)));
         }
     }
     if rows.iter().any(|r| !r.iterations.stages.is_empty()) {
-        columns.push(column("stages (outer)", |r| {
+        columns.push(("stages (outer)", |r| {
             let stages = r.iterations.stages.iter().map(|s| format!("{} ({})", s.stage, s.outer));
             Cell::Words(stages.collect::<Vec<_>>().join(", "))
         }));
@@ -299,19 +289,19 @@ fn of_processes(rows: &[&Row]) -> Vec<Column> {
         format!("{least:.2}-{most:.2}")
     }
     vec![
-        column("ranks", |r| figure(r, |p| p.count.to_string())),
-        column("ghosts", |r| figure(r, |p| format!("{:.1}%", 100.0 * p.ghosts))),
-        column("imbal.", |r| figure(r, |p| format!("{:.3}", p.imbalance))),
-        column("linear", |r| Cell::whole(Some(r.iterations.linear))),
-        column("assem.", |r| figure(r, |p| range(p.seconds.assemble))),
-        column("number", |r| figure(r, |p| range(p.seconds.number))),
-        column("start", |r| figure(r, |p| range(p.seconds.start))),
-        column("solve", |r| figure(r, |p| range(p.seconds.solve))),
-        column("B/it.", |r| {
+        ("ranks", |r| figure(r, |p| p.count.to_string())),
+        ("ghosts", |r| figure(r, |p| format!("{:.1}%", 100.0 * p.ghosts))),
+        ("imbal.", |r| figure(r, |p| format!("{:.3}", p.imbalance))),
+        ("linear", |r| Cell::whole(Some(r.iterations.linear))),
+        ("assem.", |r| figure(r, |p| range(p.seconds.assemble))),
+        ("number", |r| figure(r, |p| range(p.seconds.number))),
+        ("start", |r| figure(r, |p| range(p.seconds.start))),
+        ("solve", |r| figure(r, |p| range(p.seconds.solve))),
+        ("B/it.", |r| {
             let bytes = r.ranks.as_ref().and_then(|p| p.bytes_per_iteration);
             Cell::number(bytes.map(|bytes| format!("{bytes:.0}")))
         }),
-        column("MB", |r| {
+        ("MB", |r| {
             let memory = r.ranks.as_ref().and_then(|p| p.peak_memory_bytes);
             let memory = memory.map(|bytes| bytes.map(|b| b as f64 / 1e6));
             Cell::number(memory.map(|[a, b]| format!("{a:.0}-{b:.0}")))

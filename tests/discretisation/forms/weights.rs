@@ -1,8 +1,11 @@
 //! The weights of forms on facets of meshes with known geometry.
 
+use std::sync::{Arc, Mutex};
+
 use crate::support::checks::Checks;
+use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::facet::{FacetLifts, Side};
-use unilateral::mesh::{BoxDomain, Mesh};
+use unilateral::mesh::{BoundaryCondition, BoxDomain, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 
 /// The unit square of two triangles: the diagonal from cell 0 to cell 1, and a side of cell 0.
@@ -171,5 +174,54 @@ fn the_limit_of_rounding_is_a_length() {
             assert!((limit(1e-16, length) / expected - 1.0).abs() < 1e-14, "{}", scheme.name());
         }
         assert!((limit(16e-16, 1.0) / limit(1e-16, 1.0) - 2.0).abs() < 1e-14);
+    }
+}
+
+/// A penalty that notes the measures of the facets that it sees.
+#[derive(Clone, Default)]
+struct Noting(Arc<Mutex<Vec<f64>>>);
+
+impl FacetForm<2> for Noting {
+    fn uses_flux(&self) -> bool {
+        false
+    }
+    fn penalty(&self, facet: &FacetView<2>) -> f64 {
+        self.0.lock().unwrap().push(facet.measure);
+        1.0
+    }
+    fn integrand(&self, _: &FacetView<2>, v: Trace, u: Trace, penalty: f64) -> f64 {
+        penalty * u.jump * v.jump
+    }
+}
+
+impl Scheme<2> for Noting {
+    fn name(&self) -> &str {
+        "noting"
+    }
+    fn element(&self) -> Arc<dyn Element<2>> {
+        Arc::new(Broken(P1))
+    }
+    fn form(&self, _: &Mesh<2>) -> Box<dyn FacetForm<2>> {
+        Box::new(self.clone())
+    }
+}
+
+#[test]
+fn the_shortest_facet_of_a_thin_cell_keeps_its_digits() {
+    for short in [1e-3, 1e-6, 1e-9] {
+        let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, short]].map(Point::<2>::from);
+        let sides = [[0, 1], [0, 2], [1, 2]]
+            .map(|vertices| TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet });
+        let mesh = Mesh::new(vertices.to_vec(), vec![0, 1, 2], &sides).expect("one cell");
+        let (scheme, problem) = (Noting::default(), Problem::new());
+        let assembled =
+            Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
+        assert_eq!(assembled.matrix().size(), 3);
+        let measures = scheme.0.lock().unwrap();
+        let exact = [short, (1.0 + short * short).sqrt(), 1.0];
+        assert_eq!(measures.len(), exact.len());
+        for (measure, exact) in measures.iter().zip(exact) {
+            assert!((measure / exact - 1.0).abs() < 4.0 * f64::EPSILON, "{short}");
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{cold, solve_from};
 use crate::problems::*;
-use unilateral::algebra::{Bound, Contact, Start};
+use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix, Start};
 use unilateral::inequality::{
     ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, Outcome, ProximalPoint, certify,
 };
@@ -50,6 +50,19 @@ fn every_solver_checks_definiteness_first() {
         ProximalPoint.solve(&problem).outcome,
     ];
     assert_eq!(outcomes, [Outcome::NotCoercive; 4]);
+}
+
+/// Two coupled unknowns with lower bounds zero, and a load twice which overflows the scalar: the start is not
+/// finite.
+#[test]
+fn a_start_that_overflows_is_named() {
+    let (row_starts, columns) = (vec![0, 2, 4], vec![0, 1, 0, 1]);
+    let matrix = SparseMatrix { row_starts, columns, values: vec![1.0, -0.9, -0.9, 1.0] };
+    let bounds = vec![Bound::Lower(0.0); 2];
+    let inequality = Inequality::<f32>::new(matrix, true, vec![3e38; 2], bounds);
+    let found = InteriorPoint.solve(&inequality);
+    assert_ne!(found.outcome, Outcome::Converged);
+    assert!(found.outer <= 2, "{}", found.outer);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 mod agreement;
 mod damage;
+mod element_types;
 mod errors;
 mod files;
 mod forms;

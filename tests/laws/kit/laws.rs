@@ -2,7 +2,9 @@
 
 use unilateral::algebra::SparseMatrix;
 use unilateral::kit::spectrum::MeanJump;
-use unilateral::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos, SpectrumError};
+use unilateral::kit::spectrum::{
+    CholeskyMatrix, Diagonal, Lanczos, SpectrumError, negative_eigenvalues, smallest_eigenvalue,
+};
 use unilateral::kit::{
     check_consistency, check_orders, check_scheme, check_scheme_on, check_symmetry,
 };
@@ -95,6 +97,24 @@ fn a_spectrum_that_is_not_reached_is_an_error() {
     negative.0[7] = -1e9;
     let error = lanczos.largest(&a, &negative).unwrap_err();
     assert!(matches!(error, SpectrumError::NotPositive { .. }), "{error}");
+}
+
+#[test]
+fn eigenvalues_of_an_indefinite_matrix() {
+    // eigenvalues 3 and -1, and 2
+    let matrix = SparseMatrix {
+        row_starts: vec![0, 2, 4, 5],
+        columns: vec![0, 1, 0, 1, 2],
+        values: vec![1.0, 2.0, 2.0, 1.0, 2.0],
+    };
+    assert_eq!(negative_eigenvalues(&matrix), Some(1));
+    for scale in [1.0, 1e9] {
+        let values = matrix.values.iter().map(|a| scale * a).collect();
+        let least = smallest_eigenvalue(&SparseMatrix { values, ..matrix.clone() }).unwrap();
+        assert!((least / scale + 1.0).abs() < 1e-5, "{least}");
+    }
+    let without_pivot = SparseMatrix { values: vec![0.0, 2.0, 2.0, 0.0, 2.0], ..matrix };
+    assert_eq!(negative_eigenvalues(&without_pivot), None);
 }
 
 /// The change of variables is what it is said to be, under every boundary condition.

@@ -2,6 +2,7 @@
 //! that is meant for them.
 
 mod broken_schemes;
+mod elements;
 mod laws;
 mod quadratics;
 

@@ -1,7 +1,6 @@
 //! Schemes side by side on the same inequality: errors, observed orders, times and a certificate.
 //!
-//! `cargo run --release -- compare --help` lists the options. Exit codes: 0 if every row converged,
-//! 1 if some did not or the run could not go on, 2 if the request was wrong, 130 if it was interrupted.
+//! `cargo run --release -- compare --help` lists the options.
 
 mod dump;
 mod interrupt;

@@ -2,17 +2,14 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use super::options::Options;
 use super::watcher::Watcher;
-use crate::shared::{Request, each_once, fields_with_bound};
+use crate::shared::{Request, draw_solution, each_once};
 
 use unilateral::error::Error;
 use unilateral::inequality::solver_by_name;
 use unilateral::linear::LinearMethod;
-use unilateral::nested::Solved;
-use unilateral::plot::Picture;
 use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
@@ -70,8 +67,10 @@ pub fn prepare<'a, const D: usize>(
         let finest = *drawn.borrow().get(label).unwrap_or(&0);
         if solved.mesh().n_cells() <= MOST_CELLS && level >= finest {
             drawn.borrow_mut().insert(label.to_owned(), level);
+            // one on a finer mesh takes the place of a coarser one
             let name = format!("{scene_name}-{label}");
-            if let Err(why) = draw(&name, level, solved, &options.out) {
+            let title = format!("{name}, level {level}");
+            if let Err(why) = draw_solution(&title, solved, &options.out, &file_name(&name)) {
                 watcher.warn_once(format!("warning: no picture of {name}: {why}"));
             }
         }
@@ -108,20 +107,6 @@ pub fn prepare<'a, const D: usize>(
     }
     let run = move |journal| Ok(study.journal(journal).run()?.rows);
     Ok(Some(Run { keys, place, run: Box::new(run) }))
-}
-
-/// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.
-fn draw<const D: usize>(
-    name: &str,
-    level: usize,
-    solved: &Solved<'_, D>,
-    directory: &Path,
-) -> Result<(), Error> {
-    let Some(fields) = fields_with_bound(solved) else { return Ok(()) };
-    let title = format!("{name}, level {level}");
-    let problem = solved.discretisation().problem();
-    let picture = Picture::of(&title, problem, solved.mesh(), &fields)?;
-    picture.write_svg(&directory.join(file_name(name) + ".svg"))
 }
 
 /// The levels where none are named.

@@ -41,7 +41,7 @@ impl Watcher {
             };
         };
         let template = "{spinner} {pos} of {len} done, {elapsed}: {msg}{step}";
-        let bar = bar(options.asked.quiet, 0, template);
+        let bar = bar(options.asked.quiet, template);
         bar.set_style(bar.style().with_key("step", step));
         Self {
             bar,

@@ -6,8 +6,7 @@
 //! ```
 //!
 //! ends within a minute, without `--quick` within fifteen. The report is written as rows are
-//! finished; a run that is interrupted leaves the rows it has. Exit codes: 0; 1 if work ended in an
-//! error, or with `--strict` if a criterion was missed; 2 if the request was wrong.
+//! finished; a run that is interrupted leaves the rows it has.
 
 mod options;
 
@@ -19,14 +18,14 @@ use crate::one_run::take_directory;
 use crate::shared::{
     Failure, bar, check_writable, end_at_interrupt, print, tick, use_threads, warn, write,
 };
-use unilateral::stability::{Stability, StabilityProgress, Verdict};
+use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
 
 /// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
 pub fn run(options: &Options) -> Result<bool, Failure> {
     use_threads(options.threads.map(usize::from))?;
-    let bar = bar(options.quiet, 0, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}");
+    let bar = bar(options.quiet, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}");
     tick(&bar);
-    let mut study = Stability::new(options.effort())
+    let mut study = Stability::new(if options.quick { Effort::Quick } else { Effort::Full })
         .cases(options.cases.clone())
         .schemes(options.schemes.clone())
         .command(command())

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use unilateral::mesh::BoundaryCondition;
-use unilateral::stability::{Effort, STABILITY_CASES};
+use unilateral::stability::STABILITY_CASES;
 
 use crate::asked::{MESHES, OUTPUT, PROBLEM, SCHEMES, SOLVER};
 use crate::mesh_file::boundary;
@@ -35,7 +35,7 @@ pub struct Options {
     pub boundary: Vec<(String, BoundaryCondition)>,
     /// Coarse meshes and few places of each sweep: within a minute
     #[arg(help_heading = SOLVER, long)]
-    quick: bool,
+    pub quick: bool,
     /// Number of threads; all cores by default
     #[arg(help_heading = SOLVER, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -51,10 +51,4 @@ pub struct Options {
     /// Exit with 1 if a criterion is missed
     #[arg(help_heading = OUTPUT, long)]
     pub strict: bool,
-}
-
-impl Options {
-    pub fn effort(&self) -> Effort {
-        if self.quick { Effort::Quick } else { Effort::Full }
-    }
 }

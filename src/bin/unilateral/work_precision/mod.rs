@@ -1,7 +1,6 @@
 //! Work against precision: what schemes and linear solvers take to reach a given error.
 //!
 //! `cargo run --release -- work-precision --help` lists the options; `--quick` ends within a minute.
-//! Exit codes: 0 if every run converged, 1 otherwise, 2 if the request was wrong.
 
 mod options;
 
@@ -52,7 +51,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
             warn(&warning);
         }
     };
-    let bar = bar(quiet, 0, "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}");
+    let bar = bar(quiet, "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}");
     let (scenes, files) = options.asked.scenes(&SCENES, &warn)?;
     let mut runs = Vec::new();
     for scene in scenes {

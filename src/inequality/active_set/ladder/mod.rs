@@ -2,7 +2,7 @@
 
 mod stages;
 
-use super::iteration::End;
+use super::linear_solver::End;
 use super::settings::ActiveSet;
 use crate::algebra::Inequality;
 use crate::inequality::Solution;

@@ -59,7 +59,7 @@ fn h1_as_tables(scene: &Scene<2>, set: impl ConstraintSet + 'static, level: usiz
     let solution = solver.solve(&inequality);
     assert_eq!(solution.outcome, Outcome::Converged);
     let exact = scene.problem.exact.as_ref().unwrap();
-    let edges = Edges::new(mesh).cell_edges(mesh);
+    let (_, edges) = Edges::with_cell_edges(mesh);
     let n = mesh.vertices().len();
     let rule = Rule::new(2, 9);
     let mut sum = 0.0;
