@@ -273,7 +273,7 @@ impl<const D: usize> Space<'_, D> {
         Ok(())
     }
 
-    /// The points of a cell, or of a facet of it, at which a function is held against obstacles or a gap.
+    /// The points of a cell, or of a facet of it, at which a function is compared with obstacles or a gap.
     fn points_on(&self, facet: Option<usize>, are_vertices_enough: bool) -> Points {
         let is_on = |ends: &[usize; 2]| facet.is_none_or(|local| !ends.contains(&local));
         let ends = (0..D + 1).map(|k| [k; 2]).filter(is_on);

@@ -14,8 +14,8 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 
 impl<'a, const D: usize> Discretisation<'a, D> {
-    /// As [`Discretisation::new`], from the element, the facet form and the way of Dirichlet data that a scheme consists
-    /// of.
+    /// As [`Discretisation::new`], from the parts of a scheme: its element, its facet form, and how it imposes Dirichlet
+    /// data.
     pub(crate) fn of(
         (element, form, dirichlet): (Arc<dyn Element<D>>, Box<dyn FacetForm<D>>, DirichletBy),
         problem: &'a Problem<D>,

@@ -35,7 +35,7 @@ struct CellOfLinears<const D: usize> {
     flux: [f64; 4],
     /// `1 / (D |K|)`.
     per_volume: f64,
-    /// The mean of the square of a flux that leaves through one facet, with the integral one, less its value at the centre.
+    /// The mean square of the flux through one facet, with the integral one there, less its value at the centre.
     variance: f64,
     /// The volume over the coefficient.
     weight: f64,

@@ -79,7 +79,7 @@ struct ExchangeSteps {
 }
 
 /// Visits steps once, those one of whose cells has changed since the sweep before began. A visit returns by how much the
-/// square of the bound falls; where that is not more than `negligible`, the step changes nothing for others.
+/// square of the bound falls. Cells count as changed if it falls by more than `negligible`.
 /// `last_change` has for each cell from `first` on the sweep in which it last changed; sweeps count from one.
 fn visit_steps(
     steps: &[ExchangeStep],
@@ -96,7 +96,8 @@ fn visit_steps(
     }
 }
 
-/// What is negligible of an exchange, by the square of the bound over all its cells at the beginning.
+/// The fall of the square of the bound that is negligible for an exchange of so many cells, over which the square of the
+/// bound is `square` at the beginning.
 fn negligible(n_cells: usize, square: f64) -> f64 {
     NEGLIGIBLE * square / n_cells as f64
 }

@@ -28,7 +28,7 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    /// A graph of what was found, by this name in the legend; without lines yet.
+    /// A graph without lines yet, whose legend has the discrete solution by this name.
     pub fn of_found(title: &str, axes: [&str; 2], name: &str) -> Self {
         Graph {
             title: title.to_owned(),

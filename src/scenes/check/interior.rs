@@ -94,7 +94,7 @@ impl<const D: usize> Evaluator<'_, D> {
         Some(-divergence + self.reaction(x) * self.value(x) - self.source(x))
     }
 
-    /// Largest stencil inside the domain: outside a scene may be undefined.
+    /// The largest extent of a stencil inside the domain, outside of which the data of a scene may be undefined.
     fn reach(&self, depth: f64) -> f64 {
         (REACH * self.scales.length).min(0.9 * depth)
     }
