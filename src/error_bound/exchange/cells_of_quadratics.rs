@@ -3,9 +3,11 @@
 
 use std::f64::consts::PI;
 
+use crate::arrays::array_of;
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
+use crate::parallel::vectors::{collect, for_each_chunk_of_groups};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -16,6 +18,8 @@ const DEGREE: usize = 4;
 pub(super) struct CellOfQuadratics {
     /// The number of the cell.
     pub number: usize,
+    /// The numbers of the flux.
+    pub flux: [f64; 16],
     /// The multiplier at the vertices.
     pub multiplier: [f64; 4],
     /// The integrals of the distances of the function from the lower and the upper obstacle times barycentric
@@ -52,32 +56,35 @@ impl CellOfQuadratics {
     }
 }
 
-/// The cells of the exchange.
-pub(super) struct CellsOfQuadratics<'f, const D: usize> {
-    pub cells: Vec<CellOfQuadratics>,
+/// Some cells of the exchange with the products of their fluxes.
+pub(super) struct CellsOfQuadratics<'c, const D: usize> {
+    pub cells: &'c mut [CellOfQuadratics],
     /// By cell the products of its fluxes with each other.
-    products: Vec<f64>,
-    pub flux: &'f mut Flux<D>,
+    products: &'c [f64],
 }
 
-impl<const D: usize> CellsOfQuadratics<'_, D> {
+impl<'c, const D: usize> CellsOfQuadratics<'c, D> {
     /// The number of fluxes of a cell.
-    pub const N: usize = (D + 1) * (D + 1);
+    const N: usize = (D + 1) * (D + 1);
+
+    /// Those cells of an exchange that follow `first`, with the products of all of its cells.
+    pub fn new(cells: &'c mut [CellOfQuadratics], products: &'c [f64], first: usize) -> Self {
+        Self { cells, products: &products[first * Self::N * Self::N..] }
+    }
 
     /// Half of the derivative of the square of the mismatch of a cell by one of its numbers.
     fn slope(&self, k: usize, number: usize) -> f64 {
         let row = &self.products[(k * Self::N + number) * Self::N..][..Self::N];
-        let flux = self.flux.of_cell(self.cells[k].number);
-        let products = row.iter().zip(flux).map(|(p, c)| p * c);
+        let products = row.iter().zip(&self.cells[k].flux).map(|(p, c)| p * c);
         products.sum::<f64>() - self.cells[k].gradient[number]
     }
     /// The square of the mismatch of a cell.
     pub fn mismatch(&self, k: usize) -> f64 {
-        let flux = self.flux.of_cell(self.cells[k].number);
         let of_cell = &self.cells[k];
         let term =
             |(number, c): (usize, &f64)| c * (self.slope(k, number) - of_cell.gradient[number]);
-        (flux.iter().enumerate().map(term).sum::<f64>() + of_cell.energy).max(0.0)
+        let flux = of_cell.flux[..Self::N].iter();
+        (flux.enumerate().map(term).sum::<f64>() + of_cell.energy).max(0.0)
     }
 
     /// The part of a cell in the square of the bound: mismatch and complementarity.
@@ -108,44 +115,40 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Adds to a number of a cell that changes the divergence at one vertex.
     pub fn add(&mut self, k: usize, number: usize, vertex: usize, exchange: f64) {
         let cell = &mut self.cells[k];
-        self.flux.of_cell_mut(cell.number)[number] += exchange;
+        cell.flux[number] += exchange;
         cell.multiplier[vertex] -= cell.divergence * exchange;
     }
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The cells with these numbers.
-    pub(super) fn cells_with_products<'f>(
+    /// The cells with these numbers, with their multipliers and their parts of a flux.
+    pub(super) fn cells_of_quadratics(
         &self,
-        numbers: &[usize],
-        multiplier: impl Fn(usize) -> [f64; 4],
+        numbers: &[u32],
+        multiplier: impl Fn(usize) -> [f64; 4] + Sync,
         function: &PrimalDualPair<D>,
-        flux: &'f mut Flux<D>,
-    ) -> CellsOfQuadratics<'f, D> {
+        flux: &Flux<D>,
+    ) -> Vec<CellOfQuadratics> {
         let rule = Rule::new(D, DEGREE);
-        let square = CellsOfQuadratics::<D>::N * CellsOfQuadratics::<D>::N;
-        let mut products = vec![0.0; numbers.len() * square];
-        let cells = numbers.iter().zip(products.chunks_exact_mut(square)).map(
-            |(&number, products): (&usize, &mut [f64])| {
-                self.cell_of_quadratics(number, function, multiplier(number), (&rule, products))
-            },
-        );
-        CellsOfQuadratics { cells: cells.collect(), products, flux }
+        collect(numbers.len(), |k| {
+            let number = numbers[k] as usize;
+            let of_cell = (multiplier(number), flux.of_cell(number));
+            self.cell_of_quadratics(number, function, of_cell, &rule)
+        })
     }
 
     fn cell_of_quadratics(
         &self,
         number: usize,
         function: &PrimalDualPair<D>,
-        multiplier: [f64; 4],
-        (rule, products): (&Rule, &mut [f64]),
+        (multiplier, flux): ([f64; 4], &[f64]),
+        rule: &Rule,
     ) -> CellOfQuadratics {
-        let n = (D + 1) * (D + 1);
+        let n = CellsOfQuadratics::<D>::N;
         let volume = self.mesh.geometry(number).volume;
         let per_volume = 1.0 / (D as f64 * volume);
         let alpha = self.alpha(number);
         let admissible = self.admissible_in(function, number);
-        let corners = self.mesh.corners(number);
         let mut gaps = [[0.0; 4]; 2];
         let (mut of_gradient, mut energy) = ([0.0; 16], 0.0);
         for (point, weight) in rule.iter() {
@@ -158,20 +161,12 @@ impl<const D: usize> Space<'_, D> {
                     .map_or(0.0, |psi| sign * (value - self.at(psi, number, &x)));
                 (0..D + 1).for_each(|j| gaps[k][j] += weight * point[j] * distance);
             }
-            let mut fluxes = [Point::<D>::zeros(); 16];
-            for (facet, corner) in corners.iter().enumerate().take(D + 1) {
-                let along = (x - corner) * per_volume;
-                (0..D + 1).for_each(|j| fluxes[Flux::<D>::place(facet, j)] = along * point[j]);
-            }
-            for a in 0..n {
-                of_gradient[a] += weight * gradient.dot(&fluxes[a]);
-                for b in 0..n {
-                    products[a * n + b] += weight / alpha * fluxes[a].dot(&fluxes[b]);
-                }
-            }
+            let fluxes = self.fluxes_at(number, point, &x);
+            (0..n).for_each(|a| of_gradient[a] += weight * gradient.dot(&fluxes[a]));
         }
         CellOfQuadratics {
             number,
+            flux: array_of(|i| flux.get(i).copied().unwrap_or(0.0)),
             multiplier,
             gaps,
             gradient: of_gradient,
@@ -182,5 +177,42 @@ impl<const D: usize> Space<'_, D> {
                 * (volume / (alpha * ((D + 1) * (D + 2)) as f64)).sqrt(),
             has_one_sign: false,
         }
+    }
+
+    /// The products of the fluxes of each of the cells with these numbers.
+    pub(super) fn products_of_fluxes(&self, numbers: &[u32]) -> Vec<f64> {
+        let rule = Rule::new(D, DEGREE);
+        let n = CellsOfQuadratics::<D>::N;
+        let square = n * n;
+        let mut products = vec![0.0; numbers.len() * square];
+        for_each_chunk_of_groups(&mut products, square, |range, products| {
+            let first = range.start / square;
+            for (&number, products) in
+                numbers[first..].iter().zip(products.chunks_exact_mut(square))
+            {
+                let number = number as usize;
+                let (volume, alpha) = (self.mesh.geometry(number).volume, self.alpha(number));
+                for (point, weight) in rule.iter() {
+                    let fluxes = self.fluxes_at(number, point, &self.cell_point(point, number));
+                    for (a, products) in products.chunks_exact_mut(n).enumerate() {
+                        for (product, of_other) in products.iter_mut().zip(&fluxes) {
+                            *product += weight * volume / alpha * fluxes[a].dot(of_other);
+                        }
+                    }
+                }
+            }
+        });
+        products
+    }
+
+    /// The fluxes of a cell at a point, by its barycentric coordinates and in space.
+    fn fluxes_at(&self, number: usize, point: &[f64; 4], x: &Point<D>) -> [Point<D>; 16] {
+        let per_volume = 1.0 / (D as f64 * self.mesh.geometry(number).volume);
+        let mut fluxes = [Point::<D>::zeros(); 16];
+        for (facet, corner) in self.mesh.corners(number).iter().enumerate().take(D + 1) {
+            let along = (x - corner) * per_volume;
+            (0..D + 1).for_each(|j| fluxes[Flux::<D>::place(facet, j)] = along * point[j]);
+        }
+        fluxes
     }
 }

@@ -18,6 +18,7 @@ use crate::error_bound::flux::Flux;
 use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::vertices_of;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
+use crate::parallel::vectors::indices;
 use crate::quadrature::facet_to_cell;
 
 /// Visits of each pair of vertices of each facet.
@@ -51,7 +52,7 @@ struct Around<'f> {
     facets: &'f [ContactFacet],
     here: usize,
     /// The numbers of the cells of the exchange in the mesh.
-    numbers: &'f [usize],
+    numbers: &'f [u32],
     neighbours: &'f Neighbours,
     vertex: u32,
 }
@@ -59,14 +60,14 @@ struct Around<'f> {
 impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Adds to the density of a facet at a vertex, and keeps the divergence.
     fn add_to_force(&mut self, (k, local): HalfFacet, vertex: usize, change: f64) {
-        let cell = self.cells[k].number;
-        self.flux.add_density(cell, local, vertex, change);
-        self.flux.add_inner(cell, vertex, -change);
+        let flux = &mut self.cells[k].flux;
+        flux[Flux::<D>::place(local, vertex)] += change;
+        flux[Flux::<D>::place(vertex, vertex)] -= change;
     }
 
     /// The density of a facet at a vertex.
     fn force(&self, (k, local): HalfFacet, vertex: usize) -> f64 {
-        self.flux.density(self.cells[k].number, local, vertex)
+        self.cells[k].flux[Flux::<D>::place(local, vertex)]
     }
 
     /// Moves a contact force towards its mean until the force is nowhere negative. The force stays as it is if the
@@ -113,15 +114,14 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Exchanges the contact forces of two facets at a vertex, along a chain of cells: numbers with alternating signs,
     /// two for each cell.
     fn exchange_along(&mut self, chain: &[(usize, usize, f64)], [gap, gap_of_last]: [f64; 2]) {
-        let of =
-            |(k, number, _): (usize, usize, f64)| self.flux.of_cell(self.cells[k].number)[number];
+        let of = |(k, number, _): (usize, usize, f64)| self.cells[k].flux[number];
         let Some((first, last)) = chain.first().zip(chain.last()) else { return };
         let [first, last] = map_entries([*first, *last], |end| of(end).max(0.0));
         let [slope, curvature] = self.slopes(chain, gap_of_last - gap);
         let change = (-slope / curvature).min(first).max(-last);
         if change.is_finite() {
             for &(k, number, sign) in chain {
-                self.flux.of_cell_mut(self.cells[k].number)[number] += sign * change;
+                self.cells[k].flux[number] += sign * change;
             }
         }
     }
@@ -141,9 +141,11 @@ impl<const D: usize> Space<'_, D> {
         for ((cell, local), _) in &facets {
             self.mesh.facet_vertices(*cell, *local).for_each(|v| touches[v as usize] = true);
         }
-        let touches = |cell: &usize| self.mesh.cell(*cell).iter().any(|&v| touches[v as usize]);
-        let numbers: Vec<usize> = (0..self.mesh.n_cells()).filter(touches).collect();
-        let mut cells = self.cells_with_products(&numbers, |_| [0.0; 4], function, flux);
+        let touches = |cell: usize| self.mesh.cell(cell).iter().any(|&v| touches[v as usize]);
+        let numbers = indices(self.mesh.n_cells(), touches);
+        let mut of_numbers = self.cells_of_quadratics(&numbers, |_| [0.0; 4], function, flux);
+        let products = self.products_of_fluxes(&numbers);
+        let mut cells = CellsOfQuadratics::new(&mut of_numbers, &products, 0);
         let in_contact = |&(facet, group): &(HalfFacet, usize)| {
             let gap = self.data.gap.of(group)?;
             let admissible = self.admissible_in(function, facet.0);
@@ -158,7 +160,7 @@ impl<const D: usize> Space<'_, D> {
             let measure = self.facet_measure(facet);
             let square = (measure * alpha * (D * (D + 1)) as f64).recip();
             Some(ContactFacet {
-                at: (numbers.binary_search(&facet.0).ok()?, facet.1),
+                at: (numbers.binary_search(&(facet.0 as u32)).ok()?, facet.1),
                 gaps,
                 variation: self.constant_of_trace(facet) * square.sqrt(),
                 has_one_sign: false,
@@ -171,7 +173,7 @@ impl<const D: usize> Space<'_, D> {
         for _ in 0..SWEEPS {
             for (here, facet) in facets.iter().enumerate() {
                 for j in vertices_of::<D>(facet.at.1) {
-                    let vertex = self.mesh.cell(numbers[facet.at.0])[j];
+                    let vertex = self.mesh.cell(numbers[facet.at.0] as usize)[j];
                     let around =
                         Around { facets: &facets, here, numbers: &numbers, neighbours, vertex };
                     let mut chain = [(0, 0, 0.0); 2 * LONGEST];
@@ -185,6 +187,7 @@ impl<const D: usize> Space<'_, D> {
                 }
             }
         }
+        flux.replace_in(&numbers, |k| &of_numbers[k].flux);
     }
 
     /// Follows a chain of cells around a vertex through all facets there but that by which it came to the last of its
@@ -197,11 +200,11 @@ impl<const D: usize> Space<'_, D> {
         ((k, entered), length): (HalfFacet, usize),
     ) {
         let Around { facets, here, numbers, neighbours, vertex } = *around;
-        let corner = |cell: usize| self.mesh.cell(cell).iter().position(|&v| v == vertex);
+        let corner = |cell: u32| self.mesh.cell(cell as usize).iter().position(|&v| v == vertex);
         let Some(j) = corner(numbers[k]) else { return };
         for local in (0..D + 1).filter(|&local| local != j && local != entered) {
             chain[2 * length - 1] = (k, local * (D + 1) + j, 1.0);
-            match neighbours.across(numbers[k], local) {
+            match neighbours.across(numbers[k] as usize, local) {
                 Neighbour::Boundary(_) | Neighbour::Cut => {
                     let last = facets.binary_search_by_key(&(k, local), |facet| facet.at);
                     if let Some(last) = last.ok().filter(|&last| last > here) {
@@ -213,8 +216,8 @@ impl<const D: usize> Space<'_, D> {
                     }
                 }
                 Neighbour::Cell { cell, local: entered } if length < LONGEST => {
-                    let next = numbers.binary_search(&(cell as usize)).ok();
-                    let Some((next, j)) = next.zip(corner(cell as usize)) else { continue };
+                    let next = numbers.binary_search(&cell).ok();
+                    let Some((next, j)) = next.zip(corner(cell)) else { continue };
                     let entered = usize::from(entered);
                     chain[2 * length] = (next, entered * (D + 1) + j, -1.0);
                     self.follow(cells, around, chain, ((next, entered), length + 1));

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, negligible, visit_steps};
+use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease};
 use crate::algebra::Contact;
 use crate::arrays::array_of;
 use crate::assemble::cut_simplices::in_space;
@@ -14,9 +14,7 @@ use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Mesh, Neighbours};
-use crate::parallel::vectors::{
-    chunk_length, collect, for_each_chunk, for_each_chunk_of_two, largest, sum_chunks,
-};
+use crate::parallel::vectors::{collect, for_each_chunk, largest, sum_chunks};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -162,30 +160,14 @@ impl<const D: usize> Space<'_, D> {
         });
         let square =
             sum_chunks(&mut cells, 1, |_, cells| cells.iter().map(CellOfLinears::square).sum());
-        let (mesh, negligible) = (self.mesh, negligible(cells.len(), square));
-        let visit = |cells: &mut [CellOfLinears<D>], first: usize, step: ExchangeStep| {
-            let of_cell = |facet: FacetOfCell| (facet.cell as usize - first, facet.local.into());
-            match step {
-                ExchangeStep::Between(at) => exchange_between(mesh, cells, at.map(of_cell)),
-                ExchangeStep::WithDirichlet(facet) => {
-                    let (k, local) = of_cell(facet);
-                    exchange_with_dirichlet(mesh, &mut cells[k], local)
-                }
-                ExchangeStep::Inside(_) => 0.0,
+        let mesh = self.mesh;
+        steps.visit(SWEEPS, &mut cells, square, |cells, _, step| match step {
+            ExchangeStep::Between(at) => exchange_between(mesh, cells, at.map(FacetOfCell::half)),
+            ExchangeStep::WithDirichlet(FacetOfCell { cell, local }) => {
+                exchange_with_dirichlet(mesh, &mut cells[cell as usize], local.into())
             }
-        };
-        let mut last_change = vec![0; cells.len()];
-        let length = chunk_length(cells.len(), 1);
-        for sweep in 1..=SWEEPS {
-            let at = (sweep, negligible);
-            for_each_chunk_of_two(&mut cells, &mut last_change, 1, |range, cells, last_change| {
-                let (first, steps) = (range.start, &steps.within[range.start / length]);
-                visit_steps(steps, at, (first, last_change), |step| visit(cells, first, step));
-            });
-            visit_steps(&steps.between, at, (0, &mut last_change), |step| {
-                visit(&mut cells, 0, step)
-            });
-        }
+            ExchangeStep::Inside(_) => 0.0,
+        });
         flux.replace_in(&numbers, |k| &cells[k].flux);
     }
 

@@ -25,7 +25,9 @@ use crate::algebra::NO_INDEX;
 use crate::assemble::space::Space;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
-use crate::parallel::vectors::{flags, indices, map_chunks, positions};
+use crate::parallel::vectors::{
+    chunk_length, flags, for_each_chunk_of_two, indices, map_chunks, positions,
+};
 
 /// Multipliers below this share of the largest one are rounding.
 const ROUNDING: f64 = 1e-10;
@@ -59,6 +61,17 @@ enum ExchangeStep {
 }
 
 impl ExchangeStep {
+    /// The step with numbers of cells that count from a first one.
+    fn from(self, first: usize) -> Self {
+        let counted =
+            |FacetOfCell { cell, local }| FacetOfCell { cell: cell - first as u32, local };
+        match self {
+            Self::Between(at) => Self::Between(at.map(counted)),
+            Self::WithDirichlet(facet) => Self::WithDirichlet(counted(facet)),
+            Self::Inside(cell) => Self::Inside(cell - first as u32),
+        }
+    }
+
     /// The cells of the step, twice the same one where it has one.
     fn cells(self) -> [usize; 2] {
         match self {
@@ -72,34 +85,52 @@ impl ExchangeStep {
 
 /// The steps of an exchange, by the chunks of its cells ([`map_chunks`]).
 struct ExchangeSteps {
-    /// For each chunk the steps all of whose cells belong to it.
+    /// For each chunk the steps all of whose cells belong to it, with numbers that count from its first cell.
     within: Vec<Vec<ExchangeStep>>,
     /// The steps between cells of two chunks: few where neighbours have near numbers.
     between: Vec<ExchangeStep>,
 }
 
-/// Visits steps once, those one of whose cells has changed since the sweep before began. A visit returns by how much the
-/// square of the bound falls. Cells count as changed if it falls by more than `negligible`.
-/// `last_change` has for each cell from `first` on the sweep in which it last changed; sweeps count from one.
-fn visit_steps(
-    steps: &[ExchangeStep],
-    (sweep, negligible): (u8, f64),
-    (first, last_change): (usize, &mut [u8]),
-    mut visit: impl FnMut(ExchangeStep) -> f64,
-) {
-    for step in steps {
-        let cells = step.cells().map(|k| k - first);
-        let may_change = cells.iter().any(|&k| last_change[k] + 1 >= sweep);
-        if may_change && visit(*step) > negligible {
-            cells.iter().for_each(|&k| last_change[k] = sweep);
+impl ExchangeSteps {
+    /// Visits each step at most `sweeps` times; the square of the bound over the cells is `square` at the beginning. A visit
+    /// receives consecutive cells, the number of the first one, and a step among them; it returns by how much the square
+    /// of the bound falls.
+    fn visit<C: Send>(
+        &self,
+        sweeps: u8,
+        cells: &mut [C],
+        square: f64,
+        visit: impl Fn(&mut [C], usize, ExchangeStep) -> f64 + Sync,
+    ) {
+        let negligible = NEGLIGIBLE * square / cells.len() as f64;
+        let length = chunk_length(cells.len(), 1);
+        // the sweep in which each cell last changed
+        let mut last_change = vec![0; cells.len()];
+        for sweep in 1..=sweeps {
+            let at = (sweep, negligible);
+            for_each_chunk_of_two(cells, &mut last_change, 1, |range, cells, last_change| {
+                let steps = &self.within[range.start / length];
+                visit_once(steps, at, last_change, |step| visit(cells, range.start, step));
+            });
+            visit_once(&self.between, at, &mut last_change, |step| visit(cells, 0, step));
         }
     }
 }
 
-/// The fall of the square of the bound that is negligible for an exchange of so many cells, over which the square of the
-/// bound is `square` at the beginning.
-fn negligible(n_cells: usize, square: f64) -> f64 {
-    NEGLIGIBLE * square / n_cells as f64
+/// Visits steps once, those one of whose cells has changed since the sweep before began. Cells count as changed if the
+/// square of the bound falls by more than `negligible`. Sweeps count from one.
+fn visit_once(
+    steps: &[ExchangeStep],
+    (sweep, negligible): (u8, f64),
+    last_change: &mut [u8],
+    mut visit: impl FnMut(ExchangeStep) -> f64,
+) {
+    for &step in steps {
+        let may_change = step.cells().iter().any(|&k| last_change[k] + 1 >= sweep);
+        if may_change && visit(step) > negligible {
+            step.cells().iter().for_each(|&k| last_change[k] = sweep);
+        }
+    }
 }
 
 /// By how much a quadratic polynomial that vanishes at zero falls there, from half of its derivative at zero and half of
@@ -162,7 +193,7 @@ impl<const D: usize> Space<'_, D> {
             let (mut within, mut between) = (Vec::with_capacity(capacity), Vec::new());
             for here in range.clone() {
                 steps_of(here, &mut |step| match step.cells().iter().all(|k| range.contains(k)) {
-                    true => within.push(step),
+                    true => within.push(step.from(range.start)),
                     false => between.push(step),
                 });
             }

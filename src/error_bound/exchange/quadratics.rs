@@ -6,15 +6,15 @@
 //! added to `c_AA` and taken from `c_BB` changes the multiplier of the cell at the vertices `A` and `B` alone.
 
 use super::cells_of_quadratics::{CellOfQuadratics, CellsOfQuadratics};
-use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease, negligible, visit_steps};
+use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease};
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
 use crate::error_bound::integrals::share_of_one_sign;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
-use crate::mesh::{HalfFacet, Neighbours};
-use crate::parallel::vectors::largest;
+use crate::mesh::{HalfFacet, Mesh, Neighbours};
+use crate::parallel::vectors::{collect, largest, sum_chunks};
 
 /// Most visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
 const SWEEPS: u8 = 8;
@@ -43,8 +43,29 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
         }
     }
 
-    /// Exchanges multipliers of two cells at a vertex of their facet, by its numbers in the two cells. The result, here and
-    /// below, is by how much the square of the bound falls.
+    /// Visits a step. The result, here and below, is by how much the square of the bound falls.
+    fn visit(&mut self, mesh: &Mesh<D>, step: ExchangeStep) -> f64 {
+        match step {
+            ExchangeStep::Between(facets) => {
+                let at = facets.map(FacetOfCell::half);
+                let [cell, other] = at.map(|(k, _)| mesh.cell(self.cells[k].number));
+                let position = |v: u32| other.iter().position(|&w| w == v);
+                let common =
+                    vertices_of::<D>(at[0].1).filter_map(|j| Some([j, position(cell[j])?]));
+                common.map(|vertex| self.exchange_between(at, vertex)).sum()
+            }
+            ExchangeStep::WithDirichlet(facet) => {
+                let at = facet.half();
+                vertices_of::<D>(at.1).map(|j| self.exchange_with_dirichlet(at, j)).sum()
+            }
+            ExchangeStep::Inside(k) => {
+                let pairs = (0..D + 1).flat_map(|a| (a + 1..=D).map(move |b| [a, b]));
+                pairs.map(|pair| self.exchange_inside(k as usize, pair)).sum()
+            }
+        }
+    }
+
+    /// Exchanges multipliers of two cells at a vertex of their facet, by its numbers in the two cells.
     fn exchange_between(&mut self, at: [HalfFacet; 2], vertex: [usize; 2]) -> f64 {
         let [here, there] = at.map(|(k, _)| &self.cells[k]);
         let sign = (here.sum() + there.sum()).signum();
@@ -124,36 +145,18 @@ impl<const D: usize> Space<'_, D> {
         let largest = largest(multipliers.len(), strength);
         let presses = |cell: usize| strength(cell) > ROUNDING * largest;
         let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, &|_| true), true);
-        let numbers: Vec<usize> = numbers.into_iter().map(|cell| cell as usize).collect();
         let multiplier = |cell: usize| if presses(cell) { multipliers[cell] } else { [0.0; 4] };
-        let mut cells = self.cells_with_products(&numbers, multiplier, function, flux);
-        (0..numbers.len()).for_each(|k| cells.make_sign_definite(k));
-        let square: f64 = (0..numbers.len()).map(|k| cells.square(k)).sum();
-        let negligible = negligible(numbers.len(), square);
-        let mut visit = |step: ExchangeStep| match step {
-            ExchangeStep::Between(facets) => {
-                let at = facets.map(FacetOfCell::half);
-                let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
-                let position = |v: u32| other.iter().position(|&w| w == v);
-                let common =
-                    vertices_of::<D>(at[0].1).filter_map(|j| Some([j, position(cell[j])?]));
-                common.map(|vertex| cells.exchange_between(at, vertex)).sum()
-            }
-            ExchangeStep::WithDirichlet(facet) => {
-                let at = facet.half();
-                vertices_of::<D>(at.1).map(|j| cells.exchange_with_dirichlet(at, j)).sum()
-            }
-            ExchangeStep::Inside(k) => {
-                let pairs = (0..D + 1).flat_map(|a| (a + 1..=D).map(move |b| [a, b]));
-                pairs.map(|pair| cells.exchange_inside(k as usize, pair)).sum()
-            }
-        };
-        let mut last_change = vec![0; numbers.len()];
-        for sweep in 1..=SWEEPS {
-            for steps in steps.within.iter().chain([&steps.between]) {
-                visit_steps(steps, (sweep, negligible), (0, &mut last_change), &mut visit);
-            }
-        }
+        let mut cells = self.cells_of_quadratics(&numbers, multiplier, function, flux);
+        let products = self.products_of_fluxes(&numbers);
+        let square = sum_chunks(&mut cells, 1, |range, cells| {
+            let mut cells = CellsOfQuadratics::<D>::new(cells, &products, range.start);
+            (0..range.len()).for_each(|k| cells.make_sign_definite(k));
+            (0..range.len()).map(|k| cells.square(k)).sum()
+        });
+        steps.visit(SWEEPS, &mut cells, square, |cells, first, step| {
+            CellsOfQuadratics::new(cells, &products, first).visit(self.mesh, step)
+        });
+        flux.replace_in(&numbers, |k| &cells[k].flux);
     }
 
     /// The multipliers of obstacles, projected on linear functions, at the vertices of cells.
@@ -173,6 +176,6 @@ impl<const D: usize> Space<'_, D> {
             let value = |k: usize| (d + 1.0) * ((d + 2.0) * means[k] - sum);
             array_of(|k| if k <= D { value(k) } else { 0.0 })
         };
-        (0..self.mesh.n_cells()).map(of_cell).collect()
+        collect(self.mesh.n_cells(), of_cell)
     }
 }
