@@ -23,16 +23,14 @@ impl<const D: usize> Study<'_, D> {
         let (Some(entry), level) = (self.entries.first(), self.first_level()) else {
             unreachable!("checked above")
         };
-        let problem = entry.problem(&self.scene.problem);
         let hierarchies = self.hierarchies(None)?;
         let mut on_level = hierarchies.iter().filter_map(|h| Some((h.position(level)?, h)));
         let Some((position, hierarchy)) = on_level.next() else {
             unreachable!("a hierarchy has the level")
         };
-        let nested = NestedIteration::new(&problem, hierarchy).quadrature(self.quadrature);
+        let nested = NestedIteration::new(&entry.problem, hierarchy).quadrature(self.quadrature);
         let solved = nested.judge_on(position, &*entry.scheme, values)?;
-        let reference_problem = self.reference_problem();
-        let reference = self.find_reference(&reference_problem, &hierarchies);
+        let reference = self.find_reference(&hierarchies);
         let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let row = self.measured_row(entry, level, &solved, measured)?;
         let iterations = Iterations { outer: None, ..row.iterations };
