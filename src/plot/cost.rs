@@ -6,7 +6,7 @@ use crate::study::series::Series;
 
 /// The panels of a scene over seconds or unknowns, one for each norm in which there are errors and one for bounds,
 /// below each other; energy only where it is not the H1 seminorm.
-pub(crate) fn cost_figure(scene: &str, series: &[Series<'_>], cost: Quantity) -> Figure {
+pub(crate) fn cost_figure(scene: &str, series: &[&Series<'_>], cost: Quantity) -> Figure {
     let rows = || series.iter().flat_map(|of| of.rows.iter().copied());
     let panel = |y: Quantity| {
         let x = match (cost, y) {

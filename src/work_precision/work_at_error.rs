@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use crate::inequality::Outcome;
 use crate::measure::ErrorNorm;
-use crate::study::row::{Row, distinct};
-use crate::study::series::series_of;
+use crate::study::row::Row;
+use crate::study::series::{by_scene, series_of};
 use crate::study::{Series, Variant};
 
 /// The error of a row in a norm; none where the run did not converge.
@@ -93,9 +93,8 @@ pub struct WorkAtError {
 pub(crate) fn work_at_errors(rows: &[Row]) -> Vec<WorkAtError> {
     let mut all = Vec::new();
     let series = series_of(rows);
-    for scene in distinct(series.iter().map(|of| of.variant.scene.as_str())) {
-        let run: Vec<Curve<'_>> =
-            series.iter().filter(|of| of.variant.scene == scene).map(Curve::of).collect();
+    for (scene, own) in by_scene(&series) {
+        let run: Vec<Curve<'_>> = own.into_iter().map(Curve::of).collect();
         let mut curves = run.clone();
         for other in series.iter().map(|of| &of.variant) {
             let variant = Variant { scene: scene.to_owned(), ..other.clone() };
