@@ -101,7 +101,7 @@ fn phases(scene: &str, series: &[&Series<'_>]) -> Table {
         let mut cells = vec![Cell::Words(name.clone()), Cell::whole(Some(row.level))];
         let solve = solve - start.unwrap_or(0.0);
         let seconds = [Some(mesh), Some(assemble), start, Some(solve), bound, Some(total)];
-        cells.extend(seconds.map(Cell::scientific));
+        cells.extend(seconds.map(|x| Cell::digits(x, 2)));
         cells.push(Cell::number(row.median_over_least().map(fixed)));
         cells.push(Cell::whole(row.runs.as_ref().map(Vec::len)));
         cells.push(Cell::number(row.peak_memory_bytes.map(|b| format!("{:.0}", b as f64 / 1e6))));

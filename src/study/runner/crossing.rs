@@ -18,7 +18,7 @@ impl<const D: usize> Study<'_, D> {
         let Some(points) = self.points_of_bounds()? else { return Ok(None) };
         for mesh in meshes {
             let seen = points.look(&self.scene.problem, mesh)?;
-            let found = seen.crossing(seen.size());
+            let found = seen.crossing(seen.size);
             if found.is_some() {
                 return Ok(found);
             }

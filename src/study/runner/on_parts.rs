@@ -97,9 +97,8 @@ impl<const D: usize> Study<'_, D> {
             let Some(part) = hierarchy.part(hierarchy.n_meshes() - 1) else { return Ok(()) };
             let own = points.look(&self.scene.problem, &part.mesh);
             let seen = agree(own, &*process.exchange)?;
-            let size = process.exchange.largest(&[seen.size()])?[0];
-            let own = seen.crossing(size);
-            let own = own.map_or(Ok(()), |found| Err(found.error()));
+            let size = process.exchange.largest(&[seen.size])?[0];
+            let own = seen.crossing(size).map_or(Ok(()), |found| Err(found.error()));
             agree_on_data(own, &part.cells, &*process.exchange)
         };
         Ok(hierarchies.iter().try_for_each(look_at))

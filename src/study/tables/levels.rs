@@ -183,7 +183,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     let is_adaptive = is_adaptive(rows);
     // the orders of errors are over it
     if !is_adaptive && has_errors(rows) {
-        columns.push(("h", |r| Cell::scientific(Some(r.mesh_size).filter(|h| h.is_finite()))));
+        columns.push(("h", |r| Cell::digits(Some(r.mesh_size).filter(|h| h.is_finite()), 2)));
     }
     columns.push(("unknowns", |r| Cell::whole(r.unknowns)));
     let has_effectivity = any(|r| r.bound.effectivity);
@@ -192,14 +192,14 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
         columns.push(("bound", |r| bound(r, 1)));
         columns.push(("order", |r| Cell::fixed(r.order.bound)));
     } else if any(|r| r.error.l2) {
-        columns.push(("L2", |r| Cell::scientific(r.error.l2)));
+        columns.push(("L2", |r| Cell::digits(r.error.l2, 2)));
         columns.push(("order", |r| Cell::fixed(r.order.l2)));
     }
     if has_bound && rows.iter().any(|r| !r.error.is_energy_h1()) {
         // beside a bound only the norm that it bounds
-        columns.push(("energy norm", |r| Cell::scientific(r.error.broken_energy)));
+        columns.push(("energy norm", |r| Cell::digits(r.error.broken_energy, 2)));
     } else if any(|r| r.error.h1) {
-        columns.push(("H1", |r| Cell::scientific(r.error.h1)));
+        columns.push(("H1", |r| Cell::digits(r.error.h1, 2)));
         columns.push(("order", |r| Cell::fixed(r.order.h1)));
     }
     // the errors say the rest where they are known, and lines stay within their width
