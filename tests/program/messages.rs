@@ -19,7 +19,7 @@ fn an_obstacle_above_a_dirichlet_value_is_said_once_with_the_group() {
     assert_eq!(lines.matches("infeasible, as above").count(), 2, "{printed}");
     assert!(lines.contains("p1 at 2, cr at 2: infeasible, as above"), "{printed}");
     assert!(!printed.contains("active-set/\n"), "{printed}");
-    let markdown = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    let markdown = scratch.read("out/report.md");
     assert_eq!(markdown.matches("exceeds the Dirichlet value on").count(), 1, "{markdown}");
     assert_eq!(markdown.matches("did not converge: infeasible, as above").count(), 3, "{markdown}");
     // a message to the user of a file names the file

@@ -35,7 +35,7 @@ fn a_membrane_from_a_file_is_measured_against_a_reference() {
         }
     }
     // what errors leave out of the first table stands in a second one
-    let text = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    let text = scratch.read("out/report.md");
     assert!(text.contains("membrane: totals and stages"), "{text}");
     for name in ["energy", "contact", "resultant", "bound", "stages (outer)"] {
         assert!(text.contains(&format!("| {name}")), "{name}: {text}");
@@ -44,7 +44,7 @@ fn a_membrane_from_a_file_is_measured_against_a_reference() {
     for file in ["membrane-p1.vtu", "report.html", "convergence.svg"] {
         assert!(scratch.0.join("out").join(file).exists(), "{file}");
     }
-    let plot = std::fs::read_to_string(scratch.0.join("out/convergence.svg")).unwrap();
+    let plot = scratch.read("out/convergence.svg");
     assert!(plot.contains("against p2 at level 4"));
 }
 
@@ -223,7 +223,7 @@ fn a_report_outlives_a_wrong_directory_and_pictures_show_the_finest_level() {
     let scratch = Scratch::new("outlives");
     let options = "--scene radial-2d --scheme p1 --levels 8,4";
     assert_eq!(rows(&scratch.report(options)).len(), 2);
-    let picture = std::fs::read_to_string(scratch.0.join("out/radial-2d-p1.svg")).unwrap();
+    let picture = scratch.read("out/radial-2d-p1.svg");
     assert!(picture.contains("radial-2d-p1, level 8"));
     let file = scratch.file("file", "");
     let output = scratch.run(&format!("{options} --dump {file}/inequalities"));
@@ -353,7 +353,7 @@ fn a_solution_on_the_disc_is_none_on_a_polygon() {
         }
     }
     assert!(below > 0);
-    let text = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    let text = scratch.read("out/report.md");
     assert!(text.contains("the stated solution does not solve this problem"), "{text}");
 }
 
@@ -372,6 +372,6 @@ fn dirichlet_values_that_jump_are_named() {
         let unproven = row["bound"]["unproven"].as_array().unwrap();
         assert!(unproven.contains(&"boundary".into()), "{}", row["bound"]);
     }
-    let text = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    let text = scratch.read("out/report.md");
     assert!(text.contains("bound with terms that are not proven: boundary"), "{text}");
 }

@@ -1,9 +1,11 @@
 //! Running the program.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
+
+pub use crate::support::scratch::Scratch;
 
 /// A command of the program, which cargo builds before the tests.
 pub fn command(name: &str) -> Command {
@@ -17,22 +19,7 @@ pub fn program() -> Command {
     command("compare")
 }
 
-/// A directory of its own for a test, gone when the test is over.
-pub struct Scratch(pub PathBuf);
-
 impl Scratch {
-    pub fn new(name: &str) -> Self {
-        let name = format!("unilateral-program-{}-{name}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&path).unwrap();
-        Scratch(path)
-    }
-    /// A file with this text, and its path.
-    pub fn file(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name);
-        std::fs::write(&path, text).unwrap();
-        path.display().to_string()
-    }
     pub fn path(&self, name: &str) -> String {
         self.0.join(name).display().to_string()
     }
@@ -52,12 +39,6 @@ impl Scratch {
         let output = self.run(options);
         assert_eq!(output.status.code(), Some(0), "{options}: {}", stderr(&output));
         read_json(&self.0.join("out/report.json"))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

@@ -1,6 +1,6 @@
 //! What problem files give on the boundary: by default, and by the normal.
 
-use super::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use std::path::{Path, PathBuf};
 use unilateral::mesh::{BoundaryCondition, Domain, Mesh};
 use unilateral::prelude::*;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::problem_files::{BOX, SIDES};
-use super::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::prelude::*;
 use unilateral::problem_file::read;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::problem_files::{BOX, SIDES};
-use super::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use unilateral::problem_file::{ProblemFileErrorKind, read};
 
 #[test]

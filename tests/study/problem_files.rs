@@ -1,6 +1,6 @@
 //! Problems from TOML files.
 
-use super::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use std::path::Path;
 use unilateral::mesh::{BoundaryCondition, Domain, Mesh};
 use unilateral::prelude::*;

@@ -9,7 +9,7 @@ use unilateral::problem_file;
 use unilateral::scenes::AnyScene;
 use unilateral::scenes::Scene;
 
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 
 /// Reads the files named, each followed by the total contact force, or by nan where there is no contact boundary.
 /// Both readers find the same points, cells and arrays, and no cell is inside out.
