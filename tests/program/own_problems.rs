@@ -1,16 +1,11 @@
 //! Problems of one's own, boundary groups by name, and references.
 
-use super::run::{Scratch, command, read_json, refused, rows, stderr};
+use super::run::{Scratch, command, data, number, read_json, refused, rows, stderr};
 use super::square::Square;
 use serde_json::Value;
 
 fn example(name: &str) -> String {
     format!("{}/examples/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
-}
-
-fn number(row: &Value, keys: &[&str]) -> f64 {
-    let value = keys.iter().fold(row, |value, key| &value[*key]);
-    value.as_f64().unwrap_or_else(|| panic!("{keys:?} is {value}"))
 }
 
 #[test]
@@ -324,11 +319,6 @@ fn files_of_an_earlier_request_go() {
     }
 }
 
-/// Problems of the test data, with their meshes.
-fn of_tests(name: &str) -> String {
-    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
-}
-
 fn warns(row: &Value, text: &str) -> bool {
     row["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(text))
 }
@@ -339,7 +329,7 @@ fn warns(row: &Value, text: &str) -> bool {
 fn a_solution_on_the_disc_is_none_on_a_polygon() {
     let scratch = Scratch::new("disc");
     let schemes = "p1,p2,cr,sipg,wopsip,sipg-p2";
-    let report = scratch.report(&format!("{} --scheme {schemes} --levels 0,1", of_tests("disc0")));
+    let report = scratch.report(&format!("{} --scheme {schemes} --levels 0,1", data("disc0")));
     let mut below = 0;
     for row in rows(&report) {
         assert_eq!(row["bound"]["guaranteed"], true, "{}", row["label"]);
@@ -361,8 +351,7 @@ fn a_solution_on_the_disc_is_none_on_a_polygon() {
 #[test]
 fn dirichlet_values_that_jump_are_named() {
     let scratch = Scratch::new("jump");
-    let report =
-        scratch.report(&format!("{} --scheme p1,cr,sipg,p2 --levels 2,4", of_tests("jump")));
+    let report = scratch.report(&format!("{} --scheme p1,cr,sipg,p2 --levels 2,4", data("jump")));
     for row in rows(&report) {
         for (group, point) in [("left", "(0.000000, 1.000000)"), ("right", "(1.000000, 1.000000)")]
         {

@@ -50,6 +50,17 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
+/// A problem of the test data, with its mesh.
+pub fn data(name: &str) -> String {
+    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A number of a row, under keys within each other.
+pub fn number(row: &Value, keys: &[&str]) -> f64 {
+    let value = keys.iter().fold(row, |value, key| &value[*key]);
+    value.as_f64().unwrap_or_else(|| panic!("{keys:?} is {value} in {}", row["label"]))
+}
+
 pub fn read_json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
