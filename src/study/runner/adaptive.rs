@@ -96,14 +96,13 @@ impl<const D: usize> Study<'_, D> {
         let crossing = self.find_crossing([&first])?;
         let measured = Measured { failure, reference: None };
         for entry in &self.entries {
-            let label = entry.label();
             for solver in self.solvers() {
                 let meshes = AdaptiveMeshes::new(first.clone());
                 let nested = NestedIteration::new(&entry.problem, &meshes);
                 let nested = self.with_settings(nested, &solver);
                 let mut steps = AdaptiveIteration::new(nested, &*entry.scheme, adaptivity)?;
                 for level in 0.. {
-                    (self.observer)(Progress::Started(&self.scene.name, &label, level));
+                    (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
                     let cells = meshes.finest().n_cells();
                     if let Err(error) = self.check_step(&*entry.scheme, (level, cells)) {
                         let place = (level, cells as f64);

@@ -25,7 +25,7 @@ use crate::nested::{Adaptivity, Hierarchy, NestedIteration, Phase, Solved, check
 use crate::problem::Problem;
 use crate::real::Precision;
 use crate::scenes::Scene;
-use crate::scheme::{Scheme, SchemeOptions};
+use crate::scheme::Scheme;
 use crate::study::compatibility::{check_entries, check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
@@ -102,15 +102,8 @@ type EachSolution<'a, const D: usize> =
 struct Entry<'a, const D: usize> {
     scheme: Arc<dyn Scheme<D> + 'a>,
     problem: Problem<D>,
-    /// The choices in its label, if those that are default are among them.
-    shown: Option<SchemeOptions>,
-}
-
-impl<const D: usize> Entry<'_, D> {
     /// The label of its rows.
-    fn label(&self) -> String {
-        self.scheme.label_with(self.problem.constraint_set(), self.shown)
-    }
+    label: String,
 }
 
 impl<const D: usize> fmt::Debug for Study<'_, D> {
@@ -175,7 +168,7 @@ impl<'a, const D: usize> Study<'a, D> {
             let allowed = format!("a study needs {parameter}: at least one");
             return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
         }
-        let labels = self.entries.iter().map(Entry::label);
+        let labels = self.entries.iter().map(|entry| &entry.label[..]);
         check_names(labels, self.solvers().iter().map(|solver| solver.name()))?;
         if self.solvers().iter().any(|solver| solver.precision() != self.precision()) {
             return Err(Error::Parameter {
@@ -247,7 +240,6 @@ impl<'a, const D: usize> Study<'a, D> {
         let (mut rows, mut unwritten) = (Vec::new(), None);
         for entry in &self.entries {
             for (nested, solver) in by_solver.iter_mut().zip(self.solvers()) {
-                let label = entry.label();
                 for &level in &self.levels {
                     let (kept, is_whole) = kept.next().expect("one entry for each row");
                     if let Some(row) = kept.clone() {
@@ -257,7 +249,7 @@ impl<'a, const D: usize> Study<'a, D> {
                     if is_whole {
                         continue;
                     }
-                    (self.observer)(Progress::Started(&self.scene.name, &label, level));
+                    (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
                     let why_not = (&crossing, available);
                     let place = (level, solver.name());
                     let (row, solved) = self.row(nested, entry, place, measured, why_not)?;
@@ -296,12 +288,11 @@ impl<'a, const D: usize> Study<'a, D> {
     pub fn keys(&self) -> Vec<RowKey> {
         let mut keys = Vec::new();
         for entry in &self.entries {
-            let label = entry.label();
             for solver in self.solvers() {
                 let levels = self.levels.iter().filter(|_| self.adaptive.is_none());
                 keys.extend(levels.map(|&level| RowKey {
                     scene: self.scene.name.clone(),
-                    label: label.clone(),
+                    label: entry.label.clone(),
                     solver: solver.name().to_owned(),
                     level,
                 }));

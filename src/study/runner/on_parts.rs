@@ -57,9 +57,8 @@ impl<const D: usize> Study<'_, D> {
         let admissible = self.check_crossing_on_parts(&hierarchies, process)?;
         let mut rows = Vec::new();
         for entry in &self.entries {
-            let label = entry.label();
             for &level in &self.levels {
-                (self.observer)(Progress::Started(&self.scene.name, &label, level));
+                (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
                 let (position, nested) = with_level(&mut nested, level);
                 nested.replace_constraint_set(&entry.problem);
                 let solved = match &admissible {
@@ -208,7 +207,7 @@ impl<const D: usize> Study<'_, D> {
     ) -> Result<(), Error> {
         match &self.fields.directory {
             Some(directory) if self.levels.iter().max() == Some(&level) && solved.has_iterate() => {
-                let stem = file_name(&format!("{}-{}", self.scene.name, entry.label()));
+                let stem = file_name(&format!("{}-{}", self.scene.name, entry.label));
                 let scalar = self.fields.scalar;
                 solved.write_vtu_of_parts(directory, &stem, |file| file.scalar(scalar))
             }

@@ -199,12 +199,7 @@ impl<const D: usize> Study<'_, D> {
     }
 
     /// The row with the names of constraint set and label, the kind of meshes, and the promised orders.
-    pub(super) fn named(
-        &self,
-        entry: &Entry<'_, D>,
-        row: Row,
-        failure: Option<&str>,
-    ) -> Row {
+    pub(super) fn named(&self, entry: &Entry<'_, D>, row: Row, failure: Option<&str>) -> Row {
         let (scheme, set) = (&*entry.scheme, entry.problem.constraint_set());
         let kind = match self.scene.domain.is_mesh() {
             _ if self.adaptive.is_some() => "steps",
@@ -223,7 +218,7 @@ impl<const D: usize> Study<'_, D> {
             // all rows of a request have the same keys
             history: row.history.or_else(|| self.keeps_history.then(Vec::new)),
             constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
-            label: entry.label(),
+            label: entry.label.clone(),
             expected_order,
             ..row
         }

@@ -87,7 +87,8 @@ impl<'a, const D: usize> Study<'a, D> {
         shown: Option<SchemeOptions>,
     ) -> Self {
         let problem = self.problem_on(set);
-        self.entries.push(Entry { scheme, problem, shown });
+        let label = scheme.label_with(problem.constraint_set(), shown);
+        self.entries.push(Entry { scheme, problem, label });
         self
     }
     /// The problem of the scene with a constraint set, where there is one, in place of its own.
