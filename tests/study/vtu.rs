@@ -140,7 +140,7 @@ fn round_trip<const D: usize>(counts: [usize; D], degree: usize, cell_type: usiz
     let n = [D + 1, (D + 1) * (D + 2) / 2][degree - 1];
     let u: Vec<f64> = (0..cells * n).map(|i| (i as f64).sqrt() - 1e-17).collect();
     let multiplier: Vec<f64> = (0..cells).map(|c| 1.0 / (1.0 + c as f64)).collect();
-    let scratch = Scratch::new(&format!("vtu-{D}-{degree}-{}", "f64"));
+    let scratch = Scratch::new(&format!("vtu-{D}-{degree}"));
     let path = scratch.0.join("fields.vtu");
     let file = VtuFile::new(&mesh, &u).function("sum", &|x| x.sum()).scalar(FieldScalar::Double);
     file.on_cells("a<b", &multiplier).write(&path).unwrap();

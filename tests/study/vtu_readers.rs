@@ -76,7 +76,7 @@ fn put<const D: usize>(
             false => f64::NAN,
         };
         for scalar in [FieldScalar::Single, FieldScalar::Double] {
-            let path = folder.join(format!("{name}-{scheme}-{}-{scalar:?}.vtu", "f64"));
+            let path = folder.join(format!("{name}-{scheme}-{scalar:?}.vtu"));
             solved.write_vtu_with(&path, |file| file.number("level", 1.0).scalar(scalar)).unwrap();
             arguments.extend([path.display().to_string(), format!("{force:?}")]);
         }
