@@ -9,7 +9,7 @@ use unilateral::scenes::Scene;
 use unilateral::study::{Journal, Program, Progress, Row, fill_orders};
 
 use crate::rows;
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 
 fn program() -> Program {
     Program::new("test", "f64", 1, 1).with_request("load", 5)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use serde_json::Value;
 use unilateral::error::Error;
 use unilateral::stability::{

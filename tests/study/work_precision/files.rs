@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use super::synthetic::synthetic;
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use unilateral::inequality::Outcome;
 use unilateral::output::LATEX_PACKAGES;
 use unilateral::stability::{Effort, Stability};
