@@ -127,14 +127,9 @@ impl<const D: usize> Solved<'_, D> {
         let clock = Instant::now();
         let pair = self.primal_dual_pair()?;
         let (of, u) = (self.discretisation(), self.values());
-        let bound = match self.inequality().distribution() {
-            None => of.error_bound(&pair, u)?,
-            Some(distribution) => {
-                let own = of.part_of_bound(&pair, u, &|cell| self.system.owns(cell));
-                let own = self.system.agreed_bound(own)?;
-                self.system.agreed_bound(own.over_parts(distribution))?
-            }
-        };
+        let own = of.part_of_bound(&pair, u, &|cell| self.system.owns(cell));
+        let own = self.system.agreed_bound(own)?;
+        let bound = self.system.agreed_bound(own.bound(self.inequality().distribution()))?;
         Ok(once(&self.bound, || (pair, bound, clock.elapsed().as_secs_f64())))
     }
     /// Seconds of the bound; none if it is not known, or not yet.
