@@ -196,12 +196,9 @@ impl<const D: usize> Space<'_, D> {
         });
         let discrete = of.u.map(|u| {
             let (n, values) = (self.per_cell(), self.local_values(cell, u));
-            let mut discrete = LocalFunction { n, values, slope: None };
             // linear functions have one basis function for each vertex, with the same derivatives at all points
-            if self.basis_degree <= 1 {
-                discrete.slope = Some(discrete.gradient(D + 1, &of.table.basis[0], &gradients));
-            }
-            discrete
+            let slope = || of.table.basis[0].gradient(&values[..D + 1], &gradients);
+            LocalFunction { n, values, slope: (self.basis_degree <= 1).then(slope) }
         });
         let region = self.mesh.region(cell);
         let coefficient = self.data.coefficient.of(region);
