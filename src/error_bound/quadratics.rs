@@ -128,13 +128,12 @@ impl<const D: usize> Space<'_, D> {
     /// The load less the reaction term of a discrete function, by cell and unknown.
     fn loads_less_reaction(&self, u: &[f64]) -> Result<Vec<f64>, NoBound> {
         let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
-        let load = self.load_by_cell()?;
-        let mut loads = vec![0.0; n_cells * n];
-        let fill = |cells: Range<usize>, out: &mut [f64]| {
+        let mut loads = self.load_by_cell()?.into_owned();
+        // without sources the list is empty
+        loads.resize(n_cells * n, 0.0);
+        let Some(reaction) = &self.reaction else { return Ok(loads) };
+        let subtract = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
-                let own = load.get(cell * n..).unwrap_or_default();
-                out.iter_mut().zip(own).for_each(|(out, load)| *out = *load);
-                let Some(reaction) = &self.reaction else { continue };
                 let mut products = zero_local();
                 let volume = self.mesh.geometry(cell).volume;
                 reaction.add(self.mesh, cell, volume, &mut products);
@@ -146,7 +145,7 @@ impl<const D: usize> Space<'_, D> {
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = cells::for_each(n_cells, &|c| c * n, &mut loads, &fill);
+        let Ok(()) = cells::for_each(n_cells, &|c| c * n, &mut loads, &subtract);
         Ok(loads)
     }
 
