@@ -6,9 +6,9 @@ use super::entity::ContactEntity;
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::{Space, checks};
 use crate::error::Error;
+use crate::measure::evaluation::Reference;
 use crate::measure::kinks::is_far;
 use crate::parallel::cells;
-use crate::parallel::vectors::collect;
 use crate::problem::Exact;
 use crate::real::Point;
 
@@ -47,9 +47,7 @@ impl<const D: usize> Space<'_, D> {
         // all entities are facets, or all are cells
         let Some(first) = entities.first() else { return Ok(Vec::new()) };
         let rule = CutRule::new(first.dimension::<D>(), DEGREE).without_needless_bisections();
-        let set = exact.contact.as_ref().filter(|_| first.facet.is_none());
-        let vertices = self.mesh.vertices();
-        let at_vertices = set.map(|set| collect(vertices.len(), |v| (set.indicator)(&vertices[v])));
+        let at_vertices = self.contact_at_vertices(&Reference::Exact(exact));
         let chunks = cells::map(entities.len(), &|range: Range<usize>| {
             let on_entity = |k: usize| {
                 let at_corners =
