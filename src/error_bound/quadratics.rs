@@ -239,16 +239,15 @@ impl<const D: usize> Space<'_, D> {
 
 /// The products of contact forces, by facet; those of a facet follow each other.
 fn contact_products(forces: &[NodeForce], functionals: &[Products]) -> Vec<(HalfFacet, Products)> {
-    let mut contact: Vec<(HalfFacet, Products)> = Vec::new();
-    for force in forces {
-        let facet = (force.cell, force.local);
-        if contact.last().is_none_or(|(last, _)| *last != facet) {
-            contact.push((facet, Products::default()));
+    let is_same = |a: &NodeForce, b: &NodeForce| (a.cell, a.local) == (b.cell, b.local);
+    let of_facet = |forces: &[NodeForce]| {
+        let mut products = Products::default();
+        for force in forces {
+            add(&mut products, |a, j| force.value * functionals[force.node][a][j]);
         }
-        let Some((_, products)) = contact.last_mut() else { continue };
-        add(products, |a, j| force.value * functionals[force.node][a][j]);
-    }
-    contact
+        ((forces[0].cell, forces[0].local), products)
+    };
+    forces.chunk_by(is_same).map(of_facet).collect()
 }
 
 /// The integral of `lambda_a lambda_j lambda_k` over a simplex of a dimension and of measure one.
