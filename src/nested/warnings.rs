@@ -100,15 +100,12 @@ const LARGEST_IMBALANCE: f64 = 1e-6;
 
 /// Contact forces of which rounding leaves no digit, or that do not balance the load of a body that contact alone
 /// holds.
-pub(crate) fn warnings_of_forces<const D: usize>(
-    solved: &Solved<'_, D>,
-    forces: Option<&[f64]>,
-) -> Vec<String> {
+pub(crate) fn warnings_of_forces<const D: usize>(solved: &Solved<'_, D>) -> Vec<String> {
     if !solved.has_iterate() || !solved.discretisation().problem().is_constrained() {
         return Vec::new();
     }
     let precision = solved.solution().precision;
-    let Some(forces) = forces else {
+    let Some(forces) = solved.multiplier() else {
         return vec![format!(
             "rounding in {} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out",
             precision.name()

@@ -19,6 +19,7 @@ use crate::error_bound::{ErrorBound, PrimalDualPair};
 use crate::inequality::{Certificate, Outcome, Solution, certify_solution, count_active};
 use crate::measure::{Fields, Rounding};
 use crate::mesh::{Mesh, Part};
+use crate::parallel::once;
 
 /// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
 ///
@@ -39,6 +40,8 @@ pub struct Solved<'a, const D: usize> {
     hierarchy: Option<(&'a Hierarchy<D>, usize)>,
     /// The bound with the pair that gives it and the seconds of both, once computed.
     bound: OnceLock<(PrimalDualPair<D>, ErrorBound, f64)>,
+    /// The multiplier, once computed.
+    multiplier: OnceLock<Option<Vec<f64>>>,
     /// The rounding errors in the figures, once computed.
     rounding: OnceLock<Option<Rounding>>,
     /// Seconds for the mesh and all coarser ones, if it is one of several.
@@ -97,6 +100,7 @@ impl<'a, const D: usize> Solved<'a, D> {
             energy_norm,
             hierarchy,
             bound: OnceLock::new(),
+            multiplier: OnceLock::new(),
             rounding: OnceLock::new(),
             solve_seconds: 0.0,
             start_seconds: 0.0,
@@ -127,12 +131,12 @@ impl<'a, const D: usize> Solved<'a, D> {
     pub fn contact(&self) -> &[Contact] {
         &self.solution.contact
     }
-    /// The multiplier of each unknown, positive at lower and negative at upper bounds, zero elsewhere: see
-    /// [`Discretisation::multipliers`]. None without an inequality or an iterate, and where rounding leaves no digit.
-    /// Its density is in [`Solved::fields`].
-    pub fn multiplier(&self) -> Option<Vec<f64>> {
+    /// The multiplier of each unknown, positive at lower and negative at upper bounds, zero elsewhere: the force of its
+    /// active bound, of which [`Solved::resultant`] is the sum. None without an inequality or an iterate, and where
+    /// rounding leaves no digit. It is computed once; its density is in [`Solved::fields`].
+    pub fn multiplier(&self) -> Option<&[f64]> {
         let multipliers = || self.discretisation().multipliers(self.inequality(), &self.solution);
-        self.has_iterate.then(multipliers).flatten()
+        once(&self.multiplier, || self.has_iterate.then(multipliers).flatten()).as_deref()
     }
     /// Number of outer iterations on this mesh, by [`Solution::outer`]; none without an iterate.
     pub fn outer(&self) -> Option<usize> {
