@@ -29,7 +29,7 @@ impl Errors {
 }
 
 /// Distances of multiplier and contact set from the exact ones, comparable across schemes; see
-/// [`Solved::contact_errors`](crate::nested::Solved::contact_errors).
+/// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -91,22 +91,21 @@ impl<const D: usize> Space<'_, D> {
             true => self.facets_of(BoundaryCondition::Contact).collect(),
             false => Vec::new(),
         };
-        let multipliers = || self.nodal_multipliers(solved);
-        let multipliers = self.problem.is_constrained().then(multipliers).flatten();
-        let obstacles = self.active_obstacles(&inequality.bounds, &solution.contact);
-        let acting = multipliers.as_deref().map(|multipliers| (multipliers, &obstacles));
+        let multipliers = self.problem.is_constrained().then(|| self.multipliers(solved)).flatten();
+        let of_obstacles = multipliers.as_ref().filter(|_| self.problem.has_obstacle());
+        let of_gaps = multipliers.as_ref().filter(|_| self.problem.has_gap());
         Fields {
             u: self.vertex_values(u),
             obstacle: self.problem.has_obstacle().then_some(obstacle),
-            multiplier: match acting.filter(|_| self.problem.has_obstacle()) {
+            multiplier: match of_obstacles {
                 Some(of) => self.densities_of_obstacles(inequality, of),
                 None if self.problem.has_obstacle() => vec![f64::NAN; n_cells],
                 None => Vec::new(),
             },
             contact: (0..n_cells).map(share).collect(),
             midpoints: self.midpoint_values(u),
-            discrete_contact: self.discrete_contact(solved, multipliers.as_deref()),
-            pressure: match acting.filter(|_| self.problem.has_gap()) {
+            discrete_contact: self.discrete_contact(solved),
+            pressure: match of_gaps {
                 Some(of) => self.densities_of_gaps(inequality, of),
                 None => vec![f64::NAN; contact_boundary.len()],
             },

@@ -100,12 +100,15 @@ const LARGEST_IMBALANCE: f64 = 1e-6;
 
 /// Contact forces of which rounding leaves no digit, or that do not balance the load of a body that contact alone
 /// holds.
-pub(crate) fn warnings_of_forces<const D: usize>(solved: &Solved<'_, D>) -> Vec<String> {
+pub(crate) fn warnings_of_forces<const D: usize>(
+    solved: &Solved<'_, D>,
+    forces: Option<&[f64]>,
+) -> Vec<String> {
     if !solved.has_iterate() || !solved.discretisation().problem().is_constrained() {
         return Vec::new();
     }
     let precision = solved.solution().precision;
-    let Some(forces) = solved.multiplier() else {
+    let Some(forces) = forces else {
         return vec![format!(
             "rounding in {} and the residual of the solver leave no digit of the contact forces: resultant and errors of the multiplier are left out",
             precision.name()

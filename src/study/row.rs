@@ -256,8 +256,9 @@ impl Row {
     ) -> Self {
         let (mesh, solution) = (solved.mesh(), solved.solution());
         let [cells, unknowns, nonzeros] = solved.sizes().map(|n| n as usize);
+        let forces = solved.multiplier();
         let mut warnings = solved.warnings().to_vec();
-        warnings.extend(warnings_of_forces(solved));
+        warnings.extend(warnings_of_forces(solved, forces.as_deref()));
         let solve_seconds = solved.solve_seconds + solved.start_seconds;
         let row = Self::new(scene, D, scheme, level, solved.outcome());
         let point = |at: &HistoryPoint| {
@@ -275,7 +276,7 @@ impl Row {
             objective: solved.objective(),
             active: solved.active(),
             contact_measure: solved.contact_measure(),
-            resultant: solved.resultant(),
+            resultant: forces.map(|forces| solved.resultant_of(&forces)),
             resultants: solved.resultants(),
             iterations: Iterations {
                 outer: solved.outer(),

@@ -20,13 +20,9 @@ pub struct DiscreteContact {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The contact set of a solution and the density of its multipliers, with the definitions of
-    /// `Solved::contact_errors`.
-    pub(crate) fn discrete_contact(
-        &self,
-        solved: SolvedInequality<'_>,
-        multipliers: Option<&[f64]>,
-    ) -> DiscreteContact {
+    /// The contact set and density of a solution, with the definitions of
+    /// `Discretisation::contact_errors`.
+    pub(crate) fn discrete_contact(&self, solved: SolvedInequality<'_>) -> DiscreteContact {
         let mut contact = DiscreteContact::default();
         if !self.problem.is_constrained() {
             return contact;
@@ -44,7 +40,7 @@ impl<const D: usize> Space<'_, D> {
             return contact;
         }
         let weights = self.hat_integrals(&entities, &self.measures_of(&entities));
-        let multipliers = multipliers.map(|of| self.vertex_multipliers(&solved.0.locations, of));
+        let multipliers = self.vertex_multipliers(solved);
         let given = self.dirichlet_groups();
         let density = |v: usize| {
             let multiplier = multipliers.as_ref().map(|multipliers| multipliers[v]);

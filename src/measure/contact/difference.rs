@@ -9,15 +9,15 @@ use crate::instances::compiled;
 use crate::measure::errors::ContactErrors;
 use crate::mesh::Refinement;
 
-/// A solution with its space and inequality, and its multipliers.
+/// A solution with its space and inequality.
 type DiscreteSolution<'s, 'a, const D: usize> =
-    (&'s Discretisation<'a, D>, &'s Inequality<f64>, &'s Solution<f64>, Option<&'s [f64]>);
+    (&'s Discretisation<'a, D>, &'s Inequality<f64>, &'s Solution<f64>);
 
 /// Distances of multiplier and contact set of a solution from those of another one, on the mesh that
 /// these refinements make of its own, coarsest first. The definitions are those of
-/// [`Solved::contact_errors`](crate::nested::Solved::contact_errors). The measure of the symmetric difference is that
-/// of the cells (or contact facets) of the finer mesh. The multiplier of the finer solution is tested with the hat
-/// functions of the coarser mesh, exactly.
+/// [`Discretisation::contact_errors`]. The measure of the symmetric difference is that of the cells (or contact
+/// facets) of the finer mesh. The multiplier of the finer solution is tested with the hat functions of the coarser
+/// mesh, exactly.
 pub(crate) fn contact_difference<const D: usize>(
     solved: DiscreteSolution<'_, '_, D>,
     reference: DiscreteSolution<'_, '_, D>,
@@ -29,8 +29,8 @@ pub(crate) fn contact_difference<const D: usize>(
 }
 
 fn difference<const D: usize>(
-    (own, inequality, solution, multipliers): DiscreteSolution<'_, '_, D>,
-    (fine, fine_inequality, fine_solution, fine_multipliers): DiscreteSolution<'_, '_, D>,
+    (own, inequality, solution): DiscreteSolution<'_, '_, D>,
+    (fine, fine_inequality, fine_solution): DiscreteSolution<'_, '_, D>,
     refinements: &[&Refinement],
 ) -> ContactErrors {
     let (space, solved) = (&own.space, (inequality, solution));
@@ -52,15 +52,15 @@ fn difference<const D: usize>(
     });
     errors.contact_area_error = Some(area.sum());
 
-    let Some((own, of_fine)) = multipliers.zip(fine_multipliers) else { return errors };
-    let own = space.vertex_multipliers(&inequality.locations, own);
-    let mut tested = fine.vertex_multipliers(&fine_inequality.locations, of_fine);
+    let of_fine = fine.vertex_multipliers(fine_solved);
+    let own = space.vertex_multipliers(solved);
+    let (Some(mut multipliers), Some(own)) = (of_fine, own) else { return errors };
     for refinement in refinements.iter().rev() {
-        tested = tested_with_coarser_hats(&tested, refinement);
+        multipliers = tested_with_coarser_hats(&multipliers, refinement);
     }
-    tested.iter_mut().zip(own).for_each(|(m, own)| *m -= own);
+    multipliers.iter_mut().zip(own).for_each(|(m, own)| *m -= own);
     let weights = space.hat_integrals(&entities, &space.measures_of(&entities));
-    [errors.multiplier_l1, errors.multiplier_l2] = space.density_norms(&tested, &weights);
+    [errors.multiplier_l1, errors.multiplier_l2] = space.density_norms(&multipliers, &weights);
     errors
 }
 

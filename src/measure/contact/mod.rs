@@ -38,31 +38,62 @@ use exact_contact::ExactContact;
 const TOUCHING: f64 = 1e-9;
 
 impl<const D: usize> Discretisation<'_, D> {
-    /// Distances of these multipliers and of the contact set of a solution from the exact ones, as
-    /// [`Solved::contact_errors`](crate::nested::Solved::contact_errors) defines them.
+    /// Distances of multiplier and contact set of a solution from the exact ones; none where these
+    /// are not known, or where an obstacle and a contact boundary bind at once.
+    ///
+    /// *Multiplier.* The residual of a constrained unknown in contact is its nodal multiplier. Each
+    /// is divided equally among the vertices whose barycentre is the unknown's node; for every
+    /// element here the sum at a vertex is then the residual tested with the hat function `phi` of
+    /// that vertex, whatever the unknowns. Over the integral of `phi` it is a density, and so is
+    /// the exact multiplier tested with `phi`. Their difference is measured in L1 and in L2, with
+    /// the integral of `phi` as the weight of its vertex (the lumped norms of piecewise linear
+    /// functions), over the vertices off the Dirichlet boundary. These are weaker than norms of the
+    /// multiplier itself: nodal multipliers of over-penalised schemes that cancel within a patch
+    /// have no effect. In general only the norm dual to the energy norm is bounded by the energy
+    /// error (A. Veeser, SIAM J. Numer. Anal. 39 (2001), 146-167). With an obstacle the exact
+    /// density jumps across the free boundary, so that every scheme is wrong by the size of the
+    /// jump in a layer of width `h`: the L1 norm can be of order one, the L2 norm of one half at
+    /// best.
+    ///
+    /// *Contact set.* A vertex, edge or facet is in contact if some unknown there is: on both sides of a facet, in
+    /// all cells at a vertex. The nodal multipliers of a discontinuous scheme there need not all have the sign of
+    /// their sum (those of over-penalised schemes on curved obstacles do not). On the Dirichlet boundary, where some
+    /// schemes have no unknowns and others satisfy the datum approximately, it is in contact if the datum is. A cell,
+    /// or a facet of the contact boundary, is in contact if all its unknowns are that have bounds and basis functions
+    /// with a positive mean over it (those of quadratics at vertices of triangles and tetrahedra have none); where no
+    /// unknown has both, if all its unknowns with bounds are; `docs/conventions.md` says where this set is too small.
+    /// The area error is the measure of the symmetric difference with the exact set. The distance is that of
+    /// Hausdorff between the exact free boundary and the facets between cells in contact and cells that are not.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    pub(crate) fn contact_errors(
+    pub fn contact_errors(
         &self,
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
-        multipliers: Option<&[f64]>,
     ) -> Result<ContactErrors, Error> {
         compiled!(const D: fn(
                 &Discretisation<'_, D>,
                 &Inequality<f64>,
                 &Solution<f64>,
-                Option<&[f64]>,
             ) -> Result<ContactErrors, Error>
-                = |of, inequality, solution, multipliers| {
-                    of.space.contact_errors((inequality, solution), multipliers)
-                }
-        )(self, inequality, solution, multipliers)
+                = |of, inequality, solution| of.space.contact_errors((inequality, solution))
+        )(self, inequality, solution)
+    }
+
+    /// The measure of the discrete contact set: the volume of the cells in contact where there are
+    /// obstacles, else the area of the facets in contact (the number of points in one dimension), with the
+    /// definitions of [`Discretisation::contact_errors`]; none without an inequality.
+    pub fn contact_measure(
+        &self,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
+    ) -> Option<f64> {
+        self.contact_measure_of(inequality, solution, &|_| true)
     }
 
     /// The measure of the contact set on the cells for which `counts` is true, or on their facets.
-    pub(crate) fn contact_measure(
+    pub(crate) fn contact_measure_of(
         &self,
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
@@ -80,8 +111,21 @@ impl<const D: usize> Discretisation<'_, D> {
         )(self, inequality, solution, counts)
     }
 
-    /// By unknown the force of its active bound: see [`Solved::multiplier`](crate::nested::Solved::multiplier).
-    pub(crate) fn multipliers(
+    /// The total contact force, of all obstacles and gaps: the multiplier tested with the function one, which is the
+    /// sum of the entries of `A u - b` at the constrained unknowns in contact, because every unknown is the value or a
+    /// mean of the function. It is positive where a lower bound pushes upward. None without an inequality, and
+    /// where rounding leaves no digit. Nodes with weakly imposed Dirichlet data do not count: where an obstacle
+    /// equals the datum, their entries contain the flux through the boundary.
+    ///
+    /// Where only contact holds the body, without Dirichlet boundary and reaction, it is the negative of the
+    /// total load, for every scheme: constants have no energy. It approximates the integral of the
+    /// multiplier over domain and contact boundary.
+    pub fn resultant(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Option<f64> {
+        self.multipliers(inequality, solution).map(|multipliers| multipliers.iter().sum())
+    }
+
+    /// By unknown the force of its active bound: see [`Discretisation::resultant`].
+    pub fn multipliers(
         &self,
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
@@ -92,11 +136,7 @@ impl<const D: usize> Discretisation<'_, D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    fn contact_errors(
-        &self,
-        solved: SolvedInequality<'_>,
-        multipliers: Option<&[f64]>,
-    ) -> Result<ContactErrors, Error> {
+    fn contact_errors(&self, solved: SolvedInequality<'_>) -> Result<ContactErrors, Error> {
         let mut errors = ContactErrors::default();
         let Some(exact) = &self.problem.exact else { return Ok(errors) };
         let is_known = exact.multiplier.is_some() || exact.contact.is_some();
@@ -107,11 +147,10 @@ impl<const D: usize> Space<'_, D> {
         let entities = self.entities();
         let on_entities = self.exact_contact(exact, &entities)?;
         let measures = self.measures_of(&entities);
-        if let Some(multipliers) = multipliers.filter(|_| exact.multiplier.is_some()) {
-            let tested = self.vertex_multipliers(&solved.0.locations, multipliers);
+        if exact.multiplier.is_some() {
             let of_entities = (&entities[..], &measures[..]);
             [errors.multiplier_l1, errors.multiplier_l2] =
-                self.multiplier_errors(of_entities, &on_entities, tested);
+                self.multiplier_errors(of_entities, &on_entities, solved);
         }
         if let Some(set) = &exact.contact {
             let touching = self.in_contact(&entities, solved);

@@ -1,22 +1,24 @@
 //! The multiplier as a density at vertices.
 
-use super::entity::ContactEntity;
+use super::entity::{ContactEntity, SolvedInequality};
 use super::exact_contact::ExactContact;
-use crate::algebra::DofLocation;
 use crate::arrays::map_entries;
 use crate::assemble::space::Space;
 
 impl<const D: usize> Space<'_, D> {
-    /// The errors of the density of these [`vertex_multipliers`](Space::vertex_multipliers) in L1 and lumped L2 against
-    /// the exact multiplier on entities with these measures, which [`Space::exact_contact`] has tested with hat
-    /// functions; none if all vertices lie on the Dirichlet boundary.
+    /// The errors of the density in L1 and lumped L2 against the exact multiplier on entities with these measures,
+    /// which [`Space::exact_contact`] has tested with hat functions; none if all vertices lie on the Dirichlet
+    /// boundary.
     pub(super) fn multiplier_errors(
         &self,
         (entities, measures): (&[ContactEntity], &[f64]),
         exact: &[Vec<(usize, ExactContact)>],
-        mut multipliers: Vec<f64>,
+        solved: SolvedInequality<'_>,
     ) -> [Option<f64>; 2] {
         let weights = self.hat_integrals(entities, measures);
+        let Some(mut multipliers) = self.vertex_multipliers(solved) else {
+            return [None; 2];
+        };
         for &(k, exact) in exact.iter().flatten() {
             let (entity, measure) = (entities[k], measures[k]);
             let cell = self.mesh.cell(entity.cell);
@@ -37,19 +39,16 @@ impl<const D: usize> Space<'_, D> {
         map_entries([sum, squares.sqrt()], |norm| vertices().next().map(|_| norm))
     }
 
-    /// Multipliers of unknowns at vertices: each divided equally among the vertices around its node.
-    pub(super) fn vertex_multipliers(
-        &self,
-        locations: &[DofLocation],
-        of_unknowns: &[f64],
-    ) -> Vec<f64> {
+    /// Nodal multipliers at vertices: that of each unknown divided equally among the vertices around its node. None
+    /// where rounding leaves no digit.
+    pub(super) fn vertex_multipliers(&self, solved: SolvedInequality<'_>) -> Option<Vec<f64>> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
-        for (location, multiplier) in locations.iter().zip(of_unknowns).filter(|(_, m)| **m != 0.0)
-        {
-            let around = location.vertices();
+        let of_unknowns = self.nodal_multipliers(solved)?;
+        for (unknown, multiplier) in of_unknowns.iter().enumerate().filter(|(_, m)| **m != 0.0) {
+            let around = solved.0.locations[unknown].vertices();
             let share = multiplier / around.len() as f64;
             around.iter().for_each(|&v| multipliers[v as usize] += share);
         }
-        multipliers
+        Some(multipliers)
     }
 }

@@ -21,43 +21,60 @@ struct Share {
 }
 
 /// Multipliers in contact by unknown, and which of them obstacles have.
-pub(crate) type Multipliers<'m> = (&'m [f64], &'m ActiveObstacles);
+pub(crate) struct Multipliers {
+    by_unknown: Vec<f64>,
+    obstacles: ActiveObstacles,
+}
 
 /// Which unknowns and which cells count: all, or those of a part of a mesh.
 type Own<'c> = [&'c dyn Fn(usize) -> bool; 2];
 
 impl<const D: usize> Discretisation<'_, D> {
-    /// The resultants of multipliers, by name: of the unknowns and, for contact groups, of the facets of cells that
-    /// count. See [`Solved::resultants`](crate::nested::Solved::resultants).
-    pub(crate) fn resultants(
+    /// The resultant of each obstacle (`lower`, `upper`) and of each contact group by its name; their sum is that of
+    /// all ([`Discretisation::resultant`]). The multiplier of an unknown belongs to the datum that gives its active
+    /// bound: where obstacle and gap are equal to the obstacle, where gaps of several groups are, to each by the
+    /// measure of its facets there. None without an inequality, and where rounding leaves no digit.
+    pub fn resultants(
         &self,
-        (inequality, solution): (&Inequality<f64>, &Solution<f64>),
-        multipliers: &[f64],
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
+    ) -> Option<BTreeMap<String, f64>> {
+        self.resultants_of(inequality, solution, [&|_| true, &|_| true])
+    }
+
+    /// The resultants of the unknowns and, for contact groups, of the facets of cells that count.
+    pub(crate) fn resultants_of(
+        &self,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
         own: Own<'_>,
-    ) -> BTreeMap<String, f64> {
+    ) -> Option<BTreeMap<String, f64>> {
         compiled!(const D: fn(
                 &Discretisation<'_, D>,
-                (&Inequality<f64>, &Solution<f64>),
-                &[f64],
+                &Inequality<f64>,
+                &Solution<f64>,
                 Own<'_>,
-            ) -> BTreeMap<String, f64>
-                = |of, solved, multipliers, own| of.space.resultants(solved, multipliers, own)
-        )(self, (inequality, solution), multipliers, own)
+            ) -> Option<BTreeMap<String, f64>>
+                = |of, inequality, solution, own| of.space.resultants((inequality, solution), own)
+        )(self, inequality, solution, own)
     }
 }
 
 impl<const D: usize> Space<'_, D> {
     fn resultants(
         &self,
-        (inequality, solution): SolvedInequality<'_>,
-        multipliers: &[f64],
+        solved: SolvedInequality<'_>,
         [of_unknowns, of_cells]: Own<'_>,
-    ) -> BTreeMap<String, f64> {
+    ) -> Option<BTreeMap<String, f64>> {
+        if !self.problem.is_constrained() {
+            return None;
+        }
         let mut sums: BTreeMap<String, f64> =
             self.names_of_resultants().into_iter().map(|name| (name, 0.0)).collect();
-        let obstacles = self.active_obstacles(&inequality.bounds, &solution.contact);
-        for (unknown, value) in multipliers.iter().enumerate() {
-            if *value != 0.0 && obstacles.act_at(unknown) && of_unknowns(unknown) {
+        let multipliers = self.multipliers(solved)?;
+        let (inequality, solution) = solved;
+        for (unknown, value) in multipliers.by_unknown.iter().enumerate() {
+            if *value != 0.0 && multipliers.obstacles.act_at(unknown) && of_unknowns(unknown) {
                 let is_upper = solution.contact[unknown] == Contact::Upper;
                 let name = if is_upper { "upper" } else { "lower" };
                 *sums.entry(name.to_owned()).or_default() += value;
@@ -67,13 +84,13 @@ impl<const D: usize> Space<'_, D> {
             (0..self.mesh.boundary_groups().len()).map(|group| self.name_of_gap(group)).collect();
         let facets: Vec<(HalfFacet, usize)> =
             self.grouped_facets_of(BoundaryCondition::Contact).collect();
-        for share in self.shares_of_gaps(&inequality.bounds, (multipliers, &obstacles)) {
+        for share in self.shares_of_gaps(&inequality.bounds, &multipliers) {
             let ((cell, _), group) = facets[share.place];
             if of_cells(cell) {
                 *sums.entry(names[group].clone()).or_default() += share.value;
             }
         }
-        sums
+        Some(sums)
     }
 
     /// The names of all resultants: the same on all parts of a mesh.
@@ -102,27 +119,34 @@ impl<const D: usize> Space<'_, D> {
         }
     }
 
+    /// The multipliers of a solution, none where rounding leaves no digit; all parts of a mesh call it.
+    pub(crate) fn multipliers(&self, solved: SolvedInequality<'_>) -> Option<Multipliers> {
+        let by_unknown = self.nodal_multipliers(solved)?;
+        let obstacles = self.active_obstacles(&solved.0.bounds, &solved.1.contact);
+        Some(Multipliers { by_unknown, obstacles })
+    }
+
     /// The shares of the multipliers of obstacles in all cells: that of a shared unknown by volume among the cells
     /// whose obstacle gives the bound.
-    fn shares_of_obstacles(&self, (multipliers, obstacles): Multipliers<'_>) -> Vec<Share> {
+    fn shares_of_obstacles(&self, of: &Multipliers) -> Vec<Share> {
         let n_cells = self.mesh.n_cells();
         let volume = |cell: usize| self.mesh.geometry(cell).volume;
         let acting = |cell: usize| {
             let unknowns = (0..self.per_cell()).map(move |i| (i, self.dofs.of(cell, i)));
-            let presses = |unknown: usize| multipliers[unknown] != 0.0;
+            let presses = |unknown: usize| of.by_unknown[unknown] != 0.0;
             unknowns
-                .filter(move |(_, k)| presses(*k) && obstacles.act_at(*k))
-                .filter(move |(i, _)| obstacles.act_in(cell, *i))
+                .filter(move |(_, k)| presses(*k) && of.obstacles.act_at(*k))
+                .filter(move |(i, _)| of.obstacles.act_in(cell, *i))
                 .map(|(_, unknown)| unknown)
         };
-        let mut totals = vec![0.0; multipliers.len()];
+        let mut totals = vec![0.0; of.by_unknown.len()];
         for cell in 0..n_cells {
             acting(cell).for_each(|unknown| totals[unknown] += volume(cell));
         }
         let mut shares = Vec::new();
         for cell in 0..n_cells {
             shares.extend(acting(cell).map(|unknown| {
-                let value = multipliers[unknown] * (volume(cell) / totals[unknown]);
+                let value = of.by_unknown[unknown] * (volume(cell) / totals[unknown]);
                 Share { place: cell, unknown, value }
             }));
         }
@@ -131,11 +155,7 @@ impl<const D: usize> Space<'_, D> {
 
     /// The shares of the multipliers of gaps on all contact facets: by measure among the facets whose gap gives the
     /// bound.
-    fn shares_of_gaps(
-        &self,
-        bounds: &[Bound<f64>],
-        (multipliers, obstacles): Multipliers<'_>,
-    ) -> Vec<Share> {
+    fn shares_of_gaps(&self, bounds: &[Bound<f64>], of: &Multipliers) -> Vec<Share> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let mut shares = Vec::new();
         // of each unknown whether a gap gives the bound, and the measure of its facets with the best answer
@@ -148,7 +168,7 @@ impl<const D: usize> Space<'_, D> {
             let measure = self.facet_measure((cell, local));
             for node in self.bounded_nodes_on(local) {
                 let unknown = self.dofs.of(cell, node.0);
-                if multipliers[unknown] == 0.0 || obstacles.act_at(unknown) {
+                if of.by_unknown[unknown] == 0.0 || of.obstacles.act_at(unknown) {
                     continue;
                 }
                 let gives = self.gap_gives((cell, group), node, &terms, bounds[unknown]);
@@ -164,7 +184,7 @@ impl<const D: usize> Space<'_, D> {
         for (share, gives) in shares.iter_mut().zip(gives_of_share) {
             let (of_best, all) = best[share.unknown];
             let fraction = if gives == of_best { share.value / all } else { 0.0 };
-            share.value = fraction * multipliers[share.unknown];
+            share.value = fraction * of.by_unknown[share.unknown];
         }
         shares
     }
@@ -173,7 +193,7 @@ impl<const D: usize> Space<'_, D> {
     pub(crate) fn densities_of_obstacles(
         &self,
         inequality: &Inequality<f64>,
-        of: Multipliers<'_>,
+        of: &Multipliers,
     ) -> Vec<f64> {
         let by_region = self.data.lower.has_names() || self.data.upper.has_names();
         let group = |cell: usize| if by_region { self.mesh.region(cell) } else { 0 };
@@ -186,7 +206,7 @@ impl<const D: usize> Space<'_, D> {
     pub(crate) fn densities_of_gaps(
         &self,
         inequality: &Inequality<f64>,
-        of: Multipliers<'_>,
+        of: &Multipliers,
     ) -> Vec<f64> {
         let facets = self.grouped_facets_of(BoundaryCondition::Contact);
         let entity = |(cell, local)| ContactEntity { cell, facet: Some(local) };

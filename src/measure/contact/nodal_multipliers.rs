@@ -12,10 +12,7 @@ impl<const D: usize> Space<'_, D> {
     /// contact, and at nodes on facets with weakly imposed Dirichlet data: there the entry of `A u - b` contains the
     /// flux through the boundary. None where rounding leaves no digit. On a part of a mesh ghosts have the forces of
     /// their owners, and all parts call it.
-    pub(in crate::measure) fn nodal_multipliers(
-        &self,
-        solved: SolvedInequality<'_>,
-    ) -> Option<Vec<f64>> {
+    pub(super) fn nodal_multipliers(&self, solved: SolvedInequality<'_>) -> Option<Vec<f64>> {
         let (inequality, solution) = solved;
         let forces = ContactForces::of(inequality, solution);
         let on_data = self.on_weak_data(&inequality.locations);

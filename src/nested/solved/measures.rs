@@ -80,45 +80,19 @@ impl<const D: usize> Solved<'_, D> {
         if !(self.has_iterate && reference.has_iterate) {
             return Ok(ContactErrors::default());
         }
-        let [own, fine] = [self, reference]
-            .map(|of| (of.discretisation(), of.inequality(), &of.solution, of.multiplier()));
+        let own = (self.discretisation(), self.inequality(), &self.solution);
+        let fine = (reference.discretisation(), reference.inequality(), &reference.solution);
         Ok(contact_difference(own, fine, &refinements))
     }
-    /// Distances of multiplier and contact set from the exact ones; none where these are not known, where an obstacle
-    /// and a contact boundary bind at once, without an iterate, and on parts of a mesh.
-    ///
-    /// *Multiplier.* The residual of a constrained unknown in contact is its nodal multiplier. Each
-    /// is divided equally among the vertices whose barycentre is the unknown's node; for every
-    /// element here the sum at a vertex is then the residual tested with the hat function `phi` of
-    /// that vertex, whatever the unknowns. Over the integral of `phi` it is a density, and so is
-    /// the exact multiplier tested with `phi`. Their difference is measured in L1 and in L2, with
-    /// the integral of `phi` as the weight of its vertex (the lumped norms of piecewise linear
-    /// functions), over the vertices off the Dirichlet boundary. These are weaker than norms of the
-    /// multiplier itself: nodal multipliers of over-penalised schemes that cancel within a patch
-    /// have no effect. In general only the norm dual to the energy norm is bounded by the energy
-    /// error (A. Veeser, SIAM J. Numer. Anal. 39 (2001), 146-167). With an obstacle the exact
-    /// density jumps across the free boundary, so that every scheme is wrong by the size of the
-    /// jump in a layer of width `h`: the L1 norm can be of order one, the L2 norm of one half at
-    /// best.
-    ///
-    /// *Contact set.* A vertex, edge or facet is in contact if some unknown there is: on both sides of a facet, in
-    /// all cells at a vertex. The nodal multipliers of a discontinuous scheme there need not all have the sign of
-    /// their sum (those of over-penalised schemes on curved obstacles do not). On the Dirichlet boundary, where some
-    /// schemes have no unknowns and others satisfy the datum approximately, it is in contact if the datum is. A cell,
-    /// or a facet of the contact boundary, is in contact if all its unknowns are that have bounds and basis functions
-    /// with a positive mean over it (those of quadratics at vertices of triangles and tetrahedra have none); where no
-    /// unknown has both, if all its unknowns with bounds are; `docs/conventions.md` says where this set is too small.
-    /// The area error is the measure of the symmetric difference with the exact set. The distance is that of
-    /// Hausdorff between the exact free boundary and the facets between cells in contact and cells that are not.
+    /// Distances of multiplier and contact set from the exact ones; none without an iterate, and on parts of a mesh.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub fn contact_errors(&self) -> Result<ContactErrors, Error> {
-        if !self.has_iterate || self.part().is_some() {
-            return Ok(ContactErrors::default());
+        match self.has_iterate && self.part().is_none() {
+            true => self.discretisation().contact_errors(self.inequality(), &self.solution),
+            false => Ok(ContactErrors::default()),
         }
-        let (of, inequality) = (self.discretisation(), self.inequality());
-        of.contact_errors(inequality, &self.solution, self.multiplier())
     }
     /// An admissible function and an equilibrated flux: see
     /// [`primal_dual_pair`](crate::assemble::Discretisation::primal_dual_pair). On a part of a mesh they are right on own

@@ -19,7 +19,6 @@ use crate::error_bound::{ErrorBound, PrimalDualPair};
 use crate::inequality::{Certificate, Outcome, Solution, certify_solution, count_active};
 use crate::measure::{Fields, Rounding};
 use crate::mesh::{Mesh, Part};
-use crate::parallel::once;
 
 /// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
 ///
@@ -40,8 +39,6 @@ pub struct Solved<'a, const D: usize> {
     hierarchy: Option<(&'a Hierarchy<D>, usize)>,
     /// The bound with the pair that gives it and the seconds of both, once computed.
     bound: OnceLock<(PrimalDualPair<D>, ErrorBound, f64)>,
-    /// The multiplier, once computed.
-    multiplier: OnceLock<Option<Vec<f64>>>,
     /// The rounding errors in the figures, once computed.
     rounding: OnceLock<Option<Rounding>>,
     /// Seconds for the mesh and all coarser ones, if it is one of several.
@@ -100,7 +97,6 @@ impl<'a, const D: usize> Solved<'a, D> {
             energy_norm,
             hierarchy,
             bound: OnceLock::new(),
-            multiplier: OnceLock::new(),
             rounding: OnceLock::new(),
             solve_seconds: 0.0,
             start_seconds: 0.0,
@@ -131,12 +127,12 @@ impl<'a, const D: usize> Solved<'a, D> {
     pub fn contact(&self) -> &[Contact] {
         &self.solution.contact
     }
-    /// The multiplier of each unknown, positive at lower and negative at upper bounds, zero elsewhere: the force of its
-    /// active bound, of which [`Solved::resultant`] is the sum. None without an inequality or an iterate, and where
-    /// rounding leaves no digit. It is computed once; its density is in [`Solved::fields`].
-    pub fn multiplier(&self) -> Option<&[f64]> {
+    /// The multiplier of each unknown, positive at lower and negative at upper bounds, zero elsewhere: see
+    /// [`Discretisation::multipliers`]. None without an inequality or an iterate, and where rounding leaves no digit.
+    /// Its density is in [`Solved::fields`].
+    pub fn multiplier(&self) -> Option<Vec<f64>> {
         let multipliers = || self.discretisation().multipliers(self.inequality(), &self.solution);
-        once(&self.multiplier, || self.has_iterate.then(multipliers).flatten()).as_deref()
+        self.has_iterate.then(multipliers).flatten()
     }
     /// Number of outer iterations on this mesh, by [`Solution::outer`]; none without an iterate.
     pub fn outer(&self) -> Option<usize> {

@@ -19,40 +19,35 @@ impl<const D: usize> Solved<'_, D> {
         let own = self.discretisation().energy_of(self.values(), &|cell| self.system.owns(cell));
         Ok(Some(self.system.sums([self.system.agreed(own)?])[0]))
     }
-    /// The measure of the discrete contact set: the volume of the cells in contact where there are obstacles, else the
-    /// area of the facets in contact (the number of points in one dimension), with the definitions of
-    /// [`Solved::contact_errors`]; none for a problem without inequality and for an outcome without iterate.
+    /// The measure of the discrete contact set, see
+    /// [`contact_measure`](crate::assemble::Discretisation::contact_measure); none for a problem without inequality and
+    /// for an outcome without iterate.
     pub fn contact_measure(&self) -> Option<f64> {
         let counts = |cell| self.system.owns(cell);
         let (of, inequality) = (self.discretisation(), self.inequality());
-        let measure = || of.contact_measure(inequality, &self.solution, &counts);
+        let measure = || of.contact_measure_of(inequality, &self.solution, &counts);
         let own = self.has_iterate.then(measure).flatten()?;
         Some(self.system.sums([own])[0])
     }
-    /// The total contact force, of all obstacles and gaps: the multiplier tested with the function one, which is the
-    /// sum of the entries of `A u - b` at the constrained unknowns in contact, because every unknown is the value or a
-    /// mean of the function. It is positive where a lower bound pushes upward. None without an inequality or an
-    /// iterate, and where rounding leaves no digit. Nodes with weakly imposed Dirichlet data do not count: where an
-    /// obstacle equals the datum, their entries contain the flux through the boundary.
-    ///
-    /// Where only contact holds the body, without Dirichlet boundary and reaction, it is the negative of the
-    /// total load, for every scheme: constants have no energy. It approximates the integral of the
-    /// multiplier over domain and contact boundary.
+    /// The total contact force, positive where a lower bound pushes upward: see
+    /// [`resultant`](crate::assemble::Discretisation::resultant); none for a problem without inequality and for an
+    /// outcome without iterate.
     pub fn resultant(&self) -> Option<f64> {
-        let multipliers = self.multiplier()?.iter().enumerate();
-        let own = multipliers.filter(|(i, _)| self.inequality().owns(*i));
-        Some(self.system.sums([own.map(|(_, force)| force).sum()])[0])
+        Some(self.resultant_of(&self.multiplier()?))
     }
-    /// The resultant of each obstacle (`lower`, `upper`) and of each contact group by its name; their sum is that of
-    /// all ([`Solved::resultant`]). The multiplier of an unknown belongs to the datum that gives its active bound:
-    /// where obstacle and gap are equal to the obstacle, where gaps of several groups are, to each by the measure of
-    /// its facets there. None where there is no resultant.
+    /// The sum of the multipliers of own unknowns over all parts.
+    pub(crate) fn resultant_of(&self, multipliers: &[f64]) -> f64 {
+        let own = multipliers.iter().enumerate().filter(|(i, _)| self.inequality().owns(*i));
+        self.system.sums([own.map(|(_, force)| force).sum()])[0]
+    }
+    /// The resultant of each obstacle and each contact group, see
+    /// [`resultants`](crate::assemble::Discretisation::resultants); none where there is no resultant.
     pub fn resultants(&self) -> Option<BTreeMap<String, f64>> {
-        let (multipliers, inequality) = (self.multiplier()?, self.inequality());
+        let (of, inequality) = (self.discretisation(), self.inequality());
         let own: [&dyn Fn(usize) -> bool; 2] =
             [&|i| inequality.owns(i), &|cell| self.system.owns(cell)];
-        let of = self.discretisation();
-        let mut resultants = of.resultants((inequality, &self.solution), multipliers, own);
+        let resultants = || of.resultants_of(inequality, &self.solution, own);
+        let mut resultants = self.has_iterate.then(resultants).flatten()?;
         // all parts have the groups of the whole mesh
         for of_all in resultants.values_mut() {
             *of_all = self.system.sums([*of_all])[0];
