@@ -64,14 +64,14 @@ impl<const D: usize> Discretisation<'_, D> {
         solution: &Solution<f64>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
         self.check_flux()?;
-        self.pair_on_part(inequality, solution, &|_| true)
+        self.pair_of_cells(inequality, solution, &|_| true)
     }
     /// The pair of a solution for the cells that count: all, or on a part of a mesh, with linear functions, those of
     /// the part. Multipliers are exchanged between these alone. All parts call it.
     ///
     /// # Errors
     /// [`NoBound`].
-    pub(crate) fn pair_on_part(
+    pub(crate) fn pair_of_cells(
         &self,
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,

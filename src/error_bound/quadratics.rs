@@ -129,7 +129,7 @@ impl<const D: usize> Space<'_, D> {
     fn loads_less_reaction(&self, u: &[f64]) -> Result<Vec<f64>, NoBound> {
         let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
         let mut loads = self.load_by_cell()?.into_owned();
-        // without sources the list is empty
+        // without data the list is empty
         loads.resize(n_cells * n, 0.0);
         let Some(reaction) = &self.reaction else { return Ok(loads) };
         let subtract = |cells: Range<usize>, out: &mut [f64]| {

@@ -21,8 +21,8 @@ fn error_in(norm: ErrorNorm, row: &Row) -> Option<f64> {
 
 /// The work (seconds, unknowns or entries) at which a given error is reached, on straight lines between neighbouring
 /// levels in logarithmic scales. Levels have their error and its work, none where the run failed, and are ordered from
-/// coarse to fine. None where no two neighbours that both converged have the error between them: nothing is extrapolated,
-/// and no level that failed is bridged.
+/// coarse to fine. None where no two neighbours that both converged have the error between them: nothing is
+/// extrapolated, and no level that failed is bridged.
 fn work_at(levels: &[Option<(f64, f64)>], error: f64) -> Option<f64> {
     levels.windows(2).find_map(|pair| {
         let [(coarse, before), (fine, after)] = [pair[0]?, pair[1]?];

@@ -1,6 +1,8 @@
 //! Inputs without an end, limits of the system, and messages that quote foreign text.
 
-use std::process::{Command, Output};
+#[cfg(unix)]
+use std::process::Command;
+use std::process::Output;
 
 #[cfg(target_os = "linux")]
 use super::run::data;

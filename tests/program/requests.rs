@@ -72,7 +72,7 @@ fn wrong_options_are_refused() {
 }
 
 #[test]
-fn names_of_schemes_are_those_of_the_list_to_the_letter() {
+fn names_of_schemes_are_read_to_the_letter() {
     let scratch = Scratch::new("letters");
     for name in ["P1", "p1 "] {
         let unknown = format!("unknown scheme \"{name}\"");

@@ -33,7 +33,7 @@ fn groups_without_a_table_have_what_is_given_by_default() {
     let refused = |text: &str| problem(&folder, text).unwrap_err().to_string();
     assert!(refused(&of_mesh).contains("boundary group `bore` of the mesh is missing"));
     let wrong = refused(&format!("{of_mesh}{}", DEFAULT.replace("flux", "gap")));
-    assert!(wrong.contains("unknown key `gap`") && wrong.contains("problem.toml:6:"), "{wrong}");
+    assert!(wrong.contains("unknown key `gap`") && wrong.contains("plane.toml:6:"), "{wrong}");
 }
 
 /// The group `rim` has the facets of `foot` and others: what is given by default is given on all of it, after the table.

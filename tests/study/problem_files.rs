@@ -9,7 +9,7 @@ use unilateral::scenes::AnyScene;
 
 /// A problem in the plane, of a file with this text.
 pub fn problem(folder: &Scratch, text: &str) -> Result<Scene<2>, ProblemFileError> {
-    match read(Path::new(&folder.file("problem.toml", text)))?.scene {
+    match read(Path::new(&folder.file("plane.toml", text)))?.scene {
         AnyScene::Two(own) => Ok(own),
         _ => panic!("a problem in the plane"),
     }
@@ -105,7 +105,7 @@ fn a_box_has_sides_and_an_exact_solution() {
     let exact = "[exact]\nvalue = \"x * y\"\ngradient = [\"y\", \"x\"]\n";
     let text = format!("{BOX}{SIDES}{exact}[reaction]\ndefault = 0\n");
     let own = problem(&folder, &text).unwrap();
-    assert_eq!(own.name, "problem");
+    assert_eq!(own.name, "plane", "the name of the file");
     let Domain::Box(domain) = &own.domain else { panic!("a box") };
     assert_eq!(domain.sides[1], [BoundaryCondition::Contact, BoundaryCondition::Neumann]);
     let mesh = own.domain.mesh(4).unwrap();
@@ -260,6 +260,7 @@ fn a_source_that_jumps_says_where() {
     let path = folder.file("jump.toml", &format!("box = [[0], [1]]\n{ends}{load}"));
     let own = read(Path::new(&path)).unwrap().scene;
     let AnyScene::One(own) = own else { panic!("a problem on an interval") };
+    assert!(matches!(own.domain, Domain::Box(_)));
     let mesh = own.domain.mesh(7).unwrap();
     let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default()).unwrap();
     // hat functions sum to one: the integral of the load

@@ -367,11 +367,11 @@ fn the_multiplier_of_an_obstacle_integrates_to_the_sum_of_nodal_multipliers() {
 fn a_study_writes_all_levels_on_request() {
     let scratch = Scratch::new("vtu-levels");
     let study = Study::<2>::new(scenes::radial(1.0)).scheme(Wopsip::default()).levels([4, 8]);
-    study.fields_to(&scratch.0).fields_of_all_levels().run().unwrap();
-    let list = scratch.read("radial-2d-wopsip.pvd");
+    study.fields_to(scratch.0.join("made")).fields_of_all_levels().run().unwrap();
+    let list = scratch.read("made/radial-2d-wopsip.pvd");
     assert!(list.contains("timestep=\"4\"") && list.contains("file=\"radial-2d-wopsip-4.vtu\""));
     assert!(list.contains("timestep=\"8\"") && list.contains("file=\"radial-2d-wopsip.vtu\""));
-    let grid = read(scratch.0.join("radial-2d-wopsip-4.vtu"));
+    let grid = read(scratch.0.join("made/radial-2d-wopsip-4.vtu"));
     assert_eq!(grid.array("FieldData", "level").1, "4");
     assert_eq!(grid.names("PointData"), ["obstacle", "error", "u"]);
     let fields = ["bound", "multiplier", "contact", "dimension"];

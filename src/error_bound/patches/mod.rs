@@ -151,11 +151,12 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     /// returns the others.
     fn set_directly(&self, vertices: &[u32], fluxes: &CornerFluxes) -> Vec<u32> {
         let others = cells::map(vertices.len(), &|range: Range<usize>| {
-            let (mut fan, mut link) = (Vec::new(), Link::default());
+            // a link is large
+            let (mut fan, mut link) = (Vec::new(), (D > 2).then(Link::default));
             let set = |corner: Corner, k: usize, number: f64| fluxes.set(corner, k, number);
-            let is_other = |&v: &u32| match D {
-                2 => !self.set_fan(v as usize, &mut fan, set),
-                _ => !self.set_link(v as usize, &mut link, set),
+            let is_other = |&v: &u32| match &mut link {
+                None => !self.set_fan(v as usize, &mut fan, set),
+                Some(link) => !self.set_link(v as usize, link, set),
             };
             vertices[range].iter().copied().filter(is_other).collect::<Vec<_>>()
         });

@@ -38,6 +38,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         inequality: &'a Inequality<T>,
         condensation: Option<&'h StaticCondensation<'a, T>>,
     ) -> Self {
+        debug_assert_eq!(inequality.penalised.is_some(), condensation.is_some());
         let free = inequality.free_unknowns();
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
@@ -168,7 +169,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         residual
     }
 
-    /// The energy `w . K w` of a change of the values by `w`, without penalties.
+    /// The energy `w . K w` of a change of the values by `w`, without the penalties of a penalised matrix.
     pub fn stiffness_energy(&self, w: &[f64]) -> f64 {
         let value = |i: usize| w[i];
         let image = |i: usize| match &self.inequality.penalised {

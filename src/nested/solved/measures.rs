@@ -106,7 +106,7 @@ impl<const D: usize> Solved<'_, D> {
         }
         let (of, inequality) = (self.discretisation(), self.inequality());
         let counts = |cell| self.system.owns(cell);
-        self.system.agreed_bound(of.pair_on_part(inequality, &self.solution, &counts))
+        self.system.agreed_bound(of.pair_of_cells(inequality, &self.solution, &counts))
     }
     /// A bound on the error from solution and data alone: see [`crate::error_bound`]. It is computed once. Over the
     /// parts of a mesh it has the shares of own cells; multipliers are exchanged for flux inside parts alone, so that it

@@ -79,7 +79,7 @@ impl<'a, const D: usize> Study<'a, D> {
     pub fn named_scheme(self, scheme: &NamedScheme) -> Self {
         self.entry(scheme.make().into(), scheme.constraint_set(), scheme.shown_choices())
     }
-    /// Adds a scheme with its own constraint set and the choices in its label.
+    /// Adds a scheme, on a constraint set of its own if there is one, with these choices shown in the label of its rows.
     fn entry(
         mut self,
         scheme: Arc<dyn Scheme<D> + 'a>,

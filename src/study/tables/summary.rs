@@ -87,7 +87,8 @@ fn summary(title: &str, is_adaptive: bool, series: &[Series<'_>]) -> Table {
     };
     let failed: Vec<(String, String)> = series
         .iter()
-        .flat_map(|of| of.rows[..of.rows.len() - 1].iter().map(move |row| (&of.name, row)))
+        .filter_map(|of| Some((&of.name, of.rows.split_last()?.1)))
+        .flat_map(|(name, rows)| rows.iter().map(move |row| (name, row)))
         .filter(|(_, row)| !row.converged())
         .map(|(name, row)| (format!("{name} at {}", row.level), reasons.message(row)))
         .collect();
