@@ -94,13 +94,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// # Panics
     /// If the pair is not one of this mesh, or `u` is shorter than the number of unknowns.
     pub fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[f64]) -> Result<ErrorBound, NoBound> {
-        compiled!(const D: fn(
-                &Discretisation<'_, D>,
-                &PrimalDualPair<D>,
-                &[f64],
-            ) -> Result<ErrorBound, NoBound>
-                = |of, pair, u| of.space.error_bound(pair, u)
-        )(self, pair, u)
+        self.part_of_bound(pair, u, &|_| true)?.bound(None)
     }
 
     /// The energy norm of the difference of the exact solution and the admissible function of a pair; none
@@ -113,8 +107,7 @@ impl<const D: usize> Discretisation<'_, D> {
         Some(self.squared_errors_beside(None, Some(pair), &|_| true).ok()?.of_function())
     }
 
-    /// What the cells that count, those of a part of a mesh, add to the bound that a pair gives. Pair and discrete
-    /// function `u` belong to linear functions.
+    /// What the cells that count, those of a part of a mesh, add to the bound that a pair gives.
     ///
     /// # Errors
     /// [`NoBound`].
@@ -217,16 +210,19 @@ pub(crate) struct PartOfBound<const D: usize> {
 }
 
 impl<const D: usize> PartOfBound<D> {
-    /// The bound of all parts, with the shares of the cells of this one; all parts call it.
-    pub fn over_parts(self, distribution: &dyn Distribution) -> Result<ErrorBound, NoBound> {
-        let Self { mut totals, friedrichs, squares, unproven } = self;
-        totals.add_over_parts(distribution);
-        let of_all = [Unproven::Quadrature, Unproven::Boundary, Unproven::Obstacle];
-        let mut is_found = of_all.map(|term| f64::from(u8::from(unproven.contains(&term))));
-        distribution.largest(&mut is_found);
-        let of_solver = totals.of_solver(friedrichs.over_parts(distribution).constant())?;
-        let found = of_all.into_iter().zip(is_found).filter(|(_, is_found)| *is_found != 0.0);
-        let mut unproven: Vec<Unproven> = found.map(|(term, _)| term).collect();
+    /// The bound of all parts, or of the whole, with the shares of the cells of this one; all parts call it.
+    pub fn bound(self, distribution: Option<&dyn Distribution>) -> Result<ErrorBound, NoBound> {
+        let Self { mut totals, mut friedrichs, squares, mut unproven } = self;
+        if let Some(distribution) = distribution {
+            totals.add_over_parts(distribution);
+            friedrichs = friedrichs.over_parts(distribution);
+            let of_all = [Unproven::Quadrature, Unproven::Boundary, Unproven::Obstacle];
+            let mut is_found = of_all.map(|term| f64::from(u8::from(unproven.contains(&term))));
+            distribution.largest(&mut is_found);
+            let found = of_all.into_iter().zip(is_found).filter(|(_, is_found)| *is_found != 0.0);
+            unproven = found.map(|(term, _)| term).collect();
+        }
+        let of_solver = totals.of_solver(friedrichs.constant())?;
         if of_solver.is_none() {
             unproven.push(Unproven::Algebra);
         }
@@ -235,14 +231,6 @@ impl<const D: usize> PartOfBound<D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[f64]) -> Result<ErrorBound, NoBound> {
-        let (totals, squares) = self.terms_of_bound((pair, u), &|_| true)?;
-        let of_solver = totals.of_solver(FriedrichsData::of(self.mesh).constant())?;
-        let is_proven = [of_solver.is_some(), totals.reaction_from_below >= 0.0];
-        let unproven = self.unproven_terms(pair, is_proven, &|_| true);
-        ErrorBound::new(&totals, of_solver.unwrap_or(0.0), squares, unproven)
-    }
-
     /// The sums of the cells that count for a bound.
     fn part_of_bound(
         &self,
@@ -251,8 +239,7 @@ impl<const D: usize> Space<'_, D> {
         counts: Counts<'_>,
     ) -> Result<PartOfBound<D>, NoBound> {
         let (totals, squares) = self.terms_of_bound((pair, u), counts)?;
-        let is_proven = [true, totals.reaction_from_below >= 0.0];
-        let unproven = self.unproven_terms(pair, is_proven, counts);
+        let unproven = self.unproven_terms(pair, totals.reaction_from_below >= 0.0, counts);
         let friedrichs = FriedrichsData::of(self.mesh);
         Ok(PartOfBound { totals, friedrichs, squares, unproven })
     }

@@ -17,12 +17,12 @@ const AGREEMENT: f64 = 1e-12;
 const HIGHEST_DEGREE: usize = 12;
 
 impl<const D: usize> Space<'_, D> {
-    /// The terms that are not proven; the arguments say whether the term of the solver is, and whether the bound from
-    /// below for the reaction is positive or zero. Facets count with their cells.
+    /// The terms that are not proven, but for that of the solver; an argument says whether the bound from below for the
+    /// reaction is positive or zero. Facets count with their cells.
     pub(super) fn unproven_terms(
         &self,
         pair: &PrimalDualPair<D>,
-        [is_algebra_proven, has_reaction_bound]: [bool; 2],
+        has_reaction_bound: bool,
         counts: Counts<'_>,
     ) -> Vec<Unproven> {
         let data = &self.data;
@@ -59,7 +59,6 @@ impl<const D: usize> Space<'_, D> {
                 Unproven::Boundary,
             ),
             (is_curved || may_leave, Unproven::Obstacle),
-            (!is_algebra_proven, Unproven::Algebra),
         ];
         found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
     }

@@ -64,31 +64,23 @@ impl<const D: usize> Discretisation<'_, D> {
         solution: &Solution<f64>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
         self.check_flux()?;
-        self.compiled_pair(inequality, solution, &|_| true)
+        self.pair_of_cells(inequality, solution, &|_| true)
     }
-    /// The pair of a solution on a part of a mesh with linear functions, for the cells that count, those of the part.
-    /// Multipliers are exchanged between these alone. All parts call it.
+    /// The pair of a solution for the cells that count: all, or on a part of a mesh, with linear functions, those of
+    /// the part. Multipliers are exchanged between these alone. All parts call it.
     ///
     /// # Errors
     /// [`NoBound`].
-    pub(crate) fn pair_on_part(
+    pub(crate) fn pair_of_cells(
         &self,
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
         counts: Counts<'_>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
-        self.check_element()?;
-        match self.space.degree == 1 {
-            true => self.compiled_pair(inequality, solution, counts),
-            false => Err(NoBound::Part),
+        match inequality.distribution.is_some() && self.space.degree == 1 {
+            true => self.check_element()?,
+            false => self.check_flux()?,
         }
-    }
-    fn compiled_pair(
-        &self,
-        inequality: &Inequality<f64>,
-        solution: &Solution<f64>,
-        counts: Counts<'_>,
-    ) -> Result<PrimalDualPair<D>, NoBound> {
         compiled!(const D: fn(
                 &Discretisation<'_, D>,
                 &Inequality<f64>,

@@ -128,13 +128,12 @@ impl<const D: usize> Space<'_, D> {
     /// The load less the reaction term of a discrete function, by cell and unknown.
     fn loads_less_reaction(&self, u: &[f64]) -> Result<Vec<f64>, NoBound> {
         let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
-        let load = self.load_by_cell()?;
-        let mut loads = vec![0.0; n_cells * n];
-        let fill = |cells: Range<usize>, out: &mut [f64]| {
+        let mut loads = self.load_by_cell()?.into_owned();
+        // without data the list is empty
+        loads.resize(n_cells * n, 0.0);
+        let Some(reaction) = &self.reaction else { return Ok(loads) };
+        let subtract = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
-                let own = load.get(cell * n..).unwrap_or_default();
-                out.iter_mut().zip(own).for_each(|(out, load)| *out = *load);
-                let Some(reaction) = &self.reaction else { continue };
                 let mut products = zero_local();
                 let volume = self.mesh.geometry(cell).volume;
                 reaction.add(self.mesh, cell, volume, &mut products);
@@ -146,7 +145,7 @@ impl<const D: usize> Space<'_, D> {
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = cells::for_each(n_cells, &|c| c * n, &mut loads, &fill);
+        let Ok(()) = cells::for_each(n_cells, &|c| c * n, &mut loads, &subtract);
         Ok(loads)
     }
 
@@ -240,16 +239,15 @@ impl<const D: usize> Space<'_, D> {
 
 /// The products of contact forces, by facet; those of a facet follow each other.
 fn contact_products(forces: &[NodeForce], functionals: &[Products]) -> Vec<(HalfFacet, Products)> {
-    let mut contact: Vec<(HalfFacet, Products)> = Vec::new();
-    for force in forces {
-        let facet = (force.cell, force.local);
-        if contact.last().is_none_or(|(last, _)| *last != facet) {
-            contact.push((facet, Products::default()));
+    let is_same = |a: &NodeForce, b: &NodeForce| (a.cell, a.local) == (b.cell, b.local);
+    let of_facet = |forces: &[NodeForce]| {
+        let mut products = Products::default();
+        for force in forces {
+            add(&mut products, |a, j| force.value * functionals[force.node][a][j]);
         }
-        let Some((_, products)) = contact.last_mut() else { continue };
-        add(products, |a, j| force.value * functionals[force.node][a][j]);
-    }
-    contact
+        ((forces[0].cell, forces[0].local), products)
+    };
+    forces.chunk_by(is_same).map(of_facet).collect()
 }
 
 /// The integral of `lambda_a lambda_j lambda_k` over a simplex of a dimension and of measure one.

@@ -70,10 +70,10 @@ impl<const D: usize> Admissible<'_, D> {
     }
     /// Whether the function has the value of an obstacle at some of the corners of its cell and not at all of them:
     /// the obstacle may exceed it in a piece of the cell that is small.
-    pub fn touches_in_piece(&self, corner: impl Fn(usize) -> Point<D>) -> bool {
+    pub fn touches_in_piece(&self, corners: &[Point<D>; 4]) -> bool {
         self.bounds.iter().flatten().any(|bound| {
             let (mesh, cell) = self.place;
-            let touches = |k: &usize| bound.in_cell(mesh, cell, &corner(*k)) == self.values[*k];
+            let touches = |k: &usize| bound.in_cell(mesh, cell, &corners[*k]) == self.values[*k];
             (1..=D).contains(&(0..D + 1).filter(touches).count())
         })
     }

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::evaluation::Reference;
+use crate::arrays::array_of;
 use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
 use crate::mesh::Mesh;
@@ -16,21 +17,17 @@ pub(super) struct Kinks<const D: usize> {
     pub levels: Vec<Field<D>>,
 }
 
-/// Whether a function seems far from zero in a simplex with these corners: its values there and at the barycentre have
-/// one sign, and differ by less than the least of them. This is no proof: zeros are missed of a function that varies
-/// more between these points. A function that is constant at these points may jump between them.
-pub(super) fn is_far<const D: usize>(level: &Field<D>, corners: &[Point<D>]) -> bool {
-    is_far_by(level, corners, corners.iter().map(|x| level(x)))
-}
-
-/// [`is_far`] by the values of the function at the corners.
-pub(super) fn is_far_by<const D: usize>(
+/// Whether a function seems far from zero in a simplex with these corners, where its values may be known: they and that
+/// at the barycentre have one sign, and differ by less than the least of them. This is no proof: zeros are missed of a
+/// function that varies more between these points. A function that is constant at these points may jump between them.
+pub(super) fn is_far<const D: usize>(
     level: &Field<D>,
     corners: &[Point<D>],
-    at_corners: impl Iterator<Item = f64>,
+    at_corners: Option<[f64; 4]>,
 ) -> bool {
     let barycentre = corners.iter().sum::<Point<D>>() / corners.len() as f64;
-    let values = at_corners.chain([level(&barycentre)]);
+    let at = |k: usize| at_corners.map_or_else(|| level(&corners[k]), |values| values[k]);
+    let values = (0..corners.len()).map(at).chain([level(&barycentre)]);
     let limits = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
     let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), limits);
     let distance = if least > 0.0 { least } else { -most };
@@ -40,17 +37,9 @@ pub(super) fn is_far_by<const D: usize>(
 impl<const D: usize> Kinks<D> {
     /// Whether all zeros are far from a simplex with these corners, by the values of the first function there if they
     /// are known.
-    pub fn are_far(
-        &self,
-        corners: &[Point<D>],
-        of_first: Option<impl Iterator<Item = f64>>,
-    ) -> bool {
-        let Some((first, others)) = self.levels.split_first() else { return true };
-        let is_first_far = match of_first {
-            Some(values) => is_far_by(first, corners, values),
-            None => is_far(first, corners),
-        };
-        is_first_far && others.iter().all(|level| is_far(level, corners))
+    pub fn are_far(&self, corners: &[Point<D>], of_first: Option<[f64; 4]>) -> bool {
+        let known = |k: usize| of_first.filter(|_| k == 0);
+        self.levels.iter().enumerate().all(|(k, level)| is_far(level, corners, known(k)))
     }
 
     /// The function along whose zeros a cell is divided; `None` if no function is known. Of functions that have the
@@ -103,6 +92,12 @@ impl<const D: usize> Space<'_, D> {
         let set = exact.contact.as_ref().filter(|_| self.problem.has_obstacle())?;
         let vertices = self.mesh.vertices();
         Some(collect(vertices.len(), |v| (set.indicator)(&vertices[v])))
+    }
+
+    /// The values of a function at the corners of a cell, of those at all vertices.
+    pub(super) fn at_corners(&self, at_vertices: &[f64], cell: usize) -> [f64; 4] {
+        let vertices = self.mesh.cell(cell);
+        array_of(|k| vertices.get(k).map_or(0.0, |&v| at_vertices[v as usize]))
     }
 
     /// The functions whose zeros are the exact free boundary, where there is an obstacle, and the levels of load,

@@ -38,8 +38,6 @@ struct NestedMesh<const D: usize> {
 #[derive(Debug)]
 pub struct Hierarchy<const D: usize> {
     meshes: Vec<NestedMesh<D>>,
-    /// The exchange with the processes that have the other parts; none on whole meshes.
-    exchange: Option<Arc<dyn Exchange>>,
 }
 
 impl<const D: usize> Hierarchy<D> {
@@ -88,16 +86,15 @@ impl<const D: usize> Hierarchy<D> {
         let first = || {
             let owners = coarsest.partition(exchange.parts());
             let part = owners.and_then(|owners| coarsest.part(&owners, number, layers));
-            Ok(Piece::Part(agree(part, &**exchange)?))
+            Ok(Piece::Part(agree(part, &**exchange)?, exchange.clone()))
         };
-        Self::build(levels, first, domain, Some(exchange))
+        Self::build(levels, first, domain)
     }
     /// The first mesh, or its part, and its refinements, which have these levels.
     fn build(
         levels: &[usize],
         first: impl Fn() -> Result<Piece<D>, Error>,
         domain: &Domain<D>,
-        exchange: Option<&Arc<dyn Exchange>>,
     ) -> Result<Self, Error> {
         let mut meshes: Vec<NestedMesh<D>> = Vec::new();
         for &level in levels {
@@ -105,7 +102,7 @@ impl<const D: usize> Hierarchy<D> {
             let (piece, refinement, before) = match meshes.last() {
                 None => (first()?, None, 0.0),
                 Some(coarser) => {
-                    let (piece, by) = coarser.piece.refined(domain, exchange)?;
+                    let (piece, by) = coarser.piece.refined(domain)?;
                     (piece, Some(by), coarser.seconds)
                 }
             };
@@ -113,7 +110,7 @@ impl<const D: usize> Hierarchy<D> {
             let prolongation = OnceLock::new();
             meshes.push(NestedMesh { level, piece, refinement, prolongation, seconds });
         }
-        Ok(Self { meshes, exchange: exchange.cloned() })
+        Ok(Self { meshes })
     }
 
     /// Number of meshes.
@@ -139,9 +136,9 @@ impl<const D: usize> Hierarchy<D> {
     }
     /// As [`Self::part`], with the exchange.
     pub(super) fn shared_part(&self, position: usize) -> Option<SharedPart<'_, D>> {
-        match (&self.meshes[position].piece, &self.exchange) {
-            (Piece::Part(part), Some(exchange)) => Some(SharedPart { part, exchange }),
-            _ => None,
+        match &self.meshes[position].piece {
+            Piece::Part(part, exchange) => Some(SharedPart { part, exchange }),
+            Piece::Whole(_) => None,
         }
     }
     /// The finest mesh.
@@ -165,7 +162,7 @@ impl<const D: usize> Hierarchy<D> {
     /// The prolongation of P1 functions from the next coarser mesh; `None` for the coarsest mesh, and on parts, where
     /// no multigrid of this process uses it.
     pub(super) fn prolongation(&self, position: usize) -> Option<&Arc<Prolongation<f64>>> {
-        let refinement = self.refinement(position).filter(|_| self.exchange.is_none())?;
+        let refinement = self.refinement(position).filter(|_| self.part(position).is_none())?;
         let n_coarse = self.mesh(position - 1).vertices().len();
         let new = || Arc::new(Prolongation::midpoints(refinement.parents.clone(), n_coarse));
         Some(once(&self.meshes[position].prolongation, new))
@@ -217,7 +214,7 @@ impl<const D: usize> Hierarchy<D> {
                 check_level(domain, level, 1)?;
                 let levels = Hierarchy::levels_of(domain, level, coarsest);
                 let first = || Ok(Piece::Whole(domain.mesh(levels[0])?));
-                Hierarchy::build(&levels, first, domain, None)
+                Hierarchy::build(&levels, first, domain)
             }
         )(domain, level, coarsest)
     }

@@ -86,11 +86,12 @@ impl<'a, const D: usize> Meshes<'a, D> {
             (one, other) => middle(one, other),
         };
         match self {
-            Self::Flat(_) => coarse.to_vec(),
-            Self::Nested(hierarchy) => match hierarchy.refinement(position) {
-                Some(refinement) => refinement.parents.iter().map(between).collect(),
-                None => coarse.to_vec(),
-            },
+            Self::Flat(_) => unreachable!("one mesh has none before it"),
+            Self::Nested(hierarchy) => {
+                let refinement = hierarchy.refinement(position);
+                let refinement = refinement.expect("a mesh with one before it is its refinement");
+                refinement.parents.iter().map(between).collect()
+            }
             Self::Adaptive(meshes) => meshes.continued(position, coarse, middle),
         }
     }

@@ -115,7 +115,7 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
             let size = self.meshes.mesh(position).vertices().len();
             // in one dimension factors are as sparse as the matrix
             return match D > 1 && self.solver.uses_coarse_spaces(size) {
-                true => self.flat_start(position),
+                true => self.flat_start(),
                 false => Ok(None),
             };
         }
@@ -144,11 +144,11 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
         Ok(Some(Arc::new(P1Solution { contact, values, coarse_spaces, seconds, ..*coarse })))
     }
 
-    /// The start on a mesh without coarser ones.
-    fn flat_start(&self, position: usize) -> Result<Option<Arc<P1Solution>>, Error> {
+    /// The start on the coarsest mesh.
+    fn flat_start(&self) -> Result<Option<Arc<P1Solution>>, Error> {
         let clock = Instant::now();
         let problem = self.problem_at_vertices();
-        let System { inequality, .. } = self.system(position, &problem)?;
+        let System { inequality, .. } = System::new(&ConformingP1, &problem, self.place(0))?;
         let Some(coarser) = CoarseLevel::aggregated(&inequality.matrix, &fixed(&inequality)) else {
             return Ok(None);
         };
@@ -195,7 +195,7 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
         let start = self.start(position)?;
         let problem = self.problem_at_vertices();
         let ((inequality, solution), seconds) = self.repeated(|| {
-            let mut system = self.system(position, &problem)?;
+            let mut system = System::new(&ConformingP1, &problem, self.place(position))?;
             let guess = InitialGuess::default().steps(self.steps.clone());
             let mut guess = guess.energy_tolerance(ENERGY_TOLERANCE);
             if let Some(start) = &start {
@@ -242,14 +242,6 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
     /// The problem with bounds at vertices: its own constraint set is for the scheme that starts from here.
     fn problem_at_vertices(&self) -> Problem<D> {
         self.problem.clone().on(Nodes)
-    }
-
-    /// The system of conforming P1 on a mesh.
-    fn system<'p>(&self, position: usize, problem: &'p Problem<D>) -> Result<System<'p, D>, Error>
-    where
-        'a: 'p,
-    {
-        System::new(&ConformingP1, problem, self.place(position))
     }
 
     /// A mesh, by its position, with the quadrature of data.

@@ -6,11 +6,11 @@ use crate::error::Error;
 use crate::mesh::{Domain, Extent, Mesh, Part, Refinement};
 use crate::processes::{Exchange, agree, merge_all};
 
-/// A mesh of a hierarchy, or the part of it that one process has.
+/// A mesh of a hierarchy, or the part of it that one process has, with the exchange with those that have the others.
 #[derive(Debug)]
 pub(super) enum Piece<const D: usize> {
     Whole(Mesh<D>),
-    Part(Part<D>),
+    Part(Part<D>, Arc<dyn Exchange>),
 }
 
 /// The part of a mesh that one process has, and its exchange with the others.
@@ -22,20 +22,16 @@ pub(crate) struct SharedPart<'a, const D: usize> {
 
 impl<const D: usize> Piece<D> {
     /// The uniform refinement, on a domain with new vertices on its boundary; all parts call it.
-    pub fn refined(
-        &self,
-        domain: &Domain<D>,
-        exchange: Option<&Arc<dyn Exchange>>,
-    ) -> Result<(Self, Refinement), Error> {
-        match (self, exchange) {
-            (Self::Part(part), Some(exchange)) => {
+    pub fn refined(&self, domain: &Domain<D>) -> Result<(Self, Refinement), Error> {
+        match self {
+            Self::Part(part, exchange) => {
                 let (fine, by) = agree(domain.refine_part(part, part.layers), &**exchange)?;
                 // the mesh size is that of all parts
                 let extent = merge_all(&Extent::of(&fine.mesh), &**exchange)?;
-                Ok((Self::Part(fine.with_extent(extent)), by))
+                Ok((Self::Part(fine.with_extent(extent), exchange.clone()), by))
             }
-            _ => {
-                let (fine, by) = domain.refine(self.mesh())?;
+            Self::Whole(mesh) => {
+                let (fine, by) = domain.refine(mesh)?;
                 Ok((Self::Whole(fine), by))
             }
         }
@@ -44,7 +40,7 @@ impl<const D: usize> Piece<D> {
     pub fn mesh(&self) -> &Mesh<D> {
         match self {
             Self::Whole(mesh) => mesh,
-            Self::Part(part) => &part.mesh,
+            Self::Part(part, _) => &part.mesh,
         }
     }
 }

@@ -7,9 +7,8 @@ use serde_json::Value;
 pub(crate) fn lines<R: Serialize>(rows: &[R]) -> String {
     let columns_of = |row: &R| {
         let mut columns = Vec::new();
-        // A row is plain data with string keys: its serialisation cannot fail, and should it ever,
-        // the line would be missing and the reader's count of rows tell.
-        flatten("", &serde_json::to_value(row).unwrap_or(Value::Null), &mut columns);
+        let value = serde_json::to_value(row).expect("a row is plain data with string keys");
+        flatten("", &value, &mut columns);
         columns
     };
     let rows: Vec<Vec<(String, String)>> = rows.iter().map(columns_of).collect();

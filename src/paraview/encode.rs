@@ -26,6 +26,7 @@ pub(super) fn doubles(list: &mut dyn Iterator<Item = f64>) -> Vec<u8> {
 }
 
 /// A file under construction: its text, and the arrays that follow it.
+#[derive(Default)]
 pub(super) struct Arrays {
     pub text: Vec<u8>,
     /// For each array where in the text its offset belongs, and its data.
@@ -33,10 +34,6 @@ pub(super) struct Arrays {
 }
 
 impl Arrays {
-    pub fn new() -> Self {
-        Self { text: Vec::new(), data: Vec::new() }
-    }
-
     /// Adds an array: in the text its name; in the data the number of blocks, the length of a block and of the
     /// last one if that is shorter, the compressed length of each, all with 64 bits, and the blocks.
     pub fn push(

@@ -259,7 +259,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
 
     /// The text of the file and its arrays.
     fn arrays(&self, grid: &Grid<D>) -> io::Result<Arrays> {
-        let mut arrays = Arrays::new();
+        let mut arrays = Arrays::default();
         let to = &mut arrays;
         let (n_points, n_cells) = (grid.points.len(), grid.types.len());
         writeln!(

@@ -5,7 +5,7 @@ use super::panel::draw_panel;
 use super::pen::Pen;
 use super::series::{Panel, Quantity, with_curves};
 use crate::study::row::distinct;
-use crate::study::series::series_of;
+use crate::study::series::{by_scene, series_of};
 use crate::study::{Row, Series};
 
 /// A drawing that can be written as SVG.
@@ -26,7 +26,7 @@ pub struct Figure {
 pub fn convergence(rows: &[Row]) -> Figure {
     let series = series_of(rows);
     let names = names(&series);
-    let scenes = scenes(&series);
+    let scenes = by_scene(&series);
     let columns = match scenes.len() {
         0..=3 => 2,
         4..=16 => 4,
@@ -76,7 +76,7 @@ pub(crate) fn overview(rows: &[Row]) -> [(String, Figure); 2] {
 pub fn work_precision(rows: &[Row]) -> Figure {
     let series = series_of(rows);
     let names = names(&series);
-    let scenes = scenes(&series);
+    let scenes = by_scene(&series);
     let columns = match scenes.len() {
         0 | 1 => 1,
         2 | 4 => 2,
@@ -101,12 +101,6 @@ pub fn work_precision(rows: &[Row]) -> Figure {
 /// The names of series, each once: a scheme on several scenes has one.
 fn names(series: &[Series<'_>]) -> Vec<String> {
     distinct(series.iter().map(|series| series.name.clone()))
-}
-
-/// The series of each scene, in the order in which scenes first occur.
-fn scenes<'s, 'r>(series: &'s [Series<'r>]) -> Vec<(&'s str, Vec<&'s Series<'r>>)> {
-    let of = |scene| (scene, series.iter().filter(|s| s.variant.scene == scene).collect());
-    distinct(series.iter().map(|s| s.variant.scene.as_str())).into_iter().map(of).collect()
 }
 
 /// Whether some meshes of a scene are adaptive.

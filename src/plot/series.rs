@@ -110,7 +110,7 @@ pub(crate) struct Point {
 impl Point {
     /// The point of a row; none for a converged run without an error. A failed run always has a
     /// point.
-    pub fn of(row: &Row, x: Quantity, y: Quantity) -> Option<Self> {
+    fn of(row: &Row, x: Quantity, y: Quantity) -> Option<Self> {
         let point =
             Point { x: x.of(row)?, y: y.of(row), bound: y.bound(row), converged: row.converged() };
         (point.y.is_some() || !point.converged).then_some(point)
@@ -216,7 +216,7 @@ impl Panel {
 }
 
 /// The scene, and what its errors are measured against unless that is the exact solution.
-pub(crate) fn title<'r>(scene: &str, rows: impl IntoIterator<Item = &'r Row>) -> String {
+fn title<'r>(scene: &str, rows: impl IntoIterator<Item = &'r Row>) -> String {
     let reference = rows.into_iter().find_map(Row::reference);
     reference.map_or_else(|| scene.to_owned(), |r| format!("{scene}, against {r}"))
 }

@@ -1,5 +1,7 @@
 //! Compatibility of a mesh and a scene.
 
+use std::collections::BTreeSet;
+
 use crate::assemble::{DataQuadrature, Discretisation, MOST_ENTRIES, entries_at_most};
 use crate::constraint::Nodes;
 use crate::error::Error;
@@ -114,12 +116,12 @@ pub(super) fn check_entries<const D: usize>(
 ///
 /// # Errors
 /// [`Error::EqualNames`].
-pub(super) fn check_names(
-    labels: impl Iterator<Item = String>,
-    solvers: impl Iterator<Item = &'static str>,
+pub(super) fn check_names<'n>(
+    labels: impl Iterator<Item = &'n str>,
+    solvers: impl Iterator<Item = &'n str>,
 ) -> Result<(), Error> {
     if let Some(label) = first_twice(labels) {
-        return Err(Error::equal_schemes(label));
+        return Err(Error::equal_schemes(label.to_owned()));
     }
     first_twice(solvers).map_or(Ok(()), |name| {
         let (items, by) = ("solvers", "`InequalitySolver::name`");
@@ -128,15 +130,9 @@ pub(super) fn check_names(
 }
 
 /// The first item that equals one before it.
-fn first_twice<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
-    let mut before = Vec::new();
-    items.find_map(|item| match before.contains(&item) {
-        true => Some(item),
-        false => {
-            before.push(item);
-            None
-        }
-    })
+fn first_twice<'n>(mut items: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    let mut before = BTreeSet::new();
+    items.find(|item| !before.insert(*item))
 }
 
 /// Checks that the domain has a contact boundary if and only if there is a Signorini condition.

@@ -44,7 +44,7 @@ impl<const D: usize> Crossing<D> {
 #[derive(Clone, Copy)]
 pub(super) struct Seen<const D: usize> {
     worst: Option<Crossing<D>>,
-    size: f64,
+    pub size: f64,
 }
 
 impl<const D: usize> Seen<D> {
@@ -59,11 +59,6 @@ impl<const D: usize> Seen<D> {
                 self.worst = Some(crossing);
             }
         }
-    }
-
-    /// The size of the largest bound.
-    pub fn size(&self) -> f64 {
-        self.size
     }
 
     /// The worst place, if the bounds cross there by more than rounding of data of a size.

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::mesh::Domain;
 use crate::nested::Solved;
+use crate::problem::Problem;
 use crate::scheme::Scheme;
 use crate::study::row::Row;
 
@@ -15,18 +15,18 @@ const FINER: usize = 4;
 /// How many refinements finer than every other level of a mesh a reference is at least.
 const REFINEMENTS: usize = 2;
 
-/// The scheme and the level whose solution takes the place of the exact one.
+/// The scheme, with its problem, and the level whose solution takes the place of the exact one.
 pub(super) struct Reference<'a, const D: usize> {
     pub scheme: Arc<dyn Scheme<D> + 'a>,
-    pub set: Option<Arc<dyn ConstraintSet>>,
+    pub problem: Problem<D>,
     pub level: usize,
 }
 
 impl<const D: usize> Reference<'_, D> {
-    /// The name in rows, for the constraint set of a problem.
-    pub fn name(&self, of_problem: &dyn ConstraintSet) -> String {
-        let set = self.set.as_deref().unwrap_or(of_problem);
-        format!("{} at level {}", self.scheme.label_on(set), self.level)
+    /// The name in rows.
+    pub fn name(&self) -> String {
+        let label = self.scheme.label_on(self.problem.constraint_set());
+        format!("{label} at level {}", self.level)
     }
 
     /// Checks that the reference is fine enough, and its mesh a refinement of all others.

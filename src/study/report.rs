@@ -27,11 +27,8 @@ impl Report {
     /// The report as JSON. Numbers that do not apply, and numbers that are not finite, are null.
     #[cfg(feature = "report")]
     pub fn to_json(&self) -> String {
-        // `serde_json` writes every NaN and infinity as null: JSON has no other way. The value is
-        // plain data with string keys, which is all it takes for the serialisation to succeed.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_else(|_| "null".to_owned());
-        text.push('\n');
-        text
+        // `serde_json` writes every NaN and infinity as null: JSON has no other way
+        serde_json::to_string_pretty(self).expect("a report is plain data with string keys") + "\n"
     }
     /// The series of the report, in the order in which they first occur: the rows of one scheme with one solver on one
     /// scene, those of uniform and of adaptive meshes apart. Tables, orders, limits and plots go by them.

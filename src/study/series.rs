@@ -3,6 +3,8 @@
 use std::borrow::Borrow;
 
 use super::row::Row;
+#[cfg(feature = "report")]
+use super::row::distinct;
 
 /// The meshes of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +105,13 @@ pub struct Series<'r> {
     pub name: String,
     /// The rows, from coarse to fine.
     pub rows: Vec<&'r Row>,
+}
+
+/// The series of each scene, in the order in which scenes first occur.
+#[cfg(feature = "report")]
+pub(crate) fn by_scene<'s, 'r>(series: &'s [Series<'r>]) -> Vec<(&'s str, Vec<&'s Series<'r>>)> {
+    let of = |scene| (scene, series.iter().filter(|s| s.variant.scene == scene).collect());
+    distinct(series.iter().map(|s| s.variant.scene.as_str())).into_iter().map(of).collect()
 }
 
 /// The series of rows, in the order in which they first occur.

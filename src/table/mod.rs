@@ -50,10 +50,6 @@ impl Cell {
     pub(crate) fn whole(x: Option<usize>) -> Self {
         Self::number(x.map(|x| x.to_string()))
     }
-    /// Three digits.
-    pub(crate) fn scientific(x: Option<f64>) -> Self {
-        Self::digits(x, 2)
-    }
     /// So many digits after the point, and the power of ten.
     pub(crate) fn digits(x: Option<f64>, places: usize) -> Self {
         Self::number(x.map(|x| digits(x, places)))

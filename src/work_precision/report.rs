@@ -16,6 +16,8 @@ use crate::output::html::{HtmlPage, Section};
 use crate::plot::{Figure, Quantity, cost_figure};
 use crate::study::Report;
 use crate::study::row::distinct;
+#[cfg(feature = "plot")]
+use crate::study::series::by_scene;
 use crate::table::Table;
 
 /// The work that the rows of a report took to reach given errors.
@@ -46,11 +48,8 @@ impl<'r> WorkPrecision<'r> {
     /// One sentence for every scene whose errors are known.
     pub fn verdicts(&self) -> Vec<String> {
         let reach = self.reach();
-        self.scenes().iter().filter_map(|s| verdict(&reach, s, self.subject)).collect()
-    }
-
-    fn scenes(&self) -> Vec<&'r str> {
-        distinct(self.report.rows.iter().map(|row| row.scene.as_str()))
+        let scenes = distinct(self.report.rows.iter().map(|row| row.scene.as_str()));
+        scenes.into_iter().filter_map(|scene| verdict(&reach, scene, self.subject)).collect()
     }
 
     /// Costs and times to reach errors, scene by scene.
@@ -115,13 +114,13 @@ impl<'r> WorkPrecision<'r> {
     /// The errors of every scene against time and unknowns, as `SCENE-time` and `SCENE-unknowns`.
     #[cfg(feature = "plot")]
     pub fn figures(&self) -> Vec<(String, Figure)> {
-        let all = self.report.series();
-        let of_scene = |scene: &str| {
-            let series: Vec<_> = all.iter().filter(|s| s.variant.scene == scene).cloned().collect();
-            [("time", Quantity::Seconds), ("unknowns", Quantity::Unknowns)]
-                .map(|(name, of)| (format!("{scene}-{name}"), cost_figure(scene, &series, of)))
-        };
-        self.scenes().into_iter().flat_map(of_scene).collect()
+        let costs = [("time", Quantity::Seconds), ("unknowns", Quantity::Unknowns)];
+        let mut figures = Vec::new();
+        for (scene, series) in by_scene(&self.report.series()) {
+            let figure = |cost| cost_figure(scene, &series, cost);
+            figures.extend(costs.map(|(name, cost)| (format!("{scene}-{name}"), figure(cost))));
+        }
+        figures
     }
 
     #[cfg(feature = "plot")]

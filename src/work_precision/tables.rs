@@ -5,7 +5,7 @@ use super::verdict::at_common_error;
 use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
 use crate::study::row::distinct;
-use crate::study::series::series_of;
+use crate::study::series::{by_scene, series_of};
 use crate::study::{Row, Seconds, Series, Variant};
 use crate::table::{Cell, Table, fixed};
 
@@ -39,11 +39,7 @@ pub(crate) fn summary(all: &[Row], reach: &[WorkAtError]) -> Vec<Table> {
 
 /// Where the time went, scene by scene.
 pub(crate) fn details(all: &[Row]) -> Vec<Table> {
-    let series = series_of(all);
-    let scenes = distinct(series.iter().map(|of| of.variant.scene.as_str()));
-    let of_scene =
-        |scene: &str| phases(scene, series.iter().filter(|of| of.variant.scene == scene).collect());
-    scenes.into_iter().map(of_scene).collect()
+    by_scene(&series_of(all)).into_iter().map(|(scene, series)| phases(scene, &series)).collect()
 }
 
 /// The remark that explains the column of spreads.
@@ -99,13 +95,13 @@ fn time(at: &WorkAtError) -> Cell {
 }
 
 /// Where the time of the fastest run went, how far the run in the middle is from it, and the peak of memory.
-fn phases(scene: &str, series: Vec<&Series<'_>>) -> Table {
+fn phases(scene: &str, series: &[&Series<'_>]) -> Table {
     let line = |(name, row): (&String, &Row)| {
         let Seconds { mesh, assemble, solve, start, bound, total } = row.seconds;
         let mut cells = vec![Cell::Words(name.clone()), Cell::whole(Some(row.level))];
         let solve = solve - start.unwrap_or(0.0);
         let seconds = [Some(mesh), Some(assemble), start, Some(solve), bound, Some(total)];
-        cells.extend(seconds.map(Cell::scientific));
+        cells.extend(seconds.map(|x| Cell::digits(x, 2)));
         cells.push(Cell::number(row.median_over_least().map(fixed)));
         cells.push(Cell::whole(row.runs.as_ref().map(Vec::len)));
         cells.push(Cell::number(row.peak_memory_bytes.map(|b| format!("{:.0}", b as f64 / 1e6))));

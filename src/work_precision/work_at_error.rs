@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use crate::inequality::Outcome;
 use crate::measure::ErrorNorm;
-use crate::study::row::{Row, distinct};
-use crate::study::series::series_of;
+use crate::study::row::Row;
+use crate::study::series::{by_scene, series_of};
 use crate::study::{Series, Variant};
 
 /// The error of a row in a norm; none where the run did not converge.
@@ -19,17 +19,13 @@ fn error_in(norm: ErrorNorm, row: &Row) -> Option<f64> {
     value.filter(|e| row.converged() && e.is_finite() && *e > 0.0)
 }
 
-/// The error of a level, none where the run failed, and its work: seconds, unknowns or entries.
-type ErrorAndWork = (Option<f64>, f64);
-
-/// The work at which a given error is reached, on straight lines between neighbouring levels in
-/// logarithmic scales. Levels are ordered from coarse to fine. None where no two neighbours that
-/// both converged have the error between them: nothing is extrapolated, and no level that failed is
-/// bridged.
-fn work_at(levels: &[ErrorAndWork], error: f64) -> Option<f64> {
+/// The work (seconds, unknowns or entries) at which a given error is reached, on straight lines between neighbouring
+/// levels in logarithmic scales. Levels have their error and its work, none where the run failed, and are ordered from
+/// coarse to fine. None where no two neighbours that both converged have the error between them: nothing is
+/// extrapolated, and no level that failed is bridged.
+fn work_at(levels: &[Option<(f64, f64)>], error: f64) -> Option<f64> {
     levels.windows(2).find_map(|pair| {
-        let [(coarse, before), (fine, after)] = [pair[0], pair[1]];
-        let (coarse, fine) = (coarse?, fine?);
+        let [(coarse, before), (fine, after)] = [pair[0]?, pair[1]?];
         let positive = before > 0.0 && after > 0.0;
         if !(positive && fine <= error && error <= coarse && fine < coarse) {
             return None;
@@ -93,9 +89,8 @@ pub struct WorkAtError {
 pub(crate) fn work_at_errors(rows: &[Row]) -> Vec<WorkAtError> {
     let mut all = Vec::new();
     let series = series_of(rows);
-    for scene in distinct(series.iter().map(|of| of.variant.scene.as_str())) {
-        let run: Vec<Curve<'_>> =
-            series.iter().filter(|of| of.variant.scene == scene).map(Curve::of).collect();
+    for (scene, own) in by_scene(&series) {
+        let run: Vec<Curve<'_>> = own.into_iter().map(Curve::of).collect();
         let mut curves = run.clone();
         for other in series.iter().map(|of| &of.variant) {
             let variant = Variant { scene: scene.to_owned(), ..other.clone() };
@@ -131,10 +126,7 @@ impl<'r> Curve<'r> {
 
 fn work_of_variants_at(curves: &[Curve<'_>], norm: ErrorNorm, error: f64) -> Vec<WorkAtError> {
     let at = |curve: &Curve<'_>, work: &dyn Fn(&Row) -> Option<f64>| {
-        let point = |row: &&Row| {
-            let work = work(row);
-            (error_in(norm, row).filter(|_| work.is_some()), work.unwrap_or(0.0))
-        };
+        let point = |row: &&Row| error_in(norm, row).zip(work(row));
         work_at(&curve.rows.iter().map(point).collect::<Vec<_>>(), error)
     };
     let seconds: Vec<Option<f64>> =
@@ -212,7 +204,7 @@ mod tests {
 
     #[test]
     fn work_is_found_between_levels_and_not_beyond_them() {
-        let points = [1e-1, 1e-3].map(|error| (Some(error), 1.0 / error));
+        let points = [1e-1, 1e-3].map(|error| Some((error, 1.0 / error)));
         assert!((work_at(&points, 1e-2).unwrap() - 100.0).abs() < 1e-10);
         assert_eq!(work_at(&points, 1e-4), None);
     }
@@ -220,23 +212,23 @@ mod tests {
     #[test]
     fn interpolation_is_exact_for_power_laws_and_ends_with_the_data() {
         for (order, cost) in [(2.0, 3.0), (1.0, 2.0), (0.5, 1.1)] {
-            let point = |n: f64| (Some(3.0 * n.powf(-order)), 7.0 * n.powf(cost));
-            let points = [4.0, 9.0, 32.0].map(point);
+            let point = |n: f64| (3.0 * n.powf(-order), 7.0 * n.powf(cost));
+            let points = [4.0, 9.0, 32.0].map(|n| Some(point(n)));
             for n in [4.0, 5.0, 9.0, 20.0, 32.0] {
-                let found = work_at(&points, point(n).0.unwrap()).unwrap();
+                let found = work_at(&points, point(n).0).unwrap();
                 let error = (found - point(n).1).abs();
                 assert!(error <= 1e-12 * point(n).1, "{order} {cost} {n}: {found}");
             }
-            assert_eq!(work_at(&points, point(3.9).0.unwrap()), None);
-            assert_eq!(work_at(&points, point(32.1).0.unwrap()), None);
+            assert_eq!(work_at(&points, point(3.9).0), None);
+            assert_eq!(work_at(&points, point(32.1).0), None);
         }
     }
 
     #[test]
     fn a_level_that_failed_is_not_bridged_and_a_plateau_is_not_crossed_backwards() {
-        let gap = [(Some(1e-1), 1.0), (None, 2.0), (Some(1e-3), 4.0)];
+        let gap = [Some((1e-1, 1.0)), None, Some((1e-3, 4.0))];
         assert_eq!(work_at(&gap, 1e-2), None);
-        let up = [(Some(1e-3), 1.0), (Some(1e-1), 2.0)];
+        let up = [Some((1e-3, 1.0)), Some((1e-1, 2.0))];
         assert_eq!(work_at(&up, 1e-2), None);
         assert_eq!(work_at(&[], 1e-2), None);
     }

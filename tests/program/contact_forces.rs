@@ -1,8 +1,6 @@
 //! Contact forces on a body that contact alone holds balance its load, or a warning says that they do not.
 
-use std::path::Path;
-
-use super::run::{Scratch, rows};
+use super::run::{Scratch, data, read_json, rows};
 
 /// The load that presses the body down: two regions with constant sources.
 const LOAD: f64 = 0.493411;
@@ -11,12 +9,10 @@ const LOAD: f64 = 0.493411;
 #[test]
 fn forces_on_a_body_of_large_contrast_balance_its_load_or_a_warning_says_so() {
     let scratch = Scratch::new("contrast-forces");
-    let file =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/problems/contrast_forces.toml");
     let options =
         "--scheme p1,p2,cr,sipg,wopsip,wopsip:facet-means,nipg,ldg --levels 0,1,2 --quiet";
-    scratch.run(&format!("{} {options}", file.display()));
-    let report = super::run::read_json(&scratch.0.join("out/report.json"));
+    scratch.run(&format!("{} {options}", data("contrast_forces")));
+    let report = read_json(&scratch.0.join("out/report.json"));
     let mut n_balanced = 0;
     assert_eq!(rows(&report).len(), 24);
     for row in rows(&report).iter().filter(|row| row["status"] == "converged") {

@@ -174,20 +174,3 @@ fn a_vector_is_judged_against_the_reference_of_its_run() {
     let [a, b] = [judged, row].map(|r| r["error"]["h1"].as_f64().unwrap());
     assert!((a / b - 1.0).abs() < 1e-9, "{a} and {b}");
 }
-
-/// Each of several solvers has its own files.
-#[test]
-fn solvers_side_by_side_have_files_of_their_own() {
-    let scratch = Scratch::new("solvers");
-    scratch.report(
-        "--scene radial-2d --scheme p1 --levels 4,8 --solver active-set,monotone-multigrid",
-    );
-    let out = scratch.0.join("out");
-    let page = fs::read_to_string(out.join("report.html")).unwrap();
-    for solver in ["active-set", "monotone-multigrid"] {
-        for end in ["svg", "vtu"] {
-            assert!(out.join(format!("radial-2d-p1-{solver}.{end}")).exists(), "{solver} {end}");
-        }
-        assert!(page.contains(&format!("p1-{solver} on radial-2d")));
-    }
-}

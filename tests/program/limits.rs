@@ -1,8 +1,12 @@
 //! Inputs without an end, limits of the system, and messages that quote foreign text.
 
-use std::process::{Command, Output};
+#[cfg(unix)]
+use std::process::Command;
+use std::process::Output;
 
-use super::run::{Scratch, program, refused, stderr};
+#[cfg(target_os = "linux")]
+use super::run::data;
+use super::run::{Scratch, command, program, refused, stderr};
 use super::square::Square;
 use unilateral::input::LARGEST_FILE;
 
@@ -33,13 +37,11 @@ fn devices_and_pipes_are_not_read() {
 
 #[test]
 fn the_variable_for_threads_has_the_limit_of_the_option() {
-    for command in ["list", "compare", "stability", "pictures", "orders", "work-precision"] {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_unilateral"));
-        let program = program.arg(command).env("RAYON_NUM_THREADS", "100000");
-        let output = program.output().unwrap();
-        assert_eq!(output.status.code(), Some(2), "{command}");
+    for name in ["list", "compare", "stability", "pictures", "orders", "work-precision"] {
+        let output = command(name).env("RAYON_NUM_THREADS", "100000").output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}");
         let expected = "error: RAYON_NUM_THREADS 100000: must be at most 1024\n";
-        assert_eq!(stderr(&output), expected, "{command}");
+        assert_eq!(stderr(&output), expected, "{name}");
     }
     let listed = program().arg("--list").env("RAYON_NUM_THREADS", "1024").output().unwrap();
     assert_eq!(listed.status.code(), Some(0), "{}", stderr(&listed));
@@ -59,7 +61,7 @@ fn messages_quote_foreign_text_in_part_only() {
     let scratch = Scratch::new("foreign");
     let long = "x".repeat(100_000);
     for word in [&long[..], "red\u{1b}[31m\u{7}", "two\nlines"] {
-        for (command, option) in [
+        for (name, option) in [
             ("compare", "--scene"),
             ("compare", "--scheme"),
             ("compare", "--solver"),
@@ -76,16 +78,14 @@ fn messages_quote_foreign_text_in_part_only() {
             ("pictures", "--scene"),
             ("pictures", "--scheme"),
         ] {
-            let what = format!("{command} {option} {}", &word[..9]);
+            let what = format!("{name} {option} {}", &word[..9]);
             for words in
                 [vec![option.to_owned(), word.to_owned()], vec![format!("{option}={word}")]]
             {
-                let mut program = Command::new(env!("CARGO_BIN_EXE_unilateral"));
-                check_message(&program.arg(command).args(words).output().unwrap(), &what);
+                check_message(&command(name).args(words).output().unwrap(), &what);
             }
         }
-        let mut program = Command::new(env!("CARGO_BIN_EXE_unilateral"));
-        check_message(&program.arg(word).output().unwrap(), "a command");
+        check_message(&command(word).output().unwrap(), "a command");
         // groups and sections of a mesh; a line ends a name
         if !word.contains('\n') {
             let wall = Square::sound().replace("\"dirichlet\"", &format!("\"{word}\""));
@@ -100,15 +100,9 @@ fn messages_quote_foreign_text_in_part_only() {
     }
 }
 
-/// The program under limits that a shell sets.
+/// A command under limits that a shell sets.
 #[cfg(target_os = "linux")]
-fn limited(scratch: &Scratch, limit: &str, options: &str) -> Output {
-    limited_command(scratch, limit, "compare", options)
-}
-
-/// The same of any command.
-#[cfg(target_os = "linux")]
-fn limited_command(scratch: &Scratch, limit: &str, command: &str, options: &str) -> Output {
+fn limited(scratch: &Scratch, limit: &str, command: &str, options: &str) -> Output {
     Command::new("sh")
         .args(["-c", &format!("ulimit {limit} && exec \"$0\" \"$@\"")])
         .args([env!("CARGO_BIN_EXE_unilateral"), command, "--out", &scratch.path("out")])
@@ -122,7 +116,8 @@ fn limited_command(scratch: &Scratch, limit: &str, command: &str, options: &str)
 #[cfg(target_os = "linux")]
 fn more_than_the_memory_is_refused() {
     let scratch = Scratch::new("memory");
-    let output = limited(&scratch, "-v 100000000", "--scheme sipg --scene ball-2d --levels 8,7000");
+    let options = "--scheme sipg --scene ball-2d --levels 8,7000";
+    let output = limited(&scratch, "-v 100000000", "compare", options);
     check_message(&output, "memory");
     let message = stderr(&output);
     for part in ["ball-2d", "sipg", "level 7000", "GB of memory", "lower level"] {
@@ -137,7 +132,7 @@ fn a_limit_of_the_process_is_known_before_the_work() {
     let scratch = Scratch::new("limits");
     for limit in ["-v 500000", "-d 400000"] {
         let options = "--scene radial-2d --scheme wopsip --threads 2 --levels 8,512";
-        let output = limited(&scratch, limit, options);
+        let output = limited(&scratch, limit, "compare", options);
         check_message(&output, limit);
         let message = stderr(&output);
         for part in ["radial-2d", "wopsip", "level 512", "GB of memory", "choose a lower level"] {
@@ -147,6 +142,7 @@ fn a_limit_of_the_process_is_known_before_the_work() {
         let output = limited(
             &scratch,
             limit,
+            "compare",
             "--scene radial-2d --scheme wopsip --threads 2 --levels 8 --quiet",
         );
         assert_eq!(output.status.code(), Some(0), "{limit}: {}", stderr(&output));
@@ -159,7 +155,7 @@ fn a_limit_of_the_process_is_known_before_the_work() {
 #[cfg(target_os = "linux")]
 fn no_command_begins_what_does_not_fit() {
     let scratch = Scratch::new("every-command");
-    let long = format!("{}/tests/data/problems/aspect_box.toml", env!("CARGO_MANIFEST_DIR"));
+    let long = data("aspect_box");
     let needs = "would need about";
     for (command, options, expected) in [
         ("compare", format!("{long} --levels 1"), needs),
@@ -172,7 +168,7 @@ fn no_command_begins_what_does_not_fit() {
         ("work-precision", "--scene radial-2d --levels 8,4000".to_owned(), needs),
         ("work-precision", format!("{long} --levels 1 --quiet"), needs),
     ] {
-        let output = limited_command(&scratch, "-v 5000000", command, &options);
+        let output = limited(&scratch, "-v 5000000", command, &options);
         let what = format!("{command} {options}");
         check_message(&output, &what);
         assert!(stderr(&output).contains(expected), "{what}: {}", stderr(&output));

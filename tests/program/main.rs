@@ -31,4 +31,5 @@ mod threads;
 #[path = "../support"]
 mod support {
     pub mod keys;
+    pub mod scratch;
 }

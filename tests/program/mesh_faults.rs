@@ -1,18 +1,14 @@
 //! Meshes whose contents are not what a user means, or stand in a file in another way.
 
-use super::run::{Scratch, command, refused, rows, stderr};
+use super::run::{Scratch, command, data, refused, rows, stderr};
 use super::square::Square;
-
-fn problem(name: &str) -> String {
-    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
-}
 
 /// Two bodies on each other: with one interface nothing is said, with an interface each their number.
 #[test]
 fn bodies_meshed_apart_are_a_warning_that_counts_their_facets() {
     let scratch = Scratch::new("apart");
     let run = |name: &str| {
-        let output = scratch.run(&format!("{} --scheme p1 --levels 0 --no-fields", problem(name)));
+        let output = scratch.run(&format!("{} --scheme p1 --levels 0 --no-fields", data(name)));
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         stderr(&output)
     };
@@ -30,15 +26,15 @@ fn bodies_meshed_apart_are_a_warning_that_counts_their_facets() {
 fn an_interface_with_doubled_nodes_is_refused_with_the_reason() {
     let scratch = Scratch::new("glued");
     let reason = "is in no group: it lies on another one, with nodes of its own, as 8 facets do";
-    refused(&scratch, &[&problem("glued")], &["glued.msh", reason, "Coherence", "slit"]);
+    refused(&scratch, &[&data("glued")], &["glued.msh", reason, "Coherence", "slit"]);
 }
 
 #[test]
 fn groups_of_interior_facets_are_refused_as_such() {
     let scratch = Scratch::new("wire");
     let inside = "`wire` lies inside the domain, between two cells";
-    refused(&scratch, &[&problem("wire")], &["wire.toml:", inside, "the mesh has bore, outer"]);
-    let mesh = problem("holes").replace(".toml", ".msh");
+    refused(&scratch, &[&data("wire")], &["wire.toml:", inside, "the mesh has bore, outer"]);
+    let mesh = data("holes").replace(".toml", ".msh");
     refused(
         &scratch,
         &["--scene", "radial-2d", "--mesh", &mesh, "--boundary", "wire=dirichlet"],
@@ -81,7 +77,7 @@ fn nodes_with_parameters_and_cells_in_two_groups_are_read() {
     let scratch = Scratch::new("version-two");
     for name in ["h_par22", "twocellgroups"] {
         let options = "--scheme p1,cr,wopsip --levels 0,1 --no-fields --quiet";
-        let report = scratch.report(&format!("{} {options}", problem(name)));
+        let report = scratch.report(&format!("{} {options}", data(name)));
         assert_eq!(rows(&report).len(), 6);
         for row in rows(&report) {
             // the load is 8, of which the Dirichlet sides carry a part

@@ -1,15 +1,11 @@
 //! What is said of a problem is said once, of its file and of its groups.
 
-use super::run::{Scratch, read_json, refused, rows, stdout};
-
-fn input(name: &str) -> String {
-    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
-}
+use super::run::{Scratch, data, read_json, refused, rows, stdout};
 
 #[test]
 fn an_obstacle_above_a_dirichlet_value_is_said_once_with_the_group() {
     let scratch = Scratch::new("above-wall");
-    let path = input("obstacle_above_wall");
+    let path = data("obstacle_above_wall");
     let output = scratch.run(&format!("{path} --scheme p1,cr --levels 2,4"));
     assert_eq!(output.status.code(), Some(1));
     let printed = stdout(&output);
@@ -19,7 +15,7 @@ fn an_obstacle_above_a_dirichlet_value_is_said_once_with_the_group() {
     assert_eq!(lines.matches("infeasible, as above").count(), 2, "{printed}");
     assert!(lines.contains("p1 at 2, cr at 2: infeasible, as above"), "{printed}");
     assert!(!printed.contains("active-set/\n"), "{printed}");
-    let markdown = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    let markdown = scratch.read("out/report.md");
     assert_eq!(markdown.matches("exceeds the Dirichlet value on").count(), 1, "{markdown}");
     assert_eq!(markdown.matches("did not converge: infeasible, as above").count(), 3, "{markdown}");
     // a message to the user of a file names the file
@@ -32,7 +28,7 @@ fn an_obstacle_above_a_dirichlet_value_is_said_once_with_the_group() {
 #[test]
 fn names_of_problems_are_cut() {
     let scratch = Scratch::new("long-name");
-    let rest = std::fs::read_to_string(input("obstacle_above_wall")).unwrap();
+    let rest = std::fs::read_to_string(data("obstacle_above_wall")).unwrap();
     let rest = rest.replace("default = 0.1", "default = -0.1");
     for name in ["x".repeat(100_000), "red\\u001b[31m\\nline".to_owned()] {
         let path = scratch.file("own.toml", &format!("name = \"{name}\"\n{rest}"));

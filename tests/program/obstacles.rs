@@ -1,16 +1,7 @@
 //! Problems with several obstacles and gaps: whose the multipliers are, what lies between the nodes, what crosses.
 
-use super::run::{Scratch, read_json, rows, stderr};
+use super::run::{Scratch, data, number, read_json, rows, stderr};
 use serde_json::Value;
-
-fn data(name: &str) -> String {
-    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
-}
-
-fn number(row: &Value, keys: &[&str]) -> f64 {
-    let value = keys.iter().fold(row, |value, key| &value[*key]);
-    value.as_f64().unwrap_or_else(|| panic!("{keys:?} is {value} in {}", row["label"]))
-}
 
 /// The rows of each series, coarsest first.
 fn series(report: &Value, n_levels: usize) -> Vec<Vec<Value>> {

@@ -24,6 +24,7 @@ fn the_list_names_everything() {
     assert!(!scratch.0.join("out").exists());
 }
 
+/// Each of several solvers has rows and files of its own.
 #[test]
 fn solvers_stand_side_by_side() {
     let scratch = Scratch::new("solvers");
@@ -34,8 +35,13 @@ fn solvers_stand_side_by_side() {
     ));
     let found: Vec<&str> = rows(&report).iter().map(|r| r["solver"].as_str().unwrap()).collect();
     assert_eq!(found, [solvers[0], solvers[0], solvers[1], solvers[1]]);
+    let page = scratch.read("out/report.html");
     for solver in solvers {
-        assert!(scratch.0.join(format!("out/radial-2d-p1-{solver}.vtu")).exists(), "{solver}");
+        for end in ["svg", "vtu"] {
+            let file = format!("out/radial-2d-p1-{solver}.{end}");
+            assert!(scratch.0.join(&file).exists(), "{file}");
+        }
+        assert!(page.contains(&format!("p1-{solver} on radial-2d")));
     }
 }
 

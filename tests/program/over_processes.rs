@@ -253,7 +253,7 @@ mod needs_petsc {
         let output = end(child);
         assert!(!output.status.success());
         assert!(one_sentence(&output).contains("radial-2d-p1"), "{}", stderr(&output));
-        let journal = std::fs::read_to_string(scratch.0.join("out-2/report.jsonl")).unwrap();
+        let journal = scratch.read("out-2/report.jsonl");
         assert!(journal.contains("\"converged\""), "{journal}");
     }
 

@@ -1,16 +1,11 @@
 //! Problems of one's own, boundary groups by name, and references.
 
-use super::run::{Scratch, command, read_json, refused, rows, stderr};
+use super::run::{Scratch, command, data, number, read_json, refused, rows, stderr};
 use super::square::Square;
 use serde_json::Value;
 
 fn example(name: &str) -> String {
     format!("{}/examples/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
-}
-
-fn number(row: &Value, keys: &[&str]) -> f64 {
-    let value = keys.iter().fold(row, |value, key| &value[*key]);
-    value.as_f64().unwrap_or_else(|| panic!("{keys:?} is {value}"))
 }
 
 #[test]
@@ -35,7 +30,7 @@ fn a_membrane_from_a_file_is_measured_against_a_reference() {
         }
     }
     // what errors leave out of the first table stands in a second one
-    let text = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    let text = scratch.read("out/report.md");
     assert!(text.contains("membrane: totals and stages"), "{text}");
     for name in ["energy", "contact", "resultant", "bound", "stages (outer)"] {
         assert!(text.contains(&format!("| {name}")), "{name}: {text}");
@@ -44,7 +39,7 @@ fn a_membrane_from_a_file_is_measured_against_a_reference() {
     for file in ["membrane-p1.vtu", "report.html", "convergence.svg"] {
         assert!(scratch.0.join("out").join(file).exists(), "{file}");
     }
-    let plot = std::fs::read_to_string(scratch.0.join("out/convergence.svg")).unwrap();
+    let plot = scratch.read("out/convergence.svg");
     assert!(plot.contains("against p2 at level 4"));
 }
 
@@ -223,7 +218,7 @@ fn a_report_outlives_a_wrong_directory_and_pictures_show_the_finest_level() {
     let scratch = Scratch::new("outlives");
     let options = "--scene radial-2d --scheme p1 --levels 8,4";
     assert_eq!(rows(&scratch.report(options)).len(), 2);
-    let picture = std::fs::read_to_string(scratch.0.join("out/radial-2d-p1.svg")).unwrap();
+    let picture = scratch.read("out/radial-2d-p1.svg");
     assert!(picture.contains("radial-2d-p1, level 8"));
     let file = scratch.file("file", "");
     let output = scratch.run(&format!("{options} --dump {file}/inequalities"));
@@ -324,11 +319,6 @@ fn files_of_an_earlier_request_go() {
     }
 }
 
-/// Problems of the test data, with their meshes.
-fn of_tests(name: &str) -> String {
-    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
-}
-
 fn warns(row: &Value, text: &str) -> bool {
     row["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(text))
 }
@@ -339,7 +329,7 @@ fn warns(row: &Value, text: &str) -> bool {
 fn a_solution_on_the_disc_is_none_on_a_polygon() {
     let scratch = Scratch::new("disc");
     let schemes = "p1,p2,cr,sipg,wopsip,sipg-p2";
-    let report = scratch.report(&format!("{} --scheme {schemes} --levels 0,1", of_tests("disc0")));
+    let report = scratch.report(&format!("{} --scheme {schemes} --levels 0,1", data("disc0")));
     let mut below = 0;
     for row in rows(&report) {
         assert_eq!(row["bound"]["guaranteed"], true, "{}", row["label"]);
@@ -353,7 +343,7 @@ fn a_solution_on_the_disc_is_none_on_a_polygon() {
         }
     }
     assert!(below > 0);
-    let text = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    let text = scratch.read("out/report.md");
     assert!(text.contains("the stated solution does not solve this problem"), "{text}");
 }
 
@@ -361,8 +351,7 @@ fn a_solution_on_the_disc_is_none_on_a_polygon() {
 #[test]
 fn dirichlet_values_that_jump_are_named() {
     let scratch = Scratch::new("jump");
-    let report =
-        scratch.report(&format!("{} --scheme p1,cr,sipg,p2 --levels 2,4", of_tests("jump")));
+    let report = scratch.report(&format!("{} --scheme p1,cr,sipg,p2 --levels 2,4", data("jump")));
     for row in rows(&report) {
         for (group, point) in [("left", "(0.000000, 1.000000)"), ("right", "(1.000000, 1.000000)")]
         {
@@ -372,6 +361,6 @@ fn dirichlet_values_that_jump_are_named() {
         let unproven = row["bound"]["unproven"].as_array().unwrap();
         assert!(unproven.contains(&"boundary".into()), "{}", row["bound"]);
     }
-    let text = std::fs::read_to_string(scratch.0.join("out/report.md")).unwrap();
+    let text = scratch.read("out/report.md");
     assert!(text.contains("bound with terms that are not proven: boundary"), "{text}");
 }

@@ -113,7 +113,7 @@ fn the_report_has_every_key_and_file() {
     rows(&report).iter().for_each(check_row);
     rows(&report).iter().for_each(|row| assert_eq!(row["level_kind"], "subdivisions"));
 
-    let csv = std::fs::read_to_string(scratch.0.join("out/report.csv")).unwrap();
+    let csv = scratch.read("out/report.csv");
     let header: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
     let inner = |outer| INNER_KEYS.iter().find(|(name, ..)| *name == outer);
     for key in ROW_KEYS {

@@ -1,9 +1,11 @@
 //! Running the program.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
+
+pub use crate::support::scratch::Scratch;
 
 /// A command of the program, which cargo builds before the tests.
 pub fn command(name: &str) -> Command {
@@ -17,22 +19,7 @@ pub fn program() -> Command {
     command("compare")
 }
 
-/// A directory of its own for a test, gone when the test is over.
-pub struct Scratch(pub PathBuf);
-
 impl Scratch {
-    pub fn new(name: &str) -> Self {
-        let name = format!("unilateral-program-{}-{name}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&path).unwrap();
-        Scratch(path)
-    }
-    /// A file with this text, and its path.
-    pub fn file(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name);
-        std::fs::write(&path, text).unwrap();
-        path.display().to_string()
-    }
     pub fn path(&self, name: &str) -> String {
         self.0.join(name).display().to_string()
     }
@@ -55,18 +42,23 @@ impl Scratch {
     }
 }
 
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 pub fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
 pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// A problem of the test data, with its mesh.
+pub fn data(name: &str) -> String {
+    format!("{}/tests/data/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A number of a row, under keys within each other.
+pub fn number(row: &Value, keys: &[&str]) -> f64 {
+    let value = keys.iter().fold(row, |value, key| &value[*key]);
+    value.as_f64().unwrap_or_else(|| panic!("{keys:?} is {value} in {}", row["label"]))
 }
 
 pub fn read_json(path: &Path) -> Value {

@@ -43,7 +43,7 @@ fn sixteen_threads_finish_small_meshes_of_broken_schemes() {
         if since.elapsed() > LONGEST_WAIT {
             process.kill().unwrap();
             process.wait().unwrap();
-            let finished = fs::read_to_string(scratch.0.join("out/report.jsonl")).unwrap();
+            let finished = scratch.read("out/report.jsonl");
             panic!("no processor time in {LONGEST_WAIT:?} after {}", finished.lines().count());
         }
         sleep(Duration::from_millis(100));

@@ -1,6 +1,6 @@
 //! Studies on meshes that follow the error bound.
 
-use super::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use unilateral::mesh::BoundaryCondition;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;

@@ -1,22 +1,10 @@
 //! What problem files give on the boundary: by default, and by the normal.
 
-use super::scratch::Scratch;
+use super::problem_files::problem;
+use crate::support::scratch::Scratch;
 use std::path::{Path, PathBuf};
-use unilateral::mesh::{BoundaryCondition, Domain, Mesh};
+use unilateral::mesh::{BoundaryCondition, Domain};
 use unilateral::prelude::*;
-use unilateral::problem_file::{ProblemFileError, read};
-use unilateral::scenes::AnyScene;
-
-/// A problem in the plane.
-fn problem(folder: &Scratch, text: &str) -> Result<Scene<2>, ProblemFileError> {
-    std::fs::create_dir_all(&folder.0).unwrap();
-    let path = folder.0.join("problem.toml");
-    std::fs::write(&path, text).unwrap();
-    match read(&path)?.scene {
-        AnyScene::Two(own) => Ok(own),
-        _ => panic!("a problem in the plane"),
-    }
-}
 
 fn mesh_file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/problems").join(name)
@@ -45,7 +33,7 @@ fn groups_without_a_table_have_what_is_given_by_default() {
     let refused = |text: &str| problem(&folder, text).unwrap_err().to_string();
     assert!(refused(&of_mesh).contains("boundary group `bore` of the mesh is missing"));
     let wrong = refused(&format!("{of_mesh}{}", DEFAULT.replace("flux", "gap")));
-    assert!(wrong.contains("unknown key `gap`") && wrong.contains("problem.toml:6:"), "{wrong}");
+    assert!(wrong.contains("unknown key `gap`") && wrong.contains("plane.toml:6:"), "{wrong}");
 }
 
 /// The group `rim` has the facets of `foot` and others: what is given by default is given on all of it, after the table.
@@ -88,8 +76,7 @@ fn gaps_may_use_the_normal_of_a_side() {
         let rest = rest.replace("\"x\"", "0");
         let own = problem(&folder, &format!("box = [[0, 0], [1, 1]]\n{contact}{rest}{source}"));
         let own = own.unwrap();
-        let Domain::Box(domain) = &own.domain else { panic!("a box") };
-        let mesh = Mesh::<2>::kuhn_box(domain, [8, 8]).unwrap();
+        let mesh = own.domain.mesh(8).unwrap();
         let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
         assert!(solved.converged() && solved.active() > Some(0));
         solved.values().to_vec()

@@ -14,11 +14,7 @@ const SCENES: [fn() -> Scene<2>; 5] = [
     || scenes::contrast::<2>(1e6),
 ];
 
-fn rows(scene: Scene<2>, scheme: Wopsip, on_means: bool, levels: &[usize]) -> Vec<Row> {
-    rows_in(Precision::Double, scene, (scheme, on_means), levels)
-}
-
-fn rows_in(
+fn rows(
     precision: Precision,
     scene: Scene<2>,
     (scheme, on_means): (Wopsip, bool),
@@ -56,8 +52,8 @@ fn single_precision(levels: &[usize]) {
     for scene in SCENES {
         for on_means in [false, true] {
             let scheme = (Wopsip::default(), on_means);
-            let single = rows_in(Precision::Single, scene(), scheme, levels);
-            let double = rows(scene(), Wopsip::default(), on_means, levels);
+            let of = |precision| rows(precision, scene(), scheme, levels);
+            let [single, double] = [of(Precision::Single), of(Precision::Double)];
             for (single, double) in single.iter().zip(&double) {
                 let what = format!("{} {} {}", single.scene, single.label, single.level);
                 if double.scene == "contrast-2d" {
@@ -96,7 +92,7 @@ fn forces_do_not_depend_on_a_large_weight() {
         for on_means in [false, true] {
             let of = |eta: f64| {
                 let scheme = Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() };
-                rows(scene(), scheme, on_means, &[32]).remove(0)
+                rows(Precision::Double, scene(), (scheme, on_means), &[32]).remove(0)
             };
             let right = of(1e5);
             for eta in [1e9, 1e12, 1e14] {

@@ -9,7 +9,7 @@ use unilateral::scenes::Scene;
 use unilateral::study::{Journal, Program, Progress, Row, fill_orders};
 
 use crate::rows;
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 
 fn program() -> Program {
     Program::new("test", "f64", 1, 1).with_request("load", 5)
@@ -75,16 +75,17 @@ fn an_outcome_has_one_name() {
 fn a_study_goes_on_from_its_journal() {
     let scratch = Scratch::new("journal-resume");
     let whole = study().run().unwrap();
-    let journal = Journal::create(&scratch.0, program()).unwrap();
+    let folder = scratch.0.join("made by the journal");
+    let journal = Journal::create(&folder, program()).unwrap();
     study().levels([4, 8]).journal(&journal).run().unwrap();
     // what a kill leaves of a line
-    let path = scratch.0.join("report.jsonl");
+    let path = folder.join("report.jsonl");
     let mut text = fs::read_to_string(&path).unwrap();
     text += "{\"scene\":\"radial-2d\",\"dim";
     fs::write(&path, text).unwrap();
-    assert_eq!(Report::read(&scratch.0).unwrap().rows.len(), 4);
+    assert_eq!(Report::read(&folder).unwrap().rows.len(), 4);
 
-    let journal = Journal::resume(&scratch.0, program(), &study().keys()).unwrap();
+    let journal = Journal::resume(&folder, program(), &study().keys()).unwrap();
     let told = std::cell::RefCell::new(Vec::new());
     let note = |progress: Progress<'_>| match progress {
         Progress::Kept(row) => told.borrow_mut().push((true, row.level)),
@@ -97,10 +98,10 @@ fn a_study_goes_on_from_its_journal() {
     for (found, expected) in without_times(&report.rows).iter().zip(without_times(&whole.rows)) {
         assert_eq!(*found, expected);
     }
-    assert_eq!(Report::read(&scratch.0).unwrap().rows.len(), 6);
+    assert_eq!(Report::read(&folder).unwrap().rows.len(), 6);
     // nothing is left to do
-    report.write(&scratch.0).unwrap();
-    let journal = Journal::resume(&scratch.0, program(), &study().keys()).unwrap();
+    report.write(&folder).unwrap();
+    let journal = Journal::resume(&folder, program(), &study().keys()).unwrap();
     let again = study().journal(&journal).run().unwrap();
     assert!(again.rows == report.rows);
 }

@@ -18,7 +18,6 @@ mod references;
 mod report;
 mod rows;
 mod scenes;
-mod scratch;
 mod series;
 mod stability;
 mod tables;
@@ -30,4 +29,5 @@ mod work_precision;
 #[path = "../support"]
 mod support {
     pub mod keys;
+    pub mod scratch;
 }

@@ -5,7 +5,7 @@ use unilateral::inequality::{ActiveSet, Outcome};
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
 
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 
 /// Level 200 has 4.8e7 tetrahedra, whose factors take more memory than machines have.
 fn study<'a>() -> Study<'a, 3> {

@@ -1,6 +1,6 @@
 //! Schemes as users write them: labels, what is refused, one scheme several times in a report.
 
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
 use unilateral::study::file_name;

@@ -9,11 +9,7 @@ use unilateral::study::Row;
 /// Schemes whose spaces contain the linear functions, and solve them exactly.
 const EXACT: [&str; 8] = ["p1", "p2", "cr", "sipg", "nipg", "ldg", "br2", "sipg-p2"];
 
-fn rows<const D: usize>(scene: Scene<D>, schemes: &[&str], levels: &[usize]) -> Vec<Row> {
-    rows_in(Precision::Double, scene, schemes, levels)
-}
-
-fn rows_in<const D: usize>(
+fn rows<const D: usize>(
     precision: Precision,
     scene: Scene<D>,
     schemes: &[&str],
@@ -37,7 +33,7 @@ fn linear<const D: usize>() -> Scene<D> {
 #[test]
 fn a_function_of_the_space_has_no_orders() {
     fn check<const D: usize>(precision: Precision, levels: &[usize]) {
-        for row in rows_in::<D>(precision, linear(), &EXACT, levels) {
+        for row in rows::<D>(precision, linear(), &EXACT, levels) {
             let what = format!("{precision:?} {D}D, {} {}: {row:?}", row.label, row.level);
             assert_eq!(row.order, Default::default(), "{what}");
             assert_eq!(row.bound.effectivity, None, "{what}");
@@ -58,7 +54,7 @@ fn a_solution_that_vanishes_has_no_orders() {
     let square = BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
     let scene = Scene::new("zero", square, problem);
     let schemes = ["p1", "p2", "cr", "sipg", "sipg-p2", "wopsip", "wopsip-p2"];
-    for row in rows::<2>(scene, &schemes, &[4, 8, 16]) {
+    for row in rows::<2>(Precision::Double, scene, &schemes, &[4, 8, 16]) {
         let of = row.order;
         assert_eq!([of.l2, of.h1, of.energy, of.max], [None; 4], "{}: {row:?}", row.label);
     }
@@ -67,9 +63,9 @@ fn a_solution_that_vanishes_has_no_orders() {
 /// What is no noise keeps its order, in both precisions.
 #[test]
 fn errors_above_rounding_keep_their_orders() {
-    let double = rows::<1>(scenes::parabola_1d(), &["p1", "sipg", "wopsip"], &[64, 1024]);
-    let single =
-        rows_in::<2>(Precision::Single, scenes::radial(1.0), &["p1", "sipg", "wopsip"], &[16, 32]);
+    let schemes = ["p1", "sipg", "wopsip"];
+    let double = rows::<1>(Precision::Double, scenes::parabola_1d(), &schemes, &[64, 1024]);
+    let single = rows::<2>(Precision::Single, scenes::radial(1.0), &schemes, &[16, 32]);
     for row in [double, single].concat().iter().skip(1).step_by(2) {
         let of = row.order;
         let all = [of.l2, of.h1, of.energy, of.bound, of.multiplier_l1];

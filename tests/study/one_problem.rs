@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use std::path::Path;
 
-use super::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use unilateral::algebra::Start;
 use unilateral::inequality::{
     ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SOLVERS, SinglePrecision,

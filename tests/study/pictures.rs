@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use crate::support::scratch::Scratch;
 use unilateral::measure::Fields;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryCondition, Mesh};
@@ -301,10 +302,8 @@ fn pictures_are_the_same_bytes_for_any_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let (picture, ..) = picture(&scene, &Wopsip::default(), 8);
-            let directory = scratch(&format!("threads-{threads}"));
-            let bytes = std::fs::read(picture.write(&directory, "same").unwrap()).unwrap();
-            std::fs::remove_dir_all(directory).unwrap();
-            bytes
+            let scratch = Scratch::new(&format!("pictures-{threads}"));
+            std::fs::read(picture.write(&scratch.0, "same").unwrap()).unwrap()
         })
     };
     assert!(bytes(1) == bytes(3));
@@ -330,16 +329,10 @@ fn what_cannot_be_drawn_is_refused() {
     assert!(large.unwrap_err().to_string().contains("choose a coarser level"));
 }
 
-/// A directory of its own for a test.
-fn scratch(name: &str) -> PathBuf {
-    let path = std::env::temp_dir().join(format!("unilateral-{}-{name}", std::process::id()));
-    std::fs::create_dir_all(&path).unwrap();
-    path
-}
-
 #[test]
 fn a_series_lists_every_level_and_its_files_are_there() {
-    let directory = scratch("series");
+    let scratch = Scratch::new("pictures-series");
+    let directory = &scratch.0;
     let levels = [1, 2, 4];
     let series: Vec<(f64, PathBuf)> = levels
         .iter()
@@ -369,5 +362,4 @@ fn a_series_lists_every_level_and_its_files_are_there() {
         assert!(String::from_utf8_lossy(&piece).contains(&cells), "{cells}");
     }
     assert!(write_pvd(&directory.join("square-1.vtu/square.pvd"), &series).is_err());
-    std::fs::remove_dir_all(directory).unwrap();
 }

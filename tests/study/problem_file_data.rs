@@ -2,23 +2,16 @@
 
 use std::path::Path;
 
-use super::problem_files::{BOX, SIDES};
-use super::scratch::Scratch;
+use super::problem_files::{BOX, SIDES, problem};
+use crate::support::scratch::Scratch;
 use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::prelude::*;
-use unilateral::problem_file::read;
-use unilateral::scenes::AnyScene;
 
 /// Which data must have values at vertices: those that nodes or gradients read there, and no others.
 #[test]
 fn data_are_held_against_vertices_where_nodes_read_them() {
     let folder = Scratch::new("problem-vertices");
-    std::fs::create_dir_all(&folder.0).unwrap();
-    let path = folder.0.join("vertices.toml");
-    let fault = |text: &str| {
-        std::fs::write(&path, text).unwrap();
-        read(&path).err().map(|error| error.to_string())
-    };
+    let fault = |text: &str| problem(&folder, text).err().map(|error| error.to_string());
     // not a number on the line x = 0 alone, which has vertices and no point of a rule
     let hole = "\"if(x == 0, 0/0, -1)\"";
     let in_domain = |table: &str| format!("{BOX}{table}\n{SIDES}");
@@ -58,24 +51,16 @@ fn data_are_held_against_vertices_where_nodes_read_them() {
 #[test]
 fn a_default_is_not_asked_in_named_regions() {
     let folder = Scratch::new("problem-default");
-    std::fs::create_dir_all(&folder.0).unwrap();
     let plate = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.msh");
     std::fs::copy(plate, folder.0.join("plate.msh")).unwrap();
-    let path = folder.0.join("default.toml");
     let rest = "[boundary.default]\nkind = \"neumann\"\n";
     let hole = "if((x - 0.8)^2 < 0.01 && y^2 < 0.01, 0, 2)";
-    let problem = |regions: &str| {
-        let text = format!("mesh = \"plate.msh\"\n{rest}[coefficient]\n{regions}");
-        std::fs::write(&path, text).unwrap();
-        read(&path).map_err(|error| error.to_string())
+    let of_regions = |regions: &str| {
+        problem(&folder, &format!("mesh = \"plate.msh\"\n{rest}[coefficient]\n{regions}"))
     };
-    let error = problem(&format!("default = \"{hole}\"\n")).unwrap_err();
+    let error = of_regions(&format!("default = \"{hole}\"\n")).unwrap_err().to_string();
     assert!(error.contains("coefficient.default is 0 at (0."), "{error}");
-    let AnyScene::Two(own) =
-        problem(&format!("default = \"{hole}\"\ninclusion = 7\n")).unwrap().scene
-    else {
-        panic!("in the plane")
-    };
+    let own = of_regions(&format!("default = \"{hole}\"\ninclusion = 7\n")).unwrap();
     // twice the energy of the first coordinate is the integral of the coefficient
     let mesh = own.domain.mesh(0).unwrap();
     let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default()).unwrap();
@@ -92,34 +77,29 @@ fn a_default_is_not_asked_in_named_regions() {
 #[test]
 fn a_default_is_not_given_to_groups_of_another_kind() {
     let folder = Scratch::new("problem-default-kind");
-    std::fs::create_dir_all(&folder.0).unwrap();
     let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/square.msh");
-    let path = folder.0.join("default.toml");
-    let problem = |more: &str| {
+    let of_tables = |more: &str| {
         let mesh = mesh.display().to_string();
         let text = format!("mesh = {mesh:?}\n[boundary.default]\nkind = \"neumann\"\n{more}");
-        std::fs::write(&path, text).unwrap();
-        read(&path).map(|_| ()).map_err(|error| error.to_string())
+        problem(&folder, &text).map(|_| ()).map_err(|error| error.to_string())
     };
     let dirichlet = "[boundary.dirichlet]\nkind = \"dirichlet\"\n";
     let contact = "[boundary.contact]\nkind = \"contact\"\n";
     for (tables, missing) in [(dirichlet, "contact"), (contact, "dirichlet")] {
-        let error = problem(tables).unwrap_err();
+        let error = of_tables(tables).unwrap_err();
         let expected = format!("the boundary group `{missing}` of the mesh is missing");
         assert!(error.contains(&expected), "{error}");
     }
-    assert_eq!(problem(&format!("{dirichlet}{contact}")), Ok(()));
+    assert_eq!(of_tables(&format!("{dirichlet}{contact}")), Ok(()));
 }
 
 /// Every kind of datum by region or by side is that of its table.
 #[test]
 fn tables_of_a_file_become_the_data_of_their_name() {
     let folder = Scratch::new("problem-tables");
-    std::fs::create_dir_all(&folder.0).unwrap();
     let plate = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.msh");
     std::fs::copy(plate, folder.0.join("plate.msh")).unwrap();
-    let path = folder.0.join("tables.toml");
-    let problem = |more: &str| {
+    let with = |more: &str| {
         let text = format!(
             "mesh = \"plate.msh\"\n[source]\ninclusion = 4\nmatrix = 5\n\
             [obstacle]\nlower.inclusion = -8\nlower.matrix = -9\n\
@@ -128,13 +108,12 @@ fn tables_of_a_file_become_the_data_of_their_name() {
             [boundary.edges]\nkind = \"neumann\"\nflux = 12\n\
             [boundary.ends]\nkind = \"contact\"\ngap = -1\n{more}"
         );
-        std::fs::write(&path, text).unwrap();
-        let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("in the plane") };
+        let own = problem(&folder, &text).unwrap();
         let mesh = own.domain.mesh(0).unwrap();
         (own.problem, mesh)
     };
-    let (with_coefficient, mesh) = problem("[coefficient]\ninclusion = 2\nmatrix = 3\n");
-    let (with_reaction, _) = problem("[reaction]\ninclusion = 6\nmatrix = 7\n");
+    let (with_coefficient, mesh) = with("[coefficient]\ninclusion = 2\nmatrix = 3\n");
+    let (with_reaction, _) = with("[reaction]\ninclusion = 6\nmatrix = 7\n");
     let mut volumes = [0.0; 2];
     for cell in 0..mesh.n_cells() {
         let is_matrix = mesh.regions()[mesh.region(cell)].contains(&"matrix".to_owned());

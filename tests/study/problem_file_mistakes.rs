@@ -3,13 +3,12 @@
 use std::path::Path;
 
 use super::problem_files::{BOX, SIDES};
-use super::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use unilateral::problem_file::{ProblemFileErrorKind, read};
 
 #[test]
 fn mistakes_are_found_where_they_are() {
     let folder = Scratch::new("problem-mistakes");
-    std::fs::create_dir_all(&folder.0).unwrap();
     let plate = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.msh");
     std::fs::copy(plate, folder.0.join("plate.msh")).unwrap();
     let on_plate = |rest: &str| format!("mesh = \"plate.msh\"\n{rest}");
@@ -152,29 +151,24 @@ fn mistakes_are_found_where_they_are() {
             "there is no `w`",
         ),
     ];
+    let refused = |path: &str| read(Path::new(path)).unwrap_err();
     for (text, place, words) in cases {
-        let path = folder.0.join("wrong.toml");
-        std::fs::write(&path, &text).unwrap();
-        let error = read(&path).unwrap_err();
+        let path = folder.file("wrong.toml", &text);
+        let error = refused(&path);
         let message = error.to_string();
         let (line, column) = place;
         assert_eq!(error.place, Some([line, column]), "{text}\n{message}");
-        assert!(
-            message.contains(words) && message.starts_with(&path.display().to_string()),
-            "{message}"
-        );
+        assert!(message.contains(words) && message.starts_with(&path), "{message}");
     }
-    std::fs::write(folder.0.join("lost.toml"), "mesh = \"lost.msh\"").unwrap();
-    let error = read(&folder.0.join("lost.toml")).unwrap_err();
+    let error = refused(&folder.file("lost.toml", "mesh = \"lost.msh\""));
     let message = error.to_string();
     assert_eq!((error.kind, error.place), (ProblemFileErrorKind::Mesh, Some([1, 8])), "{message}");
     assert!(message.contains("lost.toml:1:8: cannot read"), "{message}");
     assert_eq!(message.matches("lost.msh").count(), 1, "{message}");
     let error = read(&folder.0.join("nothing.toml")).unwrap_err();
     assert_eq!(error.kind, ProblemFileErrorKind::Unreadable);
-    std::fs::write(folder.0.join("two.toml"), format!("{BOX}{SIDES}[boundary.dirichlet]\n"))
-        .unwrap();
-    let error = read(&folder.0.join("two.toml")).unwrap_err();
+    let text = format!("{BOX}{SIDES}[boundary.dirichlet]\n");
+    let error = refused(&folder.file("two.toml", &text));
     assert_eq!(error.kind, ProblemFileErrorKind::Missing);
     assert!(error.place.is_some(), "{error}");
 }

@@ -1,11 +1,19 @@
 //! Problems from TOML files.
 
-use super::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use std::path::Path;
 use unilateral::mesh::{BoundaryCondition, Domain, Mesh};
 use unilateral::prelude::*;
-use unilateral::problem_file::read;
+use unilateral::problem_file::{ProblemFileError, read};
 use unilateral::scenes::AnyScene;
+
+/// A problem in the plane, of a file with this text.
+pub fn problem(folder: &Scratch, text: &str) -> Result<Scene<2>, ProblemFileError> {
+    match read(Path::new(&folder.file("plane.toml", text)))?.scene {
+        AnyScene::Two(own) => Ok(own),
+        _ => panic!("a problem in the plane"),
+    }
+}
 
 fn example(name: &str) -> AnyScene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems");
@@ -94,15 +102,13 @@ pub const SIDES: &str = "[boundary.left]\nkind = \"dirichlet\"\nvalue = \"x * y\
 #[test]
 fn a_box_has_sides_and_an_exact_solution() {
     let folder = Scratch::new("problem-box");
-    std::fs::create_dir_all(&folder.0).unwrap();
-    let path = folder.0.join("harmonic.toml");
     let exact = "[exact]\nvalue = \"x * y\"\ngradient = [\"y\", \"x\"]\n";
-    std::fs::write(&path, format!("{BOX}{SIDES}{exact}[reaction]\ndefault = 0\n")).unwrap();
-    let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("a problem in the plane") };
-    assert_eq!(own.name, "harmonic");
+    let text = format!("{BOX}{SIDES}{exact}[reaction]\ndefault = 0\n");
+    let own = problem(&folder, &text).unwrap();
+    assert_eq!(own.name, "plane", "the name of the file");
     let Domain::Box(domain) = &own.domain else { panic!("a box") };
     assert_eq!(domain.sides[1], [BoundaryCondition::Contact, BoundaryCondition::Neumann]);
-    let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
+    let mesh = own.domain.mesh(4).unwrap();
     let solved = solve(&own.problem, &mesh, &ConformingP2).unwrap();
     assert!(
         solved.errors().unwrap().l2.unwrap() > 1e-3,
@@ -110,10 +116,8 @@ fn a_box_has_sides_and_an_exact_solution() {
     );
     let flux = "[boundary.bottom]\nkind = \"neumann\"\nflux = \"x * ny\"\n";
     let sides = SIDES.split("[boundary.bottom]").next().unwrap();
-    std::fs::write(&path, format!("{BOX}{sides}{flux}{exact}")).unwrap();
-    let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("a problem in the plane") };
-    let Domain::Box(domain) = &own.domain else { panic!("a box") };
-    let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
+    let own = problem(&folder, &format!("{BOX}{sides}{flux}{exact}")).unwrap();
+    let mesh = own.domain.mesh(4).unwrap();
     let solved = solve(&own.problem, &mesh, &ConformingP2).unwrap();
     assert!(solved.errors().unwrap().l2.unwrap() < 1e-12);
 }
@@ -122,11 +126,8 @@ fn a_box_has_sides_and_an_exact_solution() {
 #[test]
 fn branches_that_are_not_taken_do_not_count() {
     let folder = Scratch::new("problem-branches");
-    std::fs::create_dir_all(&folder.0).unwrap();
-    let path = folder.0.join("branches.toml");
     let load = "[source]\ndefault = \"if(x > 0 && log(x) < 0, -sqrt(x), -8)\"\n";
-    std::fs::write(&path, format!("{BOX}{load}{SIDES}")).unwrap();
-    let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("a problem in the plane") };
+    let own = problem(&folder, &format!("{BOX}{load}{SIDES}")).unwrap();
     let at = |x: f64| own.problem.source.everywhere.as_ref().unwrap().at(&Point::from([x, 0.5]));
     assert_eq!([at(-0.5), at(0.25)], [-8.0, -0.5]);
 }
@@ -134,8 +135,6 @@ fn branches_that_are_not_taken_do_not_count() {
 #[test]
 fn bounds_on_constant_data_are_guaranteed() {
     let folder = Scratch::new("problem-constants");
-    std::fs::create_dir_all(&folder.0).unwrap();
-    let path = folder.0.join("constants.toml");
     let data = "[coefficient]\ndefault = 2\n[source]\ndefault = -8\n[reaction]\ndefault = 1\n\
         [obstacle]\nlower.default = -0.1\n";
     let sides = |flux: &str| {
@@ -147,10 +146,8 @@ fn bounds_on_constant_data_are_guaranteed() {
     for (flux, is_guaranteed) in
         [("1", true), ("\"1\"", true), ("\"2 * pi - 1\"", true), ("\"1 + sin(x)\"", false)]
     {
-        std::fs::write(&path, format!("{BOX}{data}{}", sides(flux))).unwrap();
-        let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("in the plane") };
-        let Domain::Box(domain) = &own.domain else { panic!("a box") };
-        let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
+        let own = problem(&folder, &format!("{BOX}{data}{}", sides(flux))).unwrap();
+        let mesh = own.domain.mesh(4).unwrap();
         let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
         assert!(solved.active() > Some(0));
         assert_eq!(solved.bound().unwrap().is_guaranteed(), is_guaranteed, "{flux}");
@@ -162,8 +159,6 @@ fn bounds_on_constant_data_are_guaranteed() {
 fn bounds_on_polynomial_data_are_guaranteed() {
     use unilateral::error_bound::Unproven::{self, Boundary, Obstacle, Quadrature};
     let folder = Scratch::new("problem-polynomials");
-    std::fs::create_dir_all(&folder.0).unwrap();
-    let path = folder.0.join("polynomials.toml");
     let base = [
         ("coefficient", "2"),
         ("source", "\"-8 - 3 * x * y^2\""),
@@ -185,10 +180,8 @@ fn bounds_on_polynomial_data_are_guaranteed() {
             [boundary.right]\nkind = \"neumann\"\nflux = {flux}\n\
             [boundary.top]\nkind = \"neumann\"\n[boundary.bottom]\nkind = \"neumann\"\n"
         );
-        std::fs::write(&path, text).unwrap();
-        let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("in the plane") };
-        let Domain::Box(domain) = &own.domain else { panic!("a box") };
-        let mesh = Mesh::<2>::kuhn_box(domain, domain.counts(4)).unwrap();
+        let own = problem(&folder, &text).unwrap();
+        let mesh = own.domain.mesh(4).unwrap();
         [&ConformingP1 as &dyn Scheme<2>, &ConformingP2]
             .map(|scheme| solve(&own.problem, &mesh, scheme).unwrap().bound().unwrap().unproven)
     };
@@ -215,8 +208,6 @@ fn bounds_on_polynomial_data_are_guaranteed() {
 #[test]
 fn stated_solutions_are_held_against_the_data() {
     let folder = Scratch::new("problem-exact");
-    std::fs::create_dir_all(&folder.0).unwrap();
-    let path = folder.0.join("exact.toml");
     let base = [
         ("source", "if(x < 0.5, -4, 0)"),
         ("lower", "if(x < 0.5, x^2, x - 0.25) - 1"),
@@ -241,11 +232,8 @@ fn stated_solutions_are_held_against_the_data() {
             [exact]\nvalue = \"if(x < 0.5, x^2, x - 0.25)\"\n\
             gradient = [\"if(x < 0.5, 2 * x, 1)\", \"0\"]\n"
         );
-        std::fs::write(&path, text).unwrap();
-        let AnyScene::Two(own) = read(&path).unwrap().scene else { panic!("in the plane") };
-        let Domain::Box(domain) = own.domain else { panic!("a box") };
-        let scene = scenes::Scene::new(own.name, domain, own.problem);
-        let study = Study::<2>::new(scene).scheme(ConformingP1).levels([8]);
+        let own = problem(&folder, &text).unwrap();
+        let study = Study::<2>::new(own).scheme(ConformingP1).levels([8]);
         study.run().unwrap().rows.remove(0).warnings
     };
     let doubt = "the stated solution does not solve this problem: not fulfilled: ";
@@ -267,14 +255,13 @@ fn stated_solutions_are_held_against_the_data() {
 #[test]
 fn a_source_that_jumps_says_where() {
     let folder = Scratch::new("problem-jump");
-    std::fs::create_dir_all(&folder.0).unwrap();
-    let path = folder.0.join("jump.toml");
     let ends = "[boundary.left]\nkind = \"dirichlet\"\n[boundary.right]\nkind = \"dirichlet\"\n";
     let load = "[source]\ndefault = { value = \"if(x < 0.3, 1, -1)\", level = \"x - 0.3\" }\n";
-    std::fs::write(&path, format!("box = [[0], [1]]\n{ends}{load}")).unwrap();
-    let AnyScene::One(own) = read(&path).unwrap().scene else { panic!("a problem on an interval") };
-    let Domain::Box(domain) = &own.domain else { panic!("a box") };
-    let mesh = Mesh::<1>::kuhn_box(domain, [7]).unwrap();
+    let path = folder.file("jump.toml", &format!("box = [[0], [1]]\n{ends}{load}"));
+    let own = read(Path::new(&path)).unwrap().scene;
+    let AnyScene::One(own) = own else { panic!("a problem on an interval") };
+    assert!(matches!(own.domain, Domain::Box(_)));
+    let mesh = own.domain.mesh(7).unwrap();
     let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default()).unwrap();
     // hat functions sum to one: the integral of the load
     let total: f64 = of.load().unwrap().iter().sum();

@@ -1,8 +1,8 @@
 //! What a report writes: keys, numbers, tables, plots and fields, read back by other means.
 
 use crate::rows::{report, row, rows};
-use crate::scratch::Scratch;
 use crate::support::keys::ROW_KEYS;
+use crate::support::scratch::Scratch;
 use serde_json::Value;
 use std::path::Path;
 use unilateral::error_bound::Unproven;
@@ -268,7 +268,6 @@ fn the_page_begins_with_how_the_comparison_ended_and_needs_no_network() {
     let mut rows = rows();
     rows[4].label = "a<b & \"c\"".into();
     rows[0].error.l2 = Some(1.234_567_891_2e-3);
-    std::fs::create_dir_all(&scratch.0).unwrap();
     std::fs::write(scratch.0.join("radial-2d-p1.svg"), "<svg></svg>\n").unwrap();
     let mut report = report(rows);
     let words = ["unilateral", "--scheme", "p1,sipg", "my file.toml"];

@@ -1,7 +1,7 @@
 //! Series of a report: one scheme on uniform and on adaptive meshes.
 
 use crate::rows::row;
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use unilateral::plot;
 use unilateral::prelude::*;
 use unilateral::study::{Meshes, Series, fill_orders};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use serde_json::Value;
 use unilateral::error::Error;
 use unilateral::stability::{
@@ -166,8 +166,9 @@ fn what_does_not_exist_is_refused_before_anything_runs() {
 fn reports_read_back() {
     let scratch = Scratch::new("stability");
     let study = Stability::new(Effort::Quick).cases(["scaling"]).schemes(["p1", "wopsip"]);
-    let report = study.write_to(&scratch.0).run().unwrap();
-    let read = |name: &str| std::fs::read_to_string(scratch.0.join(name)).unwrap();
+    let folder = scratch.0.join("made by the study");
+    let report = study.write_to(&folder).run().unwrap();
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
 
     let json: Value = serde_json::from_str(&read("stability.json")).unwrap();
     let rows = json["rows"].as_array().unwrap();

@@ -14,7 +14,7 @@ use unilateral::scenes::AnyScene;
 use unilateral::scenes::Scene;
 use unilateral::study::file_name;
 
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 
 /// A file: its text, and the arrays that follow.
 struct Grid {
@@ -140,8 +140,7 @@ fn round_trip<const D: usize>(counts: [usize; D], degree: usize, cell_type: usiz
     let n = [D + 1, (D + 1) * (D + 2) / 2][degree - 1];
     let u: Vec<f64> = (0..cells * n).map(|i| (i as f64).sqrt() - 1e-17).collect();
     let multiplier: Vec<f64> = (0..cells).map(|c| 1.0 / (1.0 + c as f64)).collect();
-    let scratch = Scratch::new(&format!("vtu-{D}-{degree}-{}", "f64"));
-    std::fs::create_dir_all(&scratch.0).unwrap();
+    let scratch = Scratch::new(&format!("vtu-{D}-{degree}"));
     let path = scratch.0.join("fields.vtu");
     let file = VtuFile::new(&mesh, &u).function("sum", &|x| x.sum()).scalar(FieldScalar::Double);
     file.on_cells("a<b", &multiplier).write(&path).unwrap();
@@ -203,7 +202,6 @@ fn long_arrays_are_cut_into_blocks() {
     let mesh = Mesh::<2>::kuhn_box(&cube::<2>(0.0, 1.0), [128, 128]).unwrap();
     let u: Vec<f64> = (0..3 * mesh.n_cells()).map(|i| (i as f64).sin()).collect();
     let scratch = Scratch::new("vtu-blocks");
-    std::fs::create_dir_all(&scratch.0).unwrap();
     let path = scratch.0.join("fields.vtu");
     VtuFile::new(&mesh, &u).scalar(FieldScalar::Double).write(&path).unwrap();
     assert_eq!(read(&path).floats("PointData", "u"), u);
@@ -222,7 +220,6 @@ fn long_arrays_are_cut_into_blocks() {
 fn fields_of_the_wrong_length_are_refused_by_name() {
     let mesh = Mesh::<2>::kuhn_box(&cube::<2>(0.0, 1.0), [1, 1]).unwrap();
     let scratch = Scratch::new("vtu-refused");
-    std::fs::create_dir_all(&scratch.0).unwrap();
     let path = scratch.0.join("fields.vtu");
     let said = |file: VtuFile<'_, 2>| file.write(&path).unwrap_err().to_string();
     let u = [1.0; 6];
@@ -370,11 +367,11 @@ fn the_multiplier_of_an_obstacle_integrates_to_the_sum_of_nodal_multipliers() {
 fn a_study_writes_all_levels_on_request() {
     let scratch = Scratch::new("vtu-levels");
     let study = Study::<2>::new(scenes::radial(1.0)).scheme(Wopsip::default()).levels([4, 8]);
-    study.fields_to(&scratch.0).fields_of_all_levels().run().unwrap();
-    let list = scratch.read("radial-2d-wopsip.pvd");
+    study.fields_to(scratch.0.join("made")).fields_of_all_levels().run().unwrap();
+    let list = scratch.read("made/radial-2d-wopsip.pvd");
     assert!(list.contains("timestep=\"4\"") && list.contains("file=\"radial-2d-wopsip-4.vtu\""));
     assert!(list.contains("timestep=\"8\"") && list.contains("file=\"radial-2d-wopsip.vtu\""));
-    let grid = read(scratch.0.join("radial-2d-wopsip-4.vtu"));
+    let grid = read(scratch.0.join("made/radial-2d-wopsip-4.vtu"));
     assert_eq!(grid.array("FieldData", "level").1, "4");
     assert_eq!(grid.names("PointData"), ["obstacle", "error", "u"]);
     let fields = ["bound", "multiplier", "contact", "dimension"];

@@ -9,7 +9,7 @@ use unilateral::problem_file;
 use unilateral::scenes::AnyScene;
 use unilateral::scenes::Scene;
 
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 
 /// Reads the files named, each followed by the total contact force, or by nan where there is no contact boundary.
 /// Both readers find the same points, cells and arrays, and no cell is inside out.
@@ -76,7 +76,7 @@ fn put<const D: usize>(
             false => f64::NAN,
         };
         for scalar in [FieldScalar::Single, FieldScalar::Double] {
-            let path = folder.join(format!("{name}-{scheme}-{}-{scalar:?}.vtu", "f64"));
+            let path = folder.join(format!("{name}-{scheme}-{scalar:?}.vtu"));
             solved.write_vtu_with(&path, |file| file.number("level", 1.0).scalar(scalar)).unwrap();
             arguments.extend([path.display().to_string(), format!("{force:?}")]);
         }

@@ -3,6 +3,7 @@
 use crate::element::{Element, MAX_BASIS};
 use crate::mesh::HalfFacet;
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
+use crate::real::Point;
 
 /// Derivatives of all basis functions along barycentric coordinates.
 pub(crate) type Derivatives = [[f64; 4]; MAX_BASIS];
@@ -26,6 +27,21 @@ impl BasisAt {
     #[inline(always)]
     pub fn value(&self, coefficients: &[f64; MAX_BASIS]) -> f64 {
         coefficients.iter().zip(&self.values).map(|(c, v)| c * v).sum()
+    }
+    /// The gradient of the function with these coefficients, by those of the barycentric coordinates.
+    #[inline(always)]
+    pub fn gradient<const D: usize>(
+        &self,
+        coefficients: &[f64],
+        of_coordinates: &[Point<D>; 4],
+    ) -> Point<D> {
+        let mut gradient = Point::zeros();
+        for (k, of_coordinate) in of_coordinates.iter().enumerate().take(D + 1) {
+            let terms = coefficients.iter().zip(&self.derivatives);
+            let slope: f64 = terms.map(|(c, d)| c * d[k]).sum();
+            gradient += of_coordinate * slope;
+        }
+        gradient
     }
     fn zero() -> Self {
         Self { values: [0.0; MAX_BASIS], derivatives: [[0.0; 4]; MAX_BASIS] }

@@ -67,7 +67,8 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
 
 fn make(options: &Options, schemes: &[NamedScheme]) -> Result<(), Box<dyn Error>> {
     let quick = options.quick;
-    let mut rows = Vec::new();
+    let program = Program::new("orders", "f64", rayon::current_num_threads(), 1);
+    let mut report = Report::new(program, Vec::new());
     for entry in catalogue() {
         if options.pattern.as_ref().is_some_and(|pattern| !entry.name.contains(pattern)) {
             continue;
@@ -80,30 +81,24 @@ fn make(options: &Options, schemes: &[NamedScheme]) -> Result<(), Box<dyn Error>
                 continue;
             }
             let scene = entry.make(&Parameters::default())?;
-            rows.extend(in_its_dimension!(scene, |scene| study(scene, &schemes, degree, quick))?);
+            let rows = in_its_dimension!(scene, |scene| study(scene, &schemes, degree, quick))?;
+            report.rows.extend(rows);
         }
-        save(options, &rows)?;
+        save(options, &report.observed_orders())?;
     }
     if options.file.is_none() {
-        print(&orders_table(&observed(&rows), ORDER_TOLERANCE))?;
+        print(&orders_table(&report.observed_orders(), ORDER_TOLERANCE))?;
     }
     Ok(())
 }
 
-/// The observed orders of these rows.
-fn observed(rows: &[Row]) -> Vec<ObservedOrders> {
-    let program = Program::new("orders", "f64", rayon::current_num_threads(), 1);
-    Report::new(program, rows.to_vec()).observed_orders()
-}
-
 /// Writes the files that are asked for.
-fn save(options: &Options, rows: &[Row]) -> Request<()> {
-    let observed = observed(rows);
+fn save(options: &Options, observed: &[ObservedOrders]) -> Request<()> {
     if let Some(file) = &options.file {
-        write(file, orders_table(&observed, ORDER_TOLERANCE))?;
+        write(file, orders_table(observed, ORDER_TOLERANCE))?;
     }
     match &options.summary {
-        Some(file) => write(file, orders_summary(&observed, ORDER_TOLERANCE)),
+        Some(file) => write(file, orders_summary(observed, ORDER_TOLERANCE)),
         None => Ok(()),
     }
 }

@@ -115,8 +115,8 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// two for each cell.
     fn exchange_along(&mut self, chain: &[(usize, usize, f64)], [gap, gap_of_last]: [f64; 2]) {
         let of = |(k, number, _): (usize, usize, f64)| self.cells[k].flux[number];
-        let Some((first, last)) = chain.first().zip(chain.last()) else { return };
-        let [first, last] = map_entries([*first, *last], |end| of(end).max(0.0));
+        let ends = [chain[0], chain[chain.len() - 1]];
+        let [first, last] = map_entries(ends, |end| of(end).max(0.0));
         let [slope, curvature] = self.slopes(chain, gap_of_last - gap);
         let change = (-slope / curvature).min(first).max(-last);
         if change.is_finite() {
@@ -159,8 +159,9 @@ impl<const D: usize> Space<'_, D> {
             let alpha = self.alpha(facet.0);
             let measure = self.facet_measure(facet);
             let square = (measure * alpha * (D * (D + 1)) as f64).recip();
+            let cell = numbers.binary_search(&(facet.0 as u32));
             Some(ContactFacet {
-                at: (numbers.binary_search(&(facet.0 as u32)).ok()?, facet.1),
+                at: (cell.expect("cells of contact facets are numbered"), facet.1),
                 gaps,
                 variation: self.constant_of_trace(facet) * square.sqrt(),
                 has_one_sign: false,
@@ -200,8 +201,11 @@ impl<const D: usize> Space<'_, D> {
         ((k, entered), length): (HalfFacet, usize),
     ) {
         let Around { facets, here, numbers, neighbours, vertex } = *around;
-        let corner = |cell: u32| self.mesh.cell(cell as usize).iter().position(|&v| v == vertex);
-        let Some(j) = corner(numbers[k]) else { return };
+        let corner = |cell: u32| {
+            let position = self.mesh.cell(cell as usize).iter().position(|&v| v == vertex);
+            position.expect("all cells of a chain have its vertex")
+        };
+        let j = corner(numbers[k]);
         for local in (0..D + 1).filter(|&local| local != j && local != entered) {
             chain[2 * length - 1] = (k, local * (D + 1) + j, 1.0);
             match neighbours.across(numbers[k] as usize, local) {
@@ -210,16 +214,16 @@ impl<const D: usize> Space<'_, D> {
                     if let Some(last) = last.ok().filter(|&last| last > here) {
                         let gaps = map_entries([here, last], |facet| {
                             let facet = &facets[facet];
-                            corner(numbers[facet.at.0]).map_or(0.0, |j| facet.gaps[j])
+                            facet.gaps[corner(numbers[facet.at.0])]
                         });
                         cells.exchange_along(&chain[..2 * length], gaps);
                     }
                 }
                 Neighbour::Cell { cell, local: entered } if length < LONGEST => {
-                    let next = numbers.binary_search(&cell).ok();
-                    let Some((next, j)) = next.zip(corner(cell)) else { continue };
+                    let next = numbers.binary_search(&cell);
+                    let next = next.expect("all cells at a vertex of a contact facet are numbered");
                     let entered = usize::from(entered);
-                    chain[2 * length] = (next, entered * (D + 1) + j, -1.0);
+                    chain[2 * length] = (next, entered * (D + 1) + corner(cell), -1.0);
                     self.follow(cells, around, chain, ((next, entered), length + 1));
                 }
                 Neighbour::Cell { .. } => {}

@@ -74,18 +74,27 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
         if here.sum() * there.sum() < 0.0 || !exchanges(here) || !exchanges(there) {
             return 0.0;
         }
-        let number = map_entries([0, 1], |s| Flux::<D>::place(at[s].1, vertex[s]));
-        let terms = [(at[0].0, number[0], 1.0), (at[1].0, number[1], -1.0)];
-        let of_gaps = sign * (there.gap(sign, vertex[1]) - here.gap(sign, vertex[0]));
-        let [slope, curvature] = self.slopes(&terms, of_gaps);
+        let numbers = map_entries([0, 1], |s| {
+            let ((k, local), vertex) = (at[s], vertex[s]);
+            (k, Flux::<D>::place(local, vertex), vertex)
+        });
+        self.exchange_numbers(numbers, sign)
+    }
+
+    /// Exchanges a multiplier with this sign between two numbers, each given by its cell, its number in the cell and
+    /// the vertex at which it changes the divergence.
+    fn exchange_numbers(&mut self, numbers: [(usize, usize, usize); 2], sign: f64) -> f64 {
+        let [(here, one, a), (there, other, b)] = numbers;
+        let [of_here, of_there] = [&self.cells[here], &self.cells[there]];
+        let of_gaps = sign * (of_there.gap(sign, b) - of_here.gap(sign, a));
+        let [slope, curvature] = self.slopes(&[(here, one, 1.0), (there, other, -1.0)], of_gaps);
         let least = -sign * slope / curvature;
-        let exchange =
-            sign * least.max(-there.room(sign, vertex[1])).min(here.room(sign, vertex[0]));
+        let exchange = sign * least.max(-of_there.room(sign, b)).min(of_here.room(sign, a));
         if !exchange.is_finite() {
             return 0.0;
         }
-        self.add(at[0].0, number[0], vertex[0], exchange);
-        self.add(at[1].0, number[1], vertex[1], -exchange);
+        self.add(here, one, a, exchange);
+        self.add(there, other, b, -exchange);
         decrease([slope, curvature], exchange)
     }
 
@@ -114,18 +123,7 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
             return 0.0;
         }
         let sign = cell.sum().signum();
-        let number = map_entries([a, b], |v| Flux::<D>::place(v, v));
-        let terms = [(k, number[0], 1.0), (k, number[1], -1.0)];
-        let of_gaps = sign * (cell.gap(sign, b) - cell.gap(sign, a));
-        let [slope, curvature] = self.slopes(&terms, of_gaps);
-        let least = -sign * slope / curvature;
-        let exchange = sign * least.max(-cell.room(sign, b)).min(cell.room(sign, a));
-        if !exchange.is_finite() {
-            return 0.0;
-        }
-        self.add(k, number[0], a, exchange);
-        self.add(k, number[1], b, -exchange);
-        decrease([slope, curvature], exchange)
+        self.exchange_numbers(map_entries([a, b], |v| (k, Flux::<D>::place(v, v), v)), sign)
     }
 }
 

@@ -55,20 +55,6 @@ struct CellInputs<'a, const D: usize> {
     volume: f64,
 }
 
-impl<const D: usize> CellInputs<'_, D> {
-    /// The gradient of the discrete function at a point, by the `n` basis functions of the cell.
-    #[inline(always)]
-    fn gradient_of(&self, n: usize, basis: &BasisAt) -> Point<D> {
-        let mut gradient = Point::zeros();
-        for k in 0..=D {
-            let terms = self.values[..n].iter().zip(&basis.derivatives);
-            let slope: f64 = terms.map(|(c, d)| c * d[k]).sum();
-            gradient += self.admissible.gradients[k] * slope;
-        }
-        gradient
-    }
-}
-
 /// Integrals over one cell.
 #[derive(Default)]
 struct CellIntegrals {
@@ -251,7 +237,9 @@ impl<const D: usize> Space<'_, D> {
             sums.mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
             let discrete = basis.value(&data.values);
             sums.from_values += weight * reaction * (discrete - value).powi(2);
-            let slope = data.slope.unwrap_or_else(|| data.gradient_of(self.per_cell(), basis));
+            let slope = data.slope.unwrap_or_else(|| {
+                basis.gradient(&data.values[..self.per_cell()], &admissible.gradients)
+            });
             sums.distance += weight * alpha * (gradient - slope).norm_squared();
             let from_midpoint = (gradient * alpha + q) * 0.5 - slope * alpha;
             sums.from_midpoint += weight * from_midpoint.norm_squared() / alpha;
@@ -363,18 +351,11 @@ impl<const D: usize> Space<'_, D> {
             map_entries([&self.data.coefficient, &self.data.reaction, &self.data.source], |data| {
                 data.of(region)
             });
-        let mut data = CellInputs {
-            flux: self.flux_in(pair, cell, volume),
-            admissible: self.admissible_in(pair, cell),
-            values: self.local_values(cell, u),
-            slope: None,
-            coefficient,
-            reaction,
-            source,
-            volume,
-        };
+        let (admissible, values) = (self.admissible_in(pair, cell), self.local_values(cell, u));
         // linear functions have one basis function for each vertex, with the same derivatives at all points
-        data.slope = (pair.degree == 1).then(|| data.gradient_of(D + 1, &table.basis[0]));
-        data
+        let slope = || table.basis[0].gradient(&values[..D + 1], &admissible.gradients);
+        let slope = (pair.degree == 1).then(slope);
+        let flux = self.flux_in(pair, cell, volume);
+        CellInputs { flux, admissible, values, slope, coefficient, reaction, source, volume }
     }
 }

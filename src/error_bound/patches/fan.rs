@@ -1,13 +1,9 @@
 //! Patches of the plane whose cells lie side by side around the vertex: all fluxes follow from one.
 
-use std::ops::Range;
-
-use super::corner_fluxes::CornerFluxes;
 use super::corners::Corner;
 use super::linear::LinearCells;
 use crate::arrays::map_entries;
 use crate::mesh::{BoundaryCondition, Neighbour};
-use crate::parallel::cells;
 
 /// A cell of a fan, between two facets at its vertex.
 #[derive(Clone, Copy)]
@@ -18,17 +14,6 @@ pub(super) struct CellOfFan {
 }
 
 impl<const D: usize> LinearCells<'_, '_, D> {
-    /// Sets the fluxes of those of these vertices whose cells form one fan, and returns the others.
-    pub(super) fn set_fans(&self, vertices: &[u32], fluxes: &CornerFluxes) -> Vec<u32> {
-        let others = cells::map(vertices.len(), &|range: Range<usize>| {
-            let mut fan = Vec::new();
-            let set = |corner: Corner, k: usize, number: f64| fluxes.set(corner, k, number);
-            let is_other = |v: &u32| !self.set_fan(*v as usize, &mut fan, set);
-            vertices[range].iter().copied().filter(is_other).collect::<Vec<_>>()
-        });
-        others.concat()
-    }
-
     /// Calls `set` with the numbers of a vertex of the plane if its cells form one fan, else false.
     ///
     /// With the flux `x` out of the first cell through its first facet all others are `p + x` through first and
@@ -106,15 +91,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     /// The cells around a vertex of the plane, each with the next one behind its second facet: all of them, or the
     /// result is false. On the boundary the fan begins and ends with boundary facets.
     fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
-        let mesh = self.space.mesh;
-        // a search that ends early has branches that slow the loop over patches
-        let number_in = |cell: usize| {
-            let numbers = mesh.cell(cell).iter().zip(0_u8..);
-            let number = |found, (&v, k): (&u32, u8)| if v as usize == vertex { k } else { found };
-            let found = numbers.fold(u8::MAX, number);
-            debug_assert_ne!(found, u8::MAX, "the cells of a fan have its vertex");
-            found
-        };
+        let number_in = |cell: usize| self.number_in(cell, vertex as u32);
         let (cell, count) = self.one_cell[vertex];
         let own = number_in(cell as usize);
         let of_cell = |cell: usize, own: u8, sides| CellOfFan {

@@ -111,6 +111,17 @@ impl<const D: usize> LinearCells<'_, '_, D> {
         &self.cells[cell * known_of_cell(D) + 1..][..D + 1]
     }
 
+    /// The number of a vertex in one of its cells.
+    #[inline(always)]
+    pub fn number_in(&self, cell: usize, vertex: u32) -> u8 {
+        // a search that ends early has branches that slow the loop over patches
+        let numbers = self.space.mesh.cell(cell).iter().zip(0_u8..);
+        let number = |found, (&v, k): (&u32, u8)| if v == vertex { k } else { found };
+        let found = numbers.fold(u8::MAX, number);
+        debug_assert_ne!(found, u8::MAX, "the cell has the vertex");
+        found
+    }
+
     /// The load that the flux of a vertex balances in a cell, with a multiplier per volume.
     pub fn load(&self, corner: Corner, pressure: f64) -> f64 {
         -self.loads[corner.cell() * (D + 1) + corner.own()] - pressure * self.carried(corner)

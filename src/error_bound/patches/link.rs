@@ -14,15 +14,11 @@
 //! sum_K sum_b e_a . e_b / (9 alpha V) psi_b = sum_K e_a . sum_k c_k (m - x_k) / (9 alpha V)
 //! ```
 
-use std::ops::Range;
-
-use super::corner_fluxes::CornerFluxes;
 use super::corners::Corner;
 use super::linear::LinearCells;
 use super::patch::solve;
 use crate::arrays::{array_of, map_entries};
 use crate::mesh::{BoundaryCondition, Neighbour, dot, with_zeros};
-use crate::parallel::cells;
 
 /// The most edges at a vertex whose patch is solved this way.
 const MOST_EDGES: usize = 64;
@@ -148,17 +144,6 @@ fn pair(edges: &[u8; 3], k: usize) -> [usize; 2] {
 }
 
 impl<const D: usize> LinearCells<'_, '_, D> {
-    /// Sets the fluxes of those of these vertices whose link is a sphere or a disc, and returns the others.
-    pub(super) fn set_links(&self, vertices: &[u32], fluxes: &CornerFluxes) -> Vec<u32> {
-        let others = cells::map(vertices.len(), &|range: Range<usize>| {
-            let mut link = Link::default();
-            let set = |corner: Corner, k: usize, number: f64| fluxes.set(corner, k, number);
-            let is_other = |v: &u32| !self.set_link(*v as usize, &mut link, set);
-            vertices[range].iter().copied().filter(is_other).collect::<Vec<_>>()
-        });
-        others.concat()
-    }
-
     /// Calls `set` with the numbers of a vertex in space if its link is a sphere or a disc, else false.
     pub(super) fn set_link(
         &self,
@@ -188,17 +173,10 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     fn find_link(&self, vertex: usize, link: &mut Link) -> Option<()> {
         let mesh = self.space.mesh;
         let (cell, count) = self.one_cell[vertex];
-        // a search that ends early has branches that slow the loop over patches
-        let place_in = |cell: usize, vertex: u32| {
-            let places = mesh.cell(cell).iter().zip(0_u8..);
-            let place = |found, (&v, k): (&u32, u8)| if v == vertex { k } else { found };
-            let found = places.fold(u8::MAX, place);
-            debug_assert_ne!(found, u8::MAX, "cells at an edge have its ends");
-            found
-        };
         link.cells.clear();
         link.ends.clear();
-        let corner = Corner::new(cell as usize, place_in(cell as usize, vertex as u32).into());
+        let own = self.number_in(cell as usize, vertex as u32);
+        let corner = Corner::new(cell as usize, own.into());
         let (mut ends, mut edges) = ([0; 3], [0; 3]);
         for ((end, edge), other) in ends.iter_mut().zip(&mut edges).zip(corner.facets::<D>()) {
             *end = other as u8;
@@ -219,7 +197,8 @@ impl<const D: usize> LinearCells<'_, '_, D> {
                                 return None;
                             }
                             let cell = cell as usize;
-                            let ends = map_entries([a, b], |edge| place_in(cell, link.ends[edge]));
+                            let ends =
+                                map_entries([a, b], |edge| self.number_in(cell, link.ends[edge]));
                             let edge = link.edge_to(mesh.cell(cell)[usize::from(local)])?;
                             // the numbers of the four vertices sum to six
                             let own = 6 - local - ends[0] - ends[1];

@@ -48,6 +48,7 @@ use std::ops::Range;
 use corner_fluxes::CornerFluxes;
 use corners::Corner;
 use linear::LinearCells;
+use link::Link;
 use patch::Patch;
 use patch_cells::PatchCells;
 
@@ -105,10 +106,7 @@ impl<const D: usize> Space<'_, D> {
         for (cells, mut vertices) in self.ranges_with_vertices(length) {
             of_vertices.keep(cells.clone());
             if let Some(of) = linear {
-                vertices = match D {
-                    2 => of.set_fans(&vertices, &of_vertices),
-                    _ => of.set_links(&vertices, &of_vertices),
-                };
+                vertices = of.set_directly(&vertices, &of_vertices);
             }
             if !vertices.is_empty() {
                 let corners = corners.get_or_insert_with(|| self.corners());
@@ -145,5 +143,23 @@ impl<const D: usize> Space<'_, D> {
             flux.set_zero_on(f.cell as usize, f.local.into());
         }
         flux
+    }
+}
+
+impl<const D: usize> LinearCells<'_, '_, D> {
+    /// Sets the fluxes of those of these vertices whose cells form one fan or whose link is a sphere or a disc, and
+    /// returns the others.
+    fn set_directly(&self, vertices: &[u32], fluxes: &CornerFluxes) -> Vec<u32> {
+        let others = cells::map(vertices.len(), &|range: Range<usize>| {
+            // a link is large
+            let (mut fan, mut link) = (Vec::new(), (D > 2).then(Link::default));
+            let set = |corner: Corner, k: usize, number: f64| fluxes.set(corner, k, number);
+            let is_other = |&v: &u32| match &mut link {
+                None => !self.set_fan(v as usize, &mut fan, set),
+                Some(link) => !self.set_link(v as usize, link, set),
+            };
+            vertices[range].iter().copied().filter(is_other).collect::<Vec<_>>()
+        });
+        others.concat()
     }
 }

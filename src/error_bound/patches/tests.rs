@@ -1,6 +1,5 @@
 use std::cell::RefCell;
 
-use super::link::Link;
 use super::*;
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::mesh::{BoxDomain, Mesh, TaggedFacet};

@@ -86,8 +86,7 @@ fn checked_run<T: Real>(inequality: &Inequality<T>, recorder: &Recorder<'_>) -> 
     run(inequality, condensation.as_ref(), MAX_SYSTEMS, recorder)
 }
 
-/// A run with at most so many linear systems. If a static condensation of the penalised matrix is given, jump
-/// multipliers are unknowns.
+/// A run with at most so many linear systems. A static condensation comes with a penalised matrix.
 pub(super) fn run<'a, T: Real>(
     inequality: &'a Inequality<T>,
     condensation: Option<&StaticCondensation<'a, T>>,

@@ -8,8 +8,8 @@ use crate::linear::direct::{
 };
 use crate::real::Real;
 
-/// A vector of the mixed system: entries for the unknowns, and for the jump multipliers if these are unknowns of the
-/// system (else empty).
+/// A vector of the mixed system: entries for the unknowns, and for the jump multipliers of a penalised matrix (else
+/// empty).
 #[derive(Clone, Debug)]
 pub(crate) struct MixedVector {
     pub values: Vec<f64>,
@@ -32,26 +32,23 @@ pub(crate) struct NewtonSystem<'h, 'a, T> {
 }
 
 impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
-    /// The system of an inequality. If a static condensation of the penalised matrix of the inequality is given, jump
-    /// multipliers are unknowns, and the condensation solves the linear systems.
+    /// The system of an inequality. If its matrix is penalised, jump multipliers are unknowns, and its static
+    /// condensation, which must be given, solves the linear systems.
     pub fn new(
         inequality: &'a Inequality<T>,
         condensation: Option<&'h StaticCondensation<'a, T>>,
     ) -> Self {
+        debug_assert_eq!(inequality.penalised.is_some(), condensation.is_some());
         let free = inequality.free_unknowns();
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
         Self { inequality, condensation, free, is_free, lower_triangle: None }
     }
 
-    /// The penalised matrix, if jump multipliers are unknowns.
-    fn penalised(&self) -> Option<&'a PenalisedMatrix<T>> {
-        self.inequality.penalised.as_ref().filter(|_| self.condensation.is_some())
-    }
-
-    /// Zeros for all unknowns, and for the jump multipliers if these are unknowns.
+    /// Zeros for all unknowns, and for the jump multipliers.
     pub fn zeros(&self) -> MixedVector {
-        let n_jumps = self.penalised().map_or(0, |penalised| penalised.n_jumps());
+        let penalised = self.inequality.penalised.as_ref();
+        let n_jumps = penalised.map_or(0, |penalised| penalised.n_jumps());
         MixedVector {
             values: vec![0.0; self.inequality.size()],
             jump_multipliers: vec![0.0; n_jumps],
@@ -154,12 +151,12 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         }
     }
 
-    /// The residual `b - A u`; if jump multipliers `p` are unknowns, `c - K u - M^T p` and `g - M u + p / s` in the
+    /// The residual `b - A u`; with jump multipliers `p`, `c - K u - M^T p` and `g - M u + p / s` in the
     /// notation of [`PenalisedMatrix`], `s` the weight of a jump.
     pub fn residual(&self, point: &MixedVector) -> MixedVector {
         let mut residual = self.zeros();
         let value = |i: usize| point.values[i];
-        let Some(penalised) = self.penalised() else {
+        let Some(penalised) = &self.inequality.penalised else {
             self.inequality.residual_of(&value, &mut residual.values);
             return residual;
         };
@@ -172,10 +169,10 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         residual
     }
 
-    /// The energy `w . K w` of a change of the values by `w`, without penalties where jump multipliers are unknowns.
+    /// The energy `w . K w` of a change of the values by `w`, without the penalties of a penalised matrix.
     pub fn stiffness_energy(&self, w: &[f64]) -> f64 {
         let value = |i: usize| w[i];
-        let image = |i: usize| match self.penalised() {
+        let image = |i: usize| match &self.inequality.penalised {
             Some(penalised) => penalised.stiffness(i, value),
             None => {
                 let (columns, entries) = self.inequality.matrix.row(i);
@@ -193,6 +190,6 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
             let energy = multipliers.map(|(k, s)| s.to_f64() * penalised.jump(k, |i| w[i]).powi(2));
             energy.sum::<f64>()
         };
-        self.stiffness_energy(w) + self.penalised().map_or(0.0, jumps)
+        self.stiffness_energy(w) + self.inequality.penalised.as_ref().map_or(0.0, jumps)
     }
 }

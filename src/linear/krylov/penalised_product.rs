@@ -117,40 +117,11 @@ fn means<T: Real, const N: usize, const ARE_MEANS: bool>(values: &[T; N]) -> [T;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::{JumpTerm, Jumps, MeanJumps};
-
-    /// Two cells of `n` unknowns with a common facet, facet 0 of the first and facet 1 of the second, and Dirichlet
-    /// data on facet 2 of the first.
-    fn two_cells(n: usize, are_means: bool) -> PenalisedMatrix<f64> {
-        const NONE: u32 = JumpTerm::<f64>::NO_UNKNOWN;
-        let on_facet = |facet: usize| -> Vec<u32> {
-            let unknowns = 0..n as u32;
-            unknowns.filter(|&i| (i as usize == facet) == are_means).collect()
-        };
-        let weight = 1.0 / on_facet(0).len() as f64;
-        let pairs = on_facet(0).into_iter().zip(on_facet(1));
-        let interior = pairs.map(|(i, j)| JumpTerm { here: i, there: n as u32 + j, weight });
-        let boundary = on_facet(2).into_iter();
-        let boundary = boundary.map(|here| JumpTerm { here, there: NONE, weight });
-        let terms: Vec<_> = interior.chain(boundary).collect();
-        let half = terms.len() as u32 / 2;
-        let entry = |k: usize| {
-            let (i, j) = (k / n, k % n);
-            1.0 / (1 + i % n + j) as f64 + if i % n == j { i as f64 } else { 0.0 }
-        };
-        PenalisedMatrix {
-            blocks: (0..2 * n * n).map(entry).collect(),
-            jumps: Jumps::new((2, n), vec![0, half, 2 * half], terms).unwrap(),
-            weights: vec![7.0, 3.0],
-            jump_data: vec![0.0; 2],
-            mean_jumps: Some(MeanJumps { are_means, sides: vec![[0, n as u32 + 1], [2, NONE]] }),
-        }
-    }
 
     #[test]
     fn the_product_is_that_of_the_sum() {
         for (n, are_means) in [(3, true), (3, false), (4, true), (4, false)] {
-            let penalised = two_cells(n, are_means);
+            let penalised = PenalisedMatrix::cells_in_a_row((2, n), are_means, vec![7.0, 3.0]);
             let product = PenalisedProduct::new(&penalised).unwrap();
             let mut fixed = vec![false; 2 * n];
             fixed[1] = true;

@@ -177,36 +177,8 @@ impl<T: Real> SideCoupling<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::{
-        JumpTerm, Jumps, MeanJumps, PenalisedMatrix, RectangularMatrix, galerkin_product,
-    };
+    use crate::algebra::{PenalisedMatrix, RectangularMatrix, galerkin_product};
     use crate::linear::precondition::facet_mean_form::{diagonal, facet_mean_function};
-
-    /// Three cells of `n` unknowns in a row: facet 0 of each is facet 1 of the next one.
-    fn three_cells(n: usize) -> PenalisedMatrix<f64> {
-        let weight = 1.0 / (n - 1) as f64;
-        let on_facet = |cell: usize, facet: usize| {
-            (0..n).filter(move |&i| i != facet).map(move |i| (cell * n + i) as u32)
-        };
-        let terms = |cell: usize| {
-            let pairs = on_facet(cell, 0).zip(on_facet(cell + 1, 1));
-            pairs.map(move |(here, there)| JumpTerm { here, there, weight })
-        };
-        let entry = |k: usize| {
-            let (i, j) = (k / n, k % n);
-            1.0 / (1 + i % n + j) as f64 + if i % n == j { 1.0 + i as f64 } else { 0.0 }
-        };
-        let half = (n - 1) as u32;
-        let terms = terms(0).chain(terms(1)).collect();
-        let sides = vec![[0, n as u32 + 1], [n as u32, 2 * n as u32 + 1]];
-        PenalisedMatrix {
-            blocks: (0..3 * n * n).map(entry).collect(),
-            jumps: Jumps::new((3, n), vec![0, half, 2 * half], terms).unwrap(),
-            weights: vec![700.0, 30.0],
-            jump_data: vec![0.0; 2],
-            mean_jumps: Some(MeanJumps { are_means: false, sides }),
-        }
-    }
 
     /// The assembled matrix, with all entries, by its products with unit vectors.
     fn assembled(penalised: &PenalisedMatrix<f64>) -> SparseMatrix<f64> {
@@ -227,7 +199,7 @@ mod tests {
     #[test]
     fn the_solution_is_that_of_the_block_with_its_means() {
         for n in [3, 4] {
-            let penalised = three_cells(n);
+            let penalised = PenalisedMatrix::cells_in_a_row((3, n), false, vec![700.0, 30.0]);
             let (matrix, size) = (assembled(&penalised), 3 * n);
             let penalties = SidePenalties::new(&penalised).unwrap();
             let of_means = diagonal(&penalised, &penalties);

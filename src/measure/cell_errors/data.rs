@@ -34,13 +34,13 @@ impl<const D: usize> Space<'_, D> {
 /// Whether a coefficient may jump within a cell with these corners, though no level says so.
 pub(super) fn may_jump<const D: usize>(
     coefficient: Option<&Datum<D>>,
-    corner: impl Fn(usize) -> Point<D>,
+    corners: &[Point<D>; 4],
 ) -> bool {
     let Some(alpha) = coefficient else { return false };
     if alpha.constant().is_some() || alpha.level().is_some() {
         return false;
     }
-    let values = (0..=D).map(|k| alpha.at(&corner(k)));
+    let values = corners[..=D].iter().map(|x| alpha.at(x));
     let (least, most) = values.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
     most > SMOOTH_RATIO * least
 }

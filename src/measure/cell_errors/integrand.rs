@@ -62,7 +62,8 @@ impl<const D: usize> CellIntegrand<'_, D> {
             let (own, slope): (f64, _) = match discrete.slope {
                 Some(slope) => ((0..D + 1).map(term).sum(), slope),
                 None => {
-                    let slope = discrete.gradient(discrete.n, basis, &self.gradients);
+                    let coefficients = &discrete.values[..discrete.n];
+                    let slope = basis.gradient(coefficients, &self.gradients);
                     ((0..discrete.n).map(term).sum(), slope)
                 }
             };
@@ -108,18 +109,5 @@ impl<const D: usize> CellIntegrand<'_, D> {
             checks::finite(square, "exact gradient", &x, self.cell).map(|_| ())
         })?;
         Ok(sums)
-    }
-}
-
-impl<const D: usize> LocalFunction<D> {
-    /// The gradient at a point by `n` basis functions.
-    #[inline(always)]
-    pub fn gradient(&self, n: usize, basis: &BasisAt, gradients: &[Point<D>; 4]) -> Point<D> {
-        let mut gradient = Point::<D>::zeros();
-        for (k, of_coordinate) in gradients.iter().enumerate().take(D + 1) {
-            let slope: f64 = (0..n).map(|i| self.values[i] * basis.derivatives[i][k]).sum();
-            gradient += of_coordinate * slope;
-        }
-        gradient
     }
 }

@@ -196,12 +196,9 @@ impl<const D: usize> Space<'_, D> {
         });
         let discrete = of.u.map(|u| {
             let (n, values) = (self.per_cell(), self.local_values(cell, u));
-            let mut discrete = LocalFunction { n, values, slope: None };
             // linear functions have one basis function for each vertex, with the same derivatives at all points
-            if self.basis_degree <= 1 {
-                discrete.slope = Some(discrete.gradient(D + 1, &of.table.basis[0], &gradients));
-            }
-            discrete
+            let slope = || of.table.basis[0].gradient(&values[..D + 1], &gradients);
+            LocalFunction { n, values, slope: (self.basis_degree <= 1).then(slope) }
         });
         let region = self.mesh.region(cell);
         let coefficient = self.data.coefficient.of(region);
@@ -282,16 +279,15 @@ impl<const D: usize> Space<'_, D> {
         if self.has_no_error(of, integrand) {
             return Ok((0.0, Squares::default()));
         }
-        let corner = |k: usize| corners[k];
         let touches_in_piece = || {
             let admissible = integrand.admissible.as_ref();
-            admissible.is_some_and(|function| function.touches_in_piece(corner))
+            admissible.is_some_and(|function| function.touches_in_piece(&corners))
         };
         let data = [integrand.coefficient, integrand.reaction];
         let Some(SmoothRule { table, n, polynomials }) = of
             .smooth
             .as_ref()
-            .filter(|_| data.into_iter().all(|datum| !may_jump(datum, corner)))
+            .filter(|_| data.into_iter().all(|datum| !may_jump(datum, &corners)))
             .filter(|_| !touches_in_piece())
         else {
             return Ok((0.0, self.squares_by(of, integrand)?));
@@ -341,10 +337,7 @@ impl<const D: usize> Space<'_, D> {
     ) -> Option<Result<Squares, Error>> {
         let (rules, cell) = (of.cut_rules.as_ref()?, integrand.cell);
         let kinks = &of.kinks[self.mesh.region(cell)];
-        let of_first = of
-            .contact_at_vertices
-            .as_ref()
-            .map(|values| self.mesh.cell(cell).iter().map(|&v| values[v as usize]));
+        let of_first = of.contact_at_vertices.as_ref().map(|values| self.at_corners(values, cell));
         if kinks.are_far(&corners[..=D], of_first) {
             return None;
         }

@@ -6,9 +6,9 @@ use super::entity::ContactEntity;
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::{Space, checks};
 use crate::error::Error;
-use crate::measure::kinks::{is_far, is_far_by};
+use crate::measure::evaluation::Reference;
+use crate::measure::kinks::is_far;
 use crate::parallel::cells;
-use crate::parallel::vectors::collect;
 use crate::problem::Exact;
 use crate::real::Point;
 
@@ -44,17 +44,15 @@ impl<const D: usize> Space<'_, D> {
         exact: &Exact<D>,
         entities: &[ContactEntity],
     ) -> Result<Vec<Vec<(usize, ExactContact)>>, Error> {
-        // for facets and for cells
-        let rules = [D - 1, D]
-            .map(|dimension| CutRule::new(dimension, DEGREE).without_needless_bisections());
-        let are_cells = entities.first().is_some_and(|entity| entity.facet.is_none());
-        let set = exact.contact.as_ref().filter(|_| are_cells);
-        let vertices = self.mesh.vertices();
-        let at_vertices = set.map(|set| collect(vertices.len(), |v| (set.indicator)(&vertices[v])));
+        // all entities are facets, or all are cells
+        let Some(first) = entities.first() else { return Ok(Vec::new()) };
+        let rule = CutRule::new(first.dimension::<D>(), DEGREE).without_needless_bisections();
+        let at_vertices = self.contact_at_vertices(&Reference::Exact(exact));
         let chunks = cells::map(entities.len(), &|range: Range<usize>| {
             let on_entity = |k: usize| {
-                let rule = &rules[usize::from(entities[k].facet.is_none())];
-                let found = self.exact_contact_on(exact, entities[k], rule, at_vertices.as_deref());
+                let at_corners =
+                    at_vertices.as_ref().map(|values| self.at_corners(values, entities[k].cell));
+                let found = self.exact_contact_on(exact, entities[k], &rule, at_corners);
                 found.map(|found| found.counts().then_some((k, found))).transpose()
             };
             range.filter_map(on_entity).collect::<Result<Vec<_>, _>>()
@@ -67,7 +65,7 @@ impl<const D: usize> Space<'_, D> {
         exact: &Exact<D>,
         entity: ContactEntity,
         rule: &CutRule,
-        at_vertices: Option<&[f64]>,
+        at_corners: Option<[f64; 4]>,
     ) -> Result<ExactContact, Error> {
         let corners = self.corner_points(entity);
         let mut found = ExactContact::default();
@@ -91,17 +89,10 @@ impl<const D: usize> Space<'_, D> {
             Some(set) => {
                 let level = &set.indicator;
                 let own = &corners[..=entity.dimension::<D>()];
-                let is_far = match at_vertices {
-                    Some(values) => {
-                        let of_cell = self.mesh.cell(entity.cell).iter();
-                        is_far_by(level, own, of_cell.map(|&v| values[v as usize]))
-                    }
-                    None => is_far(level, own),
-                };
-                is_near = !is_far;
-                let sign = match is_far {
-                    true => Some(level(&corners[0]) > 0.0),
-                    false => rule.sign_of_uncut(&corners, level),
+                is_near = !is_far(level, own, at_corners);
+                let sign = match is_near {
+                    true => rule.sign_of_uncut(&corners, level),
+                    false => Some(level(&corners[0]) > 0.0),
                 };
                 match sign {
                     Some(true) => add_whole(true),

@@ -6,7 +6,7 @@ use super::Solved;
 use crate::error::{Error, write_error};
 use crate::instances::compiled;
 use crate::measure::Fields;
-use crate::mesh::{Layers, Part};
+use crate::mesh::{HalfFacet, Layers};
 use crate::paraview::VtuFile;
 use crate::problem::DataOnMesh;
 use crate::real::Point;
@@ -113,25 +113,30 @@ impl<const D: usize> Solved<'_, D> {
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };
-        let shares = self.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
-        let mut fields = WrittenFields::new(fields, shares, D);
-        let own = self.part().map(|part| {
-            fields = fields.on_own_cells(part);
-            part.mesh.part(&part.owners, part.number, Layers::across_facets(0))
-        });
+        let bound = self.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
+        let u = fields.values_by_cell(D);
+        let in_contact = in_contact(&fields);
+        let [u, bound, multiplier, contact] =
+            [u, bound, fields.multiplier, fields.contact].map(|values| self.of_own_cells(values));
+        let [pressure, gap, in_contact] = [fields.pressure, fields.gap, in_contact]
+            .map(|values| self.of_own_facets(&fields.contact_boundary, values));
+        let facets = self.own_facets(fields.contact_boundary);
+        let own = self
+            .part()
+            .map(|part| part.mesh.part(&part.owners, part.number, Layers::across_facets(0)));
         let own = own.transpose()?;
         let mesh = own.as_ref().map_or(self.mesh(), |own| &own.mesh);
         let problem = self.discretisation().problem();
         let data = DataOnMesh::new(problem, mesh)?;
-        let mut file = VtuFile::new(mesh, &fields.u);
+        let mut file = VtuFile::new(mesh, &u);
         let bounds = [&data.lower, &data.upper].into_iter().filter(|bound| bound.is_given());
         for (name, bound) in ["obstacle", "upper_obstacle"].into_iter().zip(bounds) {
             file = file.function_in_cells(name, |cell, x| {
                 bound.of(mesh.region(cell)).map_or(f64::NAN, |bound| bound.in_cell(mesh, cell, x))
             });
         }
-        if !fields.bound.is_empty() {
-            file = file.on_cells("bound", &fields.bound);
+        if !bound.is_empty() {
+            file = file.on_cells("bound", &bound);
         }
         match (reference.filter(|r| r.has_iterate).zip(self.hierarchy), &problem.exact) {
             (Some((reference, (_, own))), _) => {
@@ -142,76 +147,46 @@ impl<const D: usize> Solved<'_, D> {
             (None, None) => {}
         }
         if problem.has_obstacle() {
-            file = file.on_cells("multiplier", &fields.multiplier);
-            file = file.on_cells("contact", &fields.contact);
+            file = file.on_cells("multiplier", &multiplier);
+            file = file.on_cells("contact", &contact);
         }
         if problem.has_gap() {
-            file = file.on_facets("pressure", &fields.facets, &fields.pressure);
-            file = file.on_facets("gap", &fields.facets, &fields.gap);
+            file = file.on_facets("pressure", &facets, &pressure);
+            file = file.on_facets("gap", &facets, &gap);
             if !problem.has_obstacle() {
-                file = file.on_facets("contact", &fields.facets, &fields.in_contact);
+                file = file.on_facets("contact", &facets, &in_contact);
             }
         }
         let file = complete(file);
         file.write(path)?;
         list.map_or(Ok(()), |(list, pieces)| file.write_list(list, pieces))
     }
+
+    /// Of numbers by cell those of own cells, which are the cells of the file of a part in their order.
+    fn of_own_cells(&self, values: Vec<f64>) -> Vec<f64> {
+        let Some(part) = self.part().filter(|_| !values.is_empty()) else { return values };
+        let by_cell = values.chunks_exact(values.len() / part.owners.len()).enumerate();
+        by_cell.filter(|(cell, _)| part.owns(*cell)).flat_map(|(_, own)| own).copied().collect()
+    }
+    /// Of numbers by facet those of the facets of own cells.
+    fn of_own_facets(&self, facets: &[HalfFacet], values: Vec<f64>) -> Vec<f64> {
+        let Some(part) = self.part() else { return values };
+        let by_facet = facets.iter().zip(values);
+        by_facet.filter(|((cell, _), _)| part.owns(*cell)).map(|(_, value)| value).collect()
+    }
+    /// The facets of own cells, with the numbers of these among own cells.
+    fn own_facets(&self, facets: Vec<HalfFacet>) -> Vec<HalfFacet> {
+        let Some(part) = self.part() else { return facets };
+        let own: Vec<usize> = (0..part.owners.len()).filter(|&cell| part.owns(cell)).collect();
+        let number = |(cell, local)| Some((own.binary_search(&cell).ok()?, local));
+        facets.into_iter().filter_map(number).collect()
+    }
 }
 
-/// Fields as a file has them: values of the solution by cell, numbers by cell, and numbers by contact facet.
-#[derive(Default)]
-struct WrittenFields {
-    u: Vec<f64>,
-    bound: Vec<f64>,
-    multiplier: Vec<f64>,
-    contact: Vec<f64>,
-    facets: Vec<(usize, usize)>,
-    pressure: Vec<f64>,
-    gap: Vec<f64>,
-    /// One on facets in contact as a whole.
-    in_contact: Vec<f64>,
-}
-
-impl WrittenFields {
-    fn new(fields: Fields, bound: Vec<f64>, dimension: usize) -> Self {
-        // facets in contact are listed in the order of the contact boundary
-        let mut touching = fields.discrete_contact.facets.iter().peekable();
-        let state = |place| if touching.next_if_eq(&place).is_some() { 1.0 } else { 0.0 };
-        let in_contact = fields.contact_boundary.iter().map(state).collect();
-        let u = fields.values_by_cell(dimension);
-        let Fields { multiplier, contact, contact_boundary: facets, pressure, gap, .. } = fields;
-        Self { u, bound, multiplier, contact, facets, pressure, gap, in_contact }
-    }
-
-    /// The fields on the mesh of own cells of a part, which has these in their order.
-    fn on_own_cells<const D: usize>(&self, part: &Part<D>) -> Self {
-        let n_cells = part.owners.len();
-        let own: Vec<usize> = (0..n_cells).filter(|&cell| part.owns(cell)).collect();
-        let of_cells = |values: &[f64]| -> Vec<f64> {
-            let cells = own.iter().filter(|_| !values.is_empty());
-            let per_cell = values.len() / n_cells;
-            cells
-                .flat_map(|&cell| &values[cell * per_cell..(cell + 1) * per_cell])
-                .copied()
-                .collect()
-        };
-        let is_own = |&k: &usize| part.owns(self.facets[k].0);
-        let places: Vec<usize> = (0..self.facets.len()).filter(is_own).collect();
-        let of_facets =
-            |values: &[f64]| -> Vec<f64> { places.iter().map(|&k| values[k]).collect() };
-        let number = |&k: &usize| {
-            let (cell, local) = self.facets[k];
-            (own.partition_point(|&other| other < cell), local)
-        };
-        Self {
-            u: of_cells(&self.u),
-            bound: of_cells(&self.bound),
-            multiplier: of_cells(&self.multiplier),
-            contact: of_cells(&self.contact),
-            facets: places.iter().map(number).collect(),
-            pressure: of_facets(&self.pressure),
-            gap: of_facets(&self.gap),
-            in_contact: of_facets(&self.in_contact),
-        }
-    }
+/// For each facet of the contact boundary one if it is in contact as a whole, else zero.
+fn in_contact(fields: &Fields) -> Vec<f64> {
+    // facets in contact are listed in the order of the contact boundary
+    let mut touching = fields.discrete_contact.facets.iter().peekable();
+    let state = |place| if touching.next_if_eq(&place).is_some() { 1.0 } else { 0.0 };
+    fields.contact_boundary.iter().map(state).collect()
 }

@@ -101,15 +101,12 @@ impl<const D: usize> Solved<'_, D> {
     /// # Errors
     /// [`NoBound`].
     pub fn primal_dual_pair(&self) -> Result<PrimalDualPair<D>, NoBound> {
-        let (of, inequality) = (self.discretisation(), self.inequality());
-        match self.has_iterate {
-            true if self.part().is_none() => of.primal_dual_pair(inequality, &self.solution),
-            true => {
-                let counts = |cell| self.system.owns(cell);
-                self.system.agreed_bound(of.pair_on_part(inequality, &self.solution, &counts))
-            }
-            false => Err(NoBound::NoIterate),
+        if !self.has_iterate {
+            return Err(NoBound::NoIterate);
         }
+        let (of, inequality) = (self.discretisation(), self.inequality());
+        let counts = |cell| self.system.owns(cell);
+        self.system.agreed_bound(of.pair_of_cells(inequality, &self.solution, &counts))
     }
     /// A bound on the error from solution and data alone: see [`crate::error_bound`]. It is computed once. Over the
     /// parts of a mesh it has the shares of own cells; multipliers are exchanged for flux inside parts alone, so that it
@@ -127,14 +124,9 @@ impl<const D: usize> Solved<'_, D> {
         let clock = Instant::now();
         let pair = self.primal_dual_pair()?;
         let (of, u) = (self.discretisation(), self.values());
-        let bound = match self.inequality().distribution() {
-            None => of.error_bound(&pair, u)?,
-            Some(distribution) => {
-                let own = of.part_of_bound(&pair, u, &|cell| self.system.owns(cell));
-                let own = self.system.agreed_bound(own)?;
-                self.system.agreed_bound(own.over_parts(distribution))?
-            }
-        };
+        let own = of.part_of_bound(&pair, u, &|cell| self.system.owns(cell));
+        let own = self.system.agreed_bound(own)?;
+        let bound = self.system.agreed_bound(own.bound(self.inequality().distribution()))?;
         Ok(once(&self.bound, || (pair, bound, clock.elapsed().as_secs_f64())))
     }
     /// Seconds of the bound; none if it is not known, or not yet.

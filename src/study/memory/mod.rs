@@ -47,15 +47,10 @@ pub(crate) fn memory_of_process() -> Option<u64> {
 /// off by a half. Layouts with more unknowns than linear ones were not measured, but for conforming quadratics, and are
 /// scaled by the square of their number.
 pub(super) fn estimate(dimension: usize, layout: Layout, cells: f64, obstacle: bool) -> f64 {
-    let growth = match dimension {
-        1 => 1.0,
-        2 => cells.max(2.0).log2(),
-        _ => cells.cbrt(),
-    };
-    let constants = match dimension {
-        1 => [320.0, 320.0, 750.0, 660.0],
-        2 => [17.5, 37.0, 135.0, 103.0],
-        _ => [10.0, 85.0, 480.0, 215.0],
+    let (growth, constants) = match dimension {
+        1 => (1.0, [320.0, 320.0, 750.0, 660.0]),
+        2 => (cells.max(2.0).log2(), [17.5, 37.0, 135.0, 103.0]),
+        _ => (cells.cbrt(), [10.0, 85.0, 480.0, 215.0]),
     };
     let constant = if layout.is_broken() {
         constants[2] * (layout.cell as f64 / (dimension + 1) as f64).powi(2)

@@ -73,8 +73,8 @@ impl<const D: usize> Study<'_, D> {
             self.check_level(&*entry.scheme, self.first_level(), memory_of_process())?;
         }
         let mesh = self.first_mesh()?;
-        for (entry, problem) in self.entries.iter().zip(self.problems()) {
-            let of_entry = NestedIteration::new(&problem, &mesh).check_bound(&*entry.scheme);
+        for entry in &self.entries {
+            let of_entry = NestedIteration::new(&entry.problem, &mesh).check_bound(&*entry.scheme);
             // data that are bad on a mesh are for the rows
             if let Err(error @ Error::NotAdaptive { .. }) = of_entry {
                 return Err(error);
@@ -95,18 +95,18 @@ impl<const D: usize> Study<'_, D> {
         // no finest mesh is asked for: the first one is looked at, later ones by their rows
         let crossing = self.find_crossing([&first])?;
         let measured = Measured { failure, reference: None };
-        for (entry, problem) in self.entries.iter().zip(&self.problems()) {
-            let label = entry.label(problem);
+        for entry in &self.entries {
             for solver in self.solvers() {
                 let meshes = AdaptiveMeshes::new(first.clone());
-                let nested = self.with_settings(NestedIteration::new(problem, &meshes), &solver);
+                let nested = NestedIteration::new(&entry.problem, &meshes);
+                let nested = self.with_settings(nested, &solver);
                 let mut steps = AdaptiveIteration::new(nested, &*entry.scheme, adaptivity)?;
                 for level in 0.. {
-                    (self.observer)(Progress::Started(&self.scene.name, &label, level));
+                    (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
                     let cells = meshes.finest().n_cells();
                     if let Err(error) = self.check_step(&*entry.scheme, (level, cells)) {
-                        let (of, place) = ((entry, problem), (level, cells as f64));
-                        let row = self.row_without_memory(of, place, solver.name(), error)?;
+                        let place = (level, cells as f64);
+                        let row = self.row_without_memory(entry, place, solver.name(), error)?;
                         self.finish(row, &mut rows)?;
                         break;
                     }
@@ -119,8 +119,7 @@ impl<const D: usize> Study<'_, D> {
                         Some(Err(error)) => {
                             let place = (level, meshes.finest());
                             let name = solver.name();
-                            let of = (entry, problem);
-                            let row = self.row_without(of, place, name, failure, error)?;
+                            let row = self.row_without(entry, place, name, failure, error)?;
                             self.finish(row, &mut rows)?;
                             break;
                         }

@@ -43,7 +43,7 @@ impl<'a, const D: usize> Study<'a, D> {
             message: Some(why),
             ..Row::new(&self.scene.name, D, entry.scheme.name(), level, Outcome::TimeLimit)
         };
-        self.named(entry, &entry.problem(&self.scene.problem), row, None)
+        self.named(entry, row, None)
     }
 
     /// The variant of the rows of a case, with its level; of adaptive meshes that is zero.

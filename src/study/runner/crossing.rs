@@ -1,6 +1,6 @@
 //! Bounds that cross, before the first row.
 
-use super::{Study, with_set};
+use super::Study;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
@@ -18,7 +18,7 @@ impl<const D: usize> Study<'_, D> {
         let Some(points) = self.points_of_bounds()? else { return Ok(None) };
         for mesh in meshes {
             let seen = points.look(&self.scene.problem, mesh)?;
-            let found = seen.crossing(seen.size());
+            let found = seen.crossing(seen.size);
             if found.is_some() {
                 return Ok(found);
             }
@@ -28,16 +28,16 @@ impl<const D: usize> Study<'_, D> {
 
     /// The points of all schemes at which bounds are compared; none where no bounds can cross.
     pub(super) fn points_of_bounds(&self) -> Result<Option<Points>, Error> {
-        let problem = &self.scene.problem;
-        if !problem.upper.is_given() {
+        if !self.scene.problem.upper.is_given() {
             return Ok(None);
         }
-        let without_data =
-            Problem { constraint_set: problem.constraint_set.clone(), ..Problem::new() };
         let mut points = Points::default();
-        let entries = self.entries.iter().map(|entry| (&entry.scheme, &entry.set));
-        for (scheme, set) in entries.chain(self.reference.iter().map(|of| (&of.scheme, &of.set))) {
-            points.add(&**scheme, &with_set(&without_data, set), self.quadrature)?;
+        let entries = self.entries.iter().map(|of| (&of.scheme, &of.problem));
+        let reference = self.reference.iter().map(|of| (&of.scheme, &of.problem));
+        for (scheme, problem) in entries.chain(reference) {
+            let constraint_set = problem.constraint_set.clone();
+            let without_data = Problem { constraint_set, ..Problem::new() };
+            points.add(&**scheme, &without_data, self.quadrature)?;
         }
         Ok(Some(points))
     }

@@ -1,6 +1,7 @@
 //! The judgement of values that another program found.
 
 use super::Study;
+use super::rows::with_level;
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::nested::NestedIteration;
@@ -20,19 +21,13 @@ impl<const D: usize> Study<'_, D> {
     }
     fn judge_values(&self, values: &[f64]) -> Result<Row, Error> {
         let failure = self.where_exact_fails(1)?;
-        let (Some(entry), level) = (self.entries.first(), self.first_level()) else {
-            unreachable!("checked above")
-        };
-        let problem = entry.problem(&self.scene.problem);
+        let (entry, level) = (&self.entries[0], self.first_level());
         let hierarchies = self.hierarchies(None)?;
-        let mut on_level = hierarchies.iter().filter_map(|h| Some((h.position(level)?, h)));
-        let Some((position, hierarchy)) = on_level.next() else {
-            unreachable!("a hierarchy has the level")
-        };
-        let nested = NestedIteration::new(&problem, hierarchy).quadrature(self.quadrature);
+        let on = |h| NestedIteration::new(&entry.problem, h).quadrature(self.quadrature);
+        let mut nested: Vec<_> = hierarchies.iter().map(on).collect();
+        let (position, nested) = with_level(&mut nested, level);
         let solved = nested.judge_on(position, &*entry.scheme, values)?;
-        let reference_problem = self.reference_problem();
-        let reference = self.find_reference(&reference_problem, &hierarchies);
+        let reference = self.find_reference(&hierarchies);
         let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let row = self.measured_row(entry, level, &solved, measured)?;
         let iterations = Iterations { outer: None, ..row.iterations };

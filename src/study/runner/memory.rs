@@ -4,7 +4,6 @@ use super::{Entry, Study};
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::instances::compiled;
-use crate::problem::Problem;
 use crate::scheme::Scheme;
 use crate::study::memory::{
     estimate, estimate_without_factors, memory_of_process, peak_memory_bytes, unknowns_about,
@@ -105,7 +104,7 @@ impl<const D: usize> Study<'_, D> {
     /// The row of a run that does not fit into the memory, on so many cells.
     pub(super) fn row_without_memory(
         &self,
-        (entry, problem): (&Entry<'_, D>, &Problem<D>),
+        entry: &Entry<'_, D>,
         (level, cells): (usize, f64),
         solver: &str,
         error: Error,
@@ -116,6 +115,6 @@ impl<const D: usize> Study<'_, D> {
             peak_memory_bytes: peak_memory_bytes(),
             ..Row::new(&self.scene.name, D, entry.scheme.name(), level, Outcome::OutOfMemory)
         };
-        self.named(entry, problem, row, None).with_error(error)
+        self.named(entry, row, None).with_error(error)
     }
 }

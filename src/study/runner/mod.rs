@@ -18,7 +18,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::assemble::DataQuadrature;
-use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, StepCounter};
 use crate::instances::compiled;
@@ -26,7 +25,7 @@ use crate::nested::{Adaptivity, Hierarchy, NestedIteration, Phase, Solved, check
 use crate::problem::Problem;
 use crate::real::Precision;
 use crate::scenes::Scene;
-use crate::scheme::{Scheme, SchemeOptions};
+use crate::scheme::Scheme;
 use crate::study::compatibility::{check_entries, check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::fields::FieldFiles;
@@ -98,34 +97,13 @@ pub struct Study<'a, const D: usize> {
 type EachSolution<'a, const D: usize> =
     Box<dyn Fn(&str, usize, &Solved<'_, D>) -> Result<(), Error> + 'a>;
 
-/// A scheme, with its constraint set if that is not the problem's.
+/// A scheme with its problem: that of the scene, perhaps with another constraint set.
 #[derive(Clone)]
 struct Entry<'a, const D: usize> {
     scheme: Arc<dyn Scheme<D> + 'a>,
-    set: Option<Arc<dyn ConstraintSet>>,
-    /// The choices in its label, if those that are default are among them.
-    shown: Option<SchemeOptions>,
-}
-
-impl<const D: usize> Entry<'_, D> {
+    problem: Problem<D>,
     /// The label of its rows.
-    fn label(&self, problem: &Problem<D>) -> String {
-        self.scheme.label_with(problem.constraint_set(), self.shown)
-    }
-    /// The problem with the constraint set of the entry.
-    fn problem(&self, problem: &Problem<D>) -> Problem<D> {
-        with_set(problem, &self.set)
-    }
-}
-
-/// A problem with a constraint set, where there is one, in place of its own.
-fn with_set<const D: usize>(
-    problem: &Problem<D>,
-    set: &Option<Arc<dyn ConstraintSet>>,
-) -> Problem<D> {
-    let mut problem = problem.clone();
-    problem.constraint_set = set.clone().or(problem.constraint_set);
-    problem
+    label: String,
 }
 
 impl<const D: usize> fmt::Debug for Study<'_, D> {
@@ -190,9 +168,7 @@ impl<'a, const D: usize> Study<'a, D> {
             let allowed = format!("a study needs {parameter}: at least one");
             return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
         }
-        let problems = self.problems();
-        let of_entries = self.entries.iter().zip(&problems);
-        let labels = of_entries.map(|(entry, p)| entry.label(p));
+        let labels = self.entries.iter().map(|entry| &entry.label[..]);
         check_names(labels, self.solvers().iter().map(|solver| solver.name()))?;
         if self.solvers().iter().any(|solver| solver.precision() != self.precision()) {
             return Err(Error::Parameter {
@@ -204,8 +180,8 @@ impl<'a, const D: usize> Study<'a, D> {
         let domain = &self.scene.domain;
         self.levels.iter().try_for_each(|&level| check_level(domain, level, parts))?;
         let largest = self.levels.iter().copied().max().unwrap_or(self.first_level());
-        for (entry, problem) in self.entries.iter().zip(problems) {
-            check_scheme(&*entry.scheme, problem, self.quadrature)?;
+        for entry in &self.entries {
+            check_scheme(&*entry.scheme, entry.problem.clone(), self.quadrature)?;
             check_entries(&*entry.scheme, largest, domain.cells(largest) / parts as f64)?;
         }
         if let Some(adaptivity) = &self.adaptive {
@@ -248,10 +224,8 @@ impl<'a, const D: usize> Study<'a, D> {
             true => Vec::new(),
             false => self.hierarchies(available)?,
         };
-        let problems = self.problems();
-        let reference_problem = self.reference_problem();
         let crossing = self.find_crossing(hierarchies.iter().map(Hierarchy::finest))?;
-        let find_reference = || self.find_reference(&reference_problem, &hierarchies);
+        let find_reference = || self.find_reference(&hierarchies);
         let reference = crossing.is_none().then(find_reference).flatten();
         let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let mut by_solver: Vec<Vec<NestedIteration<'_, D>>> = self
@@ -264,9 +238,8 @@ impl<'a, const D: usize> Study<'a, D> {
             .collect();
         let mut kept = kept.into_iter();
         let (mut rows, mut unwritten) = (Vec::new(), None);
-        for (entry, problem) in self.entries.iter().zip(&problems) {
+        for entry in &self.entries {
             for (nested, solver) in by_solver.iter_mut().zip(self.solvers()) {
-                let label = entry.label(problem);
                 for &level in &self.levels {
                     let (kept, is_whole) = kept.next().expect("one entry for each row");
                     if let Some(row) = kept.clone() {
@@ -276,11 +249,10 @@ impl<'a, const D: usize> Study<'a, D> {
                     if is_whole {
                         continue;
                     }
-                    (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                    let of = (entry, problem);
+                    (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
                     let why_not = (&crossing, available);
                     let place = (level, solver.name());
-                    let (row, solved) = self.row(nested, of, place, measured, why_not)?;
+                    let (row, solved) = self.row(nested, entry, place, measured, why_not)?;
                     let row = match &kept {
                         Some(row) => row,
                         None => self.finish(row, &mut rows)?,
@@ -311,22 +283,16 @@ impl<'a, const D: usize> Study<'a, D> {
         Report::new(program(), rows)
     }
 
-    /// The problem of the scene with the constraint set of each scheme.
-    fn problems(&self) -> Vec<Problem<D>> {
-        self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect()
-    }
-
     /// The keys of all rows, in the order in which they run; none of adaptive refinement, whose number of steps is not
     /// known before.
     pub fn keys(&self) -> Vec<RowKey> {
         let mut keys = Vec::new();
-        for (entry, problem) in self.entries.iter().zip(&self.problems()) {
-            let label = entry.label(problem);
+        for entry in &self.entries {
             for solver in self.solvers() {
                 let levels = self.levels.iter().filter(|_| self.adaptive.is_none());
                 keys.extend(levels.map(|&level| RowKey {
                     scene: self.scene.name.clone(),
-                    label: label.clone(),
+                    label: entry.label.clone(),
                     solver: solver.name().to_owned(),
                     level,
                 }));

@@ -9,7 +9,6 @@ use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::mesh::{Layers, Mesh};
 use crate::nested::{Hierarchy, NestedIteration, Solved};
-use crate::problem::Problem;
 use crate::processes::{ExchangeError, agree, agree_on_data};
 use crate::real::Precision;
 #[cfg(feature = "report")]
@@ -48,7 +47,6 @@ impl<const D: usize> Study<'_, D> {
     pub fn run_on_parts(&self, process: &Process, checks: PartChecks) -> Result<Report, Error> {
         let failure = self.where_exact_fails(process.count())?;
         self.check_parts()?;
-        let problems = self.problems();
         let hierarchies = self.hierarchies_on_parts(process)?;
         let solver = Rc::new(SolverOnParts::new(process.clone()).by_engine(checks.by_engine));
         let on_parts = |hierarchy| {
@@ -58,31 +56,29 @@ impl<const D: usize> Study<'_, D> {
         let mut nested: Vec<NestedIteration<'_, D>> = hierarchies.iter().map(on_parts).collect();
         let admissible = self.check_crossing_on_parts(&hierarchies, process)?;
         let mut rows = Vec::new();
-        for (entry, problem) in self.entries.iter().zip(&problems) {
-            let label = entry.label(problem);
+        for entry in &self.entries {
             for &level in &self.levels {
-                (self.observer)(Progress::Started(&self.scene.name, &label, level));
+                (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
                 let (position, nested) = with_level(&mut nested, level);
-                nested.replace_constraint_set(problem);
+                nested.replace_constraint_set(&entry.problem);
                 let solved = match &admissible {
                     Ok(()) => nested.solve_on(position, &*entry.scheme),
                     Err(error) => Err(error.clone().into()),
                 };
-                let of = (entry, problem);
                 let place = (level, nested.mesh(position));
                 let failed =
-                    |error: &Error| self.row_of_failure(of, place, error, (process, checks));
+                    |error: &Error| self.row_of_failure(entry, place, error, (process, checks));
                 let mut row = match &solved {
                     Err(error) => failed(error),
                     Ok(solved) => self
-                        .row_on_parts(of, level, solved, failure.as_deref(), (process, checks))
+                        .row_on_parts(entry, level, solved, failure.as_deref(), (process, checks))
                         .unwrap_or_else(|error| failed(&error)),
                 };
                 row.solver = nested.solver_name().to_owned();
                 agree(self.finish(row, &mut rows).map(|_| ()), &*process.exchange)?;
                 #[cfg(feature = "report")]
                 if let Ok(solved) = &solved {
-                    self.write_on_parts(entry, problem, level, solved)?;
+                    self.write_on_parts(entry, level, solved)?;
                 }
             }
         }
@@ -100,9 +96,8 @@ impl<const D: usize> Study<'_, D> {
             let Some(part) = hierarchy.part(hierarchy.n_meshes() - 1) else { return Ok(()) };
             let own = points.look(&self.scene.problem, &part.mesh);
             let seen = agree(own, &*process.exchange)?;
-            let size = process.exchange.largest(&[seen.size()])?[0];
-            let own = seen.crossing(size);
-            let own = own.map_or(Ok(()), |found| Err(found.error()));
+            let size = process.exchange.largest(&[seen.size])?[0];
+            let own = seen.crossing(size).map_or(Ok(()), |found| Err(found.error()));
             agree_on_data(own, &part.cells, &*process.exchange)
         };
         Ok(hierarchies.iter().try_for_each(look_at))
@@ -124,7 +119,7 @@ impl<const D: usize> Study<'_, D> {
     /// The row of a run that failed, in all parts.
     fn row_of_failure(
         &self,
-        (entry, problem): (&Entry<'_, D>, &Problem<D>),
+        entry: &Entry<'_, D>,
         (level, mesh): (usize, &Mesh<D>),
         error: &Error,
         (process, checks): (&Process, PartChecks),
@@ -144,7 +139,7 @@ impl<const D: usize> Study<'_, D> {
             mesh_size: mesh.mesh_size(),
             ..Row::new(&self.scene.name, D, entry.scheme.name(), level, outcome)
         };
-        self.named(entry, problem, row, None)
+        self.named(entry, row, None)
     }
 
     /// Refuses what parts of a mesh do not have.
@@ -173,7 +168,7 @@ impl<const D: usize> Study<'_, D> {
     /// The row of a solution.
     fn row_on_parts(
         &self,
-        (entry, problem): (&Entry<'_, D>, &Problem<D>),
+        entry: &Entry<'_, D>,
         level: usize,
         solved: &Solved<'_, D>,
         failure: Option<&str>,
@@ -188,7 +183,7 @@ impl<const D: usize> Study<'_, D> {
                 Some(Differences::from_whole(solved, scheme, whole, self.quadrature)?);
         }
         let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
-        let mut row = self.named(entry, problem, row, failure);
+        let mut row = self.named(entry, row, failure);
         Measured { failure, reference: None }.measure(&mut row, solved)?;
         let PartSeconds { mesh, assemble, number, start, solve } = parts.seconds;
         let in_bound = process.exchange.largest(&[row.seconds.bound.unwrap_or(0.0)])?[0];
@@ -207,14 +202,12 @@ impl<const D: usize> Study<'_, D> {
     fn write_on_parts(
         &self,
         entry: &Entry<'_, D>,
-        problem: &Problem<D>,
         level: usize,
         solved: &Solved<'_, D>,
     ) -> Result<(), Error> {
         match &self.fields.directory {
             Some(directory) if self.levels.iter().max() == Some(&level) && solved.has_iterate() => {
-                let label = entry.label(problem);
-                let stem = file_name(&format!("{}-{label}", self.scene.name));
+                let stem = file_name(&format!("{}-{}", self.scene.name, entry.label));
                 let scalar = self.fields.scalar;
                 solved.write_vtu_of_parts(directory, &stem, |file| file.scalar(scalar))
             }

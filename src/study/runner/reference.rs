@@ -2,36 +2,28 @@
 
 use std::sync::Arc;
 
-use super::{Progress, Study, with_set};
+use super::{Progress, Study};
 use crate::inequality::ActiveSet;
 use crate::nested::{Hierarchy, NestedIteration};
-use crate::problem::Problem;
 use crate::real::Precision;
 use crate::study::reference::FoundReference;
 
 impl<const D: usize> Study<'_, D> {
-    /// The problem with the constraint set of the reference.
-    pub(super) fn reference_problem(&self) -> Option<Problem<D>> {
-        let reference = self.reference.as_ref()?;
-        Some(with_set(&self.scene.problem, &reference.set))
-    }
-
     /// The reference on the finest mesh and its name in rows, where one is asked for. Where it cannot be had, rows have
     /// no errors and say why.
     pub(super) fn find_reference<'h>(
         &'h self,
-        problem: &'h Option<Problem<D>>,
         hierarchies: &'h [Hierarchy<D>],
     ) -> Option<FoundReference<'h, D>> {
         let (reference, hierarchy) = (self.reference.as_ref()?, hierarchies.first()?);
-        let name = reference.name(self.scene.problem.constraint_set());
+        let name = reference.name();
         (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
         // errors in single precision are measured against a reference in double precision
         let solver = match self.precision() {
             Precision::Double => self.solvers()[0].clone(),
             Precision::Single => Arc::new(ActiveSet::default()),
         };
-        let mut nested = NestedIteration::new(problem.as_ref()?, hierarchy)
+        let mut nested = NestedIteration::new(&reference.problem, hierarchy)
             .shared_solver(solver)
             .quadrature(self.quadrature);
         let fails = |why: &str| format!("the reference, {name}, was not found: {why}");

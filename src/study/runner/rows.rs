@@ -7,7 +7,6 @@ use crate::exchange::write_inequality;
 use crate::inequality::Outcome;
 use crate::mesh::Mesh;
 use crate::nested::{NestedIteration, Phase, Solved};
-use crate::problem::Problem;
 use crate::scenes::check::Violation;
 use crate::scenes::check_exact_on;
 use crate::scheme::ExpectedOrders;
@@ -45,20 +44,19 @@ impl<const D: usize> Study<'_, D> {
     pub(super) fn row<'p>(
         &self,
         nested: &mut [NestedIteration<'p, D>],
-        (entry, problem): (&Entry<'_, D>, &'p Problem<D>),
+        entry: &'p Entry<'_, D>,
         (level, solver): (usize, &str),
         measured: Measured<'_, 'p, D>,
         (crossing, available): (&Option<Crossing<D>>, Option<u64>),
     ) -> Result<(Row, Option<Solved<'p, D>>), Error> {
         // meshes that did not fit in the beginning were not built
         let available = available.and_then(|bytes| Some(bytes.min(memory_of_process()?)));
-        let of = (entry, problem);
         if let Err(error) = self.check_level(&*entry.scheme, level, available) {
             let cells = self.scene.domain.cells(level);
-            return Ok((self.row_without_memory(of, (level, cells), solver, error)?, None));
+            return Ok((self.row_without_memory(entry, (level, cells), solver, error)?, None));
         }
         let (position, nested) = with_level(nested, level);
-        nested.replace_constraint_set(problem);
+        nested.replace_constraint_set(&entry.problem);
         let solved = match crossing {
             None => nested.solve_on(position, &*entry.scheme),
             Some(crossing) => Err(crossing.error()),
@@ -67,7 +65,7 @@ impl<const D: usize> Study<'_, D> {
             Ok(solved) => Ok((self.row_of(entry, level, &solved, solver, measured)?, Some(solved))),
             Err(error) => {
                 let place = (level, nested.mesh(position));
-                Ok((self.row_without(of, place, solver, measured.failure, error)?, None))
+                Ok((self.row_without(entry, place, solver, measured.failure, error)?, None))
             }
         }
     }
@@ -78,14 +76,14 @@ impl<const D: usize> Study<'_, D> {
     /// The error itself if another mesh would have it too.
     pub(super) fn row_without(
         &self,
-        (entry, problem): (&Entry<'_, D>, &Problem<D>),
+        entry: &Entry<'_, D>,
         (level, mesh): (usize, &Mesh<D>),
         solver: &str,
         failure: Option<&str>,
         error: Error,
     ) -> Result<Row, Error> {
         let scheme = &*entry.scheme;
-        let space = scheme.discretise(problem, mesh, self.quadrature);
+        let space = scheme.discretise(&entry.problem, mesh, self.quadrature);
         let without_solution = Row {
             parameters: scheme.parameters(mesh),
             unknowns: space.ok().map(|space| space.unknowns()),
@@ -95,7 +93,7 @@ impl<const D: usize> Study<'_, D> {
             peak_memory_bytes: peak_memory_bytes(),
             ..Row::new(&self.scene.name, D, scheme.name(), level, Outcome::Malformed)
         };
-        self.named(entry, problem, without_solution, failure).with_error(error)
+        self.named(entry, without_solution, failure).with_error(error)
     }
 
     /// The row of a solution.
@@ -171,8 +169,7 @@ impl<const D: usize> Study<'_, D> {
         measured: Measured<'_, 'p, D>,
     ) -> Result<Row, Error> {
         let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
-        let problem = solved.discretisation().problem();
-        let mut row = self.named(entry, problem, row, measured.failure);
+        let mut row = self.named(entry, row, measured.failure);
         match measured.measure(&mut row, solved) {
             Ok(()) => {
                 let is_measured = row.against.as_deref() == Some("exact");
@@ -202,14 +199,8 @@ impl<const D: usize> Study<'_, D> {
     }
 
     /// The row with the names of constraint set and label, the kind of meshes, and the promised orders.
-    pub(super) fn named(
-        &self,
-        entry: &Entry<'_, D>,
-        problem: &Problem<D>,
-        row: Row,
-        failure: Option<&str>,
-    ) -> Row {
-        let (scheme, set) = (&*entry.scheme, problem.constraint_set());
+    pub(super) fn named(&self, entry: &Entry<'_, D>, row: Row, failure: Option<&str>) -> Row {
+        let (scheme, set) = (&*entry.scheme, entry.problem.constraint_set());
         let kind = match self.scene.domain.is_mesh() {
             _ if self.adaptive.is_some() => "steps",
             true => "refinements",
@@ -227,7 +218,7 @@ impl<const D: usize> Study<'_, D> {
             // all rows of a request have the same keys
             history: row.history.or_else(|| self.keeps_history.then(Vec::new)),
             constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
-            label: entry.label(problem),
+            label: entry.label.clone(),
             expected_order,
             ..row
         }

@@ -12,6 +12,7 @@ use crate::inequality::{InequalitySolver, StepCounter};
 use crate::nested::Solved;
 #[cfg(feature = "report")]
 use crate::paraview::FieldScalar;
+use crate::problem::Problem;
 use crate::scheme::{NamedScheme, Scheme, SchemeOptions};
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
@@ -37,14 +38,15 @@ impl<'a, const D: usize> Study<'a, D> {
     /// ```
     #[must_use]
     pub fn reference(mut self, scheme: impl Scheme<D> + 'a, level: usize) -> Self {
-        self.reference = Some(Reference { scheme: Arc::new(scheme), set: None, level });
+        let problem = self.scene.problem.clone();
+        self.reference = Some(Reference { scheme: Arc::new(scheme), problem, level });
         self
     }
     /// As [`Study::reference`], with a scheme as users write it.
     #[must_use]
     pub fn named_reference(mut self, scheme: &NamedScheme, level: usize) -> Self {
-        let (set, scheme) = (scheme.constraint_set(), scheme.make().into());
-        self.reference = Some(Reference { scheme, set, level });
+        let problem = self.problem_on(scheme.constraint_set());
+        self.reference = Some(Reference { scheme: scheme.make().into(), problem, level });
         self
     }
     /// Adds a scheme, with the constraint set of the problem.
@@ -77,15 +79,23 @@ impl<'a, const D: usize> Study<'a, D> {
     pub fn named_scheme(self, scheme: &NamedScheme) -> Self {
         self.entry(scheme.make().into(), scheme.constraint_set(), scheme.shown_choices())
     }
-    /// Adds a scheme with its own constraint set and the choices in its label.
+    /// Adds a scheme, on a constraint set of its own if there is one, with these choices shown in the label of its rows.
     fn entry(
         mut self,
         scheme: Arc<dyn Scheme<D> + 'a>,
         set: Option<Arc<dyn ConstraintSet>>,
         shown: Option<SchemeOptions>,
     ) -> Self {
-        self.entries.push(Entry { scheme, set, shown });
+        let problem = self.problem_on(set);
+        let label = scheme.label_with(problem.constraint_set(), shown);
+        self.entries.push(Entry { scheme, problem, label });
         self
+    }
+    /// The problem of the scene with a constraint set, where there is one, in place of its own.
+    fn problem_on(&self, set: Option<Arc<dyn ConstraintSet>>) -> Problem<D> {
+        let mut problem = self.scene.problem.clone();
+        problem.constraint_set = set.or(problem.constraint_set);
+        problem
     }
     /// Sets the levels: subdivisions of the shortest side, or refinements of a domain that is a mesh.
     #[must_use]

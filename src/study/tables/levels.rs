@@ -129,36 +129,34 @@ fn heading(rows: &[&Row]) -> String {
     if !references.is_empty() {
         text += &format!("; errors against {}", references.join(", "));
     }
-    let mut promises: Vec<(String, Vec<String>)> = Vec::new();
-    for row in rows {
-        let expected = row.expected_order;
-        let both = [("L2", expected.l2), ("H1", expected.h1)];
-        let known: Vec<String> =
-            both.iter().filter_map(|(name, p)| p.map(|p| format!("{name} {p}"))).collect();
-        if known.is_empty() {
-            continue;
-        }
-        let known = known.join(" ");
-        match promises.iter_mut().find(|(k, _)| *k == known) {
-            Some((_, schemes)) if schemes.contains(&row.label) => {}
-            Some((_, schemes)) => schemes.push(row.label.clone()),
-            None => promises.push((known, vec![row.label.clone()])),
-        }
-    }
-    // Schemes need naming only where some are promised something else, or nothing.
-    let all = promises.len() == 1 && rows.iter().all(|r| promises[0].1.contains(&r.label));
-    let promises: Vec<String> = promises
-        .into_iter()
-        .map(
-            |(known, schemes)| {
-                if all { known } else { format!("{known} ({})", schemes.join(" ")) }
-            },
-        )
-        .collect();
+    let promises = promises(rows);
     if !promises.is_empty() {
         text += &format!("; expected order {}", promises.join(", "));
     }
     text
+}
+
+/// The orders that theory promises, each with its schemes where some are promised something else, or nothing.
+fn promises(rows: &[&Row]) -> Vec<String> {
+    let promise = |row: &Row| {
+        let both = [("L2", row.expected_order.l2), ("H1", row.expected_order.h1)];
+        let known = both.iter().filter_map(|(name, p)| p.map(|p| format!("{name} {p}")));
+        known.collect::<Vec<_>>().join(" ")
+    };
+    let labels = |of: &dyn Fn(&Row) -> bool| {
+        distinct(rows.iter().filter(|row| of(row)).map(|row| row.label.as_str()))
+    };
+    let n_labels = labels(&|_| true).len();
+    let once = distinct(rows.iter().map(|row| promise(row)).filter(|known| !known.is_empty()));
+    let is_only = once.len() == 1;
+    let named = |known: String| {
+        let schemes = labels(&|row| promise(row) == known);
+        match is_only && schemes.len() == n_labels {
+            true => known,
+            false => format!("{known} ({})", schemes.join(" ")),
+        }
+    };
+    once.into_iter().map(named).collect()
 }
 
 /// The name of a column of a table, and its cell in a row.
@@ -185,7 +183,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     let is_adaptive = is_adaptive(rows);
     // the orders of errors are over it
     if !is_adaptive && has_errors(rows) {
-        columns.push(("h", |r| Cell::scientific(Some(r.mesh_size).filter(|h| h.is_finite()))));
+        columns.push(("h", |r| Cell::digits(Some(r.mesh_size).filter(|h| h.is_finite()), 2)));
     }
     columns.push(("unknowns", |r| Cell::whole(r.unknowns)));
     let has_effectivity = any(|r| r.bound.effectivity);
@@ -194,14 +192,14 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
         columns.push(("bound", |r| bound(r, 1)));
         columns.push(("order", |r| Cell::fixed(r.order.bound)));
     } else if any(|r| r.error.l2) {
-        columns.push(("L2", |r| Cell::scientific(r.error.l2)));
+        columns.push(("L2", |r| Cell::digits(r.error.l2, 2)));
         columns.push(("order", |r| Cell::fixed(r.order.l2)));
     }
     if has_bound && rows.iter().any(|r| !r.error.is_energy_h1()) {
         // beside a bound only the norm that it bounds
-        columns.push(("energy norm", |r| Cell::scientific(r.error.broken_energy)));
+        columns.push(("energy norm", |r| Cell::digits(r.error.broken_energy, 2)));
     } else if any(|r| r.error.h1) {
-        columns.push(("H1", |r| Cell::scientific(r.error.h1)));
+        columns.push(("H1", |r| Cell::digits(r.error.h1, 2)));
         columns.push(("order", |r| Cell::fixed(r.order.h1)));
     }
     // the errors say the rest where they are known, and lines stay within their width

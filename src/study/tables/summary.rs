@@ -85,25 +85,25 @@ fn summary(title: &str, is_adaptive: bool, series: &[Series<'_>]) -> Table {
         [level] => format!(", {kind} {level}"),
         _ => format!(", each scheme at its last {kind}"),
     };
-    let mut remarks = Vec::new();
-    let mut coarser: Vec<(&str, &Row)> = Vec::new();
-    for series in series {
-        let mut rows = series.rows.iter().copied();
-        rows.next_back();
-        coarser.extend(rows.filter(|row| !row.converged()).map(|row| (&*series.name, row)));
-    }
-    for message in distinct(coarser.iter().map(|(_, row)| reasons.message(row))) {
-        let of = coarser.iter().filter(|(_, row)| reasons.message(row) == message);
-        let of: Vec<String> = of.map(|(name, row)| format!("{name} at {}", row.level)).collect();
-        remarks.push(format!("{}: {message}", of.join(", ")));
-    }
+    let failed: Vec<(String, String)> = series
+        .iter()
+        .filter_map(|of| Some((&of.name, of.rows.split_last()?.1)))
+        .flat_map(|(name, rows)| rows.iter().map(move |row| (name, row)))
+        .filter(|(_, row)| !row.converged())
+        .map(|(name, row)| (format!("{name} at {}", row.level), reasons.message(row)))
+        .collect();
+    let remark = |message: &String| {
+        let of = failed.iter().filter(|of| of.1 == *message).map(|of| of.0.as_str());
+        format!("{}: {message}", of.collect::<Vec<_>>().join(", "))
+    };
+    let remarks = distinct(failed.iter().map(|of| &of.1)).into_iter().map(remark);
     let warnings = warnings(&finest).into_iter().map(|(labels, text)| format!("{labels}: {text}"));
     Table {
         title: title.to_owned(),
         detail: place + &references.collect::<String>(),
         columns: ["scheme"].into_iter().chain(names).chain(["status"]).map(str::to_owned).collect(),
         rows: lines,
-        remarks: remarks.into_iter().chain(warnings).chain(unproven(&finest)).collect(),
+        remarks: remarks.chain(warnings).chain(unproven(&finest)).collect(),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use super::synthetic::synthetic;
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use unilateral::inequality::Outcome;
 use unilateral::output::LATEX_PACKAGES;
 use unilateral::stability::{Effort, Stability};
@@ -37,8 +37,8 @@ fn csv_reads_back_to_the_same_numbers() {
     }
     let scratch = Scratch::new("reach");
     let work = WorkPrecision::of(&report);
-    work.write(&scratch.0).unwrap();
-    let reach = scratch.read("reach.csv");
+    work.write(scratch.0.join("made")).unwrap();
+    let reach = scratch.read("made/reach.csv");
     assert_eq!(table(&reach).len(), 1 + work.reach().len());
     assert!(reach.starts_with("scene,label,solver,linear_asked,meshes,norm,error,standing,"));
 }

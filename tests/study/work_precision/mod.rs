@@ -5,7 +5,7 @@ mod synthetic;
 
 use std::cell::{Cell, RefCell};
 
-use crate::scratch::Scratch;
+use crate::support::scratch::Scratch;
 use serde_json::Value;
 use synthetic::{measured, synthetic};
 use unilateral::inequality::Outcome;

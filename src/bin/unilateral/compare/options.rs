@@ -82,7 +82,7 @@ pub struct Options {
 }
 
 /// Linear solvers inside those of the inequality, with one line each.
-const LINEAR: &[(&str, &str)] = &[
+const LINEAR: [(&str, &str); 2] = [
     ("direct", "sparse Cholesky or LU"),
     ("iterative", "conjugate gradients with multigrid on conforming P1, for symmetric schemes"),
 ];
@@ -105,7 +105,7 @@ pub fn list() -> String {
     group("schemes", &mut schemes.iter().map(|(n, s)| (*n, &s[..])));
     group("constraint placements", &mut CONSTRAINT_SETS.iter().copied());
     group("solvers", &mut SOLVERS.iter().copied());
-    group("linear solvers", &mut LINEAR.iter().copied());
+    group("linear solvers", &mut LINEAR.into_iter());
     text
 }
 
@@ -149,9 +149,6 @@ pub fn check_numbers(options: &Options) -> Request<()> {
         return Err("--adaptive cannot be used with --reference, which needs uniform refinements of all meshes".to_owned());
     }
     check_count("--repeat", Some(options.repeat), MOST_REPEATS)?;
-    let names = |list: &[(&'static str, &str)]| list.iter().map(|s| s.0).collect::<Vec<_>>();
-    if let Some(name) = &options.linear {
-        known("linear solver", name, &names(LINEAR))?;
-    }
-    Ok(())
+    let names = LINEAR.map(|of| of.0);
+    options.linear.iter().try_for_each(|name| known("linear solver", name, &names))
 }

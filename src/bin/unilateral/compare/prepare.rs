@@ -52,7 +52,8 @@ pub fn prepare<'a, const D: usize>(
     (schemes, solvers): (&[NamedScheme], &[String]),
     watcher: &'a Watcher,
 ) -> Request<Option<Run<'a>>> {
-    let name = scene.name.clone();
+    let place = options.asked.place(&scene.name);
+    let scene_name = scene.name.clone();
     let has_mesh = scene.domain.is_mesh();
     let linear = match options.linear.as_deref() {
         Some("direct") => LinearMethod::Direct,
@@ -61,7 +62,6 @@ pub fn prepare<'a, const D: usize>(
     };
     let mut study = study(scene, options, schemes, watcher);
     study = study.repeat(options.repeat).history(options.history).steps(watcher.steps());
-    let scene_name = name.clone();
     let drawn = RefCell::new(BTreeMap::new());
     study = study.each_solution(move |label, level, solved| {
         let finest = *drawn.borrow().get(label).unwrap_or(&0);
@@ -95,7 +95,6 @@ pub fn prepare<'a, const D: usize>(
     if let Some((scheme, level)) = &options.asked.reference {
         study = study.named_reference(scheme, *level);
     }
-    let place = options.asked.place(&name);
     match study.check() {
         Err(Error::UnfitMesh { .. }) if !options.asked.scenes_are_named() => return Ok(None),
         other => other.and_then(|()| study.check_memory()).map_err(|e| format!("{place}: {e}"))?,
