@@ -18,7 +18,7 @@ const DEGREE: usize = 4;
 pub(super) struct CellOfQuadratics {
     /// The number of the cell.
     pub number: usize,
-    /// The numbers of the flux.
+    /// The numbers that describe the flux in the cell, see [`Flux`].
     pub flux: [f64; 16],
     /// The multiplier at the vertices.
     pub multiplier: [f64; 4],
@@ -56,7 +56,7 @@ impl CellOfQuadratics {
     }
 }
 
-/// Some cells of the exchange with the products of their fluxes.
+/// Consecutive cells of an exchange with the products of their fluxes.
 pub(super) struct CellsOfQuadratics<'c, const D: usize> {
     pub cells: &'c mut [CellOfQuadratics],
     /// By cell the products of its fluxes with each other.
@@ -67,7 +67,7 @@ impl<'c, const D: usize> CellsOfQuadratics<'c, D> {
     /// The number of fluxes of a cell.
     const N: usize = (D + 1) * (D + 1);
 
-    /// Those cells of an exchange that follow `first`, with the products of all of its cells.
+    /// Cells of an exchange, of which `first` is the number of the first one; `products` are those of all its cells.
     pub fn new(cells: &'c mut [CellOfQuadratics], products: &'c [f64], first: usize) -> Self {
         Self { cells, products: &products[first * Self::N * Self::N..] }
     }
@@ -121,7 +121,7 @@ impl<'c, const D: usize> CellsOfQuadratics<'c, D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The cells with these numbers, with their multipliers and their parts of a flux.
+    /// The cells of an exchange, by their numbers in the mesh, each with its multiplier and its numbers of the flux.
     pub(super) fn cells_of_quadratics(
         &self,
         numbers: &[u32],
@@ -147,6 +147,7 @@ impl<const D: usize> Space<'_, D> {
         let n = CellsOfQuadratics::<D>::N;
         let volume = self.mesh.geometry(number).volume;
         let per_volume = 1.0 / (D as f64 * volume);
+        let corners = self.mesh.corners(number);
         let alpha = self.alpha(number);
         let admissible = self.admissible_in(function, number);
         let mut gaps = [[0.0; 4]; 2];
@@ -161,7 +162,7 @@ impl<const D: usize> Space<'_, D> {
                     .map_or(0.0, |psi| sign * (value - self.at(psi, number, &x)));
                 (0..D + 1).for_each(|j| gaps[k][j] += weight * point[j] * distance);
             }
-            let fluxes = self.fluxes_at(number, point, &x);
+            let fluxes = fluxes_at(point, &x, (&corners, per_volume));
             (0..n).for_each(|a| of_gradient[a] += weight * gradient.dot(&fluxes[a]));
         }
         CellOfQuadratics {
@@ -179,7 +180,7 @@ impl<const D: usize> Space<'_, D> {
         }
     }
 
-    /// The products of the fluxes of each of the cells with these numbers.
+    /// For each cell of an exchange, by its number in the mesh, the products of its fluxes with each other.
     pub(super) fn products_of_fluxes(&self, numbers: &[u32]) -> Vec<f64> {
         let rule = Rule::new(D, DEGREE);
         let n = CellsOfQuadratics::<D>::N;
@@ -192,8 +193,9 @@ impl<const D: usize> Space<'_, D> {
             {
                 let number = number as usize;
                 let (volume, alpha) = (self.mesh.geometry(number).volume, self.alpha(number));
+                let geometry = (&self.mesh.corners(number), 1.0 / (D as f64 * volume));
                 for (point, weight) in rule.iter() {
-                    let fluxes = self.fluxes_at(number, point, &self.cell_point(point, number));
+                    let fluxes = fluxes_at(point, &self.cell_point(point, number), geometry);
                     for (a, products) in products.chunks_exact_mut(n).enumerate() {
                         for (product, of_other) in products.iter_mut().zip(&fluxes) {
                             *product += weight * volume / alpha * fluxes[a].dot(of_other);
@@ -204,15 +206,19 @@ impl<const D: usize> Space<'_, D> {
         });
         products
     }
+}
 
-    /// The fluxes of a cell at a point, by its barycentric coordinates and in space.
-    fn fluxes_at(&self, number: usize, point: &[f64; 4], x: &Point<D>) -> [Point<D>; 16] {
-        let per_volume = 1.0 / (D as f64 * self.mesh.geometry(number).volume);
-        let mut fluxes = [Point::<D>::zeros(); 16];
-        for (facet, corner) in self.mesh.corners(number).iter().enumerate().take(D + 1) {
-            let along = (x - corner) * per_volume;
-            (0..D + 1).for_each(|j| fluxes[Flux::<D>::place(facet, j)] = along * point[j]);
-        }
-        fluxes
+/// The fluxes `lambda_j phi_F` of a cell at a point, given by its barycentric coordinates and in space; of the cell by
+/// its corners and `1 / (D |K|)`.
+fn fluxes_at<const D: usize>(
+    point: &[f64; 4],
+    x: &Point<D>,
+    (corners, per_volume): (&[Point<D>; 4], f64),
+) -> [Point<D>; 16] {
+    let mut fluxes = [Point::<D>::zeros(); 16];
+    for (facet, corner) in corners.iter().enumerate().take(D + 1) {
+        let along = (x - corner) * per_volume;
+        (0..D + 1).for_each(|j| fluxes[Flux::<D>::place(facet, j)] = along * point[j]);
     }
+    fluxes
 }
