@@ -210,7 +210,8 @@ pub(crate) struct PartOfBound<const D: usize> {
 }
 
 impl<const D: usize> PartOfBound<D> {
-    /// The bound of all parts, or of the whole, with the shares of the cells of this one; all parts call it.
+    /// The bound over all parts of a mesh, or over the one part that is the mesh, with the shares of the cells of this
+    /// part. All parts call it.
     pub fn bound(self, distribution: Option<&dyn Distribution>) -> Result<ErrorBound, NoBound> {
         let Self { mut totals, mut friedrichs, squares, mut unproven } = self;
         if let Some(distribution) = distribution {

@@ -17,8 +17,8 @@ const AGREEMENT: f64 = 1e-12;
 const HIGHEST_DEGREE: usize = 12;
 
 impl<const D: usize> Space<'_, D> {
-    /// The terms that are not proven, but for that of the solver; an argument says whether the bound from below for the
-    /// reaction is positive or zero. Facets count with their cells.
+    /// The terms of the bound that are not proven, but for that of the solver. `has_reaction_bound` says whether the
+    /// lower bound of the reaction is not negative. Facets count with their cells.
     pub(super) fn unproven_terms(
         &self,
         pair: &PrimalDualPair<D>,

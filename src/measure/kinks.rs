@@ -17,9 +17,10 @@ pub(super) struct Kinks<const D: usize> {
     pub levels: Vec<Field<D>>,
 }
 
-/// Whether a function seems far from zero in a simplex with these corners, where its values may be known: they and that
-/// at the barycentre have one sign, and differ by less than the least of them. This is no proof: zeros are missed of a
-/// function that varies more between these points. A function that is constant at these points may jump between them.
+/// Whether a function seems far from zero in a simplex with these corners: the values at the corners and at the
+/// barycentre have one sign, and differ by less than the least of them. `at_corners` has the values at the corners
+/// where they are known. This is no proof: zeros are missed of a function that varies more between these points. A
+/// function that is constant at these points may jump between them.
 pub(super) fn is_far<const D: usize>(
     level: &Field<D>,
     corners: &[Point<D>],
@@ -94,7 +95,7 @@ impl<const D: usize> Space<'_, D> {
         Some(collect(vertices.len(), |v| (set.indicator)(&vertices[v])))
     }
 
-    /// The values of a function at the corners of a cell, of those at all vertices.
+    /// The values of a function at the corners of a cell, from its values at all vertices.
     pub(super) fn at_corners(&self, at_vertices: &[f64], cell: usize) -> [f64; 4] {
         let vertices = self.mesh.cell(cell);
         array_of(|k| vertices.get(k).map_or(0.0, |&v| at_vertices[v as usize]))

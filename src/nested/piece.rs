@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::mesh::{Domain, Extent, Mesh, Part, Refinement};
 use crate::processes::{Exchange, agree, merge_all};
 
-/// A mesh of a hierarchy, or the part of it that one process has, with the exchange with those that have the others.
+/// A mesh of a hierarchy, or the part of the mesh that one process has, with the exchange between all processes.
 #[derive(Debug)]
 pub(super) enum Piece<const D: usize> {
     Whole(Mesh<D>),

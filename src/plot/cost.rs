@@ -16,7 +16,7 @@ pub(crate) fn cost_figure(scene: &str, series: &[&Series<'_>], cost: Quantity) -
         };
         let mut panel = Panel::new((scene, series), &keys, x, y);
         if cost == Quantity::Unknowns {
-            // an order in the mesh size is that order over the dimension in the number of unknowns
+            // errors of the order h^p are of the order N^(-p/D) in the number N of unknowns
             let falls_over = rows().map(|row| row.dimension as u32).next();
             panel.orders = Orders { falls_over, ..y.orders(rows()) };
         }

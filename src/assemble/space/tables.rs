@@ -28,7 +28,7 @@ impl BasisAt {
     pub fn value(&self, coefficients: &[f64; MAX_BASIS]) -> f64 {
         coefficients.iter().zip(&self.values).map(|(c, v)| c * v).sum()
     }
-    /// The gradient of the function with these coefficients, by those of the barycentric coordinates.
+    /// The gradient of the function with these coefficients, from the gradients of the barycentric coordinates.
     #[inline(always)]
     pub fn gradient<const D: usize>(
         &self,

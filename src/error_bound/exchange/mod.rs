@@ -61,7 +61,7 @@ enum ExchangeStep {
 }
 
 impl ExchangeStep {
-    /// The step with numbers of cells that count from a first one.
+    /// The step with its cells counted from the cell with the number `first`.
     fn from(self, first: usize) -> Self {
         let counted =
             |FacetOfCell { cell, local }| FacetOfCell { cell: cell - first as u32, local };
@@ -85,16 +85,17 @@ impl ExchangeStep {
 
 /// The steps of an exchange, by the chunks of its cells ([`map_chunks`]).
 struct ExchangeSteps {
-    /// For each chunk the steps all of whose cells belong to it, with numbers that count from its first cell.
+    /// For each chunk the steps all of whose cells belong to the chunk. Cells of these steps are counted from the first
+    /// cell of the chunk.
     within: Vec<Vec<ExchangeStep>>,
     /// The steps between cells of two chunks: few where neighbours have near numbers.
     between: Vec<ExchangeStep>,
 }
 
 impl ExchangeSteps {
-    /// Visits each step at most `sweeps` times; the square of the bound over the cells is `square` at the beginning. A visit
-    /// receives consecutive cells, the number of the first one, and a step among them; it returns by how much the square
-    /// of the bound falls.
+    /// Visits each step at most `sweeps` times; `square` is the square of the bound over all cells before the first
+    /// visit. `visit` receives consecutive cells, the number of the first one, and a step whose cells are counted from
+    /// that one; it returns by how much the square of the bound falls.
     fn visit<C: Send>(
         &self,
         sweeps: u8,

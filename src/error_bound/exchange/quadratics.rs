@@ -43,7 +43,7 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
         }
     }
 
-    /// Visits a step. The result, here and below, is by how much the square of the bound falls.
+    /// Visits a step. This function and those below return by how much the square of the bound falls.
     fn visit(&mut self, mesh: &Mesh<D>, step: ExchangeStep) -> f64 {
         match step {
             ExchangeStep::Between(facets) => {
@@ -81,8 +81,8 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
         self.exchange_numbers(numbers, sign)
     }
 
-    /// Exchanges a multiplier with this sign between two numbers, each given by its cell, its number in the cell and
-    /// the vertex at which it changes the divergence.
+    /// Exchanges multipliers of a sign for flux: adds to one number of the flux what it takes from another. Each number
+    /// is given by its cell, its place in the cell and the vertex at which the number changes the divergence.
     fn exchange_numbers(&mut self, numbers: [(usize, usize, usize); 2], sign: f64) -> f64 {
         let [(here, one, a), (there, other, b)] = numbers;
         let [of_here, of_there] = [&self.cells[here], &self.cells[there]];

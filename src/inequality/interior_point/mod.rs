@@ -86,7 +86,8 @@ fn checked_run<T: Real>(inequality: &Inequality<T>, recorder: &Recorder<'_>) -> 
     run(inequality, condensation.as_ref(), MAX_SYSTEMS, recorder)
 }
 
-/// A run with at most so many linear systems. A static condensation comes with a penalised matrix.
+/// A run with at most so many linear systems. The static condensation must be given if the matrix is penalised, and
+/// only then.
 pub(super) fn run<'a, T: Real>(
     inequality: &'a Inequality<T>,
     condensation: Option<&StaticCondensation<'a, T>>,

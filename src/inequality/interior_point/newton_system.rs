@@ -45,7 +45,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         Self { inequality, condensation, free, is_free, lower_triangle: None }
     }
 
-    /// Zeros for all unknowns, and for the jump multipliers.
+    /// The zero vector of the mixed system.
     pub fn zeros(&self) -> MixedVector {
         let penalised = self.inequality.penalised.as_ref();
         let n_jumps = penalised.map_or(0, |penalised| penalised.n_jumps());

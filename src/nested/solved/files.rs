@@ -162,19 +162,19 @@ impl<const D: usize> Solved<'_, D> {
         list.map_or(Ok(()), |(list, pieces)| file.write_list(list, pieces))
     }
 
-    /// Of numbers by cell those of own cells, which are the cells of the file of a part in their order.
+    /// The numbers of own cells, from numbers by cell. The file of a part has the own cells in their order.
     fn of_own_cells(&self, values: Vec<f64>) -> Vec<f64> {
         let Some(part) = self.part().filter(|_| !values.is_empty()) else { return values };
         let by_cell = values.chunks_exact(values.len() / part.owners.len()).enumerate();
         by_cell.filter(|(cell, _)| part.owns(*cell)).flat_map(|(_, own)| own).copied().collect()
     }
-    /// Of numbers by facet those of the facets of own cells.
+    /// The numbers of the facets of own cells, from numbers by facet.
     fn of_own_facets(&self, facets: &[HalfFacet], values: Vec<f64>) -> Vec<f64> {
         let Some(part) = self.part() else { return values };
         let by_facet = facets.iter().zip(values);
         by_facet.filter(|((cell, _), _)| part.owns(*cell)).map(|(_, value)| value).collect()
     }
-    /// The facets of own cells, with the numbers of these among own cells.
+    /// The facets of own cells, each with the number of its cell among own cells.
     fn own_facets(&self, facets: Vec<HalfFacet>) -> Vec<HalfFacet> {
         let Some(part) = self.part() else { return facets };
         let own: Vec<usize> = (0..part.owners.len()).filter(|&cell| part.owns(cell)).collect();

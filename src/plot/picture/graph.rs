@@ -28,7 +28,7 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    /// A graph without lines yet, whose legend has the discrete solution by this name.
+    /// A graph to which lines are added later. Its legend shows the discrete solution under `name`.
     pub fn of_found(title: &str, axes: [&str; 2], name: &str) -> Self {
         Graph {
             title: title.to_owned(),

@@ -79,7 +79,8 @@ impl<'a, const D: usize> Study<'a, D> {
     pub fn named_scheme(self, scheme: &NamedScheme) -> Self {
         self.entry(scheme.make().into(), scheme.constraint_set(), scheme.shown_choices())
     }
-    /// Adds a scheme, on a constraint set of its own if there is one, with these choices shown in the label of its rows.
+    /// Adds a scheme. `set`, if given, replaces the constraint set of the problem; the label of the rows shows the
+    /// options `shown`.
     fn entry(
         mut self,
         scheme: Arc<dyn Scheme<D> + 'a>,
@@ -91,7 +92,7 @@ impl<'a, const D: usize> Study<'a, D> {
         self.entries.push(Entry { scheme, problem, label });
         self
     }
-    /// The problem of the scene with a constraint set, where there is one, in place of its own.
+    /// The problem of the scene, on another constraint set if one is given.
     fn problem_on(&self, set: Option<Arc<dyn ConstraintSet>>) -> Problem<D> {
         let mut problem = self.scene.problem.clone();
         problem.constraint_set = set.or(problem.constraint_set);

@@ -22,8 +22,9 @@ use stages::{Ladder, suits_monotone_multigrid};
 /// are accurate to rounding.
 pub(super) const CROSSOVER: usize = 10_000;
 
-/// Number of stored entries from which a Krylov method solves the linear systems of the start of another solve, where
-/// accuracy does not matter: conforming P1 at 8 600 unknowns in the plane and 4 300 in space, where factors have more fill.
+/// Number of stored entries of the matrix from which a Krylov method solves the linear systems of a start, whose
+/// solution is the initial guess of another solve and need not be accurate. Matrices of conforming P1 have so many
+/// entries at 8 600 unknowns in the plane and at 4 300 in space, where factors have more fill.
 ///
 /// The start of radial-3d 32 takes a third of the time that it takes with factors at 4913 unknowns (`compare --scene
 /// radial-3d --scheme p1 --levels 32 --threads 1`, the seconds of its start). In the plane, starts from 1 000 unknowns
