@@ -35,8 +35,8 @@ const QUADRATIC_TO_LINEAR: f64 = 0.1;
 const LEAST_TOLERANCE: f64 = 100.0;
 
 /// Largest number of local inequalities, near unknowns whose states change, that the first iteration solves. One
-/// suffices for WOPSIP with bounds at vertices in space.
-const MAX_LOCAL_SOLVES: usize = 3;
+/// suffices for WOPSIP with bounds at vertices in space; lshape-2d at 128 takes nine.
+const MAX_LOCAL_SOLVES: usize = 16;
 
 /// Dimension of the space of linear functions on a tetrahedron.
 const MAX_LINEAR_BASIS: usize = 4;
