@@ -1,4 +1,4 @@
-//! The inequality near a few unknowns whose contact states change, and its solution.
+//! The inequality near unknowns whose contact states change in turn, and its solution.
 
 use super::iterate::Iterate;
 use super::settings::ActiveSet;
