@@ -4,7 +4,7 @@ use super::run::{Scratch, rows};
 use serde_json::Value;
 
 /// A row: the options of its request, and at most so many active sets and steps of all stages, iterations of linear
-/// solvers, and factorisations; and the stage that ends it.
+/// solvers, and factorisations, without those of local inequalities; and the stage that ends it.
 struct HardRow(&'static str, [u64; 3], &'static str);
 
 const DIRECT: &str = "direct-active-set";
