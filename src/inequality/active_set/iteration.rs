@@ -11,9 +11,9 @@ use crate::inequality::Outcome;
 use crate::inequality::history::Recorder;
 use crate::real::Real;
 
-/// Number of steps, since the start or the last local inequality, after which few state changes call [`solve_locally`]. WOPSIP with bounds at
-/// vertices on radial-3d at 32, whose last state changes move along the free boundary from cell to cell, then takes
-/// three quarters of the steps.
+/// Number of steps, since the start or the last local inequality, after which few state changes call [`solve_locally`].
+/// WOPSIP with bounds at vertices on radial-3d at 32, whose last state changes move along the free boundary from cell to
+/// cell, then takes three quarters of the steps.
 const MANY_STEPS: usize = 8;
 
 /// Largest number of state changes, divided by the number of unknowns, that counts as few.
