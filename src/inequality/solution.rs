@@ -38,8 +38,8 @@ pub struct Solution<T> {
     /// * interior point method and proximal point method: steps, whatever the right-hand sides of a step, and the start;
     /// * several methods one after the other: the sum.
     ///
-    /// Inequalities near a few unknowns, which the active set method solves where it makes little progress, and bounds
-    /// on the error do not count.
+    /// Inequalities near unknowns that change in turn, which the active set method solves where it makes little progress,
+    /// and bounds on the error do not count.
     pub systems: Option<usize>,
     /// The linear solver: `direct`, or the name of a preconditioner.
     pub linear_solver: &'static str,

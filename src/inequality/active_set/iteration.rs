@@ -11,9 +11,9 @@ use crate::inequality::Outcome;
 use crate::inequality::history::Recorder;
 use crate::real::Real;
 
-/// Number of steps after which an iteration with few state changes calls [`solve_locally`]. WOPSIP with bounds at
-/// vertices on radial-3d at 32, whose last state changes move along the free boundary from cell to cell, then takes
-/// three quarters of the steps.
+/// Number of steps, since the start or the last local inequality, after which few state changes call [`solve_locally`].
+/// WOPSIP with bounds at vertices on radial-3d at 32, whose last state changes move along the free boundary from cell to
+/// cell, then takes three quarters of the steps.
 const MANY_STEPS: usize = 8;
 
 /// Largest number of state changes, divided by the number of unknowns, that counts as few.
@@ -131,11 +131,16 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
     }
 
     /// Solves the inequality near the unknowns `changed` if [`Iteration::local_solves`] is not zero; returns whether a
-    /// solution was found.
+    /// solution was found. After a solve without solution there is no other.
     fn try_local_solve(&mut self, changed: &[u32]) -> bool {
-        let is_solved =
-            self.local_solves > 0 && solve_locally(self.iterate, self.settings, changed);
-        self.local_solves -= usize::from(is_solved);
+        if self.local_solves == 0 {
+            return false;
+        }
+        let Some(outcome) = solve_locally(self.iterate, self.settings, changed) else {
+            return false;
+        };
+        let is_solved = outcome == Outcome::Converged;
+        self.local_solves = if is_solved { self.local_solves - 1 } else { 0 };
         is_solved
     }
 

@@ -46,7 +46,7 @@ const CROSSOVER_OF_STARTS: usize = 60_000;
 /// | a Krylov method from [`CROSSOVER`] unknowns on | `uses_krylov` | spiral-2d, `wopsip:facet-means`, 64 |
 /// | factors where a Krylov method does not fit the matrix | [`End::Unsuitable`] | contrast-disc-2d, `wopsip`, 64 |
 /// | more systems without progress where what follows is dear, any number from a cold start | `krylov_limit` | contrast-disc-2d, `nipg`, 64 |
-/// | the inequality near a few unknowns whose states change in turn, if monotone multigrid does not suit | `local_inequality` | radial-3d, `wopsip`, 16 |
+/// | the inequality near unknowns whose states change in turn, after a Krylov method, if monotone multigrid does not suit | `local_inequality` | lshape-2d, `wopsip`, 128 |
 /// | a body that bounds alone hold starts with all its bounds active | `starting_states` | `neu3.toml`, `p1`, 8 |
 /// | the best iterate, where the last one is no solution | `outcome_of_best` | lshape-2d, `wopsip-p2`, `eta` 1e10, 4 (a test) |
 ///

@@ -34,9 +34,10 @@ const QUADRATIC_TO_LINEAR: f64 = 0.1;
 /// Least tolerance for broken quadratics, divided by machine epsilon, unless that for linear functions is smaller.
 const LEAST_TOLERANCE: f64 = 100.0;
 
-/// Largest number of local inequalities, near unknowns whose states change, that the first iteration solves. One
-/// suffices for WOPSIP with bounds at vertices in space.
-const MAX_LOCAL_SOLVES: usize = 3;
+/// Largest number of local inequalities, near unknowns whose states change, that the iteration with a Krylov method
+/// solves before the next method follows. WOPSIP with bounds at vertices takes one on radial-3d, nine on lshape-2d at
+/// 128.
+const MAX_LOCAL_SOLVES: usize = 10;
 
 /// Dimension of the space of linear functions on a tetrahedron.
 const MAX_LINEAR_BASIS: usize = 4;
