@@ -19,11 +19,12 @@ const MAX_DISTANCE: usize = 3;
 const MAX_SHARE: f64 = 0.5;
 
 /// Solves the inequality for the unknowns near `changed`, with the values of all other unknowns held, and stores values
-/// and contact states in the iterate if it converges; returns its outcome. `None` if it has too many unknowns.
+/// and contact states in the iterate if the solve converges. Returns the outcome; `None` if the local inequality
+/// has too many unknowns.
 ///
 /// If the matrix is no M-matrix, the active set may cycle because unknowns, in groups on a few cells, change their states
 /// in turn. The exact solution near all groups ends the cycle: the active set method with factors and the interior point
-/// method find it. With a symmetric matrix it does not increase the energy.
+/// method find this solution. With a symmetric matrix its energy is not above that of the iterate.
 pub(super) fn solve_locally<T: Real>(
     iterate: &mut Iterate<'_, T>,
     settings: &ActiveSet,
