@@ -9,7 +9,7 @@ use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
 
 /// The multiple of machine epsilon within which no unknown changes its state.
-const ROUNDING_BAND: f64 = 16.0;
+pub(super) const ROUNDING_BAND: f64 = 16.0;
 
 /// The violations of the KKT conditions, their scales, and the active set that they predict.
 #[derive(Default)]
@@ -44,6 +44,11 @@ impl Evaluation {
         (self.n_changes, self.bound_violation) = (sums[2] as usize, largest[0]);
     }
 
+    /// The size above which the violation of a bound counts.
+    pub fn bound_tolerance<T: Real>(&self) -> f64 {
+        ROUNDING_BAND * T::EPSILON * self.max_norm
+    }
+
     /// Whether merit and norms are finite.
     pub fn is_finite(&self) -> bool {
         self.merit.is_finite() && self.energy_norm.is_finite() && self.max_norm.is_finite()
@@ -73,7 +78,7 @@ impl<T: Real> Iterate<'_, T> {
             T::PRECISION,
         );
         let mut evaluation = Evaluation { max_norm, energy_norm, ..Evaluation::default() };
-        let bound_tolerance = ROUNDING_BAND * T::EPSILON * max_norm;
+        let bound_tolerance = evaluation.bound_tolerance::<T>();
         let chunks = map_chunks(self.values.len(), |range| {
             let mut chunk = Evaluation::default();
             range
@@ -102,6 +107,18 @@ impl<T: Real> Iterate<'_, T> {
         self.forget_best();
         let merit = self.evaluate(solver).merit;
         self.keep_if_best(merit);
+    }
+
+    /// Whether a multiplier of unknown `i` is larger than its rounding.
+    pub(super) fn is_above_rounding(
+        &self,
+        i: usize,
+        multiplier: f64,
+        solver: &dyn LinearSolver<T>,
+    ) -> bool {
+        // the values of eliminated unknowns have no error, so that their terms are rounded in `f64` only
+        let [inactive, eliminated] = solver.residual_term_magnitudes(i, self);
+        multiplier > ROUNDING_BAND * (T::EPSILON * inactive + f64::EPSILON * eliminated)
     }
 
     /// Adds unknown `i` to an evaluation. `multiplier_violation` is here the sum of the squares `r_i^2 / d_i`, without
@@ -139,10 +156,7 @@ impl<T: Real> Iterate<'_, T> {
         };
         if wrong_multiplier > 0.0 {
             evaluation.multiplier_violation += wrong_multiplier * wrong_multiplier / d;
-            // the values of eliminated unknowns have no error, so that their terms are rounded in `f64` only
-            let [inactive, eliminated] = solver.residual_term_magnitudes(i, self);
-            let terms = T::EPSILON * inactive + f64::EPSILON * eliminated;
-            if wrong_multiplier > ROUNDING_BAND * terms {
+            if self.is_above_rounding(i, wrong_multiplier, solver) {
                 evaluation.state_changes.push((i as u32, Contact::Inactive));
             }
         }

@@ -1,5 +1,6 @@
 //! The active set iteration, for every linear solver.
 
+use super::cell_inequality::changes_of_cells;
 use super::evaluation::Evaluation;
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, End, LinearSolver};
@@ -109,11 +110,15 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         }
     }
 
-    /// Evaluates the iterate after a linear system, and keeps it if it is the best one.
+    /// Evaluates the iterate after a linear system, with the state changes of cells where they are predicted as a whole
+    /// ([`changes_of_cells`]), and keeps the iterate if it is the best one.
     fn evaluate(&mut self) -> Result<Evaluation, End> {
-        let evaluation = self.iterate.evaluate(&*self.solver);
+        let mut evaluation = self.iterate.evaluate(&*self.solver);
         if !evaluation.is_finite() {
             return Err(Outcome::NotFinite.into());
+        }
+        if let Some(changes) = changes_of_cells(self.iterate, &evaluation, &*self.solver) {
+            evaluation.state_changes = changes;
         }
         self.iterate.keep_if_best(evaluation.merit);
         self.recorder.end_step(|| self.iterate.certificate());

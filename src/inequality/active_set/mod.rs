@@ -8,6 +8,7 @@
 //! | `iteration` | the active set iteration, for every linear solver |
 //! | `iterate` | values, contact states and residual of a step, and the best values |
 //! | `evaluation` | violations, merit and prediction of the next active set |
+//! | `cell_inequality` | prediction of the active set of a cell under a penalty on jumps of means |
 //! | `local_inequality` | the inequality near unknowns whose states keep changing |
 //! | `progress` | cycles and stagnation of the active set, accuracy of linear solutions |
 //! | `linear_solver` | the trait of solvers of the linear systems |
@@ -15,6 +16,7 @@
 //! | `preconditioned_solver` | preconditioned Krylov methods |
 //! | `contact_state` | the contact states that a bound admits, the value that a state prescribes |
 
+mod cell_inequality;
 mod contact_state;
 mod direct_solver;
 mod evaluation;

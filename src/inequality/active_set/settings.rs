@@ -8,7 +8,8 @@ use crate::linear::LinearMethod;
 /// Every step sets the active unknowns to their bounds and the fixed ones to their Dirichlet values,
 /// solves the linear system on the inactive unknowns, and predicts a new active set: an active unknown
 /// whose multiplier has the wrong sign becomes inactive, an inactive unknown that violates a bound
-/// becomes active. For M-matrices the method ends in the solution after finitely many steps. For other
+/// becomes active. Under a penalty on jumps of means the unknowns of a cell change their states together.
+/// For M-matrices the method ends in the solution after finitely many steps. For other
 /// matrices it may cycle or stagnate: other methods follow, described with the documentation of solvers, and in the end
 /// an interior point method, which provides a new start. If none of them finds a solution, the outcome says why.
 ///
