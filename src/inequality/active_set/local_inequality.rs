@@ -9,8 +9,8 @@ use crate::real::Real;
 
 /// Largest distance, in couplings of the matrix, of the unknowns of a local inequality from those whose states change.
 /// The values of different tetrahedra at one vertex, which are coupled from cell to cell, are at most half a dozen
-/// couplings apart: three reach half way around. With two, WOPSIP with bounds at vertices takes six more systems on
-/// radial-3d at 32.
+/// couplings apart: three reach half way around. With two, and states predicted one by one, WOPSIP with bounds at
+/// vertices takes six more systems on radial-3d at 32.
 const MAX_DISTANCE: usize = 3;
 
 /// Largest number of unknowns of a local inequality, which is solved with factors, divided by the number of all
