@@ -3,16 +3,18 @@
 //! A penalty on jumps of means couples unknowns so strongly that the violation of one of them alone says little: where
 //! it changes its state, others violate their bounds in the next system. The inequality of a cell takes its unknowns
 //! together. On radial-3d at 32 the iteration of WOPSIP with bounds at vertices then takes 13 systems for 18, on
-//! biactive-half-2d at 64 that with bounds on facet means 17 for 34. Vertex values of triangles keep the prediction of
-//! single unknowns: it takes fewer systems on coarse meshes there, and about as many on fine ones.
+//! biactive-half-2d at 64 the iteration of WOPSIP with bounds on facet means 17 for 34. Vertex values of triangles keep
+//! the prediction of single unknowns: with the prediction of cells WOPSIP takes more systems on coarse meshes in the
+//! plane, and about as many on fine ones.
 //!
-//! For an M-matrix, bounds from below and exact systems the iteration remains finite. The values of the solution of a
-//! cell are not below the present ones, so that the solutions of all cells, put together, have no negative residual on
-//! the new inactive unknowns. The next values are not below them, and larger somewhere unless all cells are solved: no
-//! active set returns. Cells that change single unknowns satisfy this too, with values raised to their bounds.
+//! For an M-matrix, bounds from below and exactly solved systems the iteration remains finite. The solution of a cell
+//! has no value below the present one, so that the solutions of all cells, put together, have no negative residual on
+//! the new inactive unknowns. The next values are not below these solutions, and some of them are larger than the
+//! present ones unless every cell is solved: no active set returns. The argument covers cells that change single
+//! unknowns, with the values of these unknowns raised to their bounds.
 //!
-//! A cell that has unknowns without inequality keeps the prediction of its single unknowns: the means of its
-//! neighbours, which are held, would hold its free values too.
+//! A cell with free or fixed unknowns keeps the prediction of its single unknowns: the values of the neighbours, which
+//! are held, would hold the free values too.
 
 use super::contact_state::prescribed_value;
 use super::evaluation::{Evaluation, ROUNDING_BAND};
@@ -43,7 +45,7 @@ pub(super) fn changes_of_cells<T: Real>(
     Some(predict(iterate, evaluation, solver))
 }
 
-/// [`changes_of_cells`] for cells with `N` unknowns.
+/// The state changes of [`changes_of_cells`], for cells with `N` unknowns.
 fn changes_by_cells<T: Real, const N: usize>(
     iterate: &Iterate<'_, T>,
     evaluation: &Evaluation,
@@ -74,7 +76,7 @@ fn changes_by_cells<T: Real, const N: usize>(
     }))
 }
 
-/// The inequality for the steps of the `N` values of a cell to its solution.
+/// The inequality of the `N` unknowns of a cell, for the steps from the present values to the solution.
 struct CellInequality<'a, T, const N: usize> {
     /// Symmetric and positive definite.
     matrix: [[f64; N]; N],

@@ -136,7 +136,7 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
     }
 
     /// Solves the inequality near the unknowns `changed` if [`Iteration::local_solves`] is not zero; returns whether a
-    /// solution was found. After a solve without solution there is no other.
+    /// solution was found. A local inequality without solution is the last one of the iteration.
     fn try_local_solve(&mut self, changed: &[u32]) -> bool {
         if self.local_solves == 0 {
             return false;

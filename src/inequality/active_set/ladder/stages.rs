@@ -35,8 +35,8 @@ const QUADRATIC_TO_LINEAR: f64 = 0.1;
 const LEAST_TOLERANCE: f64 = 100.0;
 
 /// Largest number of local inequalities, near unknowns whose states change, that the iteration with a Krylov method
-/// solves before the next method follows. WOPSIP with bounds at vertices takes one on radial-3d, nine on lshape-2d at
-/// 128.
+/// solves before the next method follows. WOPSIP with bounds at vertices solves one of them on radial-3d at 32, nine on
+/// lshape-2d at 128.
 const MAX_LOCAL_SOLVES: usize = 10;
 
 /// Dimension of the space of linear functions on a tetrahedron.
