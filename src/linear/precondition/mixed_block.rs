@@ -52,8 +52,7 @@ impl<T> BlockFactors<T> {
 
 impl<T: Real> BlockSolver<T> for BlockFactors<T> {
     fn factor(&mut self, block: &SparseMatrix<T>, unknowns: &[u32]) -> Result<(), FactorError> {
-        // the memory of the old factors is released before the new ones are computed
-        self.factors = None;
+        let old = self.factors.take();
         if !unknowns.is_empty() {
             // the unknowns of a cell stand one after the other, and are coupled to nearly the same unknowns
             let cell = |k: usize| unknowns[k] as usize / self.cell_size;
@@ -61,7 +60,7 @@ impl<T: Real> BlockSolver<T> for BlockFactors<T> {
             let firsts = (0..unknowns.len()).filter(is_first).chain([unknowns.len()]);
             let starts: Vec<u32> = firsts.map(|k| k as u32).collect();
             let order = minimum_degree_of_groups(block, &starts)?;
-            self.factors = Some(Factors::of_block(block, order)?);
+            self.factors = Some(Factors::of_block(block, order, old)?);
         }
         Ok(())
     }
