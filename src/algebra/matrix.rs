@@ -1,8 +1,7 @@
 //! Square sparse matrices in compressed sparse rows.
 
-use super::NO_INDEX;
 use crate::parallel::grouping::group_by_key;
-use crate::parallel::vectors::{all, collect, for_each_chunk, positions};
+use crate::parallel::vectors::{all, collect, for_each_chunk};
 use crate::real::Real;
 
 /// A square sparse matrix in compressed sparse rows; columns ascend strictly in each row.
@@ -131,42 +130,6 @@ impl<T: Real> SparseMatrix<T> {
         let (row_starts, columns, values) =
             transpose((&self.row_starts, &self.columns, &self.values), self.size());
         Self { row_starts, columns, values }
-    }
-    /// The submatrix `A_II` for an ascending index set `I = free`: its row and column `k` are those of `free[k]` in `A`.
-    pub(crate) fn submatrix(&self, free: &[u32]) -> Self {
-        self.extract(free, false)
-    }
-    /// The lower triangle of the submatrix `A_II`, diagonal included.
-    pub(crate) fn lower_triangle(&self, free: &[u32]) -> Self {
-        self.extract(free, true)
-    }
-    fn extract(&self, free: &[u32], is_lower: bool) -> Self {
-        if free.is_empty() {
-            return Self { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
-        }
-        let position = positions(self.size(), free);
-        // An upper bound on the number of entries avoids reallocation.
-        let stored = free.iter().map(|&i| self.row(i as usize).0.len()).sum::<usize>();
-        let capacity = if is_lower { (stored + free.len()).div_ceil(2) } else { stored };
-        let mut submatrix = Self {
-            row_starts: Vec::with_capacity(free.len() + 1),
-            columns: Vec::with_capacity(capacity),
-            values: Vec::with_capacity(capacity),
-        };
-        submatrix.row_starts.push(0);
-        for (k, &i) in free.iter().enumerate() {
-            let last = if is_lower { k as u32 } else { NO_INDEX - 1 };
-            let (columns, values) = self.row(i as usize);
-            for (&j, &a) in columns.iter().zip(values) {
-                let j = position[j as usize];
-                if j <= last {
-                    submatrix.columns.push(j);
-                    submatrix.values.push(a);
-                }
-            }
-            submatrix.row_starts.push(submatrix.columns.len() as u32);
-        }
-        submatrix
     }
     /// The symmetric part `(A + A^T) / 2`, symmetric to the last bit. Its pattern is the union of
     /// those of `A` and `A^T`.

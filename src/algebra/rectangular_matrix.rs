@@ -1,11 +1,12 @@
-//! Rectangular sparse matrices, and the product `P^T A P`.
+//! Rectangular sparse matrices, the product `P^T A P`, and the submatrix of some unknowns: the product with the columns
+//! `P` of the identity.
 
 use std::ops::Range;
 
 use super::NO_INDEX;
 use super::matrix::{SparseMatrix, sort_by_column, transpose};
 use crate::parallel::map_groups;
-use crate::parallel::vectors::{concat, starts};
+use crate::parallel::vectors::{concat, positions, starts};
 use crate::real::Real;
 
 /// Rows that one task computes at least.
@@ -168,6 +169,51 @@ impl<T: Real> SparseSum<T> {
     }
 }
 
+impl<T: Real> SparseMatrix<T> {
+    /// The submatrix `A_II` for an ascending index set `I = free`: its row and column `k` are those of `free[k]` in
+    /// `A`.
+    pub(crate) fn submatrix(&self, free: &[u32]) -> Self {
+        // columns that are not in the submatrix have the position `NO_INDEX`
+        self.extract(free, |_| NO_INDEX - 1)
+    }
+
+    /// The lower triangle of the submatrix `A_II`, diagonal included.
+    pub(crate) fn lower_triangle(&self, free: &[u32]) -> Self {
+        self.extract(free, |k| k as u32)
+    }
+
+    /// The entries of each row `k` of the submatrix up to column `last(k)`.
+    fn extract(&self, free: &[u32], last: impl Fn(usize) -> u32 + Sync) -> Self {
+        if free.is_empty() {
+            return Self { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        }
+        let position = positions(self.size(), free);
+        let of_rows = |rows: Range<usize>| {
+            let stored = rows.clone().map(|k| self.row(free[k] as usize).0.len()).sum();
+            let mut part = RectangularMatrix {
+                starts: vec![0],
+                columns: Vec::with_capacity(stored),
+                values: Vec::with_capacity(stored),
+            };
+            for k in rows {
+                let (columns, entries) = self.row(free[k] as usize);
+                for (&j, &a) in columns.iter().zip(entries) {
+                    let j = position[j as usize];
+                    if j <= last(k) {
+                        part.columns.push(j);
+                        part.values.push(a);
+                    }
+                }
+                part.starts.push(part.columns.len() as u32);
+            }
+            part
+        };
+        let RectangularMatrix { starts: row_starts, columns, values } =
+            RectangularMatrix::by_groups(free.len(), &of_rows);
+        Self { row_starts, columns, values }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,7 +221,7 @@ mod tests {
     /// Linear interpolation from every second point, with more rows than one task has: the rows of several tasks are
     /// joined, and have the bits of one task.
     #[test]
-    fn products_have_the_same_bits_for_any_number_of_threads() {
+    fn products_and_submatrices_have_the_same_bits_for_any_number_of_threads() {
         let n = 3 * ROWS_PER_TASK + 1;
         let rows = RectangularMatrix::by_rows(0..n, |i, columns, values| {
             let parents = [i / 2, i.div_ceil(2)];
@@ -183,14 +229,17 @@ mod tests {
             values.extend([[1.0, 0.0], [0.4, 0.6]][i % 2].iter().take(1 + i % 2));
         });
         let matrix = SparseMatrix::<f64>::second_differences(n);
+        let free: Vec<u32> = (0..n as u32).filter(|i| i % 5 != 3).collect();
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| galerkin_product(&matrix, &rows, n / 2 + 1))
+            let product = || galerkin_product(&matrix, &rows, n / 2 + 1);
+            pool.install(|| [product(), matrix.submatrix(&free), matrix.lower_triangle(&free)])
         };
-        let (one, three) = (with(1), with(3));
-        assert!(one.is_well_formed() && one.nonzeros() > n);
-        assert_eq!(one.row_starts, three.row_starts);
-        assert_eq!((one.columns, one.values), (three.columns, three.values));
+        for (one, three) in with(1).into_iter().zip(with(3)) {
+            assert!(one.is_well_formed() && one.nonzeros() > n);
+            assert_eq!(one.row_starts, three.row_starts);
+            assert_eq!((one.columns, one.values), (three.columns, three.values));
+        }
     }
 
     /// Second differences with linear interpolation and a function that two others contain, against sums over all

@@ -16,7 +16,7 @@
 //! A cell with free or fixed unknowns keeps the prediction of its single unknowns: the values of the neighbours, which
 //! are held, would hold the free values too.
 
-use super::contact_state::prescribed_value;
+use super::contact_state::{prescribed_value, violated_bound};
 use super::evaluation::{Evaluation, ROUNDING_BAND};
 use super::iterate::Iterate;
 use super::linear_solver::LinearSolver;
@@ -150,12 +150,8 @@ impl<'a, T: Real, const N: usize> CellInequality<'a, T, N> {
         }
         let wrong_multiplier = match state {
             Contact::Inactive => {
-                let [above, below] = bound.distances(self.values[k].to_f64() + steps[k]);
-                return match () {
-                    () if above < -bound_tolerance => Some(Contact::Lower),
-                    () if below < -bound_tolerance => Some(Contact::Upper),
-                    () => None,
-                };
+                let x = self.values[k].to_f64() + steps[k];
+                return violated_bound(bound, x, bound_tolerance).map(|(state, _)| state);
             }
             Contact::Lower => self.residual_after(k, steps),
             Contact::Upper => -self.residual_after(k, steps),

@@ -24,6 +24,21 @@ pub(crate) fn prescribed_value<T: Real>(bound: &Bound<T>, state: Contact) -> Opt
     })
 }
 
+/// The state of the bound that `x` violates by more than a tolerance, and the violation; the lower bound counts first.
+#[inline]
+pub(crate) fn violated_bound<T: Real>(
+    bound: &Bound<T>,
+    x: f64,
+    tolerance: f64,
+) -> Option<(Contact, f64)> {
+    let [to_lower, to_upper] = bound.distances(x);
+    match () {
+        () if -to_lower > tolerance => Some((Contact::Lower, -to_lower)),
+        () if -to_upper > tolerance => Some((Contact::Upper, -to_upper)),
+        () => None,
+    }
+}
+
 /// The contact states of the start of an inequality, made admissible by [`admissible_state`]. An unknown that the start
 /// does not name, because its list is shorter, starts as inactive. Where no unknown of a body that bounds alone hold is
 /// active, all of them are, at their lower bounds if they have two: else the matrix is singular.

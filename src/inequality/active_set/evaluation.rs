@@ -1,6 +1,7 @@
 //! The evaluation of the KKT conditions at an iterate: violations, merit, and the prediction of the
 //! active set.
 
+use super::contact_state::violated_bound;
 use super::iterate::Iterate;
 use super::linear_solver::LinearSolver;
 use crate::algebra::{Contact, Distribution};
@@ -140,14 +141,9 @@ impl<T: Real> Iterate<'_, T> {
         }
         let wrong_multiplier = match self.states[i] {
             Contact::Inactive => {
-                let below = bound.lower().map_or(0.0, |l| l.to_f64() - x);
-                let above = bound.upper().map_or(0.0, |u| x - u.to_f64());
-                if below > bound_tolerance {
-                    evaluation.state_changes.push((i as u32, Contact::Lower));
-                    evaluation.bound_violation = evaluation.bound_violation.max(below);
-                } else if above > bound_tolerance {
-                    evaluation.state_changes.push((i as u32, Contact::Upper));
-                    evaluation.bound_violation = evaluation.bound_violation.max(above);
+                if let Some((state, violation)) = violated_bound(bound, x, bound_tolerance) {
+                    evaluation.state_changes.push((i as u32, state));
+                    evaluation.bound_violation = evaluation.bound_violation.max(violation);
                 }
                 return;
             }

@@ -117,7 +117,7 @@ impl<T: Real> Factors<T> {
         if lower.size() == 0 {
             return Ok(Self { size: 0, factorisation: Factorisation::Empty });
         }
-        let factors = Self::try_cholesky(lower, symbolic);
+        let factors = Self::try_cholesky(lower, symbolic, Vec::new());
         factors.and_then(|factors| factors.if_regular(&row_norms(lower, true))).map_err(|error| {
             match error {
                 FactorError::NotPositive => indefinite_or_singular(lower, symbolic),
@@ -127,21 +127,35 @@ impl<T: Real> Factors<T> {
     }
 
     /// The Cholesky factor of a symmetric matrix that belongs to a preconditioner: whether the matrix is regular to
-    /// working precision is not tested. `order` is a permutation of the rows, the order of elimination.
+    /// working precision is not tested. `order` is a permutation of the rows, the order of elimination. The factor takes
+    /// the memory of another factor, `old`, if it is large enough: new memory costs a page fault for each page.
     ///
     /// # Errors
     /// [`FactorError::NotPositive`] if a pivot is not positive; [`FactorError::OutOfMemory`].
-    pub(crate) fn of_block(matrix: &SparseMatrix<T>, order: Vec<u32>) -> Result<Self, FactorError> {
+    pub(crate) fn of_block(
+        matrix: &SparseMatrix<T>,
+        order: Vec<u32>,
+        old: Option<Self>,
+    ) -> Result<Self, FactorError> {
         compiled!(
-            T: fn(&SparseMatrix<T>, Vec<u32>) -> Result<Factors<T>, FactorError>
+            T: fn(&SparseMatrix<T>, Vec<u32>, Option<Factors<T>>) -> Result<Factors<T>, FactorError>
                 = Factors::factor_block
-        )(matrix, order)
+        )(matrix, order, old)
     }
 
-    fn factor_block(matrix: &SparseMatrix<T>, order: Vec<u32>) -> Result<Self, FactorError> {
+    fn factor_block(
+        matrix: &SparseMatrix<T>,
+        order: Vec<u32>,
+        old: Option<Self>,
+    ) -> Result<Self, FactorError> {
+        let memory = match old.map(|old| old.factorisation) {
+            Some(Factorisation::Cholesky { values, .. }) => values,
+            _ => Vec::new(),
+        };
         let all: Vec<u32> = (0..matrix.size() as u32).collect();
         let lower = matrix.lower_triangle(&all);
-        Self::try_cholesky(&lower, &SymbolicFactor::new(&lower, Some(order))?)
+        let symbolic = SymbolicFactor::new(&lower, Some(order))?;
+        Self::try_cholesky(&lower, &symbolic, memory)
     }
 
     /// Number of unknowns of the factored submatrix.
@@ -181,16 +195,19 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    /// The Cholesky factor of a matrix that is not empty, given by its lower triangle.
+    /// The Cholesky factor of a matrix that is not empty, given by its lower triangle. Its values may take the memory
+    /// `old`.
     ///
     /// # Errors
-    /// [`FactorError::NotPositive`] if a pivot is not positive, also for a singular matrix; [`FactorError::OutOfMemory`].
+    /// [`FactorError::NotPositive`] if a pivot is not positive, also for a singular matrix;
+    /// [`FactorError::OutOfMemory`].
     fn try_cholesky(
         lower: &SparseMatrix<T>,
         symbolic: &SymbolicFactor,
+        old: Vec<T>,
     ) -> Result<Self, FactorError> {
         let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
-        let mut values = zero_values(&symbolic)?;
+        let mut values = values_in(old, symbolic.len_val())?;
         let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
         let (stack, none) = (MemStack::new(&mut memory), LltRegularization::default());
@@ -291,15 +308,19 @@ fn row_norms<T: Real>(matrix: &SparseMatrix<T>, symmetric: bool) -> Vec<f64> {
     norms
 }
 
-/// Zeros for the values of a factor.
+/// A vector of `length` values, in `memory` if it is large enough. The factorisation reads none of them.
 ///
 /// # Errors
 /// [`FactorError::OutOfMemory`].
-fn zero_values<T: Real>(symbolic: &SymbolicCholesky<u32>) -> Result<Vec<T>, FactorError> {
-    let mut values = Vec::new();
-    values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
-    let mut values = in_large_pages(values);
-    values.resize(symbolic.len_val(), T::lit(0.0));
+fn values_in<T: Real>(memory: Vec<T>, length: usize) -> Result<Vec<T>, FactorError> {
+    let mut values = memory;
+    if values.capacity() < length {
+        // the old memory is released before the new one is taken
+        values = Vec::new();
+        values.try_reserve_exact(length).map_err(|_| FactorError::OutOfMemory)?;
+        values = in_large_pages(values);
+    }
+    values.resize(length, T::lit(0.0));
     Ok(values)
 }
 
@@ -364,8 +385,51 @@ fn indefinite_or_singular<T: Real>(
             return FactorError::NotPositive;
         }
     }
-    match Factors::try_cholesky(lower, symbolic) {
+    match Factors::try_cholesky(lower, symbolic, Vec::new()) {
         Ok(_) => FactorError::Singular,
         Err(error) => error,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Factors in the memory of larger ones, supernodal (150 and 200 rows) and simplicial, are those in new memory.
+    #[test]
+    fn factors_in_the_memory_of_others_are_the_same() {
+        // the inverse distances of points on a line, with a large diagonal
+        let dense = |n: u32| SparseMatrix {
+            row_starts: (0..=n).map(|i| i * n).collect(),
+            columns: (0..n).cycle().take((n * n) as usize).collect(),
+            values: (0..n * n)
+                .map(|k| match (k / n).abs_diff(k % n) {
+                    0 => 10.0,
+                    distance => 1.0 / f64::from(distance),
+                })
+                .collect(),
+        };
+        let start = |factors: &Factors<f64>| match &factors.factorisation {
+            Factorisation::Cholesky { values, .. } => values.as_ptr(),
+            _ => unreachable!("the matrices are symmetric"),
+        };
+        let mut old = None;
+        for n in [200, 150, 100, 4, 200] {
+            let (matrix, order) = (dense(n), (0..n).rev().collect::<Vec<_>>());
+            let right_side: Vec<f64> = (0..n).map(|i| f64::from(i).sin()).collect();
+            let solution = |factors: &Factors<f64>| {
+                let mut x = right_side.clone();
+                factors.solve_in_place(&mut x, 1);
+                x
+            };
+            let new = Factors::of_block(&matrix, order.clone(), None).unwrap();
+            let start_of_old = old.as_ref().map(start);
+            let reused = Factors::of_block(&matrix, order, old.take()).unwrap();
+            assert!(start_of_old.is_none_or(|old| old == start(&reused)), "{n}");
+            assert_eq!(solution(&reused), solution(&new), "{n}");
+            let residual = matrix.residual(&right_side, &solution(&reused));
+            assert!(residual.iter().all(|r| r.abs() < 1e-13), "{n}");
+            old = Some(reused);
+        }
     }
 }

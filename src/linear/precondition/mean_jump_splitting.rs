@@ -16,10 +16,10 @@ use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
 use crate::algebra::{DofLocation, NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix};
 use crate::linear::direct::FactorError;
-use crate::parallel::map_items;
 use crate::parallel::vectors::{
     all, chunk_length, flags, for_each_chunk, for_each_chunk_of_groups, map_chunks,
 };
+use crate::parallel::{both, map_items};
 use crate::real::Real;
 
 /// The sum of a diagonal correction of jumps, a solution with factors on cells with free and fixed vertex values
@@ -320,12 +320,14 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         self.set_side_states();
         // errors are returned at the end, because calls of both solvers are collective over the parts of a mesh
         let corrected = self.set_side_corrections();
-        let factored =
-            self.mixed_block.factor(self.matrix, &self.penalties, &self.sides.inverse_jump);
         self.set_facets();
         self.set_fixed_vertices();
-        let Self { fixed_facets, kept_facets, fixed_vertices, .. } = self;
-        let set = self.facet_means_solver.set_fixed(fixed_facets, kept_facets, fixed_vertices);
+        let Self { mixed_block, fixed_facets, kept_facets, fixed_vertices, .. } = self;
+        // most of the work on the block is that of one thread
+        let at_once = mixed_block.may_run_beside();
+        let factor = || mixed_block.factor(self.matrix, &self.penalties, &self.sides.inverse_jump);
+        let set = || self.facet_means_solver.set_fixed(fixed_facets, kept_facets, fixed_vertices);
+        let (factored, set) = both(at_once, factor, set);
         corrected.and(factored).and(set)
     }
 
@@ -356,7 +358,11 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
                 };
             }
         });
-        self.facet_means_solver.apply(&self.facet_residuals, &mut self.facet_means);
+        let Self { mixed_block, facet_means_solver, facet_residuals, facet_means, .. } = self;
+        let at_once = mixed_block.may_run_beside();
+        let solve = || mixed_block.solve(r, g);
+        let apply = || facet_means_solver.apply(facet_residuals, facet_means);
+        both(at_once, solve, apply);
         let (facet_of_side, facet_means) = (&self.space.facet_of_side, &self.facet_means);
         let opposite = &self.penalties.opposite;
         let means = if are_means { &mut *z } else { &mut self.means[..] };
@@ -371,7 +377,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         });
         if !are_means {
             for_each_chunk(z, |_, z| z.fill(zero));
-            self.mixed_block.solve(r, g, &mut self.means, z);
+            self.mixed_block.write_solution(&mut self.means, z);
             let (means, fixed) = (&self.means, &self.fixed);
             for_each_chunk_of_groups(z, size, |range, z| {
                 let first = range.start;

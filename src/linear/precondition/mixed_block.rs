@@ -18,12 +18,15 @@ pub(super) struct MixedBlock<'a, T> {
     /// How the mean over each of these sides is coupled to vertex values of the block.
     couplings: Vec<SideCoupling<T>>,
     solver: Box<dyn BlockSolver<T> + 'a>,
-    /// Workspace: residual and correction at the vertex values.
+    /// The residual at the vertex values, then the solution.
     vector: Vec<T>,
 }
 
 /// The solver of a linear system with few of the unknowns.
 pub(crate) trait BlockSolver<T>: Send + Sync {
+    /// Whether all parts of a mesh must call `factor` and `solve` together; then no other work runs beside these
+    /// calls.
+    fn is_collective(&self) -> bool;
     /// Factors a symmetric matrix with a row for each of these unknowns, ascending. Over the parts of a mesh the rows of
     /// ghosts may be incomplete.
     ///
@@ -51,9 +54,12 @@ impl<T> BlockFactors<T> {
 }
 
 impl<T: Real> BlockSolver<T> for BlockFactors<T> {
+    fn is_collective(&self) -> bool {
+        false
+    }
+
     fn factor(&mut self, block: &SparseMatrix<T>, unknowns: &[u32]) -> Result<(), FactorError> {
-        // the memory of the old factors is released before the new ones are computed
-        self.factors = None;
+        let old = self.factors.take();
         if !unknowns.is_empty() {
             // the unknowns of a cell stand one after the other, and are coupled to nearly the same unknowns
             let cell = |k: usize| unknowns[k] as usize / self.cell_size;
@@ -61,7 +67,7 @@ impl<T: Real> BlockSolver<T> for BlockFactors<T> {
             let firsts = (0..unknowns.len()).filter(is_first).chain([unknowns.len()]);
             let starts: Vec<u32> = firsts.map(|k| k as u32).collect();
             let order = minimum_degree_of_groups(block, &starts)?;
-            self.factors = Some(Factors::of_block(block, order)?);
+            self.factors = Some(Factors::of_block(block, order, old)?);
         }
         Ok(())
     }
@@ -110,10 +116,13 @@ impl<T: Real> MixedBlock<'_, T> {
         solver.factor(&block, vertex_values)
     }
 
-    /// Solves the block for the residual with the entries `r` for vertex values and `g` for facet mean functions. Sets
-    /// the entries of `z` at the vertex values of the block to the solution. At the sides of the block the entries of
-    /// `means` have what the diagonal alone gives; what the vertex values add to that is added.
-    pub fn solve(&mut self, r: &[T], g: &[T], means: &mut [T], z: &mut [T]) {
+    /// Whether other work may run beside the factorisation and the solution of the block, which take time.
+    pub fn may_run_beside(&self) -> bool {
+        !self.solver.is_collective() && !self.vertex_values.is_empty()
+    }
+
+    /// Solves the block for the residual with the entries `r` for vertex values and `g` for facet mean functions.
+    pub fn solve(&mut self, r: &[T], g: &[T]) {
         let Self { vertex_values, sides, couplings, solver, vector } = self;
         vector.clear();
         vector.extend(vertex_values.iter().map(|&i| r[i as usize]));
@@ -122,11 +131,18 @@ impl<T: Real> MixedBlock<'_, T> {
             coupling.values().for_each(|k| vector[k] += share);
         }
         solver.solve(vector);
-        for (&side, coupling) in sides.iter().zip(&*couplings) {
+    }
+
+    /// Sets the entries of `z` at the vertex values of the block to the solution that [`MixedBlock::solve`] found. At
+    /// the sides of the block the entries of `means` have what the diagonal alone gives; what the vertex values add to
+    /// that is added.
+    pub fn write_solution(&self, means: &mut [T], z: &mut [T]) {
+        let Self { vertex_values, sides, couplings, vector, .. } = self;
+        for (&side, coupling) in sides.iter().zip(couplings) {
             let sum = coupling.values().fold(T::lit(0.0), |sum, k| sum + vector[k]);
             means[side as usize] += coupling.share * sum;
         }
-        for (&i, &value) in vertex_values.iter().zip(&*vector) {
+        for (&i, &value) in vertex_values.iter().zip(vector) {
             z[i as usize] = value;
         }
     }
@@ -214,7 +230,8 @@ mod tests {
                 let g: Vec<f64> = (0..size).map(|i| (2.0 * i as f64).cos()).collect();
                 let mut means: Vec<f64> = g.iter().zip(&inverse).map(|(g, d)| g * d).collect();
                 let mut z = vec![0.0; size];
-                block.solve(&r, &g, &mut means, &mut z);
+                block.solve(&r, &g);
+                block.write_solution(&mut means, &mut z);
 
                 // the columns of the basis, by rows of the matrix: the values, then the two means
                 let n_values = block.vertex_values.len();
