@@ -1,8 +1,8 @@
 //! Algebraic data: sparse and dense matrices, and the variational inequality that every solver and
 //! exporter takes. Independent of mesh, dimension and scheme.
 //!
-//! `matrix`: compressed sparse rows, and submatrices. `rectangular_matrix`: prolongations in compressed sparse
-//! rows, and `P^T A P`. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
+//! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse
+//! rows, `P^T A P`, and submatrices. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
 //! discontinuous linear functions. `dense`: small dense matrices.
 //! `dirichlet_energy`: the terms of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an

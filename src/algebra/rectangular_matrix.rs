@@ -189,6 +189,7 @@ impl<T: Real> SparseMatrix<T> {
         }
         let position = positions(self.size(), free);
         let of_rows = |rows: Range<usize>| {
+            // an upper bound on the number of entries avoids reallocation
             let stored = rows.clone().map(|k| self.row(free[k] as usize).0.len()).sum();
             let mut part = RectangularMatrix {
                 starts: vec![0],

@@ -1,11 +1,11 @@
 //! The prediction of the active set of a cell by the inequality of its unknowns, with all other values held.
 //!
 //! A penalty on jumps of means couples unknowns so strongly that the violation of one of them alone says little: where
-//! it changes its state, others violate their bounds in the next system. The inequality of a cell takes its unknowns
-//! together. On radial-3d at 32 the iteration of WOPSIP with bounds at vertices then takes 13 systems for 18, on
-//! biactive-half-2d at 64 the iteration of WOPSIP with bounds on facet means 17 for 34. Vertex values of triangles keep
-//! the prediction of single unknowns: with the prediction of cells WOPSIP takes more systems on coarse meshes in the
-//! plane, and about as many on fine ones.
+//! this unknown changes its state, others violate their bounds in the next system. The inequality of a cell takes its
+//! unknowns together. On radial-3d at 32 the iteration of WOPSIP with bounds at vertices then takes 13 systems for 18,
+//! on biactive-half-2d at 64 the iteration of WOPSIP with bounds on facet means 17 for 34. Vertex values of triangles
+//! keep the prediction of single unknowns: with the prediction of cells WOPSIP takes more systems on coarse meshes in
+//! the plane, and about as many on fine ones.
 //!
 //! For an M-matrix, bounds from below and exactly solved systems the iteration remains finite. The solution of a cell
 //! has no value below the present one, so that the solutions of all cells, put together, have no negative residual on
@@ -117,7 +117,8 @@ impl<'a, T: Real, const N: usize> CellInequality<'a, T, N> {
     ///
     /// The first unknown that violates a condition changes its state, until none does (K. G. Murty, Opsearch 11 (1974),
     /// 123-130). This ends after less than `3^N` changes: the residual of the last unknown decreases in its value, so
-    /// that it changes twice at most, and between its changes the same holds for the others.
+    /// that this unknown changes its state twice at most, and between these changes the same holds for the other
+    /// unknowns.
     fn states(
         &self,
         bound_tolerance: f64,
@@ -136,7 +137,8 @@ impl<'a, T: Real, const N: usize> CellInequality<'a, T, N> {
         None
     }
 
-    /// The new state of unknown `k` if it violates a condition after the steps that its state and the others give.
+    /// The new state of unknown `k` if the unknown violates a condition after `steps`, which are those of the states of
+    /// the cell; `state` is the present one.
     fn change(
         &self,
         k: usize,
@@ -269,7 +271,7 @@ mod tests {
         let lower = |i: u32| (i, Contact::Lower);
         let changes_of = |inequality: &Inequality<f64>, n: u32| {
             let mut iterate = Iterate::new(inequality, &[]);
-            // the load alone, whatever the penalised matrix is
+            // the residual is the load, whatever the penalised matrix is
             iterate.residual.fill(-1.0);
             let solver = DirectSolver::new(inequality);
             let mut evaluation = Evaluation::default();

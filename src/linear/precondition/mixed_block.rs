@@ -116,7 +116,8 @@ impl<T: Real> MixedBlock<'_, T> {
         solver.factor(&block, vertex_values)
     }
 
-    /// Whether other work may run beside the factorisation and the solution of the block, which take time.
+    /// Whether other work may run beside the factorisation and the solution of the block: the calls are not collective,
+    /// and the block is not empty.
     pub fn may_run_beside(&self) -> bool {
         !self.solver.is_collective() && !self.vertex_values.is_empty()
     }
