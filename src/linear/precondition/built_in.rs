@@ -8,6 +8,7 @@ use super::multigrid::Multigrid;
 use super::preconditioner::{PreconditionedSystem, Preconditioner, PreconditionerFamily};
 use super::prolongation::Prolongation;
 use super::smoother::unknowns_per_cell;
+use crate::instances::compiled;
 use crate::real::Real;
 
 /// The preconditioner that fits the coarse spaces and the element. The first case that applies counts:
@@ -31,26 +32,35 @@ impl<T: Real> PreconditionerFamily<T> for BuiltInPreconditioners {
         &self,
         system: PreconditionedSystem<'a, T>,
     ) -> Option<Box<dyn Preconditioner<T> + 'a>> {
-        let PreconditionedSystem { matrix, inequality, spaces } = system;
-        let level = match spaces {
-            CoarseSpaces::Unknown => return Some(Box::new(Multigrid::new(matrix, None))),
-            CoarseSpaces::CoarseLevel(coarser) => {
-                return Some(Box::new(Multigrid::new(matrix, Some(coarser))));
-            }
-            CoarseSpaces::SameMesh(level) => level,
-        };
-        let locations = &inequality.locations;
-        if let Some(penalised) = &inequality.penalised
-            && let Some(splitting) = MeanJumpSplitting::new(matrix, penalised, locations, level)
-        {
-            return Some(Box::new(splitting));
-        }
-        // 1: cells share unknowns
-        let cell_size = unknowns_per_cell(locations).filter(|size| {
-            [1, 2, 3, 4, 6, 10].contains(size) && matrix.size().is_multiple_of(*size)
-        })?;
-        let prolongation = Prolongation::to_element(locations, level.size())?;
-        let matrix = Cow::Borrowed(matrix);
-        Some(Box::new(Multigrid::of_element(matrix, prolongation, level, cell_size)))
+        compiled!(
+            T: for<'s> fn(PreconditionedSystem<'s, T>) -> Option<Box<dyn Preconditioner<T> + 's>>
+                = fitting
+        )(system)
     }
+}
+
+/// The preconditioner that fits a system.
+fn fitting<T: Real>(
+    system: PreconditionedSystem<'_, T>,
+) -> Option<Box<dyn Preconditioner<T> + '_>> {
+    let PreconditionedSystem { matrix, inequality, spaces } = system;
+    let level = match spaces {
+        CoarseSpaces::Unknown => return Some(Box::new(Multigrid::new(matrix, None))),
+        CoarseSpaces::CoarseLevel(coarser) => {
+            return Some(Box::new(Multigrid::new(matrix, Some(coarser))));
+        }
+        CoarseSpaces::SameMesh(level) => level,
+    };
+    let locations = &inequality.locations;
+    if let Some(penalised) = &inequality.penalised
+        && let Some(splitting) = MeanJumpSplitting::new(matrix, penalised, locations, level)
+    {
+        return Some(Box::new(splitting));
+    }
+    // 1: cells share unknowns
+    let cell_size = unknowns_per_cell(locations)
+        .filter(|size| [1, 2, 3, 4, 6, 10].contains(size) && matrix.size().is_multiple_of(*size))?;
+    let prolongation = Prolongation::to_element(locations, level.size())?;
+    let matrix = Cow::Borrowed(matrix);
+    Some(Box::new(Multigrid::of_element(matrix, prolongation, level, cell_size)))
 }

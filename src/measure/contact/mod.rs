@@ -130,8 +130,16 @@ impl<const D: usize> Discretisation<'_, D> {
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Option<Vec<f64>> {
-        let multipliers = || self.space.nodal_multipliers((inequality, solution));
-        self.space.problem.is_constrained().then(multipliers).flatten()
+        compiled!(const D: fn(
+                &Discretisation<'_, D>,
+                &Inequality<f64>,
+                &Solution<f64>,
+            ) -> Option<Vec<f64>>
+                = |of, inequality, solution| {
+                    let multipliers = || of.space.nodal_multipliers((inequality, solution));
+                    of.problem().is_constrained().then(multipliers).flatten()
+                }
+        )(self, inequality, solution)
     }
 }
 
