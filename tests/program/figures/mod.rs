@@ -26,18 +26,23 @@ struct Request {
     options: &'static str,
 }
 
-/// The schemes on linears, with both placements of bounds where they are offered.
-const LINEAR: &str = "p1,cr,sipg,nipg,iipg,ldg,ldg-switch,br2,bmmpr,wopsip,sipg:facet-means,nipg:facet-means,\
-    iipg:facet-means,ldg:facet-means,ldg-switch:facet-means,br2:facet-means,bmmpr:facet-means,wopsip:facet-means";
+/// The schemes on linears, with both placements of bounds where they are offered, but for those of [`LIFTED`].
+const LINEAR: &str = "p1,cr,sipg,nipg,iipg,wopsip,sipg:facet-means,nipg:facet-means,iipg:facet-means,wopsip:facet-means";
 /// The schemes on quadratics, likewise.
-const QUADRATIC: &str = "p2,sipg-p2,nipg-p2,iipg-p2,ldg-p2,ldg-switch-p2,br2-p2,bmmpr-p2,wopsip-p2,p2:midpoints,\
-    sipg-p2:midpoints,nipg-p2:midpoints,iipg-p2:midpoints,ldg-p2:midpoints,ldg-switch-p2:midpoints,\
-    br2-p2:midpoints,bmmpr-p2:midpoints,wopsip-p2:midpoints";
+const QUADRATIC: &str = "p2,sipg-p2,nipg-p2,iipg-p2,wopsip-p2,p2:midpoints,sipg-p2:midpoints,nipg-p2:midpoints,\
+    iipg-p2:midpoints,wopsip-p2:midpoints";
+/// The schemes that lift jumps, and those that share most of their code: a fifth of the scenes tells what changes.
+const LIFTED: &str = "ldg,ldg-switch,br2,bmmpr,ldg:facet-means,ldg-switch:facet-means,br2:facet-means,bmmpr:facet-means";
+/// The same on quadratics.
+const LIFTED_QUADRATIC: &str = "ldg-p2,ldg-switch-p2,br2-p2,bmmpr-p2,ldg-p2:midpoints,ldg-switch-p2:midpoints,\
+    br2-p2:midpoints,bmmpr-p2:midpoints";
 /// Those with bounds on Bernstein coefficients.
-const BERNSTEIN: &str = "p2:bernstein,sipg-p2:bernstein,nipg-p2:bernstein,iipg-p2:bernstein,ldg-p2:bernstein,\
-    ldg-switch-p2:bernstein,br2-p2:bernstein,bmmpr-p2:bernstein,wopsip-p2:bernstein";
+const BERNSTEIN: &str = "p2:bernstein,sipg-p2:bernstein,nipg-p2:bernstein,iipg-p2:bernstein,ldg-p2:bernstein,wopsip-p2:bernstein";
 /// Two of every kind, for what does not depend on the scheme.
 const FEW: &str = "p1,p2,cr,sipg,wopsip,wopsip:facet-means,nipg";
+
+/// For the forces that other solvers than the active set method report.
+const FORCES: &str = "p1,p2,cr,sipg,wopsip:facet-means";
 
 const ON_LINES: &str = "parabola-1d,icelike-1d,oscillating-1d,bilateral-1d,ridge-1d,radial-1d,polynomial-1d,contrast-1d,\
     signorini-reaction-1d,signorini-open-1d,signorini-closed-1d,signorini-grazing-1d";
@@ -50,6 +55,13 @@ const OBSTACLES_IN_SPACE: &str = "ridge-3d,radial-3d,polynomial-3d,ball-3d,cone-
 const CONTACT_IN_SPACE: &str =
     "signorini-harmonic-3d,signorini-line-3d,signorini-disc2-3d,signorini-disc3-3d,hertz-3d";
 
+/// The scenes of the schemes that lift jumps: an obstacle and a contact problem at least of each dimension, a coefficient
+/// that jumps, two obstacles, contact without force, a re-entrant corner.
+const OF_LIFTED_ON_LINES: &str = "radial-1d,contrast-1d,signorini-reaction-1d";
+const OF_LIFTED_IN_THE_PLANE: &str =
+    "radial-2d,lshape-2d,degenerate2-2d,contrast-disc-2d,signorini-2d,torsion-2d";
+const OF_LIFTED_IN_SPACE: &str = "radial-3d,signorini-line-3d";
+
 /// The longest first: they run two at a time.
 const REQUESTS: &[Request] = &[
     request("linear-plane-obstacles", OBSTACLES_IN_THE_PLANE, LINEAR, "--levels 8,16"),
@@ -60,6 +72,12 @@ const REQUESTS: &[Request] = &[
     request("linear-space-contact", CONTACT_IN_SPACE, LINEAR, "--levels 2,4"),
     request("quadratic-space-obstacles", OBSTACLES_IN_SPACE, QUADRATIC, "--levels 1,2"),
     request("quadratic-space-contact", CONTACT_IN_SPACE, QUADRATIC, "--levels 1,2"),
+    request("lifted-plane", OF_LIFTED_IN_THE_PLANE, LIFTED, "--levels 8,16"),
+    request("lifted-quadratic-plane", OF_LIFTED_IN_THE_PLANE, LIFTED_QUADRATIC, "--levels 4,8"),
+    request("lifted-space", OF_LIFTED_IN_SPACE, LIFTED, "--levels 2,4"),
+    request("lifted-quadratic-space", OF_LIFTED_IN_SPACE, LIFTED_QUADRATIC, "--levels 1,2"),
+    quick("lifted-lines", OF_LIFTED_ON_LINES, LIFTED, "--levels 8,16"),
+    quick("lifted-quadratic-lines", OF_LIFTED_ON_LINES, LIFTED_QUADRATIC, "--levels 4,8"),
     quick("linear-lines", ON_LINES, LINEAR, "--levels 8,16"),
     quick("quadratic-lines", ON_LINES, QUADRATIC, "--levels 4,8"),
     quick(
@@ -92,6 +110,13 @@ const REQUESTS: &[Request] = &[
         "p1,cr,sipg",
         "--levels 16 --solver monotone-multigrid",
     ),
+    quick(
+        "interior-point",
+        "radial-2d,signorini-2d,hertz-2d",
+        FORCES,
+        "--levels 8 --solver interior-point",
+    ),
+    quick("proximal", "radial-2d,signorini-2d,hertz-2d", FORCES, "--levels 8 --solver proximal"),
     quick("adaptive", "lshape-2d,hertz-2d", "p1,p2,sipg,wopsip", "--levels 4 --adaptive steps=3"),
     quick("adaptive-space", "signorini-harmonic-3d", "p1,sipg", "--levels 2 --adaptive steps=2"),
     quick(
@@ -107,6 +132,15 @@ const REQUESTS: &[Request] = &[
         FEW,
         "--levels 0 --mesh DATA/unstructured_half_cube.msh",
     ),
+    quick(
+        "mesh-contact",
+        "signorini-2d,signorini-harmonic-2d",
+        FEW,
+        "--levels 0,1 --mesh DATA/unstructured_half_square.msh",
+    ),
+    quick("mesh-cube", "radial-3d", FEW, "--levels 0 --mesh DATA/unstructured_cube.msh"),
+    quick("problem-plate", "EXAMPLES/problems/plate.toml", FEW, "--levels 0,1"),
+    quick("problem-membrane", "EXAMPLES/problems/membrane.toml", FEW, "--levels 0,1"),
     quick("problem-gap", "DATA/problems/gap_below_obstacle.toml", FEW, "--levels 4,8"),
     quick("problem-regions", "DATA/problems/region_obstacle.toml", FEW, "--levels 0,1"),
     quick("problem-bounds-alone", "DATA/problems/neu2.toml", FEW, "--levels 8"),
@@ -198,7 +232,10 @@ fn no_scene_and_no_scheme_is_left_out() {
     for scene in unilateral::scenes::catalogue() {
         assert!(scenes.contains(&&*scene.name), "{}", scene.name);
     }
-    let schemes: Vec<&str> = LINEAR.split(',').chain(QUADRATIC.split(',')).collect();
+    let schemes: Vec<&str> = [LINEAR, QUADRATIC, LIFTED, LIFTED_QUADRATIC]
+        .iter()
+        .flat_map(|list| list.split(','))
+        .collect();
     for &(scheme, _) in unilateral::scheme::SCHEMES {
         assert!(schemes.contains(&scheme), "{scheme}");
     }
