@@ -5,7 +5,6 @@ use std::convert::Infallible;
 use std::ops::Range;
 
 use super::bodies::FreeBodies;
-use super::count;
 use super::cut_simplices::CutRule;
 use super::shared_rows::places::for_each_place;
 use super::space::metric::Metrics;
@@ -80,7 +79,6 @@ impl<const D: usize> Space<'_, D> {
     }
 
     fn add_constant_source(&self, f: f64, load: &mut [f64]) -> Result<(), Error> {
-        count::source(1);
         let f = checks::finite(f, "source", &Point::<D>::zeros(), 0)?;
         let means: Vec<f64> = self.basis_means().iter().map(|mean| f * mean).collect();
         self.fill_each_cell(load, &|cell, out| {
@@ -109,7 +107,6 @@ impl<const D: usize> Space<'_, D> {
             let Some(f) = self.data.source.of(self.mesh.region(cell)) else { return Ok(()) };
             let volume = self.mesh.geometry(cell).volume;
             let mut add = |x: &Point<D>, weight: f64, basis: &BasisAt| {
-                count::source(1);
                 let value = checks::finite(self.at(f, cell, x), "source", x, cell)?;
                 let value = weight * volume * value;
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
@@ -173,7 +170,6 @@ impl<const D: usize> Space<'_, D> {
         group: usize,
         point: &[f64; 4],
     ) -> Result<f64, Error> {
-        count::neumann(1);
         let x = self.facet_point(point, cell, local);
         let normal = || self.mesh.geometry(cell).normal(local);
         let flux = match (self.data.neumann.of(group), &self.problem.exact) {

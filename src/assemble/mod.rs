@@ -8,7 +8,6 @@
 //! same bits for any number of threads.
 
 mod bodies;
-pub(crate) mod count;
 pub(crate) mod cut_simplices;
 mod data_quadrature;
 mod discretisation;

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use super::count;
 use super::owned_rows::lifted::Lifting;
 use super::space::form_facets::FormFacet;
 use super::space::metric::Metrics;
@@ -49,7 +48,6 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<Vec<f64>, Error> {
         let mut sums = vec![0.0; polynomials.len()];
         for (point, w) in self.facet_rule.iter() {
-            count::dirichlet(1);
             let x = self.facet_point(point, cell, local);
             let value = checks::finite(self.dirichlet_at(group, &x), "dirichlet", &x, cell)?;
             for (k, sum) in sums.iter_mut().enumerate() {

@@ -4,6 +4,7 @@
 ///
 /// Nothing where no exponent exists: an error or mesh size that is not positive and finite, or two
 /// meshes of the same size.
+#[must_use]
 pub fn observed_order(
     coarse_error: f64,
     fine_error: f64,
@@ -47,10 +48,16 @@ impl FittedOrder {
     }
 }
 
-/// Fits an order to mesh sizes and errors, the finest mesh last.
+/// Fits an order to pairs of mesh size and error, the finest mesh last.
 ///
 /// Nothing for fewer than two meshes, and nothing where a mesh size or error is not positive and
 /// finite or two meshes that follow each other have the same size.
+///
+/// ```
+/// let fitted = unilateral::measure::fit_order(&[(0.5, 0.4), (0.25, 0.1), (0.125, 0.025)]).unwrap();
+/// assert!((fitted.order - 2.0).abs() < 1e-12);
+/// ```
+#[must_use]
 pub fn fit_order(meshes: &[(f64, f64)]) -> Option<FittedOrder> {
     let of = |pair: &[(f64, f64)]| observed_order(pair[0].1, pair[1].1, pair[0].0, pair[1].0);
     let local: Vec<f64> = meshes.windows(2).map(of).collect::<Option<_>>()?;
@@ -69,56 +76,4 @@ pub fn fit_order(meshes: &[(f64, f64)]) -> Option<FittedOrder> {
         _ => 2.0 * (residuals / (count - 2.0) / squares).sqrt(),
     };
     order.is_finite().then_some(FittedOrder { order, spread, local })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{fit_order, observed_order};
-
-    #[test]
-    fn orders_are_of_the_ratio_of_mesh_sizes() {
-        let order = observed_order(4e-2, 1e-2, 0.5, 0.25).unwrap();
-        assert!((order - 2.0).abs() < 1e-12);
-        assert_eq!(observed_order(4e-2, 0.0, 0.5, 0.25), None);
-        let order = observed_order(8.0, 1.0, 0.9, 0.3).unwrap();
-        assert!((order - 8f64.ln() / 3f64.ln()).abs() < 1e-14);
-        // Quotients that overflow or vanish have an order all the same.
-        assert!((observed_order(1e300, 1e-300, 1.0, 0.1).unwrap() - 600.0).abs() < 1e-9);
-        assert!(observed_order(1e-3, 2e-3, 0.2, 0.1).unwrap() < 0.0, "growing errors");
-        for (coarse, fine, h, half) in [
-            (0.0, 1.0, 0.2, 0.1),
-            (1.0, 0.0, 0.2, 0.1),
-            (1.0, f64::NAN, 0.2, 0.1),
-            (f64::INFINITY, 1.0, 0.2, 0.1),
-            (1.0, 0.5, 0.2, 0.2),
-            (1.0, 0.5, 0.2, 0.0),
-            (-1.0, 0.5, 0.2, 0.1),
-        ] {
-            assert_eq!(observed_order(coarse, fine, h, half), None);
-        }
-    }
-
-    #[test]
-    fn fitted_orders_have_the_spread_of_a_regression() {
-        // logarithms of base 2 at 0, 1, 2, 3: 0, -1, -3, -4; slope -1.4, residuals 0.1, -0.3, 0.3, -0.1
-        let fitted = fit_order(&[(1.0, 1.0), (0.5, 0.5), (0.25, 0.125), (0.125, 0.0625)]).unwrap();
-        assert!((fitted.order - 1.4).abs() < 1e-14);
-        assert!((fitted.spread - 2.0 * (0.2_f64 / 2.0 / 5.0).sqrt()).abs() < 1e-14);
-        assert!(fitted.local.iter().zip([1.0, 2.0, 1.0]).all(|(a, b)| (a - b).abs() < 1e-14));
-        assert_eq!(fit_order(&[(1.0, 1.0), (0.5, 0.5)]).unwrap().spread, f64::INFINITY);
-        for wrong in [
-            &[(1.0, 1.0)][..],
-            &[(1.0, f64::NAN), (0.5, 1.0), (0.25, 0.5)],
-            &[(1.0, 1.0), (0.5, 0.0), (0.25, 0.5)],
-            &[(0.5, 1.0), (0.5, 0.5)],
-        ] {
-            assert_eq!(fit_order(wrong), None);
-        }
-    }
-
-    #[test]
-    fn a_power_law_has_its_order_and_no_spread() {
-        let fitted = fit_order(&[(0.4, 4.0), (0.2, 1.0), (0.1, 0.25), (0.05, 0.0625)]).unwrap();
-        assert!((fitted.order - 2.0).abs() < 1e-12 && fitted.spread < 1e-12);
-    }
 }

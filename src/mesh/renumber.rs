@@ -131,37 +131,3 @@ fn hilbert<const D: usize>(mut x: [u32; D]) -> u64 {
         x.iter().fold(distance, |distance, x| distance << 1 | u64::from((x ^ flip) & bit != 0))
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// All points of a lattice of the size of the curve: each step goes to a neighbour.
-    fn steps<const D: usize>(side: usize) {
-        let n = side.pow(D as u32);
-        let place = |k: usize| array_of(|d| (k / side.pow(d as u32) % side) as f64);
-        let points: Vec<[f64; D]> = (0..n).map(place).collect();
-        let order = order_along_curve(&points);
-        for pair in order.windows(2) {
-            let [a, b] = [pair[0], pair[1]].map(|k| points[k as usize]);
-            let step: f64 = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).sum();
-            assert_eq!(step, 1.0, "{a:?} {b:?}");
-        }
-        let mut all = order;
-        all.sort_unstable();
-        assert!(all.into_iter().eq(0..n as u32));
-    }
-
-    #[test]
-    fn neighbours_on_the_curve_are_neighbours_in_space() {
-        steps::<1>(64);
-        steps::<2>(16);
-        steps::<3>(8);
-    }
-
-    #[test]
-    fn points_at_one_place_keep_their_order() {
-        assert_eq!(order_along_curve(&[[1.0, 1.0]; 3]), [0, 1, 2]);
-        assert_eq!(order_along_curve::<2>(&[]), [0; 0]);
-    }
-}

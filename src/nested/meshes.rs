@@ -123,31 +123,3 @@ pub(super) fn unknowns<const D: usize>(mesh: &Mesh<D>, layout: Layout) -> usize 
     };
     layout.vertex * vertices + layout.edge * edges + layout.facet * facets + layout.cell * cells
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::assemble::space::dofs::Dofs;
-    use crate::element::{CrouzeixRaviart, Element, P1, P2};
-    use crate::mesh::{BoxDomain, Neighbours};
-    use crate::real::Point;
-
-    fn check<const D: usize>() {
-        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let mesh = Mesh::<D>::kuhn_box(&domain, [2; D]).unwrap();
-        let neighbours = Neighbours::new(&mesh);
-        let elements: [&dyn Element<D>; 3] = [&P1, &P2, &CrouzeixRaviart];
-        let broken = elements.map(|element| Layout::in_cells(element.layout().per_cell(D)));
-        for layout in elements.map(|element| element.layout()).into_iter().chain(broken) {
-            let dofs = Dofs::new(layout, &mesh, Some(&neighbours));
-            assert_eq!(unknowns(&mesh, layout), dofs.size(), "{layout:?}, {D}");
-        }
-    }
-
-    #[test]
-    fn the_number_of_unknowns_is_known_before_the_assembly() {
-        check::<1>();
-        check::<2>();
-        check::<3>();
-    }
-}

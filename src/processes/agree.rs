@@ -81,24 +81,3 @@ fn text_of(words: &[u64]) -> (String, Option<Outcome>) {
     let outcome = usize::try_from(*number).ok().and_then(|k| OUTCOMES.get(k.checked_sub(1)?));
     (String::from_utf8_lossy(&bytes).into_owned(), outcome.copied())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn texts_of_any_length_are_words() {
-        let long = "λ₁ ≥ 0 in cell 18446744073709551615".repeat(9);
-        let outcomes = [None, Some(Outcome::NotCoercive), Some(Outcome::OutOfRange)];
-        for (text, outcome) in
-            ["", "a", "of eight", "of nine b", &long].iter().zip(outcomes.iter().cycle())
-        {
-            let words = words_of(text, *outcome);
-            assert!(!words.is_empty());
-            assert_eq!(text_of(&words), ((*text).to_owned(), *outcome));
-        }
-        // what no part sends
-        assert_eq!(text_of(&[]), (String::new(), None));
-        assert_eq!(text_of(&[9, u64::MAX, 0x61]), ("a\0\0\0\0\0\0\0".to_owned(), None));
-    }
-}

@@ -58,31 +58,3 @@ fn jacobi(n: usize, a: f64, x: f64) -> (f64, f64) {
     }
     (p1, d1)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::gauss_jacobi;
-    use proptest::prelude::*;
-
-    fn factorial(n: usize) -> f64 {
-        (1..=n).map(|k| k as f64).product()
-    }
-
-    proptest! {
-        #[test]
-        fn gauss_rules_integrate_random_polynomials(
-            n in 1_usize..12,
-            a in 0_usize..4,
-            c in prop::collection::vec(-1.0_f64..1.0, 1..24),
-        ) {
-            let (nodes, weights) = gauss_jacobi(n, a);
-            let c = &c[..c.len().min(2 * n)];
-            let value = |t: f64| c.iter().rev().fold(0.0, |s, &c| s * t + c);
-            let sum: f64 = nodes.iter().zip(&weights).map(|(&t, w)| w * value(t)).sum();
-            // mean of t^k under (a + 1)(1 - t)^a
-            let mean = |k: usize| factorial(k) * factorial(a + 1) / factorial(k + a + 1);
-            let exact: f64 = c.iter().enumerate().map(|(k, c)| c * mean(k)).sum();
-            prop_assert!((sum - exact).abs() < 1e-13);
-        }
-    }
-}

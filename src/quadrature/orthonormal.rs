@@ -70,31 +70,3 @@ fn powers(dimension: usize, degree: usize) -> Vec<[i32; 3]> {
     all.sort_by_key(|p| (p.iter().sum::<i32>(), std::cmp::Reverse(*p)));
     all
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use approx::assert_relative_eq;
-
-    #[test]
-    fn orthonormal_sorted_and_complete() {
-        for dimension in 0..=3 {
-            for degree in 0..=3 {
-                let basis = OrthonormalPolynomials::new(dimension, degree);
-                let count = (1..=dimension).fold(1, |c, k| c * (degree + k) / k);
-                assert_eq!(basis.len(), count);
-                let rule = Rule::new(dimension, 2 * degree);
-                for i in 0..count {
-                    assert!(i == 0 || basis.degree(i) >= basis.degree(i - 1));
-                    for j in 0..count {
-                        let mean: f64 = rule
-                            .iter()
-                            .map(|(x, w)| w * basis.value(i, x) * basis.value(j, x))
-                            .sum();
-                        assert_relative_eq!(mean, f64::from(i == j), epsilon = 1e-12);
-                    }
-                }
-            }
-        }
-    }
-}

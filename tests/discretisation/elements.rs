@@ -7,6 +7,7 @@ use crate::support::checks::Checks;
 use unilateral::algebra::Contact;
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::element::{Entity, Layout, Node};
+use unilateral::facet::LocalFluxes;
 use unilateral::inequality::{ActiveSet, InequalitySolver};
 use unilateral::kit::check_scheme;
 use unilateral::mesh::{BoxDomain, Mesh};
@@ -200,4 +201,48 @@ fn multipliers_of_cubics_balance_the_load() {
     let middle = mesh.vertices().iter().position(|x| (x - Point::repeat(0.5)).norm() < 1e-9);
     let found = density[middle.unwrap()].unwrap();
     assert!((found - 40.0).abs() < 1e-6, "{found}");
+}
+
+/// The most functions in a cell, all zero, with the form that couples most cells.
+#[derive(Clone, Copy, Debug)]
+struct Most;
+
+impl Element<3> for Most {
+    fn degree(&self) -> usize {
+        2
+    }
+    fn layout(&self) -> Layout {
+        Layout::in_cells(20)
+    }
+    fn node(&self, i: usize) -> Node {
+        Node::vertex(i % 4)
+    }
+    fn values(&self, _: &[f64], _: &mut [f64]) {}
+    fn derivatives(&self, _: &[f64], _: &mut [[f64; 4]]) {}
+}
+
+impl Scheme<3> for Most {
+    fn name(&self) -> &str {
+        "most"
+    }
+    fn element(&self) -> Arc<dyn Element<3>> {
+        Arc::new(*self)
+    }
+    fn form(&self, _: &Mesh<3>) -> Box<dyn FacetForm<3>> {
+        Box::new(LocalFluxes { eta: 1.0, switch: false, lifts: Lifts::default() })
+    }
+}
+
+/// Twenty unknowns in each of seventeen cells.
+#[test]
+fn matrices_that_32_bit_numbers_do_not_count_are_refused_before_they_are_made() {
+    let unit = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let refused = |cubes: [usize; 3]| {
+        let mesh = Mesh::<3>::kuhn_box(&unit, cubes).unwrap();
+        let problem = Problem::new();
+        Discretisation::new(&Most, &problem, &mesh, DataQuadrature::default()).err()
+    };
+    let error = refused([52, 45, 45]).unwrap().to_string();
+    assert!(error.starts_with("entries of the matrix = 4296240000: at most 4294967295"), "{error}");
+    assert!(refused([52, 46, 44]).is_none());
 }

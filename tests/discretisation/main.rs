@@ -1,18 +1,25 @@
 //! Matrices and loads of discretisations, and the accuracy of their solutions.
 
+mod absent_terms;
 mod accuracy;
 mod adaptive;
+mod contact_forces;
 mod discrete_functions;
 mod elements;
 mod error_bounds;
+mod error_bounds_constants;
 mod error_bounds_contact;
 mod error_bounds_discrete;
+mod error_bounds_fluxes;
 mod error_bounds_guarantee;
 mod error_bounds_quadratics;
 mod forms;
 mod named_data;
+mod observed_orders;
 mod parts;
+mod problems;
 mod runs;
+mod unknowns;
 
 #[path = "../support"]
 mod support {

@@ -1,5 +1,6 @@
 //! Multipliers and contact sets of discrete solutions against the exact ones.
 
+use crate::problems::Random;
 use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
 use crate::support::scheme_lists::all_schemes;
@@ -162,4 +163,73 @@ fn the_distance_of_free_boundaries_is_that_of_hausdorff() {
         let found = solved.contact_errors().unwrap().free_boundary_distance.unwrap();
         assert!((found - expected).abs() < 1e-12, "{stated:?}: {found} {expected}");
     }
+}
+
+/// The string of the last test, constant along further axes: its discrete free boundary is where the first coordinate is
+/// 1/4 or 3/4, and facets there are sampled by points an eighth apart. Stated points outside the mesh do not count,
+/// however many and however far; others count as often as they are stated.
+#[test]
+fn stated_points_count_where_the_mesh_is() {
+    fn check<const D: usize>() {
+        let mut domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        domain.sides[1..].fill([BoundaryCondition::Neumann; 2]);
+        let mesh = Mesh::<D>::kuhn_box(&domain, std::array::from_fn(|k| [8, 2, 2][k])).unwrap();
+        let others = 9_usize.pow(D as u32 - 1);
+        let sample = |k: usize| {
+            let place = |axis: usize| (k % others / 9_usize.pow(axis as u32 - 1) % 9) as f64 / 8.0;
+            let first = if k < others { 0.25 } else { 0.75 };
+            Point::<D>::from_fn(|axis, _| if axis == 0 { first } else { place(axis) })
+        };
+        let discrete: Vec<Point<D>> = (0..2 * others).map(sample).collect();
+        let distance = |stated: &[Point<D>]| {
+            let exact = Exact::new(|_| 0.0, |_| Point::zeros());
+            // a level that is constant may have its zeros in every cell
+            let exact = exact.with_contact(|_| 1.0, stated.to_vec());
+            let problem = Problem::new()
+                .constant_source(-2.0 / 0.2_f64.powi(2))
+                .dirichlet(|_| 0.0)
+                .neumann(|_, _| 0.0)
+                .obstacle_below(|_| -1.0)
+                .solved_by(exact);
+            let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
+            solved.contact_errors().unwrap().free_boundary_distance
+        };
+        assert_eq!(distance(&discrete), Some(0.0), "{D}");
+        let one_sided = |from: &[Point<D>], to: &[Point<D>]| {
+            let nearest = |x: &Point<D>| to.iter().map(|y| (x - y).norm()).fold(9.0, f64::min);
+            from.iter().map(nearest).fold(0.0, f64::max)
+        };
+        let mut random = Random::new(D as u64);
+        let far = f64::INFINITY;
+        for case in 0..24 {
+            let mut stated: Vec<Point<D>> =
+                (0..2 * case).map(|_| Point::from_fn(|_, _| 0.5 + 0.8 * random.signed())).collect();
+            match case % 4 {
+                // points at one place, or on a line
+                1 => stated.extend([Point::repeat(0.5); 3]),
+                2 => stated.iter_mut().for_each(|x| x[0] = 0.375),
+                3 => {
+                    stated.extend([Point::repeat(far), Point::repeat(-far)]);
+                    stated.push(Point::from_fn(|axis, _| if axis == 0 { -far } else { 0.5 }));
+                }
+                _ => {}
+            }
+            let within: Vec<Point<D>> = stated
+                .iter()
+                .filter(|x| x.iter().all(|t| (0.0..=1.0).contains(t)))
+                .copied()
+                .collect();
+            let expected = (!within.is_empty())
+                .then(|| one_sided(&discrete, &within).max(one_sided(&within, &discrete)));
+            match (distance(&stated), expected) {
+                (Some(found), Some(expected)) => {
+                    assert!((found - expected).abs() < 1e-12, "{D} {case}: {found} {expected}");
+                }
+                (found, expected) => assert_eq!(found, expected, "{D} {case}"),
+            }
+        }
+    }
+    check::<1>();
+    check::<2>();
+    check::<3>();
 }

@@ -1,7 +1,14 @@
 //! The history of a solve: linear systems, seconds and certificates after every outer step.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::problems::{inequality, laplacian};
+use unilateral::algebra::{Bound, Distribution};
 use unilateral::inequality::{
-    ActiveSet, InequalitySolver, SOLVERS, SinglePrecision, Stage, solver_by_name,
+    ActiveSet, InequalitySolver, InitialGuess, Outcome, SOLVERS, SinglePrecision, Stage, certify,
+    solver_by_name,
 };
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
@@ -104,4 +111,59 @@ fn a_history_changes_nothing_else() {
         assert_eq!(with.iterations, without.iterations);
         assert_eq!((with.error, with.certificate), (without.error, without.certificate));
     }
+}
+
+/// One part that has all unknowns, which counts its sums over parts and takes its time for each.
+#[derive(Debug)]
+struct Slow {
+    sums: AtomicUsize,
+    pause: Duration,
+}
+
+impl Distribution for Slow {
+    fn owns(&self, _: usize) -> bool {
+        true
+    }
+    fn number(&self, unknown: usize) -> u64 {
+        unknown as u64
+    }
+    fn exchange(&self, _: &dyn Fn(usize) -> f64, _: &mut dyn FnMut(usize, f64)) {}
+    fn sum(&self, _: &mut [f64]) {
+        self.sums.fetch_add(1, Ordering::Relaxed);
+        std::thread::sleep(self.pause);
+    }
+    fn largest(&self, _: &mut [f64]) {}
+}
+
+/// A certificate asks for sums over the parts: with a history there are those of one certificate for each system more
+/// than without, and their time is in no point.
+#[test]
+fn the_clock_stands_still_for_certificates_and_none_is_computed_without_a_history() {
+    let n = 4;
+    let mut string = inequality(laplacian(n, 1, 2.0), &vec![-1.0; n], vec![Bound::Lower(-1.5); n]);
+    string.is_definite = true;
+    let pause = Duration::from_millis(2);
+    let mut run = |keeps_history: bool| {
+        let slow = Arc::new(Slow { sums: AtomicUsize::new(0), pause });
+        string.distribution = Some(slow.clone());
+        let guess = InitialGuess::default().keeps_history(keeps_history);
+        let begin = Instant::now();
+        let solution = ActiveSet::default().solve_from(&string, &guess);
+        let seconds = begin.elapsed().as_secs_f64();
+        assert_eq!(solution.outcome, Outcome::Converged);
+        let n_sums = slow.sums.load(Ordering::Relaxed);
+        assert!(certify(&string, &solution.values).largest() < 1e-9);
+        let of_certificate = slow.sums.load(Ordering::Relaxed) - n_sums;
+        (solution, seconds, n_sums, of_certificate)
+    };
+    let (with, seconds, n_with, of_certificate) = run(true);
+    let (without, _, n_without, _) = run(false);
+    let systems = with.systems.unwrap();
+    assert!(systems > 1 && of_certificate > 0 && without.history.is_empty());
+    assert_eq!(without.systems, with.systems);
+    assert_eq!(n_with - n_without, systems * of_certificate);
+    let history = &with.history;
+    assert!(history.is_sorted_by(|a, b| a.seconds < b.seconds), "{history:?}");
+    let in_certificates = (n_with - n_without) as f64 * pause.as_secs_f64();
+    assert!(history.last().unwrap().seconds + in_certificates <= seconds, "{history:?} {seconds}");
 }

@@ -12,10 +12,12 @@ mod load;
 mod monotone_multigrid;
 mod nonsymmetric;
 mod own_preconditioner;
+mod predictions;
 mod problems;
 mod proximal;
 mod recession;
 mod solvers;
+mod transpose;
 
 #[path = "../support"]
 mod support {

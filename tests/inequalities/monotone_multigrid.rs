@@ -4,9 +4,10 @@
 use crate::problems::{inequality, laplacian, sparse};
 use unilateral::algebra::{Bound, Inequality};
 use unilateral::inequality::{
-    ActiveSet, InequalitySolver, MonotoneMultigrid, Outcome, SinglePrecision, Stage,
+    ActiveSet, InequalitySolver, InitialGuess, MonotoneMultigrid, Outcome, SinglePrecision, Stage,
+    StepCounter,
 };
-use unilateral::linear::LinearMethod;
+use unilateral::linear::{CoarseSpaces, LinearMethod, P1Level};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::study::Row;
@@ -176,18 +177,45 @@ fn a_string_that_bounds_alone_hold_does_not_hide_an_indefinite_matrix() {
     assert_eq!(solve([[2.0, 1.0], [1.0, 2.0]]).outcome, Outcome::Converged);
 }
 
-/// A limit of zero admits cycles until the first one that does not halve the change of the values: of second differences
-/// on `n` points, fixed at both ends, with the contact set in the middle.
+/// A limit of zero admits cycles until the first one that does not halve the change of the values.
 #[test]
 fn the_limit_of_stagnating_cycles_counts_cycles_that_stagnate() {
-    let n = 2000;
-    let mut bounds = vec![Bound::Lower(-1.0 / 30.0); n];
-    (bounds[0], bounds[n - 1]) = (Bound::Fixed(0.0), Bound::Fixed(0.0));
-    let string = inequality(laplacian(n, 1, 2.0), &vec![-1.0 / (n * n) as f64; n], bounds);
+    let string = string(2000);
     let of = |limit| MonotoneMultigrid::default().stagnation_cycles(limit).solve(&string);
     let whole = of(200);
     assert_eq!(whole.outcome, Outcome::Converged);
     let short = of(0);
     assert!(short.outer > 1 && short.outer < whole.outer, "{} {}", short.outer, whole.outer);
     assert_eq!(short.outcome, Outcome::Stalled);
+}
+
+/// Second differences on `n` points, fixed at both ends, above -1/30: the contact set is in the middle.
+fn string(n: usize) -> Inequality<f64> {
+    let mut bounds = vec![Bound::Lower(-1.0 / 30.0); n];
+    (bounds[0], bounds[n - 1]) = (Bound::Fixed(0.0), Bound::Fixed(0.0));
+    inequality(laplacian(n, 1, 2.0), &vec![-1.0 / (n * n) as f64; n], bounds)
+}
+
+#[test]
+fn a_coarser_level_of_another_size_is_not_used() {
+    let string = string(2000);
+    let expected = MonotoneMultigrid::default().solve(&string);
+    for other in [1500, 2500] {
+        let level = P1Level::new(laplacian(other, 1, 2.0), vec![false; other], None).unwrap();
+        let coarse_spaces = CoarseSpaces::CoarseLevel(level.coarser().unwrap().clone());
+        let guess = InitialGuess::default().coarse_spaces(coarse_spaces);
+        let found = MonotoneMultigrid::default().solve_from(&string, &guess);
+        assert_eq!((found.outcome, found.values), (expected.outcome, expected.values.clone()));
+    }
+}
+
+/// Cycles after the systems of an active set that stagnates count on.
+#[test]
+fn the_counter_includes_the_steps_before_the_first_cycle() {
+    let steps = StepCounter::default();
+    let study = Study::<2>::new(scenes::lshape_2d()).scheme(Sipg::default()).levels([64]);
+    let rows = study.steps(steps.clone()).run().unwrap().rows;
+    let stages = &rows[0].iterations.stages;
+    assert!(stages.len() == 2 && stages[0].outer > 0 && cycles(&rows[0]) > 0, "{stages:?}");
+    assert_eq!(steps.get(), stages[0].outer + stages[1].outer);
 }

@@ -1,6 +1,7 @@
 //! The proximal point method: counts of linear systems from a cold start, the solutions of the other solvers, and what
 //! it says where it stalls.
 
+use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -54,7 +55,7 @@ fn problem_for<const D: usize>(scene: &Scene<D>, scheme: &NamedScheme) -> Proble
 }
 
 /// The inequality of a scheme on a level of a scene, without a start.
-fn inequality_of(name: &str, scheme: &str, level: usize) -> Inequality<f64> {
+pub fn inequality_of(name: &str, scheme: &str, level: usize) -> Inequality<f64> {
     let scheme: NamedScheme = scheme.parse().unwrap();
     in_its_dimension!(&scene(name), |scene| {
         let mesh = scene.domain.mesh(level).unwrap();
@@ -137,6 +138,21 @@ fn lower_upper_and_both_bounds_are_symmetric() {
         assert!(distance(&both.values, expected) < 1e-9);
         assert!(both.outer <= lower.outer + 3, "{} and {}", both.outer, lower.outer);
     }
+}
+
+/// Strings of which a half is pressed onto an upper bound and a half onto a lower one: each system is that of a Newton
+/// step, with the slope of the value between both bounds.
+#[test]
+fn steps_between_two_bounds_are_newton_steps() {
+    let n = 20;
+    let mut total = 0;
+    for (width, waves) in [(0.1, 1.0), (0.02, 1.0), (0.02, 3.0), (0.005, 1.0), (0.005, 3.0)] {
+        let place = |i: usize| 2.0 * PI * waves * (i + 1) as f64 / (n + 1) as f64;
+        let load: Vec<f64> = (0..n).map(|i| 0.02 * place(i).sin()).collect();
+        let bounds = vec![Bound::Both(-width, width); n];
+        total += solved(&inequality(laplacian(n, 1, 2.0), &load, bounds), "two bounds").outer;
+    }
+    assert!(total <= 44, "{total} systems");
 }
 
 #[test]

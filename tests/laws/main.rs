@@ -6,6 +6,7 @@ mod floors;
 mod geometry;
 mod gmsh;
 mod kit;
+mod levels;
 mod locks;
 mod mesh;
 mod overlaps;

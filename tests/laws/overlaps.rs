@@ -150,3 +150,61 @@ fn sound_meshes_are_accepted() {
     check::<2>(5);
     check::<3>(3);
 }
+
+/// How many facets of the boundary lie on others, as the error of the first facet without a condition says, if that facet
+/// does. All facets but some have one.
+fn coincident<const D: usize>(
+    vertices: &[[f64; D]],
+    cells: &[Vec<u32>],
+    without: &[[u32; D]],
+) -> usize {
+    let facet = |cell: &[u32], opposite: usize| -> [u32; D] {
+        let mut others = (0..=D).filter(|&k| k != opposite).map(|k| cell[k]);
+        std::array::from_fn(|_| others.next().unwrap())
+    };
+    let all = cells.iter().flat_map(|cell| (0..=D).map(|k| facet(cell, k)));
+    let boundary = all
+        .filter(|facet| !without.contains(facet))
+        .map(|vertices| TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet })
+        .collect();
+    let vertices = vertices.iter().map(|x| Point::from(*x)).collect();
+    match made(&Raw { vertices, cells: cells.concat(), boundary }).unwrap_err() {
+        MeshError::UntaggedFacet { coincident, .. } => coincident,
+        error => panic!("{error}"),
+    }
+}
+
+#[test]
+fn facets_lie_on_each_other_whatever_their_sizes() {
+    // an edge over two others, with common ends, and a cell beside them
+    let points = [[0.0, 0.0], [1.0, 0.0], [0.25, 0.0], [0.5, -1.0], [0.2, 1.0], [0.6, 1.0]];
+    let points = [&points[..], &[[2.0, 0.0], [1.5, 1.0]]].concat();
+    let cells = [vec![0, 1, 3], vec![0, 2, 4], vec![1, 2, 5], vec![1, 6, 7]];
+    for edge in [[0, 1], [0, 2], [1, 2]] {
+        assert_eq!(coincident(&points, &cells, &[edge]), 3, "{edge:?}");
+    }
+    for edge in [[1, 6], [0, 3], [2, 5]] {
+        assert_eq!(coincident(&points, &cells, &[edge]), 0, "{edge:?}");
+    }
+    // in a line of nodes far from the origin
+    let points = [0.0, 1.0, 1.0, 2.0].map(|x| [x + 5e6]);
+    let cells = [vec![0, 1], vec![2, 3]];
+    for (node, expected) in [(0, 0), (1, 2), (2, 2), (3, 0)] {
+        assert_eq!(coincident(&points, &cells, &[[node]]), expected, "{node}");
+    }
+    // a triangle in a larger one, and one across it
+    let points = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.5, 1.0, 0.0],
+        [0.3, 0.3, -1.0],
+        [0.45, 0.35, 0.0],
+        [0.5, 0.4, 0.0],
+        [0.4, 0.45, 0.0],
+        [0.45, 0.4, 1.0],
+    ];
+    let cells = [vec![0, 1, 2, 3], vec![4, 5, 6, 7]];
+    for (triangle, expected) in [([4, 5, 6], 1), ([0, 1, 2], 0), ([4, 5, 7], 0), ([0, 1, 3], 0)] {
+        assert_eq!(coincident(&points, &cells, &[triangle]), expected, "{triangle:?}");
+    }
+}

@@ -44,6 +44,23 @@ fn exact_for_every_monomial_of_the_degree() {
     }
 }
 
+/// Powers of one coordinate, to the degree of twelve points in each direction.
+#[test]
+fn powers_of_each_coordinate_are_exact() {
+    for dimension in 1..=3 {
+        for degree in 0..=23 {
+            let rule = Rule::new(dimension, degree);
+            for (k, power) in (0..=dimension).flat_map(|k| (0..=degree).map(move |p| (k, p))) {
+                let sum: f64 = rule.iter().map(|(x, w)| w * x[k].powi(power as i32)).sum();
+                let mut powers = vec![0; dimension + 1];
+                powers[k] = power;
+                let difference = (sum - mean(&powers)).abs();
+                assert!(difference < 1e-13, "{dimension} {degree} {k} {power}: {difference:e}");
+            }
+        }
+    }
+}
+
 #[test]
 fn weights_are_positive_and_points_inside_for_every_degree() {
     for dimension in 0..=3 {

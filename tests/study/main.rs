@@ -4,6 +4,7 @@ mod active_bounds;
 mod adaptive;
 mod boundary_data;
 mod forces;
+mod hierarchies;
 mod journal;
 mod links;
 mod memory;

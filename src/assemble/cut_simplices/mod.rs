@@ -7,9 +7,6 @@
 //! to the zero set times the difference of the integrand there. On a sphere that leaves a wrong volume whose mean
 //! thickness is 1e-5 to 1e-3 of `h^2`.
 
-#[cfg(test)]
-mod tests;
-
 use crate::arrays::{array_of, map_entries};
 use crate::mesh::Mesh;
 use crate::problem::Field;

@@ -100,25 +100,3 @@ fn check_size<const D: usize>(
         allowed: format!("at most {MOST_ENTRIES}; choose a coarser mesh or a lower degree"),
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::element::{Broken, P2};
-    use crate::facet::{InteriorPenalty, NoFacets, PenaltyRule, Symmetry};
-
-    #[test]
-    fn matrices_that_32_bit_numbers_do_not_count_are_refused_before_they_are_made() {
-        let rule = PenaltyRule::Proven(0.5);
-        let form = InteriorPenalty { symmetry: Symmetry::Symmetric, rule, degree: 2 };
-        let broken: &dyn Element<3> = &Broken(P2);
-        // ten unknowns in each of five cells
-        assert!(check_size(8_500_000, broken, &form).is_ok());
-        let error = check_size(8_600_000, broken, &form).unwrap_err().to_string();
-        assert!(
-            error.starts_with("entries of the matrix = 4300000000: at most 4294967295"),
-            "{error}"
-        );
-        assert!(check_size::<3>(8_600_000, &P2, &NoFacets).is_ok());
-    }
-}

@@ -6,7 +6,6 @@
 
 use super::rows_by_cell::{self, for_each_cell};
 use crate::algebra::SparseMatrix;
-use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetCoefficients;
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::Metrics;
@@ -81,7 +80,6 @@ pub(super) fn fill<const D: usize>(
                     continue;
                 }
             };
-            count::facets(1);
             let weight = weights.at::<D>(here, here == facet, kind);
             let penalty = weight.coefficients.jump_jump.at(weight.penalty * moment_weight);
             let jumps = metric.measures[local] * penalty;

@@ -9,7 +9,6 @@ use super::Filling;
 use super::rows::Rows;
 use super::rows_by_cell::for_each_cell;
 use crate::arrays::array_of;
-use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetWeight;
 use crate::assemble::space::metric::CellMetric;
 use crate::facet::FacetKind;
@@ -107,7 +106,6 @@ impl<const D: usize> Filling<'_, '_, D> {
                     let means = &reference.means[other_local & 3];
                     let mut flux = [0.0; N];
                     if FLUX {
-                        count::normal_derivatives(N);
                         let scale = (D as f64) * gradient * weight.other_flux_weight;
                         let row = self.metrics.products_of::<D>(other, other_local);
                         flux = std::array::from_fn(|i| scale * row[i]);
@@ -146,7 +144,6 @@ impl<const D: usize> Filling<'_, '_, D> {
         weight: &FacetWeight<'_>,
         own: &mut [[f64; N]; N],
     ) -> OnFacet<N> {
-        count::facets(1);
         let form = weight.coefficients;
         let measure = metric.measures[local];
         let penalty = weight.penalty * self.jumps.weights[0];
@@ -162,7 +159,6 @@ impl<const D: usize> Filling<'_, '_, D> {
             }
             return facet;
         }
-        count::normal_derivatives(N);
         let means = &reference.means[local];
         let scale = (-(D as f64)) * reference.gradient * weight.own_flux_weight;
         let flux: [f64; N] = std::array::from_fn(|i| scale * metric.products[local][i]);

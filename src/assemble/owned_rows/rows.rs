@@ -4,7 +4,6 @@
 
 use super::rows_by_cell::for_each_cell;
 use super::{Coupled, Filling};
-use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetWeight;
 use crate::assemble::space::metric::CellMetric;
 use crate::assemble::space::tables::Derivatives;
@@ -162,7 +161,6 @@ impl<const D: usize> Filling<'_, '_, D> {
         weight: FacetWeight<'f>,
         block_of_own: &mut Block<N>,
     ) -> OnFacet<'f, D, N, M> {
-        count::facets(1);
         let form = weight.coefficients;
         let measure = own.metric.measures[own.local];
         let jump_jump = self.jump_scale(&own, &weight, self.jumps.weights[0]);
@@ -274,7 +272,6 @@ impl<const D: usize> Filling<'_, '_, D> {
         products: &[f64; 4],
         factor: f64,
     ) -> [f64; N] {
-        count::normal_derivatives(N);
         let scale = (-(D as f64)) * factor;
         std::array::from_fn(|i| {
             let sum = |sum, k: usize| sum + derivatives[i][k] * products[k];

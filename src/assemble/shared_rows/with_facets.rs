@@ -3,7 +3,6 @@
 
 use super::fill::add_by_search;
 use crate::algebra::SparseMatrix;
-use crate::assemble::count;
 use crate::assemble::space::Space;
 use crate::assemble::space::form_facets::FormFacet;
 use crate::assemble::space::tables::FacetTable;
@@ -93,7 +92,6 @@ fn facet_matrix<const D: usize>(
     table: &FacetTable,
     facet: FormFacet,
 ) -> FacetMatrix {
-    count::facets(1);
     let n = space.per_cell();
     let FormFacet { here, there } = facet;
     let view = space.facet_view(facet, None);

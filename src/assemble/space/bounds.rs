@@ -6,7 +6,6 @@ use std::sync::Mutex;
 use super::contradictions::{BoundedNode, Contradiction, DIRICHLET};
 use super::{Space, Terms, checks};
 use crate::algebra::Bound;
-use crate::assemble::count;
 use crate::assemble::shared_rows::places::for_each_place;
 use crate::constraint::BoundBy;
 use crate::element::Node;
@@ -93,7 +92,6 @@ impl<const D: usize> Space<'_, D> {
         bound: &mut Bound<f64>,
         found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
-        count::bounds(1);
         let (region, node) = (self.mesh.region(cell), &self.nodes[i]);
         let at = |psi: Option<&Datum<D>>| {
             let value = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
@@ -129,7 +127,6 @@ impl<const D: usize> Space<'_, D> {
                 BoundedNode { unknown, cell, x }.compare(of, values, found);
             }
             for (i, by) in self.bounded_nodes_on(local) {
-                count::bounds(1);
                 let node = &self.nodes[i];
                 let value = self.bound(by, &terms[i], (cell, node), "gap", gap)?;
                 let (unknown, x) = (self.dofs.of(cell, i), self.node_point(cell, node));
@@ -243,9 +240,6 @@ impl<const D: usize> Space<'_, D> {
         datum: &dyn Fn(&Point<D>) -> f64,
     ) -> Result<f64, Error> {
         let at = |(point, weight): &([f64; 4], f64)| {
-            if name == "dirichlet" {
-                count::dirichlet(1);
-            }
             let x = self.cell_point(point, cell);
             Ok(weight * checks::finite(datum(&x), name, &x, cell)?)
         };

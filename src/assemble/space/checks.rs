@@ -1,6 +1,5 @@
 //! Checks of the data of the problem: each number is finite, a coefficient is positive.
 
-use crate::assemble::count;
 use crate::error::Error;
 use crate::mesh::{Mesh, describe_point};
 use crate::problem::DataByGroup;
@@ -31,7 +30,6 @@ pub(crate) fn coefficient_at<const D: usize>(
     let Some(alpha) = alpha.of(mesh.region(cell)) else {
         return Ok(1.0);
     };
-    count::coefficient(1);
     let value = alpha.in_cell(mesh, cell, x);
     if !(value > 0.0 && value.is_finite()) {
         return Err(Error::CoefficientNotPositive {

@@ -3,7 +3,6 @@
 use std::convert::Infallible;
 
 use super::tables::Derivatives;
-use crate::assemble::count;
 use crate::element::MAX_BASIS;
 use crate::memory::in_large_pages;
 use crate::mesh::{FACTORIAL, HalfFacet, Mesh, cofactors, cross, dot, with_zeros};
@@ -57,7 +56,6 @@ impl<const D: usize> CellMetric<D> {
         n: usize,
         factor: f64,
     ) -> [f64; MAX_BASIS] {
-        count::normal_derivatives(n);
         let products = &self.products[local];
         let scale = (-(D as f64)) * factor;
         let mut out = [0.0; MAX_BASIS];

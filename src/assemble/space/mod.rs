@@ -33,8 +33,8 @@ pub(crate) mod tables;
 
 use std::sync::{Arc, OnceLock};
 
+use super::DataQuadrature;
 use super::stiffness::{Local, StiffnessTable, zero_local};
-use super::{DataQuadrature, count};
 use crate::constraint::{BoundBy, in_basis_of, offered};
 use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
@@ -110,10 +110,7 @@ impl<'a, const D: usize> Space<'a, D> {
         let (degree, basis_degree) = (element.degree(), element.basis_degree());
         let (layout, nodes) = (element.layout(), element.nodes());
         let data = DataOnMesh::new(problem, mesh)?;
-        let neighbours = (with_facets || layout.facet > 0).then(|| {
-            count::facet_topologies(1);
-            Neighbours::new(mesh)
-        });
+        let neighbours = (with_facets || layout.facet > 0).then(|| Neighbours::new(mesh));
         let dofs = Dofs::new(layout, mesh, neighbours.as_ref());
         let sum = degree + basis_degree;
         let cell_degree = quadrature.cell.unwrap_or(sum + 3).max(sum.saturating_sub(1));

@@ -4,7 +4,6 @@ use super::checks::finite;
 use std::sync::Arc;
 
 use super::tables::{BasisAt, CellTable};
-use crate::assemble::count;
 use crate::assemble::cut_simplices::{CutRule, Visit};
 use crate::assemble::stiffness::Local;
 use crate::element::Element;
@@ -42,7 +41,6 @@ impl<'a, const D: usize> ReactionTerm<'a, D> {
     pub fn add(&self, mesh: &Mesh<D>, cell: usize, volume: f64, out: &mut Local) {
         let Some(datum) = self.data.of(mesh.region(cell)) else { return };
         let mut add = |c: f64, weight: f64, basis: &BasisAt| {
-            count::reaction(1);
             let scale = c * volume * weight;
             for i in 0..self.n {
                 for j in 0..self.n {

@@ -39,8 +39,6 @@ mod link;
 mod patch;
 mod patch_cells;
 mod quadratic;
-#[cfg(test)]
-mod tests;
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -76,7 +74,7 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<Flux<D>, NoBound> {
         let cells = self.linear_cells(u, of_solver, forces, neighbours)?;
         let linear = (D > 1).then_some(&cells);
-        Ok(self.flux_of_patches(&cells, linear, neighbours, CELLS_AT_A_TIME))
+        Ok(self.flux_of_patches(&cells, linear, neighbours))
     }
 
     /// The flux of a conforming quadratic function, without that of Neumann data and contact, and without its numbers
@@ -88,22 +86,21 @@ impl<const D: usize> Space<'_, D> {
         loads: &mut CellLoads,
     ) -> Flux<D> {
         let cells = self.quadratic_cells((u, function), neighbours, loads);
-        self.flux_of_patches(&cells, None, neighbours, CELLS_AT_A_TIME)
+        self.flux_of_patches(&cells, None, neighbours)
     }
 
-    /// The flux, with the fluxes of vertices in `length` cells at a time; in the plane and in space most patches of
-    /// linears need no least squares on facets.
+    /// The flux, with the fluxes of vertices in [`CELLS_AT_A_TIME`]; in the plane and in space most patches of linears
+    /// need no least squares on facets.
     fn flux_of_patches<C: PatchCells<D, N>, const N: usize>(
         &self,
         of: &C,
         linear: Option<&LinearCells<'_, '_, D>>,
         neighbours: &Neighbours,
-        length: usize,
     ) -> Flux<D> {
         let mut of_vertices = CornerFluxes::new(D * C::PER_FACET, D + 1);
         let mut corners = None;
         let mut flux = Flux::zero(C::DEGREE, self.mesh.n_cells());
-        for (cells, mut vertices) in self.ranges_with_vertices(length) {
+        for (cells, mut vertices) in self.ranges_with_vertices(CELLS_AT_A_TIME) {
             of_vertices.keep(cells.clone());
             if let Some(of) = linear {
                 vertices = of.set_directly(&vertices, &of_vertices);

@@ -158,32 +158,3 @@ impl<T: Real> Iterate<'_, T> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::algebra::{Bound, Inequality, SparseMatrix};
-    use crate::inequality::active_set::direct_solver::DirectSolver;
-
-    /// Second differences at three points under the load -1, above -5/4: the solution is (-9/8, -5/4,
-    /// -9/8), whose point in the middle rests on the obstacle.
-    #[test]
-    fn the_merit_vanishes_at_the_solution_alone() {
-        let matrix = SparseMatrix {
-            row_starts: vec![0, 2, 5, 7],
-            columns: vec![0, 1, 0, 1, 2, 1, 2],
-            values: vec![2.0, -1.0, -1.0, 2.0, -1.0, -1.0, 2.0],
-        };
-        let string = Inequality::new(matrix, true, vec![-1.0; 3], vec![Bound::Lower(-1.25); 3]);
-        let merit = |values: [f64; 3]| {
-            let mut iterate = Iterate::new(&string, &values);
-            iterate.compute_residual();
-            iterate.evaluate(&DirectSolver::new(&string)).merit
-        };
-        assert_eq!(merit([-1.125, -1.25, -1.125]), 0.0);
-        // the step of each point is -1/2, and its square has the weight 2
-        assert_eq!(merit([0.0; 3]), 1.5);
-        // on the obstacle the outer points are lifted by -5/8 + 1 / 2 = -1/8
-        assert_eq!(merit([-1.25; 3]), 4.0 / 64.0);
-    }
-}

@@ -259,36 +259,3 @@ impl<'a, T: Real> Iterate<'a, T> {
         self.replace(values, jumps, states.clone());
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::algebra::{Bound, SparseMatrix, Start};
-
-    /// A solve that ends before its first evaluation returns values that fit its contact states.
-    #[test]
-    fn an_iterate_without_evaluation_has_the_values_of_its_states() {
-        let matrix = SparseMatrix::second_differences(3);
-        let bounds = vec![Bound::Fixed(7.0), Bound::Lower(1.0), Bound::Lower(1.0)];
-        let states = vec![Contact::Inactive, Contact::Lower];
-        let mut string = Inequality::new(matrix, true, vec![0.0; 3], bounds);
-        string.start = Start::Contact(states);
-        let solution = Iterate::new(&string, &[3.0; 3]).into_solution(Outcome::Stalled);
-        assert_eq!(solution.values, [7.0, 1.0, 3.0]);
-        assert_eq!(solution.contact, [Contact::Inactive, Contact::Lower, Contact::Inactive]);
-    }
-
-    /// The size of rounding in a residual is that of its terms, however much they cancel.
-    #[test]
-    fn terms_of_a_residual_count_by_their_sizes() {
-        let matrix = SparseMatrix {
-            row_starts: vec![0, 2, 5, 7],
-            columns: vec![0, 1, 0, 1, 2, 1, 2],
-            values: vec![2.0, -1.0, -1.0, 2.0, -1.0, -1.0, 2.0],
-        };
-        let bounds = vec![Bound::Free, Bound::Free, Bound::Fixed(7.0)];
-        let string = Inequality::new(matrix, true, vec![0.0, -4.0, 0.0], bounds);
-        let iterate = Iterate::new(&string, &[-3.0, 5.0, 7.0]);
-        assert_eq!(iterate.residual_term_magnitudes(1), [3.0 + 2.0 * 5.0, 7.0 + 4.0]);
-    }
-}

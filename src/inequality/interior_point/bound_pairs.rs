@@ -70,35 +70,3 @@ pub(super) fn ratio_test(pairs: &[BoundPair]) -> f64 {
         length.min(ratio(pair.slack, slack)).min(ratio(pair.dual, dual))
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn pair(change: [f64; 2]) -> BoundPair {
-        BoundPair { unknown: 0, side: 1.0, bound: 0.0, slack: 2.0, dual: 3.0, change }
-    }
-
-    /// A step of the length that the ratio test admits makes one variable zero and none negative.
-    #[test]
-    fn a_step_ends_at_the_first_zero() {
-        let pairs = [pair([-4.0, 1.0]), pair([1.0, -9.0]), pair([-0.5, -0.5])];
-        let length = ratio_test(&pairs);
-        assert_eq!(length, 1.0 / 3.0);
-        let mut after = pairs.clone();
-        after.iter_mut().for_each(|pair| pair.advance(length));
-        assert_eq!(after[1].dual, 0.0);
-        assert!(after.iter().all(|pair| pair.slack >= 0.0 && pair.dual >= 0.0));
-        assert_eq!(ratio_test(&pairs[2..]), 1.0);
-    }
-
-    /// The change of the product is the given one, up to the product of the changes.
-    #[test]
-    fn products_change_as_they_are_asked_to() {
-        let mut pair = pair([0.0; 2]);
-        pair.set_change(0.5, -1.5);
-        let [slack, dual] = pair.change;
-        assert!((pair.product(1.0) - (6.0 - 1.5 + slack * dual)).abs() < 1e-15);
-        assert_eq!(mean_product(&[pair], 0.0), 6.0);
-    }
-}

@@ -65,36 +65,3 @@ pub(in crate::mesh) fn lie_on_others<const D: usize>(
     };
     (0..facets.len()).map(lies_on_other).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::lie_on_others;
-    use crate::real::Point;
-
-    #[test]
-    fn facets_lie_on_each_other_whatever_their_sizes() {
-        // an edge over two others, one beside them, one above them, one that shares a vertex
-        let points = [[0.0, 0.0], [1.0, 0.0], [0.25, 0.0], [2.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
-        let points = points.map(Point::from);
-        let facets = [[0, 1], [0, 2], [1, 2], [1, 3], [4, 5], [3, 5]];
-        let found = lie_on_others(&points, &facets);
-        assert_eq!(found, [true, true, true, false, false, false]);
-        // in a line of nodes, and far from the origin
-        let points = [0.0, 1.0, 1.0, 2.0].map(|x| Point::from([x + 5e6]));
-        assert_eq!(lie_on_others(&points, &[[0], [1], [2], [3]]), [false, true, true, false]);
-        // a triangle in a larger one, and one across it
-        let points = [
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0],
-            [0.2, 0.2, 0.0],
-            [0.3, 0.2, 0.0],
-            [0.2, 0.3, 0.0],
-            [0.2, 0.5, 1.0],
-            [0.2, 0.5, -2.0],
-        ];
-        let points = points.map(Point::from);
-        let found = lie_on_others(&points, &[[0, 1, 2], [3, 4, 5], [0, 6, 7]]);
-        assert_eq!(found, [false, true, false]);
-    }
-}

@@ -2,6 +2,7 @@
 
 mod coefficient;
 mod contact;
+mod cut_cells;
 mod family;
 mod loads;
 mod meshes;

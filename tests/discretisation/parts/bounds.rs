@@ -52,6 +52,8 @@ fn holds<const D: usize>(scene: &Scene<D>, coarsest: usize, parts: usize) {
                 let bound = solved.bound().unwrap();
                 let share: f64 = bound.cells.iter().sum();
                 let all = exchange_sum(&process, share) + bound.terms.algebra;
+                // what the solver left counts with the extent of all parts
+                assert!(bound.terms.algebra > 0.0, "{name}: {:?}", bound.terms);
                 assert!((all - 1.0).abs() < 1e-9 || bound.terms.algebra > 1e-9, "{name}: {all}");
                 (fluxes, values, [bound.total, bound.distance])
             })

@@ -1,8 +1,9 @@
 //! What one part cannot do is an error of all parts, and no part waits for another one for ever.
 
 use super::compare::Assembled;
+use super::gathered::process;
 use super::meshes::{box_mesh, moved};
-use unilateral::inequality::Violations;
+use unilateral::inequality::{Outcome, Violations};
 use unilateral::measure::SquaredErrors;
 use unilateral::mesh::{Extent, Layers};
 use unilateral::prelude::*;
@@ -38,6 +39,66 @@ fn an_error_of_one_part_is_one_of_all() {
         agree(Ok::<_, String>(part), exchange)
     });
     assert_eq!(results, [Ok(0), Ok(1), Ok(2)]);
+}
+
+/// Messages of any length arrive, and words that no part sends do no harm.
+#[test]
+fn messages_of_any_length_arrive() {
+    let failed = |part, message: &str, outcome| {
+        Err::<(), _>(ExchangeError::Failed { part, message: message.to_owned(), outcome })
+    };
+    let long = "λ₁ ≥ 0 in cell 18446744073709551615".repeat(9);
+    for text in ["", "a", "of eight", "of nine b", &long] {
+        let results = in_process(2, |part, exchange| {
+            agree(if part == 1 { Err(text) } else { Ok(()) }, exchange)
+        });
+        assert!(results.iter().all(|result| *result == failed(1, text, None)), "{results:?}");
+    }
+    /// An exchange with one part, which sends these words.
+    #[derive(Debug)]
+    struct Sends(Vec<u64>);
+    impl Exchange for Sends {
+        fn parts(&self) -> usize {
+            1
+        }
+        fn exchange(&self, _: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError> {
+            Ok(vec![self.0.clone()])
+        }
+    }
+    let received = |words: &[u64]| agree(Ok::<(), String>(()), &Sends(words.to_vec()));
+    assert_eq!(received(&[]), Ok(()));
+    assert_eq!(received(&[1]), failed(0, "", None));
+    assert_eq!(received(&[9, u64::MAX, 0x61]), failed(0, "a\0\0\0\0\0\0\0", None));
+    // the number of an outcome, the length of the message and its bytes
+    let outcomes = [None, Some(Outcome::NotCoercive), Some(Outcome::NotFinite)]
+        .into_iter()
+        .chain([Some(Outcome::Infeasible), Some(Outcome::OutOfRange), None]);
+    for (number, outcome) in (0..).zip(outcomes) {
+        assert_eq!(received(&[number, 1, 0x61]), failed(0, "a", outcome));
+    }
+}
+
+/// Where numbers of cells end a level is refused, on parts where those of a part end: 20 000 subdivisions are 8e8
+/// triangles, whose matrix has too many entries.
+#[test]
+fn levels_are_refused_where_numbers_of_cells_end() {
+    let message = |level: usize, parts: usize| {
+        let results = in_process(parts, |number, exchange| {
+            let study = Study::<2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([level]);
+            study.check_on_parts(&process(number, exchange)).unwrap_err().to_string()
+        });
+        assert!(results.iter().all(|message| *message == results[0]), "{results:?}");
+        results[0].clone()
+    };
+    for (level, parts, expected) in [
+        (20_000, 1, "level = 20000: the matrix of p1 there"),
+        (30_000, 1, "would make 1.8e9 cells, at most 1.1e9 are possible"),
+        (30_000, 2, "level = 30000: the matrix of p1 there"),
+        (60_000, 4, "1.8e9 cells in each process, at most 1.1e9"),
+    ] {
+        let found = message(level, parts);
+        assert!(found.contains(expected), "{level}, {parts}: {found}");
+    }
 }
 
 /// A thread that ends, by an error or by a panic, ends the exchanges of the others.

@@ -208,3 +208,83 @@ fn a_solver_is_not_believed() {
         assert_eq!(solved.unwrap().outcome(), outcome, "{load}");
     }
 }
+
+/// Two coupled unknowns with bounds, and an unknown without load and coupling, whose value is zero; data and values in
+/// this unit.
+fn in_unit(unit: f64) -> (Inequality<f64>, [f64; 3]) {
+    let matrix = sparse(&[vec![3.0, -1.0, 0.0], vec![-1.0, 2.0, 0.0], vec![0.0, 0.0, 1.0]]);
+    let bounds = vec![Bound::Lower(-0.5 * unit), Bound::Upper(0.3 * unit), Bound::Free];
+    let problem = inequality(matrix, &[-2.0 * unit, unit, 0.0], bounds);
+    (problem, [-0.4 * unit, 0.31 * unit, 0.0])
+}
+
+/// Forces and values in a unit that is smaller or larger by a power of two, without and with weak Dirichlet data.
+#[test]
+fn certificates_do_not_depend_on_the_unit_of_data() {
+    let of_unit = |unit: f64| {
+        let (mut problem, values) = in_unit(unit);
+        let free = certify(&problem, &values);
+        let (load, linear) = (0.5 * unit, unit);
+        let term = DirichletTerm { unknown: 1, load, linear, constant: unit * unit };
+        problem.dirichlet_energy = Some(DirichletEnergy { terms: vec![term] });
+        let with_data = certify(&problem, &values);
+        assert_ne!(with_data, free);
+        (free, with_data)
+    };
+    let (free, with_data) = of_unit(1.0);
+    assert!(free.feasibility > 0.0 && free.complementarity > 0.0);
+    for exponent in [-60, -30, 30, 60] {
+        assert_eq!(of_unit(2.0_f64.powi(exponent)), (free, with_data), "{exponent}");
+    }
+}
+
+/// The largest violation of a certificate is NaN if one of its violations is, so that it is within no limit.
+#[test]
+fn what_is_not_a_number_is_within_no_limit() {
+    for which in 0..4 {
+        let mut numbers = [0.0; 4];
+        numbers[which] = f64::NAN;
+        assert!(Certificate::new(numbers).largest().is_nan(), "violation {which}");
+        assert!(!Certificate::new(numbers).is_within_limits(Precision::Double));
+    }
+    let not_a_number = f64::NAN;
+    let (problem, values) = in_unit(1.0);
+    for bound in [
+        Bound::Lower(not_a_number),
+        Bound::Upper(not_a_number),
+        Bound::Fixed(not_a_number),
+        Bound::Both(not_a_number, 1.0),
+        Bound::Both(-1.0, not_a_number),
+    ] {
+        let mut wrong = problem.clone();
+        wrong.bounds[0] = bound;
+        assert_eq!(certify(&wrong, &values), Certificate::INVALID, "{bound:?}");
+        let [one, others] =
+            [true, false].map(|own| Violations::of(&wrong, &values, &[], &|i| (i == 0) == own));
+        for merged in [others.merge(one), one.merge(others)] {
+            assert_eq!(merged.certificate(), Certificate::INVALID, "{bound:?}");
+        }
+    }
+}
+
+/// Parts of different sizes, and one where all is zero.
+#[test]
+fn certificates_of_merged_parts_do_not_depend_on_the_unit_of_data() {
+    let of_unit = |unit: f64| {
+        let (mut problem, mut values) = in_unit(unit);
+        // the second unknown is smaller than the first
+        problem.load[1] *= 0.125;
+        problem.bounds[1] = Bound::Upper(0.03 * unit);
+        values[1] *= 0.1;
+        let part = |own: usize| Violations::of(&problem, &values, &[], &|i| i == own);
+        let serial = certify(&problem, &values);
+        for order in [[0, 1, 2], [2, 1, 0], [0, 2, 1]] {
+            let merged = order.map(part).into_iter().reduce(Violations::merge).unwrap();
+            let difference = (merged.certificate().largest() - serial.largest()).abs();
+            assert!(difference < 1e-15, "{order:?} in units of {unit:e}: {difference:e}");
+        }
+        serial
+    };
+    let [of_one, of_small] = [1.0, 2.0_f64.powi(-60)].map(of_unit);
+    assert_eq!(of_small, of_one);
+}

@@ -6,6 +6,7 @@ mod failures;
 mod last_resort;
 mod out_of_memory;
 mod reach;
+mod steps;
 mod wrong_promises;
 
 use crate::problems::*;

@@ -84,3 +84,48 @@ fn the_order_of_a_file_does_not_matter() {
     is_the_same_in_any_order(&parse::<2>(&file("unstructured_square.msh")).mesh);
     is_the_same_in_any_order(&parse::<3>(&file("unstructured_cube.msh")).mesh);
 }
+
+/// The box with `n` cubes along each axis is read cube by cube, each beside the one before it: the simplices of a cube
+/// have their barycentres in its box of a lattice with `n` boxes, a power of two.
+#[test]
+fn neighbours_in_the_order_of_cells_are_neighbours_in_space() {
+    fn check<const D: usize>(n: usize) {
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(n as f64));
+        let mesh = Mesh::<D>::kuhn_box(&domain, [n; D]).unwrap();
+        let read = parse::<D>(in_disorder(&mesh, 3).as_bytes()).mesh;
+        let cube = |cell: usize| read.barycentre(cell).map(f64::floor);
+        let mut cubes: Vec<Point<D>> = (0..read.n_cells()).map(cube).collect();
+        cubes.dedup();
+        assert_eq!(cubes.len(), n.pow(D as u32), "each cube once");
+        for pair in cubes.windows(2) {
+            assert_eq!((pair[1] - pair[0]).abs().sum(), 1.0, "{:?} {:?}", pair[0], pair[1]);
+        }
+    }
+    check::<1>(64);
+    check::<2>(16);
+    check::<3>(8);
+}
+
+/// Cells that are nearer to each other than the curve tells keep their order.
+#[test]
+fn cells_at_one_place_keep_their_order() {
+    let nodes = [0.0, 0.5, 0.5 + 1e-8, 0.5 + 2e-8, 0.5 + 3e-8, 1.0];
+    for order in [[0, 1, 2, 3, 4], [0, 3, 1, 2, 4], [4, 2, 3, 1, 0]] {
+        let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n".to_owned();
+        for (k, x) in nodes.iter().enumerate() {
+            text.push_str(&format!("{} {x:?} 0 0\n", k + 1));
+        }
+        text.push_str("$EndNodes\n$Elements\n7\n1 15 2 1 1 1\n2 15 2 1 1 6\n");
+        for (k, cell) in order.into_iter().enumerate() {
+            text.push_str(&format!("{} 1 2 2 1 {} {}\n", k + 3, cell + 1, cell + 2));
+        }
+        let mesh = parse::<1>((text + "$EndElements\n").as_bytes()).mesh;
+        let number = |cell: usize| {
+            let x = mesh.barycentre(cell)[0];
+            nodes.windows(2).position(|ends| ends[0] < x && x < ends[1]).unwrap()
+        };
+        let found: Vec<usize> = (0..5).map(number).collect();
+        let inner: Vec<usize> = order.into_iter().filter(|cell| (1..4).contains(cell)).collect();
+        assert_eq!(found, [&[0][..], &inner, &[4]].concat(), "{order:?}");
+    }
+}
