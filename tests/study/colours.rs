@@ -42,9 +42,8 @@ fn a_constant_has_one_band_around_it_and_no_number_has_none() {
     let svg = picture_of(&square(1), |_| 2.0);
     assert_eq!(areas(&svg).len(), 2, "the square, and the bar");
     let said: Vec<String> = texts(&svg, 124, "middle").into_iter().map(|text| text.1).collect();
-    for number in ["1", "2", "3"] {
-        assert_eq!(said.iter().filter(|text| *text == number).count(), 1, "{said:?}");
-    }
+    let whole: Vec<&String> = said.iter().filter(|text| text.parse::<u32>().is_ok()).collect();
+    assert_eq!(whole, ["1", "2", "3"]);
     let name = |svg: &str| texts(svg, 132, "middle").iter().filter(|text| text.1 == "u").count();
     let none = picture_of(&square(1), |_| f64::NAN);
     assert_eq!((name(&svg), name(&none), areas(&none).len()), (1, 0, 0));
@@ -58,12 +57,11 @@ fn lightness_grows_evenly() {
         (0.30 * channel(1) + 0.59 * channel(3) + 0.11 * channel(5)) / 255.0
     };
     let painted = areas(&picture_of(&square(1), |x| x[0] * 0.97 + 0.013 * (1.0 - x[0])));
-    let greys: Vec<f64> = painted[..20].iter().map(|path| grey(&path.0)).collect();
-    for (band, pair) in greys.windows(2).enumerate() {
-        let step = pair[1] - pair[0];
-        assert!((step - 0.82 / 20.0).abs() < 0.006, "{band}: {step}");
+    for (band, (colour, _)) in painted[..20].iter().enumerate() {
+        let expected = 0.12 + 0.82 * (band as f64 + 0.5) / 20.0;
+        let grey = grey(colour);
+        assert!((grey - expected).abs() < 0.003, "{band}: {grey} {expected}");
     }
-    assert!((greys[0] - 0.1405).abs() < 0.006 && (greys[19] - 0.9195).abs() < 0.006, "{greys:?}");
 }
 
 /// A triangle with the values 0, 1 and 0.4 at its corners, and one with 0, 0.4 and 0.1. The value is 0.4 on a line through
@@ -128,33 +126,37 @@ fn bands_are_nested_parts_of_triangles_and_contour_lines_end_them() {
     assert_eq!([of_one, of_two], [2, 3]);
 }
 
-/// Jumps of 0.1, 2e-3 and 1e-9 have the colours of six decades up to the largest; those that are all rounding are grey.
+/// Jumps of 0.08, 2e-3 and 1e-9 have the colours of six decades up to the largest; those that are all rounding are grey.
 #[test]
 fn a_logarithmic_scale_shows_six_decades_at_most() {
     let mesh = square(2);
     let mut fields = Fields::default();
     fields.u = vec![0.0; 24];
-    for (cell, value) in [(0, 0.1), (7, 2e-3), (2, 1e-9), (4, 1e-30)] {
+    for (cell, value) in [(0, 0.08), (7, 2e-3), (2, 1e-9), (4, 1e-30)] {
         fields.u[3 * cell..3 * cell + 3].fill(value);
     }
     let svg = Picture::of("t", &Problem::new(), &mesh, &fields).unwrap().to_svg().unwrap();
-    let bar: Vec<String> = paths(&svg).into_iter().rev().take(12).map(|path| path.0).collect();
+    let bar: Vec<String> = paths(&svg).into_iter().rev().take(13).map(|path| path.0).collect();
     let said: Vec<String> = texts(&svg, 124, "middle").into_iter().map(|text| text.1).collect();
     let powers: Vec<&String> = said.iter().filter(|text| text.starts_with("10")).collect();
     assert_eq!(powers, ["10−7", "10−5", "10−3", "10−1"]);
     for (jump, band, is_shown) in
-        [("1e-9", 0, true), ("2e-3", 8, true), ("0.1", 11, true), ("none", 5, false)]
+        [("1e-9", 0, true), ("2e-3", 9, true), ("0.08", 12, true), ("none", 5, false)]
     {
-        assert_eq!(!lines(&svg, &bar[11 - band], 24).is_empty(), is_shown, "{jump}");
+        assert_eq!(!lines(&svg, &bar[12 - band], 24).is_empty(), is_shown, "{jump}");
     }
     assert!(!lines(&svg, "#CDCDCD", 4).is_empty());
+    fields.u.fill(1.0);
+    fields.u[0] += 1e-15;
+    let svg = Picture::of("t", &Problem::new(), &mesh, &fields).unwrap().to_svg().unwrap();
+    assert!(svg.contains("none beyond rounding"));
 }
 
 /// The exact free boundary is the unit circle in a square of side three, found from the sign of a function.
 #[test]
 fn a_circle_is_found_from_its_inside_alone() {
     let scene = scenes::radial::<2>(1.0);
-    let meshes = Hierarchy::of_domain(&scene.domain, 8).unwrap();
+    let meshes = Hierarchy::of_domain(&scene.domain, 2).unwrap();
     let solved = solve(&scene.problem, &meshes, &ConformingP1).unwrap();
     let fields = solved.fields().unwrap();
     let svg = Picture::of("t", &scene.problem, solved.mesh(), &fields).unwrap().to_svg().unwrap();

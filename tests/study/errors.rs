@@ -51,3 +51,11 @@ fn a_file_that_cannot_be_written_keeps_the_error_of_the_system() {
     let error = Error::Write { path: "out.svg".into(), why: "no such colour".into() };
     assert_eq!(error.to_string(), "cannot write out.svg: no such colour");
 }
+
+#[test]
+fn a_file_that_cannot_be_written_is_named() {
+    let scratch = Scratch::new("blocked");
+    fs::create_dir_all(scratch.0.join("report.csv")).unwrap();
+    let error = report(rows()).write(&scratch.0).unwrap_err().to_string();
+    assert!(error.starts_with("cannot write ") && error.contains("report.csv"), "{error}");
+}

@@ -359,14 +359,6 @@ fn needs_chromium_to_photograph_the_page() {
 }
 
 #[test]
-fn a_file_that_cannot_be_written_is_named() {
-    let scratch = Scratch::new("blocked");
-    std::fs::create_dir_all(scratch.0.join("report.csv")).unwrap();
-    let error = report(rows()).write(&scratch.0).unwrap_err().to_string();
-    assert!(error.starts_with("cannot write ") && error.contains("report.csv"), "{error}");
-}
-
-#[test]
 fn bounds_are_guaranteed_or_name_what_is_not_proven() {
     let mut rows = vec![row("a", "p1", 8), row("a", "p1", 16), row("a", "p2", 8)];
     rows[0].bound.discrete = Some(0.5);

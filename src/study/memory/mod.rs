@@ -36,7 +36,7 @@ pub(crate) fn memory_of_process() -> Option<u64> {
 /// The memory that this process may have in all, in bytes: what it has and what machine and control groups leave, and
 /// no more than its limits. This is what [`Study::check_memory`](crate::study::Study::check_memory) holds a run against,
 /// on Linux, whose files `proc` and `sys` lie below `root`: `/`, or another folder that has them. None where nothing
-/// sets a limit or no file says what the process has.
+/// sets a limit, or where a file does not say what the process has.
 #[cfg(target_os = "linux")]
 pub fn allowed_memory_bytes(root: impl AsRef<Path>) -> Option<u64> {
     let root = root.as_ref();
