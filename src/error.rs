@@ -246,7 +246,7 @@ impl Error {
 }
 
 /// The error of a file that could not be written: from an [`std::io::Error`] or from a message.
-#[cfg(any(feature = "report", test))]
+#[cfg(feature = "report")]
 pub(crate) fn write_error(
     path: &std::path::Path,
     why: impl Into<Box<dyn std::error::Error + Send + Sync>>,
@@ -261,47 +261,4 @@ pub(crate) fn read_error(
     why: impl Into<Box<dyn std::error::Error + Send + Sync>>,
 ) -> Error {
     Error::Read { path: path.display().to_string(), why: why.into() }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::error::Error as _;
-    use std::io;
-    use std::path::Path;
-
-    use super::{Error, write_error};
-    use crate::mesh::MeshError;
-    use crate::mesh::gmsh::GmshError;
-    use crate::readable_debug::debug_by_display;
-
-    #[test]
-    fn debug_prints_the_message() {
-        let error: Error = MeshError::NoCells { dimension: 2 }.into();
-        assert_eq!(format!("{error:?}"), "the mesh has no cells of dimension 2");
-        assert_eq!(format!("{error:?}"), error.to_string());
-        let source = MeshError::NoCells { dimension: 2 };
-        let error: Error = GmshError::of_mesh(source, &["nodes 7".to_owned()]).into();
-        let expected = "the mesh has no cells of dimension 2; in the file: nodes 7";
-        assert_eq!(format!("{error:?}"), expected);
-    }
-
-    #[test]
-    fn debug_prints_causes_that_the_message_leaves_out() {
-        #[derive(thiserror::Error)]
-        #[error("outer")]
-        struct Outer(#[source] io::Error);
-        debug_by_display!(Outer);
-        assert_eq!(format!("{:?}", Outer(io::Error::other("inner"))), "outer: inner");
-    }
-
-    #[test]
-    fn a_file_that_cannot_be_written_keeps_the_error_of_the_system() {
-        let why = io::Error::from(io::ErrorKind::PermissionDenied);
-        let error = write_error(Path::new("out.csv"), why);
-        assert_eq!(format!("{error:?}"), "cannot write out.csv: permission denied");
-        let source = error.source().and_then(|why| why.downcast_ref::<io::Error>());
-        assert_eq!(source.map(io::Error::kind), Some(io::ErrorKind::PermissionDenied));
-        let error = write_error(Path::new("out.svg"), "no such colour".to_owned());
-        assert_eq!(error.to_string(), "cannot write out.svg: no such colour");
-    }
 }

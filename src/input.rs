@@ -95,34 +95,3 @@ pub(crate) fn number_or_infinity<'de, D: serde::Deserializer<'de>>(
 ) -> std::result::Result<f64, D::Error> {
     serde::Deserialize::deserialize(deserializer).map(|x: Option<f64>| x.unwrap_or(f64::INFINITY))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{excerpt, excerpts};
-
-    #[cfg(feature = "report")]
-    #[test]
-    fn foreign_text_is_valid_in_attributes() {
-        assert_eq!(super::escaped("a<b>\"c\"&d"), "a&lt;b&gt;&quot;c&quot;&amp;d");
-    }
-
-    #[test]
-    fn foreign_text_is_short_and_printable() {
-        assert_eq!(excerpt("contact"), "contact");
-        assert_eq!(excerpt("a\u{1b}[31m\nb\u{85}"), "a\\u{1b}[31m\\nb\\u{85}");
-        assert_eq!(excerpt(b"\xffend"), "\u{fffd}end");
-        for c in ["x", "é", "漢", "🦀"] {
-            assert_eq!(excerpt(c.repeat(40)), c.repeat(40));
-            assert_eq!(excerpt(c.repeat(41)), c.repeat(40) + "…");
-            assert_eq!(excerpt(c.repeat(100_000)), c.repeat(40) + "…");
-        }
-        assert_eq!(excerpts(["b", "a", "b"]), "a, b");
-        let many: Vec<String> = (100..200).map(|k| format!("{k}{}", "x".repeat(1000))).collect();
-        let shown = excerpts(&many);
-        assert!(
-            shown.starts_with("100xx")
-                && shown.ends_with("…, 119xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx… and 80 more"),
-            "{shown}"
-        );
-    }
-}

@@ -94,33 +94,3 @@ fn from_npy(bytes: &[u8]) -> Result<Vec<f64>, String> {
         Err(format!("{} numbers where the header states {expected}", values.len()))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn vectors_come_back_from_their_files() {
-        let values = [1.5, -0.0, f64::INFINITY, 1e-300];
-        let bytes = array("<f8", 4, values.iter().flat_map(|x| x.to_le_bytes()));
-        assert_eq!(bytes.len() % 64, 32);
-        assert_eq!(from_npy(&bytes).unwrap(), values);
-        let single = array("<f4", 2, [1.5_f32, -2.0].iter().flat_map(|x| x.to_le_bytes()));
-        assert_eq!(from_npy(&single).unwrap(), [1.5, -2.0]);
-        assert_eq!(from_text(b"1, 2e-3\n inf\r\n").unwrap(), [1.0, 2e-3, f64::INFINITY]);
-    }
-
-    #[test]
-    fn damaged_vectors_are_refused() {
-        let bytes = array("<f8", 2, [1.0, 2.0].iter().flat_map(|x: &f64| x.to_le_bytes()));
-        for n in 0..bytes.len() {
-            let outcome = if n < 6 { from_text(&bytes[..n]) } else { from_npy(&bytes[..n]) };
-            assert!(n == 0 || outcome.is_err(), "{n} bytes: {outcome:?}");
-        }
-        let integers = array("<i8", 1, 7_i64.to_le_bytes().into_iter());
-        assert!(from_npy(&integers).unwrap_err().contains("<i8"));
-        let square = with_header("<f8", "(2, 2)", [0; 32].into_iter());
-        assert!(from_npy(&square).unwrap_err().contains("2 axes"));
-        assert!(from_text(b"1 two").unwrap_err().contains("two"));
-    }
-}

@@ -17,6 +17,7 @@ mod unweighted;
 
 pub use cases::{STABILITY_CASES, criteria};
 pub use criterion::Criterion;
+pub use meshes::slivers;
 pub use plan::Effort;
 pub use report::StabilityReport;
 pub use row::{ExpectedRange, StabilityRow, Verdict};

@@ -150,7 +150,7 @@ impl Verdict {
     }
 
     /// The verdict on a figure, or on its absence after a failed solve.
-    fn on(expected: &ExpectedRange, measured: Option<f64>) -> Self {
+    pub fn on(expected: &ExpectedRange, measured: Option<f64>) -> Self {
         if !expected.is_judged() {
             return Self::Reported;
         }
@@ -253,47 +253,4 @@ impl StabilityRow {
 /// A factor by which a limit is missed, with as many digits as it takes to see that it is above one.
 pub(crate) fn factor_in_words(factor: f64) -> String {
     ExpectedRange::at_most(1.0).deciding(factor)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{ExpectedRange, Verdict, short};
-
-    #[test]
-    fn verdicts_follow_from_figures() {
-        let most = ExpectedRange::at_most(1.5);
-        assert_eq!(Verdict::on(&most, Some(1.5)), Verdict::Met);
-        assert_eq!(Verdict::on(&most, Some(3.0)), Verdict::Missed);
-        assert_eq!(Verdict::on(&most, None), Verdict::Missed);
-        assert_eq!(most.missed_by(3.0), Some(2.0));
-        let fail = ExpectedRange { to_fail: true, ..most };
-        assert_eq!(Verdict::on(&fail, Some(3.0)), Verdict::FailsAsExpected);
-        assert_eq!(Verdict::on(&fail, Some(1.0)), Verdict::BetterThanExpected);
-        assert_eq!(Verdict::on(&ExpectedRange::default(), Some(1.0)), Verdict::Reported);
-        let least = ExpectedRange::at_least(0.9);
-        assert_eq!(least.missed_by(0.45), Some(2.0));
-        assert_eq!(least.missed_by(-0.1), None);
-        assert!(!least.holds(f64::NAN));
-    }
-
-    #[test]
-    fn the_digit_that_decides_is_shown() {
-        let most = ExpectedRange::at_most(1.15);
-        assert_eq!(most.deciding(1.149), "1.149");
-        assert_eq!(most.deciding(1.1500021), "1.150002");
-        assert_eq!(most.deciding(1.15), "1.15");
-        let tiny = ExpectedRange::at_most(1e-9);
-        assert_eq!(tiny.deciding(1.0004e-9), "1.0004e-9");
-        assert_eq!(tiny.deciding(3.21987e-9), "3.22e-9");
-        assert_eq!(super::factor_in_words(1.0000018), "1.000002");
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        assert_eq!(short(1.5), "1.5");
-        assert_eq!(short(1e-10), "1e-10");
-        assert_eq!(short(0.0), "0");
-        assert_eq!(short(120.0), "120");
-        assert_eq!(short(2.341e7), "2.34e7");
-    }
 }

@@ -105,15 +105,3 @@ pub(crate) fn extrapolate<R: Borrow<Row>>(rows: &[R]) -> Vec<Extrapolated> {
     let uniform = series_of(rows).into_iter().filter(|s| s.variant.meshes == Meshes::Uniform);
     uniform.filter_map(of_series).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::limit;
-
-    #[test]
-    fn a_power_of_the_mesh_size_has_its_limit_and_order() {
-        let [h, figures] = [[0.5, 0.25, 0.125], [2.25, 2.0625, 2.015625]];
-        let found = limit(figures, h).unwrap();
-        assert!((found.value - 2.0).abs() < 1e-12 && (found.order.unwrap() - 2.0).abs() < 1e-12);
-    }
-}

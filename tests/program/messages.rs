@@ -1,6 +1,7 @@
 //! What is said of a problem is said once, of its file and of its groups.
 
 use super::run::{Scratch, data, read_json, refused, rows, stdout};
+use unilateral::input::{excerpt, excerpts};
 
 #[test]
 fn an_obstacle_above_a_dirichlet_value_is_said_once_with_the_group() {
@@ -44,4 +45,24 @@ fn names_of_problems_are_cut() {
         let is_field = |path: &std::path::Path| path.extension().is_some_and(|e| e == "vtu");
         assert_eq!(fields.filter(|file| is_field(&file.as_ref().unwrap().path())).count(), 1);
     }
+}
+
+#[test]
+fn foreign_text_is_short_and_printable() {
+    assert_eq!(excerpt("contact"), "contact");
+    assert_eq!(excerpt("a\u{1b}[31m\nb\u{85}"), "a\\u{1b}[31m\\nb\\u{85}");
+    assert_eq!(excerpt(b"\xffend"), "\u{fffd}end");
+    for c in ["x", "é", "漢", "🦀"] {
+        assert_eq!(excerpt(c.repeat(40)), c.repeat(40));
+        assert_eq!(excerpt(c.repeat(41)), c.repeat(40) + "…");
+        assert_eq!(excerpt(c.repeat(100_000)), c.repeat(40) + "…");
+    }
+    assert_eq!(excerpts(["b", "a", "b"]), "a, b");
+    let many: Vec<String> = (100..200).map(|k| format!("{k}{}", "x".repeat(1000))).collect();
+    let shown = excerpts(&many);
+    assert!(
+        shown.starts_with("100xx")
+            && shown.ends_with("…, 119xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx… and 80 more"),
+        "{shown}"
+    );
 }

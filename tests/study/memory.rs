@@ -1,9 +1,10 @@
-//! Runs that would not fit into the memory.
+//! Runs that would not fit into the memory, and what a process has and may have.
 
 use unilateral::element::P2;
 use unilateral::inequality::{ActiveSet, Outcome};
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
+use unilateral::study::peak_memory_bytes;
 
 use crate::support::scratch::Scratch;
 
@@ -61,4 +62,119 @@ fn a_matrix_with_too_many_entries_is_refused_before_a_mesh_is_built() {
         "{message}"
     );
     assert!(message.ends_with("a coarser level, a lower degree or more processes"), "{message}");
+}
+
+/// On Linux the peak is the one that the kernel keeps, which never falls.
+#[test]
+fn the_peak_is_read_and_nothing_is_made_up() {
+    let by_kernel = || {
+        let status = std::fs::read_to_string("/proc/self/status").ok()?;
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+        Some(1024 * line.split_whitespace().next()?.parse::<u64>().ok()?)
+    };
+    let before = by_kernel();
+    let peak = peak_memory_bytes();
+    assert!(before <= peak && peak <= by_kernel(), "{peak:?}");
+    assert_eq!(peak.is_some(), cfg!(target_os = "linux"));
+}
+
+/// Files of the system that say what a process may have.
+#[cfg(target_os = "linux")]
+mod limits {
+    use super::Scratch;
+    use unilateral::study::allowed_memory_bytes;
+
+    /// What the process has in these files.
+    const OWN: u64 = 1024 << 10;
+
+    fn put(root: &Scratch, name: &str, text: &str) {
+        let path = root.0.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+
+    /// A system without limits.
+    fn system(name: &str) -> Scratch {
+        let root = Scratch::new(name);
+        put(&root, "proc/self/status", "VmPeak:\t 999 kB\nVmRSS:\t   1024 kB\nVmData:\t 7 kB\n");
+        put(&root, "proc/meminfo", "MemTotal: 9 kB\n");
+        root
+    }
+
+    #[test]
+    fn sizes_are_read_and_nothing_is_made_up() {
+        let root = system("memory-of-machine");
+        let allowed = || allowed_memory_bytes(&root.0);
+        assert_eq!(allowed(), None);
+        for (text, left) in [
+            ("MemTotal: 9 kB\nMemAvailable:   2048 kB\n", Some(2048 << 10)),
+            ("MemAvailable: many kB\n", None),
+            ("MemAvailable: 2048\n", None),
+            ("MemAvailable: 18446744073709551615 kB\n", None),
+        ] {
+            put(&root, "proc/meminfo", text);
+            assert_eq!(allowed(), left.map(|left: u64| left + OWN), "{text}");
+        }
+        put(&root, "proc/meminfo", "MemAvailable:   2048 kB\n");
+        put(&root, "proc/self/status", "VmPeak:\t 999 kB\n");
+        assert_eq!(allowed(), None);
+    }
+
+    #[test]
+    fn the_least_limit_of_the_process_counts() {
+        let root = system("memory-of-process");
+        let reserved = rayon::current_num_threads() as u64 * (66 << 20);
+        let space = |left: u64| (reserved + left).to_string();
+        let least = |space: &str, data: &str| {
+            let limits = format!(
+                "Limit                     Soft Limit           Hard Limit           Units\n\
+                 Max cpu time              unlimited            unlimited            seconds\n\
+                 Max data size             {data}            unlimited            bytes\n\
+                 Max address space         {space}            4096            bytes\n"
+            );
+            put(&root, "proc/self/limits", &limits);
+            allowed_memory_bytes(&root.0)
+        };
+        assert_eq!(least("unlimited", "unlimited"), None);
+        assert_eq!(least(&space(9216), "unlimited"), Some(9216));
+        assert_eq!(least(&space(10240), "5120"), Some(5120));
+        assert_eq!(least("512", "unlimited"), Some(0));
+        // beside what the machine leaves
+        put(&root, "proc/meminfo", "MemAvailable: 8 kB\n");
+        assert_eq!(least("unlimited", "5120"), Some(5120));
+        assert_eq!(least("unlimited", &(2 * OWN).to_string()), Some(OWN + 8192));
+        put(&root, "proc/self/limits", "");
+        assert_eq!(allowed_memory_bytes(&root.0), Some(OWN + 8192));
+    }
+
+    #[test]
+    fn the_least_limit_of_the_groups_counts() {
+        let root = system("memory-of-groups");
+        let group = |path: &str, files: &[(&str, &str)]| {
+            files.iter().for_each(|(name, text)| put(&root, &format!("{path}/{name}"), text));
+        };
+        let all = "sys/fs/cgroup";
+        let job = format!("{all}/job");
+        group(&job, &[("memory.max", "5000\n"), ("memory.current", "1200\n")]);
+        group(&job, &[("memory.stat", "anon 1000\ninactive_file 200\n")]);
+        let step = [("memory.max", "max\n"), ("memory.current", "600\n")];
+        group(&format!("{job}/step"), &step);
+        let first = format!("{all}/memory");
+        group(&first, &[("memory.limit_in_bytes", "3000"), ("memory.usage_in_bytes", "2500")]);
+        group(&first, &[("memory.stat", "inactive_file 1\ntotal_inactive_file 100\n")]);
+        let left = |groups: &str| {
+            put(&root, "proc/self/cgroup", groups);
+            allowed_memory_bytes(&root.0).map(|bytes| bytes - OWN)
+        };
+        assert_eq!(left("0::/job/step\n"), Some(4000));
+        assert_eq!(left("0::/job\n"), Some(4000));
+        assert_eq!(left("0::/\n"), None);
+        // a group of version 1 that is not found inside a container
+        assert_eq!(left("7:cpu:/x\n9:hugetlb,memory:/docker/abc\n0::/job\n"), Some(600));
+        assert_eq!(left("9:memoryless:/job\n"), None);
+        assert_eq!(left("no group\n"), None);
+        // a group that has more than its limit
+        group(&job, &[("memory.current", "9000\n")]);
+        assert_eq!(left("0::/job\n"), Some(0));
+    }
 }

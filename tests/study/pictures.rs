@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use super::svg::{FINE, areas, paths};
 use crate::support::scratch::Scratch;
 use unilateral::measure::Fields;
 use unilateral::mesh::BoxDomain;
@@ -14,9 +15,7 @@ use unilateral::scenes::Scene;
 
 /// The fill of areas in contact.
 const CONTACT: &str = "#96BEDE";
-/// Parts of a unit in the coordinates of an SVG file, and units across the data of a panel where
-/// two stand in a row.
-const FINE: f64 = 8.0;
+/// Units across the data of a panel where two stand in a row.
 const ACROSS: f64 = 204.0;
 /// Units across the data of a panel that stands alone in its row.
 const ACROSS_ALONE: f64 = 358.0;
@@ -50,54 +49,6 @@ fn function<const D: usize>(mesh: &Mesh<D>, value: impl Fn(usize) -> f64) -> Fie
 
 fn volume<const D: usize>(mesh: &Mesh<D>, cells: &[usize]) -> f64 {
     cells.iter().map(|&cell| mesh.geometry(cell).volume).sum()
-}
-
-/// Filled paths: colour, and the corners of each polygon.
-fn paths(svg: &str) -> Vec<(String, Vec<Vec<[f64; 2]>>)> {
-    let attribute = |line: &str, name: &str| -> String {
-        line.split(&format!("{name}=\"")).nth(1).unwrap().split('"').next().unwrap().to_owned()
-    };
-    let numbers = |text: &str| -> Vec<f64> {
-        text.replace('-', " -").split_whitespace().map(|n| n.parse().unwrap()).collect()
-    };
-    // every polygon begins relative to the beginning of the one before
-    let polygons = |path: &str| {
-        let mut start = [0.0; 2];
-        let polygon = |text: &str| -> Vec<[f64; 2]> {
-            let mut at = start;
-            let starts: Vec<usize> =
-                text.match_indices(|c: char| c.is_alphabetic()).map(|(k, _)| k).collect();
-            let ends = starts.iter().skip(1).copied().chain([text.len()]);
-            let commands = starts.iter().zip(ends).map(|(&a, b)| text[a..b].split_at(1));
-            let commands = commands.map(|(command, text)| (command, numbers(text)));
-            let mut corners = if text.starts_with(['M', 'm']) { vec![] } else { vec![start] };
-            for (command, numbers) in commands {
-                let step = match command {
-                    "h" => [numbers[0], 0.0],
-                    "v" => [0.0, numbers[0]],
-                    _ => [numbers[0], numbers[1]],
-                };
-                at = [at[0] + step[0], at[1] + step[1]];
-                corners.push(at);
-            }
-            start = corners[0];
-            corners
-        };
-        path.split('z').filter(|p| !p.is_empty()).map(polygon).collect()
-    };
-    let filled = svg.lines().filter(|l| l.starts_with("<path shape-rendering"));
-    let of = |line: &str| (attribute(line, "fill"), polygons(&attribute(line, " d")));
-    filled.map(of).collect()
-}
-
-fn area(polygon: &[[f64; 2]]) -> f64 {
-    let next = polygon.iter().cycle().skip(1);
-    0.5 * polygon.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
-}
-
-fn areas(svg: &str) -> Vec<(String, f64)> {
-    let sum = |polygons: &Vec<Vec<[f64; 2]>>| polygons.iter().map(|p| area(p)).sum();
-    paths(svg).iter().map(|(fill, polygons)| (fill.clone(), sum(polygons))).collect()
 }
 
 #[test]

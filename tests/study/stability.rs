@@ -75,7 +75,13 @@ fn stretched_cells_ask_for_weights_by_heights() {
 /// Cells of edges of 2e-10 beside ones of size one: the measures of their facets must not vanish.
 #[test]
 fn interior_penalty_stands_graded_meshes() {
-    keeps(&quick(&["graded-meshes"], &["p1", "sipg"]));
+    let report = quick(&["graded-meshes"], &["p1", "sipg"]);
+    keeps(&report);
+    for row in &report.rows {
+        let (n, power) = (row.level.unwrap() as f64, row.value.unwrap());
+        let shortest = format!("shortest edge {:.1e}, ", n.powf(-power));
+        assert!(row.detail.starts_with(&shortest), "{}", describe(row));
+    }
 }
 
 #[test]
@@ -226,6 +232,11 @@ fn complete(effort: Effort, schemes: &[&str]) {
         }
     }
     for row in &report.rows {
+        if row.verdict != Verdict::NotApplicable {
+            assert_eq!(row.verdict, Verdict::on(&row.expected, row.measured), "{}", describe(row));
+            let missed_by = row.measured.and_then(|figure| row.expected.missed_by(figure));
+            assert_eq!(row.missed_by, missed_by, "{}", describe(row));
+        }
         let is_judged = row.expected.at_least.is_some() || row.expected.at_most.is_some();
         assert_eq!(
             is_judged,

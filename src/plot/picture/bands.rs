@@ -76,32 +76,3 @@ fn crossing(a: Valued, b: Valued, level: f64) -> PlanePoint {
     let share = (level - a.1) / (b.1 - a.1);
     array_of(|k| a.0[k] + share * (b.0[k] - a.0[k]))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::colour::Scale;
-    use super::{bands, contour};
-
-    /// The area of a polygon, by the formula of the shoelace.
-    fn area(corners: &[[f64; 2]]) -> f64 {
-        let next = corners.iter().cycle().skip(1);
-        let twice = corners.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
-        0.5 * twice.sum::<f64>().abs()
-    }
-
-    #[test]
-    fn bands_are_nested_parts_of_the_triangle() {
-        let triangle = [([0.0, 0.0], -0.3), ([2.0, 0.0], 1.7), ([0.5, 1.5], 0.4)];
-        let levels = vec![-1.0, -0.5, 0.4, 1.7, 2.0];
-        let scale = Scale { name: String::new(), levels, logarithmic: false };
-        let bands = bands(&scale, &triangle);
-        let areas: Vec<(usize, f64)> = bands.iter().map(|(k, part)| (*k, area(part))).collect();
-        // the value is 0.4 on the line from (0.7, 0) to the third corner
-        assert_eq!(areas.len(), 2, "{areas:?}");
-        assert!(areas[0] == (1, 1.5) && areas[1].0 == 2, "{areas:?}");
-        assert!((areas[1].1 - 0.5 * 1.3 * 1.5).abs() < 1e-12, "{areas:?}");
-        assert_eq!(contour(&triangle, 3.0), None);
-        let [from, to] = contour(&triangle, 0.4).unwrap();
-        assert!((from[0] - 0.7).abs() < 1e-12 && to == [0.5, 1.5], "{from:?} {to:?}");
-    }
-}

@@ -76,24 +76,3 @@ fn change(
 pub(crate) fn distance(a: PlanePoint, b: PlanePoint) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{distance, level_line};
-    use crate::plot::picture::triangle::{Corner, Triangle};
-
-    #[test]
-    fn a_circle_is_found_from_its_inside_alone() {
-        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-        let corner =
-            |at: [f64; 2]| Corner { at, barycentric: [1.0 - at[0] - at[1], at[0], at[1], 0.0] };
-        let triangle = Triangle { cell: 0, locals: [0, 1, 2], corners: corners.map(corner) };
-        let inside = |_: usize, b: &[f64; 4]| b[1].hypot(b[2]) < 0.5;
-        let segments = level_line([&triangle], 1.0, &inside);
-        let length: f64 = segments.iter().map(|s| distance(s[0], s[1])).sum();
-        assert!((length - std::f64::consts::PI / 4.0).abs() < 1e-4, "{length}");
-        for end in segments.as_flattened() {
-            assert!((end[0].hypot(end[1]) - 0.5).abs() < 1e-6, "{end:?}");
-        }
-    }
-}

@@ -27,21 +27,3 @@ pub(super) fn settled_derivative(
     }
     None
 }
-
-#[cfg(test)]
-mod tests {
-    use super::settled_derivative;
-
-    #[test]
-    fn smooth_functions_settle_and_kinks_do_not() {
-        let slope = settled_derivative(|t| (1.0 + t).exp(), 1e-2, 1e-9).unwrap();
-        assert!((slope - 1.0_f64.exp()).abs() < 1e-9);
-        assert_eq!(settled_derivative(|t| t.abs() + (t + 1e-9).max(0.0), 1e-2, 1e-9), None);
-    }
-
-    #[test]
-    fn a_kink_within_the_first_stencil_is_left_behind() {
-        let slope = settled_derivative(|t| (t - 1e-3).max(0.0), 1e-2, 1e-9).unwrap();
-        assert_eq!(slope, 0.0);
-    }
-}

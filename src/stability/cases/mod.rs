@@ -61,28 +61,3 @@ pub(crate) const OVER_FACTORS: [&Criterion; 6] = [
 
 /// The cases of these sweeps.
 pub(crate) const SWEEPS: [&str; 2] = [penalty_factor::CASE.name, coercivity::CASE.name];
-
-#[cfg(test)]
-mod tests {
-    use super::{STABILITY_CASES, criteria};
-
-    #[test]
-    fn names_are_unique_and_every_case_has_criteria() {
-        for (k, (_, c)) in criteria().enumerate() {
-            assert!(criteria().take(k).all(|(_, other)| other.name != c.name), "{}", c.name);
-        }
-        for case in STABILITY_CASES {
-            assert!(criteria().any(|of| of.0 == case), "{case}");
-        }
-    }
-
-    #[test]
-    fn sentences_state_all_limits() {
-        for (_, c) in criteria() {
-            assert_eq!(c.sentence().matches("{}").count(), 0, "{}", c.sentence());
-        }
-        let sentence = |name: &str| criteria().find(|of| of.1.name == name).unwrap().1.sentence();
-        assert!(sentence("active-sets-tried").contains("at most 40 linear systems"));
-        assert!(sentence("equilibrium").contains("at most 1e-6 of the integral"));
-    }
-}

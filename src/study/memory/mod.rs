@@ -1,14 +1,14 @@
 //! Peak memory of the process, the memory that it may have, and an estimate of the memory of a run.
 
-#[cfg(any(test, target_os = "linux"))]
+#[cfg(target_os = "linux")]
 mod limits;
 
 use crate::element::Layout;
 use crate::real::Precision;
-#[cfg(any(test, target_os = "linux"))]
-use limits::kilobytes;
 #[cfg(target_os = "linux")]
-use limits::{left_to_group, limit_of_process};
+use limits::{kilobytes, left_to_group, limit_of_process};
+#[cfg(target_os = "linux")]
+use std::path::Path;
 
 /// The largest resident set of this process so far, if the system reports it: on Linux the peak the
 /// kernel keeps (`VmHWM`), elsewhere nothing.
@@ -27,15 +27,24 @@ pub(crate) fn memory_of_process() -> Option<u64> {
     Some(system.available_memory()).filter(|bytes| *bytes > 0)
 }
 
-/// The memory that this process may have in all, in bytes: what it has and what machine and control groups leave, and
-/// no more than its limits.
+/// The memory that this process may have in all.
 #[cfg(target_os = "linux")]
 pub(crate) fn memory_of_process() -> Option<u64> {
-    let text = |file| std::fs::read_to_string(file).ok();
-    let own = kilobytes(&text("/proc/self/status")?, "VmRSS:")?;
-    let machine = kilobytes(&text("/proc/meminfo")?, "MemAvailable:");
-    let left = [machine, left_to_group()].into_iter().flatten().map(|left| left + own);
-    left.chain(limit_of_process()).min()
+    allowed_memory_bytes("/")
+}
+
+/// The memory that this process may have in all, in bytes: what it has and what machine and control groups leave, and
+/// no more than its limits. This is what [`Study::check_memory`](crate::study::Study::check_memory) holds a run against,
+/// on Linux, whose files `proc` and `sys` lie below `root`: `/`, or another folder that has them. None where nothing
+/// sets a limit, or where a file does not say what the process has.
+#[cfg(target_os = "linux")]
+pub fn allowed_memory_bytes(root: impl AsRef<Path>) -> Option<u64> {
+    let root = root.as_ref();
+    let text = |file: &str| std::fs::read_to_string(root.join(file)).ok();
+    let own = kilobytes(&text("proc/self/status")?, "VmRSS:")?;
+    let machine = kilobytes(&text("proc/meminfo")?, "MemAvailable:");
+    let left = [machine, left_to_group(root)].into_iter().flatten().map(|left| left + own);
+    left.chain(limit_of_process(root)).min()
 }
 
 /// Bytes a run will need, most of them for the factors of the direct solver.
@@ -108,84 +117,4 @@ pub(super) fn estimate_without_factors(
         Precision::Single => 1.25,
     };
     constant * unknowns_about(dimension, layout, cells) * copies
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{estimate, estimate_without_factors, kilobytes};
-    use crate::element::Layout;
-    use crate::real::Precision;
-
-    const P1: Layout = Layout { vertex: 1, edge: 0, facet: 0, cell: 0 };
-    const P2: Layout = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
-    const CR: Layout = Layout { vertex: 0, edge: 0, facet: 1, cell: 0 };
-
-    #[test]
-    fn the_estimate_meets_peaks_that_were_measured() {
-        let (broken, p1, p2, cr) = (Layout::in_cells, P1, P2, CR);
-        for (dimension, layout, cells, obstacle, peak) in [
-            (1, broken(2), 1_000_000, true, 740.6e6),
-            (1, p1, 1_000_000, true, 319.4e6),
-            (2, broken(3), 524_288, true, 1345.0e6),
-            (2, broken(3), 2_097_152, true, 5966.7e6),
-            (2, broken(3), 524_176, false, 1901.5e6),
-            (2, cr, 524_288, true, 371.4e6),
-            (2, cr, 524_176, false, 517.2e6),
-            (2, p1, 2_097_152, true, 768.5e6),
-            (2, p1, 1_048_576, false, 520.9e6),
-            (3, broken(4), 48_000, true, 812.6e6),
-            (3, broken(4), 82_944, true, 1899.1e6),
-            (3, broken(4), 98_304, false, 3905.8e6),
-            (3, cr, 48_000, true, 147.5e6),
-            (3, cr, 41_472, false, 190.5e6),
-            (3, p1, 663_552, true, 591.3e6),
-            (3, p1, 331_776, false, 333.0e6),
-            (1, p2, 250_000, true, 170.4e6),
-            (2, p2, 131_072, true, 228.1e6),
-            (2, p2, 320_000, true, 574.3e6),
-            (2, p2, 160_000, false, 444.0e6),
-            (3, p2, 34_992, true, 218.9e6),
-            (3, p2, 82_944, true, 777.5e6),
-            (3, p2, 41_472, false, 437.8e6),
-        ] {
-            let bytes = estimate(dimension, layout, f64::from(cells), obstacle);
-            let ratio = bytes / peak;
-            assert!((0.8..1.25).contains(&ratio), "{dimension} {layout:?} {cells}: {ratio}");
-        }
-    }
-
-    #[test]
-    fn the_estimate_without_factors_meets_peaks_that_were_measured() {
-        let (broken, p1, p2, cr) = (Layout::in_cells, P1, P2, CR);
-        for (dimension, layout, cells, precision, peak) in [
-            (2, p1, 2_097_152, Precision::Double, 541e6),
-            (2, p1, 262_144, Precision::Double, 89.8e6),
-            (2, cr, 131_072, Precision::Double, 88.6e6),
-            (2, p2, 32_768, Precision::Double, 41.6e6),
-            (2, broken(3), 131_072, Precision::Double, 176.4e6),
-            (2, broken(3), 131_072, Precision::Double, 214.3e6),
-            (2, broken(3), 131_072, Precision::Single, 239.2e6),
-            (2, broken(6), 32_768, Precision::Double, 119.3e6),
-            (3, p1, 1_572_864, Precision::Double, 336e6),
-            (3, p1, 196_608, Precision::Double, 77.6e6),
-            (3, cr, 24_576, Precision::Double, 32.3e6),
-            (3, p2, 24_576, Precision::Double, 38.3e6),
-            (3, broken(4), 82_944, Precision::Double, 175.9e6),
-            (3, broken(4), 24_576, Precision::Double, 87.8e6),
-            (3, broken(10), 3_072, Precision::Double, 37.8e6),
-        ] {
-            let bytes = estimate_without_factors(dimension, layout, f64::from(cells), precision);
-            // the program itself takes 12 MB
-            let ratio = bytes / (peak - 12e6);
-            assert!((0.7..1.34).contains(&ratio), "{dimension} {layout:?} {cells}: {ratio}");
-        }
-    }
-
-    #[test]
-    fn the_peak_is_read_and_nothing_is_made_up() {
-        let status = "VmPeak:\t  999 kB\nVmHWM:\t   2048 kB\nVmRSS:\t 12 kB\n";
-        assert_eq!(kilobytes(status, "VmHWM:"), Some(2048 * 1024));
-        assert_eq!(kilobytes("VmRSS:\t 12 kB\n", "VmHWM:"), None);
-        assert_eq!(kilobytes("VmHWM:\t many kB\n", "VmHWM:"), None);
-    }
 }

@@ -8,6 +8,8 @@ use unilateral::mesh::gmsh::{GmshError, GmshErrorKind};
 /// The error of the mesh, with cells and vertices counted from zero.
 fn of_mesh(error: &GmshError) -> &MeshError {
     assert_eq!(error.kind, GmshErrorKind::Mesh, "{error}");
+    // the message contains that of the mesh
+    assert_eq!(format!("{error:?}"), error.to_string());
     error.source().and_then(|source| source.downcast_ref()).expect("an error of a mesh")
 }
 

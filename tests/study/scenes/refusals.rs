@@ -143,6 +143,30 @@ fn a_kink_passes_only_where_an_obstacle_holds_it() {
     assert_eq!(refused(&ridge(-1.0, wrong_side)), Condition::Kink);
 }
 
+/// Steps of differences are reduced until no kink is within reach: here, from nearly half of the points, one is at first.
+/// The function is linear between points of a parabola and equal to its obstacle.
+#[test]
+fn kinks_beside_a_point_do_not_spoil_its_derivative() {
+    const STEP: f64 = 1.0 / 64.0;
+    let before = |x: f64| (x / STEP).floor().clamp(-64.0, 63.0) * STEP;
+    let slope = move |x: f64| -(2.0 * before(x) + STEP);
+    let value = move |x: f64| slope(x) * (x - before(x)) - before(x).powi(2);
+    let problem = Problem::new()
+        .dirichlet(|_: &Point<1>| -1.0)
+        .obstacle_below(move |x: &Point<1>| value(x[0]))
+        .exact(move |x| value(x[0]), move |x| Point::from([slope(x[0])]));
+    check_scene(&Scene::new("kinks", BoxDomain::centred(1.0), problem), 300).unwrap();
+}
+
+/// No step of differences resolves a function that oscillates within rounding.
+#[test]
+fn the_check_refuses_a_solution_without_derivatives() {
+    let noise = |x: &Point<1>| 1.0 + 1e-3 * (1e12 * x[0]).sin();
+    let problem = Problem::new().dirichlet(noise).exact(noise, |_| Point::zeros());
+    let scene = Scene::new("noise", BoxDomain::centred(1.0), problem);
+    assert_eq!(refused(&scene), Condition::Resolution);
+}
+
 #[test]
 fn the_check_refuses_a_jump_of_the_value() {
     let mut scene = radial::<2>(1.0);

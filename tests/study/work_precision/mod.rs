@@ -1,7 +1,8 @@
 //! Work against precision: times to reach an error, studies, reports that end early.
 
 mod files;
-mod synthetic;
+mod interpolation;
+pub mod synthetic;
 
 use std::cell::{Cell, RefCell};
 
