@@ -10,6 +10,7 @@ mod error_bounds_discrete;
 mod error_bounds_guarantee;
 mod error_bounds_quadratics;
 mod forms;
+mod matrices;
 mod named_data;
 mod parts;
 mod runs;
