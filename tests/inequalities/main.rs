@@ -8,13 +8,17 @@ mod factors_or_krylov;
 mod history;
 mod iterations;
 mod iterative;
+mod krylov;
 mod load;
 mod monotone_multigrid;
 mod nonsymmetric;
 mod own_preconditioner;
+mod penalised_cells;
+mod preconditioners;
 mod problems;
 mod proximal;
 mod recession;
+mod rounded_data;
 mod solvers;
 
 #[path = "../support"]
