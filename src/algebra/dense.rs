@@ -95,29 +95,3 @@ pub(crate) fn invert_positive_definite<T: Real>(a: &mut [T], size: usize, fixed:
     }
     true
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn dependent_vectors_do_not_count() {
-        let rank = |vectors: &[[f64; 3]], tolerance: f64| {
-            let mut basis = Vec::new();
-            let mut is_new = |v: &&[f64; 3]| extend_basis(&mut basis, v.iter().copied(), tolerance);
-            vectors.iter().filter(&mut is_new).count()
-        };
-        let vectors = [[0.0, 1.0, 1.0], [1.0, 0.0, 1.0], [1.0, -1.0, 1e-12]];
-        assert_eq!(rank(&vectors, 1e-8), 2);
-        assert_eq!(rank(&vectors, 1e-14), 3);
-        assert_eq!(rank(&[[0.0; 3]; 2], 0.0), 0);
-    }
-
-    #[test]
-    fn inverses_and_signs() {
-        let mut a = vec![0.0, 2.0, 4.0, 0.0];
-        assert_eq!(invert_in_place(&mut a, 2), Some(false));
-        assert_eq!(a, [0.0, 0.25, 0.5, 0.0]);
-        assert_eq!(invert_in_place(&mut [1.0, 2.0, 2.0, 4.0], 2), None);
-    }
-}

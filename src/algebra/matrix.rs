@@ -202,23 +202,3 @@ impl SparseMatrix<f64> {
         matrix
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_symmetric_part_has_the_entries_of_both_sides() {
-        // [[1, 2, 0], [0, 3, 4], [6, 2, 0]], the last diagonal entry not stored
-        let matrix = SparseMatrix::<f64> {
-            row_starts: vec![0, 2, 4, 6],
-            columns: vec![0, 1, 1, 2, 0, 1],
-            values: vec![1.0, 2.0, 3.0, 4.0, 6.0, 2.0],
-        };
-        let part = matrix.symmetric_part();
-        assert!(part.is_well_formed() && part.transpose() == part);
-        assert_eq!(part.columns, [0, 1, 2, 0, 1, 2, 0, 1]);
-        assert_eq!(part.values, [1.0, 1.0, 3.0, 1.0, 3.0, 3.0, 3.0, 3.0]);
-        assert_eq!(matrix.transpose().transpose(), matrix);
-    }
-}

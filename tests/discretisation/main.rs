@@ -14,6 +14,7 @@ mod error_bounds_fluxes;
 mod error_bounds_guarantee;
 mod error_bounds_quadratics;
 mod forms;
+mod matrices;
 mod named_data;
 mod observed_orders;
 mod parts;

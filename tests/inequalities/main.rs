@@ -8,14 +8,18 @@ mod factors_or_krylov;
 mod history;
 mod iterations;
 mod iterative;
+mod krylov;
 mod load;
 mod monotone_multigrid;
 mod nonsymmetric;
 mod own_preconditioner;
+mod penalised_cells;
+mod preconditioners;
 mod predictions;
 mod problems;
 mod proximal;
 mod recession;
+mod rounded_data;
 mod solvers;
 mod transpose;
 

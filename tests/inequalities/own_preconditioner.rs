@@ -78,7 +78,7 @@ fn a_preconditioner_of_ones_own_runs_beside_the_built_in_ones() {
 
 /// The whole mesh as the only part: there are no factors, as on several parts.
 #[derive(Debug)]
-struct OnePart;
+pub struct OnePart;
 
 impl Distribution for OnePart {
     fn owns(&self, _unknown: usize) -> bool {
@@ -94,7 +94,7 @@ impl Distribution for OnePart {
 
 /// Forty blocks with the symmetric part `[1, s; s, 1]` and the skew-symmetric part `[0, 1; -1, 0]`: GMRES converges in
 /// two steps whatever the smallest eigenvalue `1 - s` of the symmetric part is.
-fn blocks(s: f64) -> Inequality<f64> {
+pub fn blocks(s: f64) -> Inequality<f64> {
     let n = 80;
     let mut dense = vec![vec![0.0; n]; n];
     for i in (0..n).step_by(2) {

@@ -1,11 +1,12 @@
 //! Domains that only their bounds hold: no solution, many solutions, or one.
 
 use unilateral::inequality::{
-    ActiveSet, MonotoneMultigrid, Outcome, ProximalPoint, SinglePrecision,
+    ActiveSet, MonotoneMultigrid, Outcome, ProximalPoint, SinglePrecision, in_precision,
 };
 use unilateral::mesh::BoundaryCondition;
 use unilateral::nested::NestedIteration;
 use unilateral::prelude::*;
+use unilateral::real::Precision;
 
 /// A square that only a contact condition on its lower side holds.
 fn square(n: usize) -> Mesh<2> {
@@ -232,5 +233,18 @@ fn one_of_many_solutions_is_moved_as_little_as_possible() {
         for (found, expected) in range(below, above).into_iter().zip(expected) {
             assert!((found - expected).abs() < 1e-12, "{below} {above}: {found} {expected}");
         }
+    }
+}
+
+/// Neither is what rounding to single precision makes of it.
+#[test]
+fn a_rounded_load_is_not_an_added_one() {
+    let problem = Problem::new().source(|x| x[0] * x[0] - 1.0 / 3.0).signorini(|x| 0.1 * x[0]);
+    let mesh = square(7);
+    for precision in [Precision::Double, Precision::Single] {
+        let solver = in_precision(precision, ActiveSet::default());
+        let mut nested = NestedIteration::new(&problem, &mesh).shared_solver(solver.into());
+        let solved = nested.solve(&ConformingP1).unwrap();
+        assert_eq!(solved.outcome(), Outcome::NotUnique, "{precision:?}");
     }
 }

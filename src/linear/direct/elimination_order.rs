@@ -110,31 +110,3 @@ fn restricted(order: &[u32], free: &[u32], size: usize) -> Vec<u32> {
     let take = |&i: &u32| std::mem::replace(&mut positions[i as usize], NO_INDEX);
     order.iter().chain(free).map(take).filter(|&k| k != NO_INDEX).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Whatever an order knows of other unknowns, its restriction has each free one once, those that it does not know
-    /// last; and the factors are those of the same matrix.
-    #[test]
-    fn the_restriction_of_an_order_is_a_permutation() {
-        let matrix = SparseMatrix::<f64>::second_differences(9);
-        let order = minimum_degree(&matrix, &[1, 2, 3, 5, 7]).unwrap();
-        let free = [0, 2, 3, 7, 8];
-        let positions = restricted(&order, &free, 9);
-        let mut sorted = positions.clone();
-        sorted.sort_unstable();
-        assert_eq!(sorted, [0, 1, 2, 3, 4]);
-        assert_eq!(positions[3..], [0, 4]);
-        let right = [1.0, -2.0, 3.0, 5.0, 0.5];
-        let (mut x, mut y) = (right, right);
-        let ordered = OrderedMatrix::new(&matrix, vec![1, 2, 3, 5, 7]);
-        ordered.factor(&free, &[]).unwrap().solve_in_place(&mut x, 1);
-        Factors::new(&matrix, true, &free).unwrap().solve_in_place(&mut y, 1);
-        for (x, y) in x.iter().zip(&y) {
-            assert!((x - y).abs() <= 1e-14, "{x} {y}");
-        }
-        assert!(restricted(&order, &[], 9).is_empty());
-    }
-}

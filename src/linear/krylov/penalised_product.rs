@@ -113,34 +113,3 @@ fn means<T: Real, const N: usize, const ARE_MEANS: bool>(values: &[T; N]) -> [T;
     let total = values.iter().fold(T::lit(0.0), |sum, &x| sum + x);
     values.map(|x| total - x)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_product_is_that_of_the_sum() {
-        for (n, are_means) in [(3, true), (3, false), (4, true), (4, false)] {
-            let penalised = PenalisedMatrix::cells_in_a_row((2, n), are_means, vec![7.0, 3.0]);
-            let product = PenalisedProduct::new(&penalised).unwrap();
-            let mut fixed = vec![false; 2 * n];
-            fixed[1] = true;
-            let value = |i: usize| if fixed[i] { 0.0 } else { (1.3 * i as f64).cos() };
-            let p: Vec<f64> = (0..2 * n).map(value).collect();
-            let (mut q, mut expected) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
-            // without a load the residual is the negative product
-            penalised.residual(&vec![0.0; 2 * n], |i| p[i], &mut expected);
-            let sum = product.rows(0..2 * n, &fixed, &p, &mut q);
-            let energy: f64 = p.iter().zip(&expected).map(|(p, r)| -p * r).sum();
-            assert!((sum - energy).abs() < 1e-12 * energy, "{n} {are_means}: {sum} {energy}");
-            for i in 0..2 * n {
-                let expected = if fixed[i] { 0.0 } else { -expected[i] };
-                assert!(
-                    (q[i] - expected).abs() < 1e-12,
-                    "{n} {are_means} {i}: {} {expected}",
-                    q[i]
-                );
-            }
-        }
-    }
-}

@@ -100,31 +100,3 @@ impl<T: Real> CoarseLevel<T> {
         Some(Self { level: Arc::new(level), prolongation: Arc::new(prolongation) })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn levels_of_different_sizes_do_not_fit() {
-        let matrix = || SparseMatrix::<f64>::second_differences(9);
-        let prolongation = |n: u32| {
-            let parents = (0..n).map(|i| [i / 2, i.div_ceil(2)]).collect();
-            Arc::new(Prolongation::midpoints(parents, n as usize / 2 + 1))
-        };
-        let coarse = SparseMatrix::second_differences(5);
-        let coarse = Arc::new(P1Level::new(coarse, vec![false; 5], None).unwrap());
-        let level = |coarser| P1Level::new(matrix(), vec![false; 9], coarser);
-        let coarser = CoarseLevel::new(coarse.clone(), prolongation(9));
-        assert_eq!(level(coarser).map(|level| level.size()), Some(9));
-        // six coarse unknowns for five vertices, ten fine unknowns for nine vertices, eight flags for nine rows
-        assert!(CoarseLevel::new(coarse.clone(), prolongation(11)).is_none());
-        let of_too_many = vec![[0, 1]; 10];
-        let prolongation = Arc::new(Prolongation::midpoints(of_too_many, 5));
-        assert!(level(CoarseLevel::new(coarse, prolongation)).is_none());
-        assert!(P1Level::new(matrix(), vec![false; 8], None).is_none());
-        let mut malformed = matrix();
-        malformed.columns[0] = 9;
-        assert!(P1Level::new(malformed, vec![false; 9], None).is_none());
-    }
-}

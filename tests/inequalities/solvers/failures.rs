@@ -1,8 +1,11 @@
 //! What can go wrong in a solve has a name, and the certificate sees it.
 
 use super::{cold, solve_from};
+use crate::penalised_cells::assembled;
 use crate::problems::*;
-use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix, Start};
+use unilateral::algebra::{
+    Bound, Contact, Inequality, JumpTerm, Jumps, PenalisedMatrix, SparseMatrix, Start,
+};
 use unilateral::inequality::{
     ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, Outcome, ProximalPoint, certify,
 };
@@ -223,4 +226,28 @@ fn a_huge_penalty_is_not_called_too_small() {
         .unwrap();
     let status = report.rows[0].status;
     assert!(matches!(status, Outcome::Singular | Outcome::Converged), "{status}");
+}
+
+/// No jump couples the second of two cells, on which the stiffness is singular: the pivot of its last unknown is zero.
+#[test]
+fn a_cell_that_nothing_holds_is_singular() {
+    let held = [[2.0, -1.0, -1.0], [-1.0, 2.0, -1.0], [-1.0, -1.0, 2.0]];
+    let term = |here| JumpTerm { here, there: JumpTerm::<f64>::NO_UNKNOWN, weight: 0.5 };
+    let outcome = |reaction: f64| {
+        let mut blocks = [held, held].as_flattened().as_flattened().to_vec();
+        blocks[17] += reaction;
+        let penalised = PenalisedMatrix {
+            blocks,
+            jumps: Jumps::new((2, 3), vec![0, 2], vec![term(0), term(1)]).unwrap(),
+            weights: vec![10.0],
+            jump_data: vec![0.0],
+            mean_jumps: None,
+        };
+        let load = [0.0, 0.0, 0.0, 1.0, -1.0, 0.0];
+        let mut given = inequality(assembled(&penalised), &load, vec![Bound::Free; 6]);
+        given.penalised = Some(penalised);
+        cold(&given).outcome
+    };
+    assert_eq!(outcome(1.0), Outcome::Converged);
+    assert_eq!(outcome(0.0), Outcome::Singular);
 }

@@ -345,3 +345,28 @@ fn factors_solve_for_several_right_hand_sides() {
         }
     }
 }
+
+/// So many rows that several tasks gather them.
+#[test]
+fn factors_have_the_same_bits_for_any_number_of_threads() {
+    let matrix = laplacian(62, 62, 4.0);
+    let free: Vec<u32> = (0..matrix.size() as u32).filter(|i| i % 7 != 3).collect();
+    let b: Vec<f64> = free.iter().map(|&i| f64::from(i).sin()).collect();
+    for symmetric in [true, false] {
+        let solution = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut x = b.clone();
+                Factors::new(&matrix, symmetric, &free).unwrap().solve_in_place(&mut x, 1);
+                x
+            })
+        };
+        let x = solution(3);
+        assert!(x == solution(1));
+        let mut u = vec![0.0; matrix.size()];
+        free.iter().zip(&x).for_each(|(&i, &x)| u[i as usize] = x);
+        for (&i, b) in free.iter().zip(&b) {
+            assert!((matrix.row_dot(i as usize, &u) - b).abs() < 1e-12, "{i}");
+        }
+    }
+}
