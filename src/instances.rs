@@ -15,22 +15,12 @@
 //! The function after the equals sign is written with the same name of scalar or dimension as the
 //! signature. A method of a type with a lifetime parameter is written as a closure.
 //!
-//! The unit tests of this library are a second crate, in which static tables would compile every instance again.
-//! In that crate [`compiled!`] gives the function itself, and the tests compile only the instances that they call.
+//! `benches/instances.py` counts what an example compiles all the same, and names the largest functions: those of a call
+//! that no table has.
 
-#[cfg(not(test))]
 use std::any::{Any, TypeId};
 
-/// The function itself: unit tests have no table of instances.
-#[cfg(test)]
-macro_rules! compiled {
-    ($($name:ident $(,)?)+: $signature:ty = $function:expr) => {
-        ($function as $signature)
-    };
-}
-
 /// The instance of a function for the scalar `T` or the dimension `D`.
-#[cfg(not(test))]
 macro_rules! compiled {
     ($T:ident: $signature:ty = $function:expr) => {{
         static INSTANCES: [&(dyn ::std::any::Any + Sync); 2] = [
@@ -62,7 +52,6 @@ pub(crate) use compiled;
 ///
 /// # Panics
 /// If there is none: for a dimension other than one, two and three.
-#[cfg(not(test))]
 pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
     match required_entry(table, TypeId::of::<F>()).downcast_ref() {
         Some(found) => *found,
@@ -71,7 +60,6 @@ pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
 }
 
 /// The entry of a type, found by a function that does not depend on the type.
-#[cfg(not(test))]
 fn required_entry<'t>(table: &[&'t (dyn Any + Sync)], id: TypeId) -> &'t dyn Any {
     match table.iter().copied().find(|entry| (**entry).type_id() == id) {
         Some(entry) => entry,

@@ -186,19 +186,3 @@ pub(crate) fn transpose<T: Real>(
     let values = collect(entries.len(), |k| entries[k].1);
     (starts, columns, values)
 }
-
-#[cfg(test)]
-impl SparseMatrix<f64> {
-    /// Second differences at `n` points: two on the diagonal, minus one beside it.
-    pub(crate) fn second_differences(n: usize) -> Self {
-        let mut matrix = Self { row_starts: vec![0], columns: vec![], values: vec![] };
-        for i in 0..n {
-            for j in i.saturating_sub(1)..=(i + 1).min(n - 1) {
-                matrix.columns.push(j as u32);
-                matrix.values.push(if i == j { 2.0 } else { -1.0 });
-            }
-            matrix.row_starts.push(matrix.columns.len() as u32);
-        }
-        matrix
-    }
-}
