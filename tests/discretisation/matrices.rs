@@ -35,6 +35,8 @@ fn wrong_starts_and_jumps_within_a_block_are_refused() {
         wrong[1] = JumpTerm { here, there, weight: 0.5 };
         assert!(Jumps::new((2, 3), vec![0, 3, 4], wrong).is_none(), "{here} {there}");
     }
+    let within = JumpTerm { here: 1, there: 2, weight: 0.5 };
+    assert!(Jumps::new((2, 3), vec![0, 1], vec![within]).is_none());
 }
 
 #[test]
