@@ -167,6 +167,10 @@ mod limits {
             allowed_memory_bytes(&root.0).map(|bytes| bytes - OWN)
         };
         assert_eq!(left("0::/job/step\n"), Some(4000));
+        // of a group and of those around it the one counts that leaves least
+        let other = [("memory.max", "7000\n"), ("memory.current", "600\n")];
+        group(&format!("{job}/other"), &other);
+        assert_eq!(left("0::/job/other\n"), Some(4000));
         assert_eq!(left("0::/job\n"), Some(4000));
         assert_eq!(left("0::/\n"), None);
         // a group of version 1 that is not found inside a container

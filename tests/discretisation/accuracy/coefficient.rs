@@ -185,3 +185,13 @@ fn promises_know_the_coefficient() {
         Scheme::<2>::expected_orders(&ConformingP1, &smooth.with_coefficient(true));
     assert_eq!(linears.h1, Some(1.0));
 }
+
+/// Solutions are not better than `H^{5/2}` at a free boundary, however smooth their data are.
+#[test]
+fn promises_of_quadratics_end_at_three_halves_under_an_inequality() {
+    let smooth = Setting::new(2, Regularity::smooth());
+    for setting in [smooth.with_obstacle(true), smooth.with_contact(true)] {
+        let order: ExpectedOrders = Scheme::<2>::expected_orders(&ConformingP2, &setting);
+        assert_eq!(order.h1, Some(1.5));
+    }
+}
