@@ -1,6 +1,8 @@
 //! Problems of one's own, boundary groups by name, and references.
 
-use super::run::{Scratch, command, data, number, read_json, refused, rows, stderr};
+use super::run::{
+    Scratch, command, data, default_request, number, read_json, refused, rows, stderr,
+};
 use super::square::Square;
 use serde_json::Value;
 
@@ -229,13 +231,12 @@ fn a_report_outlives_a_wrong_directory_and_pictures_show_the_finest_level() {
 
 #[test]
 fn the_default_request_has_two_scenes_and_both_placements() {
-    let scratch = Scratch::new("default");
-    let report = scratch.report("--no-fields --quiet");
+    let (_, report) = default_request();
     let labels = ["p1", "sipg", "wopsip", "wopsip:facet-means"];
     let expected = ["radial-2d", "signorini-2d"].map(|scene| {
         labels.map(|label| [8, 16, 32, 64, 128].map(|level| (scene, label, level))).concat()
     });
-    let found: Vec<(&str, &str, u64)> = rows(&report)
+    let found: Vec<(&str, &str, u64)> = rows(report)
         .iter()
         .map(|r| {
             let text = |key: &str| r[key].as_str().unwrap();

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::process::{Command, Output};
+use std::sync::OnceLock;
 
 use serde_json::Value;
 
@@ -17,6 +18,17 @@ pub fn command(name: &str) -> Command {
 /// The command `compare`.
 pub fn program() -> Command {
     command("compare")
+}
+
+/// The tables and the report of the request without options, which runs once for all tests.
+pub fn default_request() -> &'static (String, Value) {
+    static DONE: OnceLock<(String, Value)> = OnceLock::new();
+    DONE.get_or_init(|| {
+        let scratch = Scratch::new("default");
+        let output = scratch.run("--no-fields");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        (stdout(&output), read_json(&scratch.0.join("out/report.json")))
+    })
 }
 
 impl Scratch {

@@ -29,7 +29,7 @@ fn sixteen_threads_finish_small_meshes_of_broken_schemes() {
     let (levels, out) = (levels.join(","), scratch.path("out"));
     let options = ["--scene", "radial-2d,signorini-2d", "--scheme", schemes, "--levels", &levels];
     let mut command = program();
-    command.args(options).args(["--threads", "16", "--out", &out]);
+    command.args(options).args(["--threads", "16", "--no-fields", "--out", &out]);
     let mut process = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let (mut last, mut since) = (0, Instant::now());
     let status = loop {
