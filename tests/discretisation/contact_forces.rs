@@ -20,7 +20,7 @@ fn moved_multipliers<const D: usize>(problem: &Problem<D>) {
     let multipliers = penalised.jump_multipliers(|i| values[i]);
     let moved: Vec<f64> =
         (0..penalised.n_jumps()).map(|k| multipliers[k] + 1e3 * number(k + 1)).collect();
-    let state = |i: usize| if i % 3 == 0 { Contact::Lower } else { Contact::Inactive };
+    let state = |i: usize| if i.is_multiple_of(3) { Contact::Lower } else { Contact::Inactive };
     let contact: Vec<Contact> = (0..n).map(state).collect();
     let solution = Solution::new(values.clone(), contact.clone(), Outcome::Converged);
     let forces = |multipliers: &[f64]| {

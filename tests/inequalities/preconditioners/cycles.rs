@@ -153,7 +153,7 @@ fn elements(n_vertices: u32) -> Vec<(&'static str, Vec<DofLocation>, usize)> {
     // one vertex each, and means over two, as long as there are further unknowns
     let end = |cell: u32, k: usize| match k {
         0 | 1 => vec![cell + k as u32],
-        _ if k % 2 == 0 => vec![cell, cell + 1],
+        _ if k.is_multiple_of(2) => vec![cell, cell + 1],
         _ => vec![cell, cell, cell + 1],
     };
     vec![
