@@ -21,7 +21,7 @@ import sys
 import tempfile
 
 SOLVER = ["algebra", "assemble", "error_bound", "inequality", "linear", "measure", "mesh", "nested", "parallel"]
-LIMIT = 20_000
+LIMIT = 2_000
 
 
 def command_of(example):
