@@ -63,7 +63,7 @@ def main():
 
     found = instances(arguments.example)
     rooms = "|".join(SOLVER)
-    of_solver = [of for of in found if re.search(rf"\b(unilateral::)?({rooms})::", of[0])]
+    of_solver = [of for of in found if re.search(rf"\bunilateral::({rooms})::", of[0])]
     print(f"{'copies':>8}{'size':>9}  function")
     for name, copies, size in sorted(of_solver, key=lambda of: -of[2])[: arguments.most]:
         print(f"{copies:8}{size:9}  {name}")

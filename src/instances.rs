@@ -15,8 +15,8 @@
 //! The function after the equals sign is written with the same name of scalar or dimension as the
 //! signature. A method of a type with a lifetime parameter is written as a closure.
 //!
-//! `benches/instances.py` counts what an example compiles all the same, and names the largest functions: those of a call
-//! that no table has.
+//! `benches/instances.py` counts the functions that an example compiles all the same, and names the largest: a call
+//! outside of the tables is seen there.
 
 use std::any::{Any, TypeId};
 

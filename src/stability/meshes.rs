@@ -54,7 +54,7 @@ pub(crate) fn clamped(vertices: Vec<Point<3>>, cells: Vec<u32>) -> Result<Mesh<3
 /// The whole boundary has Dirichlet data.
 ///
 /// # Errors
-/// [`Error::Mesh`], of slivers without height, say.
+/// [`Error::Mesh`] for slivers without height.
 pub fn slivers(half: f64, n: usize, flatness: f64) -> Result<Mesh<3>, Error> {
     let (side, stride, middle) = (2.0 * half / n as f64, n + 1, n / 2);
     let number = |i: [usize; 3]| (i[0] + stride * (i[1] + stride * i[2])) as u32;

@@ -89,8 +89,8 @@ impl<const D: usize> Space<'_, D> {
         self.flux_of_patches(&cells, None, neighbours)
     }
 
-    /// The flux, with the fluxes of vertices in [`CELLS_AT_A_TIME`]; in the plane and in space most patches of linears
-    /// need no least squares on facets.
+    /// The flux, from the fluxes of vertices, which are kept for [`CELLS_AT_A_TIME`] cells; in the plane and in space most
+    /// patches of linears need no least squares on facets.
     fn flux_of_patches<C: PatchCells<D, N>, const N: usize>(
         &self,
         of: &C,

@@ -45,9 +45,9 @@ impl<const D: usize> Study<'_, D> {
         }
     }
 
-    /// Bytes that the process will need for the largest run, about, which [`Self::check_memory`] holds against what there
-    /// is; none for a study without schemes or levels. They were measured on obstacle and Signorini scenes, where the
-    /// estimate is right to a third; no mesh is built.
+    /// An estimate of the bytes that the process needs for the largest run, which [`Self::check_memory`] compares with
+    /// the memory there is; none for a study without schemes or levels. On obstacle and Signorini scenes the estimate is
+    /// right to a third. No mesh is built.
     pub fn memory_bytes(&self) -> Option<f64> {
         compiled!(const D: fn(&Study<'_, D>) -> Option<f64>
                 = |study| study.largest_run().map(|(bytes, ..)| bytes)
