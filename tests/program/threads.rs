@@ -25,7 +25,7 @@ fn ticks(process: &Child) -> u64 {
 fn sixteen_threads_finish_small_meshes_of_broken_schemes() {
     let scratch = Scratch::new("sixteen-threads");
     let schemes = "sipg,nipg,iipg,ldg,br2,wopsip,wopsip:facet-means";
-    let levels: Vec<String> = (24..32).map(|level: u32| level.to_string()).collect();
+    let levels: Vec<String> = (24..32).step_by(2).map(|level: u32| level.to_string()).collect();
     let (levels, out) = (levels.join(","), scratch.path("out"));
     let options = ["--scene", "radial-2d,signorini-2d", "--scheme", schemes, "--levels", &levels];
     let mut command = program();
@@ -49,5 +49,5 @@ fn sixteen_threads_finish_small_meshes_of_broken_schemes() {
         sleep(Duration::from_millis(100));
     };
     assert_eq!(status.code(), Some(0));
-    assert_eq!(rows(&read_json(&scratch.0.join("out/report.json"))).len(), 2 * 7 * 8);
+    assert_eq!(rows(&read_json(&scratch.0.join("out/report.json"))).len(), 2 * 7 * 4);
 }

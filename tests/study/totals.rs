@@ -296,7 +296,7 @@ fn contact_measure_and_resultant_tend_to_the_exact_ones() {
         }
     }
     check::<1>(64, [0.05, 0.05]);
-    check::<2>(48, [0.1, 0.1]);
+    check::<2>(32, [0.1, 0.1]);
     check::<3>(8, [0.2, 0.5]);
 }
 
