@@ -22,8 +22,7 @@ fn names(dimension: usize) -> Vec<&'static str> {
 
 /// The rows of the schemes by name.
 fn rows<const D: usize>(study: Study<'static, D>) -> Vec<Row> {
-    let schemes =
-        names(D).into_iter().map(|name| scheme_by_name(name, &SchemeOptions::default()));
+    let schemes = names(D).into_iter().map(|name| scheme_by_name(name, &SchemeOptions::default()));
     schemes.fold(study, |study, scheme| study.boxed_scheme(scheme.unwrap())).run().unwrap().rows
 }
 
