@@ -26,7 +26,7 @@ impl<const D: usize> Space<'_, D> {
         counts: Counts<'_>,
     ) -> Vec<Unproven> {
         let data = &self.data;
-        let is_below = |data: &DataByGroup<'_, D>, degree: usize| {
+        let is_below = |data: &DataByGroup<D>, degree: usize| {
             self.degree_of(data).is_some_and(|d| d <= degree)
         };
         let integrands = [&data.source, &data.lower, &data.upper, &data.gap];
@@ -65,7 +65,7 @@ impl<const D: usize> Space<'_, D> {
 
     /// The degree of data that are polynomials in cells, the largest one; none where one is unknown or too high to be
     /// integrated.
-    pub(super) fn degree_of(&self, data: &DataByGroup<'_, D>) -> Option<usize> {
+    pub(super) fn degree_of(&self, data: &DataByGroup<D>) -> Option<usize> {
         let stated = self.problem.data_degree;
         self.largest_degree(data.all().map(|datum| datum.degree_on(self.mesh, stated)))
     }

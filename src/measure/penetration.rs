@@ -294,7 +294,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// Whether a datum is known to be affine wherever it is given.
-    fn is_affine(&self, data: &DataByGroup<'_, D>) -> bool {
+    fn is_affine(&self, data: &DataByGroup<D>) -> bool {
         let stated = self.problem.data_degree;
         data.every(&|datum| datum.degree_on(self.mesh, stated).is_some_and(|degree| degree <= 1))
     }

@@ -15,44 +15,47 @@ pub(crate) struct ByGroup<F> {
     by_group: Vec<Option<F>>,
 }
 
-impl<'a, F> ByGroup<&'a F> {
+impl<F: Clone> ByGroup<F> {
     /// A datum of a problem in regions, or on boundary groups, with these names.
-    fn new(given: &'a Given<F>, groups: &[&[String]]) -> Self {
+    fn new(given: &Given<F>, groups: &[&[String]]) -> Self {
         let groups = if given.named.is_empty() { &[] } else { groups };
-        let by_group = groups.iter().map(|names| given.of(names)).collect();
-        Self { everywhere: given.everywhere.as_ref(), by_group }
+        let by_group = groups.iter().map(|names| given.of(names).cloned()).collect();
+        Self { everywhere: given.everywhere.clone(), by_group }
     }
     /// The same with a datum for groups that have none.
-    fn or(self, other: Option<&'a F>) -> Self {
-        let by_group = self.by_group.into_iter().map(|datum| datum.or(other)).collect();
-        Self { everywhere: self.everywhere.or(other), by_group }
+    fn or(self, other: Option<&F>) -> Self {
+        let or = |datum: Option<F>| datum.or_else(|| other.cloned());
+        Self {
+            everywhere: or(self.everywhere),
+            by_group: self.by_group.into_iter().map(or).collect(),
+        }
     }
 }
 
-impl<F: Copy> ByGroup<F> {
+impl<F> ByGroup<F> {
     /// The datum of a group.
     #[inline(always)]
-    pub fn of(&self, group: usize) -> Option<F> {
+    pub fn of(&self, group: usize) -> Option<&F> {
         match self.by_group.is_empty() {
-            true => self.everywhere,
-            false => self.by_group[group],
+            true => self.everywhere.as_ref(),
+            false => self.by_group[group].as_ref(),
         }
     }
     /// The data of all groups; one entry if none have names.
-    pub fn all(&self) -> impl Iterator<Item = F> + '_ {
-        let everywhere = self.everywhere.filter(|_| self.by_group.is_empty());
-        everywhere.into_iter().chain(self.by_group.iter().flatten().copied())
+    pub fn all(&self) -> impl Iterator<Item = &F> {
+        let everywhere = self.everywhere.as_ref().filter(|_| self.by_group.is_empty());
+        everywhere.into_iter().chain(self.by_group.iter().flatten())
     }
     /// Whether there is a datum anywhere.
     pub fn is_given(&self) -> bool {
         self.any(&|_| true)
     }
     /// Whether some datum has a property.
-    pub fn any(&self, has: &dyn Fn(F) -> bool) -> bool {
+    pub fn any(&self, has: &dyn Fn(&F) -> bool) -> bool {
         self.all().any(has)
     }
     /// Whether all data have a property.
-    pub fn every(&self, has: &dyn Fn(F) -> bool) -> bool {
+    pub fn every(&self, has: &dyn Fn(&F) -> bool) -> bool {
         self.all().all(has)
     }
     /// Whether some data have names.
@@ -62,31 +65,31 @@ impl<F: Copy> ByGroup<F> {
 }
 
 /// Data that are functions of space.
-pub(crate) type DataByGroup<'a, const D: usize> = ByGroup<&'a Datum<D>>;
+pub(crate) type DataByGroup<const D: usize> = ByGroup<Datum<D>>;
 
 /// The data of a problem on a mesh.
 #[derive(Clone)]
-pub(crate) struct DataOnMesh<'a, const D: usize> {
-    pub coefficient: DataByGroup<'a, D>,
-    pub source: DataByGroup<'a, D>,
-    pub reaction: DataByGroup<'a, D>,
-    pub lower: DataByGroup<'a, D>,
-    pub upper: DataByGroup<'a, D>,
-    pub dirichlet: DataByGroup<'a, D>,
-    pub gap: DataByGroup<'a, D>,
-    pub neumann: ByGroup<&'a BoundaryFlux<D>>,
+pub(crate) struct DataOnMesh<const D: usize> {
+    pub coefficient: DataByGroup<D>,
+    pub source: DataByGroup<D>,
+    pub reaction: DataByGroup<D>,
+    pub lower: DataByGroup<D>,
+    pub upper: DataByGroup<D>,
+    pub dirichlet: DataByGroup<D>,
+    pub gap: DataByGroup<D>,
+    pub neumann: ByGroup<BoundaryFlux<D>>,
     /// For each boundary group the rank of its Dirichlet datum: of unknowns on several groups those of
     /// the lowest rank take precedence.
     pub dirichlet_rank: Vec<usize>,
 }
 
-impl<'a, const D: usize> DataOnMesh<'a, D> {
+impl<const D: usize> DataOnMesh<D> {
     /// The data of a problem on a mesh.
     ///
     /// # Errors
     /// [`Error::UnknownGroup`] for a name that the mesh does not have, [`Error::Mesh`] for a boundary
     /// group of undecided condition, [`Error::UnboundBoundary`] for one with another condition than its data.
-    pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<D>) -> Result<Self, Error> {
+    pub fn new(problem: &Problem<D>, mesh: &Mesh<D>) -> Result<Self, Error> {
         mesh.check_boundary_conditions()?;
         let groups = (mesh.regions(), mesh.boundary_groups());
         let found = Self::of_groups(problem, groups.0, groups.1, mesh.groups_inside())?;
@@ -99,15 +102,14 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
 
     /// Whether two cells may have different obstacles at a point that both contain.
     pub fn obstacles_differ(&self) -> bool {
-        let differ = |data: &DataByGroup<'_, D>| {
-            data.has_names() || data.any(&|psi| psi.discrete().is_some())
-        };
+        let differ =
+            |data: &DataByGroup<D>| data.has_names() || data.any(&|psi| psi.discrete().is_some());
         differ(&self.lower) || differ(&self.upper)
     }
 
     /// The data of a problem in regions and boundary groups.
     fn of_groups(
-        problem: &'a Problem<D>,
+        problem: &Problem<D>,
         regions: &[Vec<String>],
         boundary: &[BoundaryGroup],
         inside: &[String],

@@ -130,12 +130,12 @@ impl Points {
 }
 
 /// The data of a problem on a mesh.
-struct OnMesh<'m, 'd, const D: usize> {
-    data: &'m DataOnMesh<'d, D>,
+struct OnMesh<'m, const D: usize> {
+    data: &'m DataOnMesh<D>,
     mesh: &'m Mesh<D>,
 }
 
-impl<const D: usize> OnMesh<'_, '_, D> {
+impl<const D: usize> OnMesh<'_, D> {
     /// Compares the obstacles of a cell.
     fn compare_in(&self, cell: usize, points: &[[f64; 4]], seen: &mut Seen<D>) {
         let region = self.mesh.region(cell);

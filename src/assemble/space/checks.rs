@@ -22,7 +22,7 @@ pub(crate) fn finite<const D: usize>(
 /// The diffusion coefficient at a point of a cell; one that would vanish or overflow when
 /// rounded is refused.
 pub(crate) fn coefficient_at<const D: usize>(
-    alpha: &DataByGroup<'_, D>,
+    alpha: &DataByGroup<D>,
     mesh: &Mesh<D>,
     cell: usize,
     x: &Point<D>,
@@ -52,7 +52,7 @@ pub(crate) fn coefficient_at<const D: usize>(
 
 /// The diffusion coefficient at the barycentre of every cell, if there is one.
 pub(crate) fn coefficients<const D: usize>(
-    alpha: &DataByGroup<'_, D>,
+    alpha: &DataByGroup<D>,
     mesh: &Mesh<D>,
 ) -> Result<Option<Vec<f64>>, Error> {
     if !alpha.is_given() {

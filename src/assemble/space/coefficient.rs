@@ -63,7 +63,7 @@ impl VaryingCoefficient {
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::Parameter`] for a value whose square is no floating-point number.
     pub fn new<const D: usize>(
-        alpha: &DataByGroup<'_, D>,
+        alpha: &DataByGroup<D>,
         mesh: &Mesh<D>,
         constants: &[f64],
         element: &dyn Element<D>,

@@ -58,14 +58,14 @@ pub(crate) struct Space<'a, const D: usize> {
     pub problem: &'a Problem<D>,
     pub mesh: &'a Mesh<D>,
     /// The data of the problem, by region and boundary group.
-    pub data: DataOnMesh<'a, D>,
+    pub data: DataOnMesh<D>,
     /// The rule for data on cells.
     pub cell_rule: Rule,
     /// Its degree.
     pub cell_degree: usize,
     /// The rule for data on facets.
     pub facet_rule: Rule,
-    pub reaction: Option<ReactionTerm<'a, D>>,
+    pub reaction: Option<ReactionTerm<D>>,
     pub neighbours: Option<Neighbours>,
     pub dofs: Dofs<'a>,
     /// The coefficient at the barycentre of each cell.

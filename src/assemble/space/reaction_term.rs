@@ -14,8 +14,8 @@ use crate::quadrature::Rule;
 use crate::real::Point;
 
 /// The reaction term, with the rule that integrates it.
-pub(crate) struct ReactionTerm<'a, const D: usize> {
-    data: DataByGroup<'a, D>,
+pub(crate) struct ReactionTerm<const D: usize> {
+    data: DataByGroup<D>,
     table: CellTable,
     /// Where a datum has a level: the rule on cells that its zero set cuts.
     cut: Option<CutRule>,
@@ -23,11 +23,11 @@ pub(crate) struct ReactionTerm<'a, const D: usize> {
     n: usize,
 }
 
-impl<'a, const D: usize> ReactionTerm<'a, D> {
+impl<const D: usize> ReactionTerm<D> {
     /// The term of data with the basis of an element at the points of a rule. A rule at vertices alone,
     /// which lumps the term, is used on cells that are cut too.
     pub fn new(
-        data: DataByGroup<'a, D>,
+        data: DataByGroup<D>,
         rule: Rule,
         degree: usize,
         element: Arc<dyn Element<D>>,
