@@ -125,7 +125,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The reaction term of the constant one on a cell.
-    fn reaction_of(&self, cell: usize, constants: &[f64]) -> f64 {
+    pub fn reaction_of(&self, cell: usize, constants: &[f64]) -> f64 {
         let Some(reaction) = &self.reaction else { return 0.0 };
         let mut local = zero_local();
         reaction.add(self.mesh, cell, self.mesh.geometry(cell).volume, &mut local);

@@ -49,7 +49,8 @@ impl<const D: usize> Space<'_, D> {
         let mut sums = vec![0.0; polynomials.len()];
         for (point, w) in self.facet_rule.iter() {
             let x = self.facet_point(point, cell, local);
-            let value = checks::finite(self.dirichlet_at(group, &x), "dirichlet", &x, cell)?;
+            let value = self.dirichlet_at(group, cell, &x);
+            let value = checks::finite(value, "dirichlet", &x, cell)?;
             for (k, sum) in sums.iter_mut().enumerate() {
                 *sum += w * value * polynomials.value(k, point);
             }

@@ -173,7 +173,9 @@ impl<const D: usize> Space<'_, D> {
         for_each_chunk(values, |range, values| {
             for (v, value) in range.zip(values) {
                 *value = match groups[v] {
-                    Some(group) => self.dirichlet_at(group, &(self.mesh.vertices()[v])),
+                    Some((group, cell)) => {
+                        self.dirichlet_at(group, cell, &(self.mesh.vertices()[v]))
+                    }
                     None => value.min(bounds[v].1).max(bounds[v].0),
                 };
             }
@@ -228,7 +230,7 @@ impl<const D: usize> Space<'_, D> {
                     ranks[edge] = rank;
                     let [x, y] = map_entries(*ends, |k| self.mesh.cell(facet.0)[k] as usize);
                     let [x, y] = map_entries([x, y], |v| self.mesh.vertices()[v]);
-                    at_midpoints[edge] = self.dirichlet_at(group, &midpoint(&x, &y));
+                    at_midpoints[edge] = self.dirichlet_at(group, facet.0, &midpoint(&x, &y));
                 }
             }
         }

@@ -13,6 +13,10 @@ use crate::real::Point;
 /// Numbers that differ by less than this share are equal but for rounding.
 const AGREEMENT: f64 = 1e-12;
 
+/// Numbers of which each is the difference of a datum and the constant of a body are equal if they differ by less than
+/// this many units of rounding of the constant.
+const ROUNDINGS: f64 = 8.0;
+
 /// The highest degree of data that the rules of a bound follow.
 const HIGHEST_DEGREE: usize = 12;
 
@@ -111,7 +115,8 @@ impl<const D: usize> Space<'_, D> {
             let at = |x: &Point<D>| self.at(bound, cell, x);
             let [own, size] = coefficient(pair.function[node], of_ends);
             let [of_bound, size_of_bound] = coefficient(at(&((x + y) * 0.5)), [at(&x), at(&y)]);
-            sign * (own - of_bound) >= -AGREEMENT * size.max(size_of_bound)
+            let rounding = AGREEMENT * size.max(size_of_bound) + ROUNDINGS * bound.rounding();
+            sign * (own - of_bound) >= -rounding
         };
         let exceeds_in = |cell: usize| {
             let region = self.mesh.region(cell);
@@ -137,9 +142,10 @@ impl<const D: usize> Space<'_, D> {
                 || nodes.all(|(ends, node)| {
                     let [x, y] = map_entries(ends, |k| self.mesh.cell(facet.0)[k] as usize);
                     let [x, y] = map_entries([x, y], |v| self.mesh.vertices()[v]);
-                    let datum = self.dirichlet_at(group, &((x + y) * 0.5));
+                    let datum = self.dirichlet_at(group, facet.0, &((x + y) * 0.5));
                     let value = pair.function[node];
-                    (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())
+                    let rounding = ROUNDINGS * self.body_constants.rounding();
+                    (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs()) + rounding
                 })
         })
     }

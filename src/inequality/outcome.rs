@@ -103,7 +103,7 @@ impl Outcome {
                 "the active set did not settle, and no later method found a solution"
             }
             Outcome::Stalled => {
-                "rounding, or the tolerance of the solver, keeps the certificate above its limit; use f64, a smaller penalty, a coarser mesh or a tighter tolerance"
+                "rounding, or the tolerance of the solver, keeps the certificate above its limit; where the row is in f32 use f64, of a penalty method a smaller penalty, of a solver with a tolerance a tighter one"
             }
             Outcome::NotASolution => {
                 "the values do not satisfy the inequality to the limits of the certificate"

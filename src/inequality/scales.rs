@@ -23,7 +23,8 @@ pub(crate) struct Scales {
     /// 1. The energy with data: `u.A u`; with weak Dirichlet data `u.A u - l.u + q`
     ///    ([`DirichletEnergy`](crate::algebra::DirichletEnergy)), for a penalised matrix `u.K u + p.(S^-1 p)`. The
     ///    energy with data does not contain the penalty times the square of the data, which for an over-penalised
-    ///    scheme exceeds the energy by any factor on fine meshes. An energy below rounding of its terms counts as zero.
+    ///    scheme exceeds the energy by any factor on fine meshes. An energy below rounding of its terms, and of the
+    ///    products `u_i a_ij u_j` that cancel in them, counts as zero.
     /// 2. `sum c_i^2 / d_i`, `c` the load without Dirichlet data.
     /// 3. `sum d_i u_i^2`, for constants.
     /// 4. One.
@@ -33,15 +34,16 @@ pub(crate) struct Scales {
 /// Positions among [`Sums::sums`].
 const LOAD_ENERGY: usize = 2;
 const DIAGONAL_ENERGY: usize = 3;
+const STIFFNESS_ENERGY: usize = 4;
 
 /// The maximum and the sums over unknowns from which [`Scales`] are computed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
     /// The largest `|u_i|` or `|v_i|`.
     pub max_norm: f64,
-    /// The energy with data ([`Scales::energy_norm`]), the sum of the absolute values of its terms, `sum c_i^2 / d_i` and
-    /// `sum d_i u_i^2`.
-    pub sums: [f64; 4],
+    /// The energy with data ([`Scales::energy_norm`]), the sum of the absolute values of its terms, `sum c_i^2 / d_i`,
+    /// `sum d_i u_i^2`, and `sum k_i u_i^2` with the diagonal `k` of the matrix without a penalty that is kept apart.
+    pub sums: [f64; 5],
 }
 
 impl Scales {
@@ -81,6 +83,8 @@ impl Sums {
                 chunk.add_energy(x * (c - residual[i]));
                 chunk.sums[LOAD_ENERGY] += c * c / d;
                 chunk.sums[DIAGONAL_ENERGY] += d * x * x;
+                let k = penalised.as_ref().map_or(d, |penalised| penalised.stiffness_diagonal(i));
+                chunk.sums[STIFFNESS_ENERGY] += k * x * x;
             }
             chunk
         });
@@ -102,8 +106,10 @@ impl Sums {
     }
     /// The scales; `epsilon` is machine epsilon of the precision in which the values were computed.
     pub fn scales(&self, epsilon: f64) -> Scales {
-        let [energy, terms, load_energy, diagonal_energy] = self.sums;
-        let least = VANISHING * epsilon * terms;
+        let [energy, terms, load_energy, diagonal_energy, stiffness_energy] = self.sums;
+        // products are summed in double precision, of values that are rounded to theirs
+        let products = (f64::EPSILON + epsilon * epsilon) * stiffness_energy;
+        let least = VANISHING * maximum(epsilon * terms, products);
         let energy = [(energy, least), (load_energy, 0.0), (diagonal_energy, 0.0)]
             .into_iter()
             // true for NaN

@@ -14,6 +14,9 @@ pub struct Solution<T> {
     /// smallest projected Jacobi step, in the norm of the diagonal of `A`; from the proximal point method the iterate with
     /// the smallest certificate; from the other methods the last iterate.
     pub values: Vec<T>,
+    /// What the values lack of those of the problem's solution, by unknown: the constants that were taken off its
+    /// [data](crate::assemble::Discretisation::constants). Empty if they are zero, and before the result has a problem.
+    pub constants: Vec<f64>,
     /// Which bound, if any, is active at each unknown.
     pub contact: Vec<Contact>,
     /// How the solve ended.
@@ -71,6 +74,7 @@ impl Solution<f32> {
         let widen = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
         Solution {
             values: widen(self.values),
+            constants: self.constants,
             contact: self.contact,
             outcome: self.outcome,
             outer: self.outer,
@@ -94,6 +98,7 @@ impl<T: Real> Solution<T> {
     pub fn new(values: Vec<T>, contact: Vec<Contact>, outcome: Outcome) -> Self {
         Self {
             values,
+            constants: Vec::new(),
             contact,
             outcome,
             outer: 0,

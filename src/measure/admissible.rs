@@ -44,7 +44,8 @@ impl<const D: usize> Admissible<'_, D> {
             let at = in_cell(bound, x);
             if sign * (at - value) > 0.0 {
                 value = at;
-                let step = STEP * mesh.cell_diameter(cell);
+                // rounding of values divided by the step, and the square of the step, are of one size
+                let step = STEP.max(bound.rounding().cbrt()) * mesh.cell_diameter(cell);
                 gradient = Point::from_fn(|axis, _| {
                     let (mut ahead, mut behind) = (*x, *x);
                     ahead[axis] += step;
@@ -59,7 +60,10 @@ impl<const D: usize> Admissible<'_, D> {
     /// nowhere beyond it.
     pub fn is_linear(&self, corners: &[Point<D>; 4]) -> bool {
         let is_beyond = |(bound, sign): (&Datum<D>, f64)| {
-            let within = |(x, value): (&Point<D>, &f64)| sign * (value - bound.at(x)) >= 0.0;
+            let (mesh, cell) = self.place;
+            let within = |(x, value): (&Point<D>, &f64)| {
+                sign * (value - bound.in_cell(mesh, cell, x)) >= 0.0
+            };
             bound.discrete().is_some()
                 || bound.degree_on(self.place.0, None).is_none_or(|degree| degree > 1)
                 || !corners[..=D].iter().zip(&self.values).all(within)

@@ -21,7 +21,9 @@ impl<const D: usize> Discretisation<'_, D> {
     /// with the gradient in each cell and the Neumann boundary `N`. No facet form enters, so that a function
     /// has the same energy in every scheme; the minimum over the admissible functions is that of the
     /// continuous problem, and a discontinuous function may lie below it. Coefficient, reaction and loads
-    /// are integrated by the rules of the assembly.
+    /// are integrated by the rules of the assembly. `u` is the vector with the constants of bodies: with `w` the vector
+    /// without, `J` the energy of `w` with the data less the constants and `l` their load, it is
+    /// `J(w) - l(c) - 1/2 int reaction c^2`.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
@@ -55,6 +57,7 @@ impl<const D: usize> Space<'_, D> {
         };
         let table = self.cell_table(rule);
         let n = self.per_cell();
+        let one = self.constants();
         // partial sums are added in order, so the result does not depend on threads
         let chunks = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut sum = 0.0;
@@ -90,6 +93,12 @@ impl<const D: usize> Space<'_, D> {
                 // without sources the list is empty
                 let of_cell = load.iter().skip(cell * n).zip(&local[..n]);
                 sum -= of_cell.map(|(b, u)| b * u).sum::<f64>();
+                let constant = self.body_constants.of_cell(cell);
+                if constant != 0.0 {
+                    let load = load.get(cell * n..).unwrap_or_default();
+                    sum -= constant * load.iter().zip(&one).map(|(b, one)| b * one).sum::<f64>();
+                    sum -= 0.5 * constant * constant * self.reaction_of(cell, &one);
+                }
             }
             sum
         });

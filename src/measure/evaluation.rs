@@ -20,11 +20,14 @@ pub(super) enum Reference<'r, const D: usize> {
 }
 
 impl<const D: usize> Reference<'_, D> {
-    pub fn value(&self, cell: usize, x: &Point<D>) -> f64 {
+    /// The value at a point of a cell, less a constant.
+    pub fn value(&self, cell: usize, x: &Point<D>, constant: f64) -> f64 {
         match self {
-            Self::Exact(exact) => exact.value.at(x),
+            Self::Exact(exact) => exact.value.at(x) - constant,
             Self::Coarse { space, values, refinements } => {
-                space.value_in(values, cell >> (D * refinements), x)
+                let cell = cell >> (D * refinements);
+                let (basis, local) = space.evaluate(cell, x, values);
+                basis.value(&local) + (space.body_constants.of_cell(cell) - constant)
             }
         }
     }
@@ -52,7 +55,7 @@ impl<const D: usize> Space<'_, D> {
     }
     fn value_in(&self, u: &[f64], cell: usize, x: &Point<D>) -> f64 {
         let (basis, local) = self.evaluate(cell, x, u);
-        basis.value(&local)
+        basis.value(&local) + self.body_constants.of_cell(cell)
     }
     fn value_at(&self, u: &[f64], x: &Point<D>) -> Option<f64> {
         let contains = |&cell: &usize| {

@@ -73,7 +73,8 @@ impl<const D: usize> Space<'_, D> {
             let region = self.mesh.region(cell);
             let psi = self.data.lower.of(region).or(self.data.upper.of(region));
             for v in self.mesh.cell(cell) {
-                obstacle.push(psi.map_or(f64::NAN, |psi| self.at(psi, cell, &corner(v))));
+                let value = psi.map_or(f64::NAN, |psi| self.at(psi, cell, &corner(v)));
+                obstacle.push(value + self.body_constants.of_cell(cell));
             }
         }
         let share = |cell| {
@@ -139,7 +140,8 @@ impl<const D: usize> Space<'_, D> {
         let mut values = Vec::with_capacity(self.mesh.n_cells() * midpoints.len());
         for cell in 0..self.mesh.n_cells() {
             let local = self.local_values(cell, u);
-            values.extend(midpoints.iter().map(|basis| basis.value(&local)));
+            let constant = self.body_constants.of_cell(cell);
+            values.extend(midpoints.iter().map(|basis| basis.value(&local) + constant));
         }
         values
     }

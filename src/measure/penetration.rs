@@ -199,7 +199,8 @@ impl<const D: usize> Space<'_, D> {
         Ok(Penetration {
             largest_value,
             is_affine: data.map(|data| is_affine && self.is_affine(data)),
-            rounding: precision.epsilon() * ROUNDINGS * size,
+            rounding: precision.epsilon() * ROUNDINGS * size
+                + ROUNDINGS * self.body_constants.rounding(),
             ..found
         })
     }

@@ -17,7 +17,8 @@ const PER_CELL: f64 = 0.25;
 ///
 /// Let `n` be the number of cells to the power `1/D`, `L` the diameter of the domain, `c` the load without Dirichlet
 /// data, `k` the diagonal of the matrix without an over-penalty, and `U` the largest value: of the `|u_i|`, or that of
-/// the load, `n^2 (sum c_i^2 / k_i) / sum |c_i|`, where values vanish but for rounding. A solve amplifies machine
+/// the load, `n^2 (sum c_i^2 / k_i) / sum |c_i|`, where values vanish but for rounding; with the constants of bodies, times
+/// their rounding over `eps`. A solve amplifies machine
 /// epsilon by `a`: 8, on a line and for quadratics `8 + n/4`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
@@ -71,7 +72,9 @@ impl<const D: usize> Discretisation<'_, D> {
         let dimension = D as f64;
         let (n, length) = ((cells as f64).powf(dimension.recip()), self.mesh().domain_diameter());
         let of_load = if force > 0.0 { n * n * load_energy / force } else { 0.0 };
-        let value = maximum(largest[0], of_load);
+        // values from which constants were taken have the rounding of these, in double precision
+        let of_constants = self.space.body_constants.rounding() / epsilon;
+        let value = maximum(largest[0], of_load) + of_constants;
         let per_cell = if D == 1 || self.space.degree > 1 { PER_CELL } else { 0.0 };
         let one = (ROUNDINGS + per_cell * n) * epsilon;
         let max = one * n * value / 16.0;

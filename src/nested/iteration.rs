@@ -1,5 +1,6 @@
 //! Nested iteration: one problem on one or several nested meshes, solved by any scheme.
 
+use std::cell::OnceCell;
 use std::fmt;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -78,6 +79,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             quadrature: DataQuadrature::default(),
             repeat: 1,
             steps: StepCounter::default(),
+            constants: OnceCell::new(),
         };
         let observer = Box::new(|_| {});
         Self { p1, has_cold_start: false, keeps_history: false, previous: None, observer }

@@ -1,5 +1,6 @@
 //! The conforming P1 solutions from which all schemes start.
 
+use std::cell::OnceCell;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
@@ -15,7 +16,7 @@ use crate::error::Error;
 use crate::inequality::{InitialGuess, Outcome, StepCounter};
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level};
 use crate::parallel::vectors::collect;
-use crate::problem::Problem;
+use crate::problem::{BodyConstants, Problem};
 use crate::scheme::ConformingP1;
 
 /// Relative tolerance in the energy norm for iterative solvers if the solution is only the start of another solve: below
@@ -101,6 +102,8 @@ pub(super) struct P1Iteration<'a, const D: usize> {
     pub repeat: usize,
     /// Receives the number of each outer step.
     pub steps: StepCounter,
+    /// The constants of bodies on the coarsest mesh, once computed.
+    pub constants: OnceCell<Arc<BodyConstants>>,
     /// The solution on each mesh, once computed.
     pub solutions: Vec<Option<Arc<P1Solution>>>,
 }
@@ -148,7 +151,7 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
     fn flat_start(&self) -> Result<Option<Arc<P1Solution>>, Error> {
         let clock = Instant::now();
         let problem = self.problem_at_vertices();
-        let System { inequality, .. } = System::new(&ConformingP1, &problem, self.place(0))?;
+        let System { inequality, .. } = System::new(&ConformingP1, &problem, self.place(0)?)?;
         let Some(coarser) = CoarseLevel::aggregated(&inequality.matrix, &fixed(&inequality)) else {
             return Ok(None);
         };
@@ -195,7 +198,7 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
         let start = self.start(position)?;
         let problem = self.problem_at_vertices();
         let ((inequality, solution), seconds) = self.repeated(|| {
-            let mut system = System::new(&ConformingP1, &problem, self.place(position))?;
+            let mut system = System::new(&ConformingP1, &problem, self.place(position)?)?;
             let guess = InitialGuess::default().steps(self.steps.clone());
             let mut guess = guess.energy_tolerance(ENERGY_TOLERANCE);
             if let Some(start) = &start {
@@ -245,12 +248,27 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
     }
 
     /// A mesh, by its position, with the quadrature of data.
-    pub fn place(&self, position: usize) -> MeshOfSystem<'a, D> {
-        MeshOfSystem {
-            mesh: self.meshes.mesh(position),
+    ///
+    /// # Errors
+    /// Those of data on the coarsest mesh.
+    pub fn place(&self, position: usize) -> Result<MeshOfSystem<'a, D>, Error> {
+        let mesh = self.meshes.mesh(position);
+        let of_coarsest = match self.constants.get() {
+            Some(known) => known,
+            None => {
+                let found = BodyConstants::of(self.problem, self.meshes.mesh(0))?;
+                self.constants.get_or_init(|| Arc::new(found))
+            }
+        };
+        Ok(MeshOfSystem {
+            mesh,
             shared: self.meshes.shared_part(position),
             quadrature: self.quadrature,
-        }
+            constants: match position {
+                0 => of_coarsest.clone(),
+                _ => Arc::new(of_coarsest.on(mesh)),
+            },
+        })
     }
 }
 

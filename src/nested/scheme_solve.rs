@@ -12,15 +12,16 @@ use super::warnings::{
     UNPROVEN, active_sets, data_beyond_coefficients, dirichlet_jumps, no_digits_of_quadratics,
     no_digits_of_stiffness, rounding_of_data, short_edges,
 };
-use crate::algebra::{Contact, Inequality, Start};
+use crate::algebra::{Contact, Start};
 use crate::error::Error;
 use crate::inequality::{InitialGuess, Outcome, Solution};
+use crate::parallel::vectors::collect;
 use crate::scheme::Scheme;
 
 impl<'a, const D: usize> NestedIteration<'a, D> {
     /// A scheme on a mesh: [`NestedIteration::repeat`] times, with the smallest time.
     fn system(&self, position: usize, scheme: &dyn Scheme<D>) -> Result<System<'a, D>, Error> {
-        let assemble = || System::new(scheme, self.p1.problem, self.p1.place(position));
+        let assemble = || System::new(scheme, self.p1.problem, self.p1.place(position)?);
         let mut system = assemble()?;
         for _ in 1..self.p1.repeat {
             let again = assemble()?;
@@ -30,12 +31,9 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     }
 
     /// The initial guess from the start, whose contact the inequality takes.
-    fn guess(
-        &self,
-        start: Option<&P1Solution>,
-        inequality: &mut Inequality<f64>,
-    ) -> InitialGuess<f64> {
+    fn guess(&self, start: Option<&P1Solution>, system: &mut System<'_, D>) -> InitialGuess<f64> {
         let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
+        let inequality = &mut system.inequality;
         // a start without contact stays cold: the solver must detect a body that only contact holds
         let has_contact = |contact: &[Contact]| contact.iter().any(|&c| c != Contact::Inactive);
         if let Some(start) = start {
@@ -49,7 +47,11 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             if has_contact(&previous.contact) {
                 inequality.start = Start::Contact(previous.contact.clone());
             }
-            guess.values = Some(previous.values.clone());
+            let own = system.discretisation.constants();
+            let [before, own] =
+                [&previous.constants, &own].map(|of| |i| of.get(i).copied().unwrap_or(0.0));
+            guess.values =
+                Some(collect(previous.values.len(), |i| previous.values[i] + (before(i) - own(i))));
         }
         guess
     }
@@ -69,7 +71,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         let start = self.start(position, scheme)?;
         self.enter(Phase::Assembly);
         let mut system = self.system(position, scheme)?;
-        let guess = self.guess(start.as_deref(), &mut system.inequality);
+        let guess = self.guess(start.as_deref(), &mut system);
         let mut warnings = self.warnings(&system);
         // over parts no solver takes them, and what a part finds by itself is not the same in all
         let of_degree = (scheme.degree(), D);

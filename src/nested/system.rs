@@ -11,17 +11,19 @@ use crate::error_bound::NoBound;
 use crate::inequality::{InequalitySolver, InitialGuess, Solution};
 use crate::measure::SquaredErrors;
 use crate::mesh::{Mesh, Part};
-use crate::problem::Problem;
+use crate::problem::{BodyConstants, Problem};
 use crate::processes::{Numbering, OverParts, agree, agree_on_data, check_bounds, merge_all};
 use crate::real::Precision;
 use crate::scheme::Scheme;
 
 /// A mesh, or the part of a mesh that one process has, with the quadrature of data on it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct MeshOfSystem<'a, const D: usize> {
     pub mesh: &'a Mesh<D>,
     pub shared: Option<SharedPart<'a, D>>,
     pub quadrature: DataQuadrature,
+    /// The constants of bodies on the mesh.
+    pub constants: Arc<BodyConstants>,
 }
 
 /// A scheme applied to a problem on a mesh: its discretisation and its inequality. On a part of a mesh the unknowns
@@ -49,8 +51,9 @@ impl<'a, const D: usize> System<'a, D> {
     ) -> Result<Self, Error> {
         let clock = Instant::now();
         let assemble = || {
+            let data = (problem, place.constants.clone());
             let discretisation =
-                Discretisation::new(scheme, problem, place.mesh, place.quadrature)?;
+                Discretisation::with_constants(scheme, data, place.mesh, place.quadrature)?;
             let inequality = discretisation.inequality()?;
             Ok((discretisation, inequality))
         };
@@ -95,7 +98,7 @@ impl<'a, const D: usize> System<'a, D> {
     where
         'a: 'p,
     {
-        System::new(scheme, problem, self.place)
+        System::new(scheme, problem, self.place.clone())
     }
 
     /// The discretisation.

@@ -135,8 +135,11 @@ pub(crate) fn warnings_of_forces<const D: usize>(
     unbalanced.map(text).collect()
 }
 
-/// Values that differ by less than this share of the largest one are equal but for rounding.
+/// Values that differ by less than this share of their range, or of the largest one, are equal but for rounding.
 const AGREEMENT: f64 = 1e-9;
+
+/// Values that are equal differ by less than this many units of rounding.
+const ROUNDINGS: f64 = 8.0;
 
 /// For each two groups whose Dirichlet values differ at a vertex where they meet a sentence with the first such vertex:
 /// no function of finite energy takes both values.
@@ -155,14 +158,18 @@ pub(super) fn dirichlet_jumps<const D: usize>(problem: &Problem<D>, mesh: &Mesh<
             values.push((v, group, data.dirichlet.of(group).map_or(0.0, |u| u.at(&x))));
         }
     }
-    let largest = values.iter().fold(0.0, |largest: f64, (.., value)| largest.max(value.abs()));
+    let all = || values.iter().map(|&(.., value)| value);
+    let (least, most) =
+        (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    let rounding = ROUNDINGS * f64::EPSILON * most.abs().max(least.abs());
+    let limit = AGREEMENT * (most - least) + rounding;
     values.sort_by_key(|&(v, group, _)| (v, group));
     values.dedup_by_key(|&mut (v, group, _)| (v, group));
     let mut pairs = Vec::new();
     let mut sentences = Vec::new();
     for at_vertex in values.chunk_by(|a, b| a.0 == b.0) {
         let &(v, first, value) = &at_vertex[0];
-        let others = at_vertex.iter().filter(|other| (other.2 - value).abs() > AGREEMENT * largest);
+        let others = at_vertex.iter().filter(|other| (other.2 - value).abs() > limit);
         for &(_, other, of_other) in others {
             if pairs.contains(&(first, other)) {
                 continue;
@@ -191,7 +198,8 @@ pub(super) fn data_beyond_coefficients<const D: usize>(
     // data that are not finite are errors of the assembly
     let (beyond, x) = discretisation.space.data_beyond_coefficients().ok()??;
     let size = solution.values.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
-    if beyond <= AGREEMENT * size {
+    let rounding = ROUNDINGS * discretisation.space.body_constants.rounding();
+    if beyond <= AGREEMENT * size + rounding {
         return None;
     }
     let so = match discretisation.space.pins {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::DiscreteFunction;
+use super::{BodyConstants, DiscreteFunction};
 use crate::mesh::Mesh;
 use crate::real::Point;
 
@@ -89,6 +89,8 @@ pub enum Datum<const D: usize> {
     },
     /// A discrete function.
     Discrete(DiscreteFunction<D>),
+    /// Another datum less the constants of bodies.
+    Shifted(Shifted<D>),
 }
 
 impl<const D: usize> Datum<D> {
@@ -115,6 +117,7 @@ impl<const D: usize> Datum<D> {
             | Datum::Polynomial { value, .. }
             | Datum::Piecewise { value, .. } => value(x),
             Datum::Discrete(u) => u.value_at(x).unwrap_or(f64::NAN),
+            Datum::Shifted(datum) => datum.at(x),
         }
     }
     /// The value at a point of a cell of a mesh: of a discrete function on this mesh, or on one of which this is a
@@ -123,6 +126,15 @@ impl<const D: usize> Datum<D> {
     pub fn in_cell(&self, mesh: &Mesh<D>, cell: usize, x: &Point<D>) -> f64 {
         match self {
             Datum::Discrete(u) => u.value_in(mesh, cell, x),
+            Datum::Shifted(datum) => datum.in_cell(mesh, cell, x),
+            _ => self.at(x),
+        }
+    }
+    /// As [`Datum::at`], less the constant of the body of a cell where constants were taken.
+    #[inline(always)]
+    pub(crate) fn of_body(&self, cell: usize, x: &Point<D>) -> f64 {
+        match self {
+            Datum::Shifted(datum) => datum.of_body(cell, x),
             _ => self.at(x),
         }
     }
@@ -141,19 +153,29 @@ impl<const D: usize> Datum<D> {
             Datum::Polynomial { degree, .. } => Some(*degree),
             Datum::Function(_) | Datum::Piecewise { .. } => stated,
             Datum::Discrete(u) => u.is_polynomial_on(mesh).then(|| u.degree()),
+            Datum::Shifted(datum) => datum.degree_on(mesh, stated),
         }
     }
     /// The discrete function, if it is one.
     pub(crate) fn discrete(&self) -> Option<&DiscreteFunction<D>> {
         match self {
             Datum::Discrete(u) => Some(u),
+            Datum::Shifted(datum) => datum.discrete(),
             _ => None,
+        }
+    }
+    /// A unit of rounding in values from which a constant was taken; zero in others.
+    pub(crate) fn rounding(&self) -> f64 {
+        match self {
+            Datum::Shifted(datum) => datum.rounding(),
+            _ => 0.0,
         }
     }
     /// The function whose zero set divides cells, if there is one.
     pub(crate) fn level(&self) -> Option<&Field<D>> {
         match self {
             Datum::Piecewise { level, .. } => Some(level),
+            Datum::Shifted(datum) => datum.level(),
             _ => None,
         }
     }
@@ -188,6 +210,80 @@ impl<const D: usize> fmt::Debug for Datum<D> {
             Datum::Polynomial { degree, .. } => write!(f, "Polynomial({degree})"),
             Datum::Piecewise { .. } => f.write_str("Piecewise(..)"),
             Datum::Discrete(u) => u.fmt(f),
+            Datum::Shifted(datum) => datum.fmt(f),
         }
+    }
+}
+
+/// A datum in the cells of one mesh, less the constant of the body of each cell, or less the constant times a factor. The
+/// assembly makes them.
+#[derive(Clone)]
+pub struct Shifted<const D: usize> {
+    /// Zero where absent.
+    datum: Option<Box<Datum<D>>>,
+    /// One where absent.
+    factor: Option<Box<Datum<D>>>,
+    constants: Arc<BodyConstants>,
+    level: Option<Field<D>>,
+}
+
+impl<const D: usize> Shifted<D> {
+    /// A datum, zero where absent, less the constants times a factor, one where absent.
+    pub(super) fn datum(
+        datum: Option<&Datum<D>>,
+        factor: Option<&Datum<D>>,
+        constants: &Arc<BodyConstants>,
+    ) -> Datum<D> {
+        let constant = |of: Option<&Datum<D>>, absent| of.map_or(Some(absent), Datum::constant);
+        let known = (constant(datum, 0.0), constant(factor, 1.0), constants.of_all());
+        if let (Some(datum), Some(factor), Some(constant)) = known {
+            return Datum::Constant(datum - constant * factor);
+        }
+        // a source close to a constant times the reaction jumps where the reaction does
+        let level = [datum, factor].into_iter().flatten().find_map(Datum::level).cloned();
+        let [datum, factor] = [datum, factor].map(|of| of.cloned().map(Box::new));
+        Datum::Shifted(Self { datum, factor, constants: constants.clone(), level })
+    }
+    /// The value at a point of a cell of the mesh.
+    fn in_cell(&self, mesh: &Mesh<D>, cell: usize, x: &Point<D>) -> f64 {
+        let of = |datum: &Datum<D>| datum.in_cell(mesh, cell, x);
+        let constant = self.constants.of_cell(cell);
+        let value = self.datum.as_deref().map_or(0.0, of);
+        value - self.factor.as_deref().map_or(constant, |factor| constant * of(factor))
+    }
+    /// The value at a point, less the constant of the body of a cell: see [`Datum::at`].
+    fn of_body(&self, cell: usize, x: &Point<D>) -> f64 {
+        self.less(self.constants.of_cell(cell), x)
+    }
+    /// The value at a point where all bodies have the same constant; not a number where they differ.
+    fn at(&self, x: &Point<D>) -> f64 {
+        self.less(self.constants.of_all().unwrap_or(f64::NAN), x)
+    }
+    fn less(&self, constant: f64, x: &Point<D>) -> f64 {
+        let value = self.datum.as_deref().map_or(0.0, |datum| datum.at(x));
+        value - self.factor.as_deref().map_or(constant, |factor| constant * factor.at(x))
+    }
+    fn level(&self) -> Option<&Field<D>> {
+        self.level.as_ref()
+    }
+    /// The larger degree of datum and factor, where both are known.
+    fn degree_on(&self, mesh: &Mesh<D>, stated: Option<usize>) -> Option<usize> {
+        let parts = [&self.datum, &self.factor].into_iter().flatten();
+        let degree = |largest: usize, of: &Datum<D>| Some(largest.max(of.degree_on(mesh, stated)?));
+        parts.map(|of| &**of).try_fold(0, degree)
+    }
+    /// A discrete function that it contains.
+    fn discrete(&self) -> Option<&DiscreteFunction<D>> {
+        [&self.datum, &self.factor].into_iter().flatten().find_map(|of| of.discrete())
+    }
+    /// A unit of rounding in values that are the difference of a datum and a constant.
+    fn rounding(&self) -> f64 {
+        self.constants.rounding()
+    }
+}
+
+impl<const D: usize> fmt::Debug for Shifted<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Shifted").field("datum", &self.datum).field("factor", &self.factor).finish()
     }
 }

@@ -15,17 +15,20 @@
 //! same number each time. A value that is not finite ends the assembly with
 //! [`Error::DataNotFinite`](crate::error::Error::DataNotFinite), which names the datum and the point.
 
+mod body_constants;
 mod datum;
 mod discrete_function;
 mod exact;
 mod given;
+mod levels;
 mod named;
 mod on_mesh;
 
+pub(crate) use body_constants::BodyConstants;
 #[cfg(feature = "problem-files")]
 pub(crate) use datum::BoundaryField;
 pub(crate) use datum::Field;
-pub use datum::{BoundaryFlux, Datum};
+pub use datum::{BoundaryFlux, Datum, Shifted};
 pub use discrete_function::DiscreteFunction;
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
 pub use given::Given;

@@ -1,7 +1,9 @@
 //! The data of a problem on a mesh: found by region and boundary group once, then by number.
 
-use super::datum::{BoundaryFlux, Datum};
-use super::{Given, Problem};
+use std::sync::Arc;
+
+use super::datum::{BoundaryFlux, Datum, Shifted};
+use super::{BodyConstants, Given, Problem};
 use crate::error::Error;
 use crate::input::{excerpt, excerpts};
 use crate::mesh::{BoundaryCondition, BoundaryGroup, Mesh, MeshError};
@@ -28,6 +30,21 @@ impl<F: Clone> ByGroup<F> {
         Self {
             everywhere: or(self.everywhere),
             by_group: self.by_group.into_iter().map(or).collect(),
+        }
+    }
+    /// What a function makes of the datum of each of so many groups, which are told apart only where data have names or
+    /// the function tells them apart.
+    fn changed(
+        &self,
+        (groups, tells_apart): (usize, bool),
+        change: impl Fn(usize, Option<&F>) -> Option<F>,
+    ) -> Self {
+        match self.has_names() || tells_apart {
+            true => {
+                let by_group = (0..groups).map(|group| change(group, self.of(group))).collect();
+                Self { everywhere: None, by_group }
+            }
+            false => Self { everywhere: change(0, self.everywhere.as_ref()), by_group: Vec::new() },
         }
     }
 }
@@ -81,6 +98,8 @@ pub(crate) struct DataOnMesh<const D: usize> {
     /// For each boundary group the rank of its Dirichlet datum: of unknowns on several groups those of
     /// the lowest rank take precedence.
     pub dirichlet_rank: Vec<usize>,
+    /// Whether bodies have different constants, which were taken off.
+    constants_differ: bool,
 }
 
 impl<const D: usize> DataOnMesh<D> {
@@ -100,11 +119,40 @@ impl<const D: usize> DataOnMesh<D> {
         Ok(found)
     }
 
+    /// The data less constants of bodies: of Dirichlet data, obstacles and gaps the constant, of sources the constant
+    /// times the reaction.
+    #[must_use]
+    pub fn less(mut self, constants: &Arc<BodyConstants>, mesh: &Mesh<D>) -> Self {
+        if constants.are_zero() {
+            return self;
+        }
+        let (regions, groups) = (mesh.regions().len(), mesh.boundary_groups().len());
+        let bound = |_: usize, datum: Option<&Datum<D>>| {
+            datum.map(|datum| Shifted::datum(Some(datum), None, constants))
+        };
+        self.lower = self.lower.changed((regions, false), bound);
+        self.upper = self.upper.changed((regions, false), bound);
+        self.gap = self.gap.changed((groups, false), bound);
+        // groups without a datum have the value zero
+        self.dirichlet = self
+            .dirichlet
+            .changed((groups, false), |_, datum| Some(Shifted::datum(datum, None, constants)));
+        let reaction = &self.reaction;
+        self.source = self.source.changed((regions, reaction.has_names()), |region, source| {
+            match reaction.of(region) {
+                Some(reaction) => Some(Shifted::datum(source, Some(reaction), constants)),
+                None => source.cloned(),
+            }
+        });
+        self.constants_differ = constants.differ();
+        self
+    }
+
     /// Whether two cells may have different obstacles at a point that both contain.
     pub fn obstacles_differ(&self) -> bool {
         let differ =
             |data: &DataByGroup<D>| data.has_names() || data.any(&|psi| psi.discrete().is_some());
-        differ(&self.lower) || differ(&self.upper)
+        self.constants_differ || differ(&self.lower) || differ(&self.upper)
     }
 
     /// The data of a problem in regions and boundary groups.
@@ -154,6 +202,7 @@ impl<const D: usize> DataOnMesh<D> {
             gap: ByGroup::new(&problem.gap, &groups),
             neumann: ByGroup::new(&problem.neumann, &groups),
             dirichlet_rank: groups.iter().map(|names| rank(names)).collect(),
+            constants_differ: false,
         })
     }
 }

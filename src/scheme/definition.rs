@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::facet::{DirichletBy, FacetForm, NoFacets, PenaltyParameters};
 use crate::instances::compiled;
 use crate::mesh::{Layers, Mesh};
-use crate::problem::Problem;
+use crate::problem::{BodyConstants, Problem};
 
 /// A discretisation of the bilinear form and of Dirichlet data: a name, an element, a form on facets and
 /// a way to impose Dirichlet data.
@@ -192,9 +192,19 @@ impl<'a, const D: usize> Discretisation<'a, D> {
                 DataQuadrature,
             ) -> Result<Discretisation<'p, D>, Error>
                 = |scheme, problem, mesh, quadrature| {
-                    let values = (scheme.element(), scheme.form(mesh), scheme.dirichlet());
-                    Discretisation::of(values, problem, mesh, quadrature)
+                    let constants = Arc::new(BodyConstants::of(problem, mesh)?);
+                    Discretisation::with_constants(scheme, (problem, constants), mesh, quadrature)
                 }
         )(scheme, problem, mesh, quadrature)
+    }
+    /// As [`Discretisation::new`], with known constants of bodies.
+    pub(crate) fn with_constants(
+        scheme: &dyn Scheme<D>,
+        data: (&'a Problem<D>, Arc<BodyConstants>),
+        mesh: &'a Mesh<D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Self, Error> {
+        let values = (scheme.element(), scheme.form(mesh), scheme.dirichlet());
+        Discretisation::of(values, data, mesh, quadrature)
     }
 }

@@ -3,6 +3,7 @@
 mod absent_terms;
 mod accuracy;
 mod adaptive;
+mod constants;
 mod contact_forces;
 mod discrete_functions;
 mod elements;

@@ -262,7 +262,13 @@ fn every_datum_by_name_has_the_documented_precedence() {
     }
     fn bound(of: &Discretisation<'_, 2>, x: [f64; 2]) -> Bound<f64> {
         let vertex = of.mesh().vertices().iter().position(|y| *y == Point::from(x)).unwrap();
-        of.bounds().unwrap()[vertex]
+        let constant = of.constants().get(vertex).copied().unwrap_or(0.0);
+        match of.bounds().unwrap()[vertex] {
+            Bound::Lower(value) => Bound::Lower(value + constant),
+            Bound::Upper(value) => Bound::Upper(value + constant),
+            Bound::Fixed(value) => Bound::Fixed(value + constant),
+            other => other,
+        }
     }
     let data: [NamedDatum; 8] = [
         (

@@ -1,6 +1,7 @@
 //! The program `unilateral`, subcommand `compare`: wrong requests and right requests.
 
 mod adaptive;
+mod constants;
 mod contact_forces;
 mod data;
 mod dump;

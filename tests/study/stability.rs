@@ -93,6 +93,13 @@ fn units_do_not_matter() {
 }
 
 #[test]
+fn a_constant_in_the_data_does_not_matter() {
+    let report = quick(&["constant"], &["p1", "cr", "sipg", "wopsip", "p2"]);
+    keeps(&report);
+    assert_eq!(of(&report, "constant-in-the-data").len(), 10);
+}
+
+#[test]
 fn contrast_asks_for_the_coefficient_in_the_penalty() {
     let report = quick(&["contrast"], &["p1", "wopsip"]);
     keeps(&report);

@@ -8,7 +8,8 @@ use crate::error::Error;
 use crate::instances::compiled;
 
 impl<const D: usize> Discretisation<'_, D> {
-    /// The inequality: matrix, load, bounds, locations.
+    /// The inequality: matrix, load, bounds, locations; that of the function less the constants of bodies
+    /// ([`Discretisation::constants`]).
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
@@ -70,7 +71,9 @@ impl<const D: usize> Discretisation<'_, D> {
                 = |of| {
                     let (bounds, found) = of.space.bounds()?;
                     if !found.is_empty() && !of.mesh().is_part() {
-                        refuse(&found, largest_datum(&bounds, &found), of.mesh(), &|_| true)?;
+                        let size = of.size_of_bounds(&bounds, &found);
+                        refuse(&found, size, of.mesh(), &|_| true)
+                            .map_err(|error| of.with_constants_in(error))?;
                     }
                     Ok(bounds)
                 }
@@ -80,8 +83,20 @@ impl<const D: usize> Discretisation<'_, D> {
     /// than rounding of the largest datum of all [parts](crate::mesh::Part) of a mesh.
     pub(crate) fn contradictions(&self) -> Result<(Vec<Contradiction<D>>, f64), Error> {
         let (bounds, found) = self.space.bounds()?;
-        let size = largest_datum(&bounds, &found);
+        let size = self.size_of_bounds(&bounds, &found);
         Ok((found, size))
+    }
+    /// An error with the values that the caller gave.
+    fn with_constants_in(&self, mut error: Error) -> Error {
+        if let Error::EmptyConstraint { cell, lower, upper, .. } = &mut error {
+            let constant = self.space.body_constants.of_cell(*cell as usize);
+            (*lower, *upper) = (*lower + constant, *upper + constant);
+        }
+        error
+    }
+    /// The largest datum of bounds, with the constants that were taken off.
+    fn size_of_bounds(&self, bounds: &[Bound<f64>], found: &[Contradiction<D>]) -> f64 {
+        largest_datum(bounds, found) + self.space.body_constants.largest()
     }
     /// The load of the assembled matrix, with weak Dirichlet data, for all unknowns: see
     /// [`Inequality::assembled_load`].

@@ -11,21 +11,21 @@ use crate::element::{Element, MAX_BASIS};
 use crate::error::Error;
 use crate::facet::{DirichletBy, FacetForm};
 use crate::mesh::Mesh;
-use crate::problem::Problem;
+use crate::problem::{BodyConstants, Problem};
 
 impl<'a, const D: usize> Discretisation<'a, D> {
     /// As [`Discretisation::new`], from the parts of a scheme: its element, its facet form, and how it imposes Dirichlet
-    /// data.
+    /// data; and with the constants of bodies.
     pub(crate) fn of(
         (element, form, dirichlet): (Arc<dyn Element<D>>, Box<dyn FacetForm<D>>, DirichletBy),
-        problem: &'a Problem<D>,
+        data: (&'a Problem<D>, Arc<BodyConstants>),
         mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
         check_fit(&*element, &*form)?;
         check_size(mesh.n_cells(), &*element, &*form)?;
         let pins = matches!(dirichlet, DirichletBy::Pinning);
-        let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins)?;
+        let space = Space::new(element, data, mesh, quadrature, form.couples(), pins)?;
         space.check_penalty_factor(&*form)?;
         Ok(Discretisation {
             space,

@@ -108,6 +108,12 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     pub fn locations(&self) -> Vec<DofLocation> {
         self.space.locations()
     }
+    /// By unknown the constant of its body, which was taken off the data: what is added to a vector of unknowns to have
+    /// the function of the problem. Empty if it is zero for all. Vectors that functions of a discretisation take are
+    /// those of its inequality, without it; functions and values at points that they return have it.
+    pub fn constants(&self) -> Vec<f64> {
+        self.space.constants_of_unknowns()
+    }
     /// The discrete function, which is a datum of other problems.
     pub fn function(&self, u: &[f64]) -> DiscreteFunction<D> {
         self.space.function(u)

@@ -146,6 +146,7 @@ impl<const D: usize> Space<'_, D> {
     ) -> bool {
         let Some((datum, bound)) = datum.zip(bound) else { return false };
         let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), name, datum);
-        value.is_ok_and(|value| (value - bound).abs() <= ROUNDINGS * f64::EPSILON * bound.abs())
+        let rounding = ROUNDINGS * (f64::EPSILON * bound.abs() + datum.rounding());
+        value.is_ok_and(|value| (value - bound).abs() <= rounding)
     }
 }

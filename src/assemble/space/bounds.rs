@@ -114,10 +114,10 @@ impl<const D: usize> Space<'_, D> {
             let Some(gap) = self.data.gap.of(group) else { continue };
             // a function that jumps along the boundary, down to the Dirichlet data, has no finite energy
             for (k, v) in self.mesh.facet_vertices(cell, local).enumerate() {
-                let Some(dirichlet) = given[v as usize] else { continue };
+                let Some((dirichlet, beside)) = given[v as usize] else { continue };
                 let x = self.mesh.vertices()[v as usize];
-                let datum =
-                    checks::finite(self.dirichlet_at(dirichlet, &x), "dirichlet", &x, cell)?;
+                let datum = self.dirichlet_at(dirichlet, beside, &x);
+                let datum = checks::finite(datum, "dirichlet", &x, cell)?;
                 // the node at the vertex, where the element has one, else one of the facet
                 let node = self.nodes_on(local).take(k + 1).last();
                 let node = node.expect("an element has nodes on facets if there is a gap");
@@ -168,7 +168,7 @@ impl<const D: usize> Space<'_, D> {
         sort_by_rank(&mut facets, &self.data.dirichlet_rank);
         for ((cell, local), group) in facets {
             let region = self.mesh.region(cell);
-            let datum = |x: &Point<D>| self.dirichlet_at(group, x);
+            let datum = |x: &Point<D>| self.dirichlet_at(group, cell, x);
             for i in self.nodes_on(local) {
                 let unknown = self.dofs.of(cell, i);
                 if let Bound::Fixed(_) = bounds[unknown] {
@@ -216,7 +216,7 @@ impl<const D: usize> Space<'_, D> {
             let region = self.mesh.region(cell);
             let sides = [(1.0, self.data.lower.of(region)), (-1.0, self.data.upper.of(region))];
             for i in self.nodes_on(local) {
-                let datum = |x: &Point<D>| self.dirichlet_at(group, x);
+                let datum = |x: &Point<D>| self.dirichlet_at(group, cell, x);
                 let value = self.at_node(&terms[i], cell, "dirichlet", &datum)?;
                 for (sign, psi) in sides.iter().filter_map(|(sign, psi)| Some((sign, (*psi)?))) {
                     let bound =

@@ -39,7 +39,7 @@ use crate::constraint::{BoundBy, in_basis_of, offered};
 use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoundaryFacet, HalfFacet, Mesh, Neighbours};
-use crate::problem::{DataOnMesh, Datum, DiscreteFunction, Problem};
+use crate::problem::{BodyConstants, DataOnMesh, Datum, DiscreteFunction, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell, vertex_point};
 use crate::real::Point;
 pub(crate) use coefficient::INWARD;
@@ -57,7 +57,9 @@ pub(crate) type Terms = Vec<([f64; 4], f64)>;
 pub(crate) struct Space<'a, const D: usize> {
     pub problem: &'a Problem<D>,
     pub mesh: &'a Mesh<D>,
-    /// The data of the problem, by region and boundary group.
+    /// What was taken off the data.
+    pub body_constants: Arc<BodyConstants>,
+    /// The data of the problem less the constants of bodies, by region and boundary group.
     pub data: DataOnMesh<D>,
     /// The rule for data on cells.
     pub cell_rule: Rule,
@@ -99,7 +101,7 @@ impl<'a, const D: usize> Space<'a, D> {
     /// only if asked for or numbered.
     pub fn new(
         own: Arc<dyn Element<D>>,
-        problem: &'a Problem<D>,
+        (problem, body_constants): (&'a Problem<D>, Arc<BodyConstants>),
         mesh: &'a Mesh<D>,
         quadrature: DataQuadrature,
         with_facets: bool,
@@ -109,7 +111,7 @@ impl<'a, const D: usize> Space<'a, D> {
         let element = in_basis_of(set, own.clone());
         let (degree, basis_degree) = (element.degree(), element.basis_degree());
         let (layout, nodes) = (element.layout(), element.nodes());
-        let data = DataOnMesh::new(problem, mesh)?;
+        let data = DataOnMesh::new(problem, mesh)?.less(&body_constants, mesh);
         let neighbours = (with_facets || layout.facet > 0).then(|| Neighbours::new(mesh));
         let dofs = Dofs::new(layout, mesh, neighbours.as_ref());
         let sum = degree + basis_degree;
@@ -139,6 +141,7 @@ impl<'a, const D: usize> Space<'a, D> {
         let space = Self {
             problem,
             mesh,
+            body_constants,
             data,
             cell_rule,
             cell_degree,
@@ -266,14 +269,15 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn group_of(&self, (cell, local): HalfFacet) -> usize {
         self.mesh.boundary_group(cell, local).expect("a boundary facet has a group")
     }
-    /// For each vertex on the Dirichlet boundary the boundary group whose datum is given there.
-    pub fn dirichlet_groups(&self) -> Vec<Option<usize>> {
-        let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
+    /// For each vertex on the Dirichlet boundary the boundary group whose datum is given there, and the cell of a facet
+    /// of this group.
+    pub fn dirichlet_groups(&self) -> Vec<Option<(usize, usize)>> {
+        let mut given: Vec<Option<(usize, usize)>> = vec![None; self.mesh.vertices().len()];
         let rank = |group: usize| self.data.dirichlet_rank[group];
         for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
             for v in self.mesh.facet_vertices(cell, local) {
                 let old = &mut given[v as usize];
-                *old = old.filter(|&old| rank(old) <= rank(group)).or(Some(group));
+                *old = old.filter(|(old, _)| rank(*old) <= rank(group)).or(Some((group, cell)));
             }
         }
         given
@@ -283,9 +287,10 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn at(&self, datum: &Datum<D>, cell: usize, x: &Point<D>) -> f64 {
         datum.in_cell(self.mesh, cell, x)
     }
-    /// The Dirichlet value at a point of a boundary group.
-    pub fn dirichlet_at(&self, group: usize, x: &Point<D>) -> f64 {
-        self.data.dirichlet.of(group).map_or(0.0, |u| u.at(x))
+    /// The Dirichlet value at a point of a boundary group, on a facet of a cell; of a discrete function the mean over the
+    /// cells that contain the point.
+    pub fn dirichlet_at(&self, group: usize, cell: usize, x: &Point<D>) -> f64 {
+        self.data.dirichlet.of(group).map_or(0.0, |u| u.of_body(cell, x))
     }
     pub fn metric(&self, cell: usize) -> CellMetric<D> {
         CellMetric::of(self.mesh, cell)
@@ -330,7 +335,14 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn function(&self, u: &[f64]) -> DiscreteFunction<D> {
         let n = self.per_cell();
         let unknowns = (0..self.mesh.n_cells() * n).map(|k| self.dofs.of(k / n, k % n));
-        let values = unknowns.map(|unknown| u[unknown]).collect();
+        let values = match self.body_constants.are_zero() {
+            true => unknowns.map(|unknown| u[unknown]).collect(),
+            false => {
+                let one = self.constants();
+                let constant = |k: usize| self.body_constants.of_cell(k / n) * one[k % n];
+                unknowns.enumerate().map(|(k, unknown)| u[unknown] + constant(k)).collect()
+            }
+        };
         DiscreteFunction::new(self.mesh.clone(), self.element.clone(), values)
     }
     /// A discrete function at the vertices of each cell, `D + 1` values for each.
@@ -339,9 +351,24 @@ impl<'a, const D: usize> Space<'a, D> {
         let mut out = Vec::with_capacity(self.mesh.n_cells() * (D + 1));
         for cell in 0..self.mesh.n_cells() {
             let local = self.local_values(cell, u);
-            out.extend(corners.iter().map(|basis| basis.value(&local)));
+            let constant = self.body_constants.of_cell(cell);
+            out.extend(corners.iter().map(|basis| basis.value(&local) + constant));
         }
         out
+    }
+    /// By unknown what was taken off: the constant of its body as a function of the space; empty if it is zero for all.
+    pub fn constants_of_unknowns(&self) -> Vec<f64> {
+        if self.body_constants.are_zero() {
+            return Vec::new();
+        }
+        let one = self.constants();
+        let mut constants = vec![0.0; self.dofs.size()];
+        for cell in 0..self.mesh.n_cells() {
+            let constant = self.body_constants.of_cell(cell);
+            let unknowns = one.iter().enumerate();
+            unknowns.for_each(|(i, one)| constants[self.dofs.of(cell, i)] = constant * one);
+        }
+        constants
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::Value;
-use unilateral::exchange::read_vector;
+use unilateral::exchange::{read_constants, read_vector};
 use unilateral::in_its_dimension;
 use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::mesh::BoundaryCondition;
@@ -117,7 +117,8 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
             mesh.under(scene, Some(&contents), &|_| {})?
         }
     };
-    let row = in_its_dimension!(scene, |scene| row(scene, of, &values))?;
+    let constants = read_constants(&options.directory).map_err(|e| e.to_string())?;
+    let row = in_its_dimension!(scene, |scene| row(scene, of, (&values, &constants)))?;
     let is_within = row.converged();
     let program = Program::new("judge", precision.name(), rayon::current_num_threads(), 1);
     let report = Report::new(program, vec![row]);
@@ -152,7 +153,7 @@ type Judged<'a> = (&'a NamedScheme, [usize; 2], Option<&'a (NamedScheme, usize)>
 fn row<const D: usize>(
     scene: Scene<D>,
     (scheme, levels, reference, precision): Judged<'_>,
-    values: &[f64],
+    (values, constants): (&[f64], &[f64]),
 ) -> Request<Row> {
     let solver = in_precision(precision, ActiveSet::default());
     let study = Study::new(scene).named_scheme(scheme);
@@ -160,5 +161,8 @@ fn row<const D: usize>(
     if let Some((scheme, level)) = reference {
         study = study.named_reference(scheme, *level);
     }
-    study.check_memory().and_then(|()| study.judge(values)).map_err(|e| e.to_string())
+    study
+        .check_memory()
+        .and_then(|()| study.judge_beside(values, constants))
+        .map_err(|e| e.to_string())
 }

@@ -19,11 +19,13 @@ impl<const D: usize> Space<'_, D> {
     pub(super) fn has_linear_obstacles(&self, cell: usize) -> bool {
         let (region, corners) = (self.mesh.region(cell), self.mesh.corners(cell));
         let is_linear = |bound: &Datum<D>| {
-            let at_corners = corners.map(|x| bound.at(&x));
+            let at = |x: &Point<D>| self.at(bound, cell, x);
+            let at_corners = corners.map(|x| at(&x));
             edge_vertices(D).iter().all(|&[a, b]| {
-                let at_middle = bound.at(&((corners[a] + corners[b]) * 0.5));
+                let at_middle = at(&((corners[a] + corners[b]) * 0.5));
                 let deviation = (at_middle - 0.5 * (at_corners[a] + at_corners[b])).abs();
-                deviation <= LINEAR * (at_corners[a].abs() + at_corners[b].abs())
+                let rounding = 8.0 * bound.rounding();
+                deviation <= LINEAR * (at_corners[a].abs() + at_corners[b].abs()) + rounding
             })
         };
         let bounds = [self.data.lower.of(region), self.data.upper.of(region)];

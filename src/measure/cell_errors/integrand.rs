@@ -24,6 +24,8 @@ pub(super) struct LocalFunction<const D: usize> {
 pub(super) struct CellIntegrand<'a, const D: usize> {
     pub exact: &'a Reference<'a, D>,
     pub cell: usize,
+    /// What was taken off the values of the discrete function.
+    pub constant: f64,
     pub volume: f64,
     /// The gradients of the barycentric coordinates.
     pub gradients: [Point<D>; 4],
@@ -53,7 +55,7 @@ impl<const D: usize> CellIntegrand<'_, D> {
     ) -> [Point<D>; 2] {
         let mut fluxes = [Point::zeros(); 2];
         let weight = weight * self.volume;
-        let value = self.exact.value(self.cell, x);
+        let value = self.exact.value(self.cell, x, self.constant);
         let gradient = self.exact.gradient(self.cell, x);
         let reaction = self.reaction.map_or(0.0, |c| c.at(x));
         if let Some(discrete) = &self.discrete {
@@ -104,7 +106,12 @@ impl<const D: usize> CellIntegrand<'_, D> {
             return Ok(sums);
         }
         points().into_iter().try_for_each(|x| {
-            checks::finite(self.exact.value(self.cell, &x), "exact solution", &x, self.cell)?;
+            checks::finite(
+                self.exact.value(self.cell, &x, self.constant),
+                "exact solution",
+                &x,
+                self.cell,
+            )?;
             let square = self.exact.gradient(self.cell, &x).norm_squared();
             checks::finite(square, "exact gradient", &x, self.cell).map(|_| ())
         })?;

@@ -218,6 +218,7 @@ impl<const D: usize> Space<'_, D> {
         CellIntegrand {
             exact: of.exact,
             cell,
+            constant: self.body_constants.of_cell(cell),
             volume: geometry.volume,
             gradients,
             discrete,
@@ -314,12 +315,15 @@ impl<const D: usize> Space<'_, D> {
         let is_equal = |discrete: &LocalFunction<D>| {
             let values = &discrete.values[..=D];
             let corners = self.mesh.cell(cell).iter().map(|&v| v as usize);
-            corners.zip(values).all(|(v, value)| contact[v] > 0.0 && exact[v] == *value) && {
-                let (x, mean) =
-                    (self.mesh.barycentre(cell), values.iter().sum::<f64>() / (D + 1) as f64);
-                of.exact.value(cell, &x) == mean
-                    && discrete.slope == Some(of.exact.gradient(cell, &x))
-            }
+            corners
+                .zip(values)
+                .all(|(v, value)| contact[v] > 0.0 && exact[v] - integrand.constant == *value)
+                && {
+                    let (x, mean) =
+                        (self.mesh.barycentre(cell), values.iter().sum::<f64>() / (D + 1) as f64);
+                    of.exact.value(cell, &x, integrand.constant) == mean
+                        && discrete.slope == Some(of.exact.gradient(cell, &x))
+                }
         };
         let has_obstacle = [&self.data.lower, &self.data.upper]
             .iter()
@@ -370,10 +374,12 @@ impl<const D: usize> Space<'_, D> {
         let mut largest = 0.0_f64;
         for (i, (node, terms)) in self.nodes.iter().zip(&of.nodes).enumerate() {
             let at = |(point, weight): &([f64; 4], f64)| {
-                weight * of.exact.value(cell, &self.cell_point(point, cell))
+                weight * of.exact.value(cell, &self.cell_point(point, cell), integrand.constant)
             };
             let value: f64 = match (&of.at_vertices, node.entity()) {
-                (Some(values), Entity::Vertex(k)) => values[self.mesh.cell(cell)[k] as usize],
+                (Some(values), Entity::Vertex(k)) => {
+                    values[self.mesh.cell(cell)[k] as usize] - integrand.constant
+                }
                 _ => terms.iter().map(at).sum(),
             };
             let value = match value.is_finite() {

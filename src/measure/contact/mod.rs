@@ -250,10 +250,11 @@ impl<const D: usize> Space<'_, D> {
         if let Some(distribution) = inequality.distribution() {
             distribution.largest(&mut largest);
         }
-        let slack = largest[0] * TOUCHING.max(64.0 * solution.precision.epsilon());
+        let rounding = 64.0 * self.body_constants.rounding();
+        let slack = largest[0] * TOUCHING.max(64.0 * solution.precision.epsilon()) + rounding;
         let support_touches = |entity: ContactEntity, unknown: usize| {
             let location = inequality.locations[unknown].vertices();
-            let groups = location.iter().map(|&v| given[v as usize]);
+            let groups = location.iter().map(|&v| given[v as usize].map(|(group, _)| group));
             let rank = |group: &usize| self.data.dirichlet_rank[*group];
             let group = groups.clone().flatten().min_by_key(rank);
             if let Some(group) = group.filter(|_| groups.clone().all(|g| g.is_some())) {
@@ -293,7 +294,7 @@ impl<const D: usize> Space<'_, D> {
         let contact = entity.facet.and_then(|local| self.mesh.boundary_group(entity.cell, local));
         let gap = contact.and_then(|group| self.data.gap.of(group));
         let bounds = [self.data.lower.of(region), self.data.upper.of(region), gap];
-        let value = self.dirichlet_at(group, &x);
+        let value = self.dirichlet_at(group, entity.cell, &x);
         bounds
             .into_iter()
             .flatten()

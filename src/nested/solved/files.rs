@@ -28,7 +28,7 @@ impl<const D: usize> Solved<'_, D> {
             children.max_by(|&a, &b| least(a).total_cmp(&least(b))).unwrap_or(parent)
         };
         let cell = (position + 1..=own).fold(cell, child);
-        self.discretisation().value_in(self.values(), cell, x)
+        self.discretisation().value_in(&self.solution.values, cell, x)
     }
     /// Writes a `.vtu` file, and its folder if there is none, with 32-bit numbers: see
     /// [`Self::write_vtu_with`].

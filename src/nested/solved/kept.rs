@@ -20,7 +20,7 @@ pub struct KeptSolution<const D: usize> {
 impl<const D: usize> Solved<'_, D> {
     /// The discrete function with a mesh of its own; none without an iterate. On a part of a mesh that of the part.
     pub fn function(&self) -> Option<DiscreteFunction<D>> {
-        self.has_iterate.then(|| self.discretisation().function(self.values()))
+        self.has_iterate.then(|| self.discretisation().function(&self.solution.values))
     }
     /// What of the result outlives problem and meshes; none without an iterate. Errors, fields and the error bound need
     /// both: ask for them before.

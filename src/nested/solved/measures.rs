@@ -14,7 +14,7 @@ impl<const D: usize> Solved<'_, D> {
     /// The value at a point, in the first cell that contains the point; none outside the mesh. The
     /// search takes a time proportional to the number of cells; that of [`Solved::function`] is fast.
     pub fn value_at(&self, point: &Point<D>) -> Option<f64> {
-        self.discretisation().value_at(self.values(), point)
+        self.discretisation().value_at(&self.solution.values, point)
     }
     /// Errors against the exact solution of the problem; none if the problem has no exact solution
     /// or there is no iterate.
@@ -36,7 +36,7 @@ impl<const D: usize> Solved<'_, D> {
             return Ok(Errors::default());
         }
         let counts = |cell| self.system.owns(cell);
-        let own = self.discretisation().squared_errors(exact, self.values(), &counts);
+        let own = self.discretisation().squared_errors(exact, &self.solution.values, &counts);
         Ok(self.system.merged(own)?.norms())
     }
     /// Norms of the difference from another solution on the same mesh or on another mesh of the same
@@ -59,8 +59,9 @@ impl<const D: usize> Solved<'_, D> {
         if !(fine.has_iterate && coarse.has_iterate) {
             return Ok(Errors::default());
         }
-        let coarse = (coarse.discretisation(), coarse.values(), refinements.unsigned_abs());
-        fine.discretisation().difference(fine.values(), coarse)
+        let coarse =
+            (coarse.discretisation(), &coarse.solution.values[..], refinements.unsigned_abs());
+        fine.discretisation().difference(&fine.solution.values, coarse)
     }
     /// Distances of multiplier and contact set from those of a solution on a finer mesh of the same
     /// hierarchy, or on the same mesh; the distance of free boundaries is not computed. None without two
@@ -123,7 +124,7 @@ impl<const D: usize> Solved<'_, D> {
         }
         let clock = Instant::now();
         let pair = self.primal_dual_pair()?;
-        let (of, u) = (self.discretisation(), self.values());
+        let (of, u) = (self.discretisation(), &self.solution.values);
         let own = of.part_of_bound(&pair, u, &|cell| self.system.owns(cell));
         let own = self.system.agreed_bound(own)?;
         let bound = self.system.agreed_bound(own.bound(self.inequality().distribution()))?;
@@ -147,7 +148,7 @@ impl<const D: usize> Solved<'_, D> {
     pub(crate) fn errors_and_bound_figures(&self) -> Result<(Errors, BoundFigures), Error> {
         let pair = self.pair_and_bound().ok().map(|(pair, ..)| pair);
         let (errors, of_v) = match self.has_iterate {
-            true => self.errors_beside(Some(self.values()), pair)?,
+            true => self.errors_beside(Some(&self.solution.values), pair)?,
             false => (Errors::default(), None),
         };
         let of_solution = errors.broken_energy;

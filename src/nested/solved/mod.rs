@@ -31,6 +31,8 @@ use crate::mesh::{Mesh, Part};
 pub struct Solved<'a, const D: usize> {
     system: System<'a, D>,
     pub(super) solution: Solution<f64>,
+    /// The values with the constants of bodies; none if these are zero.
+    values: Option<Vec<f64>>,
     certificate: Certificate,
     has_iterate: bool,
     /// The energy norm to which certificates are relative; zero without an iterate.
@@ -88,7 +90,12 @@ impl<'a, const D: usize> Solved<'a, D> {
         if has_iterate {
             solution.dual_residual = certificate.largest() * energy_norm;
         }
+        solution.constants = system.discretisation.constants();
+        let sum = |(value, constant): (&f64, &f64)| value + constant;
+        let with_constants = || solution.values.iter().zip(&solution.constants).map(sum).collect();
+        let values = (!solution.constants.is_empty()).then(with_constants);
         Self {
+            values,
             mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
             system,
             solution,
@@ -119,9 +126,11 @@ impl<'a, const D: usize> Solved<'a, D> {
     pub fn has_iterate(&self) -> bool {
         self.has_iterate
     }
-    /// The unknowns.
+    /// The unknowns of the solution. Functions of the [discretisation](Self::discretisation) and the
+    /// [inequality](Self::inequality) take those of [`Self::solution`], which lack the
+    /// [constants](Discretisation::constants) of bodies.
     pub fn values(&self) -> &[f64] {
-        &self.solution.values
+        self.values.as_deref().unwrap_or(&self.solution.values)
     }
     /// Which bound, if any, is active at each unknown.
     pub fn contact(&self) -> &[Contact] {
@@ -151,7 +160,27 @@ impl<'a, const D: usize> Solved<'a, D> {
     /// symmetric and without an iterate.
     pub fn objective(&self) -> Option<f64> {
         let is_minimum = self.inequality().symmetric && self.has_iterate;
-        is_minimum.then(|| self.inequality().objective(self.values()))
+        let objective = |values: &[f64]| self.inequality().objective(values);
+        is_minimum.then(|| {
+            let of_values = objective(&self.solution.values);
+            match self.solution.constants.is_empty() {
+                true => of_values,
+                // the terms of the constants alone: with pinned data no gradient is in them
+                false => of_values + self.objective_of_constants(),
+            }
+        })
+    }
+    /// What the constants of bodies add to the objective. With pinned data no gradient is in it, with weak data the form
+    /// of constants and data is.
+    fn objective_of_constants(&self) -> f64 {
+        let (of, constants) = (self.discretisation(), &self.solution.constants);
+        match of.space.pins {
+            true => of.energy(&vec![0.0; constants.len()]).expect("the load was assembled before"),
+            false => {
+                let negative: Vec<f64> = constants.iter().map(|constant| -constant).collect();
+                -self.inequality().objective(&negative)
+            }
+        }
     }
     /// The certificate: violations of the complementarity conditions.
     pub fn certificate(&self) -> Certificate {

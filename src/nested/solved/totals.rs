@@ -16,7 +16,8 @@ impl<const D: usize> Solved<'_, D> {
         if !self.has_iterate {
             return Ok(None);
         }
-        let own = self.discretisation().energy_of(self.values(), &|cell| self.system.owns(cell));
+        let own =
+            self.discretisation().energy_of(&self.solution.values, &|cell| self.system.owns(cell));
         Ok(Some(self.system.sums([self.system.agreed(own)?])[0]))
     }
     /// The measure of the discrete contact set, see
@@ -66,7 +67,7 @@ impl<const D: usize> Solved<'_, D> {
         let counts = |cell| self.system.owns(cell);
         let own = self
             .discretisation()
-            .penetration_of((self.values(), self.solution().precision), &counts);
+            .penetration_of((&self.solution.values, self.solution().precision), &counts);
         let Some(own) = self.system.agreed(own)? else { return Ok(None) };
         let mut numbers = own.numbers();
         if let Some(distribution) = self.inequality().distribution() {

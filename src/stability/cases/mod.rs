@@ -3,6 +3,7 @@
 mod biactive;
 mod coercivity;
 mod condition_numbers;
+mod constant;
 mod contact_ends;
 mod contrast;
 mod curved_obstacle;
@@ -18,7 +19,7 @@ use super::case::Case;
 use super::criterion::Criterion;
 
 /// All cases.
-pub(crate) const CASES: [Case; 12] = [
+pub(crate) const CASES: [Case; 13] = [
     round_off::CASE,
     penalty_factor::CASE,
     stretched_cells::CASE,
@@ -28,6 +29,7 @@ pub(crate) const CASES: [Case; 12] = [
     curved_obstacle::CASE,
     biactive::CASE,
     scaling::CASE,
+    constant::CASE,
     contact_ends::CASE,
     orders::CASE,
     slivers::CASE,

@@ -15,18 +15,34 @@ impl<const D: usize> Study<'_, D> {
     /// # Errors
     /// Those of [`Study::run`], and [`Error::Parameter`] for another number of values than of unknowns.
     pub fn judge(&self, values: &[f64]) -> Result<Row, Error> {
-        compiled!(const D: fn(&Study<'_, D>, &[f64]) -> Result<Row, Error>
-                = |study, values| study.judge_values(values)
-        )(self, values)
+        self.judge_with(values, None)
     }
-    fn judge_values(&self, values: &[f64]) -> Result<Row, Error> {
+    /// As [`Study::judge`] for values to which constants of the problem are to be added, one for each unknown, or an empty
+    /// list for zeros: see [`read_constants`](crate::exchange::read_constants).
+    ///
+    /// # Errors
+    /// Those of [`Study::judge`].
+    pub fn judge_beside(&self, values: &[f64], constants: &[f64]) -> Result<Row, Error> {
+        self.judge_with(values, Some(constants))
+    }
+    fn judge_with(&self, values: &[f64], constants: Option<&[f64]>) -> Result<Row, Error> {
+        compiled!(const D: fn(&Study<'_, D>, &[f64], Option<&[f64]>) -> Result<Row, Error>
+                = |study, values, constants| study.judge_values(values, constants)
+        )(self, values, constants)
+    }
+    fn judge_values(&self, values: &[f64], constants: Option<&[f64]>) -> Result<Row, Error> {
         let failure = self.where_exact_fails(1)?;
         let (entry, level) = (&self.entries[0], self.first_level());
         let hierarchies = self.hierarchies(None)?;
         let on = |h| NestedIteration::new(&entry.problem, h).quadrature(self.quadrature);
         let mut nested: Vec<_> = hierarchies.iter().map(on).collect();
         let (position, nested) = with_level(&mut nested, level);
-        let solved = nested.judge_on(position, &*entry.scheme, values)?;
+        let solved = match constants {
+            None => nested.judge_on(position, &*entry.scheme, values)?,
+            Some(constants) => {
+                nested.judge_beside(position, &*entry.scheme, (values, constants))?
+            }
+        };
         let reference = self.find_reference(&hierarchies);
         let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let row = self.measured_row(entry, level, &solved, measured)?;

@@ -3,7 +3,7 @@
 use super::{Entry, Progress, Study};
 use crate::error::Error;
 #[cfg(feature = "report")]
-use crate::exchange::write_inequality;
+use crate::exchange::{write_constants, write_inequality};
 use crate::inequality::Outcome;
 use crate::mesh::Mesh;
 use crate::nested::{NestedIteration, Phase, Solved};
@@ -150,7 +150,8 @@ impl<const D: usize> Study<'_, D> {
             let fields = self.fields.write((scene, &name), *level, levels, solved, reference);
             let dumped = self.inequalities.as_ref().map_or(Ok(()), |directory| {
                 let folder = directory.join(file_name(&format!("{scene}-{label}-{level}")));
-                write_inequality(folder, solved.inequality(), solved.mesh())
+                write_inequality(&folder, solved.inequality(), solved.mesh())?;
+                write_constants(folder, &solved.solution().constants)
             });
             *unwritten = unwritten.take().or(fields.err()).or(dumped.err());
         }

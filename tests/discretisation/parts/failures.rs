@@ -205,7 +205,7 @@ fn what_parts_merge_survives_the_way() {
         0 => merge_all(&Extent::of(&mesh), exchange).map(|_| ()),
         _ => merge_all(&violations, exchange).map(|_| ()),
     });
-    assert!(matches!(mixed[0], Err(ExchangeError::Length { part: 1, found: 12, expected: 5 })));
+    assert!(matches!(mixed[0], Err(ExchangeError::Length { part: 1, found: 13, expected: 5 })));
 }
 
 /// Parts with other owners, and parts without enough layers, are refused in all parts, with part and cell.

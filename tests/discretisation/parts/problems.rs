@@ -65,12 +65,13 @@ pub fn obstacle_problem<const D: usize>() -> Problem<D> {
         )
 }
 
-/// A gap on the contact boundary, reaction, Neumann and Dirichlet data.
+/// A gap on the contact boundary, reaction, Neumann and Dirichlet data; none from which a constant would be taken, as it
+/// is not on parts.
 pub fn signorini_problem<const D: usize>() -> Problem<D> {
     Problem::new()
         .constant_source(-2.0)
         .reaction(|x: &Point<D>| 1.0 + x[0] * x[0])
-        .dirichlet(|x| 0.3 * wave(x).cos())
+        .dirichlet(|x| 0.3 * wave(x).sin())
         .neumann(|x, normal| 0.7 + wave(x).sin() * normal.sum())
         .signorini(|x: &Point<D>| -0.5 - 0.1 * wave(x).sin())
 }

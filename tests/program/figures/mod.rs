@@ -144,6 +144,11 @@ const REQUESTS: &[Request] = &[
     quick("problem-gap", "DATA/problems/gap_below_obstacle.toml", FEW, "--levels 4,8"),
     quick("problem-regions", "DATA/problems/region_obstacle.toml", FEW, "--levels 0,1"),
     quick("problem-bounds-alone", "DATA/problems/neu2.toml", FEW, "--levels 8"),
+    quick("problem-constant", "DATA/problems/constant_everywhere.toml", FEW, "--levels 8"),
+    quick("problem-kelvin", "DATA/problems/kelvin.toml", FEW, "--levels 16"),
+    quick("problem-bodies", "DATA/problems/two_bodies.toml", FEW, "--levels 0,1"),
+    quick("problem-far", "DATA/problems/far_gap.toml", FEW, "--levels 8"),
+    quick("problem-reaction", "DATA/problems/far_reaction.toml", FEW, "--levels 8"),
     quick("problem-bracket", "EXAMPLES/problems/bracket.toml", FEW, "--levels 0,1"),
 ];
 

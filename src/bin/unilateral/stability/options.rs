@@ -20,7 +20,8 @@ Examples:
 pub struct Options {
     /// Cases by name; all by default: round-off, penalty-factor,
     /// stretched-cells, graded-meshes, contrast, coercivity,
-    /// curved-obstacle, biactive, scaling, contact-ends, orders, slivers
+    /// curved-obstacle, biactive, scaling, constant, contact-ends,
+    /// orders, slivers
     #[arg(help_heading = PROBLEM, verbatim_doc_comment, hide_possible_values = true, long = "case", value_delimiter = ',', value_name = "A[,B...]", value_parser = STABILITY_CASES)]
     pub cases: Vec<String>,
     /// NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]; by default
