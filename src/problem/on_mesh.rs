@@ -27,6 +27,15 @@ impl<'a, F> ByGroup<&'a F> {
         let by_group = self.by_group.into_iter().map(|datum| datum.or(other)).collect();
         Self { everywhere: self.everywhere.or(other), by_group }
     }
+    /// The same without what lies on boundary groups of another condition: it is no part of the problem.
+    fn on(mut self, condition: BoundaryCondition, groups: &[BoundaryGroup]) -> Self {
+        let has_condition = |group: &BoundaryGroup| group.condition == Some(condition);
+        self.everywhere = self.everywhere.filter(|_| groups.iter().any(has_condition));
+        for (datum, group) in self.by_group.iter_mut().zip(groups) {
+            *datum = datum.filter(|_| has_condition(group));
+        }
+        self
+    }
 }
 
 impl<F: Copy> ByGroup<F> {
@@ -64,7 +73,7 @@ impl<F: Copy> ByGroup<F> {
 /// Data that are functions of space.
 pub(crate) type DataByGroup<'a, const D: usize> = ByGroup<&'a Datum<D>>;
 
-/// The data of a problem on a mesh.
+/// The data of a problem on a mesh, those of the boundary on facets with their condition.
 #[derive(Clone)]
 pub(crate) struct DataOnMesh<'a, const D: usize> {
     pub coefficient: DataByGroup<'a, D>,
@@ -148,9 +157,12 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
             reaction: in_regions(&problem.reaction),
             lower: in_regions(&problem.lower),
             upper: in_regions(&problem.upper),
-            dirichlet: ByGroup::new(&problem.dirichlet, &groups).or(exact),
-            gap: ByGroup::new(&problem.gap, &groups),
-            neumann: ByGroup::new(&problem.neumann, &groups),
+            dirichlet: ByGroup::new(&problem.dirichlet, &groups)
+                .or(exact)
+                .on(BoundaryCondition::Dirichlet, boundary),
+            gap: ByGroup::new(&problem.gap, &groups).on(BoundaryCondition::Contact, boundary),
+            neumann: ByGroup::new(&problem.neumann, &groups)
+                .on(BoundaryCondition::Neumann, boundary),
             dirichlet_rank: groups.iter().map(|names| rank(names)).collect(),
         })
     }
