@@ -105,6 +105,17 @@ pub enum Error {
         /// The names that the mesh has.
         known: String,
     },
+    /// A datum is given twice for one name, or twice without a name.
+    #[error(
+        "the {datum} {} is given twice: give it once; only sources add up",
+        .name.as_ref().map_or("without a name".to_owned(), |name| format!("for {name}"))
+    )]
+    GivenTwice {
+        /// The datum: "coefficient", "lower obstacle", "Dirichlet datum", ...
+        datum: &'static str,
+        /// The name of its region or boundary group, where it has one.
+        name: Option<String>,
+    },
     /// The data of a boundary group are of another kind than its facets.
     #[error(
         "the problem has {given} data on boundary group {group}, whose facets are {found} in the mesh: bind the problem to the mesh by Problem::bind_boundary"

@@ -60,7 +60,7 @@ impl<const D: usize> Admissible<'_, D> {
     pub fn is_linear(&self, corners: &[Point<D>; 4]) -> bool {
         let is_beyond = |(bound, sign): (&Datum<D>, f64)| {
             let within = |(x, value): (&Point<D>, &f64)| sign * (value - bound.at(x)) >= 0.0;
-            bound.discrete().is_some()
+            bound.is_discrete()
                 || bound.degree_on(self.place.0, None).is_none_or(|degree| degree > 1)
                 || !corners[..=D].iter().zip(&self.values).all(within)
         };

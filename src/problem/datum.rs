@@ -89,6 +89,25 @@ pub enum Datum<const D: usize> {
     },
     /// A discrete function.
     Discrete(DiscreteFunction<D>),
+    /// A sum of others, made by [`Datum::plus`].
+    Sum(Sum<D>),
+}
+
+/// A sum of data.
+#[derive(Clone)]
+pub struct Sum<const D: usize> {
+    /// None of them is a sum.
+    terms: Arc<[Datum<D>]>,
+    /// The product of the levels of the terms.
+    level: Option<Field<D>>,
+}
+
+impl<const D: usize> Sum<D> {
+    // not inlined where data of other kinds are read
+    #[inline(never)]
+    fn of(&self, value: &dyn Fn(&Datum<D>) -> f64) -> f64 {
+        self.terms.iter().map(value).sum()
+    }
 }
 
 impl<const D: usize> Datum<D> {
@@ -115,6 +134,26 @@ impl<const D: usize> Datum<D> {
             | Datum::Polynomial { value, .. }
             | Datum::Piecewise { value, .. } => value(x),
             Datum::Discrete(u) => u.value_at(x).unwrap_or(f64::NAN),
+            Datum::Sum(sum) => sum.of(&|term| term.at(x)),
+        }
+    }
+    /// The sum of two data. It may jump where one of them does.
+    #[must_use]
+    pub fn plus(&self, other: Self) -> Self {
+        if let (Datum::Constant(a), Datum::Constant(b)) = (self, &other) {
+            return Datum::Constant(a + b);
+        }
+        let level = match [self, &other].map(|datum| datum.level().cloned()) {
+            [Some(a), Some(b)] => Some(Arc::new(move |x: &Point<D>| a(x) * b(x)) as Field<D>),
+            [a, b] => a.or(b),
+        };
+        Datum::Sum(Sum { terms: [self.terms(), other.terms()].concat().into(), level })
+    }
+    /// The terms of a sum; of others themselves.
+    fn terms(&self) -> &[Self] {
+        match self {
+            Datum::Sum(sum) => &sum.terms,
+            term => std::slice::from_ref(term),
         }
     }
     /// The value at a point of a cell of a mesh: of a discrete function on this mesh, or on one of which this is a
@@ -123,6 +162,7 @@ impl<const D: usize> Datum<D> {
     pub fn in_cell(&self, mesh: &Mesh<D>, cell: usize, x: &Point<D>) -> f64 {
         match self {
             Datum::Discrete(u) => u.value_in(mesh, cell, x),
+            Datum::Sum(sum) => sum.of(&|term| term.in_cell(mesh, cell, x)),
             _ => self.at(x),
         }
     }
@@ -141,19 +181,28 @@ impl<const D: usize> Datum<D> {
             Datum::Polynomial { degree, .. } => Some(*degree),
             Datum::Function(_) | Datum::Piecewise { .. } => stated,
             Datum::Discrete(u) => u.is_polynomial_on(mesh).then(|| u.degree()),
+            Datum::Sum(sum) => sum
+                .terms
+                .iter()
+                .try_fold(0, |largest, term| Some(term.degree_on(mesh, stated)?.max(largest))),
         }
     }
-    /// The discrete function, if it is one.
-    pub(crate) fn discrete(&self) -> Option<&DiscreteFunction<D>> {
-        match self {
+    /// The discrete functions among the terms.
+    pub(crate) fn discrete(&self) -> impl Iterator<Item = &DiscreteFunction<D>> {
+        self.terms().iter().filter_map(|term| match term {
             Datum::Discrete(u) => Some(u),
             _ => None,
-        }
+        })
+    }
+    /// Whether there are such terms.
+    pub(crate) fn is_discrete(&self) -> bool {
+        self.discrete().next().is_some()
     }
     /// The function whose zero set divides cells, if there is one.
     pub(crate) fn level(&self) -> Option<&Field<D>> {
         match self {
             Datum::Piecewise { level, .. } => Some(level),
+            Datum::Sum(sum) => sum.level.as_ref(),
             _ => None,
         }
     }
@@ -188,6 +237,14 @@ impl<const D: usize> fmt::Debug for Datum<D> {
             Datum::Polynomial { degree, .. } => write!(f, "Polynomial({degree})"),
             Datum::Piecewise { .. } => f.write_str("Piecewise(..)"),
             Datum::Discrete(u) => u.fmt(f),
+            Datum::Sum(sum) => sum.fmt(f),
         }
+    }
+}
+
+impl<const D: usize> fmt::Debug for Sum<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Sum")?;
+        f.debug_list().entries(&*self.terms).finish()
     }
 }

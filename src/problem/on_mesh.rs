@@ -93,24 +93,24 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
     /// The data of a problem on a mesh.
     ///
     /// # Errors
-    /// [`Error::UnknownGroup`] for a name that the mesh does not have, [`Error::Mesh`] for a boundary
+    /// [`Error::GivenTwice`], [`Error::UnknownGroup`] for a name that the mesh does not have, [`Error::Mesh`] for a boundary
     /// group of undecided condition, [`Error::UnboundBoundary`] for one with another condition than its data.
     pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<D>) -> Result<Self, Error> {
+        problem.check_given_once()?;
         mesh.check_boundary_conditions()?;
         let groups = (mesh.regions(), mesh.boundary_groups());
         let found = Self::of_groups(problem, groups.0, groups.1, mesh.groups_inside())?;
         let Self { coefficient, source, reaction, lower, upper, gap, .. } = &found;
         let data = [coefficient, source, reaction, lower, upper, gap].into_iter();
-        let discrete = data.flat_map(|data| data.all()).filter_map(|datum| datum.discrete());
+        let discrete = data.flat_map(|data| data.all()).flat_map(|datum| datum.discrete());
         discrete.for_each(|u| u.prepare_for(mesh));
         Ok(found)
     }
 
     /// Whether two cells may have different obstacles at a point that both contain.
     pub fn obstacles_differ(&self) -> bool {
-        let differ = |data: &DataByGroup<'_, D>| {
-            data.has_names() || data.any(&|psi| psi.discrete().is_some())
-        };
+        let differ =
+            |data: &DataByGroup<'_, D>| data.has_names() || data.any(&|psi| psi.is_discrete());
         differ(&self.lower) || differ(&self.upper)
     }
 

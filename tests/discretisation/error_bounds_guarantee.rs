@@ -213,8 +213,9 @@ fn every_datum_is_held_against_what_a_bound_needs() {
         .side(0, 1, BoundaryCondition::Neumann);
     let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
     let x = |x: &Point<2>| x[0];
-    let constant =
-        || Problem::new().constant_source(-1.0).signorini(|_| -0.3).obstacles_of_degree(0);
+    let under_gap = |problem: Problem<2>| problem.signorini(|_| -0.3).obstacles_of_degree(0);
+    let loaded = || Problem::new().constant_source(-1.0);
+    let constant = || under_gap(loaded());
     let unproven = |problem: &Problem<2>| -> [Vec<Unproven>; 2] {
         [&ConformingP1 as &dyn Scheme<2>, &ConformingP2]
             .map(|scheme| solve(problem, &mesh, scheme).unwrap().bound().unwrap().unproven)
@@ -224,7 +225,8 @@ fn every_datum_is_held_against_what_a_bound_needs() {
         ("none", constant().polynomial_data(0), vec![], vec![]),
         (
             "source with a level",
-            constant().piecewise_source(|_| -1.0, move |p| x(p) - 0.3).polynomial_data(0),
+            under_gap(Problem::new().piecewise_source(|_| -1.0, move |p| x(p) - 0.3))
+                .polynomial_data(0),
             vec![Quadrature],
             vec![Quadrature],
         ),
@@ -248,15 +250,10 @@ fn every_datum_is_held_against_what_a_bound_needs() {
             vec![Quadrature],
             vec![Quadrature],
         ),
-        (
-            "linear gap",
-            constant().signorini(move |p| x(p) - 0.5).polynomial_data(1),
-            vec![],
-            vec![],
-        ),
+        ("linear gap", loaded().signorini(move |p| x(p) - 0.5).polynomial_data(1), vec![], vec![]),
         (
             "gap",
-            constant().signorini(move |p| -0.3 - square(p)).polynomial_data(2),
+            loaded().signorini(move |p| -0.3 - square(p)).polynomial_data(2),
             vec![Obstacle],
             vec![],
         ),
