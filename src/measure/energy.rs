@@ -24,8 +24,9 @@ impl<const D: usize> Discretisation<'_, D> {
     /// are integrated by the rules of the assembly.
     ///
     /// # Errors
-    /// [`Error::DataNotFinite`].
+    /// [`Error::DataNotFinite`], [`Error::Parameter`] unless there is one value for each unknown.
     pub fn energy(&self, u: &[f64]) -> Result<f64, Error> {
+        self.check_length(u)?;
         self.energy_of(u, &|_| true)
     }
 
