@@ -1,6 +1,9 @@
 //! Errors of input data, of files and of parameters.
 //!
 //! A numerical outcome (iteration limit, cycling) is not an error: see [`crate::inequality::Outcome`].
+//!
+//! A function that returns a [`Result`] returns an error for bad input. Another one panics, as its documentation or that
+//! of its type says: for the number of a cell that the mesh does not have, say.
 
 use crate::mesh::MeshError;
 use crate::mesh::gmsh::GmshError;

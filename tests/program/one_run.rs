@@ -159,7 +159,15 @@ fn a_lock_that_leads_to_another_file_is_refused() {
         assert!(!Path::new(&(own.clone() + ".new")).exists());
         fs::remove_file(&lock).unwrap();
     }
-    assert!(scratch.run("--scene radial-1d --scheme p1 --levels 4 --quiet").status.success());
+    // a file of a dump takes the place of a link
+    let request = scratch.0.join("dump/radial-1d-p1-4/request.json");
+    fs::create_dir_all(request.parent().unwrap()).unwrap();
+    std::os::unix::fs::symlink(&own, &request).unwrap();
+    let dump = scratch.path("dump");
+    let options = format!("--scene radial-1d --scheme p1 --levels 4 --quiet --dump {dump}");
+    assert!(scratch.run(&options).status.success());
+    assert_eq!(scratch.read("mine.txt"), "mine");
+    assert!(fs::read_to_string(request).unwrap().contains("radial-1d"));
 }
 
 /// Nothing that a run reads is written over, by whatever name.
