@@ -117,7 +117,7 @@ impl<const D: usize> Problem<D> {
         Self::default()
     }
     /// Adds a constant load. Loads of one name, or without a name, add up; to have another in place of one, set
-    /// [`Problem::source`].
+    /// [the field](field@Problem::source).
     #[must_use]
     pub fn constant_source(mut self, f: f64) -> Self {
         self.source.add(None, f);
