@@ -1,6 +1,9 @@
 //! Errors of input data, of files and of parameters.
 //!
 //! A numerical outcome (iteration limit, cycling) is not an error: see [`crate::inequality::Outcome`].
+//!
+//! A function that returns a [`Result`] returns an error for bad input. Another one panics, as its documentation or that
+//! of its type says: for the number of a cell that the mesh does not have, say.
 
 use crate::mesh::MeshError;
 use crate::mesh::gmsh::GmshError;
@@ -104,6 +107,17 @@ pub enum Error {
         name: String,
         /// The names that the mesh has.
         known: String,
+    },
+    /// A datum is given twice for one name, or twice without a name.
+    #[error(
+        "the {datum} {} is given twice: give it once; only sources add up",
+        .name.as_ref().map_or("without a name".to_owned(), |name| format!("for {name}"))
+    )]
+    GivenTwice {
+        /// The datum: "coefficient", "lower obstacle", "Dirichlet datum", ...
+        datum: &'static str,
+        /// The name of its region or boundary group, where it has one.
+        name: Option<String>,
     },
     /// The data of a boundary group are of another kind than its facets.
     #[error(

@@ -41,7 +41,7 @@ pub fn fingerprint(bytes: &[u8]) -> String {
 }
 
 /// Foreign text for a message: at most 40 characters, an ellipsis in place of the rest, control
-/// characters as escapes, bytes that are not UTF-8 replaced by U+FFFD.
+/// characters and those that turn the direction of text as escapes, bytes that are not UTF-8 replaced by U+FFFD.
 pub fn excerpt(text: impl AsRef<[u8]>) -> String {
     beginning(text.as_ref(), 40)
 }
@@ -53,12 +53,17 @@ pub fn beginning(bytes: &[u8], longest: usize) -> String {
     let rest = text.chars().nth(longest).map(|_| '…');
     let mut shown = String::new();
     for c in text.chars().take(longest).chain(rest) {
-        match c.is_control() {
+        match c.is_control() || turns_direction(c) {
             true => shown.extend(c.escape_default()),
             false => shown.push(c),
         }
     }
     shown
+}
+
+/// Whether a character sets the direction of the text after it, which a name could use to look like another.
+fn turns_direction(c: char) -> bool {
+    matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// Foreign names in a list: excerpts of the first twenty in alphabetical order, and how many more there are.

@@ -5,6 +5,10 @@ use crate::parallel::vectors::{all, collect, for_each_chunk};
 use crate::real::Real;
 
 /// A square sparse matrix in compressed sparse rows; columns ascend strictly in each row.
+///
+/// # Panics
+/// A method that takes the number of a row panics if there is no such row, one that takes a vector if that is shorter
+/// than the matrix, and all of them may if the matrix is not [well formed](SparseMatrix::is_well_formed).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SparseMatrix<T> {
     /// Start of each row in `columns` and `values`, and the number of entries at the end.

@@ -92,8 +92,9 @@ impl<const D: usize> Discretisation<'_, D> {
     /// [`NoBound`].
     ///
     /// # Panics
-    /// If the pair is not one of this mesh, or `u` is shorter than the number of unknowns.
+    /// If the pair is not one of this mesh, or `u` has not one value for each unknown.
     pub fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[f64]) -> Result<ErrorBound, NoBound> {
+        self.demand_length(u);
         self.part_of_bound(pair, u, &|_| true)?.bound(None)
     }
 

@@ -16,6 +16,9 @@ use crate::parallel::vectors::for_each_chunk_of_groups;
 ///
 /// The number of a facet in a cell is that of the opposite vertex. A facet between two cells has a `c` in each of them.
 /// Where `q.n` is single-valued, the two add up to zero.
+///
+/// # Panics
+/// A method that takes the number of a cell panics if there is no such cell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flux<const D: usize> {
     degree: usize,

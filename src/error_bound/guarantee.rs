@@ -52,7 +52,7 @@ impl<const D: usize> Space<'_, D> {
             && !self.exceeds_obstacles(pair);
         let has_data = D > 1 && self.mesh.has_condition(BoundaryCondition::Dirichlet);
         // one with jumps is no trace of a function with finite energy
-        let is_discrete = data.dirichlet.any(&|datum| datum.discrete().is_some());
+        let is_discrete = data.dirichlet.any(&|datum| datum.is_discrete());
         let found = [
             (is_inexact, Unproven::Quadrature),
             (

@@ -57,12 +57,13 @@ impl<const D: usize> Discretisation<'_, D> {
     /// [`NoBound`].
     ///
     /// # Panics
-    /// If the solution has fewer values than there are unknowns.
+    /// Unless the solution has one value for each unknown.
     pub fn primal_dual_pair(
         &self,
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
+        self.demand_length(&solution.values);
         self.check_flux()?;
         self.pair_of_cells(inequality, solution, &|_| true)
     }

@@ -132,8 +132,14 @@ pub(crate) fn stiffness_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) 
 /// The contact states of values from a solver that has no contact states: an unknown is active at the nearer bound if
 /// its gap is at most the Gauss-Seidel step `r_i / d_i` towards this bound. An unknown whose bounds coincide is active
 /// at its lower bound.
+///
+/// # Panics
+/// If the inequality is not [well formed](Inequality::is_well_formed), or has another number of unknowns.
 #[must_use]
 pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> {
+    let (n, values) = (inequality.size(), u.len());
+    assert!(inequality.is_well_formed(), "the inequality of {n} unknowns is not well formed");
+    assert!(values == n, "{values} values for {n} unknowns: contact states need one for each");
     let mut residual = vec![0.0; inequality.size()];
     inequality.residual_f64(u, &mut residual);
     contact_by_residual(inequality, u, &residual)

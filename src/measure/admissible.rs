@@ -64,7 +64,7 @@ impl<const D: usize> Admissible<'_, D> {
             let within = |(x, value): (&Point<D>, &f64)| {
                 sign * (value - bound.in_cell(mesh, cell, x)) >= 0.0
             };
-            bound.discrete().is_some()
+            bound.is_discrete()
                 || bound.degree_on(self.place.0, None).is_none_or(|degree| degree > 1)
                 || !corners[..=D].iter().zip(&self.values).all(within)
         };

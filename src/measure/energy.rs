@@ -26,8 +26,9 @@ impl<const D: usize> Discretisation<'_, D> {
     /// `J(w) - l(c) - 1/2 int reaction c^2`.
     ///
     /// # Errors
-    /// [`Error::DataNotFinite`].
+    /// [`Error::DataNotFinite`], [`Error::Parameter`] unless there is one value for each unknown.
     pub fn energy(&self, u: &[f64]) -> Result<f64, Error> {
+        self.check_length(u)?;
         self.energy_of(u, &|_| true)
     }
 

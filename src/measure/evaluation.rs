@@ -69,6 +69,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// The value of a vector of unknowns at a point, in the first cell that contains the point; none
     /// outside the mesh. The search takes a time proportional to the number of cells.
     pub fn value_at(&self, u: &[f64], point: &Point<D>) -> Option<f64> {
+        self.demand_length(u);
         compiled!(const D: fn(&Discretisation<'_, D>, &[f64], &Point<D>) -> Option<f64>
                 = |of, u, point| of.space.value_at(u, point)
         )(self, u, point)

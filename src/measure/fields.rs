@@ -56,6 +56,7 @@ impl Fields {
 impl<const D: usize> Discretisation<'_, D> {
     /// Solution, obstacle, multiplier and contact set on cells, for pictures.
     pub fn fields(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Fields {
+        self.demand_length(&solution.values);
         compiled!(const D: fn(&Discretisation<'_, D>, &Inequality<f64>, &Solution<f64>) -> Fields
                 = |of, inequality, solution| of.space.fields((inequality, solution))
         )(self, inequality, solution)

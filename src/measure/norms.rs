@@ -26,8 +26,9 @@ impl<const D: usize> Discretisation<'_, D> {
     /// `|.|_1^2 + sum sigma_F ||[.]||^2`, for WOPSIP the square root of the form itself.
     ///
     /// # Errors
-    /// [`Error::DataNotFinite`].
+    /// [`Error::DataNotFinite`], [`Error::Parameter`] unless there is one value for each unknown.
     pub fn errors(&self, u: &[f64]) -> Result<Errors, Error> {
+        self.check_length(u)?;
         match &self.space.problem.exact {
             Some(exact) => self.errors_against(exact, u),
             None => Ok(Errors::default()),
@@ -39,7 +40,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// the problem, not from those of the function.
     ///
     /// # Errors
-    /// [`Error::DataNotFinite`].
+    /// Those of [`Discretisation::errors`].
     pub fn errors_against(&self, exact: &Exact<D>, u: &[f64]) -> Result<Errors, Error> {
         Ok(self.squared_errors(exact, u, &|_| true)?.norms())
     }
@@ -51,13 +52,14 @@ impl<const D: usize> Discretisation<'_, D> {
     /// left out.
     ///
     /// # Errors
-    /// [`Error::DataNotFinite`].
+    /// Those of [`Discretisation::errors`].
     pub fn squared_errors(
         &self,
         exact: &Exact<D>,
         u: &[f64],
         counts: &(dyn Fn(usize) -> bool + Sync),
     ) -> Result<SquaredErrors, Error> {
+        self.check_length(u)?;
         compiled!(const D: fn(
                 &Discretisation<'_, D>,
                 &Exact<D>,

@@ -116,8 +116,9 @@ impl<const D: usize> Discretisation<'_, D> {
     /// affine: there it is exact. None without an inequality.
     ///
     /// # Errors
-    /// [`Error::DataNotFinite`].
+    /// [`Error::DataNotFinite`], [`Error::Parameter`] unless there is one value for each unknown.
     pub fn penetration(&self, u: &[f64]) -> Result<Option<Penetration>, Error> {
+        self.check_length(u)?;
         self.penetration_of((u, Precision::Double), &|_| true)
     }
 

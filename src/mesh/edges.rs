@@ -22,6 +22,9 @@ pub(crate) const fn edge_vertices(dimension: usize) -> &'static [[usize; 2]] {
 
 /// All edges of a mesh, numbered by their pairs of vertices in lexicographic order: in one dimension
 /// the cells, in two the facets, under other numbers.
+///
+/// # Panics
+/// A method that takes the number of a vertex panics if the mesh has no such vertex.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edges {
     /// Number of the first edge that starts at each vertex, and the number of all edges.

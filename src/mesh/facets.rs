@@ -34,6 +34,9 @@ pub enum Neighbour {
 }
 
 /// The other side of every facet of every cell.
+///
+/// # Panics
+/// [`Neighbours::across`] panics if there is no such cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Neighbours {
     /// `D + 1` for each cell.
@@ -209,6 +212,9 @@ fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
 ///
 /// Within a range facets are ordered by their first cell, *here*. Of the two cells of an interior
 /// facet the first one has the lower number, and the normal points from it to the second, *there*.
+///
+/// # Panics
+/// A method that takes the number of a facet panics if there is no such facet.
 #[derive(Clone, Debug)]
 pub struct Facets {
     /// The two half-facets of each facet; twice the same on the boundary.

@@ -11,6 +11,9 @@ use crate::parallel::cells;
 use crate::real::{Point, box_around};
 
 /// A conforming simplicial mesh of a domain in `D` dimensions (1, 2 or 3).
+///
+/// # Panics
+/// A method that takes the number of a cell panics if the mesh has no such cell.
 #[derive(Clone, Debug)]
 pub struct Mesh<const D: usize> {
     pub(in crate::mesh) vertices: Vec<Point<D>>,

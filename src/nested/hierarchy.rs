@@ -124,7 +124,13 @@ impl<const D: usize> Hierarchy<D> {
     /// If the hierarchy has no such mesh.
     #[must_use]
     pub fn mesh(&self, position: usize) -> &Mesh<D> {
-        self.meshes[position].piece.mesh()
+        self.at(position).piece.mesh()
+    }
+    fn at(&self, position: usize) -> &NestedMesh<D> {
+        match self.meshes.get(position) {
+            Some(found) => found,
+            None => panic!("there are {} meshes, none at position {position}", self.n_meshes()),
+        }
     }
     /// The part of a mesh that this process has, by its position; none if it has the whole.
     ///
@@ -136,7 +142,7 @@ impl<const D: usize> Hierarchy<D> {
     }
     /// As [`Self::part`], with the exchange.
     pub(super) fn shared_part(&self, position: usize) -> Option<SharedPart<'_, D>> {
-        match &self.meshes[position].piece {
+        match &self.at(position).piece {
             Piece::Part(part, exchange) => Some(SharedPart { part, exchange }),
             Piece::Whole(_) => None,
         }
@@ -153,11 +159,11 @@ impl<const D: usize> Hierarchy<D> {
     }
     /// Seconds in which a mesh and all coarser ones were made.
     pub(crate) fn seconds(&self, position: usize) -> f64 {
-        self.meshes[position].seconds
+        self.at(position).seconds
     }
     /// The parents of the vertices of a mesh in the next coarser one; `None` for the coarsest mesh.
     pub(super) fn refinement(&self, position: usize) -> Option<&Refinement> {
-        self.meshes[position].refinement.as_ref()
+        self.at(position).refinement.as_ref()
     }
     /// The prolongation of P1 functions from the next coarser mesh; `None` for the coarsest mesh, and on parts, where
     /// no multigrid of this process uses it.
@@ -165,7 +171,7 @@ impl<const D: usize> Hierarchy<D> {
         let refinement = self.refinement(position).filter(|_| self.part(position).is_none())?;
         let n_coarse = self.mesh(position - 1).vertices().len();
         let new = || Arc::new(Prolongation::midpoints(refinement.parents.clone(), n_coarse));
-        Some(once(&self.meshes[position].prolongation, new))
+        Some(once(&self.at(position).prolongation, new))
     }
 }
 

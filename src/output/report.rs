@@ -27,13 +27,15 @@ impl Report {
         csv::lines(&self.rows)
     }
 
-    /// Removes the files of this report from a directory, where they are: those that [`Report::write`] and
-    /// [`WorkPrecision::write`](crate::work_precision::WorkPrecision::write) write but `report.json`, and the fields
-    /// and pictures of its rows. Another report that is written there then has no file of this one beside it.
+    /// Removes the files of this report from a directory, where they are: those that [`Report::write`],
+    /// [`Journal`](crate::study::Journal) and [`WorkPrecision::write`](crate::work_precision::WorkPrecision::write)
+    /// write but `report.json`, and the fields and pictures of its rows. Another report that is written there then has
+    /// no file of this one beside it.
     pub fn remove_files(&self, directory: impl AsRef<Path>) {
         let mut names: Vec<String> =
-            ["csv", "md", "tex", "html"].map(|end| format!("report.{end}")).into();
-        names.extend(["reach.csv", "convergence.svg", "work_precision.svg"].map(str::to_owned));
+            ["csv", "jsonl", "md", "tex", "html"].map(|end| format!("report.{end}")).into();
+        let others = ["request.json", "reach.csv", "convergence.svg", "work_precision.svg"];
+        names.extend(others.map(str::to_owned));
         for Series { variant: Variant { scene, label, solver, .. }, rows, .. } in self.series() {
             names.extend(["time", "unknowns"].map(|cost| format!("{scene}-{cost}.svg")));
             names.push(history_file(&scene));

@@ -15,12 +15,7 @@ pub(super) fn integers(list: &mut dyn Iterator<Item = i64>) -> Vec<u8> {
     list.flat_map(i64::to_le_bytes).collect()
 }
 
-/// The bytes of numbers with 32 bits.
-pub(super) fn singles(list: &mut dyn Iterator<Item = f64>) -> Vec<u8> {
-    list.flat_map(|x| (x as f32).to_le_bytes()).collect()
-}
-
-/// The bytes of numbers with 64 bits.
+/// The bytes of numbers.
 pub(super) fn doubles(list: &mut dyn Iterator<Item = f64>) -> Vec<u8> {
     list.flat_map(f64::to_le_bytes).collect()
 }

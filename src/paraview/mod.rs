@@ -7,4 +7,4 @@ mod pvd;
 mod vtu;
 
 pub use pvd::write_pvd;
-pub use vtu::{FieldScalar, VtuFile};
+pub use vtu::VtuFile;

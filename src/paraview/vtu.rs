@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::encode::{Arrays, doubles, integers, singles};
+use super::encode::{Arrays, doubles, integers};
 use super::grid::{Grid, values_per_cell};
 use super::groups::{array_names, members};
 use super::pvd::relative_to;
@@ -20,17 +20,6 @@ use crate::input::escaped;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryFacet, Mesh};
 use crate::real::Point;
-
-/// The scalar of the fields in a file; coordinates have 64 bits always.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum FieldScalar {
-    /// 32 bits, and four digits of the field `error`: enough for pictures.
-    #[default]
-    Single,
-    /// 64 bits: no digit is lost.
-    Double,
-}
 
 /// A function of space that may jump between cells: of the number of a cell and a point in it.
 type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<D>) -> f64 + 'a>;
@@ -63,7 +52,6 @@ pub struct VtuFile<'a, const D: usize> {
     on_cells: Vec<(&'a str, &'a [f64])>,
     on_facets: Vec<OnFacets<'a>>,
     numbers: Vec<(String, f64)>,
-    scalar: FieldScalar,
 }
 
 impl<const D: usize> fmt::Debug for VtuFile<'_, D> {
@@ -71,7 +59,6 @@ impl<const D: usize> fmt::Debug for VtuFile<'_, D> {
         f.debug_struct("VtuFile")
             .field("cells", &self.mesh.n_cells())
             .field("boundary facets", &self.mesh.boundary().len())
-            .field("scalar", &self.scalar)
             .finish_non_exhaustive()
     }
 }
@@ -91,7 +78,6 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             on_cells: Vec::new(),
             on_facets: Vec::new(),
             numbers: Vec::new(),
-            scalar: FieldScalar::default(),
         }
     }
     /// Adds a function of space as point data.
@@ -133,16 +119,10 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         self.numbers.push((name.to_owned(), value));
         self
     }
-    /// Sets the scalar of fields; 32 bits otherwise. Coordinates have 64 bits always, for a domain may be small
-    /// against its distance from the origin.
-    pub fn scalar(mut self, scalar: FieldScalar) -> Self {
-        self.scalar = scalar;
-        self
-    }
 
     /// Writes the file, and its folder if there is none; it takes the place of an earlier one when it is
-    /// whole. Points have three coordinates, missing ones zero. The facets of the boundary are linear cells of
-    /// dimension `D - 1` after those of the mesh. The cell data `dimension` is that of each cell, `D` for the cells
+    /// whole. Numbers have 64 bits. Points have three coordinates, missing ones zero. The facets of the boundary are
+    /// linear cells of dimension `D - 1` after those of the mesh. The cell data `dimension` is that of each cell, `D` for the cells
     /// of the mesh and `D - 1` for facets. Cell data of one name on cells and on facets are one array;
     /// where there is no value they are not a number. Each named group of cells or of boundary facets is an array of
     /// small integers, called by its name: one in the group, zero elsewhere. Where a field has the name, `_group`
@@ -173,14 +153,10 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     /// # Errors
     /// [`Error::Write`].
     pub fn write_list(&self, path: &Path, parts: &[PathBuf]) -> Result<(), Error> {
-        let kind = match self.scalar {
-            FieldScalar::Single => "Float32",
-            FieldScalar::Double => "Float64",
-        };
         let typed = |kind: &str, name: &str| {
             format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escaped(name))
         };
-        let array = |name: &str| typed(kind, name);
+        let array = |name: &str| typed("Float64", name);
         let functions = self.functions.iter().map(|(name, _)| *name);
         let of_points = functions.chain(self.exact.as_ref().map(|_| "error")).chain(["u"]);
         let of_points: String = of_points.map(array).collect();
@@ -275,14 +251,14 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         let per_cell = self.u.len() / self.mesh.n_cells();
         for (name, f) in &self.functions {
             let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
-            self.push_floats(to, name, &mut places.map(|(cell, x)| f(cell, x)))?;
+            push_floats(to, name, &mut places.map(|(cell, x)| f(cell, x)))?;
         }
         if let Some(exact) = &self.exact {
             let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
-            let error = u.iter().zip(places).map(|(u, (cell, x))| u - exact(cell, x));
-            self.push_floats(to, "error", &mut error.map(|e| self.shortened(e)))?;
+            let mut error = u.iter().zip(places).map(|(u, (cell, x))| u - exact(cell, x));
+            push_floats(to, "error", &mut error)?;
         }
-        self.push_floats(to, "u", &mut u.iter().copied())?;
+        push_floats(to, "u", &mut u.iter().copied())?;
         writeln!(to.text, "</PointData>\n<CellData>")?;
         self.push_cell_data(to)?;
         writeln!(to.text, "</CellData>\n<Points>")?;
@@ -328,7 +304,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
                     all[cells + position] = *value;
                 }
             }
-            self.push_floats(to, name, &mut all.into_iter())?;
+            push_floats(to, name, &mut all.into_iter())?;
         }
         let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
         to.push("UInt8", "dimension", 1, &dimensions)?;
@@ -337,27 +313,12 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         }
         Ok(())
     }
+}
 
-    /// A number with four digits if files have 32 bits: an error is not known better, and digits that mean
-    /// nothing cannot be compressed.
-    fn shortened(&self, x: f64) -> f64 {
-        const DROPPED: u64 = (1 << 39) - 1;
-        match self.scalar {
-            FieldScalar::Single => f64::from_bits(x.to_bits().wrapping_add(DROPPED / 2) & !DROPPED),
-            FieldScalar::Double => x,
-        }
-    }
-
-    fn push_floats(
-        &self,
-        to: &mut Arrays,
-        name: &str,
-        values: &mut dyn Iterator<Item = f64>,
-    ) -> io::Result<()> {
-        let (kind, bytes) = match self.scalar {
-            FieldScalar::Single => ("Float32", singles(values)),
-            FieldScalar::Double => ("Float64", doubles(values)),
-        };
-        to.push(kind, &escaped(name), 1, &bytes)
-    }
+fn push_floats(
+    to: &mut Arrays,
+    name: &str,
+    values: &mut dyn Iterator<Item = f64>,
+) -> io::Result<()> {
+    to.push("Float64", &escaped(name), 1, &doubles(values))
 }

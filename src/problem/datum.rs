@@ -91,6 +91,25 @@ pub enum Datum<const D: usize> {
     Discrete(DiscreteFunction<D>),
     /// Another datum less the constants of bodies.
     Shifted(Shifted<D>),
+    /// A sum of others, made by [`Datum::plus`].
+    Sum(Sum<D>),
+}
+
+/// A sum of data.
+#[derive(Clone)]
+pub struct Sum<const D: usize> {
+    /// None of them is a sum.
+    terms: Arc<[Datum<D>]>,
+    /// The product of the levels of the terms.
+    level: Option<Field<D>>,
+}
+
+impl<const D: usize> Sum<D> {
+    // not inlined where data of other kinds are read
+    #[inline(never)]
+    fn of(&self, value: &dyn Fn(&Datum<D>) -> f64) -> f64 {
+        self.terms.iter().map(value).sum()
+    }
 }
 
 impl<const D: usize> Datum<D> {
@@ -118,6 +137,26 @@ impl<const D: usize> Datum<D> {
             | Datum::Piecewise { value, .. } => value(x),
             Datum::Discrete(u) => u.value_at(x).unwrap_or(f64::NAN),
             Datum::Shifted(datum) => datum.at(x),
+            Datum::Sum(sum) => sum.of(&|term| term.at(x)),
+        }
+    }
+    /// The sum of two data. It may jump where one of them does.
+    #[must_use]
+    pub fn plus(&self, other: Self) -> Self {
+        if let (Datum::Constant(a), Datum::Constant(b)) = (self, &other) {
+            return Datum::Constant(a + b);
+        }
+        let level = match [self, &other].map(|datum| datum.level().cloned()) {
+            [Some(a), Some(b)] => Some(Arc::new(move |x: &Point<D>| a(x) * b(x)) as Field<D>),
+            [a, b] => a.or(b),
+        };
+        Datum::Sum(Sum { terms: [self.terms(), other.terms()].concat().into(), level })
+    }
+    /// The terms of a sum; of others themselves.
+    fn terms(&self) -> &[Self] {
+        match self {
+            Datum::Sum(sum) => &sum.terms,
+            term => std::slice::from_ref(term),
         }
     }
     /// The value at a point of a cell of a mesh: of a discrete function on this mesh, or on one of which this is a
@@ -126,6 +165,7 @@ impl<const D: usize> Datum<D> {
     pub fn in_cell(&self, mesh: &Mesh<D>, cell: usize, x: &Point<D>) -> f64 {
         match self {
             Datum::Discrete(u) => u.value_in(mesh, cell, x),
+            Datum::Sum(sum) => sum.of(&|term| term.in_cell(mesh, cell, x)),
             Datum::Shifted(datum) => datum.in_cell(mesh, cell, x),
             _ => self.at(x),
         }
@@ -154,14 +194,28 @@ impl<const D: usize> Datum<D> {
             Datum::Function(_) | Datum::Piecewise { .. } => stated,
             Datum::Discrete(u) => u.is_polynomial_on(mesh).then(|| u.degree()),
             Datum::Shifted(datum) => datum.degree_on(mesh, stated),
+            Datum::Sum(sum) => sum
+                .terms
+                .iter()
+                .try_fold(0, |largest, term| Some(term.degree_on(mesh, stated)?.max(largest))),
         }
     }
-    /// The discrete function, if it is one.
-    pub(crate) fn discrete(&self) -> Option<&DiscreteFunction<D>> {
+    /// The discrete functions that it is made of.
+    pub(crate) fn discrete(&self) -> Vec<&DiscreteFunction<D>> {
         match self {
-            Datum::Discrete(u) => Some(u),
-            Datum::Shifted(datum) => datum.discrete(),
-            _ => None,
+            Datum::Discrete(u) => vec![u],
+            Datum::Sum(sum) => sum.terms.iter().flat_map(Datum::discrete).collect(),
+            Datum::Shifted(datum) => datum.parts().flat_map(Datum::discrete).collect(),
+            _ => Vec::new(),
+        }
+    }
+    /// Whether it is made of discrete functions, among others.
+    pub(crate) fn is_discrete(&self) -> bool {
+        match self {
+            Datum::Discrete(_) => true,
+            Datum::Sum(sum) => sum.terms.iter().any(Datum::is_discrete),
+            Datum::Shifted(datum) => datum.parts().any(Datum::is_discrete),
+            _ => false,
         }
     }
     /// A unit of rounding in values from which a constant was taken; zero in others.
@@ -176,6 +230,7 @@ impl<const D: usize> Datum<D> {
         match self {
             Datum::Piecewise { level, .. } => Some(level),
             Datum::Shifted(datum) => datum.level(),
+            Datum::Sum(sum) => sum.level.as_ref(),
             _ => None,
         }
     }
@@ -211,6 +266,7 @@ impl<const D: usize> fmt::Debug for Datum<D> {
             Datum::Piecewise { .. } => f.write_str("Piecewise(..)"),
             Datum::Discrete(u) => u.fmt(f),
             Datum::Shifted(datum) => datum.fmt(f),
+            Datum::Sum(sum) => sum.fmt(f),
         }
     }
 }
@@ -266,15 +322,14 @@ impl<const D: usize> Shifted<D> {
     fn level(&self) -> Option<&Field<D>> {
         self.level.as_ref()
     }
+    /// Datum and factor, as far as they are given.
+    fn parts(&self) -> impl Iterator<Item = &Datum<D>> {
+        [&self.datum, &self.factor].into_iter().flatten().map(|part| &**part)
+    }
     /// The larger degree of datum and factor, where both are known.
     fn degree_on(&self, mesh: &Mesh<D>, stated: Option<usize>) -> Option<usize> {
-        let parts = [&self.datum, &self.factor].into_iter().flatten();
         let degree = |largest: usize, of: &Datum<D>| Some(largest.max(of.degree_on(mesh, stated)?));
-        parts.map(|of| &**of).try_fold(0, degree)
-    }
-    /// A discrete function that it contains.
-    fn discrete(&self) -> Option<&DiscreteFunction<D>> {
-        [&self.datum, &self.factor].into_iter().flatten().find_map(|of| of.discrete())
+        self.parts().try_fold(0, degree)
     }
     /// A unit of rounding in values that are the difference of a datum and a constant.
     fn rounding(&self) -> f64 {
@@ -285,5 +340,12 @@ impl<const D: usize> Shifted<D> {
 impl<const D: usize> fmt::Debug for Shifted<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Shifted").field("datum", &self.datum).field("factor", &self.factor).finish()
+    }
+}
+
+impl<const D: usize> fmt::Debug for Sum<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Sum")?;
+        f.debug_list().entries(&*self.terms).finish()
     }
 }

@@ -1,9 +1,12 @@
 //! A datum as a problem has it: without a name, and by the names of regions or boundary groups.
 
+use super::Datum;
+
 /// A datum without a name, and data for named regions of cells or named groups of boundary facets.
 ///
 /// A cell in several named groups takes the datum that was given first; a cell in none of them takes
-/// the datum without a name. Boundary facets likewise.
+/// the datum without a name. Boundary facets likewise. A problem in which a name has two data, or which has two
+/// without a name, is not solved: [`Error::GivenTwice`](crate::error::Error::GivenTwice).
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct Given<F> {
@@ -11,6 +14,8 @@ pub struct Given<F> {
     pub everywhere: Option<F>,
     /// Data by the name of a region or boundary group, in the order in which they were given.
     pub named: Vec<(String, F)>,
+    /// Whether a datum without a name took the place of another.
+    is_replaced: bool,
 }
 
 impl<F> Given<F> {
@@ -34,19 +39,42 @@ impl<F> Given<F> {
     pub(crate) fn give(&mut self, name: Option<&str>, datum: F) {
         match name {
             Some(name) => self.named.push((name.to_owned(), datum)),
-            None => self.everywhere = Some(datum),
+            None => self.is_replaced |= self.everywhere.replace(datum).is_some(),
+        }
+    }
+    /// The name for which there are two data, none for those without a name; nothing where there is one of each.
+    pub(super) fn given_twice(&self) -> Option<Option<&str>> {
+        let is_second =
+            |k: &usize| self.named[..*k].iter().any(|(name, _)| *name == self.named[*k].0);
+        let second = (0..self.named.len()).find(is_second).map(|k| Some(&self.named[k].0[..]));
+        second.or(self.is_replaced.then_some(None))
+    }
+}
+
+impl<const D: usize> Given<Datum<D>> {
+    /// Adds a datum to that of a named group, or to that without a name.
+    pub(super) fn add(&mut self, name: Option<&str>, datum: impl Into<Datum<D>>) {
+        let known = match name {
+            Some(name) => {
+                self.named.iter_mut().find(|known| known.0 == name).map(|known| &mut known.1)
+            }
+            None => self.everywhere.as_mut(),
+        };
+        match known {
+            Some(known) => *known = known.plus(datum.into()),
+            None => self.give(name, datum.into()),
         }
     }
 }
 
 impl<F> Default for Given<F> {
     fn default() -> Self {
-        Self { everywhere: None, named: Vec::new() }
+        Self { everywhere: None, named: Vec::new(), is_replaced: false }
     }
 }
 
 impl<F> From<F> for Given<F> {
     fn from(datum: F) -> Self {
-        Self { everywhere: Some(datum), named: Vec::new() }
+        Self { everywhere: Some(datum), ..Self::default() }
     }
 }

@@ -28,7 +28,7 @@ pub(crate) use body_constants::BodyConstants;
 #[cfg(feature = "problem-files")]
 pub(crate) use datum::BoundaryField;
 pub(crate) use datum::Field;
-pub use datum::{BoundaryFlux, Datum, Shifted};
+pub use datum::{BoundaryFlux, Datum, Shifted, Sum};
 pub use discrete_function::DiscreteFunction;
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
 pub use given::Given;
@@ -45,7 +45,7 @@ use crate::real::Point;
 #[derive(Clone, Default)]
 #[non_exhaustive]
 pub struct Problem<const D: usize> {
-    /// The load `f` per unit volume.
+    /// The load `f` per unit volume, the sum of those given for a name.
     pub source: Given<Datum<D>>,
     /// Dirichlet data `u_D`; zero where absent.
     pub dirichlet: Given<Datum<D>>,
@@ -119,19 +119,20 @@ impl<const D: usize> Problem<D> {
     pub fn new() -> Self {
         Self::default()
     }
-    /// Sets a constant load.
+    /// Adds a constant load. Loads of one name, or without a name, add up; to have another in place of one, set
+    /// [the field](field@Problem::source).
     #[must_use]
     pub fn constant_source(mut self, f: f64) -> Self {
-        self.source.everywhere = Some(Datum::Constant(f));
+        self.source.add(None, f);
         self
     }
-    /// Sets a load that is a smooth function of space.
+    /// Adds a load that is a smooth function of space.
     #[must_use]
     pub fn source(mut self, f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.source.everywhere = Some(Datum::Function(Arc::new(f)));
+        self.source.add(None, f);
         self
     }
-    /// Sets a load that may jump, or have a kink, where `level` changes its sign: a rule across a jump
+    /// Adds a load that may jump, or have a kink, where `level` changes its sign: a rule across a jump
     /// would leave an error that is larger than that of the scheme. Several interfaces are the zeros
     /// of a product.
     ///
@@ -156,20 +157,20 @@ impl<const D: usize> Problem<D> {
         f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
         level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.source.everywhere = Some(Datum::piecewise(f, level));
+        self.source.add(None, Datum::piecewise(f, level));
         self
     }
-    /// Sets a load that is a discrete function. Its integrals are exact where it is a polynomial in each cell: on its
+    /// Adds a load that is a discrete function. Its integrals are exact where it is a polynomial in each cell: on its
     /// own mesh and on uniform refinements of it.
     #[must_use]
     pub fn discrete_source(mut self, f: DiscreteFunction<D>) -> Self {
-        self.source.everywhere = Some(f.into());
+        self.source.add(None, f);
         self
     }
     /// Sets Dirichlet data.
     #[must_use]
     pub fn dirichlet(mut self, u: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.dirichlet.everywhere = Some(u.into());
+        self.dirichlet.give(None, u.into());
         self
     }
     /// Sets Neumann data, a function of the point and the outward normal.
@@ -178,7 +179,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         q: impl Fn(&Point<D>, &Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.neumann.everywhere = Some(BoundaryFlux::Function(Arc::new(q)));
+        self.neumann.give(None, BoundaryFlux::Function(Arc::new(q)));
         self
     }
     /// Sets the diffusion coefficient.
@@ -190,7 +191,7 @@ impl<const D: usize> Problem<D> {
     /// jumps within them no element reaches more than the order 1/2 in H1.
     #[must_use]
     pub fn coefficient(mut self, alpha: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.coefficient.everywhere = Some(alpha.into());
+        self.coefficient.give(None, alpha.into());
         self
     }
     /// Sets a diffusion coefficient that jumps where `level` changes its sign. Schemes evaluate the coefficient at the
@@ -203,14 +204,14 @@ impl<const D: usize> Problem<D> {
         alpha: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
         level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.coefficient.everywhere = Some(Datum::piecewise(alpha, level));
+        self.coefficient.give(None, Datum::piecewise(alpha, level));
         self
     }
     /// Sets the reaction coefficient: a number, a closure whose argument is written with its
     /// type, `|x: &Point<2>| ..`, or [`Datum::piecewise`].
     #[must_use]
     pub fn reaction(mut self, c: impl Into<Datum<D>>) -> Self {
-        self.reaction.everywhere = Some(c.into());
+        self.reaction.give(None, c.into());
         self
     }
     /// Sets an obstacle from below.
@@ -219,7 +220,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.lower.everywhere = Some(psi.into());
+        self.lower.give(None, psi.into());
         self
     }
     /// Sets an obstacle from above.
@@ -228,33 +229,33 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.upper.everywhere = Some(psi.into());
+        self.upper.give(None, psi.into());
         self
     }
     /// Sets an obstacle from below that is a discrete function. One with jumps bounds each cell by its own values; for
     /// unknowns that cells share the largest of them holds.
     #[must_use]
     pub fn discrete_obstacle_below(mut self, psi: DiscreteFunction<D>) -> Self {
-        self.lower.everywhere = Some(psi.into());
+        self.lower.give(None, psi.into());
         self
     }
     /// Sets an obstacle from above that is a discrete function, as [`Problem::discrete_obstacle_below`]; for shared
     /// unknowns the smallest value holds.
     #[must_use]
     pub fn discrete_obstacle_above(mut self, psi: DiscreteFunction<D>) -> Self {
-        self.upper.everywhere = Some(psi.into());
+        self.upper.give(None, psi.into());
         self
     }
     /// Sets Dirichlet data that are a discrete function: at a vertex the mean of its values there.
     #[must_use]
     pub fn discrete_dirichlet(mut self, u: DiscreteFunction<D>) -> Self {
-        self.dirichlet.everywhere = Some(u.into());
+        self.dirichlet.give(None, u.into());
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact boundary.
     #[must_use]
     pub fn signorini(mut self, gap: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.gap.everywhere = Some(gap.into());
+        self.gap.give(None, gap.into());
         self
     }
     /// Sets the constraint set: where obstacles and gap bind. A [`Study`](crate::study::Study) may

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::datum::{BoundaryFlux, Datum};
 use super::{Given, Problem};
+use crate::error::Error;
 use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryCondition, Mesh, MeshError};
@@ -43,10 +44,10 @@ impl<const D: usize> Problem<D> {
         self.coefficient.give(Some(region), alpha.into());
         self
     }
-    /// Sets the load in a region, as [`Problem::coefficient_in`] the coefficient.
+    /// Adds a load in a region: a number or a closure, as for [`Problem::coefficient_in`].
     #[must_use]
     pub fn source_in(mut self, region: &str, f: impl Into<Datum<D>>) -> Self {
-        self.source.give(Some(region), f.into());
+        self.source.add(Some(region), f);
         self
     }
     /// Sets the reaction coefficient in a region.
@@ -100,6 +101,24 @@ impl<const D: usize> Problem<D> {
         let data = [&self.coefficient, &self.source, &self.reaction, &self.lower, &self.upper];
         data.into_iter().flat_map(Given::names)
     }
+    /// Refuses two data of one kind for one name, or without a name.
+    pub(crate) fn check_given_once(&self) -> Result<(), Error> {
+        let check = |(datum, twice): (&'static str, Option<Option<&str>>)| match twice {
+            None => Ok(()),
+            Some(name) => Err(Error::GivenTwice { datum, name: name.map(excerpt) }),
+        };
+        let data = [
+            ("source", self.source.given_twice()),
+            ("coefficient", self.coefficient.given_twice()),
+            ("reaction", self.reaction.given_twice()),
+            ("lower obstacle", self.lower.given_twice()),
+            ("upper obstacle", self.upper.given_twice()),
+            ("Dirichlet datum", self.dirichlet.given_twice()),
+            ("Neumann datum", self.neumann.given_twice()),
+            ("gap", self.gap.given_twice()),
+        ];
+        data.into_iter().try_for_each(check)
+    }
     /// The boundary groups that have data, each with its condition.
     fn boundary_groups(&self) -> impl Iterator<Item = (&str, BoundaryCondition)> {
         let dirichlet = self.dirichlet.names().map(|name| (name, BoundaryCondition::Dirichlet));
@@ -122,7 +141,7 @@ impl<const D: usize> Problem<D> {
     /// The data in a region with these names and on a boundary group with these names, without names.
     pub(crate) fn in_group(&self, region: &[String], boundary: &[String]) -> Self {
         fn of<F: Clone>(given: &Given<F>, names: &[String]) -> Given<F> {
-            Given { everywhere: given.of(names).cloned(), named: Vec::new() }
+            given.of(names).cloned().map_or_else(Given::default, Given::from)
         }
         Self {
             coefficient: of(&self.coefficient, region),

@@ -47,6 +47,17 @@ impl<F: Clone> ByGroup<F> {
             false => Self { everywhere: change(0, self.everywhere.as_ref()), by_group: Vec::new() },
         }
     }
+    /// The same without what lies on boundary groups of another condition: it is no part of the problem.
+    fn on(mut self, condition: BoundaryCondition, groups: &[BoundaryGroup]) -> Self {
+        let has_condition = |group: &BoundaryGroup| group.condition == Some(condition);
+        self.everywhere = self.everywhere.filter(|_| groups.iter().any(has_condition));
+        for (datum, group) in self.by_group.iter_mut().zip(groups) {
+            if !has_condition(group) {
+                *datum = None;
+            }
+        }
+        self
+    }
 }
 
 impl<F> ByGroup<F> {
@@ -84,7 +95,7 @@ impl<F> ByGroup<F> {
 /// Data that are functions of space.
 pub(crate) type DataByGroup<const D: usize> = ByGroup<Datum<D>>;
 
-/// The data of a problem on a mesh.
+/// The data of a problem on a mesh, those of the boundary on facets with their condition.
 #[derive(Clone)]
 pub(crate) struct DataOnMesh<const D: usize> {
     pub coefficient: DataByGroup<D>,
@@ -106,15 +117,16 @@ impl<const D: usize> DataOnMesh<D> {
     /// The data of a problem on a mesh.
     ///
     /// # Errors
-    /// [`Error::UnknownGroup`] for a name that the mesh does not have, [`Error::Mesh`] for a boundary
+    /// [`Error::GivenTwice`], [`Error::UnknownGroup`] for a name that the mesh does not have, [`Error::Mesh`] for a boundary
     /// group of undecided condition, [`Error::UnboundBoundary`] for one with another condition than its data.
     pub fn new(problem: &Problem<D>, mesh: &Mesh<D>) -> Result<Self, Error> {
+        problem.check_given_once()?;
         mesh.check_boundary_conditions()?;
         let groups = (mesh.regions(), mesh.boundary_groups());
         let found = Self::of_groups(problem, groups.0, groups.1, mesh.groups_inside())?;
         let Self { coefficient, source, reaction, lower, upper, gap, .. } = &found;
         let data = [coefficient, source, reaction, lower, upper, gap].into_iter();
-        let discrete = data.flat_map(|data| data.all()).filter_map(|datum| datum.discrete());
+        let discrete = data.flat_map(|data| data.all()).flat_map(|datum| datum.discrete());
         discrete.for_each(|u| u.prepare_for(mesh));
         Ok(found)
     }
@@ -150,8 +162,7 @@ impl<const D: usize> DataOnMesh<D> {
 
     /// Whether two cells may have different obstacles at a point that both contain.
     pub fn obstacles_differ(&self) -> bool {
-        let differ =
-            |data: &DataByGroup<D>| data.has_names() || data.any(&|psi| psi.discrete().is_some());
+        let differ = |data: &DataByGroup<D>| data.has_names() || data.any(&|psi| psi.is_discrete());
         self.constants_differ || differ(&self.lower) || differ(&self.upper)
     }
 
@@ -198,9 +209,12 @@ impl<const D: usize> DataOnMesh<D> {
             reaction: in_regions(&problem.reaction),
             lower: in_regions(&problem.lower),
             upper: in_regions(&problem.upper),
-            dirichlet: ByGroup::new(&problem.dirichlet, &groups).or(exact),
-            gap: ByGroup::new(&problem.gap, &groups),
-            neumann: ByGroup::new(&problem.neumann, &groups),
+            dirichlet: ByGroup::new(&problem.dirichlet, &groups)
+                .or(exact)
+                .on(BoundaryCondition::Dirichlet, boundary),
+            gap: ByGroup::new(&problem.gap, &groups).on(BoundaryCondition::Contact, boundary),
+            neumann: ByGroup::new(&problem.neumann, &groups)
+                .on(BoundaryCondition::Neumann, boundary),
             dirichlet_rank: groups.iter().map(|names| rank(names)).collect(),
             constants_differ: false,
         })

@@ -1,5 +1,7 @@
 //! The contents of a problem file.
 
+use std::path::PathBuf;
+
 use crate::scenes::AnyScene;
 
 /// The contents of a problem file and its mesh file.
@@ -11,6 +13,8 @@ pub struct ProblemFile {
     pub scene: AnyScene,
     /// The [`fingerprint`](crate::input::fingerprint)s of the files: `problem`, and `mesh` if there is one.
     pub fingerprints: Vec<(&'static str, String)>,
+    /// The paths of these files.
+    pub paths: Vec<PathBuf>,
     /// Parts of the mesh file that are not used, after its path.
     pub warnings: Vec<String>,
 }

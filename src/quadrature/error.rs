@@ -18,6 +18,12 @@ pub enum QuadratureError {
         /// The largest degree of a rule that the family has in this dimension.
         largest: usize,
     },
+    /// There is no simplex of a dimension.
+    #[error("there are no rules in dimension {dimension}: simplices have the dimensions 0 to 3")]
+    Dimension {
+        /// The dimension asked for.
+        dimension: usize,
+    },
     /// The numbers of points and weights differ, or there are none.
     #[error("{points} points have {weights} weights: a rule has one weight for each point")]
     Lengths {

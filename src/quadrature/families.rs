@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use super::error::QuadratureError;
-use super::rule::{Rule, vertex_point};
+use super::rule::{Rule, check_dimension, vertex_point};
 
 /// A family of quadrature rules on simplices: which rule integrates data of a given degree.
 ///
@@ -21,7 +21,7 @@ pub trait Quadrature: Debug + Send + Sync {
 }
 
 /// The rules of [`Rule::new`]: few points on the medians for degrees up to two, above conical products
-/// of Gauss-Jacobi rules; of every degree, with positive weights and points inside.
+/// of Gauss-Jacobi rules; of every degree up to [`Rule::LARGEST_DEGREE`], with positive weights and points inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConicalProduct;
 
@@ -30,7 +30,7 @@ impl Quadrature for ConicalProduct {
         "conical"
     }
     fn rule(&self, dimension: usize, degree: usize) -> Result<Rule, QuadratureError> {
-        Ok(Rule::new(dimension, degree))
+        Rule::of_family(self.name(), dimension, degree)
     }
 }
 
@@ -50,6 +50,7 @@ impl Quadrature for VertexRule {
         "vertices"
     }
     fn rule(&self, dimension: usize, _: usize) -> Result<Rule, QuadratureError> {
+        check_dimension(dimension)?;
         let n = dimension + 1;
         Ok(Rule { points: (0..n).map(vertex_point).collect(), weights: vec![1.0 / n as f64; n] })
     }

@@ -16,7 +16,7 @@ impl OrthonormalPolynomials {
     /// All polynomials up to this degree, by the Gram-Schmidt process.
     ///
     /// # Panics
-    /// If the dimension is above three.
+    /// If there is no [`Rule`] of twice the degree.
     pub fn new(dimension: usize, degree: usize) -> Self {
         let powers = powers(dimension, degree);
         let rule = Rule::new(dimension, 2 * degree);

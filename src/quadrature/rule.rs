@@ -23,24 +23,46 @@ impl Rule {
     /// 1971, section 2.5).
     ///
     /// # Panics
-    /// If the dimension is above three.
+    /// If the dimension is above three or the degree above [`Rule::LARGEST_DEGREE`], for which
+    /// [`ConicalProduct`](super::ConicalProduct) returns an error.
     pub fn new(dimension: usize, degree: usize) -> Self {
+        Self::of_family("conical", dimension, degree).unwrap_or_else(|error| panic!("{error}"))
+    }
+    /// The largest degree of a rule, with fifty points in each direction: 125000 in space.
+    pub const LARGEST_DEGREE: usize = 99;
+    /// The rule of [`Rule::new`], as one of the family with this name.
+    ///
+    /// # Errors
+    /// [`QuadratureError::Dimension`], [`QuadratureError::NoRule`].
+    pub(super) fn of_family(
+        family: &str,
+        dimension: usize,
+        degree: usize,
+    ) -> Result<Self, QuadratureError> {
+        let largest = Self::LARGEST_DEGREE;
+        check_dimension(dimension)?;
         match (dimension, degree) {
-            (0, _) | (_, 0 | 1) => Self::barycentre(dimension),
-            (_, 2) => Self::medians(dimension),
-            _ => Self::conical(dimension, degree / 2 + 1),
+            (0, _) | (_, 0 | 1) => Ok(Self::barycentre(dimension)),
+            (_, 2) => Ok(Self::medians(dimension)),
+            _ if degree <= largest => Ok(Self::conical(dimension, degree / 2 + 1)),
+            _ => {
+                let family = family.to_owned();
+                Err(QuadratureError::NoRule { family, dimension, degree, largest })
+            }
         }
     }
 
     /// A rule of one's own on the simplex of this dimension.
     ///
     /// # Errors
-    /// [`QuadratureError::Lengths`], [`QuadratureError::Point`], [`QuadratureError::Weights`].
+    /// [`QuadratureError::Dimension`], [`QuadratureError::Lengths`], [`QuadratureError::Point`],
+    /// [`QuadratureError::Weights`].
     pub fn from_points(
         dimension: usize,
         points: Vec<[f64; 4]>,
         weights: Vec<f64>,
     ) -> Result<Self, QuadratureError> {
+        check_dimension(dimension)?;
         let near_one = |sum: f64| (sum - 1.0).abs() < 1e-12;
         if points.len() != weights.len() || points.is_empty() {
             return Err(QuadratureError::Lengths { points: points.len(), weights: weights.len() });
@@ -102,6 +124,11 @@ impl Rule {
     pub fn iter(&self) -> impl Iterator<Item = (&[f64; 4], f64)> {
         self.points.iter().zip(self.weights.iter().copied())
     }
+}
+
+/// Refuses a dimension that no simplex has.
+pub(super) fn check_dimension(dimension: usize) -> Result<(), QuadratureError> {
+    if dimension <= 3 { Ok(()) } else { Err(QuadratureError::Dimension { dimension }) }
 }
 
 /// The barycentric coordinates of vertex `k` of a simplex.

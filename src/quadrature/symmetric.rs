@@ -24,7 +24,7 @@ impl Quadrature for FullySymmetric {
         let orbits = match (dimension, degree) {
             (2, 4..=10) => TRIANGLE[degree - 4],
             (3, 4..=8) => TETRAHEDRON[degree.max(5) - 5],
-            _ => return Ok(Rule::new(dimension, degree)),
+            _ => return Rule::of_family(self.name(), dimension, degree),
         };
         let mut rule = Rule { points: Vec::new(), weights: Vec::new() };
         for (weight, first) in orbits {

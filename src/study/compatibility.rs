@@ -19,9 +19,10 @@ use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 /// the contact condition may fail there: it is tested on every contact facet.
 ///
 /// # Errors
-/// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact boundary, or if the data of
+/// [`Error::GivenTwice`]; [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact boundary, or if the data of
 /// the scene are no data on the mesh: not finite, or without an admissible value.
 pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Error> {
+    scene.problem.check_given_once()?;
     let Domain::Mesh(mesh) = &scene.domain else {
         return check_contact(scene).map(|()| None);
     };

@@ -6,13 +6,12 @@ use super::file_name::file_name;
 use crate::error::Error;
 use crate::files::replace;
 use crate::nested::Solved;
-use crate::paraview::{FieldScalar, write_pvd};
+use crate::paraview::write_pvd;
 
-/// Where a study writes the fields of which levels, and with which scalar.
+/// Where a study writes the fields of which levels.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FieldFiles {
     pub directory: Option<PathBuf>,
-    pub scalar: FieldScalar,
     pub all_levels: bool,
 }
 
@@ -53,9 +52,7 @@ impl FieldFiles {
             return Ok(());
         }
         replace(&file, |draft| {
-            solved.write_vtu_against(draft, reference, |file| {
-                file.number("level", level as f64).scalar(self.scalar)
-            })
+            solved.write_vtu_against(draft, reference, |file| file.number("level", level as f64))
         })?;
         if !self.all_levels {
             return Ok(());

@@ -15,12 +15,13 @@ use crate::input::read_file;
 
 const REPORT: &str = "report.json";
 const ROWS: &str = "report.jsonl";
+const REQUEST: &str = "request.json";
 
 /// The rows of a run in a directory: `report.jsonl` has each finished row as one line of JSON, written
-/// before the next row begins, and `report.json` the program, with `"complete": false`. However the run
-/// ends, [`Report::read`] finds the rows, and [`Journal::resume`] goes on from them. A run that ends of
-/// itself replaces `report.json` by the whole report ([`Report::write`]). Two runs at a time need two directories:
-/// the program `unilateral` locks its own.
+/// before the next row begins, `request.json` the program whose rows these are, and `report.json` the program with
+/// `"complete": false`. However the run ends, [`Report::read`] finds the rows, and [`Journal::resume`] goes on from
+/// them. A run that ends of itself replaces `report.json` by the whole report ([`Report::write`]). Two runs at a time
+/// need two directories: the program `unilateral` locks its own.
 ///
 /// ```
 /// use unilateral::prelude::*;
@@ -64,22 +65,26 @@ impl Journal {
     }
 
     /// The journal of a directory with its rows, for a run that asks for rows with these keys
-    /// ([`Study::keys`](super::Study::keys)); an empty one where there is none. Rows without a `report.json` say
-    /// themselves what they are; that their program is this one is for the caller to know.
+    /// ([`Study::keys`](super::Study::keys)); an empty one where there is none. Where `report.json` has been deleted,
+    /// `request.json` says whose the rows of `report.jsonl` are.
     ///
     /// # Errors
     /// [`Error::OtherRequest`] if version, precision, number of runs or request of the program are not
-    /// those of the journal, or if it has a row that is not asked for; [`Error::Read`], [`Error::Write`].
-    /// Nothing is written before these checks.
+    /// those of the journal, or if it has a row that is not asked for; [`Error::Read`], also of rows of which neither
+    /// file says whose they are; [`Error::Write`]. Nothing is written before these checks.
     pub fn resume(
         directory: impl AsRef<Path>,
         program: Program,
         keys: &[RowKey],
     ) -> Result<Self, Error> {
         let directory = directory.as_ref();
-        let (earlier, rows) = match directory.join(REPORT).exists() {
-            true => Report::read(directory).map(|report| (report.program, report.rows))?,
-            false => (program.clone(), rows_of(&directory.join(ROWS))?),
+        let has = |name: &str| directory.join(name).exists();
+        let (earlier, rows) = if has(REPORT) {
+            Report::read(directory).map(|report| (report.program, report.rows))?
+        } else if has(ROWS) {
+            (program_of_rows(directory)?, rows_of(&directory.join(ROWS))?)
+        } else {
+            (program.clone(), Vec::new())
         };
         let words = |p: &Program| {
             let own = [&p.name, &p.version, &p.precision].map(String::clone);
@@ -107,17 +112,12 @@ impl Journal {
         Self::with_rows(directory, program, rows)
     }
 
-    /// Whether a directory has rows alone, without the `report.json` that says of which request they are.
-    pub fn has_rows_alone(directory: impl AsRef<Path>) -> bool {
-        let [rows, report] = [ROWS, REPORT].map(|name| directory.as_ref().join(name));
-        rows.exists() && !report.exists()
-    }
-
     fn with_rows(directory: &Path, program: Program, kept: Vec<Row>) -> Result<Self, Error> {
         let path = directory.join(ROWS);
         let text: String = kept.iter().map(line).collect();
         // before the program of the new run, so that it never stands beside the rows of another run
         replace(&path, |draft| fs::write(draft, &text))?;
+        replace(&directory.join(REQUEST), |draft| fs::write(draft, json(&program)))?;
         let report = Report { program, complete: false, rows: kept };
         replace(&directory.join(REPORT), |draft| fs::write(draft, report.to_json()))?;
         let file =
@@ -197,6 +197,20 @@ impl Journal {
 /// A row as a line of JSON.
 fn line(row: &Row) -> String {
     serde_json::to_string(row).expect("a row is plain data with string keys") + "\n"
+}
+
+/// A program as JSON.
+fn json(program: &Program) -> String {
+    serde_json::to_string_pretty(program).expect("a program is plain data with string keys") + "\n"
+}
+
+/// The program whose rows a directory has, where no report says so.
+fn program_of_rows(directory: &Path) -> Result<Program, Error> {
+    let path = directory.join(REQUEST);
+    let rest = format!("the rows of {ROWS} may be those of another request: delete them too");
+    let bytes = read_file(&path).map_err(|why| read_error(&path, format!("{why}; {rest}")))?;
+    serde_json::from_slice(&bytes)
+        .map_err(|_| read_error(&path, format!("it is no request, or damaged; {rest}")))
 }
 
 impl Report {

@@ -133,6 +133,43 @@ fn functions_on_other_meshes_are_integrated_by_the_rule() {
     assert_eq!(unproven(&other), [Unproven::Quadrature]);
 }
 
+/// On a mesh with a multiple of the cells that is no refinement a function with kinks, or with jumps, is no polynomial in
+/// each cell: the load is integrated by a rule, and the bound says so.
+#[test]
+fn functions_on_meshes_with_a_multiple_of_the_cells_are_no_polynomials() {
+    let mesh = cube::<2>(2);
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let inner = BoxDomain::dirichlet(Point::zeros(), Point::repeat(0.9));
+    let others = [(square, [4, 2]), (inner.clone(), [2, 2]), (inner, [4, 4])];
+    for name in ["p1", "sipg"] {
+        let u = function(name, &mesh, &numbers(unknowns(name, &mesh)));
+        let problem = Problem::new().discrete_source(u);
+        let fine = mesh.refine().unwrap().0;
+        let found = |mesh: &Mesh<2>, quadrature: DataQuadrature| {
+            let mut nested = NestedIteration::new(&problem, mesh).quadrature(quadrature);
+            let solved = nested.solve(&ConformingP1).unwrap();
+            (solved.bound().unwrap().unproven, solved.energy().unwrap().unwrap())
+        };
+        let rules = [4, 14].map(|degree| DataQuadrature::default().cell(degree));
+        // the energy depends on the rule where the function is no polynomial
+        let figures = |mesh: &Mesh<2>| {
+            let [(unproven, coarse), (_, fine)] = rules.map(|rule| found(mesh, rule));
+            (unproven, (coarse / fine - 1.0).abs())
+        };
+        for own in [&mesh, &fine] {
+            let (unproven, difference) = figures(own);
+            assert!(unproven.is_empty() && difference < 1e-12, "{name}: {difference:e}");
+        }
+        for (domain, counts) in &others {
+            let other = Mesh::kuhn_box(domain, *counts).unwrap();
+            assert!(other.n_cells().is_multiple_of(mesh.n_cells()));
+            let (unproven, difference) = figures(&other);
+            assert_eq!(unproven, [Unproven::Quadrature], "{name} {counts:?}");
+            assert!(difference > 1e-6, "{name} {counts:?}: {difference:e}");
+        }
+    }
+}
+
 /// A mesh of a disc lies within the disc: the function on a coarse one is continued to a finer one, but not far.
 #[test]
 fn functions_are_continued_to_meshes_of_the_same_domain_alone() {
@@ -259,5 +296,33 @@ fn results_are_kept_and_the_next_solve_starts_from_their_contact() {
         assert_eq!(again.solve(&*scheme).unwrap().outer(), Some(1), "{name}");
         let lowest = last.function.value_at(&Point::repeat(0.5)).unwrap();
         assert!((lowest + 0.02).abs() < 1e-15, "{name}: {lowest}");
+    }
+}
+
+/// The time steps of docs/own_problems.md: the load acts beside that of the last step, so that the solution of the
+/// problem without time is their end.
+#[test]
+fn implicit_steps_keep_the_load() {
+    let (mesh, dt) = (cube::<2>(6), 0.1);
+    let first = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.2);
+    let end = solve(&first, &mesh, &Sipg::default()).unwrap();
+    assert!(end.active() > Some(0));
+    let mut last =
+        solve(&first.clone().constant_source(7.0), &mesh, &Sipg::default()).unwrap().keep();
+    for _ in 0..40 {
+        let old = last.unwrap();
+        let step = Problem::new()
+            .reaction(1.0 / dt)
+            .constant_source(-8.0)
+            .discrete_source(old.function.times(1.0 / dt))
+            .obstacle_below(|_| -0.2);
+        let mut step = NestedIteration::new(&step, &mesh).start_from(&old.solution);
+        last = step.solve(&Sipg::default()).unwrap().keep();
+    }
+    let last = last.unwrap().function;
+    // inside cells: at vertices the function has jumps
+    for x in (0..mesh.n_cells()).map(|cell| mesh.barycentre(cell)) {
+        let [found, expected] = [last.value_at(&x), end.value_at(&x)].map(Option::unwrap);
+        assert!((found - expected).abs() < 1e-8, "{x}: {found} {expected}");
     }
 }

@@ -213,8 +213,9 @@ fn every_datum_is_held_against_what_a_bound_needs() {
         .side(0, 1, BoundaryCondition::Neumann);
     let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
     let x = |x: &Point<2>| x[0];
-    let constant =
-        || Problem::new().constant_source(-1.0).signorini(|_| -0.3).obstacles_of_degree(0);
+    let under_gap = |problem: Problem<2>| problem.signorini(|_| -0.3).obstacles_of_degree(0);
+    let loaded = || Problem::new().constant_source(-1.0);
+    let constant = || under_gap(loaded());
     let unproven = |problem: &Problem<2>| -> [Vec<Unproven>; 2] {
         [&ConformingP1 as &dyn Scheme<2>, &ConformingP2]
             .map(|scheme| solve(problem, &mesh, scheme).unwrap().bound().unwrap().unproven)
@@ -224,7 +225,8 @@ fn every_datum_is_held_against_what_a_bound_needs() {
         ("none", constant().polynomial_data(0), vec![], vec![]),
         (
             "source with a level",
-            constant().piecewise_source(|_| -1.0, move |p| x(p) - 0.3).polynomial_data(0),
+            under_gap(Problem::new().piecewise_source(|_| -1.0, move |p| x(p) - 0.3))
+                .polynomial_data(0),
             vec![Quadrature],
             vec![Quadrature],
         ),
@@ -248,15 +250,10 @@ fn every_datum_is_held_against_what_a_bound_needs() {
             vec![Quadrature],
             vec![Quadrature],
         ),
-        (
-            "linear gap",
-            constant().signorini(move |p| x(p) - 0.5).polynomial_data(1),
-            vec![],
-            vec![],
-        ),
+        ("linear gap", loaded().signorini(move |p| x(p) - 0.5).polynomial_data(1), vec![], vec![]),
         (
             "gap",
-            constant().signorini(move |p| -0.3 - square(p)).polynomial_data(2),
+            loaded().signorini(move |p| -0.3 - square(p)).polynomial_data(2),
             vec![Obstacle],
             vec![],
         ),
@@ -293,4 +290,51 @@ fn every_datum_is_held_against_what_a_bound_needs() {
     ] {
         assert_eq!(unproven(&problem), [of_linears, of_quadratics], "{label}");
     }
+}
+
+/// What is given where another condition holds is no part of the problem: an exact solution of unknown degree beside
+/// Dirichlet data of its own, and data without a name beside those of all groups.
+#[test]
+fn data_of_other_sides_take_no_guarantee_away() {
+    use BoundaryCondition::{Contact, Neumann};
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let bounded = square.clone().side(1, 0, Contact).side(0, 1, Neumann);
+    let data = || {
+        let of_domain = Problem::new().constant_source(-1.0).obstacle_below(|_| -0.2);
+        let of_domain = of_domain.obstacles_of_degree(0);
+        let held = of_domain.dirichlet_on("left", 0.0).dirichlet_on("top", 0.0);
+        let mut held = held.signorini_on("bottom", -0.1);
+        held.neumann.named.push(("right".to_owned(), BoundaryFlux::Constant(0.0)));
+        held
+    };
+    let wave = |x: &Point<2>| x[0].sin() * x[1].cos() - 5.0;
+    let exact = |problem: Problem<2>| problem.exact(wave, |_| Point::zeros());
+    let mesh = |domain: &BoxDomain<2>, problem: &Problem<2>| {
+        problem.bind_boundary(Mesh::kuhn_box(domain, [4, 4]).unwrap()).unwrap()
+    };
+    let unproven = |problem: &Problem<2>, mesh: &Mesh<2>| {
+        ["p1", "p2", "sipg"].map(|name| {
+            let scheme: NamedScheme = name.parse().unwrap();
+            solve(problem, mesh, &*scheme.make()).unwrap().bound().unwrap().unproven
+        })
+    };
+    for (name, problem) in [
+        ("exact solution", exact(data())),
+        ("Dirichlet data", data().dirichlet(wave)),
+        ("Neumann data", data().neumann(move |x, _| wave(x))),
+        ("gap", data().signorini(wave)),
+    ] {
+        let found = unproven(&problem, &mesh(&bounded, &problem));
+        assert_eq!(found, [const { Vec::new() }; 3], "{name}");
+    }
+    // no side has the condition at all
+    let plain = Problem::new().constant_source(-1.0);
+    for problem in [plain.clone().signorini(wave), plain.neumann(move |x, _| wave(x))] {
+        let mesh = Mesh::kuhn_box(&square, [4, 4]).unwrap();
+        assert_eq!(unproven(&problem, &mesh), [const { Vec::new() }; 3]);
+    }
+    // on a Dirichlet side it counts
+    let open = exact(Problem::new().constant_source(-1.0));
+    let mesh = Mesh::kuhn_box(&square, [4, 4]).unwrap();
+    assert_eq!(unproven(&open, &mesh), [const { Unproven::Boundary }; 3].map(|term| vec![term]));
 }

@@ -27,6 +27,7 @@ mod unknowns;
 mod support {
     pub mod checks;
     pub mod meshes;
+    pub mod panics;
     pub mod rows;
     pub mod scheme_lists;
     pub mod schemes;

@@ -2,8 +2,10 @@
 
 use unilateral::algebra::Bound;
 use unilateral::error::Error;
+use unilateral::error_bound::Unproven;
 use unilateral::mesh::{BoundaryGroup, GroupedFacet, MeshError};
 use unilateral::prelude::*;
+use unilateral::problem::Datum;
 
 fn boxed<const D: usize>(names: &[&str]) -> Vec<Box<dyn Scheme<D>>> {
     names.iter().map(|name| name.parse::<NamedScheme>().unwrap().make()).collect()
@@ -69,7 +71,6 @@ fn names_agree_with_functions<const D: usize>(n: usize) {
         .coefficient(move |x| if is_right(x) { 100.0 } else { 1.0 })
         .source(move |x: &Point<D>| if is_right(x) { 2.0 } else { load(x) })
         .reaction(move |x: &Point<D>| if is_right(x) { 0.5 } else { 0.0 })
-        .dirichlet(|x| if x[0] < 0.5 { 1.0 } else { 0.25 })
         .obstacle_below(lower);
     let named = Problem::new()
         .coefficient_in("right", 100.0)
@@ -80,7 +81,10 @@ fn names_agree_with_functions<const D: usize>(n: usize) {
         .obstacle_below_in("right", |x: &Point<D>| x[0] - 2.0);
     // by sides in one dimension, where no side lies on both values
     let (plain, named) = match D {
-        1 => (plain, named.dirichlet_on("left", 1.0).dirichlet_on("right", 0.25)),
+        1 => (
+            plain.dirichlet(|x| if x[0] < 0.5 { 1.0 } else { 0.25 }),
+            named.dirichlet_on("left", 1.0).dirichlet_on("right", 0.25),
+        ),
         _ => (plain.dirichlet(|_| 0.75), named.dirichlet(|_| 0.75)),
     };
     for scheme in boxed::<D>(&["p1", "p2", "cr", "sipg", "wopsip", "sipg-p2"]) {
@@ -273,31 +277,31 @@ fn every_datum_by_name_has_the_documented_precedence() {
     let data: [NamedDatum; 8] = [
         (
             "coefficient",
-            |p, name, value| p.coefficient_in(name, value).neumann_on("one", |_, _| 0.0),
+            |p, name, value| p.coefficient_in(name, value),
             |p, value| p.coefficient(move |_| value),
             |of| 2.0 * energy(of, |x| x[0]),
         ),
         (
             "source",
-            |p, name, value| p.source_in(name, value).neumann_on("one", |_, _| 0.0),
+            |p, name, value| p.source_in(name, value),
             Problem::constant_source,
             |of| -energy(of, |_| 1.0),
         ),
         (
             "reaction",
-            |p, name, value| p.reaction_in(name, value).neumann_on("one", |_, _| 0.0),
+            |p, name, value| p.reaction_in(name, value),
             |p, value| p.reaction(value),
             |of| 2.0 * energy(of, |_| 1.0),
         ),
         (
             "lower obstacle",
-            |p, name, value| p.obstacle_below_in(name, value).neumann_on("one", |_, _| 0.0),
+            |p, name, value| p.obstacle_below_in(name, value),
             |p, value| p.obstacle_below(move |_| value),
             |of| bound(of, [0.5; 2]).lower().unwrap(),
         ),
         (
             "upper obstacle",
-            |p, name, value| p.obstacle_above_in(name, value).neumann_on("one", |_, _| 0.0),
+            |p, name, value| p.obstacle_above_in(name, value),
             |p, value| p.obstacle_above(move |_| value),
             |of| bound(of, [0.5; 2]).upper().unwrap(),
         ),
@@ -323,6 +327,11 @@ fn every_datum_by_name_has_the_documented_precedence() {
     ];
     for (name, on_group, everywhere, in_force) in data {
         let value = |problem: Problem<2>| {
+            let has_boundary = problem.dirichlet.is_given() || problem.neumann.is_given();
+            let problem = match has_boundary || problem.gap.is_given() {
+                true => problem,
+                false => problem.neumann_on("one", |_, _| 0.0),
+            };
             let mesh = problem.bind_boundary(named_twice()).unwrap();
             let of = Discretisation::new(&ConformingP1, &problem, &mesh, Default::default());
             in_force(&of.unwrap())
@@ -335,4 +344,118 @@ fn every_datum_by_name_has_the_documented_precedence() {
             assert!((found - 2.0).abs() < 1e-14, "{name}, {first} and everywhere: {found}");
         }
     }
+}
+
+/// The total load, which is the integral of the source.
+fn total_load<const D: usize>(problem: &Problem<D>, mesh: &Mesh<D>, name: &str) -> f64 {
+    let scheme = &*boxed::<D>(&[name])[0];
+    let of = Discretisation::new(scheme, problem, mesh, Default::default()).unwrap();
+    of.load().unwrap().iter().sum()
+}
+
+#[test]
+fn sources_of_one_name_add_up() {
+    // a constant, a function, jumps in two cells and a discrete function: 1 + 1/2 + 0.3 + 2 * 0.3 + 4
+    let line = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<1>::kuhn_box(&line, [4]).unwrap();
+    let four = {
+        let none = Problem::new();
+        let of = Discretisation::new(&ConformingP1, &none, &mesh, Default::default()).unwrap();
+        of.function(&[4.0; 5])
+    };
+    let problem = Problem::new()
+        .constant_source(1.0)
+        .source(|x| x[0])
+        .piecewise_source(|x| f64::from(x[0] < 0.3), |x| x[0] - 0.3)
+        .piecewise_source(|x| 2.0 * f64::from(x[0] > 0.7), |x| x[0] - 0.7)
+        .discrete_source(four);
+    for name in ["p1", "p2", "sipg"] {
+        let found = total_load(&problem, &mesh, name);
+        assert!((found - 6.4).abs() < 1e-13, "{name}: {found}");
+    }
+    // constants stay one: no quadrature
+    let constants = Problem::<1>::new().constant_source(1.0).constant_source(-3.0);
+    assert_eq!(format!("{constants:?}"), "Problem { source: Constant(-2.0) }");
+    // those of a name add up, and take precedence over the name given later and over none
+    let named = Problem::new()
+        .constant_source(70.0)
+        .source_in("one", 2.0)
+        .source_in("two", 500.0)
+        .source_in("one", |x: &Point<2>| x[0])
+        .constant_source(7.0);
+    let named = named.dirichlet_on("one", 0.0);
+    let mesh_of_names = named.bind_boundary(named_twice()).unwrap();
+    let found = total_load(&named, &mesh_of_names, "p1");
+    assert!((found - 2.5).abs() < 1e-13, "{found}");
+    // a bound is guaranteed if that of each term is
+    let unproven = |source: Datum<1>| {
+        let mut problem = Problem::new();
+        problem.source = source.into();
+        solve(&problem, &mesh, &ConformingP1).unwrap().bound().unwrap().unproven
+    };
+    let linear = Datum::polynomial(1, |x: &Point<1>| x[0]);
+    assert_eq!(unproven(linear.plus(2.0.into())), []);
+    assert_eq!(unproven(linear.plus(Datum::from(|x: &Point<1>| x[0]))), [Unproven::Quadrature]);
+}
+
+#[test]
+fn a_datum_that_is_given_twice_is_refused() {
+    type Give = fn(Problem<2>, Option<&str>, f64) -> Problem<2>;
+    let data: [(&str, Give); 7] = [
+        ("coefficient", |p, name, value| match name {
+            Some(name) => p.coefficient_in(name, value),
+            None => p.coefficient(move |_| value),
+        }),
+        ("reaction", |p, name, value| match name {
+            Some(name) => p.reaction_in(name, value),
+            None => p.reaction(value),
+        }),
+        ("lower obstacle", |p, name, value| match name {
+            Some(name) => p.obstacle_below_in(name, value),
+            None => p.obstacle_below(move |_| value),
+        }),
+        ("upper obstacle", |p, name, value| match name {
+            Some(name) => p.obstacle_above_in(name, value),
+            None => p.obstacle_above(move |_| value),
+        }),
+        ("Dirichlet datum", |p, name, value| match name {
+            Some(name) => p.dirichlet_on(name, value),
+            None => p.dirichlet(move |_| value),
+        }),
+        ("Neumann datum", |p, name, value| match name {
+            Some(name) => p.neumann_on(name, move |_, _| value),
+            None => p.neumann(move |_, _| value),
+        }),
+        ("gap", |p, name, value| match name {
+            Some(name) => p.signorini_on(name, value),
+            None => p.signorini(move |_| value),
+        }),
+    ];
+    let mesh = named_twice();
+    for (what, give) in data {
+        for name in [Some("one"), None] {
+            // the same value twice is a mistake too, and a clone knows of it
+            for value in [1.0, 2.0] {
+                let once = give(Problem::new(), Some("two"), 3.0);
+                let twice = give(give(once, name, 1.0), name, value).clone();
+                let of = Discretisation::new(&ConformingP1, &twice, &mesh, Default::default());
+                let error = of.err().unwrap_or_else(|| panic!("{what} {name:?} {value}"));
+                let Error::GivenTwice { datum, name: found } = &error else { panic!("{error}") };
+                assert_eq!((*datum, found.as_deref()), (what, name));
+                let place = name.map_or("without a name".to_owned(), |name| format!("for {name}"));
+                let said = format!("the {what} {place} is given twice: give it once");
+                assert!(error.to_string().starts_with(&said), "{error}");
+            }
+        }
+    }
+    // a study is refused before anything runs, and what is set takes the place of what was given
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mut problem = Problem::new().obstacle_below(|_| -1.0).obstacle_below(|_| -2.0);
+    let study = |problem: &Problem<2>| {
+        let scene = Scene::new("mine", square.clone(), problem.clone());
+        Study::new(scene).scheme(ConformingP1).levels([2]).run().map(|report| report.rows.len())
+    };
+    assert!(matches!(study(&problem), Err(Error::GivenTwice { datum: "lower obstacle", .. })));
+    problem.lower = Datum::Constant(-1.0).into();
+    assert_eq!(study(&problem).unwrap(), 1);
 }

@@ -26,6 +26,7 @@ mod transpose;
 #[path = "../support"]
 mod support {
     pub mod checks;
+    pub mod panics;
     pub mod rows;
     pub mod scheme_lists;
     pub mod schemes;

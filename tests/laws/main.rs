@@ -15,4 +15,5 @@ mod quadrature;
 #[path = "../support"]
 mod support {
     pub mod meshes;
+    pub mod panics;
 }

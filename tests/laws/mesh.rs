@@ -1,6 +1,7 @@
 //! Facets, refinement, boxes, and every way a mesh can be wrong.
 
 use crate::support::meshes::{Random, Raw, mixed_box};
+use crate::support::panics::message_of_panic;
 use proptest::prelude::*;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{
@@ -378,4 +379,15 @@ fn boxes_that_cannot_be_made() {
     assert!(matches!(huge, Err(MeshError::TooLarge { what: "cells", .. })));
     let flat = BoxDomain::dirichlet(Point::zeros(), Point::from([1.0, 0.0]));
     assert!(matches!(Mesh::<2>::kuhn_box(&flat, [2, 2]), Err(MeshError::Parameter { .. })));
+}
+
+#[test]
+fn sides_that_a_box_has_not_are_named() {
+    for (axis, end) in [(5, 0), (2, 0), (0, 2)] {
+        let message = message_of_panic(|| {
+            drop(BoxDomain::<2>::centred(1.0).side(axis, end, BoundaryCondition::Contact));
+        });
+        let said = format!("a box in dimension 2 has no side {end} across axis {axis}");
+        assert!(message.starts_with(&said), "{message}");
+    }
 }

@@ -1,7 +1,10 @@
 //! Every monomial up to the stated degree, positive weights, points inside.
 
+use crate::support::panics::message_of_panic;
 use unilateral::kit::check_quadrature;
-use unilateral::quadrature::{FullySymmetric, Quadrature, QuadratureError, Rule, VertexRule};
+use unilateral::quadrature::{
+    ConicalProduct, FullySymmetric, Quadrature, QuadratureError, Rule, VertexRule,
+};
 
 fn factorial(n: usize) -> f64 {
     (1..=n).map(|k| k as f64).product()
@@ -146,4 +149,41 @@ fn points_and_weights_that_are_no_rule_are_refused() {
         assert!(matches!(error, QuadratureError::Point { point: 1, .. }), "{error}");
     }
     assert_eq!(Rule::from_points(1, vec![middle], vec![1.0]), Ok(Rule::new(1, 1)));
+}
+
+/// The largest degree has a rule that is exact, and beyond it no time is spent.
+#[test]
+fn degrees_and_dimensions_without_a_rule_are_refused() {
+    let largest = Rule::LARGEST_DEGREE;
+    let rule = Rule::new(1, largest);
+    for power in [1, 50, largest] {
+        let sum: f64 = rule.iter().map(|(x, w)| w * x[0].powi(power as i32)).sum();
+        assert!((sum * (power + 1) as f64 - 1.0).abs() < 1e-12, "{power}: {sum}");
+    }
+    let families: [&dyn Quadrature; 3] = [&ConicalProduct, &FullySymmetric, &VertexRule];
+    for family in families {
+        for dimension in [4, usize::MAX] {
+            assert_eq!(family.rule(dimension, 3), Err(QuadratureError::Dimension { dimension }));
+        }
+        for (dimension, degree) in [(1, largest + 1), (3, 1000), (2, usize::MAX)] {
+            let found = family.rule(dimension, degree);
+            let is_limited = family.name() != "vertices";
+            let expected = QuadratureError::NoRule {
+                family: family.name().to_owned(),
+                dimension,
+                degree,
+                largest,
+            };
+            assert_eq!(found.err(), is_limited.then_some(expected));
+        }
+    }
+    let refused = Rule::from_points(4, vec![[0.2; 4]], vec![1.0]);
+    assert_eq!(refused, Err(QuadratureError::Dimension { dimension: 4 }));
+    for (dimension, degree, said) in [
+        (4, 3, "there are no rules in dimension 4: simplices have the dimensions 0 to 3"),
+        (2, 1000, "no rule of degree 1000 in dimension 2: ask for degree 99 at most"),
+    ] {
+        let message = message_of_panic(|| drop(Rule::new(dimension, degree)));
+        assert!(message.contains(said), "{message}");
+    }
 }

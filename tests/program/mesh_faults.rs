@@ -29,6 +29,22 @@ fn an_interface_with_doubled_nodes_is_refused_with_the_reason() {
     refused(&scratch, &[&data("glued")], &["glued.msh", reason, "Coherence", "slit"]);
 }
 
+/// A problem in the plane on a file that has only the boundary: the mesh is at fault, not the data.
+#[test]
+fn a_surface_in_no_physical_group_is_refused_with_the_reason() {
+    let scratch = Scratch::new("outline");
+    let mesh = scratch.file("outline.msh", &Square::with(|s| s.elements.truncate(4)));
+    let text = "mesh = \"outline.msh\"\n[source]\ndefault = \"x * y\"\n\
+        [boundary.dirichlet]\nkind = \"dirichlet\"\n";
+    let problem = scratch.file("outline.toml", text);
+    let reason = "outline.msh: line 14: the file has lines and no triangles";
+    let remedy = "Physical Surface(\"domain\")";
+    refused(&scratch, &[&problem], &["outline.toml:1:8: ", reason, remedy]);
+    refused(&scratch, &["--mesh", &mesh], &[reason, remedy]);
+    let named = ["--scene", "radial-2d", "--mesh", &mesh];
+    refused(&scratch, &named, &["dimension 1", "put the domain in a physical group"]);
+}
+
 #[test]
 fn groups_of_interior_facets_are_refused_as_such() {
     let scratch = Scratch::new("wire");

@@ -1,6 +1,7 @@
 //! What is said of a problem is said once, of its file and of its groups.
 
-use super::run::{Scratch, data, read_json, refused, rows, stdout};
+use super::run::{Scratch, data, read_json, refused, rows, stderr, stdout};
+use super::square::Square;
 use unilateral::input::{excerpt, excerpts};
 
 #[test]
@@ -22,6 +23,29 @@ fn an_obstacle_above_a_dirichlet_value_is_said_once_with_the_group() {
     // a message to the user of a file names the file
     let scratch = Scratch::new("named-file");
     refused(&scratch, &[&path, "--levels", "0"], &[&format!("error: {path}: level = 0")]);
+}
+
+/// Names of files, groups and options that turn the direction of text are shown with escapes.
+#[test]
+fn text_in_messages_is_not_turned() {
+    let scratch = Scratch::new("turned");
+    let turned = |text: &str| text.chars().any(|c| "\u{202e}\u{2066}\u{200f}".contains(c));
+    let mesh = Square::sound().replace("contact", "a\u{2066}b");
+    let mesh = scratch.file("c\u{200f}d.msh", &mesh.replace("1 1 2 1 1 1 2", "1 1 2 2 1 1 2"));
+    let wrong = scratch.file("e\u{202e}f.toml", "name = 3\nbox = [[0], [1]]\n");
+    for (options, expected) in [
+        (vec!["a\u{202e}b.toml"], "a\\u{202e}b.toml"),
+        (vec![&wrong[..]], "e\\u{202e}f.toml:1:8: `name` must be"),
+        (vec!["--scene", "radial-2d", "--mesh", &mesh], "boundary group a\\u{2066}b"),
+        (vec!["--scene", "radial-2d", "--mesh", &mesh], "c\\u{200f}d.msh"),
+        (vec!["--scene", "r\u{202e}"], "r\\u{202e}"),
+        (vec!["--repeat", "r\u{202e}"], "r\\u{202e}"),
+        (vec!["--r\u{202e}"], "r\\u{202e}"),
+    ] {
+        refused(&scratch, &options, &[expected]);
+        let message = stderr(&scratch.run_split(&options));
+        assert!(!turned(&message), "{message}");
+    }
 }
 
 /// A name of any length and with control characters is cut and shown with escapes, in tables, in files and in their
@@ -52,6 +76,13 @@ fn foreign_text_is_short_and_printable() {
     assert_eq!(excerpt("contact"), "contact");
     assert_eq!(excerpt("a\u{1b}[31m\nb\u{85}"), "a\\u{1b}[31m\\nb\\u{85}");
     assert_eq!(excerpt(b"\xffend"), "\u{fffd}end");
+    // what turns the direction of text could make a name look like another; letters stay
+    assert_eq!(excerpt("a\u{202e}b.toml"), "a\\u{202e}b.toml");
+    let turning = ('\u{202a}'..='\u{202e}').chain('\u{2066}'..='\u{2069}');
+    for c in turning.chain(['\u{200e}', '\u{200f}', '\u{61c}']) {
+        assert_eq!(excerpt(c.to_string()), c.escape_unicode().to_string());
+    }
+    assert_eq!(excerpt("שלום, سلام"), "שלום, سلام");
     for c in ["x", "é", "漢", "🦀"] {
         assert_eq!(excerpt(c.repeat(40)), c.repeat(40));
         assert_eq!(excerpt(c.repeat(41)), c.repeat(40) + "…");

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use unilateral::study::Report;
 
 use super::run::{Scratch, command, stderr, stdout};
+use super::square::Square;
 
 /// A run that has finished its first rows, and goes on.
 struct Running {
@@ -124,9 +125,107 @@ fn a_file_that_cannot_be_written_costs_no_row() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(field.is_file());
     assert!(Report::read(scratch.0.join("out")).unwrap().rows == rows);
-    // rows without their report may be those of another request
+    // rows without their report are known by the request beside them
     fs::remove_file(scratch.0.join("out/report.json")).unwrap();
-    let output = scratch.run(resume);
-    assert!(stderr(&output).contains("does not say of which problem"), "{}", stderr(&output));
+    assert_eq!(stderr(&scratch.run(resume)).matches("error").count(), 0);
     assert!(Report::read(scratch.0.join("out")).unwrap().rows == rows);
+}
+
+/// The file of the lock is emptied: what it leads to must be no other file.
+#[cfg(unix)]
+#[test]
+fn a_lock_that_leads_to_another_file_is_refused() {
+    let scratch = Scratch::new("lock-link");
+    let (own, out) = (scratch.file("mine.txt", "mine"), scratch.0.join("out"));
+    let lock = out.join(".lock");
+    fs::create_dir_all(&out).unwrap();
+    type Link = fn(&str, &Path) -> std::io::Result<()>;
+    let links: [Link; 3] = [
+        |own, lock| std::os::unix::fs::symlink(own, lock),
+        |own, lock| std::os::unix::fs::symlink(own.to_owned() + ".new", lock),
+        |own, lock| fs::hard_link(own, lock),
+    ];
+    for link in links {
+        link(&own, &lock).unwrap();
+        for name in ["compare", "pictures", "work-precision", "stability"] {
+            let output = command(name).args(["--out", &scratch.path("out")]).output().unwrap();
+            let message = stderr(&output);
+            assert_eq!(output.status.code(), Some(2), "{name}: {message}");
+            let expected = format!("cannot write {}: it is no file of its own", lock.display());
+            assert!(message.contains(&expected), "{name}: {message}");
+            assert_eq!(fs::read_dir(&out).unwrap().count(), 1, "{name} has written");
+        }
+        assert_eq!(scratch.read("mine.txt"), "mine");
+        assert!(!Path::new(&(own.clone() + ".new")).exists());
+        fs::remove_file(&lock).unwrap();
+    }
+    // a file of a dump takes the place of a link
+    let request = scratch.0.join("dump/radial-1d-p1-4/request.json");
+    fs::create_dir_all(request.parent().unwrap()).unwrap();
+    std::os::unix::fs::symlink(&own, &request).unwrap();
+    let dump = scratch.path("dump");
+    let options = format!("--scene radial-1d --scheme p1 --levels 4 --quiet --dump {dump}");
+    assert!(scratch.run(&options).status.success());
+    assert_eq!(scratch.read("mine.txt"), "mine");
+    assert!(fs::read_to_string(request).unwrap().contains("radial-1d"));
+}
+
+/// Nothing that a run reads is written over, by whatever name.
+#[test]
+fn an_output_that_is_an_input_is_refused() {
+    let scratch = Scratch::new("over-inputs");
+    let text = "mesh = \"square.msh\"\n[source]\ndefault = -1\n[boundary.dirichlet]\n\
+        kind = \"dirichlet\"\n";
+    let problem = scratch.file("mm.toml", text);
+    let mesh = scratch.file("square.msh", &Square::sound());
+    let report = scratch.file("report.md", text);
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(&mesh, scratch.0.join("link")).unwrap();
+    let here = scratch.0.display().to_string();
+    let cube = format!("{}/tests/data/unstructured_cube.msh", env!("CARGO_MANIFEST_DIR"));
+    let own_cube = scratch.path("cube.msh");
+    fs::copy(cube, &own_cube).unwrap();
+    let before = files(&scratch.0);
+    let scene = ["--scene", "radial-2d", "--mesh", &mesh];
+    let dots = format!("{here}/../{}/mm.toml", scratch.0.file_name().unwrap().to_str().unwrap());
+    let link = scratch.path("link");
+    let requests = [
+        ("compare", vec![&problem[..], "--json", &problem], &problem, &problem),
+        ("compare", vec![&problem, "--json", &dots], &dots, &problem),
+        ("compare", vec![&problem, "--json", &mesh], &mesh, &mesh),
+        ("compare", [&scene[..], &["--json", &mesh]].concat(), &mesh, &mesh),
+        ("compare", vec![&report, "--out", &here], &report, &report),
+        ("compare", vec![&report, "--dump", &here], &report, &report),
+        ("work-precision", vec![&report, "--out", &here], &report, &report),
+        ("pictures", vec![&report, "--out", &here], &report, &report),
+        ("stability", vec!["--mesh", &own_cube, "--markdown", &own_cube], &own_cube, &own_cube),
+        #[cfg(unix)]
+        ("compare", vec![&problem, "--json", &link], &link, &mesh),
+    ];
+    for (name, options, output, input) in requests {
+        let mut command = command(name);
+        if !options.contains(&"--out") {
+            command.args(["--out", &scratch.path("out")]);
+        }
+        let found = command.args(&options).output().unwrap();
+        let message = stderr(&found);
+        assert_eq!(found.status.code(), Some(2), "{name} {options:?}: {message}");
+        let expected =
+            format!("error: cannot write {output}: this run reads {input}; choose another place\n");
+        assert!(message.ends_with(&expected), "{name} {options:?}: {message}");
+        assert!(files(&scratch.0) == before, "{name} {options:?} has written");
+    }
+    // beside its files a report may stand
+    let options = format!("{problem} --scheme p1 --levels 0 --quiet --out {here} --json {here}/a");
+    let output = scratch.run(&options);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(scratch.read("mm.toml") == text && scratch.0.join("report.csv").exists());
+}
+
+/// The files of a directory, with their contents.
+fn files(directory: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let paths = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<_> = paths.map(|path| (path.clone(), fs::read(path).unwrap())).collect();
+    files.sort();
+    files
 }

@@ -100,7 +100,7 @@ fn fields_are_written_as_asked_for() {
         names.sort();
         for name in names.iter().filter(|n| n.ends_with(".vtu")) {
             let bytes = std::fs::read(scratch.0.join("out").join(name)).unwrap();
-            let tag = "type=\"Float32\" Name=\"u\"";
+            let tag = "type=\"Float64\" Name=\"u\"";
             assert!(String::from_utf8_lossy(&bytes).contains(tag), "{name}: no {tag}");
         }
         names

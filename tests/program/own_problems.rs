@@ -313,7 +313,9 @@ fn files_of_an_earlier_request_go() {
     let work = work.args(options.split(' ')).args(["--out", &scratch.path("out")]);
     assert_eq!(work.output().unwrap().status.code(), Some(0));
     assert!(out.join("radial-2d-time.svg").exists() && out.join("reach.csv").exists());
-    assert!(!out.join("convergence.svg").exists());
+    for name in ["convergence.svg", "report.jsonl", "request.json"] {
+        assert!(!out.join(name).exists(), "{name}");
+    }
     scratch.report("--scene signorini-2d --scheme p1 --levels 4");
     for name in ["radial-2d-time.svg", "radial-2d-unknowns.svg", "reach.csv"] {
         assert!(!out.join(name).exists(), "{name}");

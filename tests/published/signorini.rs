@@ -1,6 +1,8 @@
 //! Signorini conditions: tables of an independent implementation.
 
 use super::compare::compare;
+use unilateral::prelude::Point;
+use unilateral::problem::Datum;
 use unilateral::scenes;
 
 #[test]
@@ -120,10 +122,11 @@ fn hertz_contact_of_facet_means_in_the_plane() {
     let stepped = |level: usize| {
         let n = level as f64;
         let mut scene = scenes::hertz_2d();
-        scene.problem = scene.problem.signorini(move |x| {
+        let gap = move |x: &Point<2>| {
             let middle = ((x[0] * n).floor() + 0.5) / n;
             -middle * middle / 2.0
-        });
+        };
+        scene.problem.gap = Datum::from(gap).into();
         scene
     };
     compare(

@@ -133,6 +133,15 @@ fn another_request_is_refused_and_nothing_changes() {
     let mut threads = program();
     threads.threads = 7;
     Journal::resume(&scratch.0, threads, &keys).unwrap();
+    // of the request beside the rows the same holds where the report has been deleted
+    let report = scratch.read("report.json");
+    let rows = scratch.read("report.jsonl");
+    fs::remove_file(scratch.0.join("report.json")).unwrap();
+    let error = Journal::resume(&scratch.0, program().with_request("load", 6), &keys).unwrap_err();
+    let Error::OtherRequest { found, wanted, .. } = &error else { panic!("{error}") };
+    assert_eq!([&found[..], &wanted[..]], ["load 5", "load 6"]);
+    assert!(!scratch.0.join("report.json").exists() && scratch.read("report.jsonl") == rows);
+    fs::write(scratch.0.join("report.json"), report).unwrap();
     fs::write(scratch.0.join("report.json"), "{\"program\"").unwrap();
     let error = Journal::resume(&scratch.0, program(), &keys).unwrap_err().to_string();
     let expected =
@@ -165,6 +174,20 @@ fn rows_without_their_report_are_taken_up() {
     fs::write(&path, [lines[0], lines[2], ""].join("\n")).unwrap();
     let resumed = Journal::resume(&scratch.0, program(), &keys).unwrap();
     assert_eq!(resumed.report().rows.len(), 2);
+    // rows of which nothing says whose they are are not taken
+    fs::remove_file(scratch.0.join("report.json")).unwrap();
+    for (request, why) in [(Some("{\"name\""), "no request, or damaged"), (None, "No such file")] {
+        let path = scratch.0.join("request.json");
+        match request {
+            Some(text) => fs::write(path, text).unwrap(),
+            None => fs::remove_file(path).unwrap(),
+        }
+        let error = Journal::resume(&scratch.0, program(), &keys).unwrap_err().to_string();
+        let rest = "the rows of report.jsonl may be those of another request: delete them too";
+        assert!(error.contains(why) && error.contains(rest), "{error}");
+    }
+    fs::remove_file(&path).unwrap();
+    assert!(Journal::resume(&scratch.0, program(), &keys).unwrap().report().rows.is_empty());
 }
 
 #[test]

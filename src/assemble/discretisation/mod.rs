@@ -14,6 +14,7 @@ use super::shared_rows::SharedRows;
 use super::space::Space;
 use super::space::metric::Metrics;
 use crate::algebra::{DofLocation, SparseMatrix};
+use crate::error::Error;
 use crate::facet::FacetForm;
 use crate::instances::compiled;
 use crate::mesh::Mesh;
@@ -26,7 +27,9 @@ use crate::problem::{DiscreteFunction, Problem};
 /// does is compiled once for each dimension.
 ///
 /// # Panics
-/// A method that takes a vector of unknowns or a solution panics if the vector has fewer values than there are unknowns.
+/// A method that takes a vector of unknowns or a solution panics unless this has one value for each unknown; one that
+/// returns an [`Error`] returns [`Error::Parameter`]. A method that takes the number of a cell panics if there is no such
+/// cell.
 pub struct Discretisation<'a, const D: usize> {
     pub(crate) space: Space<'a, D>,
     form: Box<dyn FacetForm<D>>,
@@ -114,12 +117,29 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     pub fn constants(&self) -> Vec<f64> {
         self.space.constants_of_unknowns()
     }
+    /// Refuses a vector that has not one value for each unknown.
+    pub(crate) fn check_length(&self, u: &[f64]) -> Result<(), Error> {
+        match self.unknowns() {
+            n if n == u.len() => Ok(()),
+            n => {
+                let allowed = format!("one for each of the {n} unknowns");
+                Err(Error::parameter("number of values", u.len(), allowed))
+            }
+        }
+    }
+    /// As [`Self::check_length`], where no error can be returned.
+    #[track_caller]
+    pub(crate) fn demand_length(&self, u: &[f64]) {
+        self.check_length(u).unwrap_or_else(|error| panic!("{error}"));
+    }
     /// The discrete function, which is a datum of other problems.
     pub fn function(&self, u: &[f64]) -> DiscreteFunction<D> {
+        self.demand_length(u);
         self.space.function(u)
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.
     pub fn vertex_values(&self, u: &[f64]) -> Vec<f64> {
+        self.demand_length(u);
         self.space.vertex_values(u)
     }
     /// The facets whose penalty lies below the bound that proves coercivity: their number and the

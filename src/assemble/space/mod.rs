@@ -117,7 +117,7 @@ impl<'a, const D: usize> Space<'a, D> {
         let sum = degree + basis_degree;
         let cell_degree = quadrature.cell.unwrap_or(sum + 3).max(sum.saturating_sub(1));
         // products of discrete functions with the basis are integrated exactly
-        let discrete = data.source.all().filter_map(|f| f.discrete());
+        let discrete = data.source.all().flat_map(|f| f.discrete());
         let cell_degree = discrete.map(|f| f.degree() + basis_degree).fold(cell_degree, usize::max);
         let cell_rule = rule(quadrature.family, D, cell_degree)?;
         let facet_rule = rule(quadrature.family, D - 1, quadrature.facet)?;

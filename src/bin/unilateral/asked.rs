@@ -66,8 +66,13 @@ pub struct Asked {
     pub quiet: bool,
 }
 
-/// Scenes, each on its mesh, with the names and fingerprints of the files that were read.
-pub type FoundScenes = (Vec<AnyScene>, Vec<(&'static str, String)>);
+/// Scenes, each on its mesh, and the files that were read for them.
+pub struct FoundScenes {
+    pub scenes: Vec<AnyScene>,
+    /// What each file is, with its fingerprint.
+    pub fingerprints: Vec<(&'static str, String)>,
+    pub paths: Vec<PathBuf>,
+}
 
 impl Asked {
     /// Refuses numbers of threads that are none.
@@ -102,14 +107,15 @@ impl Asked {
         };
         if let Some(path) = &self.problem {
             self.check_problem(path)?;
-            let ProblemFile { scene, fingerprints, .. } = problem(path, &warn)?;
-            return Ok((vec![scene], fingerprints));
+            let ProblemFile { scene, fingerprints, paths, .. } = problem(path, &warn)?;
+            return Ok(FoundScenes { scenes: vec![scene], fingerprints, paths });
         }
         let mesh = self.mesh.read()?;
         let scenes = self.scenes_of_catalogue(default, mesh.as_ref().map(GmshFile::dimension))?;
         let on_mesh = |scene| self.mesh.under(scene, mesh.as_ref(), &warn);
         let scenes = scenes.into_iter().map(on_mesh).collect::<Request<_>>()?;
-        Ok((scenes, mesh.iter().map(|file| ("mesh", file.fingerprint())).collect()))
+        let fingerprints = mesh.iter().map(|file| ("mesh", file.fingerprint())).collect();
+        Ok(FoundScenes { scenes, fingerprints, paths: self.mesh.path.iter().cloned().collect() })
     }
 
     /// The parameters of scenes, by name.
@@ -158,8 +164,14 @@ impl Asked {
         for entry in wanted.iter().filter_map(|name| catalogue.iter().find(|s| s.name == *name)) {
             if let (Some(d), Some(path)) = (mesh.filter(|&d| d != entry.dimension), &self.mesh.path)
             {
+                let saved = match d < entry.dimension {
+                    true => {
+                        ", or put the domain in a physical group: Gmsh saves only elements of groups"
+                    }
+                    false => "",
+                };
                 return Err(format!(
-                    "{} has dimension {d}, scene {} has {}: choose a scene of dimension {d} (`unilateral list` names them)",
+                    "{} has dimension {d}, scene {} has {}: choose a scene of dimension {d} (`unilateral list` names them){saved}",
                     path.display(),
                     entry.name,
                     entry.dimension

@@ -1,7 +1,7 @@
 //! One directory has one run at a time.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{Read, Write};
+use std::io::{Error, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -26,8 +26,7 @@ pub fn take_directory(path: &Path) -> Request<()> {
         return Ok(());
     }
     let name = path.join(LOCK);
-    let file = File::options().read(true).write(true).create(true).truncate(false).open(&name);
-    let mut file = file.map_err(|e| cannot_write(&name, e))?;
+    let mut file = open_own(&name).map_err(|e| cannot_write(&name, e))?;
     match file.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => return Err(in_use(path, &mut file)),
@@ -45,6 +44,29 @@ pub fn take_directory(path: &Path) -> Request<()> {
     written.map_err(|e| cannot_write(&name, e))?;
     taken.push((own, file));
     Ok(())
+}
+
+/// Opens the file of the lock, which is made if need be. What leads to another file, by a symbolic link or as another
+/// name of it, is not opened: it would be written over.
+fn open_own(name: &Path) -> std::io::Result<File> {
+    let refuse = || {
+        let why = "it is no file of its own: delete it, or choose another directory";
+        Err(Error::new(ErrorKind::InvalidInput, why))
+    };
+    let mut options = File::options();
+    options.read(true).write(true).create(true).truncate(false);
+    // a link that takes its place after the check is not followed either
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, nix::libc::O_NOFOLLOW);
+    if fs::symlink_metadata(name).is_ok_and(|about| !about.is_file()) {
+        return refuse();
+    }
+    let file = options.open(name)?;
+    #[cfg(unix)]
+    if std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) > 1 {
+        return refuse();
+    }
+    Ok(file)
 }
 
 /// The message for a directory of another run.

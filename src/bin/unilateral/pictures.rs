@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use clap::Args;
 use unilateral::in_its_dimension;
 use unilateral::nested::Adaptivity;
+use unilateral::problem_file::ProblemFile;
 use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Row, Study, file_name};
@@ -18,7 +19,9 @@ use crate::adaptive::adaptivity;
 use crate::asked::{MESHES, OUTPUT, PROBLEM, SCHEMES};
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
-use crate::shared::{Failure, draw_solution, end_at_interrupt, print, problem, scene, warn};
+use crate::shared::{
+    Failure, check_apart, draw_solution, end_at_interrupt, print, problem, scene, warn,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -59,13 +62,18 @@ pub struct Options {
 /// Whether every solve converged.
 pub fn run(options: &Options) -> Result<bool, Failure> {
     let warn = |warning: String| warn(&warning);
-    let scene = match &options.problem {
-        Some(path) => problem(path, &warn)?.scene,
+    let (scene, paths) = match &options.problem {
+        Some(path) => {
+            let ProblemFile { scene, paths, .. } = problem(path, &warn)?;
+            (scene, paths)
+        }
         None => {
             let scene = scene(&options.scene)?;
-            options.mesh.under(scene, options.mesh.read()?.as_ref(), &warn)?
+            let scene = options.mesh.under(scene, options.mesh.read()?.as_ref(), &warn)?;
+            (scene, options.mesh.path.iter().cloned().collect())
         }
     };
+    check_apart(&paths, None, [&options.out])?;
     in_its_dimension!(scene, |scene| draw(options, scene))
 }
 

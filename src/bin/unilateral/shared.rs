@@ -53,6 +53,53 @@ pub fn check_writable<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> Reque
     Ok(())
 }
 
+/// The ends of the names of files that runs write into a directory.
+const WRITTEN: [&str; 9] = ["json", "jsonl", "csv", "md", "tex", "html", "svg", "vtu", "pvd"];
+
+/// Refuses before the work files that are among those which the run has read, and directories in which one of these has
+/// a name as files of reports have.
+pub fn check_apart<'p>(
+    inputs: &[PathBuf],
+    files: impl IntoIterator<Item = &'p PathBuf>,
+    directories: impl IntoIterator<Item = &'p PathBuf>,
+) -> Request<()> {
+    let refuse = |output: &Path, input: &Path| {
+        let why = format!("this run reads {}; choose another place", input.display());
+        Err(cannot_write(output, why))
+    };
+    for output in files {
+        if let Some(input) = inputs.iter().find(|input| is_same(input, output)) {
+            return refuse(output, input);
+        }
+    }
+    for directory in directories {
+        let is_written = |input: &&PathBuf| {
+            let end = input.extension().unwrap_or_default().to_ascii_lowercase();
+            // a file in the current directory has an empty path before its name
+            let folder = std::path::absolute(input).ok();
+            let folder = folder.as_ref().and_then(|path| path.parent());
+            WRITTEN.iter().any(|written| end == *written)
+                && folder.is_some_and(|folder| is_same(folder, directory))
+        };
+        if let Some(input) = inputs.iter().find(is_written) {
+            return refuse(&directory.join(input.file_name().unwrap_or_default()), input);
+        }
+    }
+    Ok(())
+}
+
+/// Whether two paths lead to one file or directory, by links too.
+fn is_same(one: &Path, other: &Path) -> bool {
+    #[cfg(unix)]
+    let file = |path: &Path| {
+        use std::os::unix::fs::MetadataExt;
+        fs::metadata(path).ok().map(|about| (about.dev(), about.ino()))
+    };
+    #[cfg(not(unix))]
+    let file = |path: &Path| fs::canonicalize(path).ok();
+    file(one).is_some_and(|own| file(other) == Some(own))
+}
+
 /// The exit code of an interrupted run.
 pub const INTERRUPTED: i32 = 130;
 

@@ -66,12 +66,13 @@ impl<const D: usize> Discretisation<'_, D> {
     /// Hausdorff between the exact free boundary and the facets between cells in contact and cells that are not.
     ///
     /// # Errors
-    /// [`Error::DataNotFinite`].
+    /// [`Error::DataNotFinite`], [`Error::Parameter`] unless the solution has one value for each unknown.
     pub fn contact_errors(
         &self,
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Result<ContactErrors, Error> {
+        self.check_length(&solution.values)?;
         compiled!(const D: fn(
                 &Discretisation<'_, D>,
                 &Inequality<f64>,
@@ -89,6 +90,7 @@ impl<const D: usize> Discretisation<'_, D> {
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Option<f64> {
+        self.demand_length(&solution.values);
         self.contact_measure_of(inequality, solution, &|_| true)
     }
 
@@ -130,6 +132,7 @@ impl<const D: usize> Discretisation<'_, D> {
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Option<Vec<f64>> {
+        self.demand_length(&solution.values);
         compiled!(const D: fn(
                 &Discretisation<'_, D>,
                 &Inequality<f64>,

@@ -39,6 +39,7 @@ impl<const D: usize> Discretisation<'_, D> {
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
     ) -> Option<BTreeMap<String, f64>> {
+        self.demand_length(&solution.values);
         self.resultants_of(inequality, solution, [&|_| true, &|_| true])
     }
 

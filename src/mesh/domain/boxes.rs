@@ -43,8 +43,15 @@ impl<const D: usize> BoxDomain<D> {
         Self::dirichlet(Point::repeat(-half), Point::repeat(half))
     }
     /// Sets the condition on one side (`end` 0 for the lower, 1 for the upper one).
+    ///
+    /// # Panics
+    /// If the box has no such axis, or an axis no such end.
     #[must_use]
     pub fn side(mut self, axis: usize, end: usize, condition: BoundaryCondition) -> Self {
+        assert!(
+            axis < D && end < 2,
+            "a box in dimension {D} has no side {end} across axis {axis}: axes count from 0, ends are 0 and 1"
+        );
         self.sides[axis][end] = condition;
         self
     }

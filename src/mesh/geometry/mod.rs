@@ -8,6 +8,9 @@ use crate::real::Point;
 use simplex::{FACTORIAL, cofactors, longest_edge, with_zeros};
 
 /// Volume of a cell and gradients of its barycentric coordinates.
+///
+/// # Panics
+/// A method that takes the number of a vertex in the cell panics if that is above three.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct CellGeometry<const D: usize> {

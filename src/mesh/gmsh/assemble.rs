@@ -232,7 +232,11 @@ fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), 
     let extent = cells.iter().fold(0.0, |largest: f64, &v| {
         (0..D).fold(largest, |largest, k| largest.max((points[v as usize][k] - reference[k]).abs()))
     });
-    let within = if D == 1 { "a line of constant y and z" } else { "a plane of constant z" };
+    // Gmsh leaves out a domain that is in no physical group: what is left may be its boundary
+    let (found, missing, within, entity) = match D {
+        1 => ("lines", "triangles", "a line of constant y and z", "Surface"),
+        _ => ("triangles", "tetrahedra", "a plane of constant z", "Volume"),
+    };
     for k in D..3 {
         // Rounding errors of the geometry, relative to the extent of the mesh and to its offset.
         let tolerance = (1e-9 * extent).max(1e-14 * reference[k].abs());
@@ -244,7 +248,7 @@ fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), 
             }
             let (node, axis, constant) = (nodes.tags[v], ['x', 'y', 'z'][k], reference[k]);
             let message = format!(
-                "node {node} has {axis} = {value}, another node {axis} = {constant}; a mesh of dimension {D} must lie in {within}, turn it there or mesh the solid it bounds"
+                "the file has {found} and no {missing}, and they do not lie in {within}: node {node} has {axis} = {value}, another node {axis} = {constant}; if they bound the domain, put that in a physical group too, e.g. `Physical {entity}(\"domain\") = {{1}};`, and mesh it: Gmsh saves only elements of groups; otherwise turn them there"
             );
             return Err(contents.error(nodes.offsets[v], GmshErrorKind::NotFlat, message));
         }

@@ -91,6 +91,9 @@ pub struct Part<const D: usize> {
 
 impl<const D: usize> Part<D> {
     /// Whether the part owns a cell.
+    ///
+    /// # Panics
+    /// If the mesh of the part has no such cell.
     pub fn owns(&self, cell: usize) -> bool {
         self.owners[cell] == self.number
     }

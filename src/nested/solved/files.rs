@@ -30,16 +30,14 @@ impl<const D: usize> Solved<'_, D> {
         let cell = (position + 1..=own).fold(cell, child);
         self.discretisation().value_in(&self.solution.values, cell, x)
     }
-    /// Writes a `.vtu` file, and its folder if there is none, with 32-bit numbers: see
-    /// [`Self::write_vtu_with`].
+    /// Writes a `.vtu` file, and its folder if there is none: see [`Self::write_vtu_with`].
     ///
     /// # Errors
     /// [`Error::Write`], also without an iterate.
     pub fn write_vtu(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         self.write_vtu_with(path, |file| file)
     }
-    /// Writes a `.vtu` file to which `complete` adds fields or sets their number of bits, and its folder if there is
-    /// none.
+    /// Writes a `.vtu` file to which `complete` adds fields, and its folder if there is none.
     ///
     /// The solution `u` is written in its degree; above two it is interpolated in degree two. Point data:
     /// `obstacle` (the lower one, or the upper one where there is no lower one), `upper_obstacle` where

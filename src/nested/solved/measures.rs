@@ -11,10 +11,11 @@ use crate::problem::Exact;
 use crate::real::Point;
 
 impl<const D: usize> Solved<'_, D> {
-    /// The value at a point, in the first cell that contains the point; none outside the mesh. The
+    /// The value at a point, in the first cell that contains the point; none outside the mesh and without an iterate. The
     /// search takes a time proportional to the number of cells; that of [`Solved::function`] is fast.
     pub fn value_at(&self, point: &Point<D>) -> Option<f64> {
-        self.discretisation().value_at(&self.solution.values, point)
+        let value = || self.discretisation().value_at(&self.solution.values, point);
+        self.has_iterate.then(value).flatten()
     }
     /// Errors against the exact solution of the problem; none if the problem has no exact solution
     /// or there is no iterate.

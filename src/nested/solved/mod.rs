@@ -74,9 +74,11 @@ impl<'a, const D: usize> Solved<'a, D> {
         hierarchy: Option<(&'a Hierarchy<D>, usize)>,
     ) -> Self {
         let inequality = &system.inequality;
-        let is_finite = solution.values.iter().all(|v| v.is_finite());
+        // a solver of one's own may return anything
+        let is_whole = [solution.values.len(), solution.contact.len()] == [inequality.size(); 2]
+            && solution.values.iter().all(|v| v.is_finite());
         let has_iterate =
-            solution.outcome.has_iterate() && !any_part(inequality.distribution(), !is_finite);
+            solution.outcome.has_iterate() && !any_part(inequality.distribution(), !is_whole);
         let (certificate, energy_norm) = match has_iterate {
             true => certify_solution(inequality, &solution),
             false => (Certificate::INVALID, 0.0),

@@ -296,6 +296,23 @@ where
         has_exact: root.contains_key("exact"),
         gradient_offset: 0,
     };
+    let mut fingerprints = vec![("problem", fingerprint(source.text.as_bytes()))];
+    let mut paths = vec![source.path.to_owned()];
+    let mut warnings = Vec::new();
+    // before the data, which may be those of another dimension
+    let mut domain: Domain<D> = match place {
+        Place::File { path, file, offset } => {
+            let read = file.mesh::<D>().map_err(|e| source.mesh_error(*offset, path, e))?;
+            fingerprints.push(("mesh", file.fingerprint()));
+            paths.push(path.clone());
+            warnings.extend(read.warnings.iter().map(|w| format!("{}: {w}", path.display())));
+            read.mesh.into()
+        }
+        Place::Box { corners } => {
+            let [lower, upper] = [0, 1].map(|k| Point::<D>::from_fn(|axis, _| corners[k][axis]));
+            BoxDomain::dirichlet(lower, upper).into()
+        }
+    };
     for (key, value) in root.iter() {
         match &**key.get_ref() {
             "coefficient" => {
@@ -316,30 +333,18 @@ where
             _ => {}
         }
     }
-    let mut fingerprints = vec![("problem", fingerprint(source.text.as_bytes()))];
-    let mut warnings = Vec::new();
-    let domain: Domain<D> = match place {
-        Place::File { path, file, offset } => {
-            let read = file.mesh::<D>().map_err(|e| source.mesh_error(*offset, path, e))?;
-            let groups = read.mesh.boundary_groups().iter().map(|group| group.names.clone());
-            builder.complete(&groups.collect::<Vec<_>>());
-            fingerprints.push(("mesh", file.fingerprint()));
-            warnings.extend(read.warnings.iter().map(|w| format!("{}: {w}", path.display())));
-            read.mesh.into()
-        }
-        Place::Box { corners } => {
-            let [lower, upper] = [0, 1].map(|k| Point::<D>::from_fn(|axis, _| corners[k][axis]));
-            builder
-                .complete(&SIDES[..2 * D].iter().map(|&s| vec![s.to_owned()]).collect::<Vec<_>>());
-            let mut domain = BoxDomain::dirichlet(lower, upper);
-            for (name, condition) in &builder.conditions {
-                if let Some(side) = SIDES[..2 * D].iter().position(|side| side == name) {
-                    domain = domain.side(side / 2, side % 2, *condition);
-                }
-            }
-            domain.into()
-        }
+    let groups: Vec<Vec<String>> = match &domain {
+        Domain::Mesh(mesh) => mesh.boundary_groups().iter().map(|g| g.names.clone()).collect(),
+        _ => SIDES[..2 * D].iter().map(|&side| vec![side.to_owned()]).collect(),
     };
+    builder.complete(&groups);
+    if let Domain::Box(domain) = &mut domain {
+        for (name, condition) in &builder.conditions {
+            if let Some(side) = SIDES[..2 * D].iter().position(|side| side == name) {
+                domain.sides[side / 2][side % 2] = *condition;
+            }
+        }
+    }
     let failed =
         |error: Error| ProblemFileError::of_file(source.path, ProblemFileErrorKind::Problem, error);
     let mesh = sample_mesh(&domain).map_err(|error| failed(error.into()))?;
@@ -355,7 +360,8 @@ where
     .run(&mesh)?;
     let mesh = problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
     let domain = if domain.is_mesh() { mesh.into() } else { domain };
-    Ok(ProblemFile { scene: Scene::new(name, domain, problem).into(), fingerprints, warnings })
+    let scene = Scene::new(name, domain, problem).into();
+    Ok(ProblemFile { scene, fingerprints, paths, warnings })
 }
 
 /// A mesh to hold the data against, of a box one with few cells, whatever its sides.

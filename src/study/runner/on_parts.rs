@@ -208,8 +208,7 @@ impl<const D: usize> Study<'_, D> {
         match &self.fields.directory {
             Some(directory) if self.levels.iter().max() == Some(&level) && solved.has_iterate() => {
                 let stem = file_name(&format!("{}-{}", self.scene.name, entry.label));
-                let scalar = self.fields.scalar;
-                solved.write_vtu_of_parts(directory, &stem, |file| file.scalar(scalar))
+                solved.write_vtu_of_parts(directory, &stem, |file| file)
             }
             _ => Ok(()),
         }

@@ -10,8 +10,6 @@ use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, StepCounter};
 use crate::nested::Solved;
-#[cfg(feature = "report")]
-use crate::paraview::FieldScalar;
 use crate::problem::Problem;
 use crate::scheme::{NamedScheme, Scheme, SchemeOptions};
 #[cfg(feature = "report")]
@@ -161,13 +159,6 @@ impl<'a, const D: usize> Study<'a, D> {
     #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.fields.directory = Some(directory.into());
-        self
-    }
-    /// Sets the scalar of fields in files; 32 bits otherwise. Coordinates have 64 bits always.
-    #[cfg(feature = "report")]
-    #[must_use]
-    pub fn field_scalar(mut self, scalar: FieldScalar) -> Self {
-        self.fields.scalar = scalar;
         self
     }
     /// Writes the fields of every level, and `SCENE-LABEL.pvd`, which lists the files.

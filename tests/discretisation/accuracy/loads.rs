@@ -192,7 +192,8 @@ fn errors_see_jumps_of_a_coefficient_within_cells() {
         }
         expected += alpha(&at(1.0 / 3.0, 1.0 / 3.0)) * area * sum / (n * n);
     }
-    let unnamed = scene().problem.coefficient(alpha);
+    let mut unnamed = scene().problem;
+    unnamed.coefficient = Datum::from(alpha).into();
     for (problem, tolerance) in [(problem, 2e-3), (unnamed, 0.2)] {
         let quadrature = DataQuadrature::default();
         let space = Discretisation::new(&ConformingP1, &problem, &mesh, quadrature).unwrap();

@@ -9,6 +9,7 @@ use crate::support::tables::{DEGREE_OF_TABLES, jump_norm, norms_by_rule, solve_a
 use unilateral::inequality::Outcome;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
+use unilateral::problem::Datum;
 use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 
@@ -86,7 +87,8 @@ fn scaling_of_the_domain() {
 fn scaling_of_the_coefficient() {
     let scaled = |factor: f64| {
         let mut scene = scenes::radial::<2>(1.0);
-        scene.problem = scene.problem.coefficient(move |_| factor).constant_source(-2.0 * factor);
+        scene.problem = scene.problem.coefficient(move |_| factor);
+        scene.problem.source = Datum::Constant(-2.0 * factor).into();
         scene
     };
     let mut checks = Checks::default();

@@ -12,6 +12,7 @@ use unilateral::linear::LinearMethod;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Mesh, TaggedFacet};
 use unilateral::prelude::*;
+use unilateral::problem::Datum;
 use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 
@@ -242,7 +243,8 @@ fn rounding_is_small_for_every_factor() {
 fn rounding_is_small_under_an_obstacle() {
     let mut checks = Checks::default();
     let thirds = |mut scene: Scene<2>| {
-        scene.problem = scene.problem.coefficient(|_| 3.0).constant_source(-6.0);
+        scene.problem = scene.problem.coefficient(|_| 3.0);
+        scene.problem.source = Datum::Constant(-6.0).into();
         scene
     };
     let radial = || scenes::radial::<2>(1.0);

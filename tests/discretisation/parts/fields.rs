@@ -2,7 +2,6 @@
 
 use super::gathered::{on_parts, parts_of, process};
 use std::collections::HashMap;
-use unilateral::paraview::FieldScalar;
 use unilateral::prelude::*;
 use unilateral::processes::in_process;
 use unilateral::scenes::Scene;
@@ -77,9 +76,7 @@ fn files_of_parts_have_the_arrays_of_their_list() {
         let meshes = parts_of(&mesh, (1, 1), &process);
         let mut nested = on_parts(&scene.problem, &meshes, process);
         let solved = nested.solve_on(1, &ConformingP1).unwrap();
-        solved
-            .write_vtu_of_parts(&folder, "fields", |file| file.scalar(FieldScalar::Single))
-            .unwrap();
+        solved.write_vtu_of_parts(&folder, "fields", |file| file).unwrap();
     });
     let list = std::fs::read_to_string(folder.join("fields.pvtu")).unwrap();
     let arrays = list.split("<PDataArray ").skip(1).map(|rest| rest.split('/').next().unwrap());

@@ -4,6 +4,7 @@ use super::gathered::process;
 use std::sync::Arc;
 use unilateral::inequality::Outcome;
 use unilateral::prelude::*;
+use unilateral::problem::Datum;
 use unilateral::processes::{Exchange, InProcess, in_process};
 use unilateral::scenes::Scene;
 use unilateral::study::{PartChecks, Row};
@@ -188,9 +189,9 @@ fn a_matrix_that_is_not_positive_definite_is_no_solution() {
 #[test]
 fn data_that_vanish_in_one_part_are_in_range() {
     let mut scene = scenes::radial::<2>(1.0);
-    scene.problem = scene
-        .problem
-        .source(|x| -100.0 * (-2000.0 * (x - Point::from([-1.4, -1.4])).norm_squared()).exp());
+    let corner = Point::from([-1.4, -1.4]);
+    let load = move |x: &Point<2>| -100.0 * (-2000.0 * (x - corner).norm_squared()).exp();
+    scene.problem.source = Datum::from(load).into();
     scene.problem.lower.everywhere = None;
     scene.problem.exact = None;
     scene.problem = scene.problem.dirichlet(|_| 0.0);

@@ -3,11 +3,13 @@
 use super::{cold, solve_from};
 use crate::penalised_cells::assembled;
 use crate::problems::*;
+use crate::support::panics::message_of_panic;
 use unilateral::algebra::{
     Bound, Contact, Inequality, JumpTerm, Jumps, PenalisedMatrix, SparseMatrix, Start,
 };
 use unilateral::inequality::{
     ActiveSet, InequalitySolver, InteriorPoint, MonotoneMultigrid, Outcome, ProximalPoint, certify,
+    contact_of,
 };
 use unilateral::linear::is_positive_definite;
 use unilateral::prelude::*;
@@ -250,4 +252,25 @@ fn a_cell_that_nothing_holds_is_singular() {
     };
     assert_eq!(outcome(1.0), Outcome::Converged);
     assert_eq!(outcome(0.0), Outcome::Singular);
+}
+
+/// What is no inequality has no contact states and no certificate.
+#[test]
+fn contact_states_and_certificates_of_what_is_no_inequality() {
+    let sound = inequality(laplacian(3, 3, 4.0), &[1.0; 9], vec![Bound::Lower(0.0); 9]);
+    let mut short = sound.clone();
+    short.bounds.truncate(4);
+    let mut torn = sound.clone();
+    torn.matrix.columns[5] = 99;
+    for (problem, values, said) in [
+        (&short, 9, "the inequality of 9 unknowns is not well formed"),
+        (&torn, 9, "the inequality of 9 unknowns is not well formed"),
+        (&sound, 0, "0 values for 9 unknowns: contact states need one for each"),
+        (&sound, 10, "10 values for 9 unknowns: contact states need one for each"),
+    ] {
+        let values = vec![0.0; values];
+        assert_eq!(message_of_panic(|| drop(contact_of(problem, &values))), said);
+        assert!(certify(problem, &values).largest().is_infinite(), "{said}");
+    }
+    assert_eq!(contact_of(&sound, &[0.1; 9]).len(), 9);
 }

@@ -93,8 +93,8 @@ fn not_flat() {
     let (text, line) = change(TWO, "5 0.5 0.5 0", "5 0.5 0.5 0.25");
     let error = fail::<2>(text.as_bytes());
     is(&error, NotFlat, Line(line));
-    says(&error, &[&format!("line {line}"), "node 5 has z = 0.25", "mesh of dimension 2"]);
-    says(&error, &["plane of constant z", "turn"]);
+    says(&error, &[&format!("line {line}"), "node 5 has z = 0.25", "no tetrahedra"]);
+    says(&error, &["plane of constant z", "Physical Volume", "turn"]);
     // a billionth of the extent is rounding
     let lifted = |z: &str| change(TWO, "5 0.5 0.5 0", &format!("5 0.5 0.5 {z}")).0;
     for z in ["1e-2", "-1e-6", "1e-8"] {
@@ -107,7 +107,24 @@ fn not_flat() {
     sample.nodes[2].1[1] = 1.0;
     let error = fail::<1>(&sample.four(Form::Little));
     assert!(matches!((error.kind, error.position), (NotFlat, Some(Byte(_)))), "{error}");
-    says(&error, &["byte ", "node 3 has y = ", "dimension 1", "line of constant y and z"]);
+    says(&error, &["byte ", "node 3 has y = ", "line of constant y and z"]);
+}
+
+/// Gmsh saves elements of physical groups only: of a domain in none its boundary is left.
+#[test]
+fn a_domain_in_no_physical_group() {
+    let mut outline = square();
+    outline.blocks.retain(|block| block.dimension < 2);
+    for bytes in FORMS.map(|form| outline.four(form)) {
+        let error = fail::<1>(&bytes);
+        assert_eq!(error.kind, NotFlat);
+        says(&error, &["has lines and no triangles", "if they bound the domain"]);
+        says(&error, &["Physical Surface(\"domain\") = {1};", "saves only elements of groups"]);
+        says(&fail::<2>(&bytes), &["has dimension 1", "dimension 2 was asked", "physical group"]);
+    }
+    let mut surface = tetrahedron();
+    surface.blocks.retain(|block| block.dimension < 3);
+    says(&fail::<2>(&surface.two(Form::Text)), &["no tetrahedra", "Physical Volume(\"domain\")"]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use unilateral::mesh::BoundaryCondition;
 use unilateral::mesh::BoxDomain;
-use unilateral::problem::{Exact, Problem};
+use unilateral::problem::{Datum, Exact, Given, Problem};
 use unilateral::real::Point;
 use unilateral::scenes::check::Condition;
 use unilateral::scenes::{
@@ -10,6 +10,11 @@ use unilateral::scenes::{
     signorini_harmonic,
 };
 use unilateral::scheme::Regularity;
+
+/// A datum that takes the place of that of a scene.
+fn given<const D: usize>(f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Given<Datum<D>> {
+    Datum::from(f).into()
+}
 
 fn refused<const D: usize>(scene: &Scene<D>) -> Condition {
     check_scene(scene, 300).expect_err("a wrong scene passed").condition
@@ -34,7 +39,7 @@ fn the_check_refuses_a_load_that_is_slightly_off() {
 #[test]
 fn the_check_refuses_a_multiplier_of_the_wrong_sign() {
     let mut scene = radial::<2>(1.0);
-    scene.problem = scene.problem.source(|x| if x.norm() <= 1.0 { 1.0 } else { -2.0 });
+    scene.problem.source = given(|x: &Point<2>| if x.norm() <= 1.0 { 1.0 } else { -2.0 });
     assert_eq!(refused(&scene), Condition::MultiplierSign);
 }
 
@@ -49,7 +54,7 @@ fn the_check_refuses_a_wrong_gradient() {
 #[test]
 fn the_check_refuses_an_obstacle_above_the_solution() {
     let mut scene = radial::<2>(1.0);
-    scene.problem = scene.problem.obstacle_below(|x| if x.norm() < 0.5 { 1e-3 } else { 0.0 });
+    scene.problem.lower = given(|x: &Point<2>| if x.norm() < 0.5 { 1e-3 } else { 0.0 });
     assert_eq!(refused(&scene), Condition::LowerObstacle);
     let mut scene = radial::<2>(1.0);
     scene.problem = scene.problem.obstacle_above(|x| if x.norm() < 1.2 { 1e-3 } else { 1e3 });
@@ -70,14 +75,14 @@ fn the_check_refuses_wrong_boundary_data() {
 #[test]
 fn the_check_refuses_broken_signorini_conditions() {
     let mut scene = hertz_2d();
-    scene.problem = scene.problem.signorini(|x| 1e-3 - x[0] * x[0] / 2.0);
+    scene.problem.gap = given(|x| 1e-3 - x[0] * x[0] / 2.0);
     assert_eq!(refused(&scene), Condition::Gap);
     let mut scene = hertz_2d();
-    scene.problem = scene.problem.signorini(|x| -1e-3 - x[0] * x[0] / 2.0);
+    scene.problem.gap = given(|x| -1e-3 - x[0] * x[0] / 2.0);
     assert_eq!(refused(&scene), Condition::ContactComplementarity);
     let mut scene = hertz_2d();
     scene.domain = BoxDomain::above_contact().side(1, 1, BoundaryCondition::Contact).into();
-    scene.problem = scene.problem.signorini(|_| -10.0);
+    scene.problem.gap = given(|_| -10.0);
     assert!(matches!(refused(&scene), Condition::ContactFlux | Condition::ContactComplementarity));
     let mut scene = hertz_2d();
     scene.problem.gap.everywhere = None;
@@ -102,7 +107,7 @@ fn the_check_refuses_the_gradient_of_a_neglected_branch_cut() {
 #[test]
 fn the_check_refuses_data_that_are_not_finite() {
     let mut scene = ball_2d();
-    scene.problem = scene.problem.obstacle_below(|x| (1.0 - x.norm_squared()).sqrt());
+    scene.problem.lower = given(|x: &Point<2>| (1.0 - x.norm_squared()).sqrt());
     assert_eq!(refused(&scene), Condition::Finite("lower obstacle"));
     let mut scene = radial::<3>(1.0);
     let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
@@ -231,8 +236,8 @@ fn the_check_refuses_a_point_that_is_not_on_the_free_boundary() {
 #[test]
 fn the_check_refuses_a_flux_that_jumps_with_the_coefficient() {
     let mut scene = contrast::<2>(10.0);
-    scene.problem = scene.problem.coefficient(|x| if x[0] < 0.5 { 10.0 } else { 1.1 });
-    scene.problem = scene.problem.source(|x| if x[0] < 0.5 { -1.0 } else { -1.1 });
+    scene.problem.coefficient = given(|x| if x[0] < 0.5 { 10.0 } else { 1.1 });
+    scene.problem.source = given(|x| if x[0] < 0.5 { -1.0 } else { -1.1 });
     let condition = refused(&scene);
     assert_eq!(condition, Condition::Kink);
 }

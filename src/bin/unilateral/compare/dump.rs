@@ -36,7 +36,10 @@ pub fn write_requests(options: &Options, contents: &[String], keys: &[RowKey]) -
             "mesh": mesh, "problem": problem, "contents": contents, "boundary": boundary,
         });
         std::fs::create_dir_all(&folder).map_err(|e| cannot_write(&folder, e))?;
-        write(&folder.join(REQUEST), format!("{request:#}\n"))?;
+        let path = folder.join(REQUEST);
+        // a link of this name would lead to another file
+        let _ = std::fs::remove_file(&path);
+        write(&path, format!("{request:#}\n"))?;
     }
     Ok(())
 }

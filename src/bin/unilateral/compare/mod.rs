@@ -10,6 +10,8 @@ mod over_processes;
 mod prepare;
 mod watcher;
 
+use std::path::PathBuf;
+
 use dump::write_requests;
 use interrupt::Interrupt;
 pub use options::{Options, list};
@@ -17,10 +19,11 @@ use options::{check_numbers, choose_schemes};
 use prepare::{Run, prepare};
 use watcher::Watcher;
 
-use crate::asked::choose;
+use crate::asked::{FoundScenes, choose};
 use crate::one_run::take_directory;
 use crate::shared::{
-    Request, check_writable, complain, print, print_to, terminal_width, use_threads, warn, write,
+    Request, check_apart, check_writable, complain, print, print_to, terminal_width, use_threads,
+    write,
 };
 
 use unilateral::in_its_dimension;
@@ -83,6 +86,8 @@ struct Chosen {
     solvers: Vec<String>,
     /// The names and fingerprints of the files that have been read.
     fingerprints: Vec<(&'static str, String)>,
+    /// The paths of these files.
+    inputs: Vec<PathBuf>,
 }
 
 impl Chosen {
@@ -91,14 +96,15 @@ impl Chosen {
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
         let warn = |warning| watcher.warn_once(warning);
-        let (scenes, fingerprints) = options.asked.scenes(&["radial-2d", "signorini-2d"], &warn)?;
-        Ok(Self { scenes, schemes, solvers, fingerprints })
+        let default = ["radial-2d", "signorini-2d"];
+        let FoundScenes { scenes, fingerprints, paths } = options.asked.scenes(&default, &warn)?;
+        Ok(Self { scenes, schemes, solvers, fingerprints, inputs: paths })
     }
 
     /// Whether every row converged. Nothing runs and nothing is written before everything has been
     /// checked; afterwards no finished row is lost.
     fn run(self, options: &Options, watcher: &Watcher, interrupt: &Interrupt) -> Request<bool> {
-        let Self { scenes, schemes, solvers, fingerprints: files } = self;
+        let Self { scenes, schemes, solvers, fingerprints: files, inputs } = self;
         let names = (&schemes[..], &solvers[..]);
         let mut runs = Vec::new();
         for scene in scenes {
@@ -110,6 +116,7 @@ impl Chosen {
         }
         let program = program(options, &files);
         let contents: Vec<String> = files.into_iter().map(|(_, fingerprint)| fingerprint).collect();
+        check_output(options, &inputs)?;
         let journal = start(options, program.clone(), &runs)?;
         interrupt.watch(journal);
         let (rows, mut messages) = run_all(runs, options, &contents, journal);
@@ -152,19 +159,10 @@ fn run_all(
     (rows, messages)
 }
 
-/// Makes sure that the files can be written and starts the journal. With `--resume` it has the rows that
-/// are there, of which the runs must ask for every one.
+/// Starts the journal. With `--resume` it has the rows that are there, of which the runs must ask for every one.
 fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'static Journal> {
-    check_output(options)?;
     let journal = match options.resume {
         true => {
-            if Journal::has_rows_alone(&options.out) {
-                let out = options.out.display();
-                warn(&format!(
-                    "warning: {out}/report.jsonl does not say of which problem and options its rows are, and \
-                     report.json is missing: rows of the same scene, scheme, solver and level are kept"
-                ));
-            }
             let keys: Vec<RowKey> = runs.iter().flat_map(|run| run.keys.clone()).collect();
             Journal::resume(&options.out, program, &keys)
         }
@@ -180,11 +178,14 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
     Ok(Box::leak(Box::new(journal)))
 }
 
-/// Makes sure before the work, not after it, that the report can be written, and by no other run.
-fn check_output(options: &Options) -> Request<()> {
+/// Makes sure before the work, not after it, that the report can be written, over no file that was read, and by no
+/// other run.
+fn check_output(options: &Options, inputs: &[PathBuf]) -> Request<()> {
     let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
+    let directories = options.dump.iter().chain([&options.out]);
+    check_apart(inputs, json, directories.clone())?;
     check_writable(json)?;
-    options.dump.iter().chain([&options.out]).try_for_each(|directory| take_directory(directory))
+    directories.clone().try_for_each(|directory| take_directory(directory))
 }
 
 /// Writes the report and prints its tables, of an incomplete one the files only.

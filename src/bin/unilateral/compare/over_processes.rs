@@ -39,13 +39,13 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
     quiet.asked.quiet |= !is_first;
     let watcher = Watcher::new(&quiet);
     let chosen = agreed(Chosen::new(options, &watcher), process)?;
-    let Chosen { scenes, schemes, fingerprints: files, .. } = chosen;
+    let Chosen { scenes, schemes, fingerprints: files, inputs, .. } = chosen;
     check_equal(&format!("{options:?} {files:?}"), process)?;
     let program = program(options, &files)
         .with_request("processes", process.count())
         .with_request("engine", process.engine.name());
     let new_journal = || {
-        check_output(options)?;
+        check_output(options, &inputs)?;
         Journal::create(&options.out, program.clone()).map_err(|e| e.to_string())
     };
     let journal = agreed(is_first.then(new_journal).transpose(), process)?;

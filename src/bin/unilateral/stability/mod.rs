@@ -16,7 +16,8 @@ use crate::asked::command;
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
 use crate::shared::{
-    Failure, bar, check_writable, end_at_interrupt, print, tick, use_threads, warn, write,
+    Failure, bar, check_apart, check_writable, end_at_interrupt, print, tick, use_threads, warn,
+    write,
 };
 use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
 
@@ -49,6 +50,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         study = study.mesh(&name.unwrap_or_default(), mesh);
     }
     study.check().map_err(|e| e.to_string())?;
+    check_apart(&options.meshes, &options.markdown, [&options.out])?;
     check_writable(&options.markdown)?;
     take_directory(&options.out)?;
     end_at_interrupt("the report has the rows so far and is not complete")?;

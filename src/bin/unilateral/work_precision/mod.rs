@@ -15,10 +15,11 @@ use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Progress, Report, Row, Study};
 use unilateral::work_precision::{Rounds, WorkPrecision};
 
+use crate::asked::FoundScenes;
 use crate::one_run::take_directory;
 use crate::shared::{
-    Failure, Request, bar, complain, each_once, end_at_interrupt, print, terminal_width, tick,
-    use_threads, warn,
+    Failure, Request, bar, check_apart, complain, each_once, end_at_interrupt, print,
+    terminal_width, tick, use_threads, warn,
 };
 
 const SCENES: [&str; 5] = ["radial-2d", "ball-2d", "signorini-2d", "hertz-2d", "radial-3d"];
@@ -52,7 +53,8 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         }
     };
     let bar = bar(quiet, "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}");
-    let (scenes, files) = options.asked.scenes(&SCENES, &warn)?;
+    let found = options.asked.scenes(&SCENES, &warn)?;
+    let FoundScenes { scenes, fingerprints: files, paths } = found;
     let mut runs = Vec::new();
     for scene in scenes {
         runs.push(in_its_dimension!(scene, |scene| prepare(
@@ -60,6 +62,7 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         ))?);
     }
     check_subject(options, &runs)?;
+    check_apart(&paths, None, [&options.out])?;
     take_directory(&options.out)?;
     end_at_interrupt("the report has the runs so far and is not complete")?;
     let threads = rayon::current_num_threads();

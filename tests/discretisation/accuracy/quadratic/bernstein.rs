@@ -12,6 +12,7 @@ use unilateral::inequality::Outcome;
 use unilateral::measure::Fields;
 use unilateral::mesh::{BoundaryCondition, BoxDomain, Mesh};
 use unilateral::prelude::*;
+use unilateral::problem::Datum;
 
 /// Quadratics of every kind with bounds on Bernstein coefficients.
 fn schemes<const D: usize>() -> [Entry<D>; 4] {
@@ -137,7 +138,8 @@ fn bounds_are_coefficients() {
         assert!((lower - coefficient).abs() < 1e-14, "{ends:?}: {bound:?}");
         assert!((upper - coefficient).abs() < 1e-14, "{ends:?}: {bound:?}");
     }
-    let touching = problem.obstacle_below(|_| 0.0).obstacle_above(|_| 1.0);
+    let mut touching = problem;
+    [touching.lower, touching.upper] = [0.0, 1.0].map(|bound| Datum::from(bound).into());
     let discretisation =
         Discretisation::new(&ConformingP2, &touching, &mesh, DataQuadrature::default()).unwrap();
     let fixed = discretisation.bounds().unwrap().into_iter().filter_map(|bound| match bound {
