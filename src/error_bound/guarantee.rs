@@ -41,7 +41,10 @@ impl<const D: usize> Space<'_, D> {
             || !(is_below(&data.reaction, 2) && has_reaction_bound)
             || integrands.iter().any(|data| self.degree_of(data).is_none());
         let obstacles = [&data.lower, &data.upper, &data.gap];
-        let is_curved = obstacles.iter().any(|d| !is_below(d, pair.degree));
+        // every cell is visited: only where the answer counts
+        let is_above = |degree: usize| obstacles.iter().any(|d| !is_below(d, degree));
+        let is_curved = is_above(pair.degree)
+            && (pair.degree > 1 || is_above(2) || !self.has_convex_obstacles());
         // linear data and obstacles: Bernstein coefficients are means of values at vertices
         let is_linear = obstacles.iter().all(|d| is_below(d, 1)) && is_below(&data.dirichlet, 1);
         // every edge is visited: only where the answer counts

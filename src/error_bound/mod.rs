@@ -27,6 +27,7 @@
 
 mod admissible_function;
 mod contact_forces;
+mod convex;
 mod estimate;
 mod exchange;
 mod figures;

@@ -338,3 +338,38 @@ fn data_of_other_sides_take_no_guarantee_away() {
     let mesh = Mesh::kuhn_box(&square, [4, 4]).unwrap();
     assert_eq!(unproven(&open, &mesh), [const { Unproven::Boundary }; 3].map(|term| vec![term]));
 }
+
+/// A linear function exceeds a convex obstacle everywhere if it does at the vertices. That an obstacle is convex along all
+/// edges is not enough: `x^2 + 4 x y + y^2` is so on these meshes.
+#[test]
+fn linears_on_obstacles_that_are_convex_in_each_cell_are_guaranteed() {
+    let square = BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let foot = square.clone().side(1, 0, BoundaryCondition::Contact);
+    let [square, foot] = [square, foot].map(|domain| Mesh::kuhn_box(&domain, [4, 4]).unwrap());
+    // the factors of x^2, 2 x y and y^2
+    let forms: [([f64; 3], bool); 5] = [
+        ([1.0, 0.0, 1.0], true),
+        ([1.0, 1.0, 1.0], true),
+        ([1.0, 2.0, 1.0], false),
+        ([-1.0, 0.0, 1.0], false),
+        ([-1.0, 0.0, -1.0], false),
+    ];
+    let unproven = |problem: Problem<2>, mesh: &Mesh<2>| {
+        solve(&problem, mesh, &ConformingP1).unwrap().bound().unwrap().unproven
+    };
+    for ([a, b, c], is_convex) in forms {
+        let form = move |x: &Point<2>| a * x[0] * x[0] + 2.0 * b * x[0] * x[1] + c * x[1] * x[1];
+        let expected = if is_convex { vec![] } else { vec![Unproven::Obstacle] };
+        let mut below = Problem::new().constant_source(-8.0);
+        below.lower = Datum::polynomial(2, move |x| 0.1 * form(x) - 0.7).into();
+        assert_eq!(unproven(below, &square), expected, "lower {a} {b} {c}");
+        let mut above = Problem::new().constant_source(8.0);
+        above.upper = Datum::polynomial(2, move |x| 0.7 - 0.1 * form(x)).into();
+        assert_eq!(unproven(above, &square), expected, "upper {a} {b} {c}");
+        // along the foot the first factor alone counts
+        let expected = if a > 0.0 { vec![] } else { vec![Unproven::Obstacle] };
+        let mut contact = Problem::new().constant_source(-8.0);
+        contact.gap = Datum::polynomial(2, move |x| 0.1 * form(x) - 0.2).into();
+        assert_eq!(unproven(contact, &foot), expected, "gap {a} {b} {c}");
+    }
+}
