@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::eigenvalue::least_eigenvalue;
 use super::friedrichs::FriedrichsData;
 use super::integrals::Totals;
 use super::{NoBound, PrimalDualPair};
@@ -205,6 +206,8 @@ impl ErrorBound {
 pub(crate) struct PartOfBound<const D: usize> {
     totals: Totals,
     friedrichs: FriedrichsData<D>,
+    /// The constant where these data give none and one is needed.
+    by_eigenvalue: Option<f64>,
     /// The part of each cell; zero for cells that do not count.
     squares: Vec<f64>,
     unproven: Vec<Unproven>,
@@ -214,7 +217,7 @@ impl<const D: usize> PartOfBound<D> {
     /// The bound over all parts of a mesh, or over the one part that is the mesh, with the shares of the cells of this
     /// part. All parts call it.
     pub fn bound(self, distribution: Option<&dyn Distribution>) -> Result<ErrorBound, NoBound> {
-        let Self { mut totals, mut friedrichs, squares, mut unproven } = self;
+        let Self { mut totals, mut friedrichs, by_eigenvalue, squares, mut unproven } = self;
         if let Some(distribution) = distribution {
             totals.add_over_parts(distribution);
             friedrichs = friedrichs.over_parts(distribution);
@@ -224,7 +227,7 @@ impl<const D: usize> PartOfBound<D> {
             let found = of_all.into_iter().zip(is_found).filter(|(_, is_found)| *is_found != 0.0);
             unproven = found.map(|(term, _)| term).collect();
         }
-        let of_solver = totals.of_solver(friedrichs.constant())?;
+        let of_solver = totals.of_solver(friedrichs.constant().or(by_eigenvalue))?;
         if of_solver.is_none() {
             unproven.push(Unproven::Algebra);
         }
@@ -243,7 +246,11 @@ impl<const D: usize> Space<'_, D> {
         let (totals, squares) = self.terms_of_bound((pair, u), counts)?;
         let unproven = self.unproven_terms(pair, totals.reaction_from_below >= 0.0, counts);
         let friedrichs = FriedrichsData::of(self.mesh);
-        Ok(PartOfBound { totals, friedrichs, squares, unproven })
+        let by_eigenvalue = match totals.needs_constant() && friedrichs.constant().is_none() {
+            true => least_eigenvalue(self.mesh)?.map(|eigenvalue| 1.0 / eigenvalue.sqrt()),
+            false => None,
+        };
+        Ok(PartOfBound { totals, friedrichs, by_eigenvalue, squares, unproven })
     }
 
     /// The degree of the rule for the terms of cells: exact for polynomial data, at least that of the load elsewhere.

@@ -20,7 +20,7 @@
 //! | `contact_forces` | the forces on contact facets |
 //! | `exchange` | multipliers exchanged for flux where obstacles bind |
 //! | `integrals` | what each cell and the boundary add to the bound, and the sums |
-//! | `friedrichs` | the constant with which counts what the solver left |
+//! | `friedrichs`, `eigenvalue` | the constant with which counts what the solver left |
 //! | `guarantee` | which terms are proven |
 //! | `estimate` | the bound from the sums |
 //! | `marking`, `figures` | cells to refine; the figures of a report |
@@ -28,6 +28,7 @@
 mod admissible_function;
 mod contact_forces;
 mod convex;
+mod eigenvalue;
 mod estimate;
 mod exchange;
 mod figures;
@@ -41,6 +42,7 @@ mod primal_dual_pair;
 mod quadratics;
 mod shared_multipliers;
 
+pub use eigenvalue::least_eigenvalue;
 pub use estimate::{BoundTerms, ErrorBound, Unproven};
 pub use figures::{BoundFigures, TrueErrors};
 pub use flux::Flux;

@@ -6,6 +6,7 @@ mod adaptive;
 mod constants;
 mod contact_forces;
 mod discrete_functions;
+mod eigenvalues;
 mod elements;
 mod error_bounds;
 mod error_bounds_constants;

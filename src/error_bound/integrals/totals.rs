@@ -88,6 +88,11 @@ impl Totals {
         ]
     }
 
+    /// Whether the solver left something that no reaction bounds.
+    pub fn needs_constant(&self) -> bool {
+        self.unbalanced != 0.0 && self.reaction_from_below <= 0.0
+    }
+
     /// The term of the solver, a number `A` with `(rho, e) <= A |||e|||` for what the solver left, `rho`, and all `e`
     /// that vanish on the Dirichlet boundary: the norm of `rho` in L2 times the constant of Friedrichs' inequality or,
     /// where the reaction is positive, by the reaction. None if neither is known and `rho` is not zero.
