@@ -139,7 +139,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// Sets values at vertices to Dirichlet data, and moves the others into the constraints.
-    fn clip_at_vertices(&self, values: &mut [f64]) {
+    pub(super) fn clip_at_vertices(&self, values: &mut [f64]) {
         let restrict = |(low, high): &mut (f64, f64), v: usize, cell: usize| {
             let region = self.mesh.region(cell);
             let x = self.mesh.vertices()[v];

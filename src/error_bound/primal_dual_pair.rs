@@ -91,6 +91,16 @@ impl<const D: usize> Discretisation<'_, D> {
                 = |of, inequality, solution, counts| of.pair(inequality, solution, counts)
         )(self, inequality, solution, counts)
     }
+    /// A pair of linears with another function of values at vertices, moved into the constraints, beside the same flux.
+    pub(crate) fn with_function(
+        &self,
+        pair: &PrimalDualPair<D>,
+        values: &[f64],
+    ) -> PrimalDualPair<D> {
+        let mut function = values.to_vec();
+        self.space.clip_at_vertices(&mut function);
+        PrimalDualPair { function, ..pair.clone() }
+    }
     /// Checks that a flux is known for the element: broken and conforming linears and quadratics, and
     /// that of Crouzeix and Raviart, and that the mesh is a whole one.
     ///

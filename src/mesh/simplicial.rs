@@ -86,6 +86,15 @@ impl<const D: usize> Mesh<D> {
         let cell = self.cell(c);
         longest_edge(|k| self.vertices[cell[k] as usize], None)
     }
+    /// The largest ratio of the diameter of a cell to its least height.
+    pub(crate) fn largest_aspect(&self) -> f64 {
+        let of_cell = |cell: usize| {
+            let geometry = self.geometry(cell);
+            let largest = (0..D + 1).map(|local| geometry.facet_measure(local)).fold(0.0, f64::max);
+            self.cell_diameter(cell) * largest / (D as f64 * geometry.volume)
+        };
+        (0..self.n_cells()).map(of_cell).fold(0.0, f64::max)
+    }
     /// The smallest distance of two vertices of a cell.
     pub fn shortest_edge(&self) -> f64 {
         let shortest_of = |cells: Range<usize>| {

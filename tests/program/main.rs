@@ -27,6 +27,7 @@ mod requests;
 mod rows;
 mod run;
 mod square;
+mod stretched;
 #[cfg(target_os = "linux")]
 mod threads;
 

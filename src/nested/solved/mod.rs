@@ -41,6 +41,8 @@ pub struct Solved<'a, const D: usize> {
     hierarchy: Option<(&'a Hierarchy<D>, usize)>,
     /// The bound with the pair that gives it and the seconds of both, once computed.
     bound: OnceLock<(PrimalDualPair<D>, ErrorBound, f64)>,
+    /// The values at vertices of the conforming solution from which a scheme on linears started, on stretched cells.
+    pub(super) conforming: Vec<f64>,
     /// The rounding errors in the figures, once computed.
     rounding: OnceLock<Option<Rounding>>,
     /// Seconds for the mesh and all coarser ones, if it is one of several.
@@ -106,6 +108,7 @@ impl<'a, const D: usize> Solved<'a, D> {
             energy_norm,
             hierarchy,
             bound: OnceLock::new(),
+            conforming: Vec::new(),
             rounding: OnceLock::new(),
             solve_seconds: 0.0,
             start_seconds: 0.0,
