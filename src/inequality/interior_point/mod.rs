@@ -11,13 +11,12 @@ mod bound_pairs;
 mod newton_system;
 mod start;
 
-use super::active_set::{admissible_state, prescribed_value};
 use super::history::Recorder;
 use super::recession::solve_with_kernel;
 use super::validation::check;
 use super::violations::certify_with_rounding;
 use super::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
-use crate::algebra::{Contact, Inequality};
+use crate::algebra::Inequality;
 use crate::instances::compiled;
 use crate::linear::direct::{MatrixFactors, StaticCondensation};
 use crate::real::Real;
@@ -199,23 +198,18 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
         right
     }
 
-    /// The values and their contact states. A bound is active if the dual variable exceeds the slack times the diagonal
-    /// entry; values lie on active bounds, and others on the bounds that they violate.
-    fn values(&self) -> (Vec<T>, Vec<Contact>) {
+    /// Admissible values. They lie on the bounds whose dual variables exceed the slacks times the diagonal entries, and
+    /// on the bounds that they would violate.
+    fn values(&self) -> Vec<T> {
         let bounds = &self.inequality.bounds;
-        let mut contact = vec![Contact::Inactive; bounds.len()];
+        let values = bounds.iter().zip(&self.point.values);
+        let mut values: Vec<T> = values.map(|(bound, &x)| bound.nearest(T::lit(x))).collect();
         for pair in &self.pairs {
             if pair.dual > self.system.diagonal_scale(pair.unknown) * pair.slack {
-                let side = if pair.side > 0.0 { Contact::Lower } else { Contact::Upper };
-                contact[pair.unknown] = side;
+                values[pair.unknown] = T::lit(pair.bound);
             }
         }
-        let states = bounds.iter().zip(&mut contact).zip(&self.point.values);
-        let values = states.map(|((bound, contact), &x)| {
-            *contact = admissible_state(bound, *contact);
-            prescribed_value(bound, *contact).unwrap_or(bound.nearest(T::lit(x)))
-        });
-        (values.collect(), contact)
+        values
     }
 
     fn jump_multipliers(&self) -> Vec<T> {
@@ -224,14 +218,13 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
 
     /// The largest of the numbers of the certificate of [`InteriorIterate::values`].
     fn certificate(&self) -> f64 {
-        let (values, multipliers) = (self.values().0, self.jump_multipliers());
+        let (values, multipliers) = (self.values(), self.jump_multipliers());
         certify_with_rounding(self.inequality, &values, &multipliers).0.largest()
     }
 
     fn into_solution(self, outcome: Outcome) -> Solution<T> {
-        let (values, contact) = self.values();
-        Solution::new(values, contact, outcome)
+        let (values, multipliers) = (self.values(), self.jump_multipliers());
+        Solution::of_values(self.inequality, values, multipliers, outcome)
             .iterations(self.systems, 0)
-            .jump_multipliers(self.jump_multipliers())
     }
 }

@@ -8,7 +8,7 @@
 mod latent;
 
 use super::active_set::prescribed_value;
-use super::certificate::{contact_by_residual, positive_diagonal};
+use super::certificate::{nearer_bound, positive_diagonal};
 use super::history::Recorder;
 use super::interior_point::{MixedVector, NewtonSystem};
 use super::recession::solve_with_kernel;
@@ -100,7 +100,7 @@ fn run<T: Real>(
     recorder.begin_step();
     let outcome = loop {
         recorder.end_step(|| iterate.certificate);
-        match iterate.best.1 <= T::CERTIFICATE_LIMIT {
+        match iterate.best.2 <= T::CERTIFICATE_LIMIT {
             true => break Outcome::Converged,
             // no bound is violated, so that no system differs from the first one
             false if iterate.weight.is_infinite() => break Outcome::Stalled,
@@ -168,8 +168,8 @@ struct ProximalIterate<'h, 'a, T> {
     weight: f64,
     /// Number of linear systems.
     systems: usize,
-    /// The admissible values with the smallest certificate, and the largest of its numbers.
-    best: (Solution<T>, f64),
+    /// The admissible values with the smallest certificate, their jump multipliers, and the largest of its numbers.
+    best: (Vec<T>, Vec<T>, f64),
     /// The largest of the numbers of the certificate of the last admissible values.
     certificate: f64,
 }
@@ -184,7 +184,7 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
     ) -> Result<Self, FactorError> {
         let (point, is_regular) = system.solve_without_bounds()?;
         let latent = latent_unknowns(inequality, &system);
-        let best = (Solution::without_iterate(inequality, Outcome::IterationLimit), f64::INFINITY);
+        let best = (Vec::new(), Vec::new(), f64::INFINITY);
         let (weight, certificate) = (f64::INFINITY, f64::INFINITY);
         let mut iterate =
             Self { inequality, system, point, latent, weight, systems: 1, best, certificate };
@@ -266,28 +266,32 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
         Ok(())
     }
 
-    /// Projects the values onto their bounds, those in contact by the residual of the point onto the nearer bound, and
-    /// keeps them if their certificate is the smallest so far.
+    /// Projects the values onto their bounds, and onto the nearer bound those whose gap is at most the Gauss-Seidel step
+    /// by the residual of the point; keeps them if their certificate is the smallest so far.
     fn keep_if_best(&mut self, residual: &[f64]) {
-        let bounds = &self.inequality.bounds;
-        let projected = bounds.iter().zip(&self.point.values);
-        let mut values: Vec<T> = projected.map(|(bound, &x)| bound.nearest(T::lit(x))).collect();
-        let contact = contact_by_residual(self.inequality, &values, residual);
-        for ((x, bound), &state) in values.iter_mut().zip(bounds).zip(&contact) {
-            *x = prescribed_value(bound, state).unwrap_or(*x);
+        let bounds = self.inequality.bounds.iter().zip(&self.point.values);
+        let mut values: Vec<T> = bounds.map(|(bound, &x)| bound.nearest(T::lit(x))).collect();
+        for LatentUnknown { unknown, diagonal, .. } in &self.latent {
+            let (bound, x) = (&self.inequality.bounds[*unknown], &mut values[*unknown]);
+            let (side, gap, step) = nearer_bound(bound, x.to_f64(), -residual[*unknown] / diagonal);
+            if gap <= step {
+                *x = prescribed_value(bound, side).unwrap_or(*x);
+            }
         }
         let multipliers: Vec<T> = self.point.jump_multipliers.iter().map(|&p| T::lit(p)).collect();
         let certificate = certify_with_rounding(self.inequality, &values, &multipliers).0.largest();
         self.certificate = certificate;
-        if certificate < self.best.1 {
-            let solution = Solution::new(values, contact, Outcome::IterationLimit);
-            self.best = (solution.jump_multipliers(multipliers), certificate);
+        if certificate < self.best.2 {
+            self.best = (values, multipliers, certificate);
         }
     }
 
     fn into_solution(self, outcome: Outcome) -> Solution<T> {
-        let mut solution = self.best.0.iterations(self.systems, 0);
-        solution.outcome = outcome;
-        solution
+        let (values, multipliers, certificate) = self.best;
+        let solution = match certificate.is_finite() {
+            true => Solution::of_values(self.inequality, values, multipliers, outcome),
+            false => Solution::without_iterate(self.inequality, outcome),
+        };
+        solution.iterations(self.systems, 0)
     }
 }
