@@ -12,7 +12,7 @@ mod newton_system;
 mod start;
 
 use super::history::Recorder;
-use super::recession::solve_with_kernel;
+use super::recession::{press_onto_bounds, solve_with_kernel};
 use super::validation::check;
 use super::violations::certify_with_rounding;
 use super::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
@@ -137,7 +137,7 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
         for pair in &self.pairs {
             diagonal[pair.unknown] += pair.dual / pair.slack;
         }
-        let factors = self.system.factor(&diagonal)?;
+        let factors = self.system.factor_held(&mut diagonal)?;
         let mut residual = self.system.residual(&self.point);
         for pair in &self.pairs {
             residual.values[pair.unknown] += pair.side * pair.dual;
@@ -209,6 +209,7 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
                 values[pair.unknown] = T::lit(pair.bound);
             }
         }
+        press_onto_bounds(self.inequality, &mut values);
         values
     }
 

@@ -11,7 +11,7 @@ use super::active_set::prescribed_value;
 use super::certificate::{nearer_bound, positive_diagonal};
 use super::history::Recorder;
 use super::interior_point::{MixedVector, NewtonSystem};
-use super::recession::solve_with_kernel;
+use super::recession::{press_onto_bounds, solve_with_kernel};
 use super::validation::check;
 use super::violations::certify_with_rounding;
 use super::{InequalitySolver, InitialGuess, Outcome, Solution};
@@ -246,7 +246,7 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
             self.point.values[of.unknown] = of.latent.value();
             diagonal[of.unknown] = of.shift(self.weight);
         }
-        let factors = self.system.factor(&diagonal)?;
+        let factors = self.system.factor_held(&mut diagonal)?;
         let mut change = self.system.residual(&self.point);
         self.system.solve(&factors, &mut change);
         let add = |x: &mut [f64], by: &[f64]| x.iter_mut().zip(by).for_each(|(x, by)| *x += by);
@@ -278,6 +278,7 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
                 *x = prescribed_value(bound, side).unwrap_or(*x);
             }
         }
+        press_onto_bounds(self.inequality, &mut values);
         let multipliers: Vec<T> = self.point.jump_multipliers.iter().map(|&p| T::lit(p)).collect();
         let certificate = certify_with_rounding(self.inequality, &values, &multipliers).0.largest();
         self.certificate = certificate;
