@@ -131,6 +131,16 @@ pub(crate) fn stiffness_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) 
     }
 }
 
+/// A certificate with which contact forces have digits. That of values in double precision is smaller, in single
+/// precision its limit is a hundred times as large.
+const WITH_FORCES: f64 = 1e-6;
+
+/// Whether a method whose certificates fall from step to step ends: the smallest one is within its limit, and forces have
+/// digits, or the last step has not halved the certificate `before`.
+pub(super) fn is_final<T: Real>(smallest: f64, before: f64, last: f64) -> bool {
+    smallest <= T::CERTIFICATE_LIMIT && (smallest <= WITH_FORCES || last > 0.5 * before)
+}
+
 /// The contact states of values: see [`Solution::of_values`](super::Solution::of_values).
 #[must_use]
 pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> {

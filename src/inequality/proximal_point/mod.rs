@@ -8,7 +8,7 @@
 mod latent;
 
 use super::active_set::prescribed_value;
-use super::certificate::{nearer_bound, positive_diagonal};
+use super::certificate::{is_final, nearer_bound, positive_diagonal};
 use super::history::Recorder;
 use super::interior_point::{MixedVector, NewtonSystem};
 use super::recession::{press_onto_bounds, solve_with_kernel};
@@ -44,8 +44,9 @@ const PINNED: f64 = 1e15;
 /// `w / (alpha u'(psi))`. Every step multiplies the weight by four. Where a step would release an unknown from its bound,
 /// the gap grows by no more than the correction of that unknown. The method applies to every matrix whose symmetric
 /// part is positive semidefinite, and starts from starting values, else from the solution without bounds. It ends as soon
-/// as the values, those near bounds on these bounds, have a certificate within its limit; else after 60 systems, with the
-/// values of the smallest certificate.
+/// as the values, those near bounds on these bounds, have a certificate within its limit (in single precision, whose limit
+/// says little of forces, when another step no longer halves it); else after 60 systems, with the values of the smallest
+/// certificate.
 ///
 /// For symmetric matrices the steps, solved exactly, converge for every weight (G. Chen, M. Teboulle, SIAM J. Optim. 3
 /// (1993) 538-543); for one Newton system a step there is no proof. Source of the method: B. Keith, T. M. Surowiec,
@@ -98,15 +99,17 @@ fn run<T: Real>(
         Err(error) => return Solution::without_iterate(inequality, error.into()),
     };
     recorder.begin_step();
+    let mut before = f64::INFINITY;
     let outcome = loop {
         recorder.end_step(|| iterate.certificate);
-        match iterate.best.2 <= T::CERTIFICATE_LIMIT {
+        match is_final::<T>(iterate.best.2, before, iterate.certificate) {
             true => break Outcome::Converged,
             // no bound is violated, so that no system differs from the first one
             false if iterate.weight.is_infinite() => break Outcome::Stalled,
             false if iterate.systems >= MAX_SYSTEMS => break Outcome::IterationLimit,
             false => recorder.begin_step(),
         }
+        before = iterate.certificate;
         if let Err(outcome) = iterate.step() {
             break outcome;
         }
@@ -289,6 +292,8 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
 
     fn into_solution(self, outcome: Outcome) -> Solution<T> {
         let (values, multipliers, certificate) = self.best;
+        let outcome =
+            if certificate <= T::CERTIFICATE_LIMIT { Outcome::Converged } else { outcome };
         let solution = match certificate.is_finite() {
             true => Solution::of_values(self.inequality, values, multipliers, outcome),
             false => Solution::without_iterate(self.inequality, outcome),
