@@ -9,7 +9,7 @@ use super::process::Process;
 use crate::algebra::{Bound, Contact, Distribution, Inequality};
 use crate::constraint::Nodes;
 use crate::error::Error;
-use crate::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, contact_of};
+use crate::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
 use crate::linear::krylov::symmetric_part;
 use crate::linear::{FactorError, Preconditioner};
 use crate::nested::{System, SystemSolver};
@@ -245,8 +245,7 @@ impl<const D: usize> Solve<'_, '_, D> {
         let mut values = vec![0.0; inequality.size()];
         own.iter().zip(&own_values).for_each(|(&i, &value)| values[i as usize] = value);
         (over_parts as &dyn Distribution).update(&mut values);
-        let contact = contact_of(inequality, &values);
-        let solution = Solution::new(values, contact, Outcome::Converged)
+        let solution = Solution::of_values(inequality, values, Vec::new(), Outcome::Converged)
             .iterations(steps, 0)
             .systems(steps)
             .linear_solver("engine");

@@ -1,6 +1,8 @@
 //! The certificate: violations of the complementarity conditions, computed from the data and `u` alone.
 
+use super::scales::Scales;
 use crate::algebra::{Bound, Contact, Inequality};
+use crate::parallel::vectors::collect;
 use crate::real::{Precision, Real, maximum};
 
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
@@ -129,9 +131,17 @@ pub(crate) fn stiffness_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) 
     }
 }
 
-/// The contact states of values from a solver that has no contact states: an unknown is active at the nearer bound if
-/// its gap is at most the Gauss-Seidel step `r_i / d_i` towards this bound. An unknown whose bounds coincide is active
-/// at its lower bound.
+/// A certificate with which contact forces have digits. That of values in double precision is smaller, in single
+/// precision its limit is a hundred times as large.
+const WITH_FORCES: f64 = 1e-6;
+
+/// Whether a method whose certificates fall from step to step ends: the smallest one is within its limit, and forces have
+/// digits, or the last step has not halved the certificate `before`.
+pub(super) fn is_final<T: Real>(smallest: f64, before: f64, last: f64) -> bool {
+    smallest <= T::CERTIFICATE_LIMIT && (smallest <= WITH_FORCES || last > 0.5 * before)
+}
+
+/// The contact states of values: see [`Solution::of_values`](super::Solution::of_values).
 ///
 /// # Panics
 /// If the inequality is not [well formed](Inequality::is_well_formed), or has another number of unknowns.
@@ -140,35 +150,40 @@ pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> 
     let (n, values) = (inequality.size(), u.len());
     assert!(inequality.is_well_formed(), "the inequality of {n} unknowns is not well formed");
     assert!(values == n, "{values} values for {n} unknowns: contact states need one for each");
-    let mut residual = vec![0.0; inequality.size()];
-    inequality.residual_f64(u, &mut residual);
-    contact_by_residual(inequality, u, &residual)
+    contact_states(inequality, u, &[])
 }
 
-/// [`contact_of`] for the residual that a solver has, with its jump multipliers where the matrix is penalised.
-pub(super) fn contact_by_residual<T: Real>(
+/// [`contact_of`] for values with jump multipliers, if they are not empty.
+pub(super) fn contact_states<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
-    residual: &[f64],
+    jump_multipliers: &[T],
 ) -> Vec<Contact> {
-    let state = |(i, bound): (usize, &Bound<T>)| {
-        if !bound.is_inequality() {
-            return Contact::Inactive;
-        }
+    let mut r = vec![0.0; u.len()];
+    residual(inequality, u, jump_multipliers, &mut r);
+    let diagonal = collect(u.len(), |i| positive_diagonal(inequality, i));
+    let values = (u, &r[..], jump_multipliers);
+    let scales = Scales::of(inequality, values, &|i| diagonal[i], T::PRECISION);
+    let allowed = T::CERTIFICATE_LIMIT * scales.energy_norm;
+    collect(u.len(), |i| {
+        let bound = &inequality.bounds[i];
         if bound.fixed_value().is_some() {
-            return Contact::Lower;
+            return if bound.is_inequality() { Contact::Lower } else { Contact::Inactive };
         }
-        let (x, step) = (u[i].to_f64(), -residual[i] / positive_diagonal(inequality, i));
-        let [to_lower, to_upper] = bound.distances(x);
-        if to_lower <= to_upper && to_lower <= step {
-            Contact::Lower
-        } else if to_upper < to_lower && to_upper <= -step {
-            Contact::Upper
-        } else {
-            Contact::Inactive
-        }
-    };
-    inequality.bounds.iter().enumerate().map(state).collect()
+        let (side, gap, step) = nearer_bound(bound, u[i].to_f64(), -r[i] / diagonal[i]);
+        let is_on_bound = gap <= 0.0 && -step * diagonal[i].sqrt() <= allowed;
+        if gap <= step || is_on_bound { side } else { Contact::Inactive }
+    })
+}
+
+/// The bound that is nearer to the value `x`, the distance from it, negative beyond it, and the step towards it.
+/// `step = r_i / d_i` is positive where a Gauss-Seidel correction would decrease the value.
+pub(super) fn nearer_bound<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> (Contact, f64, f64) {
+    let [to_lower, to_upper] = bound.distances(x);
+    match to_lower <= to_upper {
+        true => (Contact::Lower, to_lower, step),
+        false => (Contact::Upper, to_upper, -step),
+    }
 }
 
 /// The number of active unknowns; unknowns with a Dirichlet value do not count, nor do those that other parts own.

@@ -1,6 +1,7 @@
 //! The result of a solver.
 
 use super::Outcome;
+use super::certificate::contact_states;
 use super::history::HistoryPoint;
 use super::stage::StageRun;
 use crate::algebra::{Bound, Contact, Inequality};
@@ -112,6 +113,23 @@ impl<T: Real> Solution<T> {
             history: Vec::new(),
             precision: T::PRECISION,
         }
+    }
+    /// A result from values alone, with jump multipliers if they are not empty: what a solver returns that has no
+    /// contact states of its own.
+    ///
+    /// With the residual `b - A u` and the scales of the [`Certificate`](super::Certificate), an unknown is in contact
+    /// with its nearer bound if its gap is at most the Gauss-Seidel step towards this bound, or if its value is on the
+    /// bound and the multiplier has a wrong sign by no more than the limit of the certificate. A value on its bound
+    /// whose multiplier vanishes is therefore in contact. So is an unknown whose bounds coincide, with the lower one.
+    #[must_use]
+    pub fn of_values(
+        inequality: &Inequality<T>,
+        values: Vec<T>,
+        jump_multipliers: Vec<T>,
+        outcome: Outcome,
+    ) -> Self {
+        let contact = contact_states(inequality, &values, &jump_multipliers);
+        Self::new(values, contact, outcome).jump_multipliers(jump_multipliers)
     }
     /// The result of a solve that ends before the first iterate: the admissible values nearest to zero, all contact
     /// states inactive.

@@ -2,6 +2,7 @@
 
 mod algebraic_error;
 mod contact_sets;
+mod contact_states;
 mod double_precision;
 mod exact_reference;
 mod factors_or_krylov;

@@ -30,6 +30,6 @@ mod progress;
 mod settings;
 mod solver;
 
-pub(super) use contact_state::{admissible_state, prescribed_value};
+pub(super) use contact_state::prescribed_value;
 pub use settings::ActiveSet;
 pub use solver::Preconditioned;

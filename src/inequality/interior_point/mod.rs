@@ -11,13 +11,13 @@ mod bound_pairs;
 mod newton_system;
 mod start;
 
-use super::active_set::{admissible_state, prescribed_value};
+use super::certificate::is_final;
 use super::history::Recorder;
-use super::recession::solve_with_kernel;
+use super::recession::{press_onto_bounds, solve_with_kernel};
 use super::validation::check;
 use super::violations::certify_with_rounding;
 use super::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
-use crate::algebra::{Contact, Inequality};
+use crate::algebra::Inequality;
 use crate::instances::compiled;
 use crate::linear::direct::{MatrixFactors, StaticCondensation};
 use crate::real::Real;
@@ -46,7 +46,8 @@ const LEAST_GAIN: f64 = 1.01;
 /// Optim. 3 (1993) 696-725) while these lengthen it, and goes almost to the first zero of a slack or dual variable.
 /// The method applies to every
 /// matrix whose symmetric part is positive semidefinite. It ends as soon as the values, those of
-/// active bounds on these bounds, have a certificate within its limit. Linear systems are solved with factors.
+/// active bounds on these bounds, have a certificate within its limit; in single precision, whose limit says little of
+/// forces, when another step no longer halves it. Linear systems are solved with factors.
 ///
 /// [`ActiveSet`] runs this method where its active set stagnates, and begins anew from the contact states at its end.
 ///
@@ -100,15 +101,18 @@ pub(super) fn run<'a, T: Real>(
         Err(error) => return Solution::without_iterate(inequality, error.into()),
     };
     recorder.begin_step();
+    let mut before = f64::INFINITY;
     let outcome = loop {
-        let certificate = iterate.certificate();
+        let certificate = iterate.keep_if_best();
         recorder.end_step(|| certificate);
-        if certificate <= T::CERTIFICATE_LIMIT {
+        let smallest = iterate.best.as_ref().map_or(f64::INFINITY, |best| best.2);
+        if is_final::<T>(smallest, before, certificate) {
             break Outcome::Converged;
         }
         if iterate.systems >= max_systems {
             break Outcome::IterationLimit;
         }
+        before = certificate;
         recorder.begin_step();
         if let Err(outcome) = iterate.step() {
             break outcome;
@@ -125,6 +129,8 @@ struct InteriorIterate<'h, 'a, T> {
     pairs: Vec<BoundPair>,
     /// Number of linear systems.
     systems: usize,
+    /// Values, jump multipliers and certificate of the step with the smallest certificate within its limit.
+    best: Option<(Vec<T>, Vec<T>, f64)>,
 }
 
 impl<T: Real> InteriorIterate<'_, '_, T> {
@@ -138,7 +144,7 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
         for pair in &self.pairs {
             diagonal[pair.unknown] += pair.dual / pair.slack;
         }
-        let factors = self.system.factor(&diagonal)?;
+        let factors = self.system.factor_held(&mut diagonal)?;
         let mut residual = self.system.residual(&self.point);
         for pair in &self.pairs {
             residual.values[pair.unknown] += pair.side * pair.dual;
@@ -199,39 +205,44 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
         right
     }
 
-    /// The values and their contact states. A bound is active if the dual variable exceeds the slack times the diagonal
-    /// entry; values lie on active bounds, and others on the bounds that they violate.
-    fn values(&self) -> (Vec<T>, Vec<Contact>) {
+    /// Admissible values. They lie on the bounds whose dual variables exceed the slacks times the diagonal entries, and
+    /// on the bounds that they would violate.
+    fn values(&self) -> Vec<T> {
         let bounds = &self.inequality.bounds;
-        let mut contact = vec![Contact::Inactive; bounds.len()];
+        let values = bounds.iter().zip(&self.point.values);
+        let mut values: Vec<T> = values.map(|(bound, &x)| bound.nearest(T::lit(x))).collect();
         for pair in &self.pairs {
             if pair.dual > self.system.diagonal_scale(pair.unknown) * pair.slack {
-                let side = if pair.side > 0.0 { Contact::Lower } else { Contact::Upper };
-                contact[pair.unknown] = side;
+                values[pair.unknown] = T::lit(pair.bound);
             }
         }
-        let states = bounds.iter().zip(&mut contact).zip(&self.point.values);
-        let values = states.map(|((bound, contact), &x)| {
-            *contact = admissible_state(bound, *contact);
-            prescribed_value(bound, *contact).unwrap_or(bound.nearest(T::lit(x)))
-        });
-        (values.collect(), contact)
+        press_onto_bounds(self.inequality, &mut values);
+        values
     }
 
     fn jump_multipliers(&self) -> Vec<T> {
         self.point.jump_multipliers.iter().map(|&p| T::lit(p)).collect()
     }
 
-    /// The largest of the numbers of the certificate of [`InteriorIterate::values`].
-    fn certificate(&self) -> f64 {
-        let (values, multipliers) = (self.values().0, self.jump_multipliers());
-        certify_with_rounding(self.inequality, &values, &multipliers).0.largest()
+    /// Keeps values whose certificate is within its limit, if it is the smallest so far; returns the largest of the numbers
+    /// of the certificate.
+    fn keep_if_best(&mut self) -> f64 {
+        let (values, multipliers) = (self.values(), self.jump_multipliers());
+        let certificate = certify_with_rounding(self.inequality, &values, &multipliers).0.largest();
+        let smallest = self.best.as_ref().map_or(T::CERTIFICATE_LIMIT, |best| best.2);
+        if certificate <= smallest {
+            self.best = Some((values, multipliers, certificate));
+        }
+        certificate
     }
 
-    fn into_solution(self, outcome: Outcome) -> Solution<T> {
-        let (values, contact) = self.values();
-        Solution::new(values, contact, outcome)
+    /// The solution: the best values if they are within the limit of the certificate, whatever ended the run.
+    fn into_solution(mut self, outcome: Outcome) -> Solution<T> {
+        let (values, multipliers, outcome) = match self.best.take() {
+            Some((values, multipliers, _)) => (values, multipliers, Outcome::Converged),
+            None => (self.values(), self.jump_multipliers(), outcome),
+        };
+        Solution::of_values(self.inequality, values, multipliers, outcome)
             .iterations(self.systems, 0)
-            .jump_multipliers(self.jump_multipliers())
     }
 }

@@ -90,6 +90,32 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         Ok(MatrixFactors::Assembled(factors))
     }
 
+    /// [`NewtonSystem::factor`]. If the matrix is singular to working precision because the forces on a body that bounds
+    /// alone hold are rounding beside its stiffness, the diagonal of `A` is added at its unknowns with bounds: the body
+    /// stays where it is.
+    pub fn factor_held(&mut self, diagonal: &mut [f64]) -> Result<MatrixFactors<T>, FactorError> {
+        let Inequality { kernel, bounds, .. } = self.inequality;
+        let bounded = |body: &'a [(u32, T)]| {
+            let unknowns = body.iter().map(|&(i, _)| i as usize);
+            unknowns.filter(|&i| bounds[i].is_inequality() && bounds[i].fixed_value().is_none())
+        };
+        let mut factors = self.factor(diagonal);
+        for _ in kernel {
+            if factors.as_ref().err() != Some(&FactorError::Singular) {
+                break;
+            }
+            let share = |body: &&'a Vec<(u32, T)>| {
+                bounded(body).map(|i| diagonal[i] / self.diagonal_scale(i)).fold(0.0, f64::max)
+            };
+            let loosest = kernel.iter().min_by(|a, b| share(a).total_cmp(&share(b)));
+            for i in loosest.into_iter().flat_map(|body| bounded(body)) {
+                diagonal[i] += self.diagonal_scale(i);
+            }
+            factors = self.factor(diagonal);
+        }
+        factors
+    }
+
     /// The solution without bounds, and true. A body that bounds alone hold has no such solution: then the solution of
     /// `(A + D) u = b + D l`, where `D` is the diagonal of `A` at unknowns with bounds and `l` the admissible value nearest
     /// to zero, and false.

@@ -20,7 +20,7 @@ impl<'h, 'a, T: Real> InteriorIterate<'h, 'a, T> {
     ) -> Result<Self, FactorError> {
         let (point, is_regular) = system.solve_without_bounds()?;
         let pairs = BoundPair::of(inequality);
-        let mut iterate = Self { inequality, system, point, pairs, systems: 1 };
+        let mut iterate = Self { inequality, system, point, pairs, systems: 1, best: None };
         iterate.set_pairs(is_regular);
         Ok(iterate)
     }

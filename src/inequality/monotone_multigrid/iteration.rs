@@ -4,7 +4,6 @@ use super::cycle::MultigridIterate;
 use super::settings::MonotoneMultigrid;
 use crate::algebra::Inequality;
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
-use crate::inequality::certificate::contact_of;
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::history::Recorder;
 use crate::inequality::initial_guess::InitialGuess;
@@ -134,10 +133,9 @@ impl<T: Real> MultigridIterate<'_, T> {
         .unwrap_or(None)
     }
 
-    /// The solution, with the contact states of its values.
+    /// The solution.
     pub(super) fn into_solution(self, outcome: Outcome) -> Solution<T> {
-        let contact = contact_of(self.inequality, &self.values);
-        Solution::new(self.values, contact, outcome)
+        Solution::of_values(self.inequality, self.values, Vec::new(), outcome)
             .iterations(self.cycles, self.cycles)
             .linear_solver(self.linear_solver)
             .algebraic_bound(self.algebraic_bound)

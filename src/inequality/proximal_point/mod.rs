@@ -8,10 +8,10 @@
 mod latent;
 
 use super::active_set::prescribed_value;
-use super::certificate::{contact_by_residual, positive_diagonal};
+use super::certificate::{is_final, nearer_bound, positive_diagonal};
 use super::history::Recorder;
 use super::interior_point::{MixedVector, NewtonSystem};
-use super::recession::solve_with_kernel;
+use super::recession::{press_onto_bounds, solve_with_kernel};
 use super::validation::check;
 use super::violations::certify_with_rounding;
 use super::{InequalitySolver, InitialGuess, Outcome, Solution};
@@ -44,8 +44,9 @@ const PINNED: f64 = 1e15;
 /// `w / (alpha u'(psi))`. Every step multiplies the weight by four. Where a step would release an unknown from its bound,
 /// the gap grows by no more than the correction of that unknown. The method applies to every matrix whose symmetric
 /// part is positive semidefinite, and starts from starting values, else from the solution without bounds. It ends as soon
-/// as the values, those near bounds on these bounds, have a certificate within its limit; else after 60 systems, with the
-/// values of the smallest certificate.
+/// as the values, those near bounds on these bounds, have a certificate within its limit (in single precision, whose limit
+/// says little of forces, when another step no longer halves it); else after 60 systems, with the values of the smallest
+/// certificate.
 ///
 /// For symmetric matrices the steps, solved exactly, converge for every weight (G. Chen, M. Teboulle, SIAM J. Optim. 3
 /// (1993) 538-543); for one Newton system a step there is no proof. Source of the method: B. Keith, T. M. Surowiec,
@@ -98,15 +99,17 @@ fn run<T: Real>(
         Err(error) => return Solution::without_iterate(inequality, error.into()),
     };
     recorder.begin_step();
+    let mut before = f64::INFINITY;
     let outcome = loop {
         recorder.end_step(|| iterate.certificate);
-        match iterate.best.1 <= T::CERTIFICATE_LIMIT {
+        match is_final::<T>(iterate.best.2, before, iterate.certificate) {
             true => break Outcome::Converged,
             // no bound is violated, so that no system differs from the first one
             false if iterate.weight.is_infinite() => break Outcome::Stalled,
             false if iterate.systems >= MAX_SYSTEMS => break Outcome::IterationLimit,
             false => recorder.begin_step(),
         }
+        before = iterate.certificate;
         if let Err(outcome) = iterate.step() {
             break outcome;
         }
@@ -168,8 +171,8 @@ struct ProximalIterate<'h, 'a, T> {
     weight: f64,
     /// Number of linear systems.
     systems: usize,
-    /// The admissible values with the smallest certificate, and the largest of its numbers.
-    best: (Solution<T>, f64),
+    /// The admissible values with the smallest certificate, their jump multipliers, and the largest of its numbers.
+    best: (Vec<T>, Vec<T>, f64),
     /// The largest of the numbers of the certificate of the last admissible values.
     certificate: f64,
 }
@@ -184,7 +187,7 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
     ) -> Result<Self, FactorError> {
         let (point, is_regular) = system.solve_without_bounds()?;
         let latent = latent_unknowns(inequality, &system);
-        let best = (Solution::without_iterate(inequality, Outcome::IterationLimit), f64::INFINITY);
+        let best = (Vec::new(), Vec::new(), f64::INFINITY);
         let (weight, certificate) = (f64::INFINITY, f64::INFINITY);
         let mut iterate =
             Self { inequality, system, point, latent, weight, systems: 1, best, certificate };
@@ -246,7 +249,7 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
             self.point.values[of.unknown] = of.latent.value();
             diagonal[of.unknown] = of.shift(self.weight);
         }
-        let factors = self.system.factor(&diagonal)?;
+        let factors = self.system.factor_held(&mut diagonal)?;
         let mut change = self.system.residual(&self.point);
         self.system.solve(&factors, &mut change);
         let add = |x: &mut [f64], by: &[f64]| x.iter_mut().zip(by).for_each(|(x, by)| *x += by);
@@ -266,28 +269,35 @@ impl<'h, 'a, T: Real> ProximalIterate<'h, 'a, T> {
         Ok(())
     }
 
-    /// Projects the values onto their bounds, those in contact by the residual of the point onto the nearer bound, and
-    /// keeps them if their certificate is the smallest so far.
+    /// Projects the values onto their bounds, and onto the nearer bound those whose gap is at most the Gauss-Seidel step
+    /// by the residual of the point; keeps them if their certificate is the smallest so far.
     fn keep_if_best(&mut self, residual: &[f64]) {
-        let bounds = &self.inequality.bounds;
-        let projected = bounds.iter().zip(&self.point.values);
-        let mut values: Vec<T> = projected.map(|(bound, &x)| bound.nearest(T::lit(x))).collect();
-        let contact = contact_by_residual(self.inequality, &values, residual);
-        for ((x, bound), &state) in values.iter_mut().zip(bounds).zip(&contact) {
-            *x = prescribed_value(bound, state).unwrap_or(*x);
+        let bounds = self.inequality.bounds.iter().zip(&self.point.values);
+        let mut values: Vec<T> = bounds.map(|(bound, &x)| bound.nearest(T::lit(x))).collect();
+        for LatentUnknown { unknown, diagonal, .. } in &self.latent {
+            let (bound, x) = (&self.inequality.bounds[*unknown], &mut values[*unknown]);
+            let (side, gap, step) = nearer_bound(bound, x.to_f64(), -residual[*unknown] / diagonal);
+            if gap <= step {
+                *x = prescribed_value(bound, side).unwrap_or(*x);
+            }
         }
+        press_onto_bounds(self.inequality, &mut values);
         let multipliers: Vec<T> = self.point.jump_multipliers.iter().map(|&p| T::lit(p)).collect();
         let certificate = certify_with_rounding(self.inequality, &values, &multipliers).0.largest();
         self.certificate = certificate;
-        if certificate < self.best.1 {
-            let solution = Solution::new(values, contact, Outcome::IterationLimit);
-            self.best = (solution.jump_multipliers(multipliers), certificate);
+        if certificate < self.best.2 {
+            self.best = (values, multipliers, certificate);
         }
     }
 
     fn into_solution(self, outcome: Outcome) -> Solution<T> {
-        let mut solution = self.best.0.iterations(self.systems, 0);
-        solution.outcome = outcome;
-        solution
+        let (values, multipliers, certificate) = self.best;
+        let outcome =
+            if certificate <= T::CERTIFICATE_LIMIT { Outcome::Converged } else { outcome };
+        let solution = match certificate.is_finite() {
+            true => Solution::of_values(self.inequality, values, multipliers, outcome),
+            false => Solution::without_iterate(self.inequality, outcome),
+        };
+        solution.iterations(self.systems, 0)
     }
 }

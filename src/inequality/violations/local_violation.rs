@@ -1,14 +1,14 @@
 //! The violations of the complementarity conditions at one unknown.
 
 use crate::algebra::{Bound, Contact};
+use crate::inequality::certificate::nearer_bound;
 use crate::real::{Real, maximum};
 
 /// The bound that the value `x` touches: the nearer one, if its gap is at most the step. None for a fixed unknown.
 pub(super) fn touched_bound<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Contact {
-    let [to_lower, to_upper] = bound.distances(x);
+    let (side, gap, _) = nearer_bound(bound, x, step);
     match bound.fixed_value() {
-        None if to_lower <= to_upper && to_lower <= step.abs() => Contact::Lower,
-        None if to_upper < to_lower && to_upper <= step.abs() => Contact::Upper,
+        None if gap <= step.abs() => side,
         _ => Contact::Inactive,
     }
 }
@@ -30,11 +30,8 @@ impl LocalViolation {
             return Self { feasibility: (x - value.to_f64()).abs(), ..Self::default() };
         }
         let [to_lower, to_upper] = bound.distances(x);
-        let (gap, to_opposite, step_to_bound) = if to_lower <= to_upper {
-            (to_lower, to_upper, step)
-        } else {
-            (to_upper, to_lower, -step)
-        };
+        let (_, gap, step_to_bound) = nearer_bound(bound, x, step);
+        let to_opposite = maximum(to_lower, to_upper);
         let feasibility = maximum(maximum(-to_lower, -to_upper), 0.0);
         let mut local = Self { feasibility, ..Self::default() };
         if gap > step.abs() {
