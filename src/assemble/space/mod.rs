@@ -30,6 +30,7 @@ pub(crate) mod metric;
 mod node_vertices;
 pub(crate) mod reaction_term;
 pub(crate) mod tables;
+pub(crate) mod weighted_polynomials;
 
 use std::sync::{Arc, OnceLock};
 

@@ -13,7 +13,7 @@ fn diagonal_and_side(mesh: &Mesh<2>, alpha: [f64; 2]) -> [FacetView<'_, 2>; 2] {
     let root = 2_f64.sqrt();
     let side = |cell: usize, height: f64| Side {
         coefficient: alpha[cell],
-        least_coefficient: alpha[cell],
+        bound_coefficient: alpha[cell],
         volume: 0.5,
         surface: 2.0 + root,
         height,
@@ -76,7 +76,7 @@ fn the_proven_bound_is_that_of_the_worse_cell() {
     let mesh = unit_square();
     let side = |volume: f64| Side {
         coefficient: 1.0,
-        least_coefficient: 1.0,
+        bound_coefficient: 1.0,
         volume,
         surface: 3.0,
         height: 1.0,
@@ -129,7 +129,7 @@ fn the_diameter_of_a_vertex() {
     let mesh = Mesh::<1>::kuhn_box(&domain, [2]).unwrap();
     let side = |length: f64| Side {
         coefficient: 1.0,
-        least_coefficient: 1.0,
+        bound_coefficient: 1.0,
         volume: length,
         surface: 2.0,
         height: length,
