@@ -9,8 +9,8 @@ use super::phase::Phase;
 use super::solved::Solved;
 use super::system::System;
 use super::warnings::{
-    UNPROVEN, active_sets, data_beyond_coefficients, dirichlet_jumps, no_digits_of_quadratics,
-    no_digits_of_stiffness, rounding_of_data, short_edges,
+    UNPROVEN, active_sets, coefficients_on_jumps, data_beyond_coefficients, dirichlet_jumps,
+    no_digits_of_quadratics, no_digits_of_stiffness, rounding_of_data, short_edges,
 };
 use crate::algebra::{Contact, Inequality, Start};
 use crate::error::Error;
@@ -94,6 +94,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         warnings.extend(active_sets(&solution, self.p1.problem, scheme));
         if system.part().is_none() {
             warnings.extend(data_beyond_coefficients(system.discretisation(), &solution));
+            warnings.extend(coefficients_on_jumps(system.discretisation()));
         }
         let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
         let mut solved = Solved::new(system, solution, hierarchy);

@@ -28,6 +28,7 @@ pub(crate) mod form_facets;
 mod locations;
 pub(crate) mod metric;
 mod node_vertices;
+pub(crate) mod obstacle_coefficients;
 pub(crate) mod reaction_term;
 pub(crate) mod tables;
 pub(crate) mod weighted_polynomials;
@@ -229,6 +230,10 @@ impl<'a, const D: usize> Space<'a, D> {
             }
         }
         out
+    }
+    /// Whether the unknowns of a cell are Bernstein coefficients.
+    pub fn has_coefficients(&self) -> bool {
+        self.nodes.iter().all(Node::is_coefficient)
     }
     /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
     pub fn is_conforming_linear(&self) -> bool {
