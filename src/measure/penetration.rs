@@ -209,20 +209,6 @@ impl<const D: usize> Space<'_, D> {
         })
     }
 
-    /// The size of a function with the load: the largest quotient of load and coefficient, at barycentres of cells,
-    /// times the square of the diameter of the mesh.
-    fn size_of_load(&self) -> f64 {
-        let of_cell = |cell: usize| {
-            let at_barycentre = |f: &Datum<D>| self.at(f, cell, &self.mesh.barycentre(cell));
-            let source = self.data.source.of(self.mesh.region(cell));
-            let load = source.map_or(0.0, |f| f.constant().unwrap_or_else(|| at_barycentre(f)));
-            load.abs() / self.alpha(cell)
-        };
-        let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
-        let largest = cells::map(self.mesh.n_cells(), &of_chunk).into_iter().fold(0.0, f64::max);
-        largest * self.mesh.domain_diameter().powi(2)
-    }
-
     /// Adds the distances in a cell.
     fn add_penetration(
         &self,

@@ -3,7 +3,7 @@
 use super::Discretisation;
 use crate::algebra::{Bound, Inequality, Start};
 use crate::assemble::penalised_matrix::{keeps_penalty_apart, penalised_matrix};
-use crate::assemble::space::contradictions::{Contradiction, largest_datum, refuse};
+use crate::assemble::space::contradictions::{Contradiction, refuse};
 use crate::error::Error;
 use crate::instances::compiled;
 
@@ -70,17 +70,17 @@ impl<const D: usize> Discretisation<'_, D> {
                 = |of| {
                     let (bounds, found) = of.space.bounds()?;
                     if !found.is_empty() && !of.mesh().is_part() {
-                        refuse(&found, largest_datum(&bounds, &found), of.mesh(), &|_| true)?;
+                        refuse(&found, of.space.size_of_data(&bounds, &found), of.mesh(), &|_| true)?;
                     }
                     Ok(bounds)
                 }
         )(self)
     }
-    /// Lower bounds that exceed upper ones, and the largest datum: two bounds contradict each other if they differ by more
-    /// than rounding of the largest datum of all [parts](crate::mesh::Part) of a mesh.
+    /// Lower bounds that exceed upper ones, and the size of the data: two bounds contradict each other if they differ by
+    /// more than rounding of the largest size in all [parts](crate::mesh::Part) of a mesh.
     pub(crate) fn contradictions(&self) -> Result<(Vec<Contradiction<D>>, f64), Error> {
         let (bounds, found) = self.space.bounds()?;
-        let size = largest_datum(&bounds, &found);
+        let size = self.space.size_of_data(&bounds, &found);
         Ok((found, size))
     }
     /// The load of the assembled matrix, with weak Dirichlet data, for all unknowns: see

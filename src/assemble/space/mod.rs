@@ -33,6 +33,7 @@ pub(crate) mod reaction_term;
 pub(crate) mod tables;
 pub(crate) mod weighted_polynomials;
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use super::DataQuadrature;
@@ -41,6 +42,7 @@ use crate::constraint::{BoundBy, in_basis_of, offered};
 use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoundaryFacet, HalfFacet, Mesh, Neighbours};
+use crate::parallel::cells;
 use crate::problem::{DataOnMesh, Datum, DiscreteFunction, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell, vertex_point};
 use crate::real::Point;
@@ -247,6 +249,20 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn cell_table(&self, rule: Rule) -> CellTable {
         CellTable::new(rule, &*self.element)
     }
+    /// The size of a function with the load: the largest quotient of load and coefficient, at barycentres of cells,
+    /// times the square of the diameter of the mesh.
+    pub fn size_of_load(&self) -> f64 {
+        let of_cell = |cell: usize| {
+            let at_barycentre = |f: &Datum<D>| self.at(f, cell, &self.mesh.barycentre(cell));
+            let source = self.data.source.of(self.mesh.region(cell));
+            let load = source.map_or(0.0, |f| f.constant().unwrap_or_else(|| at_barycentre(f)));
+            load.abs() / self.alpha(cell)
+        };
+        let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
+        let largest = cells::map(self.mesh.n_cells(), &of_chunk).into_iter().fold(0.0, f64::max);
+        largest * self.mesh.domain_diameter().powi(2)
+    }
+
     /// The unknowns of a cell.
     pub fn local_values(&self, cell: usize, u: &[f64]) -> [f64; MAX_BASIS] {
         let mut local = [0.0; MAX_BASIS];
