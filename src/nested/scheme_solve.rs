@@ -15,6 +15,7 @@ use super::warnings::{
 use crate::algebra::{Contact, Inequality, Start};
 use crate::error::Error;
 use crate::inequality::{InitialGuess, Outcome, Solution};
+use crate::real::Precision;
 use crate::scheme::Scheme;
 
 impl<'a, const D: usize> NestedIteration<'a, D> {
@@ -99,6 +100,9 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
         let mut solved = Solved::new(system, solution, hierarchy);
         solved.warnings = warnings;
+        if precision == Precision::Single {
+            solved.add_rounding_to_algebraic_bound();
+        }
         solved.mesh_seconds = self.p1.meshes.seconds(position);
         (solved.solve_seconds, solved.sent_bytes) = (solve_seconds, sent);
         let is_p1 = scheme.is_conforming_linear(solved.mesh());
@@ -132,7 +136,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         warnings.extend(rounding_of_data(inequality, precision));
         if self.adaptive_meshes().is_none() {
             let theory = discretisation.form().theory();
-            let limit = theory.rounding_limit(precision.epsilon(), mesh.domain_diameter());
+            let (length, degree) = (mesh.domain_diameter(), discretisation.space.degree);
+            let limit = theory.rounding_limit(precision.epsilon(), length, degree);
             warnings.extend(short_edges(mesh, (limit, precision)));
         }
         warnings
