@@ -18,10 +18,12 @@ use std::borrow::Cow;
 
 use super::Coupled;
 use crate::assemble::space::Space;
+use crate::assemble::space::coefficient::weighted_polynomials::{
+    Factor, Functional, facet_moments, product,
+};
 use crate::assemble::space::metric::{CellMetric, Metrics};
 use crate::assemble::space::tables::FacetDatum;
 use crate::assemble::space::tables::FacetTable;
-use crate::assemble::space::weighted_polynomials::{Factor, Functional, facet_moments, product};
 use crate::assemble::trace::flux_weight;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;

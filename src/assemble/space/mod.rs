@@ -10,17 +10,18 @@
 //! | `dofs` | the numbers of the unknowns of a cell |
 //! | `form_facets` | the facets that carry the facet form, and their cells |
 //! | `checks` | data that must be finite, coefficients that must be positive |
-//! | `coefficient` | a coefficient that varies in cells |
+//! | `coefficient` | a coefficient that varies in cells, and the products that it weighs |
 //! | `diffusion` | the coefficient in a cell, on a facet and in a flux |
 //! | `reaction_term` | the reaction term of the matrix |
 //! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
+//! | `obstacle_coefficients` | the Bernstein coefficients of obstacles and gaps, beside jumps too |
 //! | `active_obstacles` | where obstacles give the bound that is active |
 //! | `locations`, `node_vertices` | the locations of unknowns, by the vertices that stand for a node |
 
 pub(crate) mod active_obstacles;
 mod bounds;
 pub(crate) mod checks;
-mod coefficient;
+pub(crate) mod coefficient;
 pub(crate) mod contradictions;
 mod diffusion;
 pub(crate) mod dofs;
@@ -31,7 +32,6 @@ mod node_vertices;
 pub(crate) mod obstacle_coefficients;
 pub(crate) mod reaction_term;
 pub(crate) mod tables;
-pub(crate) mod weighted_polynomials;
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};

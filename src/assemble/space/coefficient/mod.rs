@@ -9,10 +9,12 @@
 //! vanish at the boundary of a cell, as `r` does on the axis of a body of revolution: no point of a rule
 //! lies there. In a cell in which the coefficient jumps no rule keeps the order, see [`limited`].
 
+pub(crate) mod weighted_polynomials;
+
+use self::weighted_polynomials::{Factor, WeightedPolynomials};
 use super::checks::coefficient_at;
 use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable, Derivatives};
-use super::weighted_polynomials::{Factor, WeightedPolynomials};
 use crate::arrays::map_entries;
 use crate::assemble::stiffness::StiffnessTable;
 use crate::element::{Element, MAX_BASIS};
