@@ -61,7 +61,8 @@ impl<const D: usize> Space<'_, D> {
                 if is_bound(unknown) {
                     if is_in_contact(unknown) {
                         let bound = inequality.bounds[unknown];
-                        let is_binding = self.gap_gives((cell, group), (node, by), &terms, bound);
+                        let is_binding =
+                            self.gap_gives(((cell, local), group), (node, by), &terms, bound);
                         let is_end = D < 3 && !is_closed;
                         let rank = 1 + 2 * usize::from(is_binding) + usize::from(!is_end);
                         match &mut best[unknown] {

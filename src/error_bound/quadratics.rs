@@ -24,7 +24,6 @@ use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::stiffness::zero_local;
-use crate::element::Node;
 use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
 use crate::parallel::cells;
 use crate::quadrature::{OrthonormalPolynomials, facet_to_cell};
@@ -80,11 +79,6 @@ impl<const D: usize> Space<'_, D> {
                 && self.nodes[D + 1..].iter().all(|node| node.is_midpoint())
         };
         self.has_coefficients() || is_lagrange()
-    }
-
-    /// Whether the unknowns of a cell are Bernstein coefficients.
-    pub(super) fn has_coefficients(&self) -> bool {
-        self.nodes.iter().all(Node::is_coefficient)
     }
 
     /// Loads and multipliers by cell; `residual` is that of the inequality, `numbers` are those of the nodes whose

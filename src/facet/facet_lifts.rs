@@ -54,7 +54,7 @@ impl FacetLifts {
         let average = if facet.there.is_some() { 0.5 } else { 1.0 };
         let w = facet.coefficient() * average;
         let energy =
-            facet.sum(|side| w * w * facet.measure / (side.least_coefficient * side.volume));
+            facet.sum(|side| w * w * facet.measure / (side.bound_coefficient * side.volume));
         eta * energy
     }
 }

@@ -50,12 +50,12 @@ impl<'f, const D: usize> FormTheory<'f, D> {
         Self { is_coercive: true, least_penalty: Some(Box::new(least)), ..self }
     }
     /// The length of an edge below which rounding, with this rounding unit and on a domain of this
-    /// diameter, may outweigh the discretisation error: for a condition number of
-    /// `(h / length)^-2` against an error of `(h / length)^2`. A penalty does not enter: interior
+    /// diameter, may outweigh the discretisation error of an element of this degree `k`: for a condition number of
+    /// `(h / length)^-2` against an error of `(h / length)^(k + 1)`. A penalty does not enter: interior
     /// penalty has one of the size of the stiffness, an over-penalty is kept apart from it. The factor one half is
     /// measured for linears.
-    pub fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
-        0.5 * length * epsilon.powf(0.25)
+    pub fn rounding_limit(&self, epsilon: f64, length: f64, degree: usize) -> f64 {
+        0.5 * length * epsilon.powf(((degree + 3) as f64).recip())
     }
 }
 

@@ -9,8 +9,13 @@ pub struct Side {
     /// The diffusion coefficient of the cell; where it varies within the cell and the element sees it, the
     /// largest value on the facet.
     pub coefficient: f64,
-    /// The least value of the diffusion coefficient in the cell.
-    pub least_coefficient: f64,
+    /// The coefficient `a` with which the energy in the cell bounds the flux through the facet,
+    /// `|alpha_F d_n v|_F^2 <= C_p alpha_F^2 / a |F| / |K| |alpha^1/2 grad v|_K^2` with the constant of
+    /// [`proven_bound`](super::proven_bound): the diffusion coefficient of the cell. Where it varies within the cell and
+    /// the element sees it, `alpha_F` on the left is a function on the facet, on the right it is made of
+    /// [`Side::coefficient`], integrals are sums over the points at which the element sees the coefficient, and `a` is
+    /// made of the largest eigenvalue of the form on the facet against that in the cell.
+    pub bound_coefficient: f64,
     /// The volume of the cell.
     pub volume: f64,
     /// The measure of the cell's whole boundary.

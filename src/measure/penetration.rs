@@ -10,7 +10,7 @@ use crate::assemble::space::checks::finite;
 use crate::assemble::space::tables::BasisAt;
 use crate::error::Error;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
+use crate::mesh::{BoundaryCondition, edge_vertices};
 use crate::parallel::cells;
 use crate::problem::{DataByGroup, Datum};
 use crate::quadrature::facet_to_cell;
@@ -26,6 +26,10 @@ const SHARE_OF_VALUE: f64 = 1e-6;
 const ROUNDINGS: f64 = 1e3;
 
 const NAMES: [&str; 3] = ["the lower obstacle", "the upper obstacle", "the gap"];
+
+/// By the same numbers what errors call the data, and the sign with which the function lies above them.
+const DATA: [&str; 3] = ["obstacle", "obstacle", "gap"];
+const SIGNS: [f64; 3] = [1.0, -1.0, 1.0];
 
 /// How far a function lies beyond lower obstacles, upper obstacles and gaps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,8 +116,9 @@ impl Penetration {
 impl<const D: usize> Discretisation<'_, D> {
     /// How far a discrete function lies beyond obstacles and gaps: in each cell beyond the obstacles of its region, on
     /// each contact facet beyond the gap of its group. It is looked at at vertices, midpoints of edges and the points
-    /// of the rule for loads, on facets of that for Neumann data; at vertices alone where function and datum are
-    /// affine: there it is exact. None without an inequality.
+    /// of the rule for loads, on facets of that for Neumann data, and of quadratics at the point of each edge where the
+    /// quadratic through their distances at ends and midpoint is least: exact on edges for data of degree two. At
+    /// vertices alone where function and datum are affine: there it is exact. None without an inequality.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::Parameter`] unless there is one value for each unknown.
@@ -190,7 +195,7 @@ impl<const D: usize> Space<'_, D> {
         for (facet, group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let gap = self.data.gap.of(group).filter(|_| counts(facet.0));
             if let Some(gap) = gap {
-                self.add_penetration_on(facet, gap, u, &on_facets[facet.1], &mut found)?;
+                self.add_distances((facet.0, &on_facets[facet.1]), u, (2, gap), &mut found)?;
             }
         }
         let is_affine = self.has_affine_data();
@@ -206,20 +211,6 @@ impl<const D: usize> Space<'_, D> {
         })
     }
 
-    /// The size of a function with the load: the largest quotient of load and coefficient, at barycentres of cells,
-    /// times the square of the diameter of the mesh.
-    fn size_of_load(&self) -> f64 {
-        let of_cell = |cell: usize| {
-            let at_barycentre = |f: &Datum<D>| self.at(f, cell, &self.mesh.barycentre(cell));
-            let source = self.data.source.of(self.mesh.region(cell));
-            let load = source.map_or(0.0, |f| f.constant().unwrap_or_else(|| at_barycentre(f)));
-            load.abs() / self.alpha(cell)
-        };
-        let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
-        let largest = cells::map(self.mesh.n_cells(), &of_chunk).into_iter().fold(0.0, f64::max);
-        largest * self.mesh.domain_diameter().powi(2)
-    }
-
     /// Adds the distances in a cell.
     fn add_penetration(
         &self,
@@ -229,17 +220,52 @@ impl<const D: usize> Space<'_, D> {
         found: &mut Penetration,
     ) -> Result<(), Error> {
         let region = self.mesh.region(cell);
-        if [&self.data.lower, &self.data.upper].iter().all(|data| data.of(region).is_none()) {
-            return Ok(());
+        for (k, data) in [&self.data.lower, &self.data.upper].into_iter().enumerate() {
+            if let Some(datum) = data.of(region) {
+                self.add_distances((cell, points), u, (k, datum), found)?;
+            }
         }
-        let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
-        points.iter().try_for_each(|(point, basis)| {
-            let x = in_space(point, &corners);
-            self.add_penetration_at((cell, &x), basis.value(&values), found)
-        })
+        Ok(())
     }
 
-    /// Adds the distances of a value at a point of a cell.
+    /// Adds the distances of a function from obstacle or gap `k` at points of a cell and, of quadratics, where their
+    /// difference from the datum, as that of a quadratic, is least within an edge of which the points have ends and
+    /// midpoint.
+    fn add_distances(
+        &self,
+        (cell, points): (usize, &Points),
+        u: &[f64],
+        (k, datum): (usize, &Datum<D>),
+        found: &mut Penetration,
+    ) -> Result<(), Error> {
+        let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
+        let bound_at = |point: &[f64; 4]| {
+            let x = in_space(point, &corners);
+            finite(self.at(datum, cell, &x), DATA[k], &x, cell)
+        };
+        let mut at_vertices = [[0.0; 2]; 4];
+        for (point, basis) in points {
+            let here = [basis.value(&values), bound_at(point)?];
+            found.add(k, SIGNS[k], here);
+            if let Some(vertex) = point.iter().position(|&b| b == 1.0) {
+                at_vertices[vertex] = here;
+            } else if self.basis_degree == 2
+                && let Some([a, b]) = ends_of_middle(point)
+            {
+                let nodes = [at_vertices[a], here, at_vertices[b]];
+                let Some(share) = least_within(nodes.map(|[u, psi]| SIGNS[k] * (u - psi))) else {
+                    continue;
+                };
+                let mut point = [0.0; 4];
+                (point[a], point[b]) = (1.0 - share, share);
+                let value = quadratic(nodes.map(|[u, _]| u), share);
+                found.add(k, SIGNS[k], [value, bound_at(&point)?]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the distances of a value at a vertex of the mesh, without regions.
     fn add_penetration_at(
         &self,
         (cell, x): (usize, &Point<D>),
@@ -248,29 +274,11 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<(), Error> {
         let region = self.mesh.region(cell);
         let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
-        for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
-            if let Some(bound) = bounds[k] {
-                let bound = finite(self.at(bound, cell, x), "obstacle", x, cell)?;
-                found.add(k, sign, [value, bound]);
+        for (k, bound) in bounds.into_iter().enumerate() {
+            if let Some(bound) = bound {
+                let bound = finite(self.at(bound, cell, x), DATA[k], x, cell)?;
+                found.add(k, SIGNS[k], [value, bound]);
             }
-        }
-        Ok(())
-    }
-
-    /// Adds the distances on a contact facet.
-    fn add_penetration_on(
-        &self,
-        (cell, _): HalfFacet,
-        gap: &Datum<D>,
-        u: &[f64],
-        points: &Points,
-        found: &mut Penetration,
-    ) -> Result<(), Error> {
-        let (values, corners) = (self.local_values(cell, u), self.mesh.corners(cell));
-        for (point, basis) in points {
-            let x: Point<D> = in_space(point, &corners);
-            let gap = finite(self.at(gap, cell, &x), "gap", &x, cell)?;
-            found.add(2, 1.0, [basis.value(&values), gap]);
         }
         Ok(())
     }
@@ -321,4 +329,22 @@ pub(super) fn middle([a, b]: [usize; 2]) -> [f64; 4] {
     point[a] += 0.5;
     point[b] += 0.5;
     point
+}
+
+/// The vertices of which a point is the middle.
+fn ends_of_middle(point: &[f64; 4]) -> Option<[usize; 2]> {
+    let mut ends = (0..4).filter(|&k| point[k] == 0.5);
+    ends.next().zip(ends.next()).map(<[usize; 2]>::from)
+}
+
+/// The share of an interval after which the quadratic with these values at ends and middle is least, if within.
+fn least_within([a, middle, b]: [f64; 3]) -> Option<f64> {
+    let curvature = a - 2.0 * middle + b;
+    let share = (3.0 * a - 4.0 * middle + b) / (4.0 * curvature);
+    (curvature > 0.0 && share > 0.0 && share < 1.0).then_some(share)
+}
+
+/// The quadratic with these values at ends and middle after a share of the interval.
+fn quadratic([a, middle, b]: [f64; 3], t: f64) -> f64 {
+    a * (1.0 - t) * (1.0 - 2.0 * t) + 4.0 * middle * t * (1.0 - t) + b * t * (2.0 * t - 1.0)
 }

@@ -9,13 +9,14 @@ use super::phase::Phase;
 use super::solved::Solved;
 use super::system::System;
 use super::warnings::{
-    UNPROVEN, active_sets, data_beyond_coefficients, dirichlet_jumps, no_digits_of_quadratics,
-    no_digits_of_stiffness, rounding_of_data, short_edges,
+    UNPROVEN, active_sets, coefficients_on_jumps, data_beyond_coefficients, dirichlet_jumps,
+    no_digits_of_quadratics, no_digits_of_stiffness, rounding_of_data, short_edges,
 };
 use crate::algebra::{Contact, Start};
 use crate::error::Error;
 use crate::inequality::{InitialGuess, Outcome, Solution};
 use crate::parallel::vectors::collect;
+use crate::real::Precision;
 use crate::scheme::Scheme;
 
 /// The ratio of the diameter of a cell to its least height from which the bound looks at a conforming solution beside the
@@ -101,10 +102,14 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         warnings.extend(active_sets(&solution, self.p1.problem, scheme));
         if system.part().is_none() {
             warnings.extend(data_beyond_coefficients(system.discretisation(), &solution));
+            warnings.extend(coefficients_on_jumps(system.discretisation()));
         }
         let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
         let mut solved = Solved::new(system, solution, hierarchy);
         solved.warnings = warnings;
+        if precision == Precision::Single {
+            solved.add_rounding_to_algebraic_bound();
+        }
         solved.mesh_seconds = self.p1.meshes.seconds(position);
         (solved.solve_seconds, solved.sent_bytes) = (solve_seconds, sent);
         let is_p1 = scheme.is_conforming_linear(solved.mesh());
@@ -141,7 +146,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         warnings.extend(rounding_of_data(inequality, precision));
         if self.adaptive_meshes().is_none() {
             let theory = discretisation.form().theory();
-            let limit = theory.rounding_limit(precision.epsilon(), mesh.domain_diameter());
+            let (length, degree) = (mesh.domain_diameter(), discretisation.space.degree);
+            let limit = theory.rounding_limit(precision.epsilon(), length, degree);
             warnings.extend(short_edges(mesh, (limit, precision)));
         }
         warnings

@@ -214,6 +214,17 @@ pub(super) fn data_beyond_coefficients<const D: usize>(
     ))
 }
 
+/// Bernstein coefficients on edges that are not those of the obstacle or gap, which jumps there.
+pub(super) fn coefficients_on_jumps<const D: usize>(
+    discretisation: &Discretisation<'_, D>,
+) -> Option<String> {
+    // data that are not finite are errors of the assembly
+    let n = discretisation.space.coefficients_on_jumps().ok().filter(|&n| n > 0)?;
+    Some(format!(
+        "an obstacle or a gap jumps at {n} Bernstein coefficients of edges: these are taken from one side of the jump, and within edges that it cuts the solution may lie beyond the datum"
+    ))
+}
+
 /// Advice for a solution that took many active sets, or whose active sets changed to the end.
 pub(super) fn active_sets<const D: usize>(
     solution: &Solution<f64>,

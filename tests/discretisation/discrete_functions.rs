@@ -264,6 +264,27 @@ fn data_on_one_mesh_of_a_hierarchy_serve_on_all() {
     }
 }
 
+/// The solution of one solve is zero but for rounding where it is the obstacle of the next, whose Dirichlet value is
+/// zero; beside the load it counts as zero. Above rounding it is a contradiction.
+#[test]
+fn an_obstacle_that_is_zero_but_for_rounding_meets_zero() {
+    let mesh = cube::<2>(3);
+    for name in ["p1", "p2"] {
+        let small = |size: f64| -> Vec<f64> {
+            numbers(unknowns(name, &mesh)).iter().map(|v| size * v).collect()
+        };
+        let problem = |size| {
+            let obstacle = function(name, &mesh, &small(size));
+            Problem::new().constant_source(-1.0).discrete_obstacle_below(obstacle)
+        };
+        let rounding = problem(1e-16);
+        let solved = solve(&rounding, &mesh, &*scheme(name)).unwrap();
+        assert!(solved.converged(), "{name}: {}", solved.outcome());
+        let refused = solve(&problem(1e-10), &mesh, &*scheme(name)).unwrap_err();
+        assert!(matches!(refused, Error::EmptyConstraint { .. }), "{name}: {refused}");
+    }
+}
+
 /// A membrane on an obstacle, under this load.
 fn membrane(load: f64) -> Problem<2> {
     Problem::new().constant_source(load).obstacle_below(|_| -0.02)

@@ -98,3 +98,27 @@ fn noise_is_not_extrapolated() {
     let limit = report.extrapolated()[0].energy.unwrap();
     assert_eq!((limit.value, limit.order), (c, None));
 }
+
+/// What single precision changes in figures of quadratics is no more than the rounding that their rows state.
+#[test]
+fn single_precision_changes_quadratics_by_rounding() {
+    let schemes = ["p2", "sipg-p2", "ldg-p2"];
+    let of = |precision| rows::<2>(precision, scenes::hertz_2d(), &schemes, &[16]);
+    let (single, double) = (of(Precision::Single), of(Precision::Double));
+    for (single, double) in single.iter().zip(&double) {
+        let rounding = single.rounding.unwrap();
+        let (a, b, most) = (single.error, double.error, rounding.error);
+        let figures = [
+            ("L2", a.l2, b.l2, most.l2),
+            ("H1", a.h1, b.h1, most.h1),
+            ("energy norm", a.energy, b.energy, most.energy),
+            ("energy", single.energy, double.energy, Some(rounding.energy)),
+            ("resultant", single.resultant, double.resultant, Some(rounding.force)),
+        ];
+        for (name, a, b, most) in figures {
+            let Some(((a, b), most)) = a.zip(b).zip(most) else { continue };
+            let what = format!("{} {}, {name}", single.label, single.level);
+            assert!((a - b).abs() <= most, "{what}: {a:e} for {b:e}, rounding {most:e}");
+        }
+    }
+}

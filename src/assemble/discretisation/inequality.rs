@@ -3,7 +3,7 @@
 use super::Discretisation;
 use crate::algebra::{Bound, Inequality, Start};
 use crate::assemble::penalised_matrix::{keeps_penalty_apart, penalised_matrix};
-use crate::assemble::space::contradictions::{Contradiction, largest_datum, refuse};
+use crate::assemble::space::contradictions::{Contradiction, refuse};
 use crate::error::Error;
 use crate::instances::compiled;
 
@@ -71,7 +71,7 @@ impl<const D: usize> Discretisation<'_, D> {
                 = |of| {
                     let (bounds, found) = of.space.bounds()?;
                     if !found.is_empty() && !of.mesh().is_part() {
-                        let size = of.size_of_bounds(&bounds, &found);
+                        let size = of.space.size_of_data(&bounds, &found);
                         refuse(&found, size, of.mesh(), &|_| true)
                             .map_err(|error| of.with_constants_in(error))?;
                     }
@@ -79,11 +79,11 @@ impl<const D: usize> Discretisation<'_, D> {
                 }
         )(self)
     }
-    /// Lower bounds that exceed upper ones, and the largest datum: two bounds contradict each other if they differ by more
-    /// than rounding of the largest datum of all [parts](crate::mesh::Part) of a mesh.
+    /// Lower bounds that exceed upper ones, and the size of the data: two bounds contradict each other if they differ by
+    /// more than rounding of the largest size in all [parts](crate::mesh::Part) of a mesh.
     pub(crate) fn contradictions(&self) -> Result<(Vec<Contradiction<D>>, f64), Error> {
         let (bounds, found) = self.space.bounds()?;
-        let size = self.size_of_bounds(&bounds, &found);
+        let size = self.space.size_of_data(&bounds, &found);
         Ok((found, size))
     }
     /// An error with the values that the caller gave.
@@ -93,10 +93,6 @@ impl<const D: usize> Discretisation<'_, D> {
             (*lower, *upper) = (*lower + constant, *upper + constant);
         }
         error
-    }
-    /// The largest datum of bounds, with the constants that were taken off.
-    fn size_of_bounds(&self, bounds: &[Bound<f64>], found: &[Contradiction<D>]) -> f64 {
-        largest_datum(bounds, found) + self.space.body_constants.largest()
     }
     /// The load of the assembled matrix, with weak Dirichlet data, for all unknowns: see
     /// [`Inequality::assembled_load`].

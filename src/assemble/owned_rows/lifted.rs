@@ -10,12 +10,17 @@
 //! of the reference cell.
 //!
 //! Where the coefficient varies on a facet, `w` is a function on it: `w m` is projected on polynomials of
-//! degree `p - 1`, and what `m` has of degree `p` on those of degree `p`. Where it varies in `K`, `1/alpha`
-//! is that of its least value. With the stiffness at the points of its rule the square is then completed
-//! still: the form is coercive for every penalty.
+//! degree `p - 1`, and what `m` has of degree `p` on those of degree `p`. Where it varies in `K`, the lift is
+//! `-n s w` with `int_K alpha s q = int_F m q` by the points of the rule in `K`. With the stiffness at these
+//! points the square is then completed: the form is coercive for every penalty.
+
+use std::borrow::Cow;
 
 use super::Coupled;
 use crate::assemble::space::Space;
+use crate::assemble::space::coefficient::weighted_polynomials::{
+    Factor, Functional, facet_moments, product,
+};
 use crate::assemble::space::metric::{CellMetric, Metrics};
 use crate::assemble::space::tables::FacetDatum;
 use crate::assemble::space::tables::FacetTable;
@@ -23,7 +28,6 @@ use crate::assemble::trace::flux_weight;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
 use crate::mesh::HalfFacet;
-use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 
 /// Most moments a lift is made of: quadratics on a triangle.
 pub(crate) const MAX_MOMENTS: usize = 6;
@@ -37,8 +41,12 @@ type Product = [Moments; MAX_MOMENTS];
 struct LiftTable {
     /// Moments of the basis, of degree up to that of lifts.
     facets: FacetTable,
+    /// The degree of lifts.
+    degree: usize,
     /// Number of moments on a facet.
     moments: usize,
+    /// By facet and moment on it, its means with the polynomials of the cell.
+    tests: Vec<Vec<Functional>>,
     /// For two facets, the products of the lifts of their moments, per measures and volume.
     products: [[Product; 4]; 4],
 }
@@ -47,35 +55,19 @@ impl LiftTable {
     /// The lifts of this degree of a space of degree one or two.
     fn new<const D: usize>(space: &Space<'_, D>, degree: usize) -> Self {
         let mut products = [[[[0.0; MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
-        let tests: Vec<Vec<Vec<f64>>> = (0..D + 1).map(|l| tests(D, degree, l)).collect();
+        let tests: Vec<_> = (0..D + 1).map(|l| facet_moments(D, degree, l)).collect();
         for l in 0..=D {
             for k in 0..=D {
                 for (m, a) in tests[l].iter().enumerate() {
                     for (n, b) in tests[k].iter().enumerate() {
-                        // tests are against an orthonormal basis of the cell
-                        let product = a.iter().zip(b).map(|(a, b)| a * b).sum();
-                        products[l][k][m][n] = product;
+                        products[l][k][m][n] = product(a, b);
                     }
                 }
             }
         }
         let facets = space.facet_table(degree);
-        Self { moments: facets.degrees.len(), facets, products }
+        Self { degree, moments: facets.degrees.len(), tests, facets, products }
     }
-}
-
-/// By moment on facet `local`, its means with the orthonormal polynomials of the cell.
-fn tests(dimension: usize, degree: usize, local: usize) -> Vec<Vec<f64>> {
-    let on_facet = OrthonormalPolynomials::new(dimension - 1, degree);
-    let in_cell = OrthonormalPolynomials::new(dimension, degree);
-    let rule = Rule::new(dimension - 1, 2 * degree);
-    let mean = |m: usize, q: usize| {
-        let term = |(point, w): (&[f64; 4], f64)| {
-            w * on_facet.value(m, point) * in_cell.value(q, &facet_to_cell(point, local))
-        };
-        rule.iter().map(term).sum()
-    };
-    (0..on_facet.len()).map(|m| (0..in_cell.len()).map(|q| mean(m, q)).collect()).collect()
 }
 
 /// The lifts of a discretisation.
@@ -118,6 +110,8 @@ struct Centre<const D: usize> {
     metric: CellMetric<D>,
     /// By number, the facets on whose jumps a form acts.
     facets: [Option<JumpFacet>; 4],
+    /// The factor of the products of polynomials, where the coefficient varies in the cell.
+    factor: Option<Factor>,
 }
 
 impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
@@ -159,7 +153,8 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
             let tested = self.functions(local, test);
             for trial in centre.facets.iter().flatten() {
                 let scale = sign * self.scale(&centre, test, trial);
-                let lifted = self.lifted(&tested, [test, trial], scale);
+                let products = self.products(&centre, [test, trial]);
+                let lifted = self.lifted(&tested, &products, scale);
                 let mut add = |(cell, local): HalfFacet, sign| {
                     let trials = self.functions(local, trial);
                     let start = coupled.position(cell) * n;
@@ -176,7 +171,30 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
     /// A cell with the facets on whose jumps the form acts.
     fn centre(&self, cell: usize) -> Centre<D> {
         let facet = |local| if local <= D { self.jump_facet((cell, local)) } else { None };
-        Centre { cell, metric: self.metrics.at(cell), facets: std::array::from_fn(facet) }
+        let varying = self.space.varying_in(cell);
+        Centre {
+            cell,
+            metric: self.metrics.at(cell),
+            facets: std::array::from_fn(facet),
+            factor: varying.map(|(varying, values)| varying.factor(self.table.degree, values)),
+        }
+    }
+
+    /// By their moments the products of the lifts of jumps on two facets of a centre, per measures and volume and, where
+    /// the coefficient is a constant, times it.
+    fn products(&self, centre: &Centre<D>, [test, trial]: [&JumpFacet; 2]) -> Cow<'_, Product> {
+        let Some(factor) = &centre.factor else {
+            return Cow::Borrowed(&self.table.products[test.local][trial.local]);
+        };
+        let tests = &self.table.tests;
+        let mut products = [[0.0; MAX_MOMENTS]; MAX_MOMENTS];
+        for (row, a) in products.iter_mut().zip(&tests[test.local]) {
+            let lift = factor.solve(a);
+            for (entry, b) in row.iter_mut().zip(&tests[trial.local]) {
+                *entry = product(&lift, &factor.solve(b));
+            }
+        }
+        Cow::Owned(products)
     }
 
     /// A facet of a centre, if the form acts on its jumps.
@@ -194,11 +212,11 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
         Some(JumpFacet { local: own.1, other, flux_weight, products })
     }
 
-    /// `D^2 w w' / alpha int grad lambda . grad lambda'`.
+    /// `D^2 w w' / alpha int grad lambda . grad lambda'`, without `alpha` where it varies.
     fn scale(&self, centre: &Centre<D>, test: &JumpFacet, trial: &JumpFacet) -> f64 {
         let product = centre.metric.products[test.local][trial.local];
-        ((D * D) as f64) * test.flux_weight * trial.flux_weight * product
-            / self.space.extreme_coefficients((centre.cell, test.local))[1]
+        let alpha = if centre.factor.is_some() { 1.0 } else { self.space.alpha(centre.cell) };
+        ((D * D) as f64) * test.flux_weight * trial.flux_weight * product / alpha
     }
 
     /// What is lifted of the functions of a cell, which sees a facet of a centre as its facet `local`.
@@ -219,10 +237,9 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
     fn lifted(
         &self,
         tested: &[Moments; MAX_BASIS],
-        [test, trial]: [&JumpFacet; 2],
+        products: &Product,
         scale: f64,
     ) -> [Moments; MAX_BASIS] {
-        let products = &self.table.products[test.local][trial.local];
         let mut lifted = [[0.0; MAX_MOMENTS]; MAX_BASIS];
         for i in 0..self.space.per_cell() {
             for n in 0..self.table.moments {
@@ -261,8 +278,9 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
         let weighted = trial.weighted_datum(&datum.moments);
         for test in centre.facets.iter().flatten() {
             let scale = self.scale(&centre, test, trial);
+            let products = self.products(&centre, [test, trial]);
             let mut add = |(cell, local): HalfFacet, sign| {
-                let lifted = self.lifted(&self.functions(local, test), [test, trial], scale);
+                let lifted = self.lifted(&self.functions(local, test), &products, scale);
                 let start = cell * self.space.per_cell();
                 self.add_products(&lifted, &[weighted], sign, (start, 1), load);
             };
@@ -282,7 +300,8 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
         sum: &mut f64,
     ) {
         let scale = self.scale(centre, test, trial);
-        for (row, &tested) in self.table.products[test.local][trial.local].iter().zip(tested) {
+        let products = self.products(centre, [test, trial]);
+        for (row, &tested) in products.iter().zip(tested) {
             for (&product, &jump) in row.iter().zip(jump) {
                 *sum += scale * tested * product * jump;
             }

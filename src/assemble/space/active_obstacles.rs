@@ -6,10 +6,11 @@
 
 use std::ops::Range;
 
+use super::obstacle_coefficients::Binding;
 use super::{Space, Terms};
 use crate::algebra::{Bound, Contact};
 use crate::constraint::BoundBy;
-use crate::mesh::BoundaryCondition;
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::cells;
 use crate::problem::Datum;
 
@@ -107,9 +108,11 @@ impl<const D: usize> Space<'_, D> {
         state: Option<Contact>,
     ) -> bool {
         let region = self.mesh.region(cell);
-        let gives = |psi, bound| self.datum_gives(("obstacle", psi), terms, cell, node, bound);
-        (state != Some(Contact::Upper) && gives(self.data.lower.of(region), bound.lower()))
-            || (state != Some(Contact::Lower) && gives(self.data.upper.of(region), bound.upper()))
+        let gives = |datum, bound| self.datum_gives(datum, terms, cell, node, bound);
+        let lower = (Binding::Lower, self.data.lower.of(region));
+        let upper = (Binding::Upper, self.data.upper.of(region));
+        (state != Some(Contact::Upper) && gives(lower, bound.lower()))
+            || (state != Some(Contact::Lower) && gives(upper, bound.upper()))
     }
 
     /// By unknown whether no gap binds it.
@@ -127,25 +130,26 @@ impl<const D: usize> Space<'_, D> {
     /// Whether the gap of a contact facet gives the lower bound of the unknown at a node.
     pub(crate) fn gap_gives(
         &self,
-        (cell, group): (usize, usize),
+        ((cell, local), group): (HalfFacet, usize),
         node: (usize, BoundBy),
         terms: &[Terms],
         bound: Bound<f64>,
     ) -> bool {
-        self.datum_gives(("gap", self.data.gap.of(group)), terms, cell, node, bound.lower())
+        let gap = (Binding::Gap(local), self.data.gap.of(group));
+        self.datum_gives(gap, terms, cell, node, bound.lower())
     }
 
     /// Whether a datum in a cell gives a bound at a node, which was rounded once; false without a datum or a bound.
     fn datum_gives(
         &self,
-        (name, datum): (&'static str, Option<&Datum<D>>),
+        (binding, datum): (Binding, Option<&Datum<D>>),
         terms: &[Terms],
         cell: usize,
         (i, by): (usize, BoundBy),
         bound: Option<f64>,
     ) -> bool {
         let Some((datum, bound)) = datum.zip(bound) else { return false };
-        let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), name, datum);
+        let value = self.bound(by, &terms[i], (cell, &self.nodes[i]), (binding, datum));
         let rounding = ROUNDINGS * (f64::EPSILON * bound.abs() + datum.rounding());
         value.is_ok_and(|value| (value - bound).abs() <= rounding)
     }

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Mutex;
 
 use super::contradictions::{BoundedNode, Contradiction, DIRICHLET};
+use super::obstacle_coefficients::Binding;
 use super::{Space, Terms, checks};
 use crate::algebra::Bound;
 use crate::assemble::shared_rows::places::for_each_place;
@@ -69,7 +70,8 @@ impl<const D: usize> Space<'_, D> {
                 };
             cells::for_each(self.mesh.n_cells(), &|cell| cell * n, bounds, &bound_chunk)?;
         } else {
-            let differ = self.data.obstacles_differ();
+            // beside a jump coefficients of two cells differ
+            let differ = self.data.obstacles_differ() || self.has_coefficients();
             for_each_place::<D, _, _>(&self.dofs, bounds, |bound, (cell, i)| {
                 match bounded.iter().find(|node| node.0 == i) {
                     Some(&node) if *bound == Bound::Free || differ => restrict(bound, cell, node),
@@ -93,11 +95,11 @@ impl<const D: usize> Space<'_, D> {
         found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
         let (region, node) = (self.mesh.region(cell), &self.nodes[i]);
-        let at = |psi: Option<&Datum<D>>| {
-            let value = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
-            psi.map(value).transpose()
+        let at = |binding, psi: Option<&Datum<D>>| {
+            psi.map(|psi| self.bound(by, &terms[i], (cell, node), (binding, psi))).transpose()
         };
-        let (lower, upper) = (at(self.data.lower.of(region))?, at(self.data.upper.of(region))?);
+        let lower = at(Binding::Lower, self.data.lower.of(region))?;
+        let upper = at(Binding::Upper, self.data.upper.of(region))?;
         let (unknown, x) = (self.dofs.of(cell, i), self.node_point(cell, node));
         intersect(bound, [lower, upper], BoundedNode { unknown, cell, x }, found);
         Ok(())
@@ -128,7 +130,7 @@ impl<const D: usize> Space<'_, D> {
             }
             for (i, by) in self.bounded_nodes_on(local) {
                 let node = &self.nodes[i];
-                let value = self.bound(by, &terms[i], (cell, node), "gap", gap)?;
+                let value = self.bound(by, &terms[i], (cell, node), (Binding::Gap(local), gap))?;
                 let (unknown, x) = (self.dofs.of(cell, i), self.node_point(cell, node));
                 let node = BoundedNode { unknown, cell, x };
                 intersect(&mut bounds[unknown], [Some(value), None], node, found);
@@ -143,10 +145,13 @@ impl<const D: usize> Space<'_, D> {
         by: BoundBy,
         terms: &Terms,
         (cell, node): (usize, &Node),
-        name: &'static str,
-        datum: &Datum<D>,
+        (binding, datum): (Binding, &Datum<D>),
     ) -> Result<f64, Error> {
+        let name = binding.name();
         match by {
+            BoundBy::Functional if node.is_coefficient() => {
+                Ok(self.obstacle_coefficient(terms, cell, (binding, datum))?.0)
+            }
             BoundBy::Functional => self.at_node(terms, cell, name, &|x| self.at(datum, cell, x)),
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
@@ -207,20 +212,23 @@ impl<const D: usize> Space<'_, D> {
     /// By how much Dirichlet values lie beyond an obstacle in a Bernstein coefficient at most, and where; none if they
     /// do so nowhere.
     pub(crate) fn data_beyond_coefficients(&self) -> Result<Option<(f64, Point<D>)>, Error> {
-        if !self.problem.has_obstacle() || !self.nodes.iter().any(Node::is_coefficient) {
+        if !self.problem.has_obstacle() || !self.has_coefficients() {
             return Ok(None);
         }
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let (mut largest, mut place) = (0.0, None);
         for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
             let region = self.mesh.region(cell);
-            let sides = [(1.0, self.data.lower.of(region)), (-1.0, self.data.upper.of(region))];
+            let sides = [
+                (1.0, Binding::Lower, self.data.lower.of(region)),
+                (-1.0, Binding::Upper, self.data.upper.of(region)),
+            ];
             for i in self.nodes_on(local) {
                 let datum = |x: &Point<D>| self.dirichlet_at(group, cell, x);
                 let value = self.at_node(&terms[i], cell, "dirichlet", &datum)?;
-                for (sign, psi) in sides.iter().filter_map(|(sign, psi)| Some((sign, (*psi)?))) {
-                    let bound =
-                        self.at_node(&terms[i], cell, "obstacle", &|x| self.at(psi, cell, x))?;
+                for (sign, binding, psi) in sides {
+                    let Some(psi) = psi else { continue };
+                    let (bound, _) = self.obstacle_coefficient(&terms[i], cell, (binding, psi))?;
                     if sign * (bound - value) > largest {
                         largest = sign * (bound - value);
                         place = Some(self.node_point(cell, &self.nodes[i]));

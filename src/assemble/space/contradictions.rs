@@ -1,5 +1,6 @@
 //! Bounds that leave no admissible value.
 
+use super::Space;
 use crate::algebra::Bound;
 use crate::error::Error;
 use crate::input::excerpt;
@@ -13,10 +14,14 @@ pub(crate) const DIRICHLET: &str = "Dirichlet value";
 /// rounding in the data.
 const RELATIVE_SLACK: f64 = 1e-9;
 
+/// Which share of the size of a function with the load counts as the largest datum: beside such a function a solution
+/// of one solve, which is a datum of the next, vanishes but for a thousand roundings.
+const SHARE_OF_LOAD: f64 = 1e3 * f64::EPSILON / RELATIVE_SLACK;
+
 /// Two values of which the first exceeds the second, by rounding or in earnest.
 ///
-/// Two values that are equal but for rounding may be zero but for rounding, so that the [largest](largest_datum) of all
-/// data decides, which a [part](crate::mesh::Part) of a mesh need not have.
+/// Two values that are equal but for rounding may be zero but for rounding, so that the [size](Space::size_of_data) of
+/// all data decides, which a [part](crate::mesh::Part) of a mesh need not have.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contradiction<const D: usize> {
     pub node: BoundedNode<D>,
@@ -50,17 +55,19 @@ impl<const D: usize> BoundedNode<D> {
     }
 }
 
-/// The largest absolute value of bounds, and of those that contradict each other.
-pub(crate) fn largest_datum<const D: usize>(
-    bounds: &[Bound<f64>],
-    found: &[Contradiction<D>],
-) -> f64 {
-    let of_found = found.iter().fold(0.0_f64, |most, c| most.max(c.lower.abs()).max(c.upper.abs()));
-    bounds.iter().fold(of_found, |most, bound| match *bound {
-        Bound::Free => most,
-        Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => most.max(a.abs()),
-        Bound::Both(a, b) => most.max(a.abs()).max(b.abs()),
-    })
+impl<const D: usize> Space<'_, D> {
+    /// The largest absolute value of bounds, of those that contradict each other, and of a share of what the load does.
+    pub fn size_of_data(&self, bounds: &[Bound<f64>], found: &[Contradiction<D>]) -> f64 {
+        let of_load = SHARE_OF_LOAD * if found.is_empty() { 0.0 } else { self.size_of_load() };
+        let of_found =
+            found.iter().fold(of_load, |most, c| most.max(c.lower.abs()).max(c.upper.abs()));
+        let largest = bounds.iter().fold(of_found, |most, bound| match *bound {
+            Bound::Free => most,
+            Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => most.max(a.abs()),
+            Bound::Both(a, b) => most.max(a.abs()).max(b.abs()),
+        });
+        largest + self.body_constants.largest()
+    }
 }
 
 /// Refuses a contradiction in an own cell that exceeds rounding of data of which the largest is `size`.

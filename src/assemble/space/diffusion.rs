@@ -1,7 +1,7 @@
 //! The diffusion coefficient in cells and on facets, and what it makes of derivatives in a flux.
 
 use super::Space;
-use super::coefficient::VaryingCoefficient;
+use super::coefficient::{VaryingCoefficient, limited};
 use super::tables::Derivatives;
 use crate::mesh::HalfFacet;
 use crate::real::Point;
@@ -22,19 +22,47 @@ impl<const D: usize> Space<'_, D> {
     pub fn has_varying_coefficient(&self) -> bool {
         self.varying.is_some()
     }
-    /// The coefficient at a point of a cell.
+    /// The coefficient at a point of a cell, as the element sees it.
     pub fn alpha_at(&self, cell: usize, x: &Point<D>) -> f64 {
         match self.data.coefficient.of(self.mesh.region(cell)) {
-            Some(alpha) if self.varying_in(cell).is_some() => self.at(alpha, cell, x),
+            Some(alpha) if self.varying_in(cell).is_some() => {
+                limited(self.at(alpha, cell, x), self.alpha(cell))
+            }
             _ => self.alpha(cell),
         }
     }
-    /// The largest value of the coefficient on a facet from its cell, and the least in the cell, at the
-    /// points that the element sees.
+    /// The largest value of the coefficient on a facet from its cell, at the points that the element sees.
     #[inline(always)]
-    pub fn extreme_coefficients(&self, (cell, local): HalfFacet) -> [f64; 2] {
-        let extremes = self.varying.as_ref().and_then(|varying| varying.extremes((cell, local)));
-        extremes.unwrap_or([self.alpha(cell); 2])
+    pub fn largest_coefficient(&self, own: HalfFacet) -> f64 {
+        let largest = self.varying.as_ref().and_then(|varying| varying.largest(own));
+        largest.unwrap_or(self.alpha(own.0))
+    }
+    /// The coefficient of a cell in bounds of its flux through a facet, see [`Side::bound_coefficient`].
+    #[inline(always)]
+    pub fn bound_coefficient(&self, own: HalfFacet, other: Option<HalfFacet>) -> f64 {
+        match self.varying_in(own.0) {
+            None => self.alpha(own.0),
+            Some(in_cell) => self.varying_bound_coefficient(in_cell, own, other),
+        }
+    }
+    fn varying_bound_coefficient(
+        &self,
+        (varying, values): (&VaryingCoefficient, &[f64]),
+        own: HalfFacet,
+        other: Option<HalfFacet>,
+    ) -> f64 {
+        let half = 0.5;
+        let Some((_, weight)) = self.flux_weights(own, other, half) else {
+            return self.alpha(own.0);
+        };
+        let a = self.largest_coefficient(own);
+        let of_largest = match other.map(|other| self.largest_coefficient(other)) {
+            None => a,
+            Some(b) => mean_weight(half, a, b),
+        };
+        // in units of the largest weight: squares of weights may have no exponent
+        let largest = varying.largest_flux(own.1, values, |q| weight(q) / of_largest);
+        1.0 / largest
     }
     /// Whether the coefficient varies in one of the cells of a facet.
     pub fn varies_at(&self, own: HalfFacet, other: Option<HalfFacet>) -> bool {
@@ -59,8 +87,7 @@ impl<const D: usize> Space<'_, D> {
         let weight = move |q: usize| {
             let a = at(own, q);
             let Some(other) = other else { return a };
-            let b = at(other, q);
-            own_weight * a * b / (own_weight * b + (1.0 - own_weight) * a)
+            mean_weight(own_weight, a, at(other, q))
         };
         Some((varying, weight))
     }
@@ -88,4 +115,11 @@ impl<const D: usize> Space<'_, D> {
         let (varying, weight) = self.flux_weights(own, other, own_weight)?;
         Some(move |k, l| varying.weighted_product(k, l, &weight))
     }
+}
+
+/// The factor of the normal derivative of a cell with the coefficient `a` in the flux: the harmonic mean of `a` and `b`
+/// times the average weight of the cell.
+#[inline(always)]
+fn mean_weight(own_weight: f64, a: f64, b: f64) -> f64 {
+    own_weight * a * b / (own_weight * b + (1.0 - own_weight) * a)
 }

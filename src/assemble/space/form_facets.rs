@@ -62,14 +62,20 @@ impl<'a, const D: usize> Space<'a, D> {
     /// The data of a facet and its cells that a form may see, with the metrics of all cells if they are kept.
     #[inline(always)]
     pub fn facet_view(&self, facet: FormFacet, kept: Option<&Metrics>) -> FacetView<'a, D> {
-        let (measure, here) = self.side(facet.here, kept);
-        let there = facet.there.map(|there| self.side(there, kept).1);
+        let (measure, here) = self.side(facet.here, facet.there, kept);
+        let there = facet.there.map(|there| self.side(there, Some(facet.here), kept).1);
         FacetView::new(self.mesh, facet.here, measure, here, there)
     }
     /// The measure of a facet and the cell from which it is seen.
     #[inline(always)]
-    fn side(&self, half: HalfFacet, kept: Option<&Metrics>) -> (f64, Side) {
-        let [coefficient, least_coefficient] = self.extreme_coefficients(half);
+    fn side(
+        &self,
+        half: HalfFacet,
+        other: Option<HalfFacet>,
+        kept: Option<&Metrics>,
+    ) -> (f64, Side) {
+        let coefficient = self.largest_coefficient(half);
+        let bound_coefficient = self.bound_coefficient(half, other);
         let metric;
         let (volume, measures) = match kept {
             Some(metrics) => metrics.measures::<D>(half.0),
@@ -81,6 +87,6 @@ impl<'a, const D: usize> Space<'a, D> {
         let measure = measures[half.1];
         let height = (D as f64) * volume / measure;
         let surface = measures.iter().fold(0.0, |sum, &measure| sum + measure);
-        (measure, Side { coefficient, least_coefficient, volume, surface, height })
+        (measure, Side { coefficient, bound_coefficient, volume, surface, height })
     }
 }

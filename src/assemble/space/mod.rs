@@ -10,17 +10,18 @@
 //! | `dofs` | the numbers of the unknowns of a cell |
 //! | `form_facets` | the facets that carry the facet form, and their cells |
 //! | `checks` | data that must be finite, coefficients that must be positive |
-//! | `coefficient` | a coefficient that varies in cells |
+//! | `coefficient` | a coefficient that varies in cells, and the products that it weighs |
 //! | `diffusion` | the coefficient in a cell, on a facet and in a flux |
 //! | `reaction_term` | the reaction term of the matrix |
 //! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
+//! | `obstacle_coefficients` | the Bernstein coefficients of obstacles and gaps, beside jumps too |
 //! | `active_obstacles` | where obstacles give the bound that is active |
 //! | `locations`, `node_vertices` | the locations of unknowns, by the vertices that stand for a node |
 
 pub(crate) mod active_obstacles;
 mod bounds;
 pub(crate) mod checks;
-mod coefficient;
+pub(crate) mod coefficient;
 pub(crate) mod contradictions;
 mod diffusion;
 pub(crate) mod dofs;
@@ -28,9 +29,11 @@ pub(crate) mod form_facets;
 mod locations;
 pub(crate) mod metric;
 mod node_vertices;
+pub(crate) mod obstacle_coefficients;
 pub(crate) mod reaction_term;
 pub(crate) mod tables;
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use super::DataQuadrature;
@@ -39,6 +42,7 @@ use crate::constraint::{BoundBy, in_basis_of, offered};
 use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoundaryFacet, HalfFacet, Mesh, Neighbours};
+use crate::parallel::cells;
 use crate::problem::{BodyConstants, DataOnMesh, Datum, DiscreteFunction, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell, vertex_point};
 use crate::real::Point;
@@ -232,6 +236,10 @@ impl<'a, const D: usize> Space<'a, D> {
         }
         out
     }
+    /// Whether the unknowns of a cell are Bernstein coefficients.
+    pub fn has_coefficients(&self) -> bool {
+        self.nodes.iter().all(Node::is_coefficient)
+    }
     /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
     pub fn is_conforming_linear(&self) -> bool {
         !self.broken && self.nodes.iter().cloned().eq((0..=D).map(Node::vertex))
@@ -244,6 +252,20 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn cell_table(&self, rule: Rule) -> CellTable {
         CellTable::new(rule, &*self.element)
     }
+    /// The size of a function with the load: the largest quotient of load and coefficient, at barycentres of cells,
+    /// times the square of the diameter of the mesh.
+    pub fn size_of_load(&self) -> f64 {
+        let of_cell = |cell: usize| {
+            let at_barycentre = |f: &Datum<D>| self.at(f, cell, &self.mesh.barycentre(cell));
+            let source = self.data.source.of(self.mesh.region(cell));
+            let load = source.map_or(0.0, |f| f.constant().unwrap_or_else(|| at_barycentre(f)));
+            load.abs() / self.alpha(cell)
+        };
+        let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
+        let largest = cells::map(self.mesh.n_cells(), &of_chunk).into_iter().fold(0.0, f64::max);
+        largest * self.mesh.domain_diameter().powi(2)
+    }
+
     /// The unknowns of a cell.
     pub fn local_values(&self, cell: usize, u: &[f64]) -> [f64; MAX_BASIS] {
         let mut local = [0.0; MAX_BASIS];

@@ -172,7 +172,7 @@ impl<const D: usize> Space<'_, D> {
                 if of.by_unknown[unknown] == 0.0 || of.obstacles.act_at(unknown) {
                     continue;
                 }
-                let gives = self.gap_gives((cell, group), node, &terms, bounds[unknown]);
+                let gives = self.gap_gives(((cell, local), group), node, &terms, bounds[unknown]);
                 match &mut best[unknown] {
                     (of_best, all) if *of_best == gives => *all += measure,
                     lower if gives => *lower = (true, measure),

@@ -5,6 +5,7 @@ use std::time::Instant;
 use super::Solved;
 use crate::error::Error;
 use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair, TrueErrors};
+use crate::inequality::Outcome;
 use crate::measure::{ContactErrors, Errors, Rounding, contact_difference};
 use crate::parallel::once;
 use crate::problem::Exact;
@@ -185,6 +186,19 @@ impl<const D: usize> Solved<'_, D> {
     fn figures(&self, errors: TrueErrors) -> BoundFigures {
         let bound = self.pair_and_bound().map(|(_, bound, _)| bound);
         BoundFigures::of_solution(bound, errors, (self.energy_norm, self.rounding()))
+    }
+    /// Adds rounding errors to the bound on the algebraic error, which knows the rounded inequality alone.
+    pub(in crate::nested) fn add_rounding_to_algebraic_bound(&mut self) {
+        let rounding = self.rounding().and_then(|rounding| rounding.error.broken_energy);
+        let both = self.solution.algebraic_bound.zip(rounding).filter(|_| self.energy_norm > 0.0);
+        let Some((bound, rounding)) = both else { return };
+        let sum = Some(bound + rounding / self.energy_norm);
+        self.solution.algebraic_bound = sum;
+        self.certificate = self.certificate.with_algebraic_bound(sum);
+        let is_within = self.certificate.is_within_limits(self.solution.precision);
+        if self.solution.outcome == Outcome::Converged && !is_within {
+            self.solution.outcome = Outcome::Stalled;
+        }
     }
     /// Rounding errors in the figures of the solution; none without an iterate.
     pub fn rounding(&self) -> Option<Rounding> {

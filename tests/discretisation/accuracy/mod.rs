@@ -1,5 +1,6 @@
 //! Errors of discrete solutions: orders, figures of other programs, exact cases.
 
+mod axis;
 mod coefficient;
 mod contact;
 mod cut_cells;

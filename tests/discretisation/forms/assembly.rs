@@ -562,14 +562,14 @@ fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
     assert_eq!(default.penalty_below_bound(), None);
     let side = unilateral::facet::Side {
         coefficient: 2.0,
-        least_coefficient: 2.0,
+        bound_coefficient: 2.0,
         volume: 0.5,
         surface: 3.0,
         height: 1.0,
     };
     let view = FacetView::new(&mesh, (0, 0), 1.0, side, Some(side));
     assert_eq!(proven_bound::<2>(1, &view), 0.5 * 2.0 * 6.0);
-    let varying = unilateral::facet::Side { least_coefficient: 0.5, ..side };
+    let varying = unilateral::facet::Side { bound_coefficient: 0.5, ..side };
     let view = FacetView::new(&mesh, (0, 0), 1.0, side, Some(varying));
     assert_eq!(proven_bound::<2>(1, &view), 0.5 * (2.0 * 2.0 / 0.5) * 6.0);
 }

@@ -13,7 +13,7 @@ fn diagonal_and_side(mesh: &Mesh<2>, alpha: [f64; 2]) -> [FacetView<'_, 2>; 2] {
     let root = 2_f64.sqrt();
     let side = |cell: usize, height: f64| Side {
         coefficient: alpha[cell],
-        least_coefficient: alpha[cell],
+        bound_coefficient: alpha[cell],
         volume: 0.5,
         surface: 2.0 + root,
         height,
@@ -76,7 +76,7 @@ fn the_proven_bound_is_that_of_the_worse_cell() {
     let mesh = unit_square();
     let side = |volume: f64| Side {
         coefficient: 1.0,
-        least_coefficient: 1.0,
+        bound_coefficient: 1.0,
         volume,
         surface: 3.0,
         height: 1.0,
@@ -129,7 +129,7 @@ fn the_diameter_of_a_vertex() {
     let mesh = Mesh::<1>::kuhn_box(&domain, [2]).unwrap();
     let side = |length: f64| Side {
         coefficient: 1.0,
-        least_coefficient: 1.0,
+        bound_coefficient: 1.0,
         volume: length,
         surface: 2.0,
         height: length,
@@ -161,14 +161,16 @@ fn the_default_over_penalty_scales_with_the_domain() {
     check::<2>(&Wopsip::default().on(P2), 4);
 }
 
-/// Rounding weighs `(length / h)^2`, a discretisation error `(h / length)^2`: the mesh size at which
-/// they are equal is a length, and grows with the fourth root of the rounding unit.
+/// Rounding weighs `(length / h)^2`, a discretisation error `(h / length)^2`, of quadratics its cube: the mesh size at
+/// which they are equal is a length, and grows with the fourth, the fifth root of the rounding unit.
 #[test]
 fn the_limit_of_rounding_is_a_length() {
     let mesh = unit_square();
     for scheme in [&ConformingP1 as &dyn Scheme<2>, &Sipg::default(), &Wopsip::default()] {
         let form = scheme.form(&mesh);
-        let limit = |epsilon, length| form.theory().rounding_limit(epsilon, length);
+        let limit = |epsilon, length| form.theory().rounding_limit(epsilon, length, 1);
+        let of_quadratics = |epsilon| form.theory().rounding_limit(epsilon, 1.0, 2);
+        assert!((of_quadratics(32e-16) / of_quadratics(1e-16) - 2.0).abs() < 1e-14);
         for length in [1e-3, 1.0, 1e3] {
             let expected = length * limit(1e-16, 1.0);
             assert!((limit(1e-16, length) / expected - 1.0).abs() < 1e-14, "{}", scheme.name());

@@ -1,6 +1,7 @@
 //! Quadratic elements and their four sets of constraints.
 
 mod bernstein;
+mod bernstein_jumps;
 mod sets;
 
 use crate::runs::{own_scene, small_mesh, solve};

@@ -5,10 +5,13 @@
 //! degree `2 b`: exact for products of gradients times a quadratic coefficient. Rules exact for the
 //! products alone keep the orders, with larger errors on coarse meshes (P. G. Ciarlet, P.-A. Raviart, The
 //! combined effect of curved boundaries and numerical integration, in A. K. Aziz (ed.), 1972, 409-474).
-//! On facets these are values from inside the cell, so that a coefficient may jump between cells. In a
-//! cell in which the samples differ by more than a factor of ten every element takes the value at the
-//! barycentre.
+//! On facets these are values from inside the cell, so that a coefficient may jump between cells. It may
+//! vanish at the boundary of a cell, as `r` does on the axis of a body of revolution: no point of a rule
+//! lies there. In a cell in which the coefficient jumps no rule keeps the order, see [`limited`].
 
+pub(crate) mod weighted_polynomials;
+
+use self::weighted_polynomials::{Factor, WeightedPolynomials};
 use super::checks::coefficient_at;
 use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable, Derivatives};
@@ -24,14 +27,22 @@ use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule
 /// those of a constant.
 const ROUNDINGS: f64 = 16.0;
 
-/// The largest ratio of two samples in a cell with which a coefficient counts as resolved. A coefficient
-/// that jumps in a cell by more has its value at the barycentre there: no rule keeps the order, and the
-/// penalty that the proof of coercivity asks for would grow like the square of the ratio.
-const LARGEST_RATIO: f64 = 10.0;
+/// By what factor a value may differ from that at the barycentre of its cell: in a cell beside an axis the square of the
+/// distance does so by 19.7 on a line, by 13 in the plane.
+const MOST_TIMES_BARYCENTRE: f64 = 20.0;
 
 /// The share of the way to the barycentre by which a point of a facet is moved to see the cell's own side
 /// of a jump.
 pub(crate) const INWARD: f64 = 1e-8;
+
+/// A value of the coefficient in a cell as elements see it: within a twentieth and twenty times that at the
+/// barycentre. Beyond lies a jump within the cell, with which the penalty that the proof of coercivity asks for would
+/// grow; a coefficient that vanishes on an axis lies beyond where it does not count.
+pub(super) fn limited(value: f64, at_barycentre: f64) -> f64 {
+    let (least, most) =
+        (at_barycentre / MOST_TIMES_BARYCENTRE, at_barycentre * MOST_TIMES_BARYCENTRE);
+    value.max(least).min(most)
+}
 
 /// The start of a cell in which the coefficient is a constant.
 const CONSTANT: u32 = u32::MAX;
@@ -54,6 +65,8 @@ pub(crate) struct VaryingCoefficient {
     flux_moments: usize,
     /// By facet, moment and point of the facet, the derivatives of the basis times polynomial and weight.
     derivatives: Vec<Derivatives>,
+    /// The polynomials of the cell at the points of its rule.
+    in_cell: WeightedPolynomials,
 }
 
 impl VaryingCoefficient {
@@ -76,18 +89,14 @@ impl VaryingCoefficient {
         let mut starts = vec![CONSTANT; mesh.n_cells()];
         let mut values: Vec<f64> = Vec::new();
         for (cell, start) in starts.iter_mut().enumerate() {
-            let corners = mesh.corners(cell);
+            let (corners, constant) = (mesh.corners(cell), constants[cell]);
             let first = values.len();
             for point in &points {
                 let x = corners.iter().zip(point).map(|(corner, &b)| corner * b).sum();
-                values.push(coefficient_at(alpha, mesh, cell, &x)?);
+                values.push(limited(coefficient_at(alpha, mesh, cell, &x)?, constant));
             }
-            let constant = constants[cell];
             let is_same = |v: &f64| (v / constant - 1.0).abs() <= ROUNDINGS * f64::EPSILON;
-            let samples = values[first..].iter();
-            let (least, largest) =
-                samples.fold((constant, constant), |(low, high), &v| (low.min(v), high.max(v)));
-            if largest > LARGEST_RATIO * least || values[first..].iter().all(is_same) {
+            if values[first..].iter().all(is_same) {
                 values.truncate(first);
             } else {
                 *start = first as u32;
@@ -129,6 +138,7 @@ impl VaryingCoefficient {
             polynomials: at_points,
             flux_moments,
             derivatives,
+            in_cell: WeightedPolynomials::new(D, basis_degree, &cell_rule),
         }))
     }
 
@@ -150,13 +160,20 @@ impl VaryingCoefficient {
         let n = self.facet_weights.len();
         self.of_cell(cell).map(|values| &values[self.stiffness.len() + local * n..][..n])
     }
-    /// The largest value on a facet and the least in its cell, at the points of the rules, if the
-    /// coefficient varies in the cell.
-    pub fn extremes(&self, own: HalfFacet) -> Option<[f64; 2]> {
-        let largest = self.on_facet(own)?.iter().fold(0.0, |a, &b| if b > a { b } else { a });
-        let values = self.in_cell(own.0)?;
-        let least = values.iter().fold(values[0], |a, &b| if b < a { b } else { a });
-        Some([largest, least])
+    /// The largest value on a facet, at the points of its rule, if the coefficient varies in the cell.
+    pub fn largest(&self, own: HalfFacet) -> Option<f64> {
+        Some(self.on_facet(own)?.iter().fold(0.0, |a, &b| if b > a { b } else { a }))
+    }
+    /// The factor of the products of the polynomials of a degree, at most that of the basis functions, in a cell with
+    /// these values.
+    pub fn factor(&self, degree: usize, values: &[f64]) -> Factor {
+        self.in_cell.factor(degree, values)
+    }
+    /// By how much moments on facet `local` of polynomials of the degree of derivatives, times a weight at its points,
+    /// exceed their energy in a cell with these values: one where coefficient and weight are.
+    pub fn largest_flux(&self, local: usize, values: &[f64], weight: impl Fn(usize) -> f64) -> f64 {
+        let weighted = |k: usize, l: usize| self.weighted_product(k, l, &weight);
+        self.in_cell.largest_flux(local, values, &weighted)
     }
     /// Entry `(i, j)` of `(alpha grad phi_j, grad phi_i)` over a cell with these values.
     pub fn stiffness<const D: usize>(
