@@ -382,7 +382,17 @@ fn bounds_are_guaranteed_or_name_what_is_not_proven() {
     assert!(read.bound.discrete.is_none() && read.error == rows[0].error);
     let text = report(rows.clone()).details_to_text(100);
     assert!(text.contains(" effect. ") && text.contains(" 1.75* "), "{text}");
-    assert!(text.contains("* bound with terms that are not proven: quadrature, algebra"), "{text}");
+    assert!(
+        text.contains("* bound with terms that are not proven: quadrature, algebra\n"),
+        "{text}"
+    );
+    let mut several = rows.clone();
+    several[0].bound.guaranteed = Some(false);
+    several[0].bound.unproven = Some(vec![Unproven::Algebra]);
+    several[0].label = "other".into();
+    let text = report(several).details_to_text(200);
+    let [other, second] = ["algebra (other)".to_owned(), format!("algebra ({})", rows[1].label)];
+    assert!(text.contains(&other) && text.contains(&format!("quadrature, {second}")), "{text}");
     // beside a bound stands the norm that it bounds, where that is not the H1 seminorm
     rows.iter_mut().for_each(|row| row.bound.effectivity = None);
     let text = report(rows.clone()).details_to_text(100);

@@ -235,12 +235,21 @@ pub(super) fn marked(row: &Row, bound: String) -> String {
     if row.bound.guaranteed == Some(false) { bound + "*" } else { bound }
 }
 
-/// The remark that explains the marks of bounds, where there are any.
+/// The remark that explains the marks of bounds, where there are any: of different terms with their schemes.
 pub(super) fn unproven(rows: &[&Row]) -> Option<String> {
-    let sets =
-        distinct(rows.iter().map(|r| r.bound.unproven_words()).filter(|words| !words.is_empty()));
-    (!sets.is_empty())
-        .then(|| format!("* bound with terms that are not proven: {}", sets.join("; ")))
+    let words = |row: &&Row| row.bound.unproven_words();
+    let sets = distinct(rows.iter().map(words).filter(|words| !words.is_empty()));
+    let of_schemes = |set: &String| {
+        let rows = rows.iter().filter(|row| words(row) == *set);
+        let labels = distinct(rows.map(|row| row.label.as_str()));
+        format!("{set} ({})", labels.join(", "))
+    };
+    let all = match &sets[..] {
+        [] => return None,
+        [set] => set.clone(),
+        several => several.iter().map(of_schemes).collect::<Vec<_>>().join("; "),
+    };
+    Some(format!("* bound with terms that are not proven: {all}"))
 }
 
 /// Energy, contact measure and resultant, where they are known.

@@ -57,7 +57,7 @@ fn a_gap_may_jump() {
     assert!(row.penetration.unwrap() < 1e-15, "{:?}", row.penetration);
 }
 
-/// Kinks, inflections, roots and steep slopes are no jumps: bounds are the coefficients of the data, to the bit.
+/// Kinks, inflections, roots and steep slopes are no jumps: bounds are the coefficients of the data.
 #[test]
 fn data_without_jumps_keep_their_coefficients() {
     let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [5, 5]).unwrap();
