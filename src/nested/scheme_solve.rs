@@ -107,7 +107,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
         let mut solved = Solved::new(system, solution, hierarchy);
         solved.warnings = warnings;
-        if precision == Precision::Single {
+        // that of linears holds without it
+        if precision == Precision::Single && scheme.degree() > 1 {
             solved.add_rounding_to_algebraic_bound();
         }
         solved.mesh_seconds = self.p1.meshes.seconds(position);
