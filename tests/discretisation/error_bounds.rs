@@ -196,7 +196,7 @@ fn a_vertex_with_two_fans_has_balanced_fluxes() {
     }
     let mesh = Mesh::<2>::new(vertices, cells, &boundary).unwrap();
     // loads of opposite signs: what one fan has too much the other one lacks
-    let problem = Problem::new().source(|x: &Point<2>| x[0].signum());
+    let problem = Problem::new().source(|x: &Point<2>| x[0].signum()).polynomial_data(0);
     let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
     let origin = mesh.vertices().iter().position(|x| x.norm() == 0.0).unwrap();
     assert!(solved.values()[origin].abs() < 1e-12, "by symmetry");

@@ -137,7 +137,7 @@ fn the_report_has_every_key_and_file() {
 
     let endings = ["json", "jsonl", "csv", "md", "tex", "html"];
     let mut files: Vec<String> = endings.map(|ending| format!("report.{ending}")).into();
-    files.push(".lock".to_owned());
+    files.extend([".lock", "request.json"].map(str::to_owned));
     files.extend(["convergence", "work_precision"].map(|plot| format!("{plot}.svg")));
     for scene in ["radial-2d", "signorini-2d"] {
         for ending in ["vtu", "svg"] {
