@@ -12,6 +12,6 @@ fn bounds_of_broken_linears_stay_near_their_errors() {
     for row in rows(&report) {
         assert_eq!(row["status"], "converged");
         let effectivity = number(row, &["bound", "effectivity"]);
-        assert!(effectivity >= 1.0 && effectivity < 7.0, "{}: {effectivity}", row["label"]);
+        assert!((1.0..7.0).contains(&effectivity), "{}: {effectivity}", row["label"]);
     }
 }
