@@ -25,9 +25,9 @@ fn scheme<const D: usize>(label: &str) -> (Box<dyn Scheme<D>>, bool) {
 /// What holds a body besides bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Held {
-    ByDirichletData,
-    ByReaction,
-    ByBoundsAlone,
+    DirichletData,
+    Reaction,
+    BoundsAlone,
 }
 
 /// A box, loaded by `f + 0.3 x`, on a foundation at the lower end of the last axis or under an obstacle, with a flux
@@ -47,11 +47,11 @@ struct Drawn {
 
 impl Drawn {
     fn new(random: &mut Random, level: usize) -> Self {
-        let held = [Held::ByDirichletData, Held::ByReaction, Held::ByBoundsAlone][random.below(3)];
+        let held = [Held::DirichletData, Held::Reaction, Held::BoundsAlone][random.below(3)];
         let mut odd = || random.below(2) == 1;
         let (has_gap, has_lower, has_upper, has_reaction) = (odd(), odd(), odd(), odd());
-        let presses = held == Held::ByBoundsAlone;
-        let reaction = if presses || held == Held::ByDirichletData && !has_reaction {
+        let presses = held == Held::BoundsAlone;
+        let reaction = if presses || held == Held::DirichletData && !has_reaction {
             0.0
         } else {
             0.5 + random.unit()
@@ -71,7 +71,7 @@ impl Drawn {
 
     fn domain<const D: usize>(&self) -> BoxDomain<D> {
         let sides = match self.held {
-            Held::ByDirichletData => BoundaryCondition::Dirichlet,
+            Held::DirichletData => BoundaryCondition::Dirichlet,
             _ => BoundaryCondition::Neumann,
         };
         let mut domain = BoxDomain::new(Point::zeros(), Point::repeat(1.0), [[sides; 2]; D]);
@@ -238,7 +238,7 @@ fn in_space_many() {
 #[test]
 fn in_single_precision() {
     let drawn = Drawn {
-        held: Held::ByDirichletData,
+        held: Held::DirichletData,
         has_gap: true,
         has_lower: false,
         has_upper: false,
@@ -262,7 +262,7 @@ fn in_single_precision() {
 #[test]
 fn objectives_and_energies_keep_their_meaning() {
     let drawn = Drawn {
-        held: Held::ByDirichletData,
+        held: Held::DirichletData,
         has_gap: false,
         has_lower: true,
         has_upper: false,
