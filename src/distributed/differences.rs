@@ -1,5 +1,7 @@
 //! Rows of the parts of a mesh, compared bit for bit with those of the whole mesh.
 
+use std::sync::Arc;
+
 use crate::algebra::{Bound, Inequality};
 use crate::arrays::map_entries;
 use crate::assemble::{DataQuadrature, Discretisation};
@@ -46,7 +48,10 @@ impl Differences {
             return Ok(Self::default());
         };
         let problem = solved.discretisation().problem();
-        let assembled = scheme.discretise(problem, whole, quadrature).and_then(|of| {
+        // parts take no constants off their data
+        let data = (problem, Arc::default());
+        let of = Discretisation::with_constants(scheme, data, whole, quadrature);
+        let assembled = of.and_then(|of| {
             let inequality = of.inequality()?;
             Ok((of, inequality))
         });
@@ -66,7 +71,7 @@ impl Differences {
         of: &Discretisation<'_, D>,
         all: &Inequality<f64>,
     ) -> Self {
-        let (inequality, values) = (solved.inequality(), solved.values());
+        let (inequality, values) = (solved.inequality(), &solved.solution().values[..]);
         let mut numbers = vec![0; inequality.size()];
         for (cell, &whole) in part.cells.iter().enumerate() {
             let own = solved.discretisation().unknowns_of(cell);

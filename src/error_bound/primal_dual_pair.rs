@@ -29,7 +29,8 @@ pub struct PrimalDualPair<const D: usize> {
     /// The values of the function `v` at the vertices of the mesh and, for degree two, after them at the
     /// midpoints of its edges, in the order of `mesh::Edges`: means of the values of the
     /// discrete solution in the cells around, with the coefficient as weights, Dirichlet values on the
-    /// Dirichlet boundary, moved into the constraints at all others.
+    /// Dirichlet boundary, moved into the constraints at all others; less the [constants](Discretisation::constants) of
+    /// bodies, as the vectors of the inequality.
     pub function: Vec<f64>,
     /// For degree two, by cell the numbers of its edges.
     pub edges: Vec<u32>,

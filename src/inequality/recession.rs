@@ -6,6 +6,7 @@
 //! moved as far as there is room between the bounds. (Fichera, Atti Accad. Naz. Lincei 7 (1964); Lions, Stampacchia,
 //! Comm. Pure Appl. Math. 20 (1967) 493-519, section 5.)
 
+use super::certificate::contact_states;
 use super::history::Recorder;
 use super::validation::check_input;
 use super::{InitialGuess, Outcome, Solution};
@@ -131,6 +132,11 @@ fn solve_with_bodies<T: Real>(
             }
         });
         if relaxed.len() == n_relaxed {
+            // states of the solve with bounds left out are not those of values that were moved
+            if !relaxed.is_empty() && solution.outcome == Outcome::Converged {
+                let Solution { values, jump_multipliers, .. } = &solution;
+                solution.contact = contact_states(inequality, values, jump_multipliers);
+            }
             break solution;
         }
     };
@@ -203,7 +209,7 @@ fn are_admissible<T: Real>(inequality: &Inequality<T>, entries: &[(u32, T)], val
     entries.iter().all(is_admissible)
 }
 
-/// Moves the bodies that touch no bound, along constants in the direction of their load, until each touches one. The
+/// Moves the bodies that touch no bound in the direction of their load, along constants, until each touches one. The
 /// energy falls, and no residual changes. Where the load on a body is small beside the energy of others, no certificate
 /// sees where the body is: this load alone says it.
 pub(super) fn press_onto_bounds<T: Real>(inequality: &Inequality<T>, values: &mut [T]) {

@@ -121,6 +121,7 @@ impl<T: Real> Solution<T> {
     /// with its nearer bound if its gap is at most the Gauss-Seidel step towards this bound, or if its value is on the
     /// bound and the multiplier has a wrong sign by no more than the limit of the certificate. A value on its bound
     /// whose multiplier vanishes is therefore in contact. So is an unknown whose bounds coincide, with the lower one.
+    /// Without one value for each unknown there are no states, and the result has no iterate.
     #[must_use]
     pub fn of_values(
         inequality: &Inequality<T>,
@@ -128,7 +129,11 @@ impl<T: Real> Solution<T> {
         jump_multipliers: Vec<T>,
         outcome: Outcome,
     ) -> Self {
-        let contact = contact_states(inequality, &values, &jump_multipliers);
+        let is_complete = inequality.is_well_formed() && values.len() == inequality.size();
+        let contact = match is_complete {
+            true => contact_states(inequality, &values, &jump_multipliers),
+            false => Vec::new(),
+        };
         Self::new(values, contact, outcome).jump_multipliers(jump_multipliers)
     }
     /// The result of a solve that ends before the first iterate: the admissible values nearest to zero, all contact

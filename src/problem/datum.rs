@@ -100,7 +100,7 @@ pub enum Datum<const D: usize> {
 pub struct Sum<const D: usize> {
     /// None of them is a sum.
     terms: Arc<[Datum<D>]>,
-    /// The product of the levels of the terms.
+    /// The common level of the terms on a mesh, once there is one.
     level: Option<Field<D>>,
 }
 
@@ -146,11 +146,17 @@ impl<const D: usize> Datum<D> {
         if let (Datum::Constant(a), Datum::Constant(b)) = (self, &other) {
             return Datum::Constant(a + b);
         }
-        let level = match [self, &other].map(|datum| datum.level().cloned()) {
-            [Some(a), Some(b)] => Some(Arc::new(move |x: &Point<D>| a(x) * b(x)) as Field<D>),
-            [a, b] => a.or(b),
-        };
-        Datum::Sum(Sum { terms: [self.terms(), other.terms()].concat().into(), level })
+        Datum::Sum(Sum { terms: [self.terms(), other.terms()].concat().into(), level: None })
+    }
+    /// The datum with the level of a sum on a mesh: see [`common_level`].
+    pub(super) fn on_mesh(&self, mesh: &Mesh<D>) -> Self {
+        match self {
+            Datum::Sum(Sum { terms, .. }) => {
+                let level = common_level(terms.iter().filter_map(Datum::level), mesh);
+                Datum::Sum(Sum { terms: terms.clone(), level })
+            }
+            other => other.clone(),
+        }
     }
     /// The terms of a sum; of others themselves.
     fn terms(&self) -> &[Self] {
@@ -271,6 +277,37 @@ impl<const D: usize> fmt::Debug for Datum<D> {
     }
 }
 
+/// A function that changes its sign on a mesh where one of some levels does: their product, without those whose signs at
+/// vertices and barycentres are those of another one, or the opposite ones. The product of two with the same zeros would
+/// change its sign nowhere.
+fn common_level<'l, const D: usize>(
+    levels: impl Iterator<Item = &'l Field<D>>,
+    mesh: &Mesh<D>,
+) -> Option<Field<D>> {
+    let mut different: Vec<&Field<D>> = Vec::new();
+    for level in levels {
+        let points = || {
+            let barycentres = (0..mesh.n_cells()).map(|cell| mesh.barycentre(cell));
+            mesh.vertices().iter().copied().chain(barycentres)
+        };
+        let has_sides_of = |other: &&Field<D>| {
+            let agrees = |x: &Point<D>| (level(x) > 0.0) == (other(x) > 0.0);
+            points().all(|x| agrees(&x)) || points().all(|x| !agrees(&x))
+        };
+        if !different.iter().any(has_sides_of) {
+            different.push(level);
+        }
+    }
+    match &different[..] {
+        [] => None,
+        [level] => Some((*level).clone()),
+        _ => {
+            let factors: Vec<Field<D>> = different.into_iter().cloned().collect();
+            Some(Arc::new(move |x| factors.iter().map(|level| level(x)).product()))
+        }
+    }
+}
+
 /// A datum in the cells of one mesh, less the constant of the body of each cell, or less the constant times a factor. The
 /// assembly makes them.
 #[derive(Clone)]
@@ -288,15 +325,15 @@ impl<const D: usize> Shifted<D> {
     pub(super) fn datum(
         datum: Option<&Datum<D>>,
         factor: Option<&Datum<D>>,
-        constants: &Arc<BodyConstants>,
+        (constants, mesh): (&Arc<BodyConstants>, &Mesh<D>),
     ) -> Datum<D> {
         let constant = |of: Option<&Datum<D>>, absent| of.map_or(Some(absent), Datum::constant);
         let known = (constant(datum, 0.0), constant(factor, 1.0), constants.of_all());
         if let (Some(datum), Some(factor), Some(constant)) = known {
             return Datum::Constant(datum - constant * factor);
         }
-        // a source close to a constant times the reaction jumps where the reaction does
-        let level = [datum, factor].into_iter().flatten().find_map(Datum::level).cloned();
+        let levels = [datum, factor].into_iter().flatten().filter_map(Datum::level);
+        let level = common_level(levels, mesh);
         let [datum, factor] = [datum, factor].map(|of| of.cloned().map(Box::new));
         Datum::Shifted(Self { datum, factor, constants: constants.clone(), level })
     }

@@ -123,7 +123,10 @@ impl<const D: usize> DataOnMesh<D> {
         problem.check_given_once()?;
         mesh.check_boundary_conditions()?;
         let groups = (mesh.regions(), mesh.boundary_groups());
-        let found = Self::of_groups(problem, groups.0, groups.1, mesh.groups_inside())?;
+        let mut found = Self::of_groups(problem, groups.0, groups.1, mesh.groups_inside())?;
+        let on_mesh =
+            |_: usize, source: Option<&Datum<D>>| source.map(|source| source.on_mesh(mesh));
+        found.source = found.source.changed((groups.0.len(), false), on_mesh);
         let Self { coefficient, source, reaction, lower, upper, gap, .. } = &found;
         let data = [coefficient, source, reaction, lower, upper, gap].into_iter();
         let discrete = data.flat_map(|data| data.all()).flat_map(|datum| datum.discrete());
@@ -140,19 +143,19 @@ impl<const D: usize> DataOnMesh<D> {
         }
         let (regions, groups) = (mesh.regions().len(), mesh.boundary_groups().len());
         let bound = |_: usize, datum: Option<&Datum<D>>| {
-            datum.map(|datum| Shifted::datum(Some(datum), None, constants))
+            datum.map(|datum| Shifted::datum(Some(datum), None, (constants, mesh)))
         };
         self.lower = self.lower.changed((regions, false), bound);
         self.upper = self.upper.changed((regions, false), bound);
         self.gap = self.gap.changed((groups, false), bound);
         // groups without a datum have the value zero
-        self.dirichlet = self
-            .dirichlet
-            .changed((groups, false), |_, datum| Some(Shifted::datum(datum, None, constants)));
+        self.dirichlet = self.dirichlet.changed((groups, false), |_, datum| {
+            Some(Shifted::datum(datum, None, (constants, mesh)))
+        });
         let reaction = &self.reaction;
         self.source = self.source.changed((regions, reaction.has_names()), |region, source| {
             match reaction.of(region) {
-                Some(reaction) => Some(Shifted::datum(source, Some(reaction), constants)),
+                Some(reaction) => Some(Shifted::datum(source, Some(reaction), (constants, mesh))),
                 None => source.cloned(),
             }
         });

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::support::checks::Checks;
 use crate::support::meshes::Random;
 use unilateral::constraint::Bernstein;
+use unilateral::error::Error;
 use unilateral::inequality::{ActiveSet, in_precision};
 use unilateral::mesh::{BoundaryCondition, BoxDomain, Mesh, TaggedFacet};
 use unilateral::prelude::*;
@@ -329,6 +330,26 @@ fn each_body_has_a_constant_of_its_own() {
             let rounding = 1e-12 + 8.0 * f64::EPSILON * level;
             assert!((a + level - b).abs() < rounding, "{label} at {k}: {a} and {b}");
         }
+        // an obstacle of known degree
+        let mut above = problem([1e6, 3.0]);
+        above.lower = Datum::Constant(2.5).into();
+        let bound = unilateral::nested::solve(&above, &mesh, &*scheme).unwrap().bound();
+        assert!(bound.is_ok_and(|bound| bound.total < 0.2), "{label}");
+    }
+}
+
+/// Data that contradict each other do so on every level.
+#[test]
+fn contradictions_are_found_on_every_level() {
+    let mesh = Mesh::<1>::kuhn_box(&BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), [4]);
+    let mesh = mesh.unwrap();
+    for c in [0.0, 300.0, 1e7] {
+        let problem = Problem::<1>::new().dirichlet(move |_| c - 1.0);
+        let problem = problem.obstacle_below(move |_| c + 0.001).obstacle_above(move |_| c);
+        let of = Discretisation::new(&Sipg::default(), &problem, &mesh, Default::default());
+        let error = of.unwrap().inequality().unwrap_err();
+        let Error::EmptyConstraint { lower, upper, .. } = error else { panic!("{error}") };
+        assert!((lower - c - 0.001).abs() < 1e-8 && (upper - c).abs() < 1e-8, "{lower} {upper}");
     }
 }
 

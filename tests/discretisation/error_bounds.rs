@@ -316,7 +316,7 @@ pub fn change_flux<const D: usize>(
 
 /// The bound that a pair gives, over the error of the function of the pair.
 pub fn ratio<const D: usize>(solved: &Solved<'_, D>, pair: &PrimalDualPair<D>) -> f64 {
-    let bound = solved.discretisation().error_bound(pair, solved.values()).unwrap();
+    let bound = solved.discretisation().error_bound(pair, &solved.solution().values).unwrap();
     bound.total / solved.discretisation().error_of_pair(pair).unwrap()
 }
 

@@ -171,7 +171,7 @@ fn forces_on_contact_facets_are_not_negative() {
     let (cell, local) = contact[1];
     let through = pair.flux.through(cell, local);
     pair.flux.add_through(cell, local, -1.0 - through);
-    let refused = solved.discretisation().error_bound(&pair, solved.values());
+    let refused = solved.discretisation().error_bound(&pair, &solved.solution().values);
     assert!(matches!(refused, Err(NoBound::NegativeForce)), "{refused:?}");
 }
 

@@ -459,3 +459,25 @@ fn a_datum_that_is_given_twice_is_refused() {
     problem.lower = Datum::Constant(-1.0).into();
     assert_eq!(study(&problem).unwrap(), 1);
 }
+
+/// Two sources that jump on one surface, and one with a reaction that does, are divided there as one source is.
+#[test]
+fn sources_that_jump_on_one_surface_are_divided_there() {
+    let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [4, 4]).unwrap();
+    let level = |x: &Point<2>| x[0] + 0.3 * x[1] - 0.11;
+    let side = move |x: &Point<2>| if level(x) > 0.0 { 1.0 } else { -1.0 };
+    let load = |problem: &Problem<2>| {
+        let of = Discretisation::new(&ConformingP1, problem, &mesh, Default::default()).unwrap();
+        of.load().unwrap()
+    };
+    let one = Problem::new().piecewise_source(move |x| 3.0 * side(x), level);
+    let two = Problem::new()
+        .piecewise_source(side, level)
+        .piecewise_source(move |x| 2.0 * side(x), move |x| -2.0 * level(x));
+    let smooth = Problem::new().source(move |x| 3.0 * side(x));
+    let [one, two, smooth] = [one, two, smooth].map(|problem| load(&problem));
+    let apart =
+        |other: &[f64]| one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart(&two) < 1e-13, "{:e}", apart(&two));
+    assert!(apart(&smooth) > 1e-3, "{:e}", apart(&smooth));
+}

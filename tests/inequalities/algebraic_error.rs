@@ -193,7 +193,7 @@ fn left_by<const D: usize>(
         let discretisation = solved.discretisation();
         let errors = solved.errors()?;
         let of_correction = discretisation.errors_against(&zero(), &correction.values)?;
-        let norms = discretisation.errors_against(&zero(), solved.values())?;
+        let norms = discretisation.errors_against(&zero(), &solved.solution().values)?;
         let of = |x: Option<f64>| x.unwrap_or(f64::NAN);
         let distance = energy(inequality, &correction.values).max(0.0).sqrt();
         let mut left = Left {

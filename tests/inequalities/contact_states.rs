@@ -230,3 +230,18 @@ fn a_body_with_a_load_near_rounding_lies_on_its_bounds() {
         }
     }
 }
+
+/// What a solver of one's own returns may have another number of values: then there are no states, and no iterate.
+#[test]
+fn values_of_another_number_have_no_states() {
+    let line = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<1>::kuhn_box(&line, [4]).unwrap();
+    let problem = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.2);
+    let scheme: &dyn Scheme<1> = &ConformingP1;
+    let inequality = scheme.inequality(&problem, &mesh, Default::default()).unwrap();
+    let number_of_states = |n: usize| {
+        let values = vec![0.0; n];
+        Solution::of_values(&inequality, values, Vec::new(), Outcome::Converged).contact.len()
+    };
+    assert_eq!([3, 5, 6].map(number_of_states), [0, 5, 0]);
+}

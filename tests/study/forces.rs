@@ -119,3 +119,19 @@ fn the_flux_through_weakly_imposed_data_is_no_contact_force() {
     near(at_vertices.resultant, p1.resultant, 0.01, "wopsip against p1");
     near(on_means.resultant, cr.resultant, 0.01, "facet means against cr");
 }
+
+/// With a contrast of 1e12 forces of two solvers, whose certificates are within their limits, differ by half a per cent: the
+/// rows say that rounding may do so.
+#[test]
+fn forces_that_rounding_changes_have_a_warning() {
+    let warnings = |contrast: f64| {
+        let scheme: NamedScheme = "ldg-switch-p2".parse().unwrap();
+        let study = Study::<1>::new(scenes::contrast(contrast)).named_scheme(&scheme);
+        let mut rows = study.levels([4]).run().unwrap().rows;
+        assert!(rows[0].converged());
+        rows.remove(0).warnings
+    };
+    let is_told = |warning: &String| warning.contains("rounding changes contact forces by up to");
+    assert!(warnings(1e12).iter().any(is_told));
+    assert!(!warnings(1e6).iter().any(is_told));
+}

@@ -1,5 +1,6 @@
 //! Figures that are rounding errors have no orders.
 
+use unilateral::element::P2;
 use unilateral::inequality::{ActiveSet, Outcome, in_precision};
 use unilateral::prelude::*;
 use unilateral::real::Precision;
@@ -120,5 +121,31 @@ fn single_precision_changes_quadratics_by_rounding() {
             let what = format!("{} {}, {name}", single.label, single.level);
             assert!((a - b).abs() <= most, "{what}: {a:e} for {b:e}, rounding {most:e}");
         }
+    }
+}
+
+/// What a row in single precision states of its distance from the discrete solution holds.
+#[test]
+fn algebraic_bounds_of_quadratics_hold_in_single_precision() {
+    let scene = scenes::signorini_2d();
+    let meshes = Hierarchy::<2>::of_domain(&scene.domain, 16).unwrap();
+    for scheme in [&ConformingP2 as &dyn Scheme<2>, &Sipg::default().on(P2)] {
+        let solved = |precision| {
+            let solver = in_precision(precision, ActiveSet::default());
+            let nested = NestedIteration::new(&scene.problem, &meshes);
+            nested.shared_solver(solver.into()).solve(scheme).unwrap()
+        };
+        let [exact, rounded] = [Precision::Double, Precision::Single].map(solved);
+        let matrix = &exact.inequality().matrix;
+        let norm = |u: &[f64]| {
+            let terms = (0..u.len()).map(|i| u[i] * matrix.row_dot_f64(i, u));
+            terms.sum::<f64>().sqrt()
+        };
+        let pairs = exact.values().iter().zip(rounded.values());
+        let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
+        let distance = norm(&apart) / norm(exact.values());
+        let stated = rounded.certificate().algebraic_bound.unwrap();
+        let what = format!("{}: {distance:e}, stated {stated:e}", scheme.name());
+        assert!(rounded.converged() && distance <= stated && stated < 1e-2, "{what}");
     }
 }

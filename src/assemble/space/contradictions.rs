@@ -55,6 +55,10 @@ impl<const D: usize> BoundedNode<D> {
     }
 }
 
+/// Data less a constant contradict each other by more than this many units of rounding of the constant: as much as
+/// computed data have.
+const ROUNDINGS_OF_CONSTANTS: f64 = 1e4;
+
 impl<const D: usize> Space<'_, D> {
     /// The largest absolute value of bounds, of those that contradict each other, and of a share of what the load does.
     pub fn size_of_data(&self, bounds: &[Bound<f64>], found: &[Contradiction<D>]) -> f64 {
@@ -66,7 +70,8 @@ impl<const D: usize> Space<'_, D> {
             Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => most.max(a.abs()),
             Bound::Both(a, b) => most.max(a.abs()).max(b.abs()),
         });
-        largest + self.body_constants.largest()
+        // what was a number and is the difference from a constant has more rounding
+        largest + ROUNDINGS_OF_CONSTANTS * self.body_constants.rounding() / RELATIVE_SLACK
     }
 }
 

@@ -159,7 +159,8 @@ impl<const D: usize> Space<'_, D> {
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let gap = |bound: &Datum<D>| {
                     let at_corners = corners[..=D].iter().zip(&function.values);
-                    at_corners.map(|(x, value)| sign * (value - bound.at(x))).sum::<f64>()
+                    let distance = |(x, value): (&Point<D>, &f64)| value - self.at(bound, cell, x);
+                    at_corners.map(|corner| sign * distance(corner)).sum::<f64>()
                 };
                 gaps[k] = function.bounds[k].map_or(0.0, gap) / (D + 1) as f64;
             }

@@ -107,7 +107,8 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
             let share = |body: &&'a Vec<(u32, T)>| {
                 bounded(body).map(|i| diagonal[i] / self.diagonal_scale(i)).fold(0.0, f64::max)
             };
-            let loosest = kernel.iter().min_by(|a, b| share(a).total_cmp(&share(b)));
+            let held = kernel.iter().filter(|body| bounded(body).next().is_some());
+            let loosest = held.min_by(|a, b| share(a).total_cmp(&share(b)));
             for i in loosest.into_iter().flat_map(|body| bounded(body)) {
                 diagonal[i] += self.diagonal_scale(i);
             }

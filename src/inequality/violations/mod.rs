@@ -73,7 +73,7 @@ const DIAGONAL: usize = 3;
 /// let line = BoxDomain::dirichlet(Point::from([-1.0]), Point::from([1.0]));
 /// let mesh = Mesh::<1>::kuhn_box(&line, [8])?;
 /// let solved = solve(&problem, &mesh, &ConformingP1)?;
-/// let (inequality, u) = (solved.inequality(), solved.values());
+/// let (inequality, u) = (solved.inequality(), &solved.solution().values);
 /// let [left, right] =
 ///     [0..5, 5..9].map(|own| Violations::of(inequality, u, &[], &|i| own.contains(&i)));
 /// let (merged, serial) = (left.merge(right).certificate(), certify(inequality, u));

@@ -41,7 +41,8 @@ pub(crate) struct WeightedPolynomials {
 }
 
 impl WeightedPolynomials {
-    /// Polynomials up to a degree above zero, at most twenty.
+    /// Polynomials up to a degree above zero; the first twenty of them, which for elements of degree four in space are not
+    /// all.
     pub fn new(dimension: usize, degree: usize, rule: &Rule) -> Self {
         let polynomials = OrthonormalPolynomials::new(dimension, degree);
         let n = polynomials.len().min(MOST);
