@@ -1,7 +1,8 @@
 //! Obstacles and gaps of degree two that are convex in each cell: a linear function that exceeds them at the vertices
 //! exceeds them everywhere.
 
-use crate::arrays::array_of;
+use nalgebra::SMatrix;
+
 use crate::assemble::space::Space;
 use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::problem::Datum;
@@ -45,31 +46,14 @@ impl<const D: usize> Space<'_, D> {
         let n = corners.len() - 1;
         let largest = of_corners.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         let rounding = ROUNDINGS * (f64::EPSILON * largest + psi.rounding());
-        let mut hessian: [[f64; 3]; 3] = array_of(|i| {
-            array_of(|j| match (i < n, j < n) {
-                (true, true) => {
-                    let mixed = coefficient(i + 1, j + 1) - coefficient(0, i + 1);
-                    mixed - coefficient(0, j + 1) + of_corners[0]
-                }
-                _ => 0.0,
-            })
-        });
-        for k in 0..n {
-            hessian[k][k] += rounding;
-        }
-        for k in 0..n {
-            // false for numbers that are not finite
-            let is_positive = hessian[k][k] > 0.0;
-            if !is_positive {
-                return false;
+        let entry = |i: usize, j: usize| match (i < n, j < n) {
+            (true, true) => {
+                let mixed = coefficient(i + 1, j + 1) - coefficient(0, i + 1);
+                let shift = if i == j { rounding } else { 0.0 };
+                mixed - coefficient(0, j + 1) + of_corners[0] + shift
             }
-            for i in k + 1..n {
-                let factor = hessian[i][k] / hessian[k][k];
-                for j in k + 1..n {
-                    hessian[i][j] -= factor * hessian[k][j];
-                }
-            }
-        }
-        true
+            _ => f64::from(u8::from(i == j)),
+        };
+        SMatrix::<f64, 3, 3>::from_fn(entry).cholesky().is_some()
     }
 }

@@ -4,7 +4,7 @@ use super::iteration::NestedIteration;
 use super::solved::Solved;
 use super::system::System;
 use crate::error::Error;
-use crate::inequality::{Outcome, Solution, contact_of};
+use crate::inequality::{Outcome, Solution};
 use crate::instances::compiled;
 use crate::scheme::Scheme;
 
@@ -21,18 +21,10 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         scheme: &dyn Scheme<D>,
         values: &[f64],
     ) -> Result<Solved<'a, D>, Error> {
-        self.check_position(position)?;
-        compiled!(const D: for<'n, 'p, 's, 'v> fn(
-                &'n NestedIteration<'p, D>,
-                usize,
-                &'s dyn Scheme<D>,
-                &'v [f64],
-            ) -> Result<Solved<'p, D>, Error>
-                = |nested, position, scheme, values| nested.judge_values(position, scheme, values)
-        )(self, position, scheme, values)
+        self.judge_beside(position, scheme, (values, None))
     }
-    /// As [`Self::judge_on`] for values to which other constants are to be added than to those of this
-    /// [discretisation](crate::assemble::Discretisation::constants); an empty list stands for zeros.
+    /// As [`Self::judge_on`] for values to which these constants are to be added, if they are given, in place of those of
+    /// the [discretisation](crate::assemble::Discretisation::constants); an empty list stands for zeros.
     ///
     /// # Errors
     /// Those of [`Self::judge_on`], and [`Error::Parameter`] for another number of constants.
@@ -40,24 +32,23 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         &self,
         position: usize,
         scheme: &dyn Scheme<D>,
-        (values, constants): (&[f64], &[f64]),
+        values: (&[f64], Option<&[f64]>),
     ) -> Result<Solved<'a, D>, Error> {
-        let system = System::new(scheme, self.p1.problem, self.p1.place(position)?)?;
-        let own = system.discretisation().constants();
-        if !constants.is_empty() && constants.len() != values.len() {
-            let allowed = format!("{}, that of the values", values.len());
-            return Err(Error::parameter("number of constants", constants.len(), allowed));
-        }
-        let at = |of: &[f64], i: usize| of.get(i).copied().unwrap_or(0.0);
-        let moved = |(i, value): (usize, &f64)| value + (at(constants, i) - at(&own, i));
-        let values: Vec<f64> = values.iter().enumerate().map(moved).collect();
-        self.judge_on(position, scheme, &values)
+        self.check_position(position)?;
+        compiled!(const D: for<'n, 'p, 's, 'v> fn(
+                &'n NestedIteration<'p, D>,
+                usize,
+                &'s dyn Scheme<D>,
+                (&'v [f64], Option<&'v [f64]>),
+            ) -> Result<Solved<'p, D>, Error>
+                = |nested, position, scheme, values| nested.judge_values(position, scheme, values)
+        )(self, position, scheme, values)
     }
     fn judge_values(
         &self,
         position: usize,
         scheme: &dyn Scheme<D>,
-        values: &[f64],
+        (values, constants): (&[f64], Option<&[f64]>),
     ) -> Result<Solved<'a, D>, Error> {
         let system = System::new(scheme, self.p1.problem, self.p1.place(position)?)?;
         let inequality = system.inequality();
@@ -70,9 +61,16 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             let value = format!("{} at position {k}, from zero", values[k]);
             return Err(Error::parameter("values", value, "finite numbers"));
         }
-        let contact = contact_of(inequality, values);
-        let mut solution =
-            Solution::new(values.to_vec(), contact, Outcome::Converged).linear_solver("none");
+        if let Some(n) = constants.map(<[f64]>::len).filter(|&n| n > 0 && n != values.len()) {
+            let allowed = format!("{}, that of the values", values.len());
+            return Err(Error::parameter("number of constants", n, allowed));
+        }
+        let values = match constants {
+            Some(constants) => system.with_own_constants(values, constants),
+            None => values.to_vec(),
+        };
+        let solution = Solution::of_values(inequality, values, Vec::new(), Outcome::Converged);
+        let mut solution = solution.linear_solver("none");
         solution.precision = self.p1.solver.precision();
         let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
         let mut solved = Solved::new(system, solution, hierarchy);

@@ -15,7 +15,6 @@ use super::warnings::{
 use crate::algebra::{Contact, Start};
 use crate::error::Error;
 use crate::inequality::{InitialGuess, Outcome, Solution};
-use crate::parallel::vectors::collect;
 use crate::real::Precision;
 use crate::scheme::Scheme;
 
@@ -39,25 +38,22 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     /// The initial guess from the start, whose contact the inequality takes.
     fn guess(&self, start: Option<&P1Solution>, system: &mut System<'_, D>) -> InitialGuess<f64> {
         let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
-        let inequality = &mut system.inequality;
         // a start without contact stays cold: the solver must detect a body that only contact holds
         let has_contact = |contact: &[Contact]| contact.iter().any(|&c| c != Contact::Inactive);
         if let Some(start) = start {
             if has_contact(&start.contact) {
-                inequality.start = Start::Contact(start.contact_of(&inequality.locations));
+                let contact = start.contact_of(&system.inequality.locations);
+                system.inequality.start = Start::Contact(contact);
             }
             guess.coarse_spaces = start.coarse_spaces.clone();
-            guess.values = start.values_of(&inequality.locations);
+            guess.values = start.values_of(&system.inequality.locations);
         }
-        if let Some(previous) = self.previous(inequality.size()) {
+        if let Some(previous) = self.previous(system.inequality.size()) {
             if has_contact(&previous.contact) {
-                inequality.start = Start::Contact(previous.contact.clone());
+                system.inequality.start = Start::Contact(previous.contact.clone());
             }
-            let own = system.discretisation.constants();
-            let [before, own] =
-                [&previous.constants, &own].map(|of| |i| of.get(i).copied().unwrap_or(0.0));
-            guess.values =
-                Some(collect(previous.values.len(), |i| previous.values[i] + (before(i) - own(i))));
+            let values = system.with_own_constants(&previous.values, &previous.constants);
+            guess.values = Some(values);
         }
         guess
     }

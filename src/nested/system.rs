@@ -11,6 +11,7 @@ use crate::error_bound::NoBound;
 use crate::inequality::{InequalitySolver, InitialGuess, Solution};
 use crate::measure::SquaredErrors;
 use crate::mesh::{Mesh, Part};
+use crate::parallel::vectors::collect;
 use crate::problem::{BodyConstants, Problem};
 use crate::processes::{Numbering, OverParts, agree, agree_on_data, check_bounds, merge_all};
 use crate::real::Precision;
@@ -101,6 +102,13 @@ impl<'a, const D: usize> System<'a, D> {
         System::new(scheme, problem, self.place.clone())
     }
 
+    /// Values to which constants were to be added, one for each unknown or an empty list for zeros, as values to which
+    /// those of this discretisation are.
+    pub(super) fn with_own_constants(&self, values: &[f64], constants: &[f64]) -> Vec<f64> {
+        let own = self.discretisation.constants();
+        let at = |of: &[f64], i: usize| of.get(i).copied().unwrap_or(0.0);
+        collect(values.len(), |i| values[i] + (at(constants, i) - at(&own, i)))
+    }
     /// The discretisation.
     pub fn discretisation(&self) -> &Discretisation<'a, D> {
         &self.discretisation

@@ -35,6 +35,36 @@ impl Range {
     }
 }
 
+/// The ranges of the data of one body, by rank: the first that has numbers says at which level the body is.
+#[derive(Clone, Copy, Debug)]
+struct Ranges {
+    /// Of Dirichlet values, obstacles and gaps.
+    of_values: [Range; 3],
+    /// Of source over reaction.
+    of_quotients: Range,
+}
+
+const DIRICHLET: usize = 0;
+const OBSTACLES: usize = 1;
+const GAPS: usize = 2;
+
+impl Ranges {
+    const NONE: Self = Self { of_values: [Range::NONE; 3], of_quotients: Range::NONE };
+
+    /// The middle of the first range; zero if it is no larger than the range of all values, or that of the quotients.
+    fn constant(&self) -> f64 {
+        let first = self.of_values.into_iter().find(|range| range.has_numbers());
+        let range = match first {
+            Some(_) => self.of_values.into_iter().fold(Range::NONE, Range::and),
+            None => self.of_quotients,
+        };
+        let level = first.unwrap_or(range);
+        // data that are not finite are errors of the assembly
+        let is_large = level.middle().abs() > range.length() && range.length().is_finite();
+        if level.has_numbers() && is_large { level.middle() } else { 0.0 }
+    }
+}
+
 impl BodyConstants {
     /// The constants of a problem on a mesh; zero on a part of a mesh, which does not know the bodies of the whole.
     ///
@@ -49,115 +79,72 @@ impl BodyConstants {
         }
         let data = DataOnMesh::new(problem, mesh)?;
         let (bodies, body_of) = bodies(mesh);
-        let mut values = vec![0.0; bodies];
-        let dirichlet = of_dirichlet(&data, mesh, (bodies, &body_of));
+        let mut ranges = vec![Ranges::NONE; bodies];
+        let body = |cell: usize| body_of[cell] as usize;
+        let dirichlet = |group: usize, _: usize, x: &Point<D>| {
+            Some(data.dirichlet.of(group).map_or(0.0, |u| u.at(x)))
+        };
+        add_on_facets(
+            mesh,
+            (BoundaryCondition::Dirichlet, DIRICHLET),
+            dirichlet,
+            body,
+            &mut ranges,
+        );
         // a range of Dirichlet values that reaches zero decides without the other data
-        if dirichlet.iter().all(|range| range.has_numbers() && is_small(*range, *range)) {
+        let is_decided =
+            |of: &Ranges| of.of_values[DIRICHLET].has_numbers() && of.constant() == 0.0;
+        if ranges.iter().all(is_decided) {
             return Ok(Self::default());
         }
-        let obstacles = of_obstacles(&data, mesh, (bodies, &body_of));
-        let gaps = of_gaps(&data, mesh, (bodies, &body_of));
-        let quotients = of_quotients(&data, mesh, (bodies, &body_of));
-        for (body, value) in values.iter_mut().enumerate() {
-            let bounds = [dirichlet[body], obstacles[body], gaps[body]];
-            let first = bounds.into_iter().find(|range| range.has_numbers());
-            let range = match first {
-                Some(_) => bounds.into_iter().fold(Range::NONE, Range::and),
-                None => quotients[body],
-            };
-            let level = first.unwrap_or(range);
-            if level.has_numbers() && !is_small(level, range) {
-                *value = level.middle();
-            }
-        }
-        Ok(Self::new(values, body_of))
+        let gap = |group: usize, cell: usize, x: &Point<D>| {
+            data.gap.of(group).map(|gap| gap.in_cell(mesh, cell, x))
+        };
+        add_on_facets(mesh, (BoundaryCondition::Contact, GAPS), gap, body, &mut ranges);
+        add_values_in_cells(&data, mesh, body, &mut ranges);
+        Ok(Self::new(ranges.iter().map(Ranges::constant).collect(), body_of))
     }
 }
 
-/// Whether the middle of data is zero, or no larger than a range; data that are not finite are errors of the assembly.
-fn is_small(of: Range, range: Range) -> bool {
-    // false for numbers that are not finite
-    let is_large = of.middle().abs() > range.length() && range.length().is_finite();
-    !is_large
-}
-
-/// The values at the vertices of facets of a condition, by body.
-fn on_facets<const D: usize>(
+/// Adds the values of a datum at the vertices of the facets of its condition.
+fn add_on_facets<const D: usize>(
     mesh: &Mesh<D>,
-    condition: BoundaryCondition,
-    (bodies, body_of): (usize, &[u32]),
+    (condition, rank): (BoundaryCondition, usize),
     value: impl Fn(usize, usize, &Point<D>) -> Option<f64>,
-) -> Vec<Range> {
-    let mut ranges = vec![Range::NONE; bodies];
+    body: impl Fn(usize) -> usize,
+    ranges: &mut [Ranges],
+) {
     for facet in mesh.boundary().iter().filter(|facet| facet.condition == condition) {
         let (cell, group) = (facet.cell as usize, usize::from(facet.group));
         for v in mesh.facet_vertices(cell, usize::from(facet.local)) {
             if let Some(value) = value(group, cell, &mesh.vertices()[v as usize]) {
-                ranges[body_of[cell] as usize].add(value);
+                ranges[body(cell)].of_values[rank].add(value);
             }
         }
     }
-    ranges
 }
 
-fn of_dirichlet<const D: usize>(
+/// Adds obstacles at the vertices of cells and, of source over reaction, at barycentres too.
+fn add_values_in_cells<const D: usize>(
     data: &DataOnMesh<D>,
     mesh: &Mesh<D>,
-    bodies: (usize, &[u32]),
-) -> Vec<Range> {
-    on_facets(mesh, BoundaryCondition::Dirichlet, bodies, |group, _, x| {
-        Some(data.dirichlet.of(group).map_or(0.0, |u| u.at(x)))
-    })
-}
-
-fn of_gaps<const D: usize>(
-    data: &DataOnMesh<D>,
-    mesh: &Mesh<D>,
-    bodies: (usize, &[u32]),
-) -> Vec<Range> {
-    on_facets(mesh, BoundaryCondition::Contact, bodies, |group, cell, x| {
-        data.gap.of(group).map(|gap| gap.in_cell(mesh, cell, x))
-    })
-}
-
-fn of_obstacles<const D: usize>(
-    data: &DataOnMesh<D>,
-    mesh: &Mesh<D>,
-    (bodies, body_of): (usize, &[u32]),
-) -> Vec<Range> {
-    let mut ranges = vec![Range::NONE; bodies];
+    body_of: impl Fn(usize) -> usize,
+    ranges: &mut [Ranges],
+) {
     for cell in 0..mesh.n_cells() {
-        let region = mesh.region(cell);
-        let range = &mut ranges[body_of[cell] as usize];
+        let (region, body) = (mesh.region(cell), &mut ranges[body_of(cell)]);
+        let at = |datum: &Datum<D>, x: &Point<D>| datum.in_cell(mesh, cell, x);
+        let vertices = || mesh.cell(cell).iter().map(|&v| mesh.vertices()[v as usize]);
         for bound in [&data.lower, &data.upper].into_iter().filter_map(|bound| bound.of(region)) {
-            match bound.constant() {
-                Some(constant) => range.add(constant),
-                None => mesh.cell(cell).iter().for_each(|&v| {
-                    range.add(bound.in_cell(mesh, cell, &mesh.vertices()[v as usize]));
-                }),
-            }
+            vertices().for_each(|x| body.of_values[OBSTACLES].add(at(bound, &x)));
         }
-    }
-    ranges
-}
-
-fn of_quotients<const D: usize>(
-    data: &DataOnMesh<D>,
-    mesh: &Mesh<D>,
-    (bodies, body_of): (usize, &[u32]),
-) -> Vec<Range> {
-    let mut ranges = vec![Range::NONE; bodies];
-    for cell in 0..mesh.n_cells() {
-        let region = mesh.region(cell);
         let Some(reaction) = data.reaction.of(region) else { continue };
-        let vertices = mesh.cell(cell).iter().map(|&v| mesh.vertices()[v as usize]);
-        for x in vertices.chain([mesh.barycentre(cell)]) {
-            let at = |datum: &Datum<D>| datum.in_cell(mesh, cell, &x);
-            let (source, reaction) = (data.source.of(region).map_or(0.0, at), at(reaction));
+        for x in vertices().chain([mesh.barycentre(cell)]) {
+            let reaction = at(reaction, &x);
             if reaction > 0.0 {
-                ranges[body_of[cell] as usize].add(source / reaction);
+                let source = data.source.of(region).map_or(0.0, |f| at(f, &x));
+                body.of_quotients.add(source / reaction);
             }
         }
     }
-    ranges
 }

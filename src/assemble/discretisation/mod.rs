@@ -111,11 +111,11 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     pub fn locations(&self) -> Vec<DofLocation> {
         self.space.locations()
     }
-    /// By unknown the constant of its body, which was taken off the data: what is added to a vector of unknowns to have
-    /// the function of the problem. Empty if it is zero for all. Vectors that functions of a discretisation take are
-    /// those of its inequality, without it; functions and values at points that they return have it. It depends on the mesh
-    /// on which the data are looked at, in nested iterations the coarsest: a vector belongs to the discretisation of its
-    /// own result.
+    /// The constants of bodies that were taken off the data, one number for each unknown; empty if all are zero. A vector of
+    /// the inequality plus these numbers is the function of the problem. Methods of a discretisation take vectors of the
+    /// inequality; discrete functions and values at points that they return have the constants added. The constants depend
+    /// on the mesh on which the data are looked at, in nested iterations the coarsest one: a vector belongs to the
+    /// discretisation of its own result.
     pub fn constants(&self) -> Vec<f64> {
         self.space.constants_of_unknowns()
     }

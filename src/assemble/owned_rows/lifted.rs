@@ -19,7 +19,7 @@ use std::borrow::Cow;
 use super::Coupled;
 use crate::assemble::space::Space;
 use crate::assemble::space::coefficient::weighted_polynomials::{
-    Factor, Functional, facet_moments, product,
+    Factor, Functional, MOST, facet_moments, product,
 };
 use crate::assemble::space::metric::{CellMetric, Metrics};
 use crate::assemble::space::tables::FacetDatum;
@@ -110,8 +110,8 @@ struct Centre<const D: usize> {
     metric: CellMetric<D>,
     /// By number, the facets on whose jumps a form acts.
     facets: [Option<JumpFacet>; 4],
-    /// The factor of the products of polynomials, where the coefficient varies in the cell.
-    factor: Option<Factor>,
+    /// Where the coefficient varies in the cell, by facet and moment on it the lift: its values in an orthonormal basis.
+    lifts: Option<[[Functional; MAX_MOMENTS]; 4]>,
 }
 
 impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
@@ -176,22 +176,31 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
             cell,
             metric: self.metrics.at(cell),
             facets: std::array::from_fn(facet),
-            factor: varying.map(|(varying, values)| varying.factor(self.table.degree, values)),
+            lifts: varying
+                .map(|(varying, values)| self.lifts(&varying.factor(self.table.degree, values))),
         }
     }
 
-    /// By their moments the products of the lifts of jumps on two facets of a centre, per measures and volume and, where
-    /// the coefficient is a constant, times it.
+    /// By facet and moment the lifts in a cell with this factor.
+    fn lifts(&self, factor: &Factor) -> [[Functional; MAX_MOMENTS]; 4] {
+        let mut lifts = [[[0.0; MOST]; MAX_MOMENTS]; 4];
+        for (of_facet, tests) in lifts.iter_mut().zip(&self.table.tests) {
+            of_facet.iter_mut().zip(tests).for_each(|(lift, test)| *lift = factor.solve(test));
+        }
+        lifts
+    }
+
+    /// The products of the lifts of jumps on two facets of a centre, by moments: per measures and volume, and times the
+    /// coefficient where that is a constant.
     fn products(&self, centre: &Centre<D>, [test, trial]: [&JumpFacet; 2]) -> Cow<'_, Product> {
-        let Some(factor) = &centre.factor else {
+        let Some(lifts) = &centre.lifts else {
             return Cow::Borrowed(&self.table.products[test.local][trial.local]);
         };
-        let tests = &self.table.tests;
+        let [of_test, of_trial] = [test, trial].map(|facet| &lifts[facet.local]);
         let mut products = [[0.0; MAX_MOMENTS]; MAX_MOMENTS];
-        for (row, a) in products.iter_mut().zip(&tests[test.local]) {
-            let lift = factor.solve(a);
-            for (entry, b) in row.iter_mut().zip(&tests[trial.local]) {
-                *entry = product(&lift, &factor.solve(b));
+        for (row, a) in products.iter_mut().zip(of_test).take(self.table.moments) {
+            for (entry, b) in row.iter_mut().zip(of_trial).take(self.table.moments) {
+                *entry = product(a, b);
             }
         }
         Cow::Owned(products)
@@ -215,7 +224,7 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
     /// `D^2 w w' / alpha int grad lambda . grad lambda'`, without `alpha` where it varies.
     fn scale(&self, centre: &Centre<D>, test: &JumpFacet, trial: &JumpFacet) -> f64 {
         let product = centre.metric.products[test.local][trial.local];
-        let alpha = if centre.factor.is_some() { 1.0 } else { self.space.alpha(centre.cell) };
+        let alpha = if centre.lifts.is_some() { 1.0 } else { self.space.alpha(centre.cell) };
         ((D * D) as f64) * test.flux_weight * trial.flux_weight * product / alpha
     }
 

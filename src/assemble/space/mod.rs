@@ -357,14 +357,9 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn function(&self, u: &[f64]) -> DiscreteFunction<D> {
         let n = self.per_cell();
         let unknowns = (0..self.mesh.n_cells() * n).map(|k| self.dofs.of(k / n, k % n));
-        let values = match self.body_constants.are_zero() {
-            true => unknowns.map(|unknown| u[unknown]).collect(),
-            false => {
-                let one = self.constants();
-                let constant = |k: usize| self.body_constants.of_cell(k / n) * one[k % n];
-                unknowns.enumerate().map(|(k, unknown)| u[unknown] + constant(k)).collect()
-            }
-        };
+        let constants = self.constants_of_unknowns();
+        let value = |i: usize| constants.get(i).map_or(u[i], |constant| u[i] + constant);
+        let values = unknowns.map(value).collect();
         DiscreteFunction::new(self.mesh.clone(), self.element.clone(), values)
     }
     /// A discrete function at the vertices of each cell, `D + 1` values for each.

@@ -224,8 +224,8 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
         self.point.jump_multipliers.iter().map(|&p| T::lit(p)).collect()
     }
 
-    /// Keeps values whose certificate is within its limit, if it is the smallest so far; returns the largest of the numbers
-    /// of the certificate.
+    /// Keeps the present values if their certificate is within its limit and the smallest so far; returns the largest
+    /// number of the certificate.
     fn keep_if_best(&mut self) -> f64 {
         let (values, multipliers) = (self.values(), self.jump_multipliers());
         let certificate = certify_with_rounding(self.inequality, &values, &multipliers).0.largest();

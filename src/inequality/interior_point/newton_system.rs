@@ -108,10 +108,8 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
                 bounded(body).map(|i| diagonal[i] / self.diagonal_scale(i)).fold(0.0, f64::max)
             };
             let held = kernel.iter().filter(|body| bounded(body).next().is_some());
-            let loosest = held.min_by(|a, b| share(a).total_cmp(&share(b)));
-            for i in loosest.into_iter().flat_map(|body| bounded(body)) {
-                diagonal[i] += self.diagonal_scale(i);
-            }
+            let Some(loosest) = held.min_by(|a, b| share(a).total_cmp(&share(b))) else { break };
+            bounded(loosest).for_each(|i| diagonal[i] += self.diagonal_scale(i));
             factors = self.factor(diagonal);
         }
         factors

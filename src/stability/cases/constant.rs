@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::nested::Hierarchy;
 use crate::problem::Datum;
+use crate::real::maximum;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::case::Case;
@@ -63,16 +64,14 @@ fn found(scene: &Scene<2>, choice: &Choice, level: usize) -> Result<Found, Error
     })
 }
 
-/// Compares the solutions with a constant with that without.
+/// Compares the solution for each constant in the data with the solution without one.
 fn compare(choice: &Choice, level: usize, constants: &[f64], sink: Sink<'_>) -> Result<(), Error> {
     let without = found(&with_constant(0.0), choice, level)?;
     for &constant in constants {
         let with = found(&with_constant(constant), choice, level)?;
         let apart = |(a, b): (&f64, &f64)| (a + constant - b).abs();
         let largest = |(a, b): (&Vec<f64>, &Vec<f64>)| {
-            // what is not a number must not hide
-            let worse = |m: f64, d: f64| if d.is_nan() || d > m { d } else { m };
-            a.iter().zip(b).map(apart).fold(0.0, worse) / (f64::EPSILON * constant.abs())
+            a.iter().zip(b).map(apart).fold(0.0, maximum) / (f64::EPSILON * constant.abs())
         };
         let figure = without.values.as_ref().zip(with.values.as_ref()).map(largest);
         let is_alike = with.outcome == without.outcome;

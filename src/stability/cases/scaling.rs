@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::nested::Hierarchy;
 use crate::problem::Datum;
+use crate::real::maximum;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::case::Case;
@@ -73,9 +74,7 @@ fn values(
 fn difference(a: &Option<Vec<f64>>, b: &Option<Vec<f64>>) -> Option<f64> {
     let (a, b) = (a.as_ref()?, b.as_ref()?);
     let largest = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    // what is not a number must not hide
-    let worse = |m: f64, d: f64| if d.is_nan() || d > m { d } else { m };
-    let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, worse);
+    let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, maximum);
     quotient(Some(apart), Some(largest))
 }
 

@@ -37,12 +37,7 @@ impl<const D: usize> Study<'_, D> {
         let on = |h| NestedIteration::new(&entry.problem, h).quadrature(self.quadrature);
         let mut nested: Vec<_> = hierarchies.iter().map(on).collect();
         let (position, nested) = with_level(&mut nested, level);
-        let solved = match constants {
-            None => nested.judge_on(position, &*entry.scheme, values)?,
-            Some(constants) => {
-                nested.judge_beside(position, &*entry.scheme, (values, constants))?
-            }
-        };
+        let solved = nested.judge_beside(position, &*entry.scheme, (values, constants))?;
         let reference = self.find_reference(&hierarchies);
         let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let row = self.measured_row(entry, level, &solved, measured)?;

@@ -235,7 +235,8 @@ pub(super) fn marked(row: &Row, bound: String) -> String {
     if row.bound.guaranteed == Some(false) { bound + "*" } else { bound }
 }
 
-/// The remark that explains the marks of bounds, where there are any: of different terms with their schemes.
+/// The remark that explains the marks of bounds: the terms that are not proven, with their schemes where these differ in
+/// them. None without marks.
 pub(super) fn unproven(rows: &[&Row]) -> Option<String> {
     let words = |row: &&Row| row.bound.unproven_words();
     let sets = distinct(rows.iter().map(words).filter(|words| !words.is_empty()));

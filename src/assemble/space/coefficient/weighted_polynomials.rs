@@ -10,9 +10,9 @@ use crate::assemble::trace::MAX_FLUX_MOMENTS;
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 
 /// Most polynomials on a cell: those of degree three in space.
-const MOST: usize = 20;
+pub(crate) const MOST: usize = 20;
 
-/// A functional of polynomials on a cell, by its values at the orthonormal ones; zero beyond their number.
+/// A functional of polynomials on a cell: its values at the orthonormal polynomials, then zeros.
 pub(crate) type Functional = [f64; MOST];
 
 /// By moment on facet `local`, up to a degree, its means with the orthonormal polynomials of the cell of that degree.
