@@ -76,7 +76,13 @@ impl<const D: usize> Space<'_, D> {
             let edge = |k: usize| nodes.of(k / n_edges, D + 1 + k % n_edges) - n_vertices;
             edges = collect(self.mesh.n_cells() * n_edges, |k| edge(k) as u32);
         }
-        PrimalDualPair { degree, function, edges, flux: Flux::zero(degree - 1, 0) }
+        PrimalDualPair {
+            degree,
+            function,
+            edges,
+            flux: Flux::zero(degree - 1, 0),
+            forces: Vec::new(),
+        }
     }
 
     /// For each node the obstacle that all unknowns of all cells around touch, where these are no values at the nodes.

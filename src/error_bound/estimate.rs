@@ -81,8 +81,8 @@ impl ErrorBound {
 impl<const D: usize> Discretisation<'_, D> {
     /// The bound that an admissible function and a flux give, and the distance of the function from the
     /// discrete function `u`. A pair gives a bound if its function has the Dirichlet data, and if its flux has
-    /// equal and opposite values on the two sides of facets, the mean of the datum on Neumann facets, and no
-    /// negative mean on contact facets. What the flux does not balance counts with a constant of Friedrichs'
+    /// equal and opposite values on the two sides of facets, the mean of the datum on Neumann facets, both but for the
+    /// forces of the pair, and no negative mean on contact facets. What the flux does not balance counts with a constant of Friedrichs'
     /// inequality, or with the reaction.
     ///
     /// Between vertices the function is the larger one of its interpolant and the lower obstacle, or the
@@ -173,15 +173,12 @@ impl ErrorBound {
         let &Totals { mismatch, with_oscillation, obstacle, contact, .. } = totals;
         let of_flux = (with_oscillation.sqrt() + of_solver).powi(2);
         let square = of_flux + obstacle + contact;
+        let [total, discrete] = totals.bounds(of_solver);
         if !square.is_finite() || totals.least_coefficient <= 0.0 {
             return Err(NoBound::NotFinite);
         }
         let share = |term: f64| if square > 0.0 { term / square } else { 0.0 };
-        let (total, distance) = (square.sqrt(), totals.distance.sqrt());
-        // the radius of the ball around the midpoint that contains the solution, and the distance of the discrete
-        // function from the midpoint
-        let radius = 0.5 * (of_flux + 2.0 * (obstacle + contact)).sqrt();
-        let discrete = radius + totals.from_midpoint.sqrt() + 0.5 * of_solver;
+        let distance = totals.distance.sqrt();
         Ok(Self {
             total,
             distance,
@@ -251,6 +248,15 @@ impl<const D: usize> Space<'_, D> {
             false => None,
         };
         Ok(PartOfBound { totals, friedrichs, by_eigenvalue, squares, unproven })
+    }
+
+    /// The bounds `total` and `discrete` of a pair, without the term of the solver.
+    pub(super) fn bounds_of(
+        &self,
+        pair: &PrimalDualPair<D>,
+        u: &[f64],
+    ) -> Result<[f64; 2], NoBound> {
+        Ok(self.terms_of_bound((pair, u), &|_| true)?.0.bounds(0.0))
     }
 
     /// The degree of the rule for the terms of cells: exact for polynomial data, at least that of the load elsewhere.

@@ -49,6 +49,8 @@ pub struct BoundFigures {
     pub effectivity: Option<f64>,
     /// `total` over the energy norm of `u - v`, likewise.
     pub effectivity_of_v: Option<f64>,
+    /// Whether `discrete` exceeds the energy norm of the discrete solution: such a bound says nothing.
+    pub exceeds_norm: Option<bool>,
     /// Why there is no bound.
     pub reason: Option<String>,
 }
@@ -76,6 +78,7 @@ impl BoundFigures {
             algebra: Some(algebra),
             effectivity: errors.of_solution.map(|error| bound.discrete / error),
             effectivity_of_v: errors.of_v.map(|error| bound.total / error),
+            exceeds_norm: None,
             reason: None,
         }
     }
@@ -91,7 +94,9 @@ impl BoundFigures {
         let least = rounding.max(ERROR_ROUNDING * energy_norm);
         let known = |error: Option<f64>| error.filter(|error| *error > least);
         let errors = TrueErrors { of_solution: known(of_solution), of_v: known(of_v) };
-        Self::new(bound, errors)
+        let figures = Self::new(bound, errors);
+        let exceeds_norm = figures.discrete.map(|bound| bound > energy_norm);
+        Self { exceeds_norm, ..figures }
     }
 
     /// The names of the terms that are not proven.

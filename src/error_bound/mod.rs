@@ -1,11 +1,13 @@
 //! Guaranteed bounds on the error of a discrete solution, computed from the solution and the data alone.
 //!
 //! An admissible function `v` and a flux `q` are made from the solution ([`PrimalDualPair`]); what `q` leaves of the
-//! load is the multiplier `mu` of an obstacle, and its normal component on the contact boundary a contact force `s`. The
-//! bound ([`ErrorBound`]) is, but for the oscillation of data,
+//! load is the multiplier `mu` of an obstacle, and its normal component on the contact boundary a contact force `s`; where
+//! the flux jumps on a facet, an obstacle presses there with a force `s_F` ([`FacetForce`]). The bound ([`ErrorBound`]) is,
+//! but for the oscillation of data,
 //!
 //! ```text
 //! |||u - v|||^2 <= |alpha^-1/2 (alpha grad v - q)|^2 + 2 (mu, distance of v from the obstacle) + 2 int_C s (v - g)
+//!                  + 2 sum_F int_F s_F (distance of v from the obstacle)
 //! ```
 //!
 //! The theorem with all terms, its proof, its sources and what is guaranteed stand in [`docs::bound`](crate::docs::bound).
@@ -18,6 +20,7 @@
 //! | `patches` | the flux of conforming functions, around each vertex |
 //! | `quadratics`, `shared_multipliers` | loads and multipliers of quadratics by cell, and the flux inside cells |
 //! | `contact_forces` | the forces on contact facets |
+//! | `facet_forces` | the forces of obstacles on other facets |
 //! | `exchange` | multipliers exchanged for flux where obstacles bind |
 //! | `integrals` | what each cell and the boundary add to the bound, and the sums |
 //! | `friedrichs`, `eigenvalue` | the constant with which counts what the solver left |
@@ -31,6 +34,7 @@ mod convex;
 mod eigenvalue;
 mod estimate;
 mod exchange;
+mod facet_forces;
 mod figures;
 mod flux;
 mod friedrichs;
@@ -44,6 +48,7 @@ mod shared_multipliers;
 
 pub use eigenvalue::least_eigenvalue;
 pub use estimate::{BoundTerms, ErrorBound, Unproven};
+pub use facet_forces::FacetForce;
 pub use figures::{BoundFigures, TrueErrors};
 pub use flux::Flux;
 pub use primal_dual_pair::PrimalDualPair;
@@ -69,8 +74,8 @@ pub enum NoBound {
     /// The reaction is negative at a point.
     #[error("the reaction is negative at a point, and the energy norm is none")]
     NegativeReaction,
-    /// The flux of a pair through a contact facet has the sign of no contact force.
-    #[error("the flux through a contact facet is negative in the mean: it is no contact force")]
+    /// A force on a facet has not one sign, or a contact force is negative in the mean.
+    #[error("the force on a facet has the wrong sign: no obstacle or gap presses so")]
     NegativeForce,
     /// A number that enters is not finite.
     #[error(

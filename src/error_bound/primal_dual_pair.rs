@@ -4,7 +4,9 @@ use std::cell::OnceCell;
 
 use super::NoBound;
 use super::contact_forces::NodeForce;
+use super::facet_forces::FacetForce;
 use super::flux::Flux;
+use super::quadratics::vertices_of;
 use crate::algebra::Inequality;
 use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
@@ -17,10 +19,14 @@ use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
+use crate::parallel::vectors::collect;
+
+/// Forces on facets are worth it where the bounds with them are less than this share of those without.
+const WORTH: f64 = 0.99;
 
 /// A continuous, piecewise linear or quadratic function within the constraints, and a flux of the space of
-/// Raviart and Thomas of degree one less, whose normal component is single-valued: what a bound on the error
-/// is computed from.
+/// Raviart and Thomas of degree one less, whose normal component is single-valued but for forces of obstacles on facets:
+/// what a bound on the error is computed from.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PrimalDualPair<const D: usize> {
@@ -36,6 +42,8 @@ pub struct PrimalDualPair<const D: usize> {
     pub edges: Vec<u32>,
     /// The flux `q`, of degree one less.
     pub flux: Flux<D>,
+    /// Where obstacles press on facets: the normal component of the flux jumps there. In ascending order of facets.
+    pub forces: Vec<FacetForce>,
 }
 
 impl<const D: usize> Discretisation<'_, D> {
@@ -50,8 +58,9 @@ impl<const D: usize> Discretisation<'_, D> {
     /// flux is the contact force of the nodes on the facet. *Quadratics.* Facets have moments of degree zero
     /// and one; inside cells the divergence balances load and multiplier tested with linear functions.
     ///
-    /// Where obstacles bind, multipliers of cells are then exchanged for flux through their facets, and contact forces
-    /// of quadratics between facets, which makes mismatch and complementarity smaller: see
+    /// Where obstacles press on facets, multipliers of cells move there ([`PrimalDualPair::forces`]), if that makes the
+    /// bounds smaller. Where obstacles bind, multipliers of cells are then exchanged for flux through their facets, and
+    /// contact forces of quadratics between facets, which makes mismatch and complementarity smaller: see
     /// [`docs::bound`](crate::docs::bound).
     ///
     /// # Errors
@@ -89,7 +98,7 @@ impl<const D: usize> Discretisation<'_, D> {
                 &Solution<f64>,
                 Counts<'_>,
             ) -> Result<PrimalDualPair<D>, NoBound>
-                = |of, inequality, solution, counts| of.pair(inequality, solution, counts)
+                = |of, inequality, solution, counts| of.better_pair(inequality, solution, counts)
         )(self, inequality, solution, counts)
     }
     /// A pair of linears with another function of values at vertices, moved into the constraints, beside the same flux.
@@ -122,11 +131,29 @@ impl<const D: usize> Discretisation<'_, D> {
         };
         if is_known { Ok(()) } else { Err(NoBound::Element) }
     }
-    fn pair(
+    /// The pair with forces on facets where these make the bound smaller, else that without them.
+    fn better_pair(
         &self,
         inequality: &Inequality<f64>,
         solution: &Solution<f64>,
         counts: Counts<'_>,
+    ) -> Result<PrimalDualPair<D>, NoBound> {
+        let pair = self.pair(inequality, solution, (counts, true))?;
+        if pair.forces.is_empty() {
+            return Ok(pair);
+        }
+        let without = self.pair(inequality, solution, (counts, false))?;
+        let bounds = |pair: &PrimalDualPair<D>| self.space.bounds_of(pair, &solution.values);
+        let of_both = bounds(&pair)?.into_iter().zip(bounds(&without)?);
+        let are_worth_it = of_both.fold(true, |all, (with, without)| all && with < WORTH * without);
+        Ok(if are_worth_it { pair } else { without })
+    }
+
+    fn pair(
+        &self,
+        inequality: &Inequality<f64>,
+        solution: &Solution<f64>,
+        (counts, on_facets): (Counts<'_>, bool),
     ) -> Result<PrimalDualPair<D>, NoBound> {
         let (space, u) = (&self.space, &solution.values[..]);
         let penalised = inequality.penalised.as_ref();
@@ -150,7 +177,7 @@ impl<const D: usize> Discretisation<'_, D> {
         let of_solver = (&residual[..], obstacles);
         let forces = space.contact_forces(inequality, &solution.contact, of_solver, u);
         let multipliers = multipliers.as_deref();
-        let function = space.admissible_function(u, (&inequality.bounds, &solution.contact));
+        let mut function = space.admissible_function(u, (&inequality.bounds, &solution.contact));
         let computed = OnceCell::new();
         let neighbours = || match &space.neighbours {
             Some(neighbours) => neighbours,
@@ -161,20 +188,51 @@ impl<const D: usize> Discretisation<'_, D> {
                 (inequality, solution),
                 (of_solver, multipliers),
                 &forces,
-                &function,
-                neighbours(),
+                &mut function,
+                (neighbours(), on_facets),
             )?
         } else {
+            let has_obstacle = space.problem.has_obstacle();
+            let by_unknown = match has_obstacle {
+                true => space.multipliers_by_cell(of_solver, &solution.contact, &forces),
+                false => Vec::new(),
+            };
+            let n = space.per_cell();
+            let centres: Vec<[f64; 4]> = space.nodes.iter().map(|node| node.centre(D)).collect();
+            let tested = |cell: usize, own: usize| {
+                let terms = by_unknown[cell * n..].iter().zip(&centres);
+                [terms.map(|(multiplier, at)| multiplier * at[own]).sum(), 0.0, 0.0, 0.0]
+            };
+            let presses = |cell: usize| by_unknown[cell * n..][..n].iter().any(|m| *m != 0.0);
+            let pressing = match has_obstacle && on_facets {
+                true => space.pressing(&mut function, (&tested, &presses), neighbours())?,
+                false => None,
+            };
             let mut flux = if self.owns_rows() {
                 Flux::of_integrals(self.facet_fluxes(u, multipliers, 1)?)
             } else if space.is_conforming_linear() {
-                space.flux_of_linears(u, of_solver, &forces, neighbours())?
+                let forces = (&forces[..], pressing.as_ref().map(|p| (p, &by_unknown[..])));
+                space.flux_of_linears(u, of_solver, forces, neighbours())?
             } else {
                 space.crouzeix_raviart_fluxes(u, obstacles)?
             };
             space.set_boundary_fluxes(&forces, &mut flux)?;
-            if space.problem.has_obstacle() {
-                let multipliers = space.multipliers_by_cell(of_solver, &solution.contact, &forces);
+            if let Some(pressing) = &pressing {
+                match space.is_conforming_linear() {
+                    true => add_boundary_forces(&function.forces, &mut flux),
+                    false => {
+                        let flux = (neighbours(), &mut flux);
+                        space.move_to_facets(&function, pressing, &tested, flux);
+                    }
+                }
+            }
+            if has_obstacle {
+                let sum = |cell: usize| by_unknown[cell * n..][..n].iter().sum();
+                let mut multipliers = collect(space.mesh.n_cells(), sum);
+                if let Some(pressing) = &pressing {
+                    let moved = pressing.moved_by_cell(space.mesh, &tested);
+                    multipliers.iter_mut().zip(moved).for_each(|(m, [moved, ..])| *m -= moved);
+                }
                 let cells = (neighbours(), counts);
                 space.exchange_linears(&function, &multipliers, cells, &mut flux);
             }
@@ -189,8 +247,8 @@ impl<const D: usize> Discretisation<'_, D> {
         (inequality, solution): (&Inequality<f64>, &Solution<f64>),
         (of_solver, multipliers): ((&[f64], &ActiveObstacles), Option<&[f64]>),
         forces: &[NodeForce],
-        function: &PrimalDualPair<D>,
-        neighbours: &Neighbours,
+        function: &mut PrimalDualPair<D>,
+        (neighbours, on_facets): (&Neighbours, bool),
     ) -> Result<Flux<D>, NoBound> {
         let (space, u) = (&self.space, &solution.values[..]);
         // multipliers of jumps alone may contain a flux without divergence that alternates between facets
@@ -203,11 +261,37 @@ impl<const D: usize> Discretisation<'_, D> {
         };
         let states = (&inequality.bounds[..], &solution.contact[..]);
         let mut loads = space.cell_loads(u, of_solver, states, forces, numbers)?;
-        let mut flux = if has_facet_fluxes {
-            space.flux_of_moments(&self.facet_fluxes(u, multipliers, D)?)
-        } else {
-            space.flux_of_quadratics((u, function), neighbours, &mut loads)
+        let flux = match has_facet_fluxes {
+            true => Some(space.flux_of_moments(&self.facet_fluxes(u, multipliers, D)?)),
+            false => None,
         };
+        let (mut flux, pressing) = match flux {
+            Some(mut flux) => {
+                space.add_boundary_fluxes(&loads, &mut flux);
+                let tested = |cell: usize, own: usize| loads.multiplier_at(cell, own);
+                let presses = |cell: usize| loads.presses(cell);
+                let pressing = match space.problem.has_obstacle() && on_facets {
+                    true => space.pressing(function, (&tested, &presses), neighbours)?,
+                    false => None,
+                };
+                if let Some(pressing) = &pressing {
+                    let flux = (neighbours, &mut flux);
+                    space.move_to_facets(function, pressing, &tested, flux);
+                }
+                (flux, pressing)
+            }
+            None => {
+                let (mut flux, pressing) =
+                    space.flux_of_quadratics((u, function), (neighbours, on_facets), &mut loads)?;
+                space.add_boundary_fluxes(&loads, &mut flux);
+                add_boundary_forces(&function.forces, &mut flux);
+                (flux, pressing)
+            }
+        };
+        if let Some(pressing) = &pressing {
+            let multiplier_at = |cell: usize, own: usize| loads.multiplier_at(cell, own);
+            loads.on_facets = pressing.moved_by_cell(space.mesh, &multiplier_at);
+        }
         space.balance(&loads, &mut flux);
         if space.problem.has_obstacle() {
             space.exchange_quadratics(function, &loads, neighbours, &mut flux);
@@ -216,6 +300,18 @@ impl<const D: usize> Discretisation<'_, D> {
             space.exchange_forces(function, neighbours, &mut flux);
         }
         Ok(flux)
+    }
+}
+
+/// Adds the forces of obstacles on the boundary to a flux.
+fn add_boundary_forces<const D: usize>(forces: &[FacetForce], flux: &mut Flux<D>) {
+    for force in forces.iter().filter(|force| force.other.is_none()) {
+        let (cell, local) = force.facet;
+        let vertices = vertices_of::<D>(local);
+        match flux.degree() {
+            0 => flux.add_through(cell, local, force.moments::<D>().iter().sum()),
+            _ => vertices.for_each(|j| flux.add_density(cell, local, j, force.densities[j])),
+        }
     }
 }
 

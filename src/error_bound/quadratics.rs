@@ -49,6 +49,29 @@ pub(super) struct CellLoads {
     pub functionals: Vec<Products>,
     /// The nodes whose multipliers cells share.
     pub shared: Option<SharedNodes>,
+    /// By cell what facets have of the products of its multiplier with barycentric coordinates; empty if nothing.
+    pub on_facets: Vec<[f64; 4]>,
+}
+
+impl CellLoads {
+    /// The multipliers of a cell, by unknown.
+    fn multipliers(&self, cell: usize) -> impl Iterator<Item = f64> {
+        let places = cell * self.functionals.len()..(cell + 1) * self.functionals.len();
+        places.map(|k| self.values[k] - self.given[k])
+    }
+    /// Whether a cell has a multiplier.
+    pub fn presses(&self, cell: usize) -> bool {
+        self.multipliers(cell).any(|multiplier| multiplier != 0.0)
+    }
+    /// The multiplier of a cell, tested with the hat function of one of its vertices times barycentric coordinates.
+    pub fn multiplier_at(&self, cell: usize, own: usize) -> [f64; 4] {
+        let mut tested = [0.0; 4];
+        for (multiplier, functional) in self.multipliers(cell).zip(&self.functionals) {
+            let products = functional[own].map(|product| multiplier * product);
+            tested.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
+        }
+        tested
+    }
 }
 
 /// `c_Fj` from the products `int_F q.n lambda_j`: `lambda` has on a facet the products
@@ -116,7 +139,15 @@ impl<const D: usize> Space<'_, D> {
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
         let neumann = self.neumann_products()?;
         let contact = contact_products(forces, &functionals);
-        Ok(CellLoads { values, given, neumann, contact, functionals, shared })
+        Ok(CellLoads {
+            values,
+            given,
+            neumann,
+            contact,
+            functionals,
+            shared,
+            on_facets: Vec::new(),
+        })
     }
 
     /// The load less the reaction term of a discrete function, by cell and unknown.
@@ -187,9 +218,16 @@ impl<const D: usize> Space<'_, D> {
         flux
     }
 
-    /// Adds the fluxes of Neumann data and contact, and sets `c_FF` such that the divergence balances loads
-    /// and multipliers tested with linear functions. What rounding leaves of the balance of a cell is
-    /// divided among these.
+    /// Adds the fluxes of Neumann data and contact.
+    pub(super) fn add_boundary_fluxes(&self, loads: &CellLoads, flux: &mut Flux<D>) {
+        for ((cell, local), products) in loads.neumann.iter().chain(&loads.contact) {
+            let of_facet = densities::<D>(&map_entries(*products, |row| row.iter().sum()), *local);
+            vertices_of::<D>(*local).for_each(|j| flux.add_density(*cell, *local, j, of_facet[j]));
+        }
+    }
+
+    /// Sets `c_FF` such that the divergence balances loads and multipliers tested with linear functions. What rounding
+    /// leaves of the balance of a cell is divided among these.
     pub(super) fn balance(&self, loads: &CellLoads, flux: &mut Flux<D>) {
         let (n, n_cells, square) = (self.per_cell(), self.mesh.n_cells(), flux.per_cell());
         let d = D as f64;
@@ -197,10 +235,6 @@ impl<const D: usize> Space<'_, D> {
         for ((cell, _), products) in &loads.neumann {
             let moments = products.iter().map(|row| row.iter().sum::<f64>());
             given[*cell].iter_mut().zip(moments).for_each(|(to, moment)| *to += moment);
-        }
-        for ((cell, local), products) in loads.neumann.iter().chain(&loads.contact) {
-            let of_facet = densities::<D>(&map_entries(*products, |row| row.iter().sum()), *local);
-            vertices_of::<D>(*local).for_each(|j| flux.add_density(*cell, *local, j, of_facet[j]));
         }
         let linear: Vec<[f64; 4]> =
             loads.functionals.iter().map(|f| map_entries(*f, |row| row.iter().sum())).collect();
@@ -210,8 +244,8 @@ impl<const D: usize> Space<'_, D> {
                 for (load, of_linear) in loads.values[cell * n..][..n].iter().zip(&linear) {
                     tested.iter_mut().zip(of_linear).for_each(|(to, l)| *to += load * l);
                 }
-                if let Some(given) = given.get(cell) {
-                    tested.iter_mut().zip(given).for_each(|(to, given)| *to -= given);
+                for less in [given.get(cell), loads.on_facets.get(cell)].into_iter().flatten() {
+                    tested.iter_mut().zip(less).for_each(|(to, less)| *to -= less);
                 }
                 let through: f64 = flux.iter().sum::<f64>() / d;
                 let left = (tested[..=D].iter().sum::<f64>() + through) / (d + 1.0);

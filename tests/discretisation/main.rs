@@ -12,6 +12,7 @@ mod error_bounds;
 mod error_bounds_constants;
 mod error_bounds_contact;
 mod error_bounds_discrete;
+mod error_bounds_facets;
 mod error_bounds_fluxes;
 mod error_bounds_guarantee;
 mod error_bounds_quadratics;

@@ -14,7 +14,9 @@ use crate::error_bound::contact_forces::NodeForce;
 use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Mesh, Neighbours};
-use crate::parallel::vectors::{collect, for_each_chunk, largest, sum_chunks};
+use crate::parallel::vectors::{
+    collect, for_each_chunk, for_each_chunk_of_groups, largest, sum_chunks,
+};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -89,10 +91,10 @@ impl<const D: usize> CellOfLinears<D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the share that its
+    /// The multipliers of obstacles by cell and unknown of the cell: of a shared unknown each cell has the share that its
     /// flux balances, by volume around a vertex and half on the two sides of a facet, if the cell's obstacle gives the
-    /// active bound. The multipliers of inactive
-    /// unknowns are set to zero: the residual of an inactive unknown is an algebraic error.
+    /// active bound. The multipliers of inactive unknowns are set to zero: the residual of an inactive unknown is an
+    /// algebraic error.
     pub(in crate::error_bound) fn multipliers_by_cell(
         &self,
         (residual, obstacles): (&[f64], &ActiveObstacles),
@@ -109,7 +111,7 @@ impl<const D: usize> Space<'_, D> {
             }
         });
         if self.broken {
-            return collect(n_cells, |cell| multipliers[cell * n..][..n].iter().sum());
+            return multipliers;
         }
         for (cell, local) in self.facets_of(BoundaryCondition::Dirichlet) {
             self.nodes_on(local).for_each(|i| multipliers[self.dofs.of(cell, i)] = 0.0);
@@ -133,12 +135,20 @@ impl<const D: usize> Space<'_, D> {
                 }
                 Ok(())
             });
-        collect(n_cells, |cell| {
-            let unknowns = (0..n).filter_map(|i| pressing(cell, i));
-            let shares: f64 = unknowns.map(|i| multipliers[i] / weights[i]).sum();
-            // the volumes of cells without a share are not computed
-            if shares == 0.0 { 0.0 } else { weight(cell) * shares }
-        })
+        let mut by_cell = vec![0.0; n_cells * n];
+        for_each_chunk_of_groups(&mut by_cell, n, |range, by_cell| {
+            for (cell, shares) in (range.start / n..).zip(by_cell.chunks_exact_mut(n)) {
+                // the volumes of cells without a share are not computed
+                if (0..n).any(|i| pressing(cell, i).is_some()) {
+                    let weight = weight(cell);
+                    for (i, share) in shares.iter_mut().enumerate() {
+                        *share =
+                            pressing(cell, i).map_or(0.0, |k| weight * multipliers[k] / weights[k]);
+                    }
+                }
+            }
+        });
+        by_cell
     }
 
     /// Exchanges multipliers for flux of linears, in and between the cells that count.

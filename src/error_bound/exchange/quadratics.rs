@@ -170,6 +170,9 @@ impl<const D: usize> Space<'_, D> {
                     *mean += multiplier * products.iter().sum::<f64>();
                 }
             }
+            if let Some(on_facets) = loads.on_facets.get(cell) {
+                means.iter_mut().zip(on_facets).for_each(|(mean, moved)| *mean -= moved / volume);
+            }
             let sum: f64 = means.iter().sum();
             let value = |k: usize| (d + 1.0) * ((d + 2.0) * means[k] - sum);
             array_of(|k| if k <= D { value(k) } else { 0.0 })

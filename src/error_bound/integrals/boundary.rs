@@ -13,6 +13,10 @@ use crate::quadrature::{Rule, facet_to_cell};
 /// A negative contact force below this share of the largest one is rounding.
 const FORCE_ROUNDING: f64 = 1e-8;
 
+/// A distance from an obstacle of this many units of rounding of value and obstacle is zero on a facet: without it the
+/// bound of ridge-2d is 2e-8 where all else is zero.
+const ROUNDINGS: f64 = 4.0;
+
 /// The measure of a facet times `q.n` on it.
 #[derive(Clone, Copy)]
 struct FacetFlux {
@@ -62,6 +66,11 @@ pub(in crate::error_bound) struct BoundaryTerms {
     pub(super) traces: Vec<f64>,
     /// The complementarity of contact.
     pub(super) contact: Vec<f64>,
+    /// The complementarity of obstacles on facets, half to each cell.
+    pub(super) obstacle: Vec<f64>,
+    /// Whether the rounding of multipliers that forces on facets took may count as what the solver left: Dirichlet data
+    /// give this a constant.
+    pub(super) has_rounding: bool,
 }
 
 impl<const D: usize> Space<'_, D> {
@@ -100,15 +109,22 @@ impl<const D: usize> Space<'_, D> {
         let mut terms = BoundaryTerms {
             traces: zeros(has_fluxes || has_gap && pair.degree > 1),
             contact: zeros(has_gap),
+            obstacle: self.facet_obstacle_terms(pair)?,
+            has_rounding: !pair.forces.is_empty()
+                && self.mesh.has_condition(BoundaryCondition::Dirichlet),
         };
         if has_fluxes {
             for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
                 let measure = self.facet_measure(facet);
                 let flux = self.flux_on(pair, facet);
+                let force = pair.forces.binary_search_by_key(&facet, |force| force.facet);
+                let force = force.map_or([0.0; 4], |k| pair.forces[k].densities);
                 let mut square = 0.0;
                 for (point, weight) in rule.iter() {
-                    let datum = self.neumann_at(facet, group, point)?;
-                    let flux = flux.scale * flux.at(&facet_to_cell(point, facet.1)) / measure;
+                    let in_cell = facet_to_cell(point, facet.1);
+                    let force: f64 = force.iter().zip(&in_cell).map(|(s, b)| s * b).sum();
+                    let datum = self.neumann_at(facet, group, point)? + force / measure;
+                    let flux = flux.scale * flux.at(&in_cell) / measure;
                     square += weight * measure * (datum - flux).powi(2);
                 }
                 terms.traces[facet.0] += self.constant_of_trace(facet) * square.sqrt();
@@ -139,6 +155,58 @@ impl<const D: usize> Space<'_, D> {
             true => Err(NoBound::NegativeForce),
             false => Ok(terms),
         }
+    }
+
+    /// By cell the integrals of the forces of obstacles on facets times the distance from the obstacle: of the two sides
+    /// of a facet the smaller one, half to each cell. Empty without forces.
+    fn facet_obstacle_terms(&self, pair: &PrimalDualPair<D>) -> Result<Vec<f64>, NoBound> {
+        let mut terms = vec![0.0; if pair.forces.is_empty() { 0 } else { self.mesh.n_cells() }];
+        let degrees = [&self.data.lower, &self.data.upper].map(|psi| self.degree_of(psi));
+        let of_obstacle = degrees.into_iter().flatten().fold(pair.degree, usize::max);
+        let rule = Rule::new(D - 1, pair.degree - 1 + of_obstacle);
+        for force in &pair.forces {
+            let (cell, local) = force.facet;
+            let mean: f64 = force.densities.iter().sum();
+            let (k, sign) = if mean < 0.0 { (1, -1.0) } else { (0, 1.0) };
+            if vertices_of::<D>(local).any(|j| sign * force.densities[j] < 0.0) {
+                return Err(NoBound::NegativeForce);
+            }
+            let on_side = |side: HalfFacet| {
+                let admissible = self.admissible_in(pair, side.0);
+                let obstacle = admissible.bounds[k]?;
+                let mut sum = 0.0;
+                for (point, weight) in rule.iter() {
+                    let x = self.facet_point(point, cell, local);
+                    let point = facet_to_cell(point, local);
+                    let density: f64 = force.densities.iter().zip(&point).map(|(s, b)| s * b).sum();
+                    let there = self.point_in(side.0, (cell, &point));
+                    let (value, _) = admissible.at(&there, &x);
+                    let at = self.at(obstacle, side.0, &x);
+                    let rounding = ROUNDINGS * f64::EPSILON * (value.abs() + at.abs());
+                    let distance = sign * (value - at);
+                    if distance > rounding {
+                        sum += weight * density.abs() * distance;
+                    }
+                }
+                Some(sum)
+            };
+            let least = force.sides().filter_map(on_side).reduce(f64::min);
+            let term = least.ok_or(NoBound::NegativeForce)?;
+            let n_sides = force.sides().count() as f64;
+            force.sides().for_each(|(cell, _)| terms[cell] += term / n_sides);
+        }
+        Ok(terms)
+    }
+
+    /// The barycentric coordinates in a cell of a point on a facet of it, from those in the other cell of the facet.
+    fn point_in(&self, cell: usize, (other, point): (usize, &[f64; 4])) -> [f64; 4] {
+        let mut found = [0.0; 4];
+        for (&v, b) in self.mesh.cell(other).iter().zip(point) {
+            if let Some(k) = self.mesh.cell(cell).iter().position(|&w| w == v) {
+                found[k] = *b;
+            }
+        }
+        found
     }
 
     /// The flux of a pair through a facet.

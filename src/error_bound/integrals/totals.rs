@@ -49,6 +49,17 @@ impl Totals {
         self.with_oscillation + self.obstacle + self.contact
     }
 
+    /// The bounds on the error of the function and on that of the discrete function, with the term of the solver.
+    pub fn bounds(&self, of_solver: f64) -> [f64; 2] {
+        let of_flux = (self.with_oscillation.sqrt() + of_solver).powi(2);
+        let complementarity = self.obstacle + self.contact;
+        // the radius of the ball around the midpoint that contains the solution, and the distance of the discrete
+        // function from the midpoint
+        let radius = 0.5 * (of_flux + 2.0 * complementarity).sqrt();
+        let discrete = radius + self.from_midpoint.sqrt() + 0.5 * of_solver;
+        [(of_flux + complementarity).sqrt(), discrete]
+    }
+
     /// Adds the terms of other cells.
     pub fn add(&mut self, others: &Self) {
         self.mismatch += others.mismatch;

@@ -34,8 +34,7 @@ impl<const D: usize> LinearCells<'_, '_, D> {
         let mesh = self.space.mesh;
         let carried: f64 = fan.iter().map(|of| self.carried(of.corner)).sum();
         let mut pressure = self.multipliers[vertex] / carried;
-        let normal =
-            |(corner, local): (Corner, u8)| self.integrals(corner.cell())[usize::from(local)];
+        let normal = |(corner, local): (Corner, u8)| self.through(corner.cell(), local.into());
         // what the fluxes of a cell through a facet and of the next one through it sum to
         let sum = |of: &CellOfFan, next: &CellOfFan| {
             -0.5 * (normal((of.corner, of.sides[1])) + normal((next.corner, next.sides[0])))

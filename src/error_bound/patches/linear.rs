@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
+use super::pressing::Pressing;
 use crate::arrays::array_of;
 use crate::assemble::shared_rows::places::for_each_place;
 use crate::assemble::space::Space;
@@ -30,6 +31,8 @@ pub(super) struct LinearCells<'s, 'a, const D: usize> {
     pub multipliers: Vec<f64>,
     /// In which cells multipliers act.
     obstacles: &'s ActiveObstacles,
+    /// The forces of obstacles on facets, with the multipliers by cell and vertex.
+    pressing: Option<(&'s Pressing, &'s [f64])>,
     /// Of each vertex one of its cells, and how many there are; empty on the line.
     pub one_cell: Vec<(u32, u32)>,
 }
@@ -45,7 +48,7 @@ impl<const D: usize> Space<'_, D> {
         &'s self,
         u: &[f64],
         (residual, obstacles): (&[f64], &'s ActiveObstacles),
-        forces: &[NodeForce],
+        (forces, pressing): (&[NodeForce], Option<(&'s Pressing, &'s [f64])>),
         neighbours: &'s Neighbours,
     ) -> Result<LinearCells<'s, 's, D>, NoBound> {
         let mut loads = self.load_by_cell()?.into_owned();
@@ -84,6 +87,11 @@ impl<const D: usize> Space<'_, D> {
         for force in forces {
             loads[force.cell * (D + 1) + force.node] += force.value;
         }
+        let on_facets = pressing.iter().flat_map(|(p, _)| &p.forces).map(|asked| &asked.force);
+        for force in on_facets.filter(|force| force.other.is_none()) {
+            let of_cell = &mut loads[force.facet.0 * (D + 1)..];
+            of_cell.iter_mut().zip(force.moments::<D>()).for_each(|(load, moment)| *load += moment);
+        }
         let mut multipliers = self.multipliers_of_obstacles(residual, forces);
         for (cell, local) in self.facets_of(BoundaryCondition::Dirichlet) {
             self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
@@ -97,7 +105,16 @@ impl<const D: usize> Space<'_, D> {
             });
         }
         let cells = data;
-        Ok(LinearCells { space: self, neighbours, cells, loads, multipliers, obstacles, one_cell })
+        Ok(LinearCells {
+            space: self,
+            neighbours,
+            cells,
+            loads,
+            multipliers,
+            obstacles,
+            pressing,
+            one_cell,
+        })
     }
 }
 
@@ -124,7 +141,26 @@ impl<const D: usize> LinearCells<'_, '_, D> {
 
     /// The load that the flux of a vertex balances in a cell, with a multiplier per volume.
     pub fn load(&self, corner: Corner, pressure: f64) -> f64 {
-        -self.loads[corner.cell() * (D + 1) + corner.own()] - pressure * self.carried(corner)
+        let own = -self.loads[corner.cell() * (D + 1) + corner.own()];
+        own - pressure * self.carried(corner) + self.moved(corner)
+    }
+
+    /// What has moved to facets of the multiplier of a cell at a vertex.
+    #[inline(always)]
+    fn moved(&self, corner: Corner) -> f64 {
+        let Some((pressing, multipliers)) = self.pressing else { return 0.0 };
+        let tested = |cell: usize, own: usize| [multipliers[cell * (D + 1) + own], 0.0, 0.0, 0.0];
+        pressing.moved_at(self.space.mesh, &tested, (corner.cell(), corner.own()))[0]
+    }
+
+    /// The integral of `alpha grad u . n` over a facet of a cell; from the first side of a facet with a force between two
+    /// cells, less the force.
+    #[inline(always)]
+    pub fn through(&self, cell: usize, local: usize) -> f64 {
+        let force = self.pressing.and_then(|(p, _)| p.on_facet((cell, local)));
+        let force = force.filter(|force| force.other.is_some());
+        let less = force.map_or(0.0, |force| force.moments::<D>().iter().sum());
+        self.integrals(cell)[local] - less
     }
 
     /// The volume over which a cell carries a share of the multiplier of one of its vertices: its own, or none where
@@ -145,7 +181,7 @@ impl<const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, D> {
     }
 
     fn normal(&self, corner: Corner, facet: usize) -> [f64; 3] {
-        [self.integrals(corner.cell())[facet] / D as f64, 0.0, 0.0]
+        [self.through(corner.cell(), facet) / D as f64, 0.0, 0.0]
     }
 
     fn given(&self, _: Corner, _: usize) -> [f64; 3] {

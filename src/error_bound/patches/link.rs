@@ -229,9 +229,8 @@ impl<const D: usize> LinearCells<'_, '_, D> {
     /// multiplier.
     fn balance(&self, vertex: usize, link: &mut Link) {
         let d = D as f64;
-        let normal = |of: &CellOfLink, k: usize| {
-            self.integrals(of.corner.cell())[usize::from(of.ends[k])] / d
-        };
+        let normal =
+            |of: &CellOfLink, k: usize| self.through(of.corner.cell(), of.ends[k].into()) / d;
         let cells = &mut link.cells;
         let carried: f64 = cells.iter().map(|of| self.carried(of.corner)).sum();
         let mut pressure = self.multipliers[vertex] / carried;

@@ -29,15 +29,18 @@
 //! | `link` | the flux of a vertex of linears in space, where all numbers follow from one for each edge |
 //! | `patch_cells` | what patches ask of cells |
 //! | `linear`, `quadratic` | the cells of linears and quadratics |
+//! | `pressing`, `forces` | which forces facets have; a flux that carries multipliers of cells to facets |
 //! | `corners`, `corner_fluxes` | the cells around each vertex, and the numbers there |
 
 mod corner_fluxes;
 mod corners;
 mod fan;
+mod forces;
 mod linear;
 mod link;
 mod patch;
 mod patch_cells;
+mod pressing;
 mod quadratic;
 
 use std::convert::Infallible;
@@ -49,6 +52,7 @@ use linear::LinearCells;
 use link::Link;
 use patch::Patch;
 use patch_cells::PatchCells;
+use pressing::Pressing;
 
 use super::contact_forces::NodeForce;
 use super::flux::Flux;
@@ -69,7 +73,7 @@ impl<const D: usize> Space<'_, D> {
         &self,
         u: &[f64],
         of_solver: (&[f64], &ActiveObstacles),
-        forces: &[NodeForce],
+        forces: (&[NodeForce], Option<(&Pressing, &[f64])>),
         neighbours: &Neighbours,
     ) -> Result<Flux<D>, NoBound> {
         let cells = self.linear_cells(u, of_solver, forces, neighbours)?;
@@ -78,15 +82,17 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The flux of a conforming quadratic function, without that of Neumann data and contact, and without its numbers
-    /// inside cells. Divides the multipliers of shared unknowns among their cells in `loads`.
+    /// inside cells. Divides the multipliers of shared unknowns among their cells in `loads`, and moves them to
+    /// facets if asked to, which is the second result.
     pub(super) fn flux_of_quadratics(
         &self,
-        (u, function): (&[f64], &PrimalDualPair<D>),
-        neighbours: &Neighbours,
+        (u, function): (&[f64], &mut PrimalDualPair<D>),
+        (neighbours, on_facets): (&Neighbours, bool),
         loads: &mut CellLoads,
-    ) -> Flux<D> {
-        let cells = self.quadratic_cells((u, function), neighbours, loads);
-        self.flux_of_patches(&cells, None, neighbours)
+    ) -> Result<(Flux<D>, Option<Pressing>), NoBound> {
+        let cells = self.quadratic_cells((u, function), (neighbours, on_facets), loads)?;
+        let flux = self.flux_of_patches(&cells, None, neighbours);
+        Ok((flux, cells.pressing))
     }
 
     /// The flux, from the fluxes of vertices, which are kept for [`CELLS_AT_A_TIME`] cells; in the plane and in space most

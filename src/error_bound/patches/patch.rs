@@ -57,7 +57,7 @@ impl<const N: usize> Patch<N> {
         of: &C,
         neighbours: &Neighbours,
         corners: &[Corner],
-        set: impl Fn(Corner, usize, f64),
+        mut set: impl FnMut(Corner, usize, f64),
     ) {
         self.cells.clear();
         self.multipliers.clear();

@@ -14,16 +14,17 @@ use std::ops::Range;
 
 use super::corners::Corner;
 use super::patch_cells::{CellProblem, PatchCells};
+use super::pressing::Pressing;
 use crate::arrays::array_of;
 use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{INWARD, Space};
 use crate::assemble::stiffness::StiffnessTable;
 use crate::element::Node;
-use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{
     CellLoads, Products, add, densities, products_on_facet, triple, vertices_of,
 };
 use crate::error_bound::shared_multipliers::SharedNodes;
+use crate::error_bound::{NoBound, PrimalDualPair};
 use crate::measure::Admissible;
 use crate::mesh::{HalfFacet, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
@@ -48,6 +49,8 @@ pub(super) struct QuadraticCells<'s, 'a, const D: usize> {
     cells: Vec<KnownOfCell>,
     /// The products of Neumann data and contact forces, by facet; sorted.
     given: Vec<&'s (HalfFacet, Products)>,
+    /// The forces of obstacles on facets.
+    pub pressing: Option<Pressing>,
 }
 
 /// Sorts products by the places of their facets. Not in the function that calls it, so that this is compiled once.
@@ -56,7 +59,7 @@ fn sort(given: &mut [&(HalfFacet, Products)]) {
 }
 
 /// The numbers of a facet, of numbers for all vertices of the cell.
-fn on_facet<const D: usize>(densities: &[f64; 4], facet: usize) -> [f64; 3] {
+pub(super) fn on_facet<const D: usize>(densities: &[f64; 4], facet: usize) -> [f64; 3] {
     let mut numbers = [0.0; 3];
     numbers.iter_mut().zip(vertices_of::<D>(facet)).for_each(|(to, j)| *to = densities[j]);
     numbers
@@ -67,15 +70,15 @@ impl<const D: usize> Space<'_, D> {
     /// `loads`.
     pub(super) fn quadratic_cells<'s>(
         &'s self,
-        (u, function): (&[f64], &PrimalDualPair<D>),
-        neighbours: &Neighbours,
+        (u, function): (&[f64], &mut PrimalDualPair<D>),
+        (neighbours, on_facets): (&Neighbours, bool),
         loads: &'s mut CellLoads,
-    ) -> QuadraticCells<'s, 's, D> {
+    ) -> Result<QuadraticCells<'s, 's, D>, NoBound> {
         let corners: Vec<BasisAt> =
             (0..D + 1).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
         let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
         let data = cells::map(n_cells, &|cells: Range<usize>| {
-            let in_cell = |cell| self.known_of_cell(cell, (u, function), (&corners, &table));
+            let in_cell = |cell| self.known_of_cell(cell, (u, &*function), (&corners, &table));
             cells.map(in_cell).collect::<Vec<_>>()
         });
         let mut data: Vec<KnownOfCell> = data.into_iter().flatten().collect();
@@ -84,6 +87,12 @@ impl<const D: usize> Space<'_, D> {
         }
         let loads = &*loads;
         let n = self.per_cell();
+        let tested = |cell: usize, own: usize| loads.multiplier_at(cell, own);
+        let presses = |cell: usize| loads.presses(cell);
+        let pressing = match self.problem.has_obstacle() && on_facets {
+            true => self.pressing(function, (&tested, &presses), neighbours)?,
+            false => None,
+        };
         let fill = |cells: Range<usize>, out: &mut [KnownOfCell]| {
             for (cell, data) in cells.zip(out) {
                 for (i, of_linear) in loads.functionals.iter().enumerate() {
@@ -94,6 +103,17 @@ impl<const D: usize> Space<'_, D> {
                     let products = products_on_facet::<D>(&data.normal[facet], facet);
                     add(&mut data.divergence, |a, j| -products[a][j]);
                 }
+                for (own, divergence) in data
+                    .divergence
+                    .iter_mut()
+                    .enumerate()
+                    .take(D + 1)
+                    .filter(|_| pressing.is_some())
+                {
+                    let Some(pressing) = &pressing else { continue };
+                    let moved = pressing.moved_at(self.mesh, &tested, (cell, own));
+                    divergence.iter_mut().zip(moved).for_each(|(sum, moved)| *sum += moved);
+                }
             }
             Ok::<(), Infallible>(())
         };
@@ -103,7 +123,7 @@ impl<const D: usize> Space<'_, D> {
         }
         let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
         sort(&mut given);
-        QuadraticCells { space: self, cells: data, given }
+        Ok(QuadraticCells { space: self, cells: data, given, pressing })
     }
 
     /// Divides the multipliers of unknowns amid contact among their cells as the mean of the two fluxes
@@ -218,8 +238,13 @@ impl<const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, D> {
     }
 
     fn normal(&self, corner: Corner, facet: usize) -> [f64; 3] {
-        let normal = &self.cells[corner.cell()].normal[facet];
-        let products = &products_on_facet::<D>(normal, facet)[corner.own()];
+        let mut normal = self.cells[corner.cell()].normal[facet];
+        // the first side of a facet has its force
+        if let Some(force) = self.pressing.as_ref().and_then(|p| p.on_facet((corner.cell(), facet)))
+        {
+            normal.iter_mut().zip(force.densities).for_each(|(normal, force)| *normal -= force);
+        }
+        let products = &products_on_facet::<D>(&normal, facet)[corner.own()];
         on_facet::<D>(&densities::<D>(products, facet), facet)
     }
 
@@ -233,30 +258,41 @@ impl<const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, D> {
     }
 
     fn problem(&self, corner: Corner, _: &[Corner]) -> CellProblem<9> {
-        let (mesh, cell, d) = (self.space.mesh, corner.cell(), D as f64);
-        let points = mesh.corners(cell);
-        let volume = mesh.geometry(cell).volume;
-        let alpha = self.space.alpha(cell);
-        let scale = 1.0 / (alpha * volume * d * d * (d + 1.0) * (d + 2.0));
-        let known = &self.cells[cell];
+        let known = &self.cells[corner.cell()];
         let tested = &known.divergence[corner.own()];
-        let of_divergence = divergence_products(&points, tested);
-        let targets = target_products::<D>(corner.own(), &known.difference);
-        // of each number its vertex, and the vector from the vertex opposite its facet to it
-        let mut numbers = [(0, Point::<D>::zeros()); 9];
-        let all = corner.facets::<D>().flat_map(|f| vertices_of::<D>(f).map(move |j| (f, j)));
-        for (number, (facet, j)) in numbers.iter_mut().zip(all) {
-            *number = (j, points[j] - points[facet]);
-        }
-        let (mut products, mut aims) = ([[0.0; 9]; 9], [0.0; 9]);
-        for (a, (j, along)) in numbers.iter().enumerate().take(D * D) {
-            aims[a] = targets[*j].dot(along) - scale * of_divergence[*j].dot(along);
-            for (b, (k, other)) in numbers.iter().enumerate().take(D * D) {
-                products[a][b] = if j == k { 2.0 } else { 1.0 } * scale * along.dot(other);
-            }
-        }
-        CellProblem::new(products, &aims, d * tested[..=D].iter().sum::<f64>(), D * D)
+        quadratic_problem(self.space, corner, tested, &known.difference)
     }
+}
+
+/// The problem of a cell whose flux has this divergence, tested with the barycentric coordinates, and aims at the hat
+/// function of the vertex times `alpha` times a linear function, given at the vertices.
+pub(super) fn quadratic_problem<const D: usize>(
+    space: &Space<'_, D>,
+    corner: Corner,
+    tested: &[f64; 4],
+    difference: &[[f64; 3]; 4],
+) -> CellProblem<9> {
+    let (mesh, cell, d) = (space.mesh, corner.cell(), D as f64);
+    let points = mesh.corners(cell);
+    let volume = mesh.geometry(cell).volume;
+    let alpha = space.alpha(cell);
+    let scale = 1.0 / (alpha * volume * d * d * (d + 1.0) * (d + 2.0));
+    let of_divergence = divergence_products(&points, tested);
+    let targets = target_products::<D>(corner.own(), difference);
+    // of each number its vertex, and the vector from the vertex opposite its facet to it
+    let mut numbers = [(0, Point::<D>::zeros()); 9];
+    let all = corner.facets::<D>().flat_map(|f| vertices_of::<D>(f).map(move |j| (f, j)));
+    for (number, (facet, j)) in numbers.iter_mut().zip(all) {
+        *number = (j, points[j] - points[facet]);
+    }
+    let (mut products, mut aims) = ([[0.0; 9]; 9], [0.0; 9]);
+    for (a, (j, along)) in numbers.iter().enumerate().take(D * D) {
+        aims[a] = targets[*j].dot(along) - scale * of_divergence[*j].dot(along);
+        for (b, (k, other)) in numbers.iter().enumerate().take(D * D) {
+            products[a][b] = if j == k { 2.0 } else { 1.0 } * scale * along.dot(other);
+        }
+    }
+    CellProblem::new(products, &aims, d * tested[..=D].iter().sum::<f64>(), D * D)
 }
 
 /// The integrals of `sum_j r_j lambda_j phi_j` times `lambda_k` over a cell, a vector for each vertex `k`. `tested` is
