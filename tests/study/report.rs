@@ -44,7 +44,7 @@ fn json_has_the_keys_that_scripts_rely_on() {
         ["feasibility", "multiplier", "complementarity", "residual", "algebraic_bound"];
     assert_eq!(keys(&row["certificate"]), certificate);
     let bound = "total distance discrete guaranteed unproven mismatch obstacle contact oscillation \
-                 algebra effectivity effectivity_of_v reason";
+                 algebra effectivity effectivity_of_v exceeds_norm reason";
     assert_eq!(keys(&row["bound"]), bound.split(' ').collect::<Vec<_>>());
     assert_eq!(keys(&row["seconds"]), ["mesh", "assemble", "solve", "start", "bound", "total"]);
     assert_eq!(json["rows"].as_array().unwrap().len(), 18);
@@ -401,4 +401,23 @@ fn bounds_are_guaranteed_or_name_what_is_not_proven() {
     rows[0].error.broken_energy = rows[0].error.h1.map(|h1| 2.0 * h1);
     let text = report(rows).to_markdown();
     assert!(!text.contains("| H1 | order |") && text.contains("| energy norm |"), "{text}");
+}
+
+/// A bound above the norm of the solution says nothing, and neither does its quotient: the bound itself is shown.
+#[test]
+fn a_bound_above_the_norm_of_the_solution_stands_without_a_quotient() {
+    let mut rows = rows();
+    for row in &mut rows {
+        row.bound.effectivity = Some(1.75);
+        row.bound.discrete = Some(0.5);
+    }
+    let usual = report(rows.clone()).details_to_text(200);
+    assert!(usual.contains(" 1.75 ") && !usual.contains('†'), "{usual}");
+    rows[0].bound.exceeds_norm = Some(true);
+    let text = report(rows).details_to_text(200);
+    assert!(text.contains(" 5.0e-1† ") && text.contains(" 1.75 "), "{text}");
+    assert!(
+        text.contains("† the bound itself: it exceeds the energy norm of the solution"),
+        "{text}"
+    );
 }

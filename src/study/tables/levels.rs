@@ -57,7 +57,7 @@ pub(crate) fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
     if !has_errors(rows) {
         first.remarks.extend(limits(rows));
     }
-    first.remarks.extend(rates(rows).into_iter().chain(unproven(rows)));
+    first.remarks.extend(rates(rows).into_iter().chain(above_norm(rows)).chain(unproven(rows)));
     let further = |what: &str, columns: Vec<Column>| {
         let columns = Some(columns).filter(|columns| !columns.is_empty())?;
         let table = table(format!("{scene}: {what}"), &[names(rows), columns].concat(), &finest);
@@ -159,6 +159,9 @@ fn promises(rows: &[&Row]) -> Vec<String> {
     once.into_iter().map(named).collect()
 }
 
+/// The mark of a bound that stands in place of its quotient.
+const ABOVE_NORM: char = '†';
+
 /// The name of a column of a table, and its cell in a row.
 type Column = (&'static str, fn(&Row) -> Cell);
 
@@ -204,8 +207,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     }
     // the errors say the rest where they are known, and lines stay within their width
     if has_effectivity {
-        columns
-            .push(("effect.", |r| Cell::number(r.bound.effectivity.map(|x| marked(r, fixed(x))))));
+        columns.push(("effect.", |r| Cell::number(quotient(r))));
     } else if !is_adaptive && has_bound {
         columns.push(("bound", |r| bound(r, 1)));
     }
@@ -233,6 +235,27 @@ fn bound(row: &Row, places: usize) -> Cell {
 /// A bound, or a ratio of it, with a mark where a term of it is not proven.
 pub(super) fn marked(row: &Row, bound: String) -> String {
     if row.bound.guaranteed == Some(false) { bound + "*" } else { bound }
+}
+
+/// A bound over the error, or the bound itself where it exceeds the norm of the solution.
+pub(super) fn quotient(row: &Row) -> Option<String> {
+    let effectivity = row.bound.effectivity?;
+    Some(match row.bound.discrete.filter(|_| exceeds_norm(row)) {
+        Some(bound) => marked(row, format!("{}{ABOVE_NORM}", digits(bound, 1))),
+        None => marked(row, fixed(effectivity)),
+    })
+}
+
+/// Whether the bound of a row says nothing.
+fn exceeds_norm(row: &Row) -> bool {
+    row.bound.exceeds_norm == Some(true) && row.bound.effectivity.is_some()
+}
+
+/// The remark on bounds without a quotient, if there are any.
+pub(super) fn above_norm(rows: &[&Row]) -> Option<String> {
+    rows.iter().any(|row| exceeds_norm(row)).then(|| {
+        format!("{ABOVE_NORM} the bound itself: it exceeds the energy norm of the solution")
+    })
 }
 
 /// The remark that explains the marks of bounds: the terms that are not proven, with their schemes where these differ in

@@ -1,6 +1,6 @@
 //! The summary of a report: one table for each scene at the finest level of every series, and how the runs ended.
 
-use super::levels::{marked, scenes, unproven};
+use super::levels::{above_norm, marked, quotient, scenes, unproven};
 use super::remarks::{ReasonsGiven, warnings};
 use crate::study::row::{Row, distinct};
 use crate::study::series::{Series, series_of};
@@ -103,7 +103,11 @@ fn summary(title: &str, is_adaptive: bool, series: &[Series<'_>]) -> Table {
         detail: place + &references.collect::<String>(),
         columns: ["scheme"].into_iter().chain(names).chain(["status"]).map(str::to_owned).collect(),
         rows: lines,
-        remarks: remarks.chain(warnings).chain(unproven(&finest)).collect(),
+        remarks: remarks
+            .chain(warnings)
+            .chain(above_norm(&finest))
+            .chain(unproven(&finest))
+            .collect(),
     }
 }
 
@@ -138,7 +142,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     }
     if any(|r| r.bound.effectivity) && !is_adaptive {
         columns.push(column(BOUND, true, |r| {
-            r.bound.effectivity.map(|x| (x, marked(r, fixed(x)), None))
+            r.bound.effectivity.zip(quotient(r)).map(|(x, text)| (x, text, None))
         }));
     } else if any(|r| r.bound.discrete) {
         columns.push(column("bound (order)", true, |r| {
