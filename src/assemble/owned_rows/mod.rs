@@ -11,7 +11,6 @@
 
 mod facet_means;
 pub(crate) mod lifted;
-mod linear;
 mod rows;
 mod rows_by_cell;
 
@@ -132,8 +131,6 @@ struct Filling<'s, 'a, const D: usize> {
     jumps: JumpProducts,
     /// By what the penalty is multiplied for each moment that has a flux.
     flux_moments: Vec<f64>,
-    /// If the gradient of basis function `i` is `c` times that of barycentric coordinate `i`: `c`.
-    gradient: Option<f64>,
     lifted: bool,
 }
 
@@ -160,22 +157,14 @@ pub(crate) fn fill<const D: usize>(
         jumps: JumpProducts::new::<D>(&facets, of_degree),
         flux_moments: facets.degrees.iter().filter(has_flux).map(|&k| of_degree(k)).collect(),
         facets,
-        gradient: space.gradient_factor(),
         lifted: form.is_lifted(),
     };
     let SparseMatrix { row_starts, values, .. } = matrix;
     // constant conditions: loops for another dimension are not even instantiated
     match (space.per_cell(), filling.flux_moments.len()) {
-        (2, _) if const { D == 1 } && filling.is_linear() => {
-            filling.fill_linear::<2>(row_starts, values);
-        }
-        (3, _) if const { D == 2 } && filling.is_linear() => {
-            filling.fill_linear::<3>(row_starts, values);
-        }
-        (4, _) if const { D == 3 } && filling.is_linear() => {
-            filling.fill_linear::<4>(row_starts, values);
-        }
-        (3, 0..=1) if const { D == 1 } => filling.fill::<3, 1>(row_starts, values),
+        (2, 0..=1) if const { D == 1 } => filling.fill::<2, 1>(row_starts, values),
+        (3, 0..=1) if const { D < 3 } => filling.fill::<3, 1>(row_starts, values),
+        (4, 0..=1) if const { D == 3 } => filling.fill::<4, 1>(row_starts, values),
         (6, 0..=2) if const { D == 2 } => filling.fill::<6, 2>(row_starts, values),
         (10, 0..=3) if const { D > 1 } => filling.fill::<10, 3>(row_starts, values),
         _ => filling.fill::<MAX_BASIS, MAX_FLUX_MOMENTS>(row_starts, values),

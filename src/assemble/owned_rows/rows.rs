@@ -18,32 +18,27 @@ type Block<const N: usize> = [[f64; N]; N];
 type Moments<const N: usize, const M: usize> = [[f64; N]; M];
 
 /// The `n` rows of a cell.
-pub(crate) struct Rows<'r> {
+struct Rows<'r> {
     n: usize,
     /// Entries of each.
     length: usize,
     entries: &'r mut [f64],
     /// The place among the coupled cells of the other cell of each facet, and of the cell itself.
-    pub others: [usize; 4],
-    pub own: usize,
+    others: [usize; 4],
+    own: usize,
 }
 
 impl<'r> Rows<'r> {
     #[inline(always)]
-    pub fn new(n: usize, entries: &'r mut [f64], (others, own): ([usize; 4], usize)) -> Self {
+    fn new(n: usize, entries: &'r mut [f64], (others, own): ([usize; 4], usize)) -> Self {
         Self { n, length: entries.len() / n, entries, others, own }
-    }
-    /// Row `i` of the block of the coupled cell at a place, for a cell of `N` functions.
-    #[inline(always)]
-    pub fn block<const N: usize>(&mut self, place: usize, i: usize) -> &mut [f64] {
-        let start = i * self.length + place * N;
-        &mut self.entries[start..start + N]
     }
     /// Writes row `i` of the block of the coupled cell at a place, as much of it as there is.
     #[inline(always)]
     fn write<const N: usize>(&mut self, place: usize, i: usize, row: &[f64; N]) {
         if self.n == N {
-            self.block::<N>(place, i).copy_from_slice(row);
+            let start = i * self.length + place * N;
+            self.entries[start..start + N].copy_from_slice(row);
         } else if i < self.n {
             let start = i * self.length + place * self.n;
             self.entries[start..start + self.n].copy_from_slice(&row[..self.n]);
@@ -94,7 +89,7 @@ impl<const D: usize> Filling<'_, '_, D> {
     /// The positions of the other cells of all facets among the coupled cells, and that of the cell
     /// itself.
     #[inline(always)]
-    pub(crate) fn positions(&self, cell: usize) -> ([usize; 4], usize) {
+    fn positions(&self, cell: usize) -> ([usize; 4], usize) {
         let other = |local| match self.neighbours.across(cell, local) {
             Neighbour::Cell { cell, .. } => cell,
             Neighbour::Boundary(_) | Neighbour::Cut => u32::MAX,
