@@ -23,7 +23,8 @@ const OF_PENALTY: f64 = 1.0 / 6.0;
 /// data, `k` the diagonal of the matrix without an over-penalty, and `U` the largest value: of the `|u_i|`, or that of
 /// the load, `n^2 (sum c_i^2 / k_i) / sum |c_i|`, where values vanish but for rounding; plus the rounding of the constants
 /// of bodies, in double precision, over machine epsilon. A solve amplifies machine epsilon by `a`: 8, on a line and for
-/// quadratics `8 + n/4`. For discontinuous quadratics L2, H1 and forces have the factor `1 + n/6` besides.
+/// quadratics `8 + n/4`. For discontinuous quadratics the maximum, L2, H1 and forces have the
+/// factor `1 + n/6` besides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -81,10 +82,10 @@ impl<const D: usize> Discretisation<'_, D> {
         let value = maximum(largest[0], of_load) + of_constants;
         let per_cell = if D == 1 || self.space.degree > 1 { PER_CELL } else { 0.0 };
         let one = (ROUNDINGS + per_cell * n) * epsilon;
-        let max = one * n * value / 16.0;
         let has_penalty = self.space.broken && self.space.degree > 1;
         let smooth = if has_penalty { 1.0 + OF_PENALTY * n } else { 1.0 };
-        let l2 = smooth * max * length.powf(0.5 * dimension);
+        let max = smooth * one * n * value / 16.0;
+        let l2 = max * length.powf(0.5 * dimension);
         let error = Errors {
             l2: Some(l2),
             h1: Some(16.0 * l2 / length),
