@@ -121,7 +121,8 @@ struct Found {
     values: Vec<f64>,
     resultant: Option<f64>,
     bound: Option<f64>,
-    energy: f64,
+    /// None where nothing carries the load.
+    energy: Option<f64>,
 }
 
 fn found<const D: usize>(drawn: &Drawn, label: &str, c: f64, precision: Precision) -> Found {
@@ -142,7 +143,7 @@ fn found<const D: usize>(drawn: &Drawn, label: &str, c: f64, precision: Precisio
         values: solved.values().to_vec(),
         resultant: solved.resultant(),
         bound: solved.bound().ok().map(|bound| bound.total),
-        energy: solved.energy().unwrap().unwrap(),
+        energy: solved.energy().unwrap(),
     }
 }
 
@@ -154,7 +155,9 @@ fn compare<const D: usize>(drawn: &Drawn, label: &str, c: f64, checks: &mut Chec
     checks.that(near.outcome == far.outcome, || {
         format!("{}: {} and {}", what(), near.outcome, far.outcome)
     });
-    let is_one_apart = |a: usize, b: usize| a.abs_diff(b) <= 1;
+    // a body that only contact holds touches everywhere: the scene is degenerate
+    let is_degenerate = drawn.held == Held::BoundsAlone && drawn.reaction == 0.0;
+    let is_one_apart = |a: usize, b: usize| a.abs_diff(b) <= if is_degenerate { 4 } else { 1 };
     checks.that(
         is_one_apart(near.outer, far.outer)
             && near.systems.zip(far.systems).is_none_or(|(a, b)| is_one_apart(a, b)),
@@ -163,7 +166,8 @@ fn compare<const D: usize>(drawn: &Drawn, label: &str, c: f64, checks: &mut Chec
             format!("{}: steps {all:?}, systems {:?} {:?}", what(), near.systems, far.systems)
         },
     );
-    checks.that(far.largest_violation < 1e-9, || {
+    // where nothing carries the load there is no iterate
+    checks.that(near.energy.is_none() || far.largest_violation < 1e-9, || {
         format!("{}: certificate {:e}", what(), far.largest_violation)
     });
     let apart = near.values.iter().zip(&far.values).map(|(a, b)| (a + c - b).abs());
@@ -176,18 +180,21 @@ fn compare<const D: usize>(drawn: &Drawn, label: &str, c: f64, checks: &mut Chec
             && forces.abs() <= 1e-8 + 64.0 * n.powi(D as i32) * rounding,
         || format!("{}: forces {:?} {:?}", what(), near.resultant, far.resultant),
     );
-    // a bound is the root of an integral of forces times distances, which have the rounding of the data
+    // a bound is the root of an integral of forces times distances, which have the rounding of the data; which cells
+    // touch, and where multipliers are exchanged, may be decided by it
     let squares = [near.bound, far.bound].map(|bound| bound.map_or(0.0, |bound| bound * bound));
-    let share = if label.contains("p2") { 0.1 } else { 1e-6 };
+    let share = if label.contains("p2") { 0.2 } else { 1e-4 };
     checks.that(
         near.bound.is_some() == far.bound.is_some()
             && (squares[0] - squares[1]).abs() <= share * squares[0] + 1e-12 + 64.0 * rounding,
         || format!("{}: bounds {:?} {:?}", what(), near.bound, far.bound),
     );
     let added = drawn.added_energy(c);
+    let energies = near.energy.zip(far.energy).map(|(near, far)| near + added - far);
     checks.that(
-        (near.energy + added - far.energy).abs() <= 1e-9 + 64.0 * f64::EPSILON * added.abs(),
-        || format!("{}: energies {} + {added}, {}", what(), near.energy, far.energy),
+        near.energy.is_some() == far.energy.is_some()
+            && energies.is_none_or(|e| e.abs() <= 1e-9 + 64.0 * f64::EPSILON * added.abs()),
+        || format!("{}: energies {:?} + {added}, {:?}", what(), near.energy, far.energy),
     );
 }
 
