@@ -79,6 +79,15 @@ impl<const D: usize> Flux<D> {
                 .for_each(|j| self.add_density(cell, facet, j, change)),
         }
     }
+    /// Adds to the densities of a facet of one cell, by vertices of the cell; those of degree zero are equal.
+    pub(super) fn add_densities(&mut self, cell: usize, facet: usize, changes: &[f64; 4]) {
+        for j in (0..D + 1).filter(|&j| j != facet) {
+            match self.degree {
+                0 => return self.add_through(cell, facet, changes[j]),
+                _ => self.add_density(cell, facet, j, changes[j]),
+            }
+        }
+    }
     /// Adds to the density of a facet of one cell at a vertex.
     ///
     /// # Panics

@@ -6,7 +6,6 @@ use super::NoBound;
 use super::contact_forces::NodeForce;
 use super::facet_forces::FacetForce;
 use super::flux::Flux;
-use super::quadratics::vertices_of;
 use crate::algebra::Inequality;
 use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
@@ -42,7 +41,7 @@ pub struct PrimalDualPair<const D: usize> {
     pub edges: Vec<u32>,
     /// The flux `q`, of degree one less.
     pub flux: Flux<D>,
-    /// Where obstacles press on facets: the normal component of the flux jumps there. In ascending order of facets.
+    /// The forces of obstacles on facets, in ascending order of facets: the normal component of the flux jumps by them.
     pub forces: Vec<FacetForce>,
 }
 
@@ -307,11 +306,7 @@ impl<const D: usize> Discretisation<'_, D> {
 fn add_boundary_forces<const D: usize>(forces: &[FacetForce], flux: &mut Flux<D>) {
     for force in forces.iter().filter(|force| force.other.is_none()) {
         let (cell, local) = force.facet;
-        let vertices = vertices_of::<D>(local);
-        match flux.degree() {
-            0 => flux.add_through(cell, local, force.moments::<D>().iter().sum()),
-            _ => vertices.for_each(|j| flux.add_density(cell, local, j, force.densities[j])),
-        }
+        flux.add_densities(cell, local, &force.densities);
     }
 }
 

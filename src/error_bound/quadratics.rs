@@ -222,7 +222,7 @@ impl<const D: usize> Space<'_, D> {
     pub(super) fn add_boundary_fluxes(&self, loads: &CellLoads, flux: &mut Flux<D>) {
         for ((cell, local), products) in loads.neumann.iter().chain(&loads.contact) {
             let of_facet = densities::<D>(&map_entries(*products, |row| row.iter().sum()), *local);
-            vertices_of::<D>(*local).for_each(|j| flux.add_density(*cell, *local, j, of_facet[j]));
+            flux.add_densities(*cell, *local, &of_facet);
         }
     }
 

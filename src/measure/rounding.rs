@@ -23,8 +23,7 @@ const OF_PENALTY: f64 = 1.0 / 6.0;
 /// data, `k` the diagonal of the matrix without an over-penalty, and `U` the largest value: of the `|u_i|`, or that of
 /// the load, `n^2 (sum c_i^2 / k_i) / sum |c_i|`, where values vanish but for rounding; plus the rounding of the constants
 /// of bodies, in double precision, over machine epsilon. A solve amplifies machine epsilon by `a`: 8, on a line and for
-/// quadratics `8 + n/4`. For discontinuous quadratics the maximum, L2, H1 and forces have the
-/// factor `1 + n/6` besides.
+/// quadratics `8 + n/4`. For discontinuous quadratics the maximum, L2, H1 and forces have the factor `1 + n/6` besides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

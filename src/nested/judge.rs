@@ -23,8 +23,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     ) -> Result<Solved<'a, D>, Error> {
         self.judge_beside(position, scheme, (values, None))
     }
-    /// As [`Self::judge_on`] for values to which these constants are to be added, if they are given, in place of those of
-    /// the [discretisation](crate::assemble::Discretisation::constants); an empty list stands for zeros.
+    /// As [`Self::judge_on`] for values less constants: those that are given, an empty list for zeros, else those of the
+    /// [discretisation](crate::assemble::Discretisation::constants).
     ///
     /// # Errors
     /// Those of [`Self::judge_on`], and [`Error::Parameter`] for another number of constants.

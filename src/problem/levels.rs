@@ -124,7 +124,7 @@ fn add_on_facets<const D: usize>(
     }
 }
 
-/// Adds obstacles at the vertices of cells and, of source over reaction, at barycentres too.
+/// Adds the values of obstacles at the vertices of cells, and those of source over reaction there and at barycentres.
 fn add_values_in_cells<const D: usize>(
     data: &DataOnMesh<D>,
     mesh: &Mesh<D>,

@@ -2,7 +2,7 @@
 //!
 //! A membrane pressed onto an obstacle through its boundary, the edge of an obstacle that ends inside the domain, the
 //! ridge of an obstacle: there the solution has a kink or a flux of its own, and the multiplier is a force `s` on
-//! facets. What the function `v` of a pair has as the jump of `alpha grad v . n` on a facet that touches,
+//! facets. The jump of `alpha grad v . n` on a facet that touches, `v` the function of a pair,
 //!
 //! ```text
 //! S = sum over both sides of alpha grad v . n           between two cells
@@ -19,7 +19,6 @@ use crate::arrays::array_of;
 use crate::assemble::space::Space;
 use crate::error_bound::quadratics::{densities, vertices_of};
 use crate::error_bound::{NoBound, PrimalDualPair};
-use crate::measure::Admissible;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::parallel::vectors::{collect, flags, indices, largest, positions};
@@ -31,7 +30,7 @@ use crate::real::Point;
 /// the force costs then less than what the flux misses without it.
 const TOUCHES: f64 = 0.125;
 
-/// A cell is in contact if its distance from the obstacle is at most this share of the same.
+/// A cell is in contact if its distance from the obstacle is at most this share of `S h / alpha`.
 const IN_CONTACT: f64 = 1.0 / 32.0;
 
 /// Distances up to this share of the values, and this many units of rounding of data from which a constant was taken, are
@@ -53,7 +52,7 @@ struct Distances {
     everywhere: f64,
 }
 
-/// What facets ask of a cell.
+/// Normal fluxes of the function of a pair in a cell, and its distances from obstacles.
 #[derive(Clone, Copy)]
 struct CellTrace {
     /// By facet its measure times `alpha grad v . n`, at the vertices of the cell.
@@ -243,18 +242,10 @@ impl<const D: usize> Space<'_, D> {
         of_values.max(ROUNDINGS * self.body_constants.rounding())
     }
 
-    /// What facets ask of a cell.
+    /// Normal fluxes and distances in a cell.
     fn cell_trace(&self, function: &PrimalDualPair<D>, cell: usize) -> CellTrace {
         let (geometry, alpha) = (self.mesh.geometry(cell), self.alpha(cell));
-        let admissible = Admissible { bounds: [None, None], ..self.admissible_in(function, cell) };
-        let gradient_at = |k: usize| {
-            let vertex = array_of(|m| if m == k { 1.0 } else { 0.0 });
-            admissible.at(&vertex, &Point::zeros()).1
-        };
-        let gradients: [Point<D>; 4] = match function.degree {
-            1 => [admissible.gradient; 4],
-            _ => array_of(|k| if k <= D { gradient_at(k) } else { Point::zeros() }),
-        };
+        let gradients = self.gradients_at_vertices(function, cell);
         // |F| n = -D |K| grad lambda
         let scale = -(D as f64) * geometry.volume * alpha;
         let mut normal = [[0.0; 4]; 4];

@@ -68,8 +68,8 @@ pub(in crate::error_bound) struct BoundaryTerms {
     pub(super) contact: Vec<f64>,
     /// The complementarity of obstacles on facets, half to each cell.
     pub(super) obstacle: Vec<f64>,
-    /// Whether the rounding of multipliers that forces on facets took may count as what the solver left: Dirichlet data
-    /// give this a constant.
+    /// Whether multipliers that are rounding count as the residual of the solver: where forces act on facets, and
+    /// Dirichlet data give the residual a constant.
     pub(super) has_rounding: bool,
 }
 

@@ -31,7 +31,7 @@ pub(super) use cell_flux::share_of_one_sign;
 pub(super) use totals::Totals;
 
 use super::PrimalDualPair;
-use crate::arrays::map_entries;
+use crate::arrays::{array_of, map_entries};
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::Space;
 use crate::assemble::space::tables::{BasisAt, CellTable};
@@ -39,6 +39,7 @@ use crate::element::MAX_BASIS;
 use crate::measure::Admissible;
 use crate::mesh::edge_vertices;
 use crate::problem::{Datum, Field};
+use crate::quadrature::vertex_point;
 use crate::real::Point;
 
 /// Where forces on facets took the multiplier, what remains up to this share of the fluxes through facets is an error of the
@@ -122,6 +123,22 @@ impl<const D: usize> Space<'_, D> {
         });
         let place = (self.mesh, cell);
         Admissible { place, values, gradient, excess, gradients, bounds }
+    }
+
+    /// The gradients of the function of a pair at the vertices of a cell, without obstacles.
+    pub(super) fn gradients_at_vertices(
+        &self,
+        pair: &PrimalDualPair<D>,
+        cell: usize,
+    ) -> [Point<D>; 4] {
+        let function = Admissible { bounds: [None, None], ..self.admissible_in(pair, cell) };
+        match pair.degree {
+            1 => [function.gradient; 4],
+            _ => array_of(|k| match k <= D {
+                true => function.at(&vertex_point(k), &Point::zeros()).1,
+                false => Point::zeros(),
+            }),
+        }
     }
 
     /// Calls a function with the points of a rule on a cell, divided where a level has zeros: with barycentric

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! `p` has equal and opposite normal components on the sides of facets, and `|alpha^-1/2 (p - phi (alpha grad v - q))|` is
-//! least. The flux of a conforming quadratic function has the forces from the beginning, as jumps of its patches.
+//! least. The patches of conforming functions contain the forces from the beginning, as given jumps.
 
 use super::corners::{Corner, Corners};
 use super::patch::Patch;
@@ -23,7 +23,6 @@ use crate::error_bound::PrimalDualPair;
 use crate::error_bound::facet_forces::AskedForce;
 use crate::error_bound::flux::Flux;
 use crate::error_bound::quadratics::{products_on_facet, vertices_of};
-use crate::measure::Admissible;
 use crate::mesh::{HalfFacet, Neighbours};
 use crate::parallel::cells;
 use crate::real::Point;
@@ -35,7 +34,7 @@ struct ForceCells<'c, 'a, const D: usize> {
     flux: &'c Flux<D>,
     pressing: &'c Pressing,
     tested: Tested<'c>,
-    /// What has changed on facets, sorted.
+    /// The changes of the flux on facets of a force, in ascending order of facets.
     changes: &'c [(HalfFacet, [f64; 4])],
 }
 
@@ -57,16 +56,13 @@ impl<const D: usize> ForceCells<'_, '_, D> {
     /// `grad v - q / alpha` at the vertices of a cell.
     fn differences(&self, cell: usize) -> [Point<D>; 4] {
         let space = self.space;
-        let admissible =
-            Admissible { bounds: [None, None], ..space.admissible_in(self.function, cell) };
+        let gradients = space.gradients_at_vertices(self.function, cell);
         let corners = space.mesh.corners(cell);
         let scale = 1.0 / (D as f64 * space.mesh.geometry(cell).volume * space.alpha(cell));
         let at_vertex = |k: usize| {
-            let vertex = array_of(|m| if m == k { 1.0 } else { 0.0 });
-            let (_, gradient) = admissible.at(&vertex, &Point::zeros());
             let through = (0..=D)
                 .map(|facet| (corners[k] - corners[facet]) * self.flux.density(cell, facet, k));
-            gradient - through.sum::<Point<D>>() * scale
+            gradients[k] - through.sum::<Point<D>>() * scale
         };
         array_of(|k| if k <= D { at_vertex(k) } else { Point::zeros() })
     }
@@ -74,18 +70,6 @@ impl<const D: usize> ForceCells<'_, '_, D> {
 
 impl<const D: usize> PatchCells<D, 3> for ForceCells<'_, '_, D> {
     const DEGREE: usize = 0;
-
-    fn normals(&self, _: usize, numbers: &mut [f64]) {
-        numbers.fill(0.0);
-    }
-
-    fn normal(&self, _: Corner, _: usize) -> [f64; 3] {
-        [0.0; 3]
-    }
-
-    fn given(&self, _: Corner, _: usize) -> [f64; 3] {
-        [0.0; 3]
-    }
 
     /// With the barycentre `m` of the cell, its volume `V` and `n = D + 1`, the products of fluxes are
     /// `((m - a) . (m - b) + sum_k |a_k - m|^2 / (n (n + 1))) / (D^2 alpha V)`, and the mean of `x` with the weight `phi`
@@ -114,18 +98,6 @@ impl<const D: usize> PatchCells<D, 3> for ForceCells<'_, '_, D> {
 impl<const D: usize> PatchCells<D, 9> for ForceCells<'_, '_, D> {
     const DEGREE: usize = 1;
 
-    fn normals(&self, _: usize, numbers: &mut [f64]) {
-        numbers.fill(0.0);
-    }
-
-    fn normal(&self, _: Corner, _: usize) -> [f64; 3] {
-        [0.0; 3]
-    }
-
-    fn given(&self, _: Corner, _: usize) -> [f64; 3] {
-        [0.0; 3]
-    }
-
     fn problem(&self, corner: Corner, _: &[Corner]) -> CellProblem<9> {
         let mut differences = [[0.0; 3]; 4];
         let of_vertices = self.differences(corner.cell());
@@ -137,7 +109,7 @@ impl<const D: usize> PatchCells<D, 9> for ForceCells<'_, '_, D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// Changes a flux that has the forces not yet.
+    /// Moves multipliers to facets in a flux without jumps.
     pub(in crate::error_bound) fn move_to_facets(
         &self,
         function: &PrimalDualPair<D>,
@@ -160,15 +132,7 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         for ((cell, local), change) in &changes {
-            match flux.degree() {
-                0 => {
-                    // the same at all vertices
-                    let through = vertices_of::<D>(*local).next().map_or(0.0, |j| change[j]);
-                    flux.add_through(*cell, *local, through);
-                }
-                _ => vertices_of::<D>(*local)
-                    .for_each(|j| flux.add_density(*cell, *local, j, change[j])),
-            }
+            flux.add_densities(*cell, *local, change);
         }
         changes.sort_unstable_by_key(|(place, _)| *place);
         let changes = &changes[..];

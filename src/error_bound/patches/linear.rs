@@ -184,10 +184,6 @@ impl<const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, D> {
         [self.through(corner.cell(), facet) / D as f64, 0.0, 0.0]
     }
 
-    fn given(&self, _: Corner, _: usize) -> [f64; 3] {
-        [0.0; 3]
-    }
-
     /// Fluxes with the sum zero are constants along the facet opposite the vertex: their products are
     /// `D^2 alpha |K| grad_a . grad_b`, the gradients within the facet of its barycentric coordinates. Orthogonal to
     /// them are `x` less the barycentre and the constant across the facet.

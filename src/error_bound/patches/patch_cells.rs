@@ -27,12 +27,19 @@ pub(super) trait PatchCells<const D: usize, const N: usize>: Sync {
         if Self::DEGREE == 0 { facet } else { Flux::<D>::place(facet, p + usize::from(p >= facet)) }
     }
 
-    /// Sets the numbers that the flux of a cell, in the order of [`Flux`], has by `alpha grad u . n`.
-    fn normals(&self, cell: usize, numbers: &mut [f64]);
-    /// The numbers of `phi alpha grad u . n` on a facet, `phi` the hat function of a vertex of it.
-    fn normal(&self, corner: Corner, facet: usize) -> [f64; 3];
-    /// The numbers that the flux of a vertex, with that of `phi alpha grad u . n`, has on a Neumann or contact facet.
-    fn given(&self, corner: Corner, facet: usize) -> [f64; 3];
+    /// Sets the numbers that the flux of a cell, in the order of [`Flux`], has by `alpha grad u . n`: zeros unless stated.
+    fn normals(&self, _cell: usize, numbers: &mut [f64]) {
+        numbers.fill(0.0);
+    }
+    /// The numbers of `phi alpha grad u . n` on a facet, `phi` the hat function of a vertex of it; likewise.
+    fn normal(&self, _corner: Corner, _facet: usize) -> [f64; 3] {
+        [0.0; 3]
+    }
+    /// The numbers that the flux of a vertex, with that of `phi alpha grad u . n`, has on a Neumann or contact facet;
+    /// likewise.
+    fn given(&self, _corner: Corner, _facet: usize) -> [f64; 3] {
+        [0.0; 3]
+    }
     /// The least squares problem of a cell in the patch of a vertex with these corners, as if all numbers were free.
     fn problem(&self, corner: Corner, corners: &[Corner]) -> CellProblem<N>;
 }

@@ -25,7 +25,6 @@ use crate::error_bound::quadratics::{
 };
 use crate::error_bound::shared_multipliers::SharedNodes;
 use crate::error_bound::{NoBound, PrimalDualPair};
-use crate::measure::Admissible;
 use crate::mesh::{HalfFacet, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
 use crate::real::Point;
@@ -103,16 +102,11 @@ impl<const D: usize> Space<'_, D> {
                     let products = products_on_facet::<D>(&data.normal[facet], facet);
                     add(&mut data.divergence, |a, j| -products[a][j]);
                 }
-                for (own, divergence) in data
-                    .divergence
-                    .iter_mut()
-                    .enumerate()
-                    .take(D + 1)
-                    .filter(|_| pressing.is_some())
-                {
-                    let Some(pressing) = &pressing else { continue };
-                    let moved = pressing.moved_at(self.mesh, &tested, (cell, own));
-                    divergence.iter_mut().zip(moved).for_each(|(sum, moved)| *sum += moved);
+                if let Some(pressing) = &pressing {
+                    for (own, divergence) in data.divergence.iter_mut().enumerate().take(D + 1) {
+                        let moved = pressing.moved_at(self.mesh, &tested, (cell, own));
+                        divergence.iter_mut().zip(moved).for_each(|(sum, moved)| *sum += moved);
+                    }
                 }
             }
             Ok::<(), Infallible>(())
@@ -188,16 +182,16 @@ impl<const D: usize> Space<'_, D> {
         let alpha = self.alpha(cell);
         let varying = self.varying_in(cell);
         let mut data = KnownOfCell::default();
-        let admissible = Admissible { bounds: [None, None], ..self.admissible_in(function, cell) };
+        let of_function = self.gradients_at_vertices(function, cell);
+        let geometry = self.mesh.geometry(cell);
         for (k, basis) in corners.iter().enumerate() {
             let slope = |m: usize| -> f64 {
                 local.iter().zip(&basis.derivatives).take(n).map(|(u, d)| u * d[m]).sum()
             };
             let slopes: [f64; 4] = array_of(|m| if m <= D { slope(m) } else { 0.0 });
-            let vertex = Node::vertex(k).centre(D);
-            let (_, mut difference) = admissible.at(&vertex, &Point::zeros());
-            for (gradient, slope) in admissible.gradients.iter().zip(&slopes) {
-                difference -= gradient * *slope;
+            let mut difference = of_function[k];
+            for (m, slope) in slopes.iter().enumerate().take(D + 1) {
+                difference -= geometry.gradient(m) * *slope;
             }
             data.difference[k][..D].copy_from_slice(difference.as_slice());
             let coefficient = match varying {
