@@ -180,10 +180,9 @@ fn compare<const D: usize>(drawn: &Drawn, label: &str, c: f64, checks: &mut Chec
             && forces.abs() <= 1e-8 + 64.0 * n.powi(D as i32) * rounding,
         || format!("{}: forces {:?} {:?}", what(), near.resultant, far.resultant),
     );
-    // a bound is the root of an integral of forces times distances, which have the rounding of the data; which cells
-    // touch, and where multipliers are exchanged, may be decided by it
+    // a bound is the root of an integral of forces times distances, which have the rounding of the data
     let squares = [near.bound, far.bound].map(|bound| bound.map_or(0.0, |bound| bound * bound));
-    let share = if label.contains("p2") { 0.2 } else { 1e-4 };
+    let share = if label.contains("p2") { 0.1 } else { 1e-6 };
     checks.that(
         near.bound.is_some() == far.bound.is_some()
             && (squares[0] - squares[1]).abs() <= share * squares[0] + 1e-12 + 64.0 * rounding,
