@@ -148,3 +148,10 @@ impl<const D: usize> Flux<D> {
         &mut self.numbers[cells.start * n..cells.end * n]
     }
 }
+
+/// How far a linear function with these values at vertices can be taken from its mean, at most all the way,
+/// with the sign of the mean everywhere.
+pub(super) fn share_of_one_sign(mean: f64, values: &[f64]) -> f64 {
+    let deepest = values.iter().map(|v| mean.signum() * (mean - v)).fold(0.0, f64::max);
+    if deepest > mean.abs() { mean.abs() / deepest } else { 1.0 }
+}

@@ -49,8 +49,6 @@ pub(super) struct CellLoads {
     pub functionals: Vec<Products>,
     /// The nodes whose multipliers cells share.
     pub shared: Option<SharedNodes>,
-    /// By cell what facets have of the products of its multiplier with barycentric coordinates; empty if nothing.
-    pub on_facets: Vec<[f64; 4]>,
 }
 
 impl CellLoads {
@@ -59,9 +57,9 @@ impl CellLoads {
         let places = cell * self.functionals.len()..(cell + 1) * self.functionals.len();
         places.map(|k| self.values[k] - self.given[k])
     }
-    /// Whether a cell has a multiplier.
-    pub fn presses(&self, cell: usize) -> bool {
-        self.multipliers(cell).any(|multiplier| multiplier != 0.0)
+    /// The largest multiplier of a cell.
+    pub fn strength(&self, cell: usize) -> f64 {
+        self.multipliers(cell).fold(0.0, |most, multiplier| most.max(multiplier.abs()))
     }
     /// The multiplier of a cell, tested with the hat function of one of its vertices times barycentric coordinates.
     pub fn multiplier_at(&self, cell: usize, own: usize) -> [f64; 4] {
@@ -139,15 +137,7 @@ impl<const D: usize> Space<'_, D> {
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
         let neumann = self.neumann_products()?;
         let contact = contact_products(forces, &functionals);
-        Ok(CellLoads {
-            values,
-            given,
-            neumann,
-            contact,
-            functionals,
-            shared,
-            on_facets: Vec::new(),
-        })
+        Ok(CellLoads { values, given, neumann, contact, functionals, shared })
     }
 
     /// The load less the reaction term of a discrete function, by cell and unknown.
@@ -189,17 +179,26 @@ impl<const D: usize> Space<'_, D> {
         let mut neumann = Vec::new();
         if self.problem.has_neumann_data() {
             for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
-                let measure = self.facet_measure(facet);
-                let mut products = Products::default();
-                for (point, weight) in self.facet_rule.iter() {
-                    let flux = weight * measure * self.neumann_at(facet, group, point)?;
-                    let point = facet_to_cell(point, facet.1);
-                    add(&mut products, |a, j| flux * point[a] * point[j]);
-                }
-                neumann.push((facet, products));
+                neumann.push((facet, self.neumann_products_on(facet, group)?));
             }
         }
         Ok(neumann)
+    }
+
+    /// The products of the Neumann datum on a facet.
+    pub(super) fn neumann_products_on(
+        &self,
+        facet: HalfFacet,
+        group: usize,
+    ) -> Result<Products, NoBound> {
+        let measure = self.facet_measure(facet);
+        let mut products = Products::default();
+        for (point, weight) in self.facet_rule.iter() {
+            let flux = weight * measure * self.neumann_at(facet, group, point)?;
+            let point = facet_to_cell(point, facet.1);
+            add(&mut products, |a, j| flux * point[a] * point[j]);
+        }
+        Ok(products)
     }
 
     /// The flux with these moments, `D` of each facet of each cell, without its numbers inside cells.
@@ -226,9 +225,13 @@ impl<const D: usize> Space<'_, D> {
         }
     }
 
-    /// Sets `c_FF` such that the divergence balances loads and multipliers tested with linear functions. What rounding
-    /// leaves of the balance of a cell is divided among these.
-    pub(super) fn balance(&self, loads: &CellLoads, flux: &mut Flux<D>) {
+    /// Sets `c_FF` such that the divergence balances loads and multipliers tested with linear functions, these less what
+    /// facets have of them. What rounding leaves of the balance of a cell is divided among these.
+    pub(super) fn balance(
+        &self,
+        (loads, on_facets): (&CellLoads, &[[f64; 4]]),
+        flux: &mut Flux<D>,
+    ) {
         let (n, n_cells, square) = (self.per_cell(), self.mesh.n_cells(), flux.per_cell());
         let d = D as f64;
         let mut given = vec![[0.0; 4]; if loads.neumann.is_empty() { 0 } else { n_cells }];
@@ -244,7 +247,7 @@ impl<const D: usize> Space<'_, D> {
                 for (load, of_linear) in loads.values[cell * n..][..n].iter().zip(&linear) {
                     tested.iter_mut().zip(of_linear).for_each(|(to, l)| *to += load * l);
                 }
-                for less in [given.get(cell), loads.on_facets.get(cell)].into_iter().flatten() {
+                for less in [given.get(cell), on_facets.get(cell)].into_iter().flatten() {
                     tested.iter_mut().zip(less).for_each(|(to, less)| *to -= less);
                 }
                 let through: f64 = flux.iter().sum::<f64>() / d;

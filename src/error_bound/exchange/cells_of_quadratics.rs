@@ -87,14 +87,6 @@ impl<'c, const D: usize> CellsOfQuadratics<'c, D> {
         (flux.enumerate().map(term).sum::<f64>() + of_cell.energy).max(0.0)
     }
 
-    /// The part of a cell in the square of the bound: mismatch and complementarity.
-    pub fn square(&self, k: usize) -> f64 {
-        let cell = &self.cells[k];
-        let gaps = &cell.gaps[usize::from(cell.sum() < 0.0)];
-        let complementarity: f64 = cell.multiplier.iter().zip(gaps).map(|(m, gap)| m * gap).sum();
-        self.mismatch(k) + 2.0 * complementarity.abs()
-    }
-
     /// The square of the mismatch and twice a linear term by a change of numbers, each given by its cell, its number
     /// in the cell and a sign: half of the derivative, and half of the second derivative.
     pub fn slopes(&self, terms: &[(usize, usize, f64)], linear: f64) -> [f64; 2] {
@@ -126,22 +118,20 @@ impl<const D: usize> Space<'_, D> {
         &self,
         numbers: &[u32],
         multiplier: impl Fn(usize) -> [f64; 4] + Sync,
-        function: &PrimalDualPair<D>,
-        flux: &Flux<D>,
+        pair: &PrimalDualPair<D>,
     ) -> Vec<CellOfQuadratics> {
         let rule = Rule::new(D, DEGREE);
         collect(numbers.len(), |k| {
             let number = numbers[k] as usize;
-            let of_cell = (multiplier(number), flux.of_cell(number));
-            self.cell_of_quadratics(number, function, of_cell, &rule)
+            self.cell_of_quadratics(number, pair, multiplier(number), &rule)
         })
     }
 
     fn cell_of_quadratics(
         &self,
         number: usize,
-        function: &PrimalDualPair<D>,
-        (multiplier, flux): ([f64; 4], &[f64]),
+        pair: &PrimalDualPair<D>,
+        multiplier: [f64; 4],
         rule: &Rule,
     ) -> CellOfQuadratics {
         let n = CellsOfQuadratics::<D>::N;
@@ -149,7 +139,8 @@ impl<const D: usize> Space<'_, D> {
         let per_volume = 1.0 / (D as f64 * volume);
         let corners = self.mesh.corners(number);
         let alpha = self.alpha(number);
-        let admissible = self.admissible_in(function, number);
+        let admissible = self.admissible_in(pair, number);
+        let flux = pair.flux.of_cell(number);
         let mut gaps = [[0.0; 4]; 2];
         let (mut of_gradient, mut energy) = ([0.0; 16], 0.0);
         for (point, weight) in rule.iter() {

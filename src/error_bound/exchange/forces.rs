@@ -15,7 +15,7 @@ use crate::arrays::map_entries;
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
-use crate::error_bound::integrals::share_of_one_sign;
+use crate::error_bound::flux::share_of_one_sign;
 use crate::error_bound::quadratics::vertices_of;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
 use crate::parallel::vectors::indices;
@@ -131,9 +131,8 @@ impl<const D: usize> Space<'_, D> {
     /// Changes the contact forces of quadratics along facets, as far as that makes the bound smaller.
     pub(in crate::error_bound) fn exchange_forces(
         &self,
-        function: &PrimalDualPair<D>,
+        pair: &mut PrimalDualPair<D>,
         neighbours: &Neighbours,
-        flux: &mut Flux<D>,
     ) {
         let facets: Vec<(HalfFacet, usize)> =
             self.grouped_facets_of(BoundaryCondition::Contact).collect();
@@ -143,12 +142,12 @@ impl<const D: usize> Space<'_, D> {
         }
         let touches = |cell: usize| self.mesh.cell(cell).iter().any(|&v| touches[v as usize]);
         let numbers = indices(self.mesh.n_cells(), touches);
-        let mut of_numbers = self.cells_of_quadratics(&numbers, |_| [0.0; 4], function, flux);
+        let mut of_numbers = self.cells_of_quadratics(&numbers, |_| [0.0; 4], pair);
         let products = self.products_of_fluxes(&numbers);
         let mut cells = CellsOfQuadratics::new(&mut of_numbers, &products, 0);
         let in_contact = |&(facet, group): &(HalfFacet, usize)| {
             let gap = self.data.gap.of(group)?;
-            let admissible = self.admissible_in(function, facet.0);
+            let admissible = self.admissible_in(pair, facet.0);
             let mut gaps = [0.0; 4];
             for (point, weight) in self.facet_rule.iter() {
                 let x = self.facet_point(point, facet.0, facet.1);
@@ -188,7 +187,7 @@ impl<const D: usize> Space<'_, D> {
                 }
             }
         }
-        flux.replace_in(&numbers, |k| &of_numbers[k].flux);
+        pair.flux.replace_in(&numbers, |k| &of_numbers[k].flux);
     }
 
     /// Follows a chain of cells around a vertex through all facets there but that by which it came to the last of its

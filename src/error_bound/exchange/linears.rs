@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease};
+use super::{ExchangeStep, FacetOfCell, ROUNDING};
 use crate::algebra::Contact;
 use crate::arrays::array_of;
 use crate::assemble::cut_simplices::in_space;
@@ -11,18 +11,14 @@ use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact_forces::NodeForce;
-use crate::error_bound::flux::Flux;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Mesh, Neighbours};
-use crate::parallel::vectors::{
-    collect, for_each_chunk, for_each_chunk_of_groups, largest, sum_chunks,
-};
+use crate::parallel::vectors::{collect, for_each_chunk, for_each_chunk_of_groups, largest};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
-/// Most visits of each facet. The matrix of the least-squares problem is the mass matrix of fluxes, whose condition
-/// does not grow with the number of cells.
-const SWEEPS: u8 = 4;
+/// The visits of each facet.
+const SWEEPS: usize = 4;
 
 /// The degree of the rule for distances from obstacles that are no constants.
 const DEGREE: usize = 2;
@@ -68,13 +64,6 @@ impl<const D: usize> CellOfLinears<D> {
     /// The sum of the fluxes through the facets.
     fn sum(&self) -> f64 {
         self.flux.iter().sum()
-    }
-
-    /// The contribution of the cell to the square of the bound.
-    fn square(&self) -> f64 {
-        let mismatch = self.difference.norm_squared() + self.variance * self.sum().powi(2);
-        let gap = self.gap(self.multiplier.signum()).unwrap_or(0.0);
-        self.weight * mismatch + 2.0 * self.multiplier.abs() * gap
     }
 
     /// The mean distance from the obstacle that presses with this sign.
@@ -151,46 +140,44 @@ impl<const D: usize> Space<'_, D> {
         by_cell
     }
 
-    /// Exchanges multipliers for flux of linears, in and between the cells that count.
+    /// Exchanges multipliers for flux of linears, in and between the cells that count. Those that are rounding beside the
+    /// largest one before facets had a share are not exchanged.
     pub(in crate::error_bound) fn exchange_linears(
         &self,
-        function: &PrimalDualPair<D>,
-        multipliers: &[f64],
+        pair: &mut PrimalDualPair<D>,
+        (multipliers, largest): (&[f64], f64),
         (neighbours, counts): (&Neighbours, Counts<'_>),
-        flux: &mut Flux<D>,
     ) {
-        let largest = largest(multipliers.len(), |cell| multipliers[cell].abs());
         let presses = |cell: usize| counts(cell) && multipliers[cell].abs() > ROUNDING * largest;
         let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, counts), false);
         let rule = Rule::new(D, DEGREE);
         let mut cells = collect(numbers.len(), |k| {
             let number = numbers[k] as usize;
             let multiplier = if presses(number) { multipliers[number] } else { 0.0 };
-            self.cell_of_linears(number, function, multiplier, (flux.of_cell(number), &rule))
+            self.cell_of_linears(number, pair, multiplier, &rule)
         });
-        let square =
-            sum_chunks(&mut cells, 1, |_, cells| cells.iter().map(CellOfLinears::square).sum());
         let mesh = self.mesh;
-        steps.visit(SWEEPS, &mut cells, square, |cells, _, step| match step {
+        steps.visit(SWEEPS, &mut cells, |cells, _, step| match step {
             ExchangeStep::Between(at) => exchange_between(mesh, cells, at.map(FacetOfCell::half)),
             ExchangeStep::WithDirichlet(FacetOfCell { cell, local }) => {
                 exchange_with_dirichlet(mesh, &mut cells[cell as usize], local.into())
             }
-            ExchangeStep::Inside(_) => 0.0,
+            ExchangeStep::Inside(_) => {}
         });
-        flux.replace_in(&numbers, |k| &cells[k].flux);
+        pair.flux.replace_in(&numbers, |k| &cells[k].flux);
     }
 
     fn cell_of_linears(
         &self,
         number: usize,
-        function: &PrimalDualPair<D>,
+        pair: &PrimalDualPair<D>,
         multiplier: f64,
-        (flux, rule): (&[f64], &Rule),
+        rule: &Rule,
     ) -> CellOfLinears<D> {
         let volume = self.mesh.geometry(number).volume;
         let alpha = self.alpha(number);
-        let admissible = self.admissible_in(function, number);
+        let admissible = self.admissible_in(pair, number);
+        let flux = pair.flux.of_cell(number);
         let corners = self.mesh.corners(number);
         let centre: Point<D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
         let squares: f64 = corners[..=D].iter().map(|x| (centre - x).norm_squared()).sum();
@@ -227,18 +214,17 @@ impl<const D: usize> Space<'_, D> {
     }
 }
 
-/// Exchanges the multipliers of two cells for the flux through their facet. The result is by how much the square of the
-/// bound falls.
+/// Exchanges the multipliers of two cells for the flux through their facet.
 fn exchange_between<const D: usize>(
     mesh: &Mesh<D>,
     cells: &mut [CellOfLinears<D>],
     [(here, facet_here), (there, facet_there)]: [HalfFacet; 2],
-) -> f64 {
+) {
     let [of_here, of_there] = [&cells[here], &cells[there]];
     let sign = (of_here.multiplier + of_there.multiplier).signum();
     let gaps = of_here.gap(sign).zip(of_there.gap(sign));
     let gaps = gaps.filter(|_| of_here.multiplier * of_there.multiplier >= 0.0);
-    let Some((gap_here, gap_there)) = gaps else { return 0.0 };
+    let Some((gap_here, gap_there)) = gaps else { return };
     let at_centre = [of_here.at_centre(mesh, facet_here), of_there.at_centre(mesh, facet_there)];
     let [slope, curvature] = of_here.slopes(&at_centre[0]);
     let [slope_there, curvature_there] = of_there.slopes(&at_centre[1]);
@@ -246,30 +232,25 @@ fn exchange_between<const D: usize>(
     let curvature = curvature + curvature_there;
     let (a, b) = (-of_there.multiplier, of_here.multiplier);
     let exchange = (-slope / curvature).max(a.min(b)).min(a.max(b));
-    if !exchange.is_finite() {
-        return 0.0;
+    if exchange.is_finite() {
+        cells[here].add(facet_here, &at_centre[0], exchange);
+        cells[there].add(facet_there, &at_centre[1], -exchange);
     }
-    cells[here].add(facet_here, &at_centre[0], exchange);
-    cells[there].add(facet_there, &at_centre[1], -exchange);
-    decrease([slope, curvature], exchange)
 }
 
-/// Exchanges the multiplier of a cell for the flux through a Dirichlet facet. The result is by how much the square of
-/// the bound falls.
+/// Exchanges the multiplier of a cell for the flux through a Dirichlet facet.
 fn exchange_with_dirichlet<const D: usize>(
     mesh: &Mesh<D>,
     cell: &mut CellOfLinears<D>,
     local: usize,
-) -> f64 {
+) {
     let sign = cell.multiplier.signum();
-    let Some(gap) = cell.gap(sign) else { return 0.0 };
+    let Some(gap) = cell.gap(sign) else { return };
     let at_centre = cell.at_centre(mesh, local);
     let [slope, curvature] = cell.slopes(&at_centre);
     let slope = slope - sign * gap;
     let exchange = sign * (-sign * slope / curvature).min(sign * cell.multiplier);
-    if !exchange.is_finite() {
-        return 0.0;
+    if exchange.is_finite() {
+        cell.add(local, &at_centre, exchange);
     }
-    cell.add(local, &at_centre, exchange);
-    decrease([slope, curvature], exchange)
 }

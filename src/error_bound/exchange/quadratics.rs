@@ -6,18 +6,18 @@
 //! added to `c_AA` and taken from `c_BB` changes the multiplier of the cell at the vertices `A` and `B` alone.
 
 use super::cells_of_quadratics::{CellOfQuadratics, CellsOfQuadratics};
-use super::{ExchangeStep, FacetOfCell, ROUNDING, decrease};
+use super::{ExchangeStep, FacetOfCell, ROUNDING};
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
-use crate::error_bound::integrals::share_of_one_sign;
+use crate::error_bound::flux::share_of_one_sign;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
 use crate::mesh::{HalfFacet, Mesh, Neighbours};
-use crate::parallel::vectors::{collect, largest, sum_chunks};
+use crate::parallel::vectors::{collect, for_each_chunk, largest};
 
-/// Most visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
-const SWEEPS: u8 = 8;
+/// The visits of each facet.
+const SWEEPS: usize = 8;
 
 impl<const D: usize> CellsOfQuadratics<'_, D> {
     /// Moves the multiplier of a cell towards its mean until the multiplier has one sign. Numbers inside the cell keep
@@ -43,8 +43,8 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
         }
     }
 
-    /// Visits a step. This function and those below return by how much the square of the bound falls.
-    fn visit(&mut self, mesh: &Mesh<D>, step: ExchangeStep) -> f64 {
+    /// Visits a step.
+    fn visit(&mut self, mesh: &Mesh<D>, step: ExchangeStep) {
         match step {
             ExchangeStep::Between(facets) => {
                 let at = facets.map(FacetOfCell::half);
@@ -52,114 +52,113 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
                 let position = |v: u32| other.iter().position(|&w| w == v);
                 let common =
                     vertices_of::<D>(at[0].1).filter_map(|j| Some([j, position(cell[j])?]));
-                common.map(|vertex| self.exchange_between(at, vertex)).sum()
+                common.for_each(|vertex| self.exchange_between(at, vertex));
             }
             ExchangeStep::WithDirichlet(facet) => {
                 let at = facet.half();
-                vertices_of::<D>(at.1).map(|j| self.exchange_with_dirichlet(at, j)).sum()
+                vertices_of::<D>(at.1).for_each(|j| self.exchange_with_dirichlet(at, j));
             }
             ExchangeStep::Inside(k) => {
                 let pairs = (0..D + 1).flat_map(|a| (a + 1..=D).map(move |b| [a, b]));
-                pairs.map(|pair| self.exchange_inside(k as usize, pair)).sum()
+                pairs.for_each(|pair| self.exchange_inside(k as usize, pair));
             }
         }
     }
 
     /// Exchanges multipliers of two cells at a vertex of their facet, by its numbers in the two cells.
-    fn exchange_between(&mut self, at: [HalfFacet; 2], vertex: [usize; 2]) -> f64 {
+    fn exchange_between(&mut self, at: [HalfFacet; 2], vertex: [usize; 2]) {
         let [here, there] = at.map(|(k, _)| &self.cells[k]);
         let sign = (here.sum() + there.sum()).signum();
         let obstacle = usize::from(sign < 0.0);
         let exchanges = |cell: &CellOfQuadratics| cell.has_one_sign && cell.is_given[obstacle];
         if here.sum() * there.sum() < 0.0 || !exchanges(here) || !exchanges(there) {
-            return 0.0;
+            return;
         }
         let numbers = map_entries([0, 1], |s| {
             let ((k, local), vertex) = (at[s], vertex[s]);
             (k, Flux::<D>::place(local, vertex), vertex)
         });
-        self.exchange_numbers(numbers, sign)
+        self.exchange_numbers(numbers, sign);
     }
 
     /// Exchanges multipliers of a sign for flux: adds to one number of the flux what it takes from another. Each number
     /// is given by its cell, its place in the cell and the vertex at which the number changes the divergence.
-    fn exchange_numbers(&mut self, numbers: [(usize, usize, usize); 2], sign: f64) -> f64 {
+    fn exchange_numbers(&mut self, numbers: [(usize, usize, usize); 2], sign: f64) {
         let [(here, one, a), (there, other, b)] = numbers;
         let [of_here, of_there] = [&self.cells[here], &self.cells[there]];
         let of_gaps = sign * (of_there.gap(sign, b) - of_here.gap(sign, a));
         let [slope, curvature] = self.slopes(&[(here, one, 1.0), (there, other, -1.0)], of_gaps);
         let least = -sign * slope / curvature;
         let exchange = sign * least.max(-of_there.room(sign, b)).min(of_here.room(sign, a));
-        if !exchange.is_finite() {
-            return 0.0;
+        if exchange.is_finite() {
+            self.add(here, one, a, exchange);
+            self.add(there, other, b, -exchange);
         }
-        self.add(here, one, a, exchange);
-        self.add(there, other, b, -exchange);
-        decrease([slope, curvature], exchange)
     }
 
     /// Exchanges the multiplier of a cell at a vertex of a Dirichlet facet.
-    fn exchange_with_dirichlet(&mut self, (k, local): HalfFacet, vertex: usize) -> f64 {
+    fn exchange_with_dirichlet(&mut self, (k, local): HalfFacet, vertex: usize) {
         let cell = &self.cells[k];
         let sign = cell.sum().signum();
         if !(cell.has_one_sign && cell.is_given[usize::from(sign < 0.0)]) {
-            return 0.0;
+            return;
         }
         let number = Flux::<D>::place(local, vertex);
         let of_gap = -sign * cell.gap(sign, vertex);
         let [slope, curvature] = self.slopes(&[(k, number, 1.0)], of_gap);
         let exchange = sign * (-sign * slope / curvature).min(cell.room(sign, vertex));
-        if !exchange.is_finite() {
-            return 0.0;
+        if exchange.is_finite() {
+            self.add(k, number, vertex, exchange);
         }
-        self.add(k, number, vertex, exchange);
-        decrease([slope, curvature], exchange)
     }
 
     /// Exchanges the multiplier of a cell between two of its vertices.
-    fn exchange_inside(&mut self, k: usize, [a, b]: [usize; 2]) -> f64 {
+    fn exchange_inside(&mut self, k: usize, [a, b]: [usize; 2]) {
         let cell = &self.cells[k];
         if !cell.has_one_sign {
-            return 0.0;
+            return;
         }
         let sign = cell.sum().signum();
-        self.exchange_numbers(map_entries([a, b], |v| (k, Flux::<D>::place(v, v), v)), sign)
+        self.exchange_numbers(map_entries([a, b], |v| (k, Flux::<D>::place(v, v), v)), sign);
     }
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// Exchanges multipliers for flux of quadratics.
+    /// Exchanges multipliers for flux of quadratics, these less what facets have of them. What is rounding beside the
+    /// multipliers before that is not exchanged.
     pub(in crate::error_bound) fn exchange_quadratics(
         &self,
-        function: &PrimalDualPair<D>,
-        loads: &CellLoads,
+        pair: &mut PrimalDualPair<D>,
+        (loads, on_facets): (&CellLoads, &[[f64; 4]]),
         neighbours: &Neighbours,
-        flux: &mut Flux<D>,
     ) {
-        let multipliers = self.linear_multipliers(loads);
-        let strength = |cell: usize| {
-            multipliers[cell][..=D].iter().fold(0.0, |most: f64, m| most.max(m.abs()))
-        };
-        let largest = largest(multipliers.len(), strength);
-        let presses = |cell: usize| strength(cell) > ROUNDING * largest;
+        let mut multipliers = self.linear_multipliers(loads);
+        let strength =
+            |of_cell: &[f64; 4]| of_cell.iter().fold(0.0, |most: f64, m| most.max(m.abs()));
+        let largest = largest(multipliers.len(), |cell| strength(&multipliers[cell]));
+        for (cell, (multiplier, moved)) in multipliers.iter_mut().zip(on_facets).enumerate() {
+            let volume = self.mesh.geometry(cell).volume;
+            let moved = linear::<D>(&moved.map(|product| product / volume));
+            multiplier.iter_mut().zip(moved).for_each(|(m, moved)| *m -= moved);
+        }
+        let presses = |cell: usize| strength(&multipliers[cell]) > ROUNDING * largest;
         let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, &|_| true), true);
         let multiplier = |cell: usize| if presses(cell) { multipliers[cell] } else { [0.0; 4] };
-        let mut cells = self.cells_of_quadratics(&numbers, multiplier, function, flux);
+        let mut cells = self.cells_of_quadratics(&numbers, multiplier, pair);
         let products = self.products_of_fluxes(&numbers);
-        let square = sum_chunks(&mut cells, 1, |range, cells| {
+        for_each_chunk(&mut cells, |range, cells| {
             let mut cells = CellsOfQuadratics::<D>::new(cells, &products, range.start);
             (0..range.len()).for_each(|k| cells.make_sign_definite(k));
-            (0..range.len()).map(|k| cells.square(k)).sum()
         });
-        steps.visit(SWEEPS, &mut cells, square, |cells, first, step| {
-            CellsOfQuadratics::new(cells, &products, first).visit(self.mesh, step)
+        steps.visit(SWEEPS, &mut cells, |cells, first, step| {
+            CellsOfQuadratics::new(cells, &products, first).visit(self.mesh, step);
         });
-        flux.replace_in(&numbers, |k| &cells[k].flux);
+        pair.flux.replace_in(&numbers, |k| &cells[k].flux);
     }
 
     /// The multipliers of obstacles, projected on linear functions, at the vertices of cells.
     fn linear_multipliers(&self, loads: &CellLoads) -> Vec<[f64; 4]> {
-        let (n, d) = (self.per_cell(), D as f64);
+        let n = self.per_cell();
         let of_cell = |cell: usize| {
             let volume = self.mesh.geometry(cell).volume;
             let (values, given) = (&loads.values[cell * n..], &loads.given[cell * n..]);
@@ -170,13 +169,15 @@ impl<const D: usize> Space<'_, D> {
                     *mean += multiplier * products.iter().sum::<f64>();
                 }
             }
-            if let Some(on_facets) = loads.on_facets.get(cell) {
-                means.iter_mut().zip(on_facets).for_each(|(mean, moved)| *mean -= moved / volume);
-            }
-            let sum: f64 = means.iter().sum();
-            let value = |k: usize| (d + 1.0) * ((d + 2.0) * means[k] - sum);
-            array_of(|k| if k <= D { value(k) } else { 0.0 })
+            linear::<D>(&means)
         };
         collect(self.mesh.n_cells(), of_cell)
     }
+}
+
+/// The linear function with these means of its products with barycentric coordinates, at the vertices of the cell.
+fn linear<const D: usize>(means: &[f64; 4]) -> [f64; 4] {
+    let (d, sum) = (D as f64, means[..=D].iter().sum::<f64>());
+    let value = |k: usize| (d + 1.0) * ((d + 2.0) * means[k] - sum);
+    array_of(|k| if k <= D { value(k) } else { 0.0 })
 }

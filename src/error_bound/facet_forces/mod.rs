@@ -2,15 +2,17 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `mod` | a force, and one that is asked for |
-//! | `asked` | the forces that the function of a pair asks for |
+//! | `mod` | a force; the jump of a normal flux |
+//! | `flux_jumps` | the jumps of the normal flux of the function of a pair |
 //!
 //! What multipliers give of them is found around vertices: [`patches`](super::patches).
 
-mod asked;
+mod flux_jumps;
+
+pub(super) use flux_jumps::fade;
 
 use super::quadratics::products_on_facet;
-use crate::mesh::{HalfFacet, Mesh};
+use crate::mesh::HalfFacet;
 
 /// The force of an obstacle on a facet: the flux of a pair leaves the two cells of the facet with this sum or, on a
 /// Neumann facet, exceeds the datum by it.
@@ -31,28 +33,22 @@ impl FacetForce {
     pub(in crate::error_bound) fn sides(&self) -> impl Iterator<Item = HalfFacet> {
         [Some(self.facet), self.other].into_iter().flatten()
     }
-    /// The density at a vertex of one of the two cells, by its number there.
-    pub(in crate::error_bound) fn at_vertex<const D: usize>(
-        &self,
-        mesh: &Mesh<D>,
-        (cell, vertex): (usize, usize),
-    ) -> f64 {
-        let vertex = mesh.cell(cell)[vertex];
-        let place = mesh.cell(self.facet.0).iter().position(|&v| v == vertex);
-        self.densities[place.expect("both cells of a facet have its vertices")]
-    }
     /// The integrals of the force times barycentric coordinates, by vertices of the cell.
     pub(in crate::error_bound) fn moments<const D: usize>(&self) -> [f64; 4] {
         products_on_facet::<D>(&self.densities, self.facet.1).map(|row| row.iter().sum())
     }
 }
 
-/// A force that the function of a pair asks for.
+/// A jump of `alpha grad v . n` on a facet, `v` the function of a pair, and the force that the facet gets for it.
 #[derive(Clone, Copy)]
-pub(in crate::error_bound) struct AskedForce {
+pub(in crate::error_bound) struct FluxJump {
     pub force: FacetForce,
     /// The measure of the facet times `alpha grad v . n` from each side, at the vertices of the cell of that side.
     pub normal: [[f64; 4]; 2],
-    /// The share of what is asked for that the force has.
+    /// The measure of the facet times the jump, at the vertices of the first cell.
+    pub jump: [f64; 4],
+    /// The jump times the diameter of the cell over the coefficient, the smaller one of the two sides.
+    pub height: f64,
+    /// The share of the jump that the force has.
     pub share: f64,
 }

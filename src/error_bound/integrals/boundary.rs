@@ -3,18 +3,20 @@
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
-use super::cell_flux::share_of_one_sign;
 use crate::assemble::space::Space;
+use crate::error_bound::flux::share_of_one_sign;
+use crate::error_bound::friedrichs::FriedrichsData;
 use crate::error_bound::quadratics::vertices_of;
 use crate::error_bound::{NoBound, PrimalDualPair};
+use crate::measure::Admissible;
 use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::{Rule, facet_to_cell};
 
 /// A negative contact force below this share of the largest one is rounding.
 const FORCE_ROUNDING: f64 = 1e-8;
 
-/// A distance from an obstacle of this many units of rounding of value and obstacle is zero on a facet: without it the
-/// bound of ridge-2d is 2e-8 where all else is zero.
+/// A distance from an obstacle of this many units of rounding of value and data is zero on a facet: without it the bound of
+/// ridge-2d is 2e-8 where all else is zero.
 const ROUNDINGS: f64 = 4.0;
 
 /// The measure of a facet times `q.n` on it.
@@ -69,7 +71,7 @@ pub(in crate::error_bound) struct BoundaryTerms {
     /// The complementarity of obstacles on facets, half to each cell.
     pub(super) obstacle: Vec<f64>,
     /// Whether multipliers that are rounding count as the residual of the solver: where forces act on facets, and
-    /// Dirichlet data give the residual a constant.
+    /// Friedrichs' constant is known.
     pub(super) has_rounding: bool,
 }
 
@@ -102,8 +104,9 @@ impl<const D: usize> Space<'_, D> {
     ) -> Result<BoundaryTerms, NoBound> {
         let n_cells = self.mesh.n_cells();
         let zeros = |is_needed: bool| vec![0.0; if is_needed { n_cells } else { 0 }];
-        let has_fluxes =
-            self.problem.has_neumann_data() && self.mesh.has_condition(BoundaryCondition::Neumann);
+        // without data a flux of degree zero is zero there
+        let has_fluxes = (self.problem.has_neumann_data() || pair.degree > 1)
+            && self.mesh.has_condition(BoundaryCondition::Neumann);
         let has_gap = self.problem.has_gap();
         let rule = self.rule_of_facets(pair.degree);
         let mut terms = BoundaryTerms {
@@ -111,7 +114,7 @@ impl<const D: usize> Space<'_, D> {
             contact: zeros(has_gap),
             obstacle: self.facet_obstacle_terms(pair)?,
             has_rounding: !pair.forces.is_empty()
-                && self.mesh.has_condition(BoundaryCondition::Dirichlet),
+                && FriedrichsData::of(self.mesh).constant().is_some(),
         };
         if has_fluxes {
             for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
@@ -171,22 +174,23 @@ impl<const D: usize> Space<'_, D> {
             if vertices_of::<D>(local).any(|j| sign * force.densities[j] < 0.0) {
                 return Err(NoBound::NegativeForce);
             }
-            let on_side = |side: HalfFacet| {
-                let admissible = self.admissible_in(pair, side.0);
-                let obstacle = admissible.bounds[k]?;
+            // the function has the same values from both sides
+            let function = Admissible { bounds: [None; 2], ..self.admissible_in(pair, cell) };
+            let on_side = |(side, _): HalfFacet| {
+                let obstacle = [&self.data.lower, &self.data.upper][k];
+                let obstacle = obstacle.of(self.mesh.region(side))?;
                 let mut sum = 0.0;
                 for (point, weight) in rule.iter() {
                     let x = self.facet_point(point, cell, local);
                     let point = facet_to_cell(point, local);
                     let density: f64 = force.densities.iter().zip(&point).map(|(s, b)| s * b).sum();
-                    let there = self.point_in(side.0, (cell, &point));
-                    let (value, _) = admissible.at(&there, &x);
-                    let at = self.at(obstacle, side.0, &x);
-                    let rounding = ROUNDINGS * f64::EPSILON * (value.abs() + at.abs());
+                    let (value, _) = function.at(&point, &x);
+                    let at = self.at(obstacle, side, &x);
+                    let rounding = f64::EPSILON * (value.abs() + at.abs()) + obstacle.rounding();
                     let distance = sign * (value - at);
-                    if distance > rounding {
-                        sum += weight * density.abs() * distance;
-                    }
+                    // a distance that is not finite counts
+                    let is_zero = rounding.is_finite() && distance <= ROUNDINGS * rounding;
+                    sum += weight * density.abs() * if is_zero { 0.0 } else { distance };
                 }
                 Some(sum)
             };
@@ -196,17 +200,6 @@ impl<const D: usize> Space<'_, D> {
             force.sides().for_each(|(cell, _)| terms[cell] += term / n_sides);
         }
         Ok(terms)
-    }
-
-    /// The barycentric coordinates in a cell of a point on a facet of it, from those in the other cell of the facet.
-    fn point_in(&self, cell: usize, (other, point): (usize, &[f64; 4])) -> [f64; 4] {
-        let mut found = [0.0; 4];
-        for (&v, b) in self.mesh.cell(other).iter().zip(point) {
-            if let Some(k) = self.mesh.cell(cell).iter().position(|&w| w == v) {
-                found[k] = *b;
-            }
-        }
-        found
     }
 
     /// The flux of a pair through a facet.

@@ -27,10 +27,10 @@ use std::f64::consts::PI;
 
 use boundary::BoundaryTerms;
 use cell_flux::CellFlux;
-pub(super) use cell_flux::share_of_one_sign;
 pub(super) use totals::Totals;
 
 use super::PrimalDualPair;
+use super::flux::share_of_one_sign;
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::Space;

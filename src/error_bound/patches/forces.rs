@@ -10,7 +10,7 @@
 //! ```
 //!
 //! `p` has equal and opposite normal components on the sides of facets, and `|alpha^-1/2 (p - phi (alpha grad v - q))|` is
-//! least. The patches of conforming functions contain the forces from the beginning, as given jumps.
+//! least. The patches of conforming functions have the forces as given jumps instead.
 
 use super::corners::{Corner, Corners};
 use super::patch::Patch;
@@ -20,8 +20,7 @@ use super::quadratic::quadratic_problem;
 use crate::arrays::array_of;
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
-use crate::error_bound::facet_forces::AskedForce;
-use crate::error_bound::flux::Flux;
+use crate::error_bound::facet_forces::FluxJump;
 use crate::error_bound::quadratics::{products_on_facet, vertices_of};
 use crate::mesh::{HalfFacet, Neighbours};
 use crate::parallel::cells;
@@ -30,8 +29,7 @@ use crate::real::Point;
 /// The cells around vertices of facets with a force.
 struct ForceCells<'c, 'a, const D: usize> {
     space: &'c Space<'a, D>,
-    function: &'c PrimalDualPair<D>,
-    flux: &'c Flux<D>,
+    pair: &'c PrimalDualPair<D>,
     pressing: &'c Pressing,
     tested: Tested<'c>,
     /// The changes of the flux on facets of a force, in ascending order of facets.
@@ -56,12 +54,13 @@ impl<const D: usize> ForceCells<'_, '_, D> {
     /// `grad v - q / alpha` at the vertices of a cell.
     fn differences(&self, cell: usize) -> [Point<D>; 4] {
         let space = self.space;
-        let gradients = space.gradients_at_vertices(self.function, cell);
+        let gradients = space.gradients_at_vertices(self.pair, cell);
         let corners = space.mesh.corners(cell);
         let scale = 1.0 / (D as f64 * space.mesh.geometry(cell).volume * space.alpha(cell));
         let at_vertex = |k: usize| {
-            let through = (0..=D)
-                .map(|facet| (corners[k] - corners[facet]) * self.flux.density(cell, facet, k));
+            let through = (0..=D).map(|facet| {
+                (corners[k] - corners[facet]) * self.pair.flux.density(cell, facet, k)
+            });
             gradients[k] - through.sum::<Point<D>>() * scale
         };
         array_of(|k| if k <= D { at_vertex(k) } else { Point::zeros() })
@@ -109,41 +108,45 @@ impl<const D: usize> PatchCells<D, 9> for ForceCells<'_, '_, D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// Moves multipliers to facets in a flux without jumps.
+    /// Moves multipliers to facets in the flux of a pair, which has no jumps.
     pub(in crate::error_bound) fn move_to_facets(
         &self,
-        function: &PrimalDualPair<D>,
+        pair: &mut PrimalDualPair<D>,
         pressing: &Pressing,
         tested: Tested<'_>,
-        (neighbours, flux): (&Neighbours, &mut Flux<D>),
+        neighbours: &Neighbours,
     ) {
         let mut changes = Vec::new();
-        for AskedForce { force, normal, share } in &pressing.forces {
+        for FluxJump { force, normal, jump, share, .. } in &pressing.jumps {
+            let (share, first) = (share.min(1.0), self.mesh.cell(force.facet.0));
+            let n_sides = force.sides().count() as f64;
             for ((cell, local), normal) in force.sides().zip(normal) {
                 let mut change = [0.0; 4];
                 for j in vertices_of::<D>(local) {
-                    // what is more than asked for goes half to each side
-                    let more =
-                        (1.0 - share.min(1.0) / share) * force.at_vertex(self.mesh, (cell, j));
-                    change[j] = share.min(1.0) * (normal[j] - flux.density(cell, local, j))
-                        + more / force.sides().count() as f64;
+                    let vertex = self.mesh.cell(cell)[j];
+                    let place = first.iter().position(|&v| v == vertex);
+                    let place = place.expect("both cells of a facet have its vertices");
+                    // what the force has beside the share of the jump goes half to each side
+                    let beside = force.densities[place] - share * jump[place];
+                    change[j] = share * (normal[j] - pair.flux.density(cell, local, j));
+                    change[j] += beside / n_sides;
                 }
                 changes.push(((cell, local), change));
             }
         }
         for ((cell, local), change) in &changes {
-            flux.add_densities(*cell, *local, change);
+            pair.flux.add_densities(*cell, *local, change);
         }
         changes.sort_unstable_by_key(|(place, _)| *place);
         let changes = &changes[..];
-        let of = ForceCells { space: self, function, flux: &*flux, pressing, tested, changes };
+        let of = ForceCells { space: self, pair, pressing, tested, changes };
         let vertices = (&pressing.vertices[..], &pressing.corners);
-        let numbers = match flux.degree() {
+        let numbers = match pair.flux.degree() {
             0 => fluxes::<D, _, 3>(&of, neighbours, vertices),
             _ => fluxes::<D, _, 9>(&of, neighbours, vertices),
         };
         for (cell, place, number) in numbers {
-            flux.of_cell_mut(cell)[place] += number;
+            pair.flux.of_cell_mut(cell)[place] += number;
         }
     }
 }

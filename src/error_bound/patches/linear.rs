@@ -87,7 +87,7 @@ impl<const D: usize> Space<'_, D> {
         for force in forces {
             loads[force.cell * (D + 1) + force.node] += force.value;
         }
-        let on_facets = pressing.iter().flat_map(|(p, _)| &p.forces).map(|asked| &asked.force);
+        let on_facets = pressing.iter().flat_map(|(p, _)| &p.jumps).map(|jump| &jump.force);
         for force in on_facets.filter(|force| force.other.is_none()) {
             let of_cell = &mut loads[force.facet.0 * (D + 1)..];
             of_cell.iter_mut().zip(force.moments::<D>()).for_each(|(load, moment)| *load += moment);

@@ -53,11 +53,12 @@ use link::Link;
 use patch::Patch;
 use patch_cells::PatchCells;
 use pressing::Pressing;
+use quadratic::KnownOfCell;
 
+use super::NoBound;
 use super::contact_forces::NodeForce;
 use super::flux::Flux;
 use super::quadratics::CellLoads;
-use super::{NoBound, PrimalDualPair};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::{BoundaryCondition, Neighbours};
@@ -82,17 +83,15 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The flux of a conforming quadratic function, without that of Neumann data and contact, and without its numbers
-    /// inside cells. Divides the multipliers of shared unknowns among their cells in `loads`, and moves them to
-    /// facets if asked to, which is the second result.
+    /// inside cells.
     pub(super) fn flux_of_quadratics(
         &self,
-        (u, function): (&[f64], &mut PrimalDualPair<D>),
-        (neighbours, on_facets): (&Neighbours, bool),
-        loads: &mut CellLoads,
-    ) -> Result<(Flux<D>, Option<Pressing>), NoBound> {
-        let cells = self.quadratic_cells((u, function), (neighbours, on_facets), loads)?;
-        let flux = self.flux_of_patches(&cells, None, neighbours);
-        Ok((flux, cells.pressing))
+        known: Vec<KnownOfCell>,
+        neighbours: &Neighbours,
+        loads: &CellLoads,
+        pressing: Option<&Pressing>,
+    ) -> Flux<D> {
+        self.flux_of_patches(&self.quadratic_cells(known, loads, pressing), None, neighbours)
     }
 
     /// The flux, from the fluxes of vertices, which are kept for [`CELLS_AT_A_TIME`] cells; in the plane and in space most

@@ -2,13 +2,16 @@
 
 use super::corners::Corners;
 use crate::assemble::space::Space;
-use crate::error_bound::facet_forces::{AskedForce, FacetForce};
+use crate::error_bound::facet_forces::{FacetForce, FluxJump, fade};
 use crate::error_bound::{NoBound, PrimalDualPair};
 use crate::mesh::{HalfFacet, Mesh, Neighbours};
 
-/// Where the multiplier of cells that are not in contact is more than this many times what facets ask for, it is a function
-/// there; where all multipliers are as much less, what is asked for is an error of the discrete solution.
+/// Where the multiplier of cells that are not in contact is more than this many times what jumps, it is a function there;
+/// where all multipliers are as much less, the jump is an error of the discrete solution. Both fade.
 const MOST: f64 = 2.0;
+
+/// A cell is open whole at this distance from the obstacle, as a share of the largest `S h / alpha` of a jump at its vertex.
+const OPEN: f64 = 1e-3;
 
 /// The products `(mu, phi lambda_j)` of the multiplier of a cell with the hat function of one of its vertices and all
 /// barycentric coordinates, by cell and vertex. For linears their sum alone counts.
@@ -16,8 +19,8 @@ pub(in crate::error_bound) type Tested<'t> = &'t (dyn Fn(usize, usize) -> [f64; 
 
 /// The forces on facets, and what moves of the multipliers around them.
 pub(in crate::error_bound) struct Pressing {
-    /// The forces, facets in ascending order.
-    pub forces: Vec<AskedForce>,
+    /// The jumps with their forces, facets in ascending order.
+    pub(super) jumps: Vec<FluxJump>,
     pub(super) corners: Corners,
     /// The vertices of facets with a force.
     pub(super) vertices: Vec<usize>,
@@ -26,8 +29,14 @@ pub(in crate::error_bound) struct Pressing {
 }
 
 impl Pressing {
+    /// The force on a facet, by its first side.
+    pub(super) fn on_facet(&self, facet: HalfFacet) -> Option<&FacetForce> {
+        let place = self.jumps.binary_search_by_key(&facet, |jump| jump.force.facet);
+        place.ok().map(|k| &self.jumps[k].force)
+    }
+
     /// What moves of the multiplier of a cell at one of its vertices.
-    pub fn moved_at<const D: usize>(
+    pub(super) fn moved_at<const D: usize>(
         &self,
         mesh: &Mesh<D>,
         tested: Tested<'_>,
@@ -54,18 +63,12 @@ impl Pressing {
         }
         moved
     }
-
-    /// The force on a facet, by its first side.
-    pub fn on_facet(&self, facet: HalfFacet) -> Option<&FacetForce> {
-        let place = self.forces.binary_search_by_key(&facet, |asked| asked.force.facet);
-        place.ok().map(|k| &self.forces[k].force)
-    }
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The forces on facets that the function of a pair asks for, as far as the multipliers around their vertices have
-    /// them: all of what presses in cells that are not in contact everywhere, and of the others what is asked for. None
-    /// if nothing presses on facets, and on a part of a mesh. The function takes them.
+    /// The forces on facets where the normal flux of the function of a pair jumps, as far as the multipliers around their
+    /// vertices have them: all of what presses in cells that are not in contact everywhere, and of the others as much as
+    /// jumps. None if nothing presses on facets, and on a part of a mesh. The pair takes them.
     pub(in crate::error_bound) fn pressing(
         &self,
         function: &mut PrimalDualPair<D>,
@@ -75,65 +78,83 @@ impl<const D: usize> Space<'_, D> {
         if self.mesh.is_part() {
             return Ok(None);
         }
-        let mut forces = self.asked_forces(function, neighbours, presses)?;
-        if forces.is_empty() {
+        let mut jumps = self.flux_jumps(function, neighbours, presses)?;
+        if jumps.is_empty() {
             return Ok(None);
         }
         let corners = self.corners();
-        let asked = self.forces_at_vertices(&forces);
-        let rounding = self.rounding_of(function);
+        let (of_jumps, heights) = (self.forces_at_vertices(&jumps), self.heights(&jumps));
         // the balance of a patch with a Dirichlet facet has no condition
-        let is_free = self.dirichlet_groups();
-        let mut there = vec![0.0; asked.len()];
-        let mut ratios = vec![f64::INFINITY; asked.len()];
-        for v in (0..asked.len()).filter(|&v| asked[v] != 0.0) {
+        let has_dirichlet_facet = self.dirichlet_groups();
+        let mut all_there = vec![0.0; of_jumps.len()];
+        let mut ratios = vec![f64::INFINITY; of_jumps.len()];
+        let mut factors = vec![1.0; of_jumps.len()];
+        for v in (0..of_jumps.len()).filter(|&v| of_jumps[v] != 0.0) {
+            let obstacles = [&self.data.lower, &self.data.upper][usize::from(of_jumps[v] < 0.0)];
             let (mut all, mut open) = (0.0, 0.0);
             for corner in corners.at(v) {
-                let of_cell: f64 = tested(corner.cell(), corner.own()).iter().sum();
-                let side = (usize::from(asked[v] < 0.0), rounding);
+                let (cell, own) = (corner.cell(), corner.own());
+                let of_cell: f64 = tested(cell, own).iter().sum();
+                let obstacle = obstacles.of(self.mesh.region(cell));
+                let is_open = obstacle.map_or(1.0, |obstacle| {
+                    let (_, distance) = self.distances(function, (cell, own), obstacle);
+                    (distance / (OPEN * heights[v])).min(1.0)
+                });
                 all += of_cell;
-                open +=
-                    if self.is_in_contact(function, corner.cell(), side) { 0.0 } else { of_cell };
+                open += is_open * of_cell;
             }
-            there[v] = all;
-            let (open, all) = (open / asked[v], all / asked[v]);
-            ratios[v] = match is_free[v] {
-                _ if open > MOST || is_free[v].is_none() && all < 1.0 / MOST => 0.0,
-                Some(_) => f64::INFINITY,
-                None => open.max(1.0).min(all),
-            };
+            all_there[v] = all;
+            let (open, all) = (open / of_jumps[v], all / of_jumps[v]);
+            factors[v] = fade(open / (2.0 * MOST));
+            if has_dirichlet_facet[v].is_none() {
+                factors[v] *= (2.0 * (MOST * all - 1.0)).clamp(0.0, 1.0);
+                ratios[v] = open.max(1.0).min(all);
+            }
         }
-        forces.retain_mut(|AskedForce { force, share, .. }| {
-            let (cell, local) = force.facet;
-            let of_vertices = self.mesh.facet_vertices(cell, local).map(|v| ratios[v as usize]);
-            let least = of_vertices.fold(f64::INFINITY, f64::min);
-            *share = if least.is_finite() { least } else { 1.0 };
-            force.densities = force.densities.map(|density| *share * density);
+        jumps.retain_mut(|FluxJump { force, share, .. }| {
+            let vertices = || self.mesh.facet_vertices(force.facet.0, force.facet.1);
+            let least =
+                |of: &[f64]| vertices().map(|v| of[v as usize]).fold(f64::INFINITY, f64::min);
+            let ratio = least(&ratios);
+            let factor = least(&factors) * if ratio.is_finite() { ratio } else { 1.0 };
+            *share *= factor;
+            force.densities = force.densities.map(|density| factor * density);
             *share > 0.0
         });
-        if forces.is_empty() {
+        if jumps.is_empty() {
             return Ok(None);
         }
-        let given = self.forces_at_vertices(&forces);
+        let given = self.forces_at_vertices(&jumps);
         let share = |(given, there): (&f64, &f64)| match *given == 0.0 || *there == 0.0 {
             true => 0.0,
             false => (given / there).clamp(0.0, 1.0),
         };
-        let shares = given.iter().zip(&there).map(share).collect();
-        self.touch_under(&forces, function);
-        function.forces = forces.iter().map(|asked| asked.force).collect();
+        let shares = given.iter().zip(&all_there).map(share).collect();
         let vertices = (0..given.len()).filter(|&v| given[v] != 0.0).collect();
-        Ok(Some(Pressing { forces, corners, vertices, shares }))
+        function.forces = jumps.iter().map(|jump| jump.force).collect();
+        self.touch_under(function);
+        Ok(Some(Pressing { jumps, corners, vertices, shares }))
     }
 
     /// By vertex the integral of forces times its hat function.
-    fn forces_at_vertices(&self, forces: &[AskedForce]) -> Vec<f64> {
+    fn forces_at_vertices(&self, jumps: &[FluxJump]) -> Vec<f64> {
         let mut sums = vec![0.0; self.mesh.vertices().len()];
-        for AskedForce { force, .. } in forces {
+        for FluxJump { force, .. } in jumps {
             for (v, moment) in self.mesh.cell(force.facet.0).iter().zip(force.moments::<D>()) {
                 sums[*v as usize] += moment;
             }
         }
         sums
+    }
+
+    /// By vertex the largest height of the jumps on its facets.
+    fn heights(&self, jumps: &[FluxJump]) -> Vec<f64> {
+        let mut heights = vec![0.0_f64; self.mesh.vertices().len()];
+        for FluxJump { force, height, .. } in jumps {
+            for v in self.mesh.facet_vertices(force.facet.0, force.facet.1) {
+                heights[v as usize] = heights[v as usize].max(*height);
+            }
+        }
+        heights
     }
 }

@@ -20,18 +20,18 @@ use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{INWARD, Space};
 use crate::assemble::stiffness::StiffnessTable;
 use crate::element::Node;
+use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{
     CellLoads, Products, add, densities, products_on_facet, triple, vertices_of,
 };
 use crate::error_bound::shared_multipliers::SharedNodes;
-use crate::error_bound::{NoBound, PrimalDualPair};
 use crate::mesh::{HalfFacet, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
 use crate::real::Point;
 
 /// The data of a cell that do not depend on its patches.
 #[derive(Clone, Default)]
-struct KnownOfCell {
+pub(in crate::error_bound) struct KnownOfCell {
     /// By facet the densities of `alpha grad u . n`.
     normal: Products,
     /// The gradient of the admissible function less that of the discrete function, at the vertices.
@@ -49,7 +49,7 @@ pub(super) struct QuadraticCells<'s, 'a, const D: usize> {
     /// The products of Neumann data and contact forces, by facet; sorted.
     given: Vec<&'s (HalfFacet, Products)>,
     /// The forces of obstacles on facets.
-    pub pressing: Option<Pressing>,
+    pressing: Option<&'s Pressing>,
 }
 
 /// Sorts products by the places of their facets. Not in the function that calls it, so that this is compiled once.
@@ -65,33 +65,37 @@ pub(super) fn on_facet<const D: usize>(densities: &[f64; 4], facet: usize) -> [f
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The cells of a conforming quadratic function. Divides the multipliers of shared unknowns among their cells in
-    /// `loads`.
-    pub(super) fn quadratic_cells<'s>(
-        &'s self,
-        (u, function): (&[f64], &mut PrimalDualPair<D>),
-        (neighbours, on_facets): (&Neighbours, bool),
-        loads: &'s mut CellLoads,
-    ) -> Result<QuadraticCells<'s, 's, D>, NoBound> {
+    /// What is known of the cells of a conforming quadratic function, without divergences. Divides the multipliers of
+    /// shared unknowns among their cells in `loads`.
+    pub(in crate::error_bound) fn known_cells(
+        &self,
+        (u, function): (&[f64], &PrimalDualPair<D>),
+        neighbours: &Neighbours,
+        loads: &mut CellLoads,
+    ) -> Vec<KnownOfCell> {
         let corners: Vec<BasisAt> =
             (0..D + 1).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
         let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
         let data = cells::map(n_cells, &|cells: Range<usize>| {
-            let in_cell = |cell| self.known_of_cell(cell, (u, &*function), (&corners, &table));
+            let in_cell = |cell| self.known_of_cell(cell, (u, function), (&corners, &table));
             cells.map(in_cell).collect::<Vec<_>>()
         });
-        let mut data: Vec<KnownOfCell> = data.into_iter().flatten().collect();
+        let data: Vec<KnownOfCell> = data.into_iter().flatten().collect();
         if let Some(shared) = loads.shared.as_ref().filter(|s| s.surrounded.contains(&true)) {
             self.divide_multipliers(&data, neighbours, shared, &mut loads.values);
         }
-        let loads = &*loads;
-        let n = self.per_cell();
+        data
+    }
+
+    /// The cells of a conforming quadratic function, with the forces of obstacles on facets if there are any.
+    pub(super) fn quadratic_cells<'s>(
+        &'s self,
+        mut data: Vec<KnownOfCell>,
+        loads: &'s CellLoads,
+        pressing: Option<&'s Pressing>,
+    ) -> QuadraticCells<'s, 's, D> {
+        let (n_cells, n) = (self.mesh.n_cells(), self.per_cell());
         let tested = |cell: usize, own: usize| loads.multiplier_at(cell, own);
-        let presses = |cell: usize| loads.presses(cell);
-        let pressing = match self.problem.has_obstacle() && on_facets {
-            true => self.pressing(function, (&tested, &presses), neighbours)?,
-            false => None,
-        };
         let fill = |cells: Range<usize>, out: &mut [KnownOfCell]| {
             for (cell, data) in cells.zip(out) {
                 for (i, of_linear) in loads.functionals.iter().enumerate() {
@@ -102,7 +106,7 @@ impl<const D: usize> Space<'_, D> {
                     let products = products_on_facet::<D>(&data.normal[facet], facet);
                     add(&mut data.divergence, |a, j| -products[a][j]);
                 }
-                if let Some(pressing) = &pressing {
+                if let Some(pressing) = pressing {
                     for (own, divergence) in data.divergence.iter_mut().enumerate().take(D + 1) {
                         let moved = pressing.moved_at(self.mesh, &tested, (cell, own));
                         divergence.iter_mut().zip(moved).for_each(|(sum, moved)| *sum += moved);
@@ -117,7 +121,7 @@ impl<const D: usize> Space<'_, D> {
         }
         let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
         sort(&mut given);
-        Ok(QuadraticCells { space: self, cells: data, given, pressing })
+        QuadraticCells { space: self, cells: data, given, pressing }
     }
 
     /// Divides the multipliers of unknowns amid contact among their cells as the mean of the two fluxes
@@ -234,8 +238,7 @@ impl<const D: usize> PatchCells<D, 9> for QuadraticCells<'_, '_, D> {
     fn normal(&self, corner: Corner, facet: usize) -> [f64; 3] {
         let mut normal = self.cells[corner.cell()].normal[facet];
         // the first side of a facet has its force
-        if let Some(force) = self.pressing.as_ref().and_then(|p| p.on_facet((corner.cell(), facet)))
-        {
+        if let Some(force) = self.pressing.and_then(|p| p.on_facet((corner.cell(), facet))) {
             normal.iter_mut().zip(force.densities).for_each(|(normal, force)| *normal -= force);
         }
         let products = &products_on_facet::<D>(&normal, facet)[corner.own()];

@@ -112,7 +112,7 @@ impl<const D: usize> Solved<'_, D> {
     }
     /// A bound on the error from solution and data alone: see [`crate::error_bound`]. It is computed once. Over the
     /// parts of a mesh it has the shares of own cells; multipliers are exchanged for flux inside parts alone, so that it
-    /// depends on these a little.
+    /// depends on these a little, and no forces of obstacles act on facets, without which it may be large.
     ///
     /// # Errors
     /// [`NoBound`].
