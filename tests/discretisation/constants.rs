@@ -411,3 +411,19 @@ fn reactions_of_every_kind_of_source() {
         }
     }
 }
+
+/// Fields of quadratics have the constant at vertices and at midpoints of edges.
+#[test]
+fn fields_have_the_constant() {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<2>::kuhn_box(&square, [2, 2]).unwrap();
+    let problem = Problem::new().dirichlet(|x| 100.0 + x[0]);
+    let solved = solve(&problem, &mesh, &ConformingP2).unwrap();
+    let fields = solved.fields().unwrap();
+    assert_eq!((fields.u.len(), fields.midpoints.len()), (24, 24));
+    // the means over the square, of each vertex and of each midpoint by cell
+    for values in [&fields.u, &fields.midpoints] {
+        let mean = values.iter().sum::<f64>() / 24.0;
+        assert!((mean - 100.5).abs() < 1e-10, "{mean}");
+    }
+}

@@ -248,3 +248,27 @@ fn a_rounded_load_is_not_an_added_one() {
         assert_eq!(solved.outcome(), Outcome::NotUnique, "{precision:?}");
     }
 }
+
+/// What a row says of a body without a solution has the resultant, positive upward.
+#[test]
+fn the_message_has_the_resultant() {
+    let message = |load: f64| {
+        let domain = BoxDomain::new(
+            Point::zeros(),
+            Point::repeat(1.0),
+            [[BoundaryCondition::Neumann; 2]; 2],
+        );
+        let problem = Problem::new().constant_source(load);
+        let problem = match load > 0.0 {
+            true => problem.obstacle_below(|_| 0.0),
+            false => problem.obstacle_above(|_| 0.0),
+        };
+        let study = Study::<2>::new(Scene::new("square", domain, problem));
+        let report = study.scheme(ConformingP1).levels([4]).run().unwrap();
+        report.rows[0].message.clone().unwrap()
+    };
+    for (load, resultant) in [(2.0, "2.000000e0"), (-3.0, "-3.000000e0")] {
+        let message = message(load);
+        assert!(message.ends_with(&format!("its resultant is {resultant}")), "{message}");
+    }
+}
