@@ -5,10 +5,13 @@
 //! A function that returns a [`Result`] returns an error for bad input. Another one panics, as its documentation or that
 //! of its type says: for the number of a cell that the mesh does not have, say.
 
-use crate::mesh::MeshError;
+use std::fmt::Display;
+
 use crate::mesh::gmsh::GmshError;
+use crate::mesh::{MeshError, describe_point};
 use crate::quadrature::QuadratureError;
 use crate::readable_debug::debug_by_display;
+use crate::real::Point;
 
 /// An error of input data, of a file or of a parameter. The message says what is wrong, where, and
 /// what to do; `Debug` prints the message and its causes.
@@ -25,34 +28,16 @@ pub enum Error {
     #[error(transparent)]
     Quadrature(#[from] QuadratureError),
     /// A datum is not a finite number at a point where it is evaluated.
-    #[error("{datum} is {value} at {at} in cell {cell}: data must be finite")]
-    DataNotFinite {
-        /// Name of the datum: "source", "dirichlet", "obstacle", ...
-        datum: &'static str,
-        /// The value found.
-        value: f64,
-        /// The point, as coordinates in parentheses.
-        at: String,
-        /// The cell in which the point lies.
-        cell: u64,
-    },
-    /// A diffusion coefficient is not positive and finite.
-    #[error("coefficient is {value} at {at} in cell {cell}: it must be positive and finite")]
-    CoefficientNotPositive {
-        /// The value found.
-        value: f64,
-        /// The point, as coordinates in parentheses.
-        at: String,
-        /// The cell.
-        cell: u64,
-    },
+    #[error("{0}")]
+    DataNotFinite(InCell),
+    /// A diffusion coefficient is not positive.
+    #[error("{0}")]
+    CoefficientNotPositive(InCell),
     /// Two constraints leave no admissible value.
     #[error(
         "no admissible value in cell {cell} near {at}: the {}, {lower}, exceeds the {}, {upper}", of[0], of[1]
     )]
     EmptyConstraint {
-        /// The unknown; on a [part](crate::mesh::Part) its number there.
-        unknown: usize,
         /// A cell of the unknown.
         cell: u64,
         /// A point of the location of the unknown, as coordinates in parentheses.
@@ -65,88 +50,29 @@ pub enum Error {
         of: Box<[String; 2]>,
     },
     /// Lower bounds exceed upper ones at a point of the finest mesh of a study.
-    #[error(
-        "no function is admissible: at {at}, a point of the finest mesh, the lower bound {lower} exceeds the upper bound {upper}"
-    )]
-    BoundsCross {
-        /// The cell.
-        cell: u64,
-        /// The point, as coordinates in parentheses.
-        at: String,
-        /// The larger lower bound.
-        lower: f64,
-        /// The smaller upper bound.
-        upper: f64,
-    },
+    #[error("{0}")]
+    BoundsCross(String),
     /// No unknown of the constraint set can carry the bounds of an inequality.
-    #[error(
-        "bounds on {constraint} cannot impose {condition}: the element has no such values; choose {allowed}"
-    )]
-    NothingToBound {
-        /// Name of the constraint set.
-        constraint: String,
-        /// The inequality: "an inequality" in general, or "a Signorini condition".
-        condition: &'static str,
-        /// The constraint sets that can impose it on the element.
-        allowed: String,
-    },
+    #[error("{0}")]
+    NothingToBound(String),
     /// A facet form asks for what the assembler does not make for the element.
-    #[error("{requested} are made for {allowed} only")]
-    UnsupportedForm {
-        /// What the form asks for.
-        requested: &'static str,
-        /// For which elements it is made.
-        allowed: &'static str,
-    },
+    #[error("{0}")]
+    UnsupportedForm(String),
     /// The problem has data for a region or boundary group that the mesh does not have.
-    #[error("the problem has data for {kind} {name}, which the mesh does not have: {known}")]
-    UnknownGroup {
-        /// "region" or "boundary group".
-        kind: &'static str,
-        /// The name.
-        name: String,
-        /// The names that the mesh has.
-        known: String,
-    },
+    #[error("{0}")]
+    UnknownGroup(String),
     /// A datum is given twice for one name, or twice without a name.
-    #[error(
-        "the {datum} {} is given twice: give it once; only sources add up",
-        .name.as_ref().map_or("without a name".to_owned(), |name| format!("for {name}"))
-    )]
-    GivenTwice {
-        /// The datum: "coefficient", "lower obstacle", "Dirichlet datum", ...
-        datum: &'static str,
-        /// The name of its region or boundary group, where it has one.
-        name: Option<String>,
-    },
+    #[error("{0}")]
+    GivenTwice(String),
     /// The data of a boundary group are of another kind than its facets.
-    #[error(
-        "the problem has {given} data on boundary group {group}, whose facets are {found} in the mesh: bind the problem to the mesh by Problem::bind_boundary"
-    )]
-    UnboundBoundary {
-        /// A name of the group.
-        group: String,
-        /// The condition to which the data belong.
-        given: &'static str,
-        /// The condition on the facets.
-        found: &'static str,
-    },
+    #[error("{0}")]
+    UnboundBoundary(String),
     /// Meshes are to follow an error bound that the scheme does not have.
-    #[error("meshes cannot follow the error bound of {scheme}: {why}")]
-    NotAdaptive {
-        /// The scheme.
-        scheme: String,
-        /// Why there is no bound.
-        why: String,
-    },
+    #[error("{0}")]
+    NotAdaptive(String),
     /// Mesh and scene disagree.
-    #[error("the mesh does not fit {scene}: {why}")]
-    UnfitMesh {
-        /// Name of the scene.
-        scene: String,
-        /// What does not fit, where, and what to do.
-        why: String,
-    },
+    #[error("{0}")]
+    UnfitMesh(String),
     /// Two solutions are compared whose meshes do not belong to one hierarchy.
     #[error(
         "solutions are compared on one mesh or on meshes of one hierarchy: solve both on the same `Hierarchy`"
@@ -156,43 +82,15 @@ pub enum Error {
     /// [`ExchangeError`](crate::processes::ExchangeError).
     #[error(transparent)]
     Processes(Box<dyn std::error::Error + Send + Sync>),
-    /// A parameter outside its range.
-    #[error("{parameter} = {value}: {allowed}")]
-    Parameter {
-        /// Name of the parameter.
-        parameter: &'static str,
-        /// The value given, as text.
-        value: String,
-        /// The values allowed.
-        allowed: String,
-    },
+    /// A parameter outside its range: "parameter = value: what is allowed".
+    #[error("{0}")]
+    Parameter(String),
     /// A run would need more memory than the machine, the limits of the process and its control group leave.
-    #[error(
-        "{run}: would need about {:.1} GB of memory, {:.1} GB are available; choose {remedy}",
-        .needed / 1e9, .available / 1e9
-    )]
-    NotEnoughMemory {
-        /// The scheme, with its level or number of unknowns.
-        run: String,
-        /// The estimate in bytes, of the whole process.
-        needed: f64,
-        /// Bytes that the process may have in all.
-        available: f64,
-        /// What needs less.
-        remedy: &'static str,
-    },
+    #[error("{0}")]
+    NotEnoughMemory(String),
     /// Two schemes or two solvers of a study have one name, and so have their rows and files.
-    #[error(
-        "two {items} of the study are named {name:?}, and nothing would tell their rows apart: name each once, and give one of your own another name by {by}"
-    )]
-    EqualNames {
-        /// "schemes" or "solvers".
-        items: &'static str,
-        /// The name: of schemes the label, with constraint set and choices.
-        name: String,
-        /// The functions that name one of one's own.
-        by: &'static str,
-    },
+    #[error("{0}")]
+    EqualNames(String),
     /// A file could not be written.
     #[error("cannot write {path}: {why}")]
     Write {
@@ -214,43 +112,62 @@ pub enum Error {
         why: Box<dyn std::error::Error + Send + Sync>,
     },
     /// A report is taken up by a run that asks for something else.
-    #[error(
-        "{path} has the report of another request: it has {found}, this run has {wanted}; repeat that request or choose another directory"
-    )]
-    OtherRequest {
-        /// The directory.
-        path: String,
-        /// What the report has and the run has not.
-        found: String,
-        /// What the run has and the report has not.
-        wanted: String,
-    },
+    #[error("{0}")]
+    OtherRequest(String),
 }
 
 debug_by_display!(Error);
 
+/// A sentence about a cell: what is wrong, " in cell ", the number, and the rest.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{wrong} in cell {cell}: {rest}")]
+pub struct InCell {
+    /// The cell.
+    pub cell: u64,
+    wrong: String,
+    rest: &'static str,
+}
+
+impl InCell {
+    /// A value of a datum that is not allowed, at a point of a cell.
+    pub(crate) fn value<const D: usize>(
+        (datum, value): (&str, f64),
+        at: &Point<D>,
+        cell: usize,
+        rest: &'static str,
+    ) -> Self {
+        let wrong = format!("{datum} is {value} at {}", describe_point(at));
+        Self { cell: cell as u64, wrong, rest }
+    }
+}
+
 impl Error {
     /// A parameter outside its range.
-    pub(crate) fn parameter(
-        parameter: &'static str,
-        value: impl ToString,
-        allowed: impl Into<String>,
-    ) -> Self {
-        Self::Parameter { parameter, value: value.to_string(), allowed: allowed.into() }
+    pub(crate) fn parameter(parameter: &str, value: impl Display, allowed: impl Display) -> Self {
+        Self::Parameter(format!("{parameter} = {value}: {allowed}"))
+    }
+    /// Two items of a study have one name, for schemes the label with constraint set and choices; `by` names one of
+    /// one's own.
+    pub(crate) fn equal_names(items: &str, name: &str, by: &str) -> Self {
+        Self::EqualNames(format!(
+            "two {items} of the study are named {name:?}, and nothing would tell their rows apart: name each once, and give one of your own another name by {by}"
+        ))
     }
     /// Two schemes of a study have one label.
-    pub(crate) fn equal_schemes(label: String) -> Self {
-        let by = "`Scheme::name` or `Scheme::choices`";
-        Self::EqualNames { items: "schemes", name: label, by }
+    pub(crate) fn equal_schemes(label: &str) -> Self {
+        Self::equal_names("schemes", label, "`Scheme::name` or `Scheme::choices`")
+    }
+    /// The mesh does not fit a scene: what does not fit, where, and what to do.
+    pub(crate) fn unfit_mesh(scene: &str, why: impl Display) -> Self {
+        Self::UnfitMesh(format!("the mesh does not fit {scene}: {why}"))
     }
     /// The error with the number of its cell in the whole mesh, given those of the cells of a
     /// [part](crate::mesh::Part::cells), on which it was found.
     #[must_use]
     pub fn in_whole_mesh(mut self, cells: &[u64]) -> Self {
-        if let Self::DataNotFinite { cell, .. }
-        | Self::CoefficientNotPositive { cell, .. }
-        | Self::EmptyConstraint { cell, .. }
-        | Self::BoundsCross { cell, .. } = &mut self
+        if let Self::DataNotFinite(InCell { cell, .. })
+        | Self::CoefficientNotPositive(InCell { cell, .. })
+        | Self::EmptyConstraint { cell, .. } = &mut self
             && let Some(&of_whole) = cells.get(*cell as usize)
         {
             *cell = of_whole;

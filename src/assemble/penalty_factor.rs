@@ -14,8 +14,7 @@ impl<const D: usize> Space<'_, D> {
     /// apart, so that the fourth power is the limit there, and below for every form.
     pub fn check_penalty_factor(&self, form: &dyn FacetForm<D>) -> Result<(), Error> {
         let Some((parameter, value, factor)) = form.theory().factor() else { return Ok(()) };
-        let refuse =
-            |allowed| Err(Error::Parameter { parameter, value: value.to_string(), allowed });
+        let refuse = |allowed: String| Err(Error::parameter(parameter, value, allowed));
         if !(factor > 0.0 && factor.is_finite()) {
             return refuse(format!(
                 "the penalty factor is {factor}, it must be positive and finite"

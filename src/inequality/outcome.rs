@@ -77,15 +77,11 @@ impl Outcome {
     /// The outcome of a solve that corresponds to an error of the data; `None` for errors of another kind.
     pub(crate) fn of_error(error: &Error) -> Option<Self> {
         match error {
-            Error::CoefficientNotPositive { value, .. } if value.is_finite() => {
-                Some(Outcome::NotCoercive)
-            }
-            Error::DataNotFinite { .. } | Error::CoefficientNotPositive { .. } => {
-                Some(Outcome::NotFinite)
-            }
-            Error::EmptyConstraint { .. } | Error::BoundsCross { .. } => Some(Outcome::Infeasible),
-            Error::Parameter { .. } => Some(Outcome::OutOfRange),
-            Error::NotEnoughMemory { .. } => Some(Outcome::OutOfMemory),
+            Error::CoefficientNotPositive(_) => Some(Outcome::NotCoercive),
+            Error::DataNotFinite(_) => Some(Outcome::NotFinite),
+            Error::EmptyConstraint { .. } | Error::BoundsCross(_) => Some(Outcome::Infeasible),
+            Error::Parameter(_) => Some(Outcome::OutOfRange),
+            Error::NotEnoughMemory(_) => Some(Outcome::OutOfMemory),
             _ => None,
         }
     }

@@ -3,50 +3,50 @@
 use nalgebra::DMatrix;
 
 use super::discrete::{Tested, assemble};
-use super::error::{KitError, KitErrorKind, Law};
+use super::error::{Fault, KitErrorKind, Law};
 use super::matrix::scaled_symmetric_part;
 use super::meshes::Sample;
-use super::report::CoercivityReport;
+use super::report::LawReport;
 use super::spectrum::{CholeskyMatrix, Diagonal, Lanczos};
 use super::{meshes, problems};
 use crate::algebra::SparseMatrix;
 use crate::linear::FactorError;
 
-pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<CoercivityReport, KitError> {
-    let (law, domain, n) = (Law::Coercivity, meshes::clamped(), meshes::subdivisions(D));
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<LawReport, Fault> {
+    let (domain, n) = (meshes::clamped(), meshes::subdivisions(D));
     let mut smallest = f64::INFINITY;
     // without reaction, which would help
     let problem = problems::smooth();
-    for sample in [meshes::regular(law, &domain, n)?, meshes::moved(law, &domain, n)?] {
+    for sample in [meshes::regular(&domain, n)?, meshes::moved(&domain, n)?] {
         let Sample { name, mesh } = sample;
-        let inequality = assemble(law, scheme, &problem, &mesh)?;
+        let inequality = assemble(scheme, &problem, &mesh)?;
         let part = scaled_symmetric_part(&inequality);
         smallest = f64::min(smallest, smallest_eigenvalue(&part, name)?);
     }
-    Ok(CoercivityReport { smallest })
+    let sentence = format!("smallest eigenvalue {smallest:.3e}");
+    Ok(LawReport::new(Law::Coercivity, sentence, &[("smallest", smallest)]))
 }
 
 /// The smallest eigenvalue of a positive definite matrix; of another one, that and their number
 /// in the error.
-fn smallest_eigenvalue(part: &SparseMatrix<f64>, name: &str) -> Result<f64, KitError> {
-    let error = |kind, message| KitError::new(Law::Coercivity, kind, message);
+fn smallest_eigenvalue(part: &SparseMatrix<f64>, name: &str) -> Result<f64, Fault> {
     match CholeskyMatrix::new(part) {
         Ok(a) if part.size() > 0 => {
             Lanczos::default().smallest(&a, &Diagonal::identity(part.size())).map_err(|why| {
                 let message = format!("no smallest eigenvalue on {name}: {why}");
-                error(KitErrorKind::NoEigenvalue, message).caused_by(why)
+                Fault::new(KitErrorKind::NoEigenvalue, message).caused_by(why)
             })
         }
         Ok(_) => Ok(f64::INFINITY),
         Err(FactorError::NotPositive | FactorError::Singular) => Err(not_coercive(part, name)),
         Err(why) => {
             let message = format!("the matrix could not be factored on {name}: {why}");
-            Err(error(KitErrorKind::NotFactored, message).caused_by(why))
+            Err(Fault::new(KitErrorKind::NotFactored, message).caused_by(why))
         }
     }
 }
 
-fn not_coercive(part: &SparseMatrix<f64>, mesh: &str) -> KitError {
+fn not_coercive(part: &SparseMatrix<f64>, mesh: &str) -> Fault {
     let unknowns = part.size();
     let dense = DMatrix::from_fn(unknowns, unknowns, |i, j| part.get(i, j));
     let eigenvalues = dense.symmetric_eigenvalues();
@@ -57,5 +57,5 @@ fn not_coercive(part: &SparseMatrix<f64>, mesh: &str) -> KitError {
     let message = format!(
         "on {mesh} the form has {not_positive} of {unknowns} eigenvalues that are not positive, the smallest {smallest:.3e} (diagonal scaled to ones)"
     );
-    KitError::new(Law::Coercivity, KitErrorKind::NotCoercive, message)
+    Fault::new(KitErrorKind::NotCoercive, message)
 }

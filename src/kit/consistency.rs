@@ -1,9 +1,9 @@
 //! The patch test.
 
 use super::discrete::{Tested, solve_and_judge};
-use super::error::{KitError, KitErrorKind, Law};
+use super::error::{Fault, KitErrorKind, Law};
 use super::meshes::Sample;
-use super::report::ConsistencyReport;
+use super::report::LawReport;
 use super::{meshes, problems};
 use crate::arrays::map_entries;
 use crate::measure::Errors;
@@ -14,15 +14,15 @@ use crate::problem::Problem;
 /// some tens for the sums of its entries.
 const UNITS: f64 = 8192.0;
 
-pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<ConsistencyReport, KitError> {
-    let (law, domain, n) = (Law::Consistency, meshes::mixed(), meshes::subdivisions(D));
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<LawReport, Fault> {
+    let (domain, n) = (meshes::mixed(), meshes::subdivisions(D));
     let declared = scheme.is_consistent();
     let degree = scheme.degree();
     let problem = problems::polynomial::<D>(degree);
     let tolerance = UNITS * f64::EPSILON;
     let mut error = if declared { 0.0 } else { f64::INFINITY };
-    for sample in [meshes::regular(law, &domain, n)?, meshes::moved(law, &domain, n)?] {
-        let (errors, vertex_values) = solve_and_judge(law, scheme, &problem, &sample)?;
+    for sample in [meshes::regular(&domain, n)?, meshes::moved(&domain, n)?] {
+        let (errors, vertex_values) = solve_and_judge(scheme, &problem, &sample)?;
         let here = relative_error(&errors, &problem, &sample);
         let mesh = sample.name;
         match (declared, here <= tolerance) {
@@ -32,18 +32,20 @@ pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<Consistenc
                 let message = format!(
                     "the scheme is declared inconsistent, but on {mesh} it reproduces a polynomial of degree {degree} to {here:.3e}: declare it consistent"
                 );
-                return Err(KitError::new(law, KitErrorKind::ConsistentAfterAll, message));
+                return Err(Fault::new(KitErrorKind::ConsistentAfterAll, message));
             }
             (true, false) => {
                 let (cell, at) = worst_cell(&vertex_values, &problem, &sample);
                 let message = format!(
                     "on {mesh} the error against a polynomial of degree {degree} is {here:.3e}, rounding explains {tolerance:.1e}; worst in cell {cell}, near {at}"
                 );
-                return Err(KitError::new(law, KitErrorKind::NotConsistent, message));
+                return Err(Fault::new(KitErrorKind::NotConsistent, message));
             }
         }
     }
-    Ok(ConsistencyReport { declared, error })
+    let word = if declared { "consistent" } else { "not consistent" };
+    let sentence = format!("{word}, error {error:.1e}");
+    Ok(LawReport::new(Law::Consistency, sentence, &[("error", error)]))
 }
 
 /// The larger of the errors at nodes and of mesh size times that of the gradient, relative to the

@@ -3,11 +3,11 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-use super::error::{KitError, KitErrorKind, Law};
+use super::error::{Fault, KitErrorKind};
 use super::meshes::Sample;
 use crate::algebra::Inequality;
 use crate::assemble::DataQuadrature;
-use crate::constraint::{ConstraintSet, Nodes};
+use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
 use crate::measure::Errors;
@@ -22,10 +22,6 @@ pub(super) struct Tested<'s, const D: usize> {
 }
 
 impl<'s, const D: usize> Tested<'s, D> {
-    /// A scheme with bounds at its nodes.
-    pub fn new(scheme: &'s dyn Scheme<D>) -> Self {
-        Self { scheme, set: Arc::new(Nodes) }
-    }
     /// The problem with the constraint set.
     fn problem(&self, problem: &Problem<D>) -> Problem<D> {
         problem.clone().on(self.set.clone())
@@ -48,46 +44,38 @@ fn quadrature(degree: usize) -> DataQuadrature {
 
 /// The inequality of a problem on a mesh.
 pub(super) fn assemble<const D: usize>(
-    law: Law,
     scheme: &Tested<'_, D>,
     problem: &Problem<D>,
     mesh: &Mesh<D>,
-) -> Result<Inequality<f64>, KitError> {
-    scheme
-        .inequality(&scheme.problem(problem), mesh, quadrature(scheme.degree()))
-        .map_err(|why| KitError::not_assembled(law, why))
+) -> Result<Inequality<f64>, Error> {
+    scheme.inequality(&scheme.problem(problem), mesh, quadrature(scheme.degree()))
 }
 
 /// The solution of a linear problem.
 pub(super) fn solve<const D: usize>(
-    law: Law,
     inequality: &Inequality<f64>,
     sample: &Sample<D>,
-) -> Result<Vec<f64>, KitError> {
+) -> Result<Vec<f64>, Fault> {
     let solution = ActiveSet::default().solve(inequality);
     match solution.outcome {
         Outcome::Converged => Ok(solution.values),
         outcome => {
             let message = format!("the linear problem on {} ended as {outcome}", sample.name);
-            Err(KitError::new(law, KitErrorKind::NotSolved, message))
+            Err(Fault::new(KitErrorKind::NotSolved, message))
         }
     }
 }
 
 /// The errors of the discrete solution of a linear problem, and this solution at the vertices of each cell.
 pub(super) fn solve_and_judge<const D: usize>(
-    law: Law,
     scheme: &Tested<'_, D>,
     problem: &Problem<D>,
     sample: &Sample<D>,
-) -> Result<(Errors, Vec<f64>), KitError> {
-    let inequality = assemble(law, scheme, problem, &sample.mesh)?;
-    let u = solve(law, &inequality, sample)?;
-    let judge = || {
-        let quadrature = quadrature(scheme.degree());
-        let problem = scheme.problem(problem);
-        let discretisation = scheme.discretise(&problem, &sample.mesh, quadrature)?;
-        Ok((discretisation.errors(&u)?, discretisation.vertex_values(&u)))
-    };
-    judge().map_err(|why: Error| KitError::not_assembled(law, why))
+) -> Result<(Errors, Vec<f64>), Fault> {
+    let inequality = assemble(scheme, problem, &sample.mesh)?;
+    let u = solve(&inequality, sample)?;
+    let problem = scheme.problem(problem);
+    let quadrature = quadrature(scheme.degree());
+    let discretisation = scheme.discretise(&problem, &sample.mesh, quadrature)?;
+    Ok((discretisation.errors(&u)?, discretisation.vertex_values(&u)))
 }

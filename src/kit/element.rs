@@ -1,7 +1,7 @@
 //! The laws of a reference element.
 
-use super::error::{KitError, KitErrorKind, Law};
-use super::report::ElementReport;
+use super::error::{Fault, KitError, KitErrorKind, Law};
+use super::report::LawReport;
 use crate::element::{Element, Entity, Layout, MAX_BASIS, Node};
 use crate::mesh::edge_vertices;
 use crate::quadrature::Rule;
@@ -25,28 +25,25 @@ struct Tested<'e, const D: usize> {
     points: Vec<[f64; 4]>,
 }
 
-/// Tests the laws of an element: nodes dual to basis functions and tied to the entities that own them,
-/// partition of unity, polynomials of its degree in its span, basis functions of the degree that it
-/// states, derivatives equal to those of the values. Derivatives are compared along the simplex, as
-/// they enter gradients.
+/// Tests [`Law::Element`]. Derivatives are compared along the simplex, as they enter gradients.
 ///
 /// # Errors
 /// [`KitErrorKind::TooManyFunctions`], [`KitErrorKind::NotANumber`], [`KitErrorKind::NotDual`],
 /// [`KitErrorKind::NodeElsewhere`], [`KitErrorKind::NotPartitionOfUnity`], [`KitErrorKind::PolynomialMissing`],
 /// [`KitErrorKind::DegreeExceeded`], [`KitErrorKind::WrongDerivative`].
-pub fn check_element<const D: usize>(element: &dyn Element<D>) -> Result<ElementReport, KitError> {
+pub fn check_element<const D: usize>(element: &dyn Element<D>) -> Result<LawReport, KitError> {
+    Law::Element.named(check(element))
+}
+
+pub(super) fn check<const D: usize>(element: &dyn Element<D>) -> Result<LawReport, Fault> {
     let functions = element.per_cell();
     if functions > MAX_BASIS {
         let message = format!(
             "the layout owns {functions} unknowns of a cell, at most {MAX_BASIS} are allowed"
         );
-        return Err(error(KitErrorKind::TooManyFunctions, message));
+        return Err(Fault::new(KitErrorKind::TooManyFunctions, message));
     }
     Tested::new(element).check()
-}
-
-fn error(kind: KitErrorKind, message: String) -> KitError {
-    KitError::new(Law::Element, kind, message)
 }
 
 /// A functional, as points with weights, at a function.
@@ -83,7 +80,7 @@ impl<'e, const D: usize> Tested<'e, D> {
         out
     }
 
-    fn check(&self) -> Result<ElementReport, KitError> {
+    fn check(&self) -> Result<LawReport, Fault> {
         self.numbers()?;
         // means of basis functions are taken by rules for the degree of the basis
         self.basis_degree()?;
@@ -92,23 +89,33 @@ impl<'e, const D: usize> Tested<'e, D> {
         let interpolation = self.interpolation()?;
         let derivatives = self.derivatives()?;
         let (functions, degree) = (self.functions, self.element.degree());
-        Ok(ElementReport { functions, degree, duality, interpolation, derivatives })
+        let sentence = format!(
+            "{functions} functions of degree {degree}, duality {duality:.1e}, interpolation {interpolation:.1e}, derivatives {derivatives:.1e}"
+        );
+        let figures = [
+            ("functions", functions as f64),
+            ("degree", degree as f64),
+            ("duality", duality),
+            ("interpolation", interpolation),
+            ("derivatives", derivatives),
+        ];
+        Ok(LawReport::new(Law::Element, sentence, &figures))
     }
 
     /// Every function that the layout has an unknown for is written.
-    fn numbers(&self) -> Result<(), KitError> {
+    fn numbers(&self) -> Result<(), Fault> {
         for point in &self.points {
             let values = self.values_at(point);
             if let Some(function) = values[..self.functions].iter().position(|v| v.is_nan()) {
                 let at = self.describe(point);
                 let message = format!("basis function {function} is not a number at {at}");
-                return Err(error(KitErrorKind::NotANumber, message));
+                return Err(Fault::new(KitErrorKind::NotANumber, message));
             }
         }
         Ok(())
     }
 
-    fn duality(&self) -> Result<f64, KitError> {
+    fn duality(&self) -> Result<f64, Fault> {
         let mut largest: f64 = 0.0;
         for (i, terms) in self.terms.iter().enumerate() {
             for j in 0..self.functions {
@@ -119,7 +126,7 @@ impl<'e, const D: usize> Tested<'e, D> {
                 if !within(difference, TOLERANCE) {
                     let message =
                         format!("node {i} of basis function {j} is {found:.6}, not {expected}");
-                    return Err(error(KitErrorKind::NotDual, message));
+                    return Err(Fault::new(KitErrorKind::NotDual, message));
                 }
                 largest = largest.max(difference);
             }
@@ -128,7 +135,7 @@ impl<'e, const D: usize> Tested<'e, D> {
     }
 
     /// Nodes of shared unknowns are tied to the vertex, edge or facet that owns the unknown.
-    fn owners(&self) -> Result<(), KitError> {
+    fn owners(&self) -> Result<(), Fault> {
         let Layout { vertex, edge, facet, .. } = self.element.layout();
         let d = D;
         let repeat = |n: usize, of: fn(usize) -> Entity, each: usize| {
@@ -143,7 +150,7 @@ impl<'e, const D: usize> Tested<'e, D> {
             if !vertices(entity).eq(vertices(owner)) {
                 let message =
                     format!("node {node} is tied to {entity:?}, its unknown belongs to {owner:?}");
-                return Err(error(KitErrorKind::NodeElsewhere, message));
+                return Err(Fault::new(KitErrorKind::NodeElsewhere, message));
             }
         }
         Ok(())
@@ -151,7 +158,7 @@ impl<'e, const D: usize> Tested<'e, D> {
 
     /// Rules that integrate products of polynomials of the stated degree are exact for the squares
     /// of basis functions.
-    fn basis_degree(&self) -> Result<(), KitError> {
+    fn basis_degree(&self) -> Result<(), Fault> {
         let stated = self.element.basis_degree();
         let [rule, finer] = [2 * stated, 2 * stated + 6].map(|k| Rule::new(D, k));
         for function in 0..self.functions {
@@ -162,14 +169,14 @@ impl<'e, const D: usize> Tested<'e, D> {
                 let message = format!(
                     "a rule for basis functions of degree {stated} gives {found:.6e} for the mean of the square of function {function}, which is {expected:.6e}: state the degree of the basis as `basis_degree`"
                 );
-                return Err(error(KitErrorKind::DegreeExceeded, message));
+                return Err(Fault::new(KitErrorKind::DegreeExceeded, message));
             }
         }
         Ok(())
     }
 
     /// Partition of unity is the case of degree zero, with an error of its own kind.
-    fn interpolation(&self) -> Result<f64, KitError> {
+    fn interpolation(&self) -> Result<f64, Fault> {
         let mut largest: f64 = 0.0;
         for point in &self.points {
             let values = self.values_at(point);
@@ -177,7 +184,7 @@ impl<'e, const D: usize> Tested<'e, D> {
             if !within(sum - 1.0, TOLERANCE) {
                 let at = self.describe(point);
                 let message = format!("at {at} the basis functions sum to {sum:.6}, not to one");
-                return Err(error(KitErrorKind::NotPartitionOfUnity, message));
+                return Err(Fault::new(KitErrorKind::NotPartitionOfUnity, message));
             }
             for degree in 0..=self.element.degree() {
                 let f = |point: &[f64; 4]| polynomial(degree, point);
@@ -189,7 +196,7 @@ impl<'e, const D: usize> Tested<'e, D> {
                     let message = format!(
                         "a polynomial of degree {degree} differs by {difference:.3e} from its interpolant at {at}, although the element is said to be of degree {stated}"
                     );
-                    return Err(error(KitErrorKind::PolynomialMissing, message));
+                    return Err(Fault::new(KitErrorKind::PolynomialMissing, message));
                 }
                 largest = largest.max(difference.abs());
             }
@@ -197,7 +204,7 @@ impl<'e, const D: usize> Tested<'e, D> {
         Ok(largest)
     }
 
-    fn derivatives(&self) -> Result<f64, KitError> {
+    fn derivatives(&self) -> Result<f64, Fault> {
         let mut largest: f64 = 0.0;
         for point in &self.points {
             let rows = self.derivatives_at(point);
@@ -211,7 +218,7 @@ impl<'e, const D: usize> Tested<'e, D> {
                             let message = format!(
                                 "basis function {function} has derivative {stated:.6} at {at} from vertex {from} to vertex {to}, differences give {difference:.6}"
                             );
-                            return Err(error(KitErrorKind::WrongDerivative, message));
+                            return Err(Fault::new(KitErrorKind::WrongDerivative, message));
                         }
                         largest = largest.max((stated - difference).abs());
                     }

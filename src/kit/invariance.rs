@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use super::discrete::{Tested, assemble, solve};
-use super::error::{KitError, KitErrorKind, Law};
+use super::error::{Fault, KitErrorKind, Law};
 use super::matrix::{describe, row_sizes};
 use super::meshes::Sample;
-use super::report::InvarianceReport;
+use super::report::LawReport;
 use super::{meshes, problems};
 use crate::algebra::{DofLocation, Inequality};
 
@@ -18,26 +18,27 @@ const SOLUTION_UNITS: f64 = 8192.0;
 /// When numbers change that must not.
 const RENUMBERED: &str = "when vertices and cells are renumbered";
 
-pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<InvarianceReport, KitError> {
-    let law = Law::Invariance;
-    let sample = meshes::moved::<D>(law, &meshes::mixed(), meshes::subdivisions(D))?;
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<LawReport, Fault> {
+    let sample = meshes::moved::<D>(&meshes::mixed(), meshes::subdivisions(D))?;
     let before = Numbered::new(scheme, &sample)?;
-    let mut report = InvarianceReport { matrix: 0.0, load: 0.0, solution: 0.0 };
+    let [mut matrix, mut load, mut solution]: [f64; 3] = [0.0; 3];
     for seed in [1, 2] {
-        let (mesh, vertices, cells) = meshes::renumbered(law, &sample.mesh, seed)?;
+        let (mesh, vertices, cells) = meshes::renumbered(&sample.mesh, seed)?;
         let after = Numbered::new(scheme, &Sample { name: "a renumbered box", mesh })?;
         let new = after.numbers_of(&before, &vertices, &cells)?;
         let tolerance = ENTRY_UNITS * f64::EPSILON;
-        report.matrix = report.matrix.max(before.matrix(&after, &new, tolerance)?);
+        matrix = matrix.max(before.matrix(&after, &new, tolerance)?);
         let what = ("the load of", KitErrorKind::LoadDependsOnNumbering);
         let loads = [&before.load[..], &after.load];
-        report.load = report.load.max(before.vector(what, loads, &new, tolerance)?);
+        load = load.max(before.vector(what, loads, &new, tolerance)?);
         let tolerance = SOLUTION_UNITS * f64::EPSILON;
         let what = ("the solution at", KitErrorKind::SolutionDependsOnNumbering);
         let solutions = [&before.solution[..], &after.solution];
-        report.solution = report.solution.max(before.vector(what, solutions, &new, tolerance)?);
+        solution = solution.max(before.vector(what, solutions, &new, tolerance)?);
     }
-    Ok(report)
+    let sentence = format!("matrix {matrix:.1e}, load {load:.1e}, solution {solution:.1e}");
+    let figures = [("matrix", matrix), ("load", load), ("solution", solution)];
+    Ok(LawReport::new(Law::Invariance, sentence, &figures))
 }
 
 /// A linear problem and its solution in one numbering.
@@ -57,10 +58,9 @@ fn key(location: &DofLocation, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -
 }
 
 impl Numbered {
-    fn new<const D: usize>(scheme: &Tested<'_, D>, sample: &Sample<D>) -> Result<Self, KitError> {
-        let law = Law::Invariance;
-        let inequality = assemble(law, scheme, &problems::rich(), &sample.mesh)?;
-        let solution = solve(law, &inequality, sample)?;
+    fn new<const D: usize>(scheme: &Tested<'_, D>, sample: &Sample<D>) -> Result<Self, Fault> {
+        let inequality = assemble(scheme, &problems::rich(), &sample.mesh)?;
+        let solution = solve(&inequality, sample)?;
         let load = inequality.assembled_load().into_owned();
         Ok(Self { inequality, load, solution })
     }
@@ -71,10 +71,10 @@ impl Numbered {
         there: &Self,
         vertices: &[u32],
         cells: &[u32],
-    ) -> Result<Vec<usize>, KitError> {
+    ) -> Result<Vec<usize>, Fault> {
         let error = |first, second, place| {
             let message = format!("unknowns {first} and {second} live at the same place, {place}");
-            KitError::new(Law::Invariance, KitErrorKind::UnknownsNotTold, message)
+            Fault::new(KitErrorKind::UnknownsNotTold, message)
         };
         let locations = &self.inequality.locations;
         let mut here = HashMap::with_capacity(locations.len());
@@ -99,7 +99,7 @@ impl Numbered {
         [before, after]: [&[f64]; 2],
         new: &[usize],
         tolerance: f64,
-    ) -> Result<f64, KitError> {
+    ) -> Result<f64, Fault> {
         let (change, unknown) = largest_change(before, after, new);
         if change <= tolerance {
             return Ok(change);
@@ -110,11 +110,11 @@ impl Numbered {
             before[unknown],
             after[new[unknown]],
         );
-        Err(KitError::new(Law::Invariance, kind, message))
+        Err(Fault::new(kind, message))
     }
 
     /// The largest change of an entry of the matrix, relative to the size of its row and column.
-    fn matrix(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {
+    fn matrix(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, Fault> {
         let [before, other] = [self, after].map(|numbered| &numbered.inequality.matrix);
         let sizes = row_sizes(before);
         let mut largest: f64 = 0.0;
@@ -132,7 +132,7 @@ impl Numbered {
                 describe(&self.inequality, row),
                 describe(&self.inequality, column),
             );
-            Err(KitError::new(Law::Invariance, KitErrorKind::EntryDependsOnNumbering, message))
+            Err(Fault::new(KitErrorKind::EntryDependsOnNumbering, message))
         };
         let mut old = vec![0; new.len()];
         for (i, &k) in new.iter().enumerate() {

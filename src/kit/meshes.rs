@@ -1,8 +1,7 @@
 //! The meshes on which schemes are tested.
 
-use super::error::{KitError, Law};
 use super::split_mix::SplitMix64;
-use crate::mesh::{BoundaryCondition, BoxDomain, Mesh, TaggedFacet};
+use crate::mesh::{BoundaryCondition, BoxDomain, Mesh, MeshError, TaggedFacet};
 use crate::real::Point;
 
 /// Largest displacement of a vertex along an axis, in units of the distance between neighbours.
@@ -35,22 +34,20 @@ pub(super) fn mixed<const D: usize>() -> BoxDomain<D> {
 
 /// The Kuhn triangulation of a box.
 pub(super) fn regular<const D: usize>(
-    law: Law,
     domain: &BoxDomain<D>,
     n: usize,
-) -> Result<Sample<D>, KitError> {
-    let mesh = Mesh::kuhn_box(domain, [n; D]).map_err(|why| KitError::not_assembled(law, why))?;
+) -> Result<Sample<D>, MeshError> {
+    let mesh = Mesh::kuhn_box(domain, [n; D])?;
     Ok(Sample { name: "a regular box", mesh })
 }
 
 /// The Kuhn triangulation of a box with pseudo-randomly moved vertices; vertices of the boundary move
 /// along the boundary.
 pub(super) fn moved<const D: usize>(
-    law: Law,
     domain: &BoxDomain<D>,
     n: usize,
-) -> Result<Sample<D>, KitError> {
-    let mesh = regular::<D>(law, domain, n)?.mesh;
+) -> Result<Sample<D>, MeshError> {
+    let mesh = regular::<D>(domain, n)?.mesh;
     let mut random = SplitMix64(7);
     let move_one = |x: &Point<D>| {
         Point::from_fn(|k, _| {
@@ -60,8 +57,7 @@ pub(super) fn moved<const D: usize>(
         })
     };
     let vertices = mesh.vertices().iter().map(move_one).collect();
-    let mesh = Mesh::new(vertices, mesh.cells().to_vec(), &tagged(&mesh, |v| v))
-        .map_err(|why| KitError::not_assembled(law, why))?;
+    let mesh = Mesh::new(vertices, mesh.cells().to_vec(), &tagged(&mesh, |v| v))?;
     Ok(Sample { name: "a box with moved vertices", mesh })
 }
 
@@ -81,10 +77,9 @@ pub(crate) fn tagged<const D: usize>(
 
 /// A mesh with pseudo-randomly renumbered vertices and cells, and the old number of each vertex and of each cell.
 pub(super) fn renumbered<const D: usize>(
-    law: Law,
     mesh: &Mesh<D>,
     seed: u64,
-) -> Result<(Mesh<D>, Vec<u32>, Vec<u32>), KitError> {
+) -> Result<(Mesh<D>, Vec<u32>, Vec<u32>), MeshError> {
     let mut random = SplitMix64(seed);
     let vertices = random.permutation(mesh.vertices().len());
     let cells = random.permutation(mesh.n_cells());
@@ -97,7 +92,6 @@ pub(super) fn renumbered<const D: usize>(
     for &old in &cells {
         corners.extend(mesh.cell(old as usize).iter().map(|&v| new[v as usize]));
     }
-    let mesh = Mesh::new(points, corners, &tagged(mesh, |v| new[v as usize]))
-        .map_err(|why| KitError::not_assembled(law, why))?;
+    let mesh = Mesh::new(points, corners, &tagged(mesh, |v| new[v as usize]))?;
     Ok((mesh, vertices, cells))
 }

@@ -1,8 +1,8 @@
 //! Convergence to a smooth solution.
 
 use super::discrete::{Tested, solve_and_judge};
-use super::error::{KitError, KitErrorKind, Law};
-use super::report::OrdersReport;
+use super::error::{Fault, KitErrorKind, Law};
+use super::report::LawReport;
 use super::{meshes, problems};
 use crate::measure::observed_order;
 use crate::mesh::Mesh;
@@ -25,14 +25,13 @@ const fn levels(dimension: usize, degree: usize) -> [usize; 2] {
     }
 }
 
-pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<OrdersReport, KitError> {
-    let law = Law::Orders;
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<LawReport, Fault> {
     let problem = problems::smooth::<D>();
     let domain = meshes::clamped();
     let errors = |level: usize| {
-        let sample = meshes::regular::<D>(law, &domain, level)?;
-        let (errors, _) = solve_and_judge(law, scheme, &problem, &sample)?;
-        Ok::<_, KitError>([errors.l2, errors.h1].map(|e| e.unwrap_or(f64::NAN)))
+        let sample = meshes::regular::<D>(&domain, level)?;
+        let (errors, _) = solve_and_judge(scheme, &problem, &sample)?;
+        Ok::<_, Fault>([errors.l2, errors.h1].map(|e| e.unwrap_or(f64::NAN)))
     };
     let [coarse_level, fine_level] = levels(D, scheme.degree());
     let (coarse, fine) = (errors(coarse_level)?, errors(fine_level)?);
@@ -47,16 +46,15 @@ pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<OrdersRepo
     let l2_expected = promised.l2.into_iter().chain(by_duality).reduce(f64::max);
     let h1_expected = promised.h1.map_or(degree, |h1| h1.max(degree));
     let rounding = UNITS * f64::EPSILON * problem.dirichlet_at(&domain.upper);
-    Ok(OrdersReport {
-        h1: order(
-            ("H1", Some(h1_expected)),
-            ([coarse[1], fine[1]], sizes),
-            rounding * fine_level as f64,
-        )?,
-        h1_expected,
-        l2: order(("L2", l2_expected), ([coarse[0], fine[0]], sizes), rounding)?,
-        l2_expected,
-    })
+    let h1 = order(
+        ("H1", Some(h1_expected)),
+        ([coarse[1], fine[1]], sizes),
+        rounding * fine_level as f64,
+    )?;
+    let l2 = order(("L2", l2_expected), ([coarse[0], fine[0]], sizes), rounding)?;
+    let mut figures = vec![("L2", l2), ("H1", h1), ("H1 due", h1_expected)];
+    figures.extend(l2_expected.map(|due| ("L2 due", due)));
+    Ok(LawReport::new(Law::Orders, format!("L2 {l2:.2}, H1 {h1:.2}"), &figures))
 }
 
 /// The order measured by the errors on two meshes of these sizes, the coarse one first, if it is what is expected but
@@ -65,7 +63,7 @@ fn order(
     (norm, expected): (&str, Option<f64>),
     ([coarse, fine], [coarse_size, fine_size]): ([f64; 2], [f64; 2]),
     rounding: f64,
-) -> Result<f64, KitError> {
+) -> Result<f64, Fault> {
     let measured = observed_order(coarse, fine, coarse_size, fine_size).unwrap_or(f64::NAN);
     let Some(expected) = expected else { return Ok(measured) };
     let due = coarse * (fine_size / coarse_size).powf(expected - SLACK);
@@ -75,6 +73,6 @@ fn order(
         let message = format!(
             "the {norm} error falls from {coarse:.3e} to {fine:.3e}, an order of {measured:.2} where {expected} is due"
         );
-        Err(KitError::new(Law::Orders, KitErrorKind::OrderMissed, message))
+        Err(Fault::new(KitErrorKind::OrderMissed, message))
     }
 }

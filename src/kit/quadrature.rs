@@ -1,10 +1,10 @@
 //! The law of a family of quadrature rules.
 
-use super::error::{KitError, KitErrorKind, Law};
-use super::report::QuadratureReport;
+use super::error::{Fault, KitError, KitErrorKind, Law};
+use super::report::LawReport;
 use crate::quadrature::{Quadrature, Rule};
 
-/// Tests the rule of a family in a dimension: it is exact for polynomials of the degree asked for.
+/// Tests [`Law::Quadrature`] for a family of rules in a dimension.
 ///
 /// # Errors
 /// [`KitErrorKind::RuleNotExact`]; [`KitErrorKind::NotAssembled`] if the family has no such rule, or it is
@@ -13,11 +13,14 @@ pub fn check_quadrature(
     family: &dyn Quadrature,
     dimension: usize,
     degree: usize,
-) -> Result<QuadratureReport, KitError> {
+) -> Result<LawReport, KitError> {
+    Law::Quadrature.named(check(family, dimension, degree))
+}
+
+fn check(family: &dyn Quadrature, dimension: usize, degree: usize) -> Result<LawReport, Fault> {
     let rule = family
         .rule(dimension, degree)
-        .and_then(|rule| Rule::from_points(dimension, rule.points, rule.weights))
-        .map_err(|why| KitError::not_assembled(Law::Quadrature, why))?;
+        .and_then(|rule| Rule::from_points(dimension, rule.points, rule.weights))?;
     let mut error: f64 = 0.0;
     for moment in rule.moments(dimension, degree) {
         if !moment.is_exact() {
@@ -28,10 +31,15 @@ pub fn check_quadrature(
                 moment.powers,
                 moment.expected,
             );
-            return Err(KitError::new(Law::Quadrature, KitErrorKind::RuleNotExact, message));
+            return Err(Fault::new(KitErrorKind::RuleNotExact, message));
         }
         error = error.max(moment.deviation());
     }
     let smallest_weight = rule.weights.iter().copied().fold(f64::INFINITY, f64::min);
-    Ok(QuadratureReport { points: rule.points.len(), smallest_weight, error })
+    let points = rule.points.len();
+    let sentence =
+        format!("{points} points, smallest weight {smallest_weight:.1e}, error {error:.1e}");
+    let figures =
+        [("points", points as f64), ("smallest weight", smallest_weight), ("error", error)];
+    Ok(LawReport::new(Law::Quadrature, sentence, &figures))
 }

@@ -1,22 +1,22 @@
 //! A matrix is as symmetric as its form declares.
 
 use super::discrete::{Tested, assemble};
-use super::error::{KitError, KitErrorKind, Law};
+use super::error::{Fault, KitErrorKind, Law};
 use super::matrix::{describe, row_sizes};
-use super::report::SymmetryReport;
+use super::report::LawReport;
 use super::{meshes, problems};
 use crate::algebra::Inequality;
 
 /// Rounding units by which an entry may differ from its mirror image.
 const UNITS: f64 = 256.0;
 
-pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<SymmetryReport, KitError> {
-    let sample = meshes::moved(Law::Symmetry, &meshes::mixed(), meshes::subdivisions(D))?;
-    let inequality = assemble(Law::Symmetry, scheme, &problems::rich(), &sample.mesh)?;
+pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<LawReport, Fault> {
+    let sample = meshes::moved(&meshes::mixed(), meshes::subdivisions(D))?;
+    let inequality = assemble(scheme, &problems::rich(), &sample.mesh)?;
     compare(&inequality, UNITS * f64::EPSILON)
 }
 
-fn compare(inequality: &Inequality<f64>, tolerance: f64) -> Result<SymmetryReport, KitError> {
+fn compare(inequality: &Inequality<f64>, tolerance: f64) -> Result<LawReport, Fault> {
     let matrix = &inequality.matrix;
     let sizes = row_sizes(matrix);
     let (mut difference, mut at) = (0.0, (0, 0));
@@ -42,14 +42,18 @@ fn compare(inequality: &Inequality<f64>, tolerance: f64) -> Result<SymmetryRepor
                 describe(inequality, row),
                 describe(inequality, column),
             );
-            Err(KitError::new(Law::Symmetry, KitErrorKind::NotSymmetric, message))
+            Err(Fault::new(KitErrorKind::NotSymmetric, message))
         }
         (false, true) => {
             let message = format!(
                 "the form is declared not symmetric, but no entry differs from its mirror image by more than {difference:.1e} of its rows: declare it symmetric"
             );
-            Err(KitError::new(Law::Symmetry, KitErrorKind::SymmetricAfterAll, message))
+            Err(Fault::new(KitErrorKind::SymmetricAfterAll, message))
         }
-        (declared, _) => Ok(SymmetryReport { declared, difference }),
+        (declared, _) => {
+            let word = if declared { "symmetric" } else { "not symmetric" };
+            let sentence = format!("{word}, difference {difference:.1e}");
+            Ok(LawReport::new(Law::Symmetry, sentence, &[("difference", difference)]))
+        }
     }
 }

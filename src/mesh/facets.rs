@@ -7,7 +7,7 @@ use crate::arrays::array_of;
 use crate::parallel::map_indices;
 
 use super::boundary::BoundaryCondition;
-use super::error::MeshError;
+use super::error::{MeshError, MeshErrorKind};
 use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
 use super::neighbour_numbers::NeighbourNumbers;
 use super::simplicial::Mesh;
@@ -195,13 +195,20 @@ fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
         for k in 1..same.len() {
             let second = same[k].0;
             if let Some(&(first, _)) = same[..k].iter().find(|(c, _)| cell(*c) == cell(second)) {
-                let vertices = cell(first).to_vec();
-                return Some(MeshError::RepeatedCell { first, second, vertices });
+                let vertices = cell(first);
+                let message =
+                    format!("cells {first} and {second} have the same vertices {vertices:?}");
+                let error = MeshError::new(MeshErrorKind::RepeatedCell, message);
+                return Some(error.of_cells([first, second]).of_vertices(vertices));
             }
             if k == 2 {
-                let vertices = vertices(same[0]).to_vec();
+                let vertices = vertices(same[0]);
                 let cells = [same[0].0, same[1].0, second];
-                return Some(MeshError::FacetOfThreeCells { vertices, cells });
+                let message = format!(
+                    "facet {vertices:?} belongs to cells {cells:?}: a facet lies between two cells at most"
+                );
+                let error = MeshError::new(MeshErrorKind::FacetOfThreeCells, message);
+                return Some(error.of_cells(cells).of_vertices(&vertices));
             }
         }
     }

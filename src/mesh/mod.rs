@@ -41,7 +41,7 @@ pub use domain::{BoxDomain, Domain};
 #[doc(hidden)]
 pub use edges::Edges;
 pub(crate) use edges::edge_vertices;
-pub use error::MeshError;
+pub use error::{MeshError, MeshErrorKind};
 pub(crate) use facets::CELL_LIMIT;
 pub use facets::{Facets, HalfFacet, Neighbour, Neighbours};
 pub use geometry::CellGeometry;

@@ -8,7 +8,6 @@ use super::facets::Neighbours;
 use super::groups::BoundaryGroup;
 use super::simplicial::Mesh;
 use super::validate::is_supported;
-use crate::input::excerpt;
 
 impl<const D: usize> Mesh<D> {
     /// The names of each region, by number.
@@ -41,22 +40,20 @@ impl<const D: usize> Mesh<D> {
     /// The mesh with these regions: the names of each, and the number of the region of each cell.
     ///
     /// # Errors
-    /// [`MeshError::Parameter`] unless there is one number for each cell, less than that of regions.
+    /// `MeshErrorKind::Parameter` unless there is one number for each cell, less than that of regions.
     pub fn with_regions(
         mut self,
         regions: Vec<Vec<String>>,
         of_cells: Vec<u16>,
     ) -> Result<Self, MeshError> {
-        let refuse = |parameter, value: String, allowed: String| {
-            Err(MeshError::Parameter { parameter, value, allowed })
-        };
         if of_cells.len() != self.n_cells() {
             let allowed = format!("one for each of {} cells", self.n_cells());
-            return refuse("numbers of regions of cells", of_cells.len().to_string(), allowed);
+            let parameter = "numbers of regions of cells";
+            return Err(MeshError::parameter(parameter, of_cells.len(), allowed));
         }
         if let Some(region) = of_cells.iter().find(|&&k| usize::from(k) >= regions.len()) {
             let allowed = format!("less than {}, the number of regions", regions.len());
-            return refuse("region of a cell", region.to_string(), allowed);
+            return Err(MeshError::parameter("region of a cell", region, allowed));
         }
         Arc::make_mut(&mut self.groups).regions = regions;
         self.cell_regions = of_cells;
@@ -67,7 +64,7 @@ impl<const D: usize> Mesh<D> {
     /// which `condition_of` knows a condition keeps the condition that it has.
     ///
     /// # Errors
-    /// [`MeshError::GroupWithTwoConditions`].
+    /// `MeshErrorKind::GroupWithTwoConditions`.
     pub fn with_boundary_conditions(
         mut self,
         condition_of: &dyn Fn(&str) -> Option<BoundaryCondition>,
@@ -80,10 +77,7 @@ impl<const D: usize> Mesh<D> {
             for (name, found) in names.iter().filter_map(|name| Some((name, decided(name)?))) {
                 match known {
                     Some((first, other)) if other != found => {
-                        return Err(MeshError::GroupWithTwoConditions {
-                            groups: Box::new([first, name].map(excerpt)),
-                            conditions: [other.name(), found.name()],
-                        });
+                        return Err(MeshError::two_conditions([first, name], [other, found]));
                     }
                     _ => known = Some((name, found)),
                 }
@@ -102,7 +96,7 @@ impl<const D: usize> Mesh<D> {
     /// Checks that the condition of every boundary group is decided.
     ///
     /// # Errors
-    /// [`MeshError::UndecidedGroup`].
+    /// `MeshErrorKind::UndecidedGroup`.
     pub fn check_boundary_conditions(&self) -> Result<(), MeshError> {
         match self.groups.boundary.iter().find(|group| group.condition.is_none()) {
             Some(group) => Err(MeshError::undecided(&group.names)),

@@ -134,7 +134,7 @@ impl<const D: usize> Mesh<D> {
     /// Cuts every cell into `2^D` of equal volume; regions, boundary conditions and groups are inherited.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`].
+    /// `MeshErrorKind::TooLarge`.
     pub fn refine(&self) -> Result<(Self, Refinement), MeshError> {
         compiled!(const D: fn(&Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError>
                 = Mesh::refine_uniformly

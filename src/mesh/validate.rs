@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::boundary::{BoundaryCondition, BoundaryFacet};
 use super::components::Components;
-use super::error::MeshError;
+use super::error::{MeshError, MeshErrorKind, UNITE};
 use super::facets::{CELL_LIMIT, Neighbours, facet_of};
 use super::geometry::simplex::longest_edge;
 use super::geometry::{CellGeometry, describe_point};
@@ -67,7 +67,7 @@ impl<const D: usize> Mesh<D> {
     /// left out of groups with other names.
     ///
     /// # Errors
-    /// As [`Mesh::new`], and [`MeshError::Parameter`] for a number of a group without a name.
+    /// As [`Mesh::new`], and [`MeshErrorKind::Parameter`] for a number of a group without a name.
     pub fn with_groups(
         vertices: Vec<Point<D>>,
         cells: Vec<u32>,
@@ -119,20 +119,29 @@ pub(super) fn is_supported(neighbours: &Neighbours, boundary: &[BoundaryFacet]) 
 fn check_lists<const D: usize>(vertices: &[Point<D>], cells: &[u32]) -> Result<(), MeshError> {
     let per_cell = D + 1;
     if cells.is_empty() {
-        return Err(MeshError::NoCells { dimension: D });
+        let message = format!("the mesh has no cells of dimension {D}");
+        return Err(MeshError::new(MeshErrorKind::NoCells, message));
     }
     if !cells.len().is_multiple_of(per_cell) {
-        return Err(MeshError::IncompleteCell { entries: cells.len(), per_cell });
+        let message = format!("{} cell vertices do not make cells of {per_cell}", cells.len());
+        return Err(MeshError::new(MeshErrorKind::IncompleteCell, message));
     }
     check_size(cells.len() / per_cell, vertices.len())?;
     for (vertex, x) in vertices.iter().enumerate() {
         if let Some(axis) = (0..D).find(|&k| !x[k].is_finite()) {
-            return Err(MeshError::NotFinite { vertex, axis, value: x[axis] });
+            let message = format!(
+                "coordinate {axis} of vertex {vertex} is {}: coordinates must be finite",
+                x[axis]
+            );
+            let error = MeshError::new(MeshErrorKind::NotFinite, message);
+            return Err(error.of_vertices(&[vertex as u32]));
         }
     }
     if let Some(k) = cells.iter().position(|&v| v as usize >= vertices.len()) {
         let (cell, vertex) = (k / per_cell, cells[k]);
-        return Err(MeshError::VertexOutOfRange { cell, vertex, vertices: vertices.len() });
+        let message =
+            format!("cell {cell} names vertex {vertex}, but there are only {}", vertices.len());
+        return Err(MeshError::new(MeshErrorKind::VertexOutOfRange, message).of_cells([cell]));
     }
     Ok(())
 }
@@ -143,7 +152,7 @@ pub(super) fn check_size(cells: usize, vertices: usize) -> Result<(), MeshError>
         [("cells", cells, CELL_LIMIT), ("vertices", vertices, u32::MAX as usize - 1)]
     {
         if count > limit {
-            return Err(MeshError::TooLarge { what, count, limit });
+            return Err(MeshError::too_large(what, count, limit));
         }
     }
     Ok(())
@@ -164,8 +173,11 @@ fn check_volumes<const D: usize>(
         let scaled = volume / diameter.powi(D as i32);
         // overflow and underflow count as degenerate
         if scaled.is_nan() || scaled <= 8.0 * f64::EPSILON {
-            let vertices = cell.to_vec();
-            return Err(MeshError::DegenerateCell { cell: c, vertices, volume, diameter });
+            let message = format!(
+                "cell {c} is degenerate: volume {volume:e} against diameter {diameter:e} (vertices {cell:?})"
+            );
+            let error = MeshError::new(MeshErrorKind::DegenerateCell, message);
+            return Err(error.of_cells([c]).of_vertices(cell));
         }
         Ok(geometry.is_positive())
     };
@@ -208,11 +220,8 @@ fn match_boundary<const D: usize>(
     for (tag, t) in grouped.iter().enumerate() {
         let group = usize::from(t.group);
         let Some(name) = names.get(group) else {
-            return Err(MeshError::Parameter {
-                parameter: "group of a facet",
-                value: group.to_string(),
-                allowed: format!("less than {}, the number of names", names.len()),
-            });
+            let allowed = format!("less than {}, the number of names", names.len());
+            return Err(MeshError::parameter("group of a facet", group, allowed));
         };
         let mut key = t.vertices;
         key.sort_unstable();
@@ -228,8 +237,9 @@ fn match_boundary<const D: usize>(
                 continue;
             }
             let why = if is_inside { "lies between two cells" } else { "belongs to no cell" };
-            let (vertices, group) = (key.to_vec(), excerpt(name));
-            return Err(MeshError::NotABoundaryFacet { vertices, group, why, tag });
+            let message = format!("facet {key:?} is in group {} but {why}", excerpt(name));
+            let error = MeshError::new(MeshErrorKind::NotABoundaryFacet, message);
+            return Err(error.of_vertices(&key).of_tagged_facet(tag));
         };
         let Some(first) = set_of[k] else {
             set_of[k] = Some(group);
@@ -239,13 +249,13 @@ fn match_boundary<const D: usize>(
             (condition_of(sets.names(first)), BoundaryCondition::from_name(name))
             && one != two
         {
-            let (first, second) = (one.name(), two.name());
-            return Err(MeshError::FacetWithTwoConditions {
-                vertices: key.to_vec(),
-                first,
-                second,
-                tag,
-            });
+            let message = format!(
+                "facet {key:?} is in two groups, {} and {}, with different boundary conditions",
+                one.name(),
+                two.name()
+            );
+            let error = MeshError::new(MeshErrorKind::FacetWithTwoConditions, message);
+            return Err(error.of_vertices(&key).of_tagged_facet(tag));
         }
         set_of[k] = Some(sets.union(first, group));
     }
@@ -256,9 +266,13 @@ fn match_boundary<const D: usize>(
     for (&(key, cell, local), set) in open.iter().zip(set_of) {
         let Some(set) = set else {
             let sum = key.iter().fold(Point::<D>::zeros(), |s, &v| s + vertices[v as usize]);
-            let at = describe_point(&(sum / D as f64));
-            let coincident = coincident(vertices, &open, key);
-            return Err(MeshError::UntaggedFacet { vertices: key.to_vec(), cell, at, coincident });
+            let message = format!(
+                "boundary facet {key:?} of cell {cell}, at {}, is in no group: {}",
+                describe_point(&(sum / D as f64)),
+                remedy(coincident(vertices, &open, key))
+            );
+            let error = MeshError::new(MeshErrorKind::UntaggedFacet, message);
+            return Err(error.of_cells([cell]).of_vertices(&key));
         };
         sets_used.resize(sets_used.len().max(set + 1), None);
         let group = *sets_used[set].get_or_insert_with(|| {
@@ -270,13 +284,24 @@ fn match_boundary<const D: usize>(
         boundary.push(BoundaryFacet { cell: cell as u32, local: local as u8, condition, group });
     }
     if groups.len() > usize::from(u16::MAX) {
-        let (what, count, limit) = ("boundary groups", groups.len(), usize::from(u16::MAX));
-        return Err(MeshError::TooLarge { what, count, limit });
+        let limit = usize::from(u16::MAX);
+        return Err(MeshError::too_large("boundary groups", groups.len(), limit));
     }
     BoundaryFacet::sort(&mut boundary);
     let inside = names.iter().zip(has_inner).filter(|(_, has)| *has).map(|(name, _)| name.clone());
     let inside = inside.collect();
     Ok((boundary, Groups { regions: vec![Vec::new()], boundary: groups, inside }))
+}
+
+/// What to do with a boundary facet in no group, given how many facets of the boundary lie on others; zero if it does
+/// not.
+fn remedy(coincident: usize) -> String {
+    match coincident {
+        0 => "put it in one; the names dirichlet, neumann, contact say what holds there, for other names a problem does".to_owned(),
+        n => format!(
+            "it lies on another one, with nodes of its own, as {n} facets do; {UNITE}, or put both sides of a slit in groups"
+        ),
+    }
 }
 
 /// How many facets of the boundary lie on others, if this one does.

@@ -12,7 +12,7 @@ use super::solved::Solved;
 use crate::error::Error;
 use crate::error_bound::ErrorBound;
 use crate::instances::compiled;
-use crate::mesh::MeshError;
+use crate::mesh::MeshErrorKind;
 use crate::problem::Problem;
 use crate::scheme::Scheme;
 
@@ -119,7 +119,7 @@ impl<'a, const D: usize> AdaptiveIteration<'a, D> {
             return Err(Error::parameter("meshes", "uniform", allowed));
         };
         // other errors are those of the first step
-        if let Err(error @ Error::NotAdaptive { .. }) = nested.check_bound(scheme) {
+        if let Err(error @ Error::NotAdaptive(_)) = nested.check_bound(scheme) {
             return Err(error);
         }
         Ok(Self {
@@ -203,7 +203,12 @@ impl<'a, const D: usize> AdaptiveIteration<'a, D> {
         self.nested.enter(Phase::Mesh);
         let next = match self.meshes.bisected(marked) {
             Ok(next) => next,
-            Err(Error::Mesh(MeshError::TooSmallToBisect { .. } | MeshError::TooLarge { .. })) => {
+            Err(Error::Mesh(why))
+                if matches!(
+                    why.kind,
+                    MeshErrorKind::TooSmallToBisect | MeshErrorKind::TooLarge
+                ) =>
+            {
                 return Ok(Some(Stop::Rounding));
             }
             Err(error) => return Err(error),

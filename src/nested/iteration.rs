@@ -187,9 +187,9 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     pub(crate) fn check_bound(&self, scheme: &dyn Scheme<D>) -> Result<(), Error> {
         let mesh = self.p1.meshes.mesh(self.p1.meshes.len() - 1);
         let of = scheme.discretise(self.p1.problem, mesh, self.p1.quadrature)?;
-        of.check_flux().map_err(|why| Error::NotAdaptive {
-            scheme: scheme.name().to_owned(),
-            why: why.to_string(),
+        of.check_flux().map_err(|why| {
+            let scheme = scheme.name();
+            Error::NotAdaptive(format!("meshes cannot follow the error bound of {scheme}: {why}"))
         })
     }
     /// Calls the observer at the beginning of a phase.

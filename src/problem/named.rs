@@ -105,7 +105,13 @@ impl<const D: usize> Problem<D> {
     pub(crate) fn check_given_once(&self) -> Result<(), Error> {
         let check = |(datum, twice): (&'static str, Option<Option<&str>>)| match twice {
             None => Ok(()),
-            Some(name) => Err(Error::GivenTwice { datum, name: name.map(excerpt) }),
+            Some(name) => {
+                let place =
+                    name.map_or("without a name".to_owned(), |n| format!("for {}", excerpt(n)));
+                Err(Error::GivenTwice(format!(
+                    "the {datum} {place} is given twice: give it once; only sources add up"
+                )))
+            }
         };
         let data = [
             ("source", self.source.given_twice()),
@@ -161,7 +167,7 @@ impl<const D: usize> Problem<D> {
     /// their condition.
     ///
     /// # Errors
-    /// [`MeshError::GroupWithTwoConditions`], also where a group `dirichlet`, `neumann` or `contact` is given
+    /// `MeshErrorKind::GroupWithTwoConditions`, also where a group `dirichlet`, `neumann` or `contact` is given
     /// data of another kind.
     pub fn bind_boundary(&self, mesh: Mesh<D>) -> Result<Mesh<D>, MeshError> {
         compiled!(const D: fn(&Problem<D>, Mesh<D>) -> Result<Mesh<D>, MeshError>
@@ -174,11 +180,7 @@ impl<const D: usize> Problem<D> {
             let own = BoundaryCondition::from_name(name).map(|own| (name, own));
             let first = own.or_else(|| all.iter().copied().find(|(other, _)| *other == name));
             if let Some((first, other)) = first.filter(|(_, other)| *other != condition) {
-                let groups = Box::new([first, name].map(excerpt));
-                return Err(MeshError::GroupWithTwoConditions {
-                    groups,
-                    conditions: [other.name(), condition.name()],
-                });
+                return Err(MeshError::two_conditions([first, name], [other, condition]));
             }
         }
         if all.is_empty() {

@@ -190,8 +190,12 @@ impl<const D: usize> DataOnMesh<D> {
             let given = group.names.iter().find_map(|n| Some((n, problem.condition_of(n)?)));
             match (given, group.condition) {
                 (Some((name, given)), Some(found)) if given != found => {
-                    let (group, given, found) = (excerpt(name), given.name(), found.name());
-                    return Err(Error::UnboundBoundary { group, given, found });
+                    return Err(Error::UnboundBoundary(format!(
+                        "the problem has {} data on boundary group {}, whose facets are {} in the mesh: bind the problem to the mesh by Problem::bind_boundary",
+                        given.name(),
+                        excerpt(name),
+                        found.name()
+                    )));
                 }
                 (None, Some(BoundaryCondition::Contact))
                     if problem.gap.everywhere.is_none() && problem.gap.is_given() =>
@@ -230,15 +234,15 @@ fn unknown_group(
     (is_boundary, is_inside): (bool, bool),
     groups: &[&[String]],
 ) -> Error {
-    Error::UnknownGroup {
-        kind: if is_boundary { "boundary group" } else { "region" },
-        name: excerpt(name),
-        known: match &excerpts(groups.iter().copied().flatten())[..] {
-            known if is_inside => {
-                format!("it lies inside the domain, between two cells; the boundary has {known}")
-            }
-            "" => "it has none with a name".to_owned(),
-            known => format!("it has {known}"),
-        },
-    }
+    let (kind, name) = (if is_boundary { "boundary group" } else { "region" }, excerpt(name));
+    let known = match &excerpts(groups.iter().copied().flatten())[..] {
+        known if is_inside => {
+            format!("it lies inside the domain, between two cells; the boundary has {known}")
+        }
+        "" => "it has none with a name".to_owned(),
+        known => format!("it has {known}"),
+    };
+    Error::UnknownGroup(format!(
+        "the problem has data for {kind} {name}, which the mesh does not have: {known}"
+    ))
 }

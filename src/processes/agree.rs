@@ -54,9 +54,9 @@ fn agree_on<T, E: Display>(
             Err(ExchangeError::Failed { part, message, outcome })
         }
         (None, Ok(value)) => Ok(value),
-        (None, Err(own)) => Err(ExchangeError::Transport {
-            why: format!("this error did not reach the parts: {own}"),
-        }),
+        (None, Err(own)) => {
+            Err(ExchangeError::Transport(format!("this error did not reach the parts: {own}")))
+        }
     }
 }
 

@@ -22,59 +22,23 @@ pub enum ExchangeError {
         outcome: Option<Outcome>,
     },
     /// The process or thread of a part has ended.
-    #[error("part {part} has ended without this exchange: look for its error")]
-    Ended {
-        /// The part.
-        part: u32,
-    },
+    #[error("{0}")]
+    Ended(String),
     /// A part sent another number of numbers than it has to.
-    #[error(
-        "part {part} sent {found} numbers in place of {expected}: all parts call the same functions in the same order"
-    )]
-    Length {
-        /// The part.
-        part: u32,
-        /// How many numbers it sent.
-        found: usize,
-        /// How many are expected.
-        expected: usize,
-    },
+    #[error("{0}")]
+    Length(String),
     /// There is not one list for each part.
-    #[error("{lists} lists are sent to {parts} parts: there must be one for each")]
-    Lists {
-        /// Number of lists.
-        lists: usize,
-        /// Number of parts.
-        parts: usize,
-    },
+    #[error("{0}")]
+    Lists(String),
     /// A part is asked for the unknowns of a cell that it does not own.
-    #[error(
-        "part {owner} has no cell {cell} of the whole mesh, which it owns for part {part}: take all parts of one mesh with the same owners of its cells, and refine all as often"
-    )]
-    NotOwned {
-        /// The part that asks.
-        part: u32,
-        /// The part that is asked.
-        owner: u32,
-        /// The number of the cell in the whole mesh.
-        cell: u64,
-    },
+    #[error("{0}")]
+    NotOwned(String),
     /// The owner of a cell does not know who numbers its unknowns.
-    #[error(
-        "part {owner} has no number for an unknown of its cell {cell} of the whole mesh: take parts with as many layers as the scheme asks for"
-    )]
-    NotNumbered {
-        /// The part that owns the cell.
-        owner: u32,
-        /// The number of the cell in the whole mesh.
-        cell: u64,
-    },
+    #[error("{0}")]
+    NotNumbered(String),
     /// What carries the lists failed.
-    #[error("the exchange between parts failed: {why}")]
-    Transport {
-        /// The cause.
-        why: String,
-    },
+    #[error("the exchange between parts failed: {0}")]
+    Transport(String),
 }
 
 debug_by_display!(ExchangeError);
@@ -86,6 +50,10 @@ impl From<ExchangeError> for Error {
 }
 
 impl ExchangeError {
+    /// So many lists, not one for each of these parts.
+    pub(crate) fn lists(lists: usize, parts: usize) -> Self {
+        Self::Lists(format!("{lists} lists are sent to {parts} parts: there must be one for each"))
+    }
     /// The outcome that an error stands for: of [`Error::Processes`] that of the part that failed.
     pub(crate) fn outcome_of(error: &Error) -> Option<Outcome> {
         let Error::Processes(why) = error else { return Outcome::of_error(error) };

@@ -73,7 +73,9 @@ pub(super) fn check_lengths(
     for (part, list) in lists.iter().enumerate() {
         let (found, expected) = (list.len(), expected(part));
         if found != expected {
-            return Err(ExchangeError::Length { part: part as u32, found, expected });
+            return Err(ExchangeError::Length(format!(
+                "part {part} sent {found} numbers in place of {expected}: all parts call the same functions in the same order"
+            )));
         }
     }
     Ok(())
@@ -110,9 +112,13 @@ impl Exchange for InProcess {
     }
     fn exchange(&self, lists: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError> {
         if lists.len() != self.parts() {
-            return Err(ExchangeError::Lists { lists: lists.len(), parts: self.parts() });
+            return Err(ExchangeError::lists(lists.len(), self.parts()));
         }
-        let ended = |part| ExchangeError::Ended { part };
+        let ended = |part: u32| {
+            let message =
+                format!("part {part} has ended without this exchange: look for its error");
+            ExchangeError::Ended(message)
+        };
         for (part, (sender, list)) in (0..).zip(self.senders.iter().zip(lists)) {
             sender.send(list).map_err(|_| ended(part))?;
         }

@@ -46,7 +46,7 @@ pub fn merge_all<M: Merge>(own: &M, exchange: &dyn Exchange) -> Result<M, Exchan
     let numbers = own.to_numbers();
     let lists = numbers_of_all(exchange, &numbers)?;
     let merged = lists.iter().filter_map(|list| M::from_numbers(list)).reduce(M::merge);
-    merged.ok_or(ExchangeError::Lists { lists: 0, parts: exchange.parts() })
+    merged.ok_or(ExchangeError::lists(0, exchange.parts()))
 }
 
 /// For a type that has the methods itself, with its generic parameters.

@@ -209,9 +209,15 @@ impl Cells<'_> {
             let (part, owner, cell) = (self.number, self.owners[cell], self.numbers[cell]);
             match numbers[unknown as usize] {
                 NOT_OWNED if owner != part => {
-                    return Err(ExchangeError::NotOwned { part, owner, cell });
+                    return Err(ExchangeError::NotOwned(format!(
+                        "part {owner} has no cell {cell} of the whole mesh, which it owns for part {part}: take all parts of one mesh with the same owners of its cells, and refine all as often"
+                    )));
                 }
-                UNKNOWN => return Err(ExchangeError::NotNumbered { owner, cell }),
+                UNKNOWN => {
+                    return Err(ExchangeError::NotNumbered(format!(
+                        "part {owner} has no number for an unknown of its cell {cell} of the whole mesh: take parts with as many layers as the scheme asks for"
+                    )));
+                }
                 _ => {}
             }
         }

@@ -1,56 +1,32 @@
 //! Errors of quadrature rules.
 
-/// Why there is no rule.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// Why there is no rule: the kind, and the sentence.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum QuadratureError {
     /// A family has no rule of a degree.
-    #[error(
-        "quadrature family {family} has no rule of degree {degree} in dimension {dimension}: ask for degree {largest} at most, or choose another family"
-    )]
-    NoRule {
-        /// Name of the family.
-        family: String,
-        /// Dimension of the simplex.
-        dimension: usize,
-        /// The degree asked for.
-        degree: usize,
-        /// The largest degree of a rule that the family has in this dimension.
-        largest: usize,
-    },
+    #[error("{0}")]
+    NoRule(String),
     /// There is no simplex of a dimension.
-    #[error("there are no rules in dimension {dimension}: simplices have the dimensions 0 to 3")]
-    Dimension {
-        /// The dimension asked for.
-        dimension: usize,
-    },
+    #[error("{0}")]
+    Dimension(String),
     /// The numbers of points and weights differ, or there are none.
-    #[error("{points} points have {weights} weights: a rule has one weight for each point")]
-    Lengths {
-        /// Number of points.
-        points: usize,
-        /// Number of weights.
-        weights: usize,
-    },
+    #[error("{0}")]
+    Lengths(String),
     /// A number of a rule is not finite, barycentric coordinates of a point do not sum to one, or
     /// entries beyond the dimension are not zero.
-    #[error(
-        "point {point} with weight {weight} and coordinates {coordinates:?} is none of a rule in dimension {dimension}: barycentric coordinates are finite and sum to one, entries beyond the dimension are zero, weights are finite"
-    )]
-    Point {
-        /// Number of the point.
-        point: usize,
-        /// Its coordinates.
-        coordinates: [f64; 4],
-        /// Its weight.
-        weight: f64,
-        /// Dimension of the simplex.
-        dimension: usize,
-    },
+    #[error("{0}")]
+    Point(String),
     /// The weights do not sum to one.
-    #[error("the weights of a rule sum to {sum}: divide them by their sum")]
-    Weights {
-        /// Their sum.
-        sum: f64,
-    },
+    #[error("{0}")]
+    Weights(String),
+}
+
+impl QuadratureError {
+    /// The error of a family without a rule of a degree in a dimension, whose rules go up to the degree `largest`.
+    pub fn no_rule(family: &str, dimension: usize, degree: usize, largest: usize) -> Self {
+        Self::NoRule(format!(
+            "quadrature family {family} has no rule of degree {degree} in dimension {dimension}: ask for degree {largest} at most, or choose another family"
+        ))
+    }
 }

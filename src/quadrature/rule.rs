@@ -45,10 +45,7 @@ impl Rule {
             (0, _) | (_, 0 | 1) => Ok(Self::barycentre(dimension)),
             (_, 2) => Ok(Self::medians(dimension)),
             _ if degree <= largest => Ok(Self::conical(dimension, degree / 2 + 1)),
-            _ => {
-                let family = family.to_owned();
-                Err(QuadratureError::NoRule { family, dimension, degree, largest })
-            }
+            _ => Err(QuadratureError::no_rule(family, dimension, degree, largest)),
         }
     }
 
@@ -65,17 +62,24 @@ impl Rule {
         check_dimension(dimension)?;
         let near_one = |sum: f64| (sum - 1.0).abs() < 1e-12;
         if points.len() != weights.len() || points.is_empty() {
-            return Err(QuadratureError::Lengths { points: points.len(), weights: weights.len() });
+            return Err(QuadratureError::Lengths(format!(
+                "{} points have {} weights: a rule has one weight for each point",
+                points.len(),
+                weights.len()
+            )));
         }
         for (point, (&coordinates, &weight)) in points.iter().zip(&weights).enumerate() {
             let outside = coordinates.iter().skip(dimension + 1).any(|&x| x != 0.0);
             if outside || !near_one(coordinates.iter().sum()) || !weight.is_finite() {
-                return Err(QuadratureError::Point { point, coordinates, weight, dimension });
+                return Err(QuadratureError::Point(format!(
+                    "point {point} with weight {weight} and coordinates {coordinates:?} is none of a rule in dimension {dimension}: barycentric coordinates are finite and sum to one, entries beyond the dimension are zero, weights are finite"
+                )));
             }
         }
         let sum: f64 = weights.iter().sum();
         if !near_one(sum) {
-            return Err(QuadratureError::Weights { sum });
+            let message = format!("the weights of a rule sum to {sum}: divide them by their sum");
+            return Err(QuadratureError::Weights(message));
         }
         Ok(Self { points, weights })
     }
@@ -128,7 +132,12 @@ impl Rule {
 
 /// Refuses a dimension that no simplex has.
 pub(super) fn check_dimension(dimension: usize) -> Result<(), QuadratureError> {
-    if dimension <= 3 { Ok(()) } else { Err(QuadratureError::Dimension { dimension }) }
+    match dimension {
+        0..=3 => Ok(()),
+        _ => Err(QuadratureError::Dimension(format!(
+            "there are no rules in dimension {dimension}: simplices have the dimensions 0 to 3"
+        ))),
+    }
 }
 
 /// The barycentric coordinates of vertex `k` of a simplex.

@@ -272,7 +272,7 @@ impl Entry {
                 true => format!("must be {range}"),
             };
             let value = format!("{value:?}").trim_end_matches(".0").to_owned();
-            return Err(Error::Parameter { parameter, value, allowed });
+            return Err(Error::parameter(parameter, value, allowed));
         }
         Ok((self.build)(parameters))
     }

@@ -31,7 +31,7 @@ impl<const D: usize> Scene<D> {
     /// ([`Problem::bind_boundary`]).
     ///
     /// # Errors
-    /// [`MeshError::GroupWithTwoConditions`] where two data claim one boundary group.
+    /// `MeshErrorKind::GroupWithTwoConditions` where two data claim one boundary group.
     pub fn of_problem(
         name: impl Into<String>,
         problem: Problem<D>,

@@ -182,13 +182,12 @@ impl<'a> Stability<'a> {
     }
 
     fn plan(&self) -> Result<Plan<'_>, Error> {
-        let refuse = |parameter, value, allowed| Error::Parameter { parameter, value, allowed };
         if let Some(name) = self.cases.iter().find(|name| !STABILITY_CASES.contains(&&name[..])) {
             let allowed = format!("there are: {}", STABILITY_CASES.join(", "));
-            return Err(refuse("case", name.clone(), allowed));
+            return Err(Error::parameter("case", name, allowed));
         }
         let wanted = NamedScheme::list(self.schemes.iter().map(String::as_str))
-            .map_err(|why| refuse("scheme", self.schemes.join(","), why.to_string()))?;
+            .map_err(|why| Error::parameter("scheme", self.schemes.join(","), why))?;
         let (effort, given) = (self.effort, &self.given[..]);
         let mut plan = Plan { effort, wanted, given, case: "", jobs: Vec::new() };
         let is_chosen = |case: &str| self.cases.is_empty() || self.cases.iter().any(|c| c == case);

@@ -45,11 +45,9 @@ fn check_data<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Result<(), Er
         space.bounds().map(|_| ())
     };
     at_vertices().and_then(|()| on_facets()).map_err(|why| match why {
-        Error::DataNotFinite { .. }
-        | Error::CoefficientNotPositive { .. }
-        | Error::EmptyConstraint { .. } => {
-            Error::UnfitMesh { scene: scene.name.clone(), why: why.to_string() }
-        }
+        Error::DataNotFinite(_)
+        | Error::CoefficientNotPositive(_)
+        | Error::EmptyConstraint { .. } => Error::unfit_mesh(&scene.name, why),
         other => other,
     })
 }
@@ -80,9 +78,7 @@ pub(super) fn check_scheme<const D: usize>(
     let problem = Problem { coefficient: Given::default(), ..problem.in_group(&[], &[]) };
     match scheme.discretise(&problem, &cube()?, quadrature) {
         Err(
-            why @ (Error::NothingToBound { .. }
-            | Error::UnsupportedForm { .. }
-            | Error::Quadrature(_)),
+            why @ (Error::NothingToBound(_) | Error::UnsupportedForm(_) | Error::Quadrature(_)),
         ) => Err(why),
         _ => Ok(()),
     }
@@ -102,14 +98,11 @@ pub(super) fn check_entries<const D: usize>(
     if entries <= MOST_ENTRIES {
         return Ok(());
     }
-    Err(Error::Parameter {
-        parameter: "level",
-        value: level.to_string(),
-        allowed: format!(
-            "the matrix of {} there may have {entries:.1e} entries in one process, at most {MOST_ENTRIES:.1e} are possible; choose a coarser level, a lower degree or more processes",
-            scheme.name()
-        ),
-    })
+    let allowed = format!(
+        "the matrix of {} there may have {entries:.1e} entries in one process, at most {MOST_ENTRIES:.1e} are possible; choose a coarser level, a lower degree or more processes",
+        scheme.name()
+    );
+    Err(Error::parameter("level", level, allowed))
 }
 
 /// Checks that the labels of schemes and the names of solvers tell the rows of a study apart: orders are of rows of one
@@ -122,12 +115,10 @@ pub(super) fn check_names<'n>(
     solvers: impl Iterator<Item = &'n str>,
 ) -> Result<(), Error> {
     if let Some(label) = first_twice(labels) {
-        return Err(Error::equal_schemes(label.to_owned()));
+        return Err(Error::equal_schemes(label));
     }
-    first_twice(solvers).map_or(Ok(()), |name| {
-        let (items, by) = ("solvers", "`InequalitySolver::name`");
-        Err(Error::EqualNames { items, name: name.to_owned(), by })
-    })
+    first_twice(solvers)
+        .map_or(Ok(()), |name| Err(Error::equal_names("solvers", name, "`InequalitySolver::name`")))
 }
 
 /// The first item that equals one before it.
@@ -150,7 +141,7 @@ fn check_contact<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
         }
         _ => return Ok(()),
     };
-    Err(Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() })
+    Err(Error::unfit_mesh(&scene.name, why))
 }
 
 /// The first contact facet on which the exact solution breaks the contact condition.

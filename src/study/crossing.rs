@@ -26,7 +26,6 @@ pub(super) struct Points {
 /// Two bounds at a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crossing<const D: usize> {
-    cell: usize,
     x: Point<D>,
     lower: f64,
     upper: f64,
@@ -35,8 +34,11 @@ pub(super) struct Crossing<const D: usize> {
 impl<const D: usize> Crossing<D> {
     /// The error of the data.
     pub fn error(&self) -> Error {
-        let Self { cell, x, lower, upper } = *self;
-        Error::BoundsCross { cell: cell as u64, at: describe_point(&x), lower, upper }
+        let Self { x, lower, upper } = self;
+        Error::BoundsCross(format!(
+            "no function is admissible: at {}, a point of the finest mesh, the lower bound {lower} exceeds the upper bound {upper}",
+            describe_point(x)
+        ))
     }
 }
 
@@ -147,7 +149,7 @@ impl<const D: usize> OnMesh<'_, D> {
         for point in nodes_of_cell::<D>().chain(points.iter().copied()) {
             let x = in_space(&point, &corners);
             let [lower, upper] = [lower, upper].map(|psi| psi.in_cell(self.mesh, cell, &x));
-            seen.compare(Crossing { cell, x, lower, upper });
+            seen.compare(Crossing { x, lower, upper });
         }
     }
 
@@ -165,7 +167,7 @@ impl<const D: usize> OnMesh<'_, D> {
         for point in points {
             let x = in_space(&facet_to_cell(point, local), &corners);
             let [lower, upper] = [gap, upper].map(|bound| bound.in_cell(self.mesh, cell, &x));
-            seen.compare(Crossing { cell, x, lower, upper });
+            seen.compare(Crossing { x, lower, upper });
         }
     }
 
@@ -216,7 +218,7 @@ impl<const D: usize> OnMesh<'_, D> {
             for (k, point) in nodes_of_cell::<D>().enumerate() {
                 let (of_cell, lower, upper) = bounds[number(cell, k)];
                 if of_cell == cell {
-                    seen.compare(Crossing { cell, x: in_space(&point, &corners), lower, upper });
+                    seen.compare(Crossing { x: in_space(&point, &corners), lower, upper });
                 }
             }
         }

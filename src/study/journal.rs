@@ -103,11 +103,12 @@ impl Journal {
             if other.is_empty() { "nothing of that".to_owned() } else { other.join(", ") }
         };
         if found != wanted {
-            return Err(Error::OtherRequest {
-                path: directory.display().to_string(),
-                found: other(&found, &wanted),
-                wanted: other(&wanted, &found),
-            });
+            return Err(Error::OtherRequest(format!(
+                "{} has the report of another request: it has {}, this run has {}; repeat that request or choose another directory",
+                directory.display(),
+                other(&found, &wanted),
+                other(&wanted, &found)
+            )));
         }
         Self::with_rows(directory, program, rows)
     }

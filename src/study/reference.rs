@@ -34,10 +34,8 @@ impl<const D: usize> Reference<'_, D> {
     /// # Errors
     /// [`Error::Parameter`].
     pub fn check(&self, domain: &Domain<D>, levels: &[usize]) -> Result<(), Error> {
-        let refuse = |allowed: String| {
-            let (parameter, value) = ("level of the reference", self.level.to_string());
-            Err(Error::Parameter { parameter, value, allowed })
-        };
+        let refuse =
+            |allowed: String| Err(Error::parameter("level of the reference", self.level, allowed));
         let finest = levels.iter().copied().max().unwrap_or(0);
         if domain.is_mesh() {
             let least = finest + REFINEMENTS;

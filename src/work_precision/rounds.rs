@@ -196,7 +196,7 @@ fn cases<'s, const D: usize>(studies: &'s [Study<'s, D>]) -> Result<Vec<Case<'s,
         for study in of.cases() {
             let (variant, level) = study.variant();
             if cases.iter().any(|other| other.variant == variant && other.level == level) {
-                return Err(Error::equal_schemes(variant.label));
+                return Err(Error::equal_schemes(&variant.label));
             }
             cases.push(Case { study, of, variant, level, coarser: None, rows: Vec::new() });
         }
@@ -212,11 +212,7 @@ fn cases<'s, const D: usize>(studies: &'s [Study<'s, D>]) -> Result<Vec<Case<'s,
     }
     match cases.is_empty() {
         false => Ok(cases),
-        true => Err(Error::Parameter {
-            parameter: "studies",
-            value: "none".to_owned(),
-            allowed: "at least one".to_owned(),
-        }),
+        true => Err(Error::parameter("studies", "none", "at least one")),
     }
 }
 

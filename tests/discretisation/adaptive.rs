@@ -266,11 +266,11 @@ fn what_cannot_be_refined_is_refused() {
     }
     let nested = NestedIteration::new(&scene.problem, &mesh);
     let other = AdaptiveIteration::new(nested, &ConformingP1, Adaptivity::default()).unwrap_err();
-    assert!(matches!(other, Error::Parameter { parameter: "meshes", .. }), "{other}");
+    assert!(matches!(&other, Error::Parameter(why) if why.starts_with("meshes = ")), "{other}");
     // bad data are an error of the step that meets them, the last one
     let bad = scene.problem.clone().source(|x: &Point<2>| 1.0 / (x[0] - x[0]));
     let mut steps = adapt(&bad, &meshes, &ConformingP1, Adaptivity::default()).unwrap();
-    assert!(matches!(steps.next(), Some(Err(Error::DataNotFinite { .. }))));
+    assert!(matches!(steps.next(), Some(Err(Error::DataNotFinite(_)))));
     assert!(steps.next().is_none());
 }
 

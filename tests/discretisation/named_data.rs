@@ -3,7 +3,7 @@
 use unilateral::algebra::Bound;
 use unilateral::error::Error;
 use unilateral::error_bound::Unproven;
-use unilateral::mesh::{BoundaryGroup, GroupedFacet, MeshError};
+use unilateral::mesh::{BoundaryGroup, GroupedFacet, MeshErrorKind};
 use unilateral::prelude::*;
 use unilateral::problem::Datum;
 
@@ -175,18 +175,17 @@ fn refusal(problem: &Problem<2>, mesh: &Mesh<2>) -> Error {
 fn wrong_names_are_refused() {
     let mesh = divided::<2>(2);
     let error = refusal(&Problem::new().coefficient_in("steel", 2.0), &mesh);
-    assert!(matches!(&error, Error::UnknownGroup { kind: "region", name, .. } if name == "steel"));
+    let said = "the problem has data for region steel, which the mesh does not have: ";
+    assert!(matches!(&error, Error::UnknownGroup(why) if why.starts_with(said)), "{error}");
     assert!(error.to_string().ends_with("it has high, left, right"), "{error}");
     let error = refusal(&Problem::new().dirichlet_on("foot", 2.0), &mesh);
-    assert!(matches!(&error, Error::UnknownGroup { kind: "boundary group", .. }), "{error}");
+    assert!(matches!(&error, Error::UnknownGroup(why) if why.contains("boundary group foot")));
     let error = refusal(&Problem::new().signorini_on("left", 2.0), &mesh);
-    assert!(
-        matches!(&error, Error::UnboundBoundary { given: "contact", found: "dirichlet", .. }),
-        "{error}"
-    );
+    let said = "has contact data on boundary group left, whose facets are dirichlet in the mesh";
+    assert!(matches!(&error, Error::UnboundBoundary(why) if why.contains(said)), "{error}");
     let twice = Problem::new().signorini_on("left", 2.0).neumann_on("left", |_, _| 0.0);
     let error = twice.bind_boundary(mesh.clone()).unwrap_err();
-    assert!(matches!(&error, MeshError::GroupWithTwoConditions { .. }), "{error}");
+    assert_eq!(error.kind, MeshErrorKind::GroupWithTwoConditions, "{error}");
 }
 
 #[test]
@@ -440,8 +439,7 @@ fn a_datum_that_is_given_twice_is_refused() {
                 let twice = give(give(once, name, 1.0), name, value).clone();
                 let of = Discretisation::new(&ConformingP1, &twice, &mesh, Default::default());
                 let error = of.err().unwrap_or_else(|| panic!("{what} {name:?} {value}"));
-                let Error::GivenTwice { datum, name: found } = &error else { panic!("{error}") };
-                assert_eq!((*datum, found.as_deref()), (what, name));
+                assert!(matches!(error, Error::GivenTwice(_)), "{error}");
                 let place = name.map_or("without a name".to_owned(), |name| format!("for {name}"));
                 let said = format!("the {what} {place} is given twice: give it once");
                 assert!(error.to_string().starts_with(&said), "{error}");
@@ -455,7 +453,8 @@ fn a_datum_that_is_given_twice_is_refused() {
         let scene = Scene::new("mine", square.clone(), problem.clone());
         Study::new(scene).scheme(ConformingP1).levels([2]).run().map(|report| report.rows.len())
     };
-    assert!(matches!(study(&problem), Err(Error::GivenTwice { datum: "lower obstacle", .. })));
+    let Err(Error::GivenTwice(why)) = study(&problem) else { panic!("it was given once") };
+    assert!(why.starts_with("the lower obstacle without a name is given twice"), "{why}");
     problem.lower = Datum::Constant(-1.0).into();
     assert_eq!(study(&problem).unwrap(), 1);
 }

@@ -7,7 +7,7 @@ fn levels_that_no_mesh_has_are_refused_before_one_is_made() {
     let scene = scenes::radial::<2>(1.0);
     let refused = |level| {
         let error = Hierarchy::<2>::of_domain(&scene.domain, level).unwrap_err();
-        assert!(matches!(error, Error::Parameter { parameter: "level", .. }), "{error}");
+        assert!(matches!(&error, Error::Parameter(why) if why.starts_with("level = ")), "{error}");
         error.to_string()
     };
     assert!(refused(0).contains("at least one subdivision"), "{}", refused(0));

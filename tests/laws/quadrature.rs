@@ -96,7 +96,7 @@ fn symmetric_rules_are_exact_with_positive_weights_and_few_points() {
         for degree in 0..=12 {
             let report = check_quadrature(&FullySymmetric, dimension, degree)
                 .unwrap_or_else(|error| panic!("{error}"));
-            assert!(report.smallest_weight > 0.0, "{dimension} {degree}");
+            assert!(report.figure("smallest weight") > Some(0.0), "{dimension} {degree}");
             let rule = FullySymmetric.rule(dimension, degree).unwrap();
             let inside = |x: &[f64; 4]| x[..=dimension].iter().all(|&b| b > 0.0);
             assert!(rule.points.iter().all(inside), "{dimension} {degree}");
@@ -130,7 +130,8 @@ fn symmetric_rules_do_not_change_with_the_order_of_vertices() {
 #[test]
 fn the_vertex_rule_is_exact_for_linears() {
     for dimension in 0..=3 {
-        assert_eq!(check_quadrature(&VertexRule, dimension, 1).unwrap().points, dimension + 1);
+        let report = check_quadrature(&VertexRule, dimension, 1).unwrap();
+        assert_eq!(report.figure("points"), Some((dimension + 1) as f64));
     }
     assert!(check_quadrature(&VertexRule, 1, 2).is_err());
 }
@@ -141,12 +142,13 @@ fn points_and_weights_that_are_no_rule_are_refused() {
     let refused = |points: &[[f64; 4]], weights: &[f64]| {
         Rule::from_points(1, points.to_vec(), weights.to_vec()).unwrap_err()
     };
-    assert!(matches!(refused(&[], &[]), QuadratureError::Lengths { .. }));
-    assert!(matches!(refused(&[middle], &[0.5, 0.5]), QuadratureError::Lengths { points: 1, .. }));
-    assert!(matches!(refused(&[middle], &[0.5]), QuadratureError::Weights { .. }));
+    assert!(matches!(refused(&[], &[]), QuadratureError::Lengths(_)));
+    let lengths = "1 points have 2 weights: a rule has one weight for each point".to_owned();
+    assert_eq!(refused(&[middle], &[0.5, 0.5]), QuadratureError::Lengths(lengths));
+    assert!(matches!(refused(&[middle], &[0.5]), QuadratureError::Weights(_)));
     for point in [[0.5, 0.6, 0.0, 0.0], [0.5, 0.25, 0.25, 0.0], [f64::NAN, 0.5, 0.0, 0.0]] {
         let error = refused(&[middle, point], &[0.5, 0.5]);
-        assert!(matches!(error, QuadratureError::Point { point: 1, .. }), "{error}");
+        assert!(matches!(&error, QuadratureError::Point(why) if why.starts_with("point 1 with ")));
     }
     assert_eq!(Rule::from_points(1, vec![middle], vec![1.0]), Ok(Rule::new(1, 1)));
 }
@@ -163,22 +165,20 @@ fn degrees_and_dimensions_without_a_rule_are_refused() {
     let families: [&dyn Quadrature; 3] = [&ConicalProduct, &FullySymmetric, &VertexRule];
     for family in families {
         for dimension in [4, usize::MAX] {
-            assert_eq!(family.rule(dimension, 3), Err(QuadratureError::Dimension { dimension }));
+            let error = family.rule(dimension, 3).unwrap_err();
+            assert!(matches!(error, QuadratureError::Dimension(_)), "{error}");
+            let said = format!("there are no rules in dimension {dimension}: ");
+            assert!(error.to_string().starts_with(&said), "{error}");
         }
         for (dimension, degree) in [(1, largest + 1), (3, 1000), (2, usize::MAX)] {
             let found = family.rule(dimension, degree);
             let is_limited = family.name() != "vertices";
-            let expected = QuadratureError::NoRule {
-                family: family.name().to_owned(),
-                dimension,
-                degree,
-                largest,
-            };
+            let expected = QuadratureError::no_rule(family.name(), dimension, degree, largest);
             assert_eq!(found.err(), is_limited.then_some(expected));
         }
     }
     let refused = Rule::from_points(4, vec![[0.2; 4]], vec![1.0]);
-    assert_eq!(refused, Err(QuadratureError::Dimension { dimension: 4 }));
+    assert!(matches!(refused, Err(QuadratureError::Dimension(_))));
     for (dimension, degree, said) in [
         (4, 3, "there are no rules in dimension 4: simplices have the dimensions 0 to 3"),
         (2, 1000, "no rule of degree 1000 in dimension 2: ask for degree 99 at most"),

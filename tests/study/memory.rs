@@ -18,8 +18,13 @@ fn study<'a>() -> Study<'a, 3> {
 fn a_level_that_does_not_fit_is_a_row_and_its_mesh_is_not_built() {
     let study = study().levels([2, 200, 3]);
     let error = study.check_memory().unwrap_err();
-    let Error::NotEnoughMemory { needed, available, .. } = error else { panic!("{error}") };
-    assert!(needed > 1e12 && available < needed, "{needed} {available}");
+    let Error::NotEnoughMemory(why) = error else { panic!("{error}") };
+    let gigabytes = |words: &str| -> f64 {
+        let rest = why.split_once(words).unwrap_or_else(|| panic!("{why}")).1;
+        rest.split(' ').next().unwrap().parse().unwrap()
+    };
+    let [needed, available] = ["would need about ", "GB of memory, "].map(gigabytes);
+    assert!(needed > 1e3 && available < needed, "{why}");
     let report = study.run().unwrap();
     let status: Vec<Outcome> = report.rows.iter().map(|row| row.status).collect();
     assert_eq!(status, [Outcome::Converged, Outcome::OutOfMemory, Outcome::Converged]);
@@ -37,7 +42,7 @@ fn a_level_that_does_not_fit_is_a_row_and_its_mesh_is_not_built() {
 fn the_first_mesh_of_a_refinement_is_held_against_the_memory_before_it_is_built() {
     let study = study().levels([200]).adaptive(Adaptivity::default().unknowns(1000));
     let error = study.check().unwrap_err();
-    assert!(matches!(error, Error::NotEnoughMemory { .. }), "{error}");
+    assert!(matches!(error, Error::NotEnoughMemory(_)), "{error}");
     let study = self::study().levels([2]).adaptive(Adaptivity::default().unknowns(1_000_000_000));
     study.check().unwrap();
     let message = study.check_memory().unwrap_err().to_string();
@@ -55,7 +60,7 @@ fn a_matrix_with_too_many_entries_is_refused_before_a_mesh_is_built() {
     };
     study(112).check().unwrap();
     let error = study(113).check().unwrap_err();
-    assert!(matches!(error, Error::Parameter { parameter: "level", .. }), "{error}");
+    assert!(matches!(error, Error::Parameter(_)), "{error}");
     let message = error.to_string();
     assert!(
         message.starts_with("level = 113: the matrix of sipg-p2 there may have 4.3e9 entries"),

@@ -205,19 +205,27 @@ fn two_series_of_one_name_are_refused_before_anything_runs() {
     let mine = |factor, tells| Mine { factor, tells };
     let refused = |study: Study<'_, 2>, wanted: &str| {
         let is_refused = |error: Error| match error {
-            Error::EqualNames { items, ref name, .. } => {
-                assert_eq!(format!("{items} {name}"), wanted);
+            Error::EqualNames(why) => {
                 let words = ["nothing would tell their rows apart", "give one of your own another"];
-                words.iter().all(|words| error.to_string().contains(words))
+                why.starts_with(wanted) && words.iter().all(|words| why.contains(words))
             }
             other => panic!("{other}"),
         };
         assert!(study.check().is_err_and(is_refused) && study.run().is_err_and(is_refused));
     };
-    refused(study().scheme(mine(1.0, false)).scheme(mine(18.0, false)), "schemes mine");
-    refused(study().scheme(Sipg::default()).scheme(Sipg::default()), "schemes sipg");
+    refused(
+        study().scheme(mine(1.0, false)).scheme(mine(18.0, false)),
+        r#"two schemes of the study are named "mine", "#,
+    );
+    refused(
+        study().scheme(Sipg::default()).scheme(Sipg::default()),
+        r#"two schemes of the study are named "sipg", "#,
+    );
     let solver = ActiveSet::default;
-    refused(study().scheme(ConformingP1).solver(solver()).solver(solver()), "solvers active-set");
+    refused(
+        study().scheme(ConformingP1).solver(solver()).solver(solver()),
+        r#"two solvers of the study are named "active-set", "#,
+    );
     // names that tell them apart: each series has its own orders, that of the series alone
     let both = study().scheme(mine(1.0, true)).scheme(mine(18.0, true)).run().unwrap();
     for (factor, rows) in [1.0, 18.0].into_iter().zip(both.rows.chunks(2)) {
@@ -256,6 +264,7 @@ fn values_that_are_not_finite_are_refused() {
     assert_eq!(judged(0.0).unwrap(), Outcome::NotASolution);
     for value in [f64::INFINITY, -f64::INFINITY, f64::NAN] {
         let error = judged(value).unwrap_err();
-        assert!(matches!(error, Error::Parameter { parameter: "values", .. }), "{value}: {error}");
+        let of_values = matches!(&error, Error::Parameter(why) if why.starts_with("values = "));
+        assert!(of_values, "{value}: {error}");
     }
 }

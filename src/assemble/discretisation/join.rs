@@ -46,7 +46,9 @@ fn check_fit<const D: usize>(
     element: &dyn Element<D>,
     form: &dyn FacetForm<D>,
 ) -> Result<(), Error> {
-    let refuse = |requested, allowed| Err(Error::UnsupportedForm { requested, allowed });
+    let refuse = |requested, allowed| {
+        Err(Error::UnsupportedForm(format!("{requested} are made for {allowed} only")))
+    };
     if element.per_cell() > MAX_BASIS {
         return refuse("matrices of cells", "elements with at most 20 unknowns in a cell");
     }
@@ -94,9 +96,6 @@ fn check_size<const D: usize>(
     if entries <= MOST_ENTRIES {
         return Ok(());
     }
-    Err(Error::Parameter {
-        parameter: "entries of the matrix",
-        value: entries.to_string(),
-        allowed: format!("at most {MOST_ENTRIES}; choose a coarser mesh or a lower degree"),
-    })
+    let allowed = format!("at most {MOST_ENTRIES}; choose a coarser mesh or a lower degree");
+    Err(Error::parameter("entries of the matrix", entries, allowed))
 }

@@ -1,7 +1,7 @@
 //! Checks of the data of the problem: each number is finite, a coefficient is positive.
 
-use crate::error::Error;
-use crate::mesh::{Mesh, describe_point};
+use crate::error::{Error, InCell};
+use crate::mesh::Mesh;
 use crate::problem::DataByGroup;
 use crate::real::Point;
 
@@ -15,7 +15,8 @@ pub(crate) fn finite<const D: usize>(
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(Error::DataNotFinite { datum, value, at: describe_point(at), cell: cell as u64 })
+        let rest = "data must be finite";
+        Err(Error::DataNotFinite(InCell::value((datum, value), at, cell, rest)))
     }
 }
 
@@ -32,21 +33,20 @@ pub(crate) fn coefficient_at<const D: usize>(
     };
     let value = alpha.in_cell(mesh, cell, x);
     if !(value > 0.0 && value.is_finite()) {
-        return Err(Error::CoefficientNotPositive {
-            value,
-            at: describe_point(x),
-            cell: cell as u64,
+        let rest = "it must be positive and finite";
+        let found = InCell::value(("coefficient", value), x, cell, rest);
+        return Err(match value.is_finite() {
+            true => Error::CoefficientNotPositive(found),
+            false => Error::DataNotFinite(found),
         });
     }
     // harmonic means multiply two coefficients
     match (value * value).is_normal() {
         true => Ok(value),
-        false => Err(Error::Parameter {
-            parameter: "coefficient",
-            value: format!("{value:e} in cell {cell}"),
-            allowed: "numbers whose square is a floating-point number; scale the problem"
-                .to_owned(),
-        }),
+        false => {
+            let allowed = "numbers whose square is a floating-point number; scale the problem";
+            Err(Error::parameter("coefficient", format!("{value:e} in cell {cell}"), allowed))
+        }
     }
 }
 

@@ -87,12 +87,12 @@ pub(crate) fn refuse<const D: usize>(
     let Some(&Contradiction { node, lower, upper, of, group }) = found.iter().find(is_one) else {
         return Ok(());
     };
-    let BoundedNode { unknown, cell, x } = node;
+    let BoundedNode { cell, x, .. } = node;
     let name = group.and_then(|group| mesh.boundary_groups()[group].names.first());
     let on = |of: &str| match name {
         Some(name) if of == DIRICHLET => format!("{of} on `{}`", excerpt(name)),
         _ => of.to_owned(),
     };
     let (cell, at, of) = (cell as u64, describe_point(&x), Box::new(of.map(on)));
-    Err(Error::EmptyConstraint { unknown, cell, at, lower, upper, of })
+    Err(Error::EmptyConstraint { cell, at, lower, upper, of })
 }

@@ -174,12 +174,14 @@ impl<'a, const D: usize> Space<'a, D> {
     /// scheme offers.
     fn check_constraint_set(&self, own: &Arc<dyn Element<D>>) -> Result<(), Error> {
         let refuse = |condition, contact| {
-            let constraint = self.problem.constraint_set().name_on(&self.nodes).to_owned();
+            let constraint = self.problem.constraint_set().name_on(&self.nodes);
             let allowed = match &offered(own, contact)[..] {
                 [] => "another element: this one has no nodes on facets".to_owned(),
                 names => names.join(" or "),
             };
-            Err(Error::NothingToBound { constraint, condition, allowed })
+            Err(Error::NothingToBound(format!(
+                "bounds on {constraint} cannot impose {condition}: the element has no such values; choose {allowed}"
+            )))
         };
         if self.problem.is_constrained() && self.bounded_nodes().next().is_none() {
             return refuse("an inequality", self.problem.has_gap());

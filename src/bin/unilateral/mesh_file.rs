@@ -6,7 +6,7 @@ use clap::Args;
 use unilateral::in_its_dimension;
 use unilateral::input::{excerpt, excerpts};
 use unilateral::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile};
-use unilateral::mesh::{BoundaryCondition, Mesh, MeshError};
+use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::scenes::AnyScene;
 
 use crate::asked::MESHES;
@@ -83,13 +83,14 @@ fn with_conditions<const D: usize>(
         given.map(|(_, condition)| *condition)
     };
     let mesh = mesh.with_boundary_conditions(&condition_of).map_err(|e| format!("{file}: {e}"))?;
-    mesh.check_boundary_conditions().map_err(|e| match e {
-        MeshError::UndecidedGroup { group, .. } => format!(
+    let undecided = mesh.boundary_groups().iter().find(|group| group.condition.is_none());
+    if let Some(group) = undecided {
+        let group = group.names.iter().map(excerpt).collect::<Vec<_>>().join(", ");
+        return Err(format!(
             "{file}: nothing says what holds on boundary group {group}: \
              --boundary {group}=dirichlet, {group}=neumann or {group}=contact does"
-        ),
-        other => format!("{file}: {other}"),
-    })?;
+        ));
+    }
     Ok(mesh)
 }
 

@@ -40,11 +40,11 @@ impl Processes {
     /// [`ExchangeError::Transport`] if MPI or PETSc does not start, or was started before.
     pub fn start() -> Result<Self, ExchangeError> {
         if IS_STARTED.swap(true, Ordering::SeqCst) {
-            return Err(ExchangeError::Transport { why: "MPI was started before".to_owned() });
+            return Err(ExchangeError::Transport("MPI was started before".to_owned()));
         }
         // SAFETY: the first call
         check(unsafe { ul_start() }, "the start of MPI and PETSc")
-            .map_err(|why| ExchangeError::Transport { why })?;
+            .map_err(ExchangeError::Transport)?;
         let report = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
             report(panic);
@@ -73,8 +73,7 @@ impl Processes {
     /// [`ExchangeError::Transport`].
     pub fn end(self) -> Result<(), ExchangeError> {
         // SAFETY: the last call
-        check(unsafe { ul_end() }, "the end of MPI and PETSc")
-            .map_err(|why| ExchangeError::Transport { why })
+        check(unsafe { ul_end() }, "the end of MPI and PETSc").map_err(ExchangeError::Transport)
     }
 }
 

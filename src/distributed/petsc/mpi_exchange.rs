@@ -21,14 +21,14 @@ impl MpiExchange {
         Self { parts, sent: AtomicU64::new(0) }
     }
     fn transport(code: c_int) -> Result<(), ExchangeError> {
-        check(code, "a message of MPI").map_err(|why| ExchangeError::Transport { why })
+        check(code, "a message of MPI").map_err(ExchangeError::Transport)
     }
 }
 
 /// The length of a list as MPI counts.
 fn length(list: usize) -> Result<c_int, ExchangeError> {
     let why = || format!("{list} numbers in one message: at most {} are possible", c_int::MAX);
-    c_int::try_from(list).map_err(|_| ExchangeError::Transport { why: why() })
+    c_int::try_from(list).map_err(|_| ExchangeError::Transport(why()))
 }
 
 impl Exchange for MpiExchange {
@@ -37,7 +37,7 @@ impl Exchange for MpiExchange {
     }
     fn exchange(&self, lists: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError> {
         if lists.len() != self.parts {
-            return Err(ExchangeError::Lists { lists: lists.len(), parts: self.parts });
+            return Err(ExchangeError::lists(lists.len(), self.parts));
         }
         let to = lists.iter().map(|l| length(l.len())).collect::<Result<Vec<c_int>, _>>()?;
         let mut from = vec![0; self.parts];

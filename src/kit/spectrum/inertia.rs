@@ -67,5 +67,5 @@ pub fn smallest_eigenvalue(matrix: &SparseMatrix<f64>) -> Result<f64, SpectrumEr
         shift = norm * 2.0_f64.powi(attempt);
     }
     // no row is dominated by its diagonal entry then: an entry is not finite
-    Err(SpectrumError::NotPositive { steps: 0 })
+    Err(SpectrumError::NotPositive(0))
 }

@@ -24,37 +24,18 @@ impl Extremes {
 }
 
 /// The reason why an eigenvalue was not found. `Debug` prints the message.
-#[derive(Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpectrumError {
     /// The residual did not fall to the tolerance.
-    #[error(
-        "after {steps} steps the eigenvalue {value:e} is known to a relative residual of {residual:.1e} only, asked for {tolerance:.1e}"
-    )]
-    NotReached {
-        /// Steps made.
-        steps: usize,
-        /// The best estimate.
-        value: f64,
-        /// Its relative residual.
-        residual: f64,
-        /// The tolerance.
-        tolerance: f64,
-    },
-    /// A number that is not finite or a direction in which the matrix is not positive.
-    #[error("after {steps} steps the matrix proved not to be positive definite or not finite")]
-    NotPositive {
-        /// Steps made.
-        steps: usize,
-    },
+    #[error("{0}")]
+    NotReached(String),
+    /// A number that is not finite or a direction in which the matrix is not positive, after so many steps.
+    #[error("after {0} steps the matrix proved not to be positive definite or not finite")]
+    NotPositive(usize),
     /// The two matrices have different sizes, or none.
-    #[error("matrices of {a} and {b} rows have no common spectrum")]
-    Sizes {
-        /// Rows of the first.
-        a: usize,
-        /// Rows of the second.
-        b: usize,
-    },
+    #[error("{0}")]
+    Sizes(String),
 }
 
 debug_by_display!(SpectrumError);
@@ -141,7 +122,9 @@ impl Lanczos {
     ) -> Result<f64, SpectrumError> {
         let size = a.size();
         if size != b.size() || size == 0 {
-            return Err(SpectrumError::Sizes { a: size, b: b.size() });
+            let message =
+                format!("matrices of {size} and {} rows have no common spectrum", b.size());
+            return Err(SpectrumError::Sizes(message));
         }
         let mut generator = SplitMix64(1);
         let mut next: Vec<f64> = (0..size).map(|_| generator.unit() - 0.5).collect();
@@ -152,7 +135,7 @@ impl Lanczos {
         loop {
             let steps = basis.len();
             if !(length.is_finite() && length > 0.0) {
-                return Err(SpectrumError::NotPositive { steps });
+                return Err(SpectrumError::NotPositive(steps));
             }
             next.iter_mut().for_each(|x| *x /= length);
             let mut image = applied.apply(&next);
@@ -171,8 +154,10 @@ impl Lanczos {
                     return Ok(value);
                 }
                 if last || invariant {
-                    let tolerance = self.tolerance;
-                    return Err(SpectrumError::NotReached { steps, value, residual, tolerance });
+                    return Err(SpectrumError::NotReached(format!(
+                        "after {steps} steps the eigenvalue {value:e} is known to a relative residual of {residual:.1e} only, asked for {:.1e}",
+                        self.tolerance
+                    )));
                 }
                 check = steps + steps / 4 + 1;
             }

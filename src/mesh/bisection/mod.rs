@@ -5,7 +5,7 @@ mod ordered_cell;
 
 use super::boundary::BoundaryFacet;
 use super::edges::edge_vertices;
-use super::error::MeshError;
+use super::error::{MeshError, MeshErrorKind};
 use super::geometry::{CellGeometry, describe_point};
 use super::part::extent::Extent;
 use super::simplicial::Mesh;
@@ -92,8 +92,8 @@ impl<const D: usize> BisectedMesh<D> {
     /// inherited. New vertices are midpoints of edges, on curved boundaries too.
     ///
     /// # Errors
-    /// [`MeshError::Parameter`] for a marked cell that does not exist, [`MeshError::TooLarge`], and
-    /// [`MeshError::TooSmallToBisect`] for a cell at the size of rounding.
+    /// [`MeshErrorKind::Parameter`] for a marked cell that does not exist, [`MeshErrorKind::TooLarge`], and
+    /// [`MeshErrorKind::TooSmallToBisect`] for a cell at the size of rounding.
     pub fn bisect(&self, marked: &[usize]) -> Result<(Self, Bisection), MeshError> {
         compiled!(const D: fn(
                 &BisectedMesh<D>,
@@ -107,11 +107,8 @@ impl<const D: usize> BisectedMesh<D> {
         let mut is_marked = vec![false; n_cells];
         for &cell in marked {
             let Some(is_marked) = is_marked.get_mut(cell) else {
-                return Err(MeshError::Parameter {
-                    parameter: "marked cell",
-                    value: cell.to_string(),
-                    allowed: format!("less than {n_cells}, the number of cells"),
-                });
+                let allowed = format!("less than {n_cells}, the number of cells");
+                return Err(MeshError::parameter("marked cell", cell, allowed));
             };
             *is_marked = true;
         }
@@ -216,8 +213,12 @@ impl<const D: usize> Division<D> {
         if is_half(0) && is_half(1) {
             return Ok(());
         }
-        let at = describe_point(&vertex(midpoint));
-        Err(MeshError::TooSmallToBisect { cell: ancestor as usize, at })
+        let message = format!(
+            "cell {ancestor} cannot be bisected at {}: rounding changes the volume of its halves; mark no cell there",
+            describe_point(&vertex(midpoint))
+        );
+        let error = MeshError::new(MeshErrorKind::TooSmallToBisect, message);
+        Err(error.of_cells([ancestor as usize]))
     }
 
     /// Divides leaves until none has a vertex in the middle of an edge.

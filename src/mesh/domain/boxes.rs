@@ -94,24 +94,16 @@ impl<const D: usize> Mesh<D> {
     /// its diagonal from the lowest to the highest corner (Kuhn).
     ///
     /// # Errors
-    /// [`MeshError::Parameter`] for a count of zero or a box without volume, [`MeshError::TooLarge`].
+    /// `MeshErrorKind::Parameter` for a count of zero or a box without volume, `MeshErrorKind::TooLarge`.
     pub fn kuhn_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
-        let wrong = |parameter, value: String, allowed: &str| MeshError::Parameter {
-            parameter,
-            value,
-            allowed: allowed.to_owned(),
-        };
         if counts.contains(&0) {
-            return Err(wrong(
-                "subdivisions",
-                format!("{counts:?}"),
-                "at least one along each axis",
-            ));
+            let (value, allowed) = (format!("{counts:?}"), "at least one along each axis");
+            return Err(MeshError::parameter("subdivisions", value, allowed));
         }
         for k in 0..D {
             let side = domain.upper[k] - domain.lower[k];
             if !(side > 0.0 && side.is_finite()) {
-                return Err(wrong("side of the box", side.to_string(), "positive and finite"));
+                return Err(MeshError::parameter("side of the box", side, "positive and finite"));
             }
         }
         let paths = paths::<D>();

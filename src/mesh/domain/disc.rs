@@ -20,8 +20,8 @@ impl<const D: usize> Mesh<D> {
     /// bends each side of the concentric hexagons into an arc. Angles lie between 30 and 90 degrees.
     ///
     /// # Errors
-    /// [`MeshError::Parameter`] for `n = 0`, a radius that is not positive and finite and a dimension
-    /// other than two; [`MeshError::TooLarge`].
+    /// `MeshErrorKind::Parameter` for `n = 0`, a radius that is not positive and finite and a dimension
+    /// other than two; `MeshErrorKind::TooLarge`.
     pub fn disc(radius: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("disc", radius, n)?;
         let number = |ring: usize, place: usize| match ring {
@@ -75,17 +75,15 @@ pub(crate) fn check_shape<const D: usize>(
     length: f64,
     n: usize,
 ) -> Result<(), MeshError> {
-    let wrong = |parameter, value: String, allowed: &str| {
-        Err(MeshError::Parameter { parameter, value, allowed: allowed.to_owned() })
-    };
     if D != 2 {
-        return wrong("dimension", D.to_string(), &format!("a mesh of the {shape} needs two"));
+        let allowed = format!("a mesh of the {shape} needs two");
+        return Err(MeshError::parameter("dimension", D, allowed));
     }
     if n == 0 {
-        return wrong("subdivisions", n.to_string(), "at least one");
+        return Err(MeshError::parameter("subdivisions", n, "at least one"));
     }
     if !(length > 0.0 && length.is_finite()) {
-        return wrong("length", length.to_string(), "positive and finite");
+        return Err(MeshError::parameter("length", length, "positive and finite"));
     }
     let n_cells = n.saturating_mul(n).saturating_mul(6);
     // a bound of the number of cells of both shapes and of the vertices of the square of the L-shape

@@ -14,8 +14,8 @@ impl<const D: usize> Mesh<D> {
     /// highest corner. The re-entrant corner is a vertex. All the boundary is Dirichlet.
     ///
     /// # Errors
-    /// [`MeshError::Parameter`] for `n = 0`, a length that is not positive and finite and a dimension
-    /// other than two; [`MeshError::TooLarge`].
+    /// `MeshErrorKind::Parameter` for `n = 0`, a length that is not positive and finite and a dimension
+    /// other than two; `MeshErrorKind::TooLarge`.
     pub fn l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("L-shape", half, n)?;
         let per_line = 2 * n + 1;

@@ -122,8 +122,8 @@ impl<const D: usize> Domain<D> {
     /// level is [`Domain::refine`] of the mesh of half the level. Of a mesh the refinement with the number `level`.
     ///
     /// # Errors
-    /// [`MeshError::Parameter`] for a level of zero, for a domain without volume and for one that does
-    /// not exist in this dimension; [`MeshError::TooLarge`] if there would be too many cells.
+    /// `MeshErrorKind::Parameter` for a level of zero, for a domain without volume and for one that does
+    /// not exist in this dimension; `MeshErrorKind::TooLarge` if there would be too many cells.
     pub fn mesh(&self, level: usize) -> Result<Mesh<D>, MeshError> {
         match *self {
             Domain::Mesh(ref mesh) => {
@@ -138,7 +138,7 @@ impl<const D: usize> Domain<D> {
     /// of the domain.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if there would be too many cells.
+    /// `MeshErrorKind::TooLarge` if there would be too many cells.
     pub fn refine(&self, mesh: &Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError> {
         Ok(match self {
             Domain::Disc { .. } => mesh.refine_disc()?,

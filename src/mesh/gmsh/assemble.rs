@@ -5,7 +5,7 @@ use super::element_types::SIMPLICES;
 use super::error::{GmshError, GmshErrorKind, GmshWarning};
 use super::node_index::NodeIndex;
 use crate::input::excerpt;
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, UNITE};
 use crate::mesh::facets::facet_of;
 use crate::mesh::overlap::lie_on_others;
 use crate::mesh::simplicial::Mesh;
@@ -63,11 +63,11 @@ fn in_file<const D: usize>(
         let position = contents.position(simplices.offsets[index]);
         format!("element {} ({position})", simplices.tags[index])
     };
-    let of_cells = error.cells().into_iter().map(|cell| element(D, cells[cell]));
-    let of_facet = error.tagged_facet().map(|tag| element(D - 1, facets[tag]));
+    let of_cells = error.cells.iter().map(|&cell| element(D, cells[cell]));
+    let of_facet = error.tagged_facet.map(|tag| element(D - 1, facets[tag]));
     let mut names: Vec<String> = of_cells.chain(of_facet).collect();
     let nodes: Vec<String> =
-        vertices_of(&error).iter().map(|&v| contents.nodes.tags[v].to_string()).collect();
+        error.vertices.iter().map(|&v| contents.nodes.tags[v].to_string()).collect();
     if !nodes.is_empty() {
         names.push(format!("nodes {}", nodes.join(", ")));
     }
@@ -256,38 +256,35 @@ fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), 
     Ok(())
 }
 
-/// The vertices in the message of a mesh error.
-fn vertices_of(error: &MeshError) -> Vec<usize> {
-    match error {
-        MeshError::DegenerateCell { vertices, .. }
-        | MeshError::RepeatedCell { vertices, .. }
-        | MeshError::FacetOfThreeCells { vertices, .. }
-        | MeshError::UntaggedFacet { vertices, .. }
-        | MeshError::FacetWithTwoConditions { vertices, .. }
-        | MeshError::NotABoundaryFacet { vertices, .. } => {
-            vertices.iter().map(|&v| v as usize).collect()
-        }
-        MeshError::NotFinite { vertex, .. } => vec![*vertex],
-        _ => Vec::new(),
-    }
-}
-
 fn warnings<const D: usize>(contents: &Contents, mesh: &Mesh<D>) -> Vec<GmshWarning> {
     let straightened = |d: usize| {
         let curved = contents.simplices[d].curved.iter();
         let name = SIMPLICES[d];
-        curved.map(move |(&order, &count)| GmshWarning::Straightened { name, order, count })
+        curved.map(move |(order, count)| {
+            GmshWarning::Straightened(format!(
+                "{count} elements of type {name} of order {order} are read as straight ones by their corner nodes"
+            ))
+        })
     };
     let mut warnings: Vec<GmshWarning> = straightened(D).chain(straightened(D - 1)).collect();
     let facets = mesh.boundary().iter();
     let facets = facets.map(|f| facet_of(mesh.cell(f.cell as usize), usize::from(f.local)));
     let coincident = lie_on_others(mesh.vertices(), &facets.collect::<Vec<[u32; D]>>());
     let count = coincident.iter().filter(|lies| **lies).count();
-    warnings.extend((count > 0).then_some(GmshWarning::Coincident { count }));
+    if count > 0 {
+        warnings.push(GmshWarning::Coincident(format!(
+            "{count} facets of the boundary lie on others with different nodes, so the two sides are not connected there: {UNITE}, unless a slit is meant"
+        )));
+    }
     let on_boundary =
         |name: &&String| mesh.boundary_groups().iter().any(|g| g.names.contains(name));
     let inside = mesh.groups_inside().iter().filter(on_boundary);
-    warnings.extend(inside.map(|name| GmshWarning::Inside { group: excerpt(name) }));
+    warnings.extend(inside.map(|name| {
+        GmshWarning::Inside(format!(
+            "some facets of group {} lie inside the domain, between two cells, and are left out: data are given on the boundary only",
+            excerpt(name)
+        ))
+    }));
     warnings.extend(contents.is_periodic.then_some(GmshWarning::Periodic));
     warnings
 }

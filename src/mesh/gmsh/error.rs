@@ -1,6 +1,6 @@
 //! Errors and warnings of the reader.
 
-use crate::mesh::error::{MeshError, UNITE};
+use crate::mesh::error::MeshError;
 use crate::readable_debug::debug_by_display;
 use std::fmt;
 
@@ -130,38 +130,19 @@ impl fmt::Display for FilePosition {
     }
 }
 
-/// A property of the file that the mesh does not represent.
+/// A property of the file that the mesh does not represent: the kind, and the sentence.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GmshWarning {
     /// Elements of higher order are read as straight ones.
-    #[error(
-        "{count} elements of type {name} of order {order} are read as straight ones by their corner nodes"
-    )]
-    Straightened {
-        /// Their type.
-        name: &'static str,
-        /// Their polynomial order.
-        order: u8,
-        /// Their number.
-        count: usize,
-    },
+    #[error("{0}")]
+    Straightened(String),
     /// Boundary facets lie on each other, each with nodes of its own.
-    #[error(
-        "{count} facets of the boundary lie on others with different nodes, so the two sides are not connected there: {UNITE}, unless a slit is meant"
-    )]
-    Coincident {
-        /// Their number.
-        count: usize,
-    },
+    #[error("{0}")]
+    Coincident(String),
     /// Some facets of a boundary group lie between two cells.
-    #[error(
-        "some facets of group {group} lie inside the domain, between two cells, and are left out: data are given on the boundary only"
-    )]
-    Inside {
-        /// The name of the group.
-        group: String,
-    },
+    #[error("{0}")]
+    Inside(String),
     /// The file says which nodes correspond to each other on periodic boundaries.
     #[error(
         "section $Periodic is not used: the two sides of a periodic boundary are not tied to each other"

@@ -24,10 +24,7 @@ impl NodeIndex {
         let count = tags.len();
         if count >= ABSENT as usize {
             let limit = ABSENT as usize - 1;
-            return Err(GmshError::of_mesh(
-                MeshError::TooLarge { what: "vertices", count, limit },
-                &[],
-            ));
+            return Err(GmshError::of_mesh(MeshError::too_large("vertices", count, limit), &[]));
         }
         let largest = tags.iter().copied().max().unwrap_or(0);
         let repeated = |first: u32, second: u32| {

@@ -7,7 +7,7 @@ pub(crate) use facet_search::FacetSearch;
 pub(super) use facet_search::lie_on_others;
 
 use super::boundary::BoundaryFacet;
-use super::error::MeshError;
+use super::error::{MeshError, MeshErrorKind};
 use super::facets::{Neighbour, Neighbours, facet_of};
 use super::geometry::{CellGeometry, describe_point};
 use crate::arrays::map_entries;
@@ -35,7 +35,11 @@ pub(super) fn check_folds<const D: usize>(
             if (is_positive[cell] == is_positive[other as usize]) != alternates {
                 let mut vertices = vertices.to_vec();
                 vertices.remove(local);
-                return Err(MeshError::FoldedCells { vertices, cells: [cell, other as usize] });
+                let message = format!(
+                    "cells {cell} and {other} lie on the same side of their common facet {vertices:?}: the mesh folds over there; correct the coordinates or the cells"
+                );
+                let error = MeshError::new(MeshErrorKind::FoldedCells, message);
+                return Err(error.of_cells([cell, other as usize]));
             }
         }
     }
@@ -101,8 +105,12 @@ pub(super) fn check_overlaps<const D: usize>(
             };
             let mut found = (0..cells.len() / (D + 1)).filter(holds);
             if let (Some(first), Some(second)) = (found.next(), found.next()) {
-                let at = describe_point(&x);
-                return Err(MeshError::OverlappingCells { first, second, at });
+                let message = format!(
+                    "cells {first} and {second} overlap at {}: bodies of the mesh lie on each other; leave one of them out, or mesh their union",
+                    describe_point(&x)
+                );
+                let error = MeshError::new(MeshErrorKind::OverlappingCells, message);
+                return Err(error.of_cells([first, second]));
             }
         }
     }

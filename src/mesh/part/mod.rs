@@ -117,22 +117,16 @@ impl<const D: usize> Mesh<D> {
     /// of others.
     ///
     /// # Errors
-    /// [`MeshError::Parameter`] unless there is one owner for each cell and the part owns a cell.
+    /// `MeshErrorKind::Parameter` unless there is one owner for each cell and the part owns a cell.
     pub fn part(&self, owners: &[u32], number: u32, layers: Layers) -> Result<Part<D>, MeshError> {
         if owners.len() != self.n_cells() {
-            return Err(MeshError::Parameter {
-                parameter: "numbers of parts of cells",
-                value: owners.len().to_string(),
-                allowed: format!("one for each of {} cells", self.n_cells()),
-            });
+            let allowed = format!("one for each of {} cells", self.n_cells());
+            return Err(MeshError::parameter("numbers of parts of cells", owners.len(), allowed));
         }
         let mut is_taken: Vec<bool> = owners.iter().map(|&owner| owner == number).collect();
         if !is_taken.contains(&true) {
-            return Err(MeshError::Parameter {
-                parameter: "part of a mesh",
-                value: number.to_string(),
-                allowed: "the number of a part that owns cells".to_owned(),
-            });
+            let allowed = "the number of a part that owns cells";
+            return Err(MeshError::parameter("part of a mesh", number, allowed));
         }
         self.add_layers(&mut is_taken, layers);
         let cells = numbers_of_taken(&is_taken);

@@ -12,15 +12,12 @@ impl<const D: usize> Mesh<D> {
     /// nothing but the mesh, so that processes that have the same mesh find the same parts.
     ///
     /// # Errors
-    /// [`MeshError::Parameter`] for no parts, and for more parts than cells.
+    /// `MeshErrorKind::Parameter` for no parts, and for more parts than cells.
     pub fn partition(&self, parts: usize) -> Result<Vec<u32>, MeshError> {
         let n_cells = self.n_cells();
         if parts == 0 || parts > n_cells {
-            return Err(MeshError::Parameter {
-                parameter: "number of parts",
-                value: parts.to_string(),
-                allowed: format!("1 to {n_cells}, the number of cells"),
-            });
+            let allowed = format!("1 to {n_cells}, the number of cells");
+            return Err(MeshError::parameter("number of parts", parts, allowed));
         }
         let barycentres: Vec<Point<D>> = (0..n_cells).map(|cell| self.barycentre(cell)).collect();
         let mut cells: Vec<u32> = (0..n_cells as u32).collect();

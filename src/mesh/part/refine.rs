@@ -52,9 +52,9 @@ impl<const D: usize> Part<D> {
     /// ```
     ///
     /// # Errors
-    /// [`MeshError::Parameter`] for more layers than the children of this part make: as many as it has; twice as
+    /// `MeshErrorKind::Parameter` for more layers than the children of this part make: as many as it has; twice as
     /// many across vertices in one and two dimensions, and across facets where it has layers across vertices.
-    /// [`MeshError::TooLarge`].
+    /// `MeshErrorKind::TooLarge`.
     pub fn refine(&self, layers: Layers) -> Result<(Self, Refinement), MeshError> {
         self.check_refinement(layers)?;
         Ok(self.peel(self.mesh.refine()?, layers))
@@ -71,17 +71,14 @@ impl<const D: usize> Part<D> {
     pub(in crate::mesh) fn check_refinement(&self, layers: Layers) -> Result<(), MeshError> {
         let most = self.layers.refined(D, layers.across);
         if layers.count > most {
-            return Err(MeshError::Parameter {
-                parameter: "layers of a refined part",
-                value: layers.to_string(),
-                allowed: format!("at most {most}; take more layers of the coarse mesh"),
-            });
+            let allowed = format!("at most {most}; take more layers of the coarse mesh");
+            return Err(MeshError::parameter("layers of a refined part", layers, allowed));
         }
         let last = self.cells.last().map_or(0, |&cell| cell);
         if last >= CELL_LIMIT >> D {
             let limit = CELL_LIMIT as usize;
             let count = last.saturating_mul(1 << D) as usize;
-            return Err(MeshError::TooLarge { what: "cells", count, limit });
+            return Err(MeshError::too_large("cells", count, limit));
         }
         Ok(())
     }

@@ -115,13 +115,10 @@ impl Picture {
     pub fn to_svg(&self) -> Result<String, Error> {
         let shapes: usize = self.panels.iter().map(Panel::shapes).sum();
         if shapes > MOST_SHAPES {
-            return Err(Error::Parameter {
-                parameter: "shapes",
-                value: shapes.to_string(),
-                allowed: format!(
-                    "an SVG file of more than {MOST_SHAPES} would be large and slow to show; choose a coarser level"
-                ),
-            });
+            let allowed = format!(
+                "an SVG file of more than {MOST_SHAPES} would be large and slow to show; choose a coarser level"
+            );
+            return Err(Error::parameter("shapes", shapes, allowed));
         }
         let (panels, width, size) = self.layout();
         let mut pen = Pen::new(size, true);
@@ -176,10 +173,9 @@ fn check_fields<const D: usize>(mesh: &Mesh<D>, fields: &Fields) -> Result<(), E
         && found.facets.iter().all(|&(cell, local)| cell < n && local <= D);
     match fits {
         true => Ok(()),
-        false => Err(Error::Parameter {
-            parameter: "fields",
-            value: format!("{} values", fields.u.len()),
-            allowed: format!("must be those of a scheme on this mesh of {n} cells"),
-        }),
+        false => {
+            let allowed = format!("must be those of a scheme on this mesh of {n} cells");
+            Err(Error::parameter("fields", format!("{} values", fields.u.len()), allowed))
+        }
     }
 }

@@ -52,7 +52,7 @@ impl<const D: usize> Study<'_, D> {
     /// Checks what adaptive refinement asks of a study besides.
     pub(super) fn check_adaptive(&self, adaptivity: &Adaptivity) -> Result<(), Error> {
         let refuse = |parameter, value: String, allowed: &str| {
-            Err(Error::Parameter { parameter, value, allowed: allowed.to_owned() })
+            Err(Error::parameter(parameter, value, allowed))
         };
         adaptivity.check()?;
         if let [_, _, ..] = self.levels[..] {
@@ -76,7 +76,7 @@ impl<const D: usize> Study<'_, D> {
         for entry in &self.entries {
             let of_entry = NestedIteration::new(&entry.problem, &mesh).check_bound(&*entry.scheme);
             // data that are bad on a mesh are for the rows
-            if let Err(error @ Error::NotAdaptive { .. }) = of_entry {
+            if let Err(error @ Error::NotAdaptive(_)) = of_entry {
                 return Err(error);
             }
         }

@@ -103,9 +103,12 @@ impl<const D: usize> Study<'_, D> {
     ) -> Result<(), Error> {
         let remedy = if self.adaptive.is_some() { "fewer unknowns" } else { "a lower level" };
         match available.map(|bytes| bytes as f64) {
-            Some(available) if needed > available => {
-                Err(Error::NotEnoughMemory { run: run(), needed, available, remedy })
-            }
+            Some(available) if needed > available => Err(Error::NotEnoughMemory(format!(
+                "{}: would need about {:.1} GB of memory, {:.1} GB are available; choose {remedy}",
+                run(),
+                needed / 1e9,
+                available / 1e9
+            ))),
             _ => Ok(()),
         }
     }

@@ -166,16 +166,13 @@ impl<'a, const D: usize> Study<'a, D> {
         let lengths = [("schemes", self.entries.len()), ("levels", levels)];
         if let Some(&(parameter, _)) = lengths.iter().find(|(_, length)| *length == 0) {
             let allowed = format!("a study needs {parameter}: at least one");
-            return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
+            return Err(Error::parameter(parameter, "none", allowed));
         }
         let labels = self.entries.iter().map(|entry| &entry.label[..]);
         check_names(labels, self.solvers().iter().map(|solver| solver.name()))?;
         if self.solvers().iter().any(|solver| solver.precision() != self.precision()) {
-            return Err(Error::Parameter {
-                parameter: "precision",
-                value: "f64 and f32".to_owned(),
-                allowed: "one precision for all solvers of a study".to_owned(),
-            });
+            let allowed = "one precision for all solvers of a study";
+            return Err(Error::parameter("precision", "f64 and f32", allowed));
         }
         let domain = &self.scene.domain;
         self.levels.iter().try_for_each(|&level| check_level(domain, level, parts))?;

@@ -156,12 +156,11 @@ impl<const D: usize> Study<'_, D> {
         ];
         match asked.iter().find(|(_, is_asked)| *is_asked) {
             None => Ok(()),
-            Some((parameter, _)) => Err(Error::Parameter {
+            Some((parameter, _)) => Err(Error::parameter(
                 parameter,
-                value: "over several processes".to_owned(),
-                allowed: "the active set method in `f64` on uniform meshes, with errors against the exact solution, without a history"
-                    .to_owned(),
-            }),
+                "over several processes",
+                "the active set method in `f64` on uniform meshes, with errors against the exact solution, without a history",
+            )),
         }
     }
 

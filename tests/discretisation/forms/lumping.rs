@@ -113,8 +113,7 @@ impl Quadrature for EdgeMidpoints {
     }
     fn rule(&self, dimension: usize, degree: usize) -> Result<Rule, QuadratureError> {
         if dimension != 2 || degree > 2 {
-            let family = self.name().to_owned();
-            return Err(QuadratureError::NoRule { family, dimension, degree, largest: 2 });
+            return Err(QuadratureError::no_rule(self.name(), dimension, degree, 2));
         }
         let points = vec![[0.5, 0.5, 0.0, 0.0], [0.5, 0.0, 0.5, 0.0], [0.0, 0.5, 0.5, 0.0]];
         Rule::from_points(2, points, vec![1.0 / 3.0; 3])
@@ -124,7 +123,7 @@ impl Quadrature for EdgeMidpoints {
 #[test]
 fn a_rule_made_outside_the_crate_integrates_data() {
     let report = check_quadrature(&EdgeMidpoints, 2, 2).unwrap();
-    assert_eq!(report.points, 3);
+    assert_eq!(report.figure("points"), Some(3.0));
     let mesh = acute_mesh(4);
     let problem = Problem::new().reaction(7.0);
     let matrix = |quadrature| {
@@ -137,7 +136,8 @@ fn a_rule_made_outside_the_crate_integrates_data() {
     // quadratics need a rule of degree four, boundary data one of degree fifteen on facets
     let reaction = DataQuadrature::default().reaction(&EdgeMidpoints);
     let error = Discretisation::new(&ConformingP2, &problem, &mesh, reaction).unwrap_err();
-    assert!(matches!(error, Error::Quadrature(QuadratureError::NoRule { degree: 4, .. })));
+    assert!(matches!(&error, Error::Quadrature(QuadratureError::NoRule(_))), "{error}");
+    assert!(error.to_string().contains("has no rule of degree 4 in dimension"), "{error}");
     let family = DataQuadrature::default().family(&EdgeMidpoints);
     let error = Discretisation::new(&ConformingP1, &problem, &mesh, family).unwrap_err();
     assert!(error.to_string().starts_with("quadrature family edge-midpoints has no rule"));
@@ -164,7 +164,7 @@ fn a_rule_whose_weights_do_not_sum_to_one_is_refused() {
     let problem = Problem::new().reaction(1.0);
     let quadrature = DataQuadrature::default().reaction(&Unweighted);
     let error = Discretisation::new(&ConformingP1, &problem, &mesh, quadrature).unwrap_err();
-    assert!(matches!(error, Error::Quadrature(QuadratureError::Weights { .. })), "{error}");
+    assert!(matches!(error, Error::Quadrature(QuadratureError::Weights(_))), "{error}");
     let error = check_quadrature(&VertexRule, 2, 2).unwrap_err();
     assert_eq!(error.kind, KitErrorKind::RuleNotExact, "{error}");
     assert!(error.to_string().contains("for degree 2 in"), "{error}");

@@ -109,16 +109,23 @@ fn a_part_that_ends_leaves_no_other_waiting() {
         _ => exchange.exchange(vec![vec![7]; 3]),
     });
     for part in [0, 2] {
-        assert!(matches!(results[part], Err(ExchangeError::Ended { .. })), "{:?}", results[part]);
+        assert!(matches!(results[part], Err(ExchangeError::Ended(_))), "{:?}", results[part]);
     }
     let all = std::panic::catch_unwind(|| {
         in_process(3, |part, exchange| {
             assert!(part != 2, "what a bug does");
             let result = agree(Ok::<_, String>(()), exchange);
-            assert!(matches!(result, Err(ExchangeError::Ended { .. })), "{result:?}");
+            assert!(matches!(result, Err(ExchangeError::Ended(_))), "{result:?}");
         })
     });
     assert_eq!(all.unwrap_err().downcast_ref::<&str>(), Some(&"what a bug does"));
+}
+
+/// The error of a part that sent so many numbers in place of so many.
+fn wrong_length((part, found, expected): (u32, usize, usize)) -> ExchangeError {
+    ExchangeError::Length(format!(
+        "part {part} sent {found} numbers in place of {expected}: all parts call the same functions in the same order"
+    ))
 }
 
 #[test]
@@ -127,11 +134,12 @@ fn lists_that_do_not_fit_are_errors() {
         0 => exchange.exchange(vec![Vec::new()]).map(|_| ()),
         _ => exchange.sum(&[1.0]).map(|_| ()),
     });
-    assert_eq!(results[0], Err(ExchangeError::Lists { lists: 1, parts: 2 }));
-    assert_eq!(results[1], Err(ExchangeError::Ended { part: 0 }));
+    let lists = "1 lists are sent to 2 parts: there must be one for each";
+    assert_eq!(results[0], Err(ExchangeError::Lists(lists.to_owned())));
+    let ended = "part 0 has ended without this exchange: look for its error";
+    assert_eq!(results[1], Err(ExchangeError::Ended(ended.to_owned())));
     let results = in_process(2, |part, exchange| exchange.largest(&vec![1.0; 1 + part as usize]));
-    let length = |part, found, expected| Err(ExchangeError::Length { part, found, expected });
-    assert_eq!(results, [length(1, 2, 1), length(0, 1, 2)]);
+    assert_eq!(results, [(1, 2, 1), (0, 1, 2)].map(|of| Err(wrong_length(of))));
 }
 
 /// Sums have the same bits in all parts, those of the order of the parts; what is not a number stays.
@@ -164,7 +172,7 @@ fn an_exchange_may_have_sums_of_its_own() {
             self.0.parts()
         }
         fn exchange(&self, _: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError> {
-            Err(ExchangeError::Transport { why: "no network".to_owned() })
+            Err(ExchangeError::Transport("no network".to_owned()))
         }
         fn sum(&self, values: &[f64]) -> Result<Vec<f64>, ExchangeError> {
             Ok(vec![42.0; values.len()])
@@ -205,7 +213,7 @@ fn what_parts_merge_survives_the_way() {
         0 => merge_all(&Extent::of(&mesh), exchange).map(|_| ()),
         _ => merge_all(&violations, exchange).map(|_| ()),
     });
-    assert!(matches!(mixed[0], Err(ExchangeError::Length { part: 1, found: 13, expected: 5 })));
+    assert_eq!(mixed[0], Err(wrong_length((1, 13, 5))));
 }
 
 /// Parts with other owners, and parts without enough layers, are refused in all parts, with part and cell.

@@ -135,12 +135,12 @@ fn elements_of_higher_order_are_read_as_straight_with_a_warning() {
         let read = parse::<2>(&sample.four(form));
         assert_eq!(read.mesh.vertices(), straight.vertices());
         assert_eq!(read.mesh.cells(), straight.cells());
-        let expected = [
-            GmshWarning::Straightened { name: "triangle", order: 2, count: 4 },
-            GmshWarning::Straightened { name: "line", order: 2, count: 4 },
-        ];
+        let expected = ["triangle", "line"].map(|name| {
+            GmshWarning::Straightened(format!(
+                "4 elements of type {name} of order 2 are read as straight ones by their corner nodes"
+            ))
+        });
         assert_eq!(read.warnings, expected);
-        assert!(read.warnings[0].to_string().contains("4 elements of type triangle of order 2"));
     }
 }
 

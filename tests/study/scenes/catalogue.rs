@@ -119,10 +119,8 @@ fn a_scale_must_be_positive_and_finite() {
         (1e200, "1e200"),
     ] {
         let made = entry.make(&Parameters::new().with_scale(scale));
-        let Err(Error::Parameter { parameter, value, .. }) = made else {
-            panic!("scale {scale} was admitted")
-        };
-        assert_eq!((parameter, &value[..]), ("scale", text));
+        let Err(Error::Parameter(why)) = made else { panic!("scale {scale} was admitted") };
+        assert!(why.starts_with(&format!("scale = {text}: ")), "{why}");
     }
 }
 
@@ -137,7 +135,8 @@ fn a_parameter_that_a_scene_does_not_take_is_refused() {
         let Err(error) = by_name(name).unwrap().make(&parameters) else {
             panic!("{name} took a {expected}")
         };
-        assert!(matches!(error, Error::Parameter { parameter, .. } if parameter == expected));
+        let said = format!("{expected} = ");
+        assert!(matches!(&error, Error::Parameter(why) if why.starts_with(&said)), "{error}");
         assert!(error.to_string().contains(&format!("{name} takes no {expected}")), "{error}");
     }
 }
@@ -157,8 +156,8 @@ fn entries_outside_the_catalogue_hand_their_parameter_on() {
     assert_eq!(load_of(&Parameters::default()), -2.0);
     assert_eq!(load_of(&Parameters::new().with_load(-5.0)), -5.0);
     let made = loaded.make(&Parameters::new().with_load(f64::NAN));
-    assert!(matches!(made, Err(Error::Parameter { parameter: "load", .. })));
+    assert!(matches!(made, Err(Error::Parameter(why)) if why.starts_with("load = ")));
     let contrasted = Entry::with_contrast(1e4, |_| radial::<1>(1.0));
     let made = contrasted.make(&Parameters::new().with_contrast(0.0));
-    assert!(matches!(made, Err(Error::Parameter { parameter: "contrast", .. })));
+    assert!(matches!(made, Err(Error::Parameter(why)) if why.starts_with("contrast = ")));
 }
