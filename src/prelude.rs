@@ -1,9 +1,7 @@
 //! The names that a program needs to compare schemes, in one import.
 
 pub use crate::assemble::Discretisation;
-pub use crate::constraint::{
-    Bernstein, BoundBy, CellMeans, ConstraintSet, FacetMeans, Midpoints, Nodes,
-};
+pub use crate::constraint::{Bernstein, BoundBy, ConstraintSet, FacetMeans, Midpoints, Nodes};
 pub use crate::element::{Broken, CrouzeixRaviart, Element, Entity, Node, P1, P2};
 pub use crate::error::Error;
 pub use crate::facet::{

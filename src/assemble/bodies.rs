@@ -120,7 +120,7 @@ impl<const D: usize> Space<'_, D> {
 
     /// The values of the unknowns of a cell of the constant one.
     pub fn constants(&self) -> Vec<f64> {
-        let terms = self.node_terms(&Rule::new(D - 1, 1), &Rule::new(D, 1));
+        let terms = self.node_terms(&Rule::new(D - 1, 1));
         terms.iter().map(|terms| terms.iter().map(|(_, w)| w).sum()).collect()
     }
 

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::bernstein::Bernstein;
-use super::cell_means::CellMeans;
 use super::constraint_set::ConstraintSet;
 use super::facet_means::FacetMeans;
 use super::midpoints::Midpoints;
@@ -11,12 +10,11 @@ use super::nodes::Nodes;
 
 /// The constraint sets of the library by the names users type, with one line each. On linear
 /// elements nodes are vertices; both names are the same set.
-pub const CONSTRAINT_SETS: [(&str, &str); 6] = [
+pub const CONSTRAINT_SETS: [(&str, &str); 5] = [
     ("vertices", "values at vertices (linear elements), all nodes (quadratic ones)"),
     ("nodes", "all nodes of the element: vertices for linear elements"),
     ("facet-means", "means over facets (discontinuous schemes on linears)"),
     ("midpoints", "midpoints of edges only (schemes on quadratics)"),
-    ("cell-means", "means over cells (discontinuous schemes on quadratics, obstacles only)"),
     ("bernstein", "Bernstein coefficients: bounds hold at every point (schemes on quadratics)"),
 ];
 
@@ -26,7 +24,6 @@ pub fn constraint_set_by_name(name: &str) -> Option<Arc<dyn ConstraintSet>> {
         "vertices" | "nodes" => Some(Arc::new(Nodes)),
         "facet-means" => Some(Arc::new(FacetMeans)),
         "midpoints" => Some(Arc::new(Midpoints)),
-        "cell-means" => Some(Arc::new(CellMeans)),
         "bernstein" => Some(Arc::new(Bernstein)),
         _ => None,
     }

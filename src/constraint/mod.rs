@@ -9,7 +9,6 @@
 
 mod bernstein;
 mod by_name;
-mod cell_means;
 mod constraint_set;
 mod facet_means;
 mod midpoints;
@@ -18,7 +17,6 @@ mod on_element;
 
 pub use bernstein::Bernstein;
 pub use by_name::{CONSTRAINT_SETS, constraint_set_by_name};
-pub use cell_means::CellMeans;
 pub use constraint_set::{BoundBy, ConstraintSet};
 pub use facet_means::FacetMeans;
 pub use midpoints::Midpoints;

@@ -6,9 +6,8 @@ use crate::theory::Setting;
 
 /// Every [`Node`] of the element is bound: the set in force where nothing else is said.
 ///
-/// Obstacles bind values at points, a facet mean by the obstacle at the barycentre of the facet, a
-/// cell mean by the mean of the obstacle. Reports call the set `vertices` or `facet-means` where the
-/// element has no other nodes.
+/// Obstacles bind values at points, and a facet mean by the obstacle at the barycentre of the facet. Reports call the
+/// set `vertices` or `facet-means` where the element has no other nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Nodes;
 

@@ -6,8 +6,6 @@
 pub enum Basis {
     /// The means over the facets of the cell.
     FacetMeans,
-    /// The mean over the cell.
-    CellMean,
     /// The coefficients in the basis of Bernstein.
     Bernstein,
 }

@@ -8,7 +8,6 @@ mod definition;
 mod node;
 mod p1;
 mod p2;
-mod quadratic_cell_mean;
 
 pub use basis::Basis;
 pub use broken::Broken;

@@ -46,8 +46,8 @@ pub struct Node {
 enum Functional {
     /// The value at a point.
     Value([f64; 4]),
-    /// The mean over the facet or cell.
-    Mean,
+    /// The mean over the facet opposite this vertex.
+    FacetMean(usize),
     /// A sum of values at points times weights.
     Sum(Vec<([f64; 4], f64)>),
     /// The coefficient of a vertex or an edge in the basis of Bernstein.
@@ -89,11 +89,7 @@ impl Node {
     }
     /// The mean over the facet opposite a vertex of the cell.
     pub fn facet_mean(k: usize) -> Self {
-        Self { entity: Entity::Facet(k), functional: Functional::Mean }
-    }
-    /// The mean over the cell.
-    pub fn cell_mean() -> Self {
-        Self { entity: Entity::Cell, functional: Functional::Mean }
+        Self { entity: Entity::Facet(k), functional: Functional::FacetMean(k) }
     }
     /// The Bernstein coefficient of a quadratic at a vertex of the cell, which is the value there.
     pub fn coefficient_of_vertex(k: usize) -> Self {
@@ -131,19 +127,15 @@ impl Node {
     }
     /// Whether the functional is the mean over a facet.
     pub fn is_facet_mean(&self) -> bool {
-        self.is_mean() && matches!(self.entity, Entity::Facet(_))
-    }
-    /// Whether the functional is the mean over the facet or cell to which it is tied.
-    pub fn is_mean(&self) -> bool {
-        self.functional == Functional::Mean
+        matches!(self.functional, Functional::FacetMean(_))
     }
     /// Whether the functional is a Bernstein coefficient.
     pub fn is_coefficient(&self) -> bool {
         self.functional == Functional::Coefficient
     }
-    /// The functional as points with weights. Means are taken by the rules for facets and for cells,
-    /// exactly for polynomials that the rules integrate exactly.
-    pub fn terms(&self, facet_rule: &Rule, cell_rule: &Rule) -> Vec<([f64; 4], f64)> {
+    /// The functional as points with weights. Means are taken by the rule for facets, exactly for polynomials that the
+    /// rule integrates exactly.
+    pub fn terms(&self, facet_rule: &Rule) -> Vec<([f64; 4], f64)> {
         match (&self.functional, self.entity) {
             (Functional::Value(point), _) => vec![(*point, 1.0)],
             (Functional::Sum(terms), _) => terms.clone(),
@@ -153,10 +145,9 @@ impl Node {
                 vec![ends[0], ends[1], (self.centre(3), 2.0)]
             }
             (Functional::Coefficient, _) => vec![(self.centre(3), 1.0)],
-            (Functional::Mean, Entity::Facet(k)) => {
-                facet_rule.iter().map(|(point, w)| (facet_to_cell(point, k), w)).collect()
+            (Functional::FacetMean(k), _) => {
+                facet_rule.iter().map(|(point, w)| (facet_to_cell(point, *k), w)).collect()
             }
-            (Functional::Mean, _) => cell_rule.iter().map(|(point, w)| (*point, w)).collect(),
         }
     }
     /// The point that stands for the node: where it is the value at a point that point, of a mean and of a
@@ -173,7 +164,7 @@ impl Node {
         match &self.functional {
             Functional::Value(point) => *point,
             Functional::Sum(terms) => mean(&mut terms.iter().map(|(point, w)| (*point, w.abs()))),
-            Functional::Mean | Functional::Coefficient => {
+            Functional::FacetMean(_) | Functional::Coefficient => {
                 let vertices = (0..dimension + 1).filter(|&k| self.entity.contains(dimension, k));
                 mean(&mut vertices.map(|k| (vertex_point(k), 1.0)))
             }
@@ -207,7 +198,7 @@ impl Node {
         };
         let functional = match &self.functional {
             Functional::Value(p) => Functional::Value(point(p)),
-            Functional::Mean => Functional::Mean,
+            Functional::FacetMean(_) => Functional::FacetMean(other),
             Functional::Coefficient => Functional::Coefficient,
             Functional::Sum(terms) => {
                 Functional::Sum(terms.iter().map(|(p, w)| (point(p), *w)).collect())

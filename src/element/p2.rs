@@ -7,7 +7,6 @@ use super::bernstein::BernsteinP2;
 use super::broken::Broken;
 use super::definition::{Element, Layout};
 use super::node::Node;
-use super::quadratic_cell_mean::QuadraticCellMean;
 use crate::mesh::edge_vertices;
 
 /// Continuous piecewise quadratics: the values at the vertices, then those at the midpoints of the
@@ -48,7 +47,6 @@ impl<const D: usize> Element<D> for P2 {
     }
     fn in_basis(&self, basis: Basis, is_broken: bool) -> Option<Arc<dyn Element<D>>> {
         match (basis, is_broken) {
-            (Basis::CellMean, true) => Some(Arc::new(QuadraticCellMean(P2))),
             (Basis::Bernstein, true) => Some(Arc::new(Broken(BernsteinP2))),
             (Basis::Bernstein, false) => Some(Arc::new(BernsteinP2)),
             _ => None,

@@ -33,7 +33,7 @@ impl<const D: usize> Space<'_, D> {
         (residual, obstacles): (&[f64], &ActiveObstacles),
         u: &[f64],
     ) -> Vec<NodeForce> {
-        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let terms = self.node_terms(&self.facet_rule);
         let mut forces: Vec<NodeForce> = Vec::new();
         // of each unknown the best rank of its facets, and the measure of those
         let mut best = vec![(0, 0.0); if self.problem.has_gap() { residual.len() } else { 0 }];

@@ -130,7 +130,7 @@ impl<const D: usize> Space<'_, D> {
                 None
             }
         };
-        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let terms = self.node_terms(&self.facet_rule);
         let functional = |terms: &Vec<([f64; 4], f64)>| -> Products {
             array_of(|a| array_of(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum()))
         };

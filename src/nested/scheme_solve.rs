@@ -9,7 +9,7 @@ use super::phase::Phase;
 use super::solved::Solved;
 use super::system::System;
 use super::warnings::{
-    UNPROVEN, active_sets, coefficients_on_jumps, data_beyond_coefficients, dirichlet_jumps,
+    UNPROVEN, coefficients_on_jumps, data_beyond_coefficients, dirichlet_jumps,
     no_digits_of_quadratics, no_digits_of_stiffness, rounding_of_data, short_edges,
 };
 use crate::algebra::{Contact, Start};
@@ -95,7 +95,6 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         };
         let sent = system.sent_bytes() - sent;
         warnings.extend(refusal);
-        warnings.extend(active_sets(&solution, self.p1.problem, scheme));
         if system.part().is_none() {
             warnings.extend(data_beyond_coefficients(system.discretisation(), &solution));
             warnings.extend(coefficients_on_jumps(system.discretisation()));

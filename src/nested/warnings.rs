@@ -3,19 +3,14 @@
 use super::solved::Solved;
 use crate::algebra::Inequality;
 use crate::assemble::Discretisation;
-use crate::constraint::CellMeans;
-use crate::inequality::{Outcome, Solution};
+use crate::inequality::Solution;
 use crate::input::excerpt;
 use crate::mesh::{BoundaryCondition, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Problem};
 use crate::real::Precision;
-use crate::scheme::Scheme;
 
 /// The warning on a part of a mesh where nothing proves that the matrix is positive definite.
 pub(super) const UNPROVEN: &str = "no theory says that the matrix is positive definite: a penalty is below its proven bound, or a reaction is negative";
-
-/// More outer steps than a solve takes on any scene but with bounds at nodes of broken quadratics.
-const MANY_ACTIVE_SETS: usize = 28;
 
 /// Edges shorter than a limit, on meshes that were not refined locally: conditions of matrices on bisected meshes depend on
 /// the number of cells, but for a logarithm not on the smallest one (R. E. Bank, L. R. Scott, SIAM J. Numer. Anal. 26
@@ -238,31 +233,4 @@ pub(super) fn coefficients_on_jumps<const D: usize>(
     Some(format!(
         "an obstacle or a gap jumps at {n} Bernstein coefficients of edges: these are taken from one side of the jump, and within edges that it cuts the solution may lie beyond the datum"
     ))
-}
-
-/// Advice for a solution that took many active sets, or whose active sets changed to the end.
-pub(super) fn active_sets<const D: usize>(
-    solution: &Solution<f64>,
-    problem: &Problem<D>,
-    scheme: &dyn Scheme<D>,
-) -> Option<String> {
-    let returns =
-        matches!(solution.outcome, Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled);
-    let are_many = solution.outer > MANY_ACTIVE_SETS || returns;
-    are_many.then(|| advice_on_bounds(problem, scheme)).flatten()
-}
-
-/// Advice for a scheme whose obstacle takes many active sets: bounds on cell means, where its element has
-/// them, its own nodes are bound and nothing else is.
-fn advice_on_bounds<const D: usize>(
-    problem: &Problem<D>,
-    scheme: &dyn Scheme<D>,
-) -> Option<String> {
-    let set = problem.constraint_set();
-    let present = scheme.constraint_on(set)?;
-    let means = scheme.constraint_on(&CellMeans)?;
-    let is_at_nodes = set.basis().is_none();
-    (problem.has_obstacle() && !problem.has_gap() && is_at_nodes).then(|| {
-        format!("bounds at {present} take many active sets with quadratics: bounds on {means} take fewer")
-    })
 }

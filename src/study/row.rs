@@ -107,7 +107,7 @@ pub struct Row {
     /// Name of the scheme.
     pub scheme: String,
     /// Where the inequality is imposed: `vertices`, `facet-means`, `nodes`, `midpoints`,
-    /// `cell-means`, or the name of a constraint set of one's own.
+    /// `bernstein`, or the name of a constraint set of one's own.
     pub constraint: String,
     /// Scheme, constraint set and choices without what is default, as
     /// [`NamedScheme`](crate::scheme::NamedScheme) reads it: what distinguishes the schemes of a report.

@@ -12,7 +12,7 @@ use unilateral::scenes::Scene;
 
 /// Every scheme on quadratics, placements and variants of forms with lifts among them.
 const SCHEMES: &str = "p2 p2:midpoints sipg-p2 nipg-p2 iipg-p2 ldg-p2 br2-p2 bmmpr-p2 wopsip-p2 \
-    wopsip-p2:cell-means wopsip-p2:midpoints sipg-p2:cell-means p2:bernstein sipg-p2:bernstein wopsip-p2:bernstein";
+    wopsip-p2:midpoints p2:bernstein sipg-p2:bernstein wopsip-p2:bernstein";
 
 /// On a mesh of a scene, every scheme: fluxes are single-valued and balance the load, and the bound is one to
 /// three times the error.

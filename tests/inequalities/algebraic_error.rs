@@ -230,7 +230,7 @@ fn choices() -> Vec<Choice<'static>> {
         match name {
             "p1" | "cr" => &["vertices"],
             "p2" => &["nodes", "midpoints", "bernstein"],
-            name if name.ends_with("-p2") => &["nodes", "midpoints", "cell-means", "bernstein"],
+            name if name.ends_with("-p2") => &["nodes", "midpoints", "bernstein"],
             _ => &["vertices", "facet-means"],
         }
     };
@@ -285,7 +285,7 @@ fn the_algebraic_error_is_a_thousandth_of_the_error_on_the_line() {
 fn the_algebraic_error_is_a_thousandth_of_the_error_in_the_plane_and_in_space() {
     let linears = [("p1", "vertices"), ("cr", "vertices"), ("wopsip", "facet-means")];
     check(&["radial-2d", "signorini-2d", "contrast-2d"], &linears, &[64]);
-    let others = [("wopsip", "vertices"), ("sipg", "vertices"), ("sipg-p2", "cell-means")];
+    let others = [("wopsip", "vertices"), ("sipg", "vertices"), ("sipg-p2", "midpoints")];
     check(&["radial-2d", "lshape-2d"], &others, &[32]);
     check(&["radial-3d"], &[("sipg", "vertices"), ("p1", "vertices")], &[8]);
 }

@@ -57,7 +57,7 @@ fn multipliers_of_regions_are_those_of_their_obstacles() {
 #[test]
 fn quadratics_between_their_nodes() {
     let scratch = Scratch::new("between-nodes");
-    let schemes = "p2,p2:midpoints,sipg-p2,p1,sipg-p2:cell-means,p2:bernstein,sipg-p2:bernstein";
+    let schemes = "p2,p2:midpoints,sipg-p2,p1,p2:bernstein,sipg-p2:bernstein";
     let options = format!("{} --scheme {schemes} --levels 4", data("contact_everywhere"));
     let report = scratch.report(&options);
     for (k, row) in rows(&report).iter().enumerate() {

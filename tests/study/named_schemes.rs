@@ -23,7 +23,7 @@ fn labels_leave_out_what_is_default() {
         ("wopsip:facet-means@eta=1e2", "wopsip:facet-means@eta=100"),
         ("wopsip@weight=isotropic", "wopsip"),
         ("wopsip@weight=anisotropic,factor=1e-4", "wopsip@factor=1e-4,weight=anisotropic"),
-        ("wopsip-p2:cell-means@eta=1e10", "wopsip-p2:cell-means@eta=1e10"),
+        ("wopsip-p2:midpoints@eta=1e10", "wopsip-p2:midpoints@eta=1e10"),
         ("sipg@factor=1.5", "sipg"),
         ("sipg@factor=1.05", "sipg@factor=1.05"),
         ("sipg@factor=0.3", "sipg@factor=0.3"),
@@ -74,7 +74,7 @@ fn what_a_scheme_does_not_take_is_refused_with_what_it_takes() {
     assert_eq!(refused("p7"), SchemeNameErrorKind::Unknown);
     assert_eq!(refused("sipg:edges"), SchemeNameErrorKind::UnknownPlacement);
     for unfit in
-        ["sipg:midpoints", "p1:bernstein", "cr:bernstein", "sipg:bernstein", "p2:cell-means"]
+        ["sipg:midpoints", "p1:bernstein", "cr:bernstein", "sipg:bernstein", "p2:facet-means"]
     {
         assert_eq!(refused(unfit), SchemeNameErrorKind::UnfitPlacement);
     }

@@ -56,7 +56,7 @@ impl<const D: usize> Space<'_, D> {
         if !has_obstacle || !(by_region || self.problem.has_gap()) {
             return found;
         }
-        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let terms = self.node_terms(&self.facet_rule);
         let nodes: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
         let is_active = |unknown: usize| {
             bounds[unknown].is_inequality() && contact.get(unknown) != Some(&Contact::Inactive)

@@ -46,7 +46,7 @@ impl<const D: usize> Space<'_, D> {
         found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
         let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
-        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let terms = self.node_terms(&self.facet_rule);
         let n = self.per_cell();
         let found_by_all = Mutex::new(Vec::new());
         let restrict = |bound: &mut Bound<f64>, cell, node| -> Result<(), Error> {
@@ -110,7 +110,7 @@ impl<const D: usize> Space<'_, D> {
         bounds: &mut [Bound<f64>],
         found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
-        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let terms = self.node_terms(&self.facet_rule);
         let given = self.dirichlet_groups();
         for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
@@ -165,7 +165,7 @@ impl<const D: usize> Space<'_, D> {
         bounds: &mut [Bound<f64>],
         found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
-        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let terms = self.node_terms(&self.facet_rule);
         let zero = !self.problem.has_dirichlet_data();
         let (lowers, uppers) = (&self.data.lower, &self.data.upper);
         let mut facets: Vec<_> = self.grouped_facets_of(BoundaryCondition::Dirichlet).collect();
@@ -215,7 +215,7 @@ impl<const D: usize> Space<'_, D> {
         if !self.problem.has_obstacle() || !self.has_coefficients() {
             return Ok(None);
         }
-        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let terms = self.node_terms(&self.facet_rule);
         let (mut largest, mut place) = (0.0, None);
         for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Dirichlet) {
             let region = self.mesh.region(cell);

@@ -346,14 +346,13 @@ impl<'a, const D: usize> Space<'a, D> {
     /// The point that stands for a node.
     pub fn node_point(&self, cell: usize, node: &Node) -> Point<D> {
         match node.entity() {
-            Entity::Facet(k) if node.is_mean() => self.mesh.facet_barycentre(cell, k),
-            Entity::Cell if node.is_mean() => self.mesh.barycentre(cell),
+            Entity::Facet(k) if node.is_facet_mean() => self.mesh.facet_barycentre(cell, k),
             _ => self.cell_point(&node.centre(D), cell),
         }
     }
-    /// The functional of each node, with these rules for means.
-    pub fn node_terms(&self, facet_rule: &Rule, cell_rule: &Rule) -> Vec<Terms> {
-        self.nodes.iter().map(|node| node.terms(facet_rule, cell_rule)).collect()
+    /// The functional of each node, with this rule for means.
+    pub fn node_terms(&self, facet_rule: &Rule) -> Vec<Terms> {
+        self.nodes.iter().map(|node| node.terms(facet_rule)).collect()
     }
     /// A discrete function, with a mesh of its own.
     pub fn function(&self, u: &[f64]) -> DiscreteFunction<D> {

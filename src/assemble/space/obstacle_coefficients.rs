@@ -148,7 +148,7 @@ impl<const D: usize> Space<'_, D> {
         if !self.problem.is_constrained() || !self.has_coefficients() {
             return Ok(0);
         }
-        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let terms = self.node_terms(&self.facet_rule);
         let is_moved = |i: usize, cell, (binding, datum): (Binding, Option<&Datum<D>>)| {
             datum.map_or(Ok(false), |datum| {
                 self.obstacle_coefficient(&terms[i], cell, (binding, datum)).map(|(_, moved)| moved)

@@ -115,7 +115,7 @@ impl<const D: usize> Space<'_, D> {
         };
         let smooth = smooth.map(|degree| self.smooth_rule(degree)).transpose()?;
         let cell_rule = Rule::new(D, degree);
-        let nodes = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
+        let nodes = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE));
         let kinks: Vec<Kinks<D>> =
             (0..self.mesh.regions().len()).map(|region| self.kinks(exact, region)).collect();
         let has_kinks = kinks.iter().any(|kinks| !kinks.levels.is_empty());

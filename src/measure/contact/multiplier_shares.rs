@@ -157,7 +157,7 @@ impl<const D: usize> Space<'_, D> {
     /// The shares of the multipliers of gaps on all contact facets: by measure among the facets whose gap gives the
     /// bound.
     fn shares_of_gaps(&self, bounds: &[Bound<f64>], of: &Multipliers) -> Vec<Share> {
-        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let terms = self.node_terms(&self.facet_rule);
         let mut shares = Vec::new();
         // of each unknown whether a gap gives the bound, and the measure of its facets with the best answer
         let mut best = vec![(false, 0.0); if self.problem.has_gap() { bounds.len() } else { 0 }];

@@ -103,14 +103,10 @@ fn refusals_name_what_the_element_offers() {
         (&Sipg::default() as &dyn Scheme<2>, obstacle().on(Midpoints), "vertices or facet-means"),
         (&ConformingP1, obstacle().on(FacetMeans), "vertices"),
         (&NonconformingP1, obstacle().on(AllVerticesButOne), "facet-means"),
+        (&Sipg::default().on(P2), obstacle().on(FacetMeans), "nodes or midpoints or bernstein"),
         (
             &Sipg::default().on(P2),
-            obstacle().on(FacetMeans),
-            "nodes or midpoints or cell-means or bernstein",
-        ),
-        (
-            &Sipg::default().on(P2),
-            Problem::new().signorini(|_| 0.0).on(CellMeans),
+            Problem::new().signorini(|_| 0.0).on(FacetMeans),
             "nodes or midpoints or bernstein",
         ),
     ] {
@@ -130,6 +126,5 @@ fn orders_remain_where_the_set_is_that_of_the_nodes() {
     assert_eq!(orders(&Wopsip::default(), &FacetMeans), None);
     assert_eq!(orders(&ConformingP2, &Midpoints), Some(1.5));
     assert_eq!(orders(&ConformingP2, &Bernstein), None);
-    assert_eq!(orders(&Sipg::default().on(P2), &CellMeans), None);
     assert_eq!(orders(&NonconformingP1, &ByMeans), None);
 }

@@ -170,7 +170,7 @@ fn chain<const D: usize>(
             [obstacle_problem(), signorini_problem()].map(|problem| problem.on(entry.set.clone()));
         for (k, level) in levels[at].1.iter().enumerate() {
             level.same_bits(&*entry.scheme, &obstacle);
-            if k == refinements && entry.constraint() != "cell-means" {
+            if k == refinements {
                 level.same_bits(&*entry.scheme, &signorini);
             }
         }

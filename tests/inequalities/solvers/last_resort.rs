@@ -105,9 +105,7 @@ fn all_schemes_agree_with_the_oracle() {
     for scene in [scenes::ball_2d(), scenes::signorini_shifted_2d()] {
         let mesh = scene.domain.mesh(2).unwrap();
         for &(name, _) in SCHEMES {
-            for place in
-                ["vertices", "facet-means", "nodes", "midpoints", "cell-means", "bernstein"]
-            {
+            for place in ["vertices", "facet-means", "nodes", "midpoints", "bernstein"] {
                 let set = constraint_set_by_name(place).unwrap();
                 let scheme = scheme_by_name::<2>(name, &SchemeOptions::default()).unwrap();
                 // a scheme without such values keeps its nodes
@@ -276,22 +274,6 @@ fn rounding_in_a_krylov_method_is_not_an_indefinite_matrix() {
     assert!(row.converged(), "{}", row.status);
     assert!(row.certificate.largest() < 1e-9);
     assert!((row.error.h1.unwrap() / 9.25e-3 - 1.0).abs() < 0.01, "{:?}", row.error.h1);
-}
-
-/// Where bounds at nodes of quadratics take many active sets, the row says which bounds take few.
-#[test]
-fn bounds_on_cell_means_are_recommended_where_they_help() {
-    let made = scenes::by_name("lshape-2d").unwrap().make(&scenes::Parameters::default());
-    let scenes::AnyScene::Two(scene) = made.unwrap() else { panic!() };
-    let row = |scheme: &str| {
-        let study = Study::<2>::new(scene.clone()).levels([16]);
-        study.named_scheme(&scheme.parse().unwrap()).run().unwrap().rows.remove(0)
-    };
-    let (nodes, means) = (row("wopsip-p2@eta=1e4"), row("wopsip-p2:cell-means@eta=1e4"));
-    assert!(nodes.converged() && means.converged());
-    assert!(nodes.iterations.outer > Some(28) && means.iterations.outer < Some(28));
-    assert!(nodes.warnings.iter().any(|w| w.contains("bounds on cell-means")), "{nodes:?}");
-    assert!(!means.warnings.iter().any(|w| w.contains("cell-means")), "{means:?}");
 }
 
 /// Factors aim at a certificate of rounding. Where a small penalty keeps them above it and below the limit of

@@ -24,7 +24,7 @@ fn choices() -> Vec<Choice> {
         let placements: &[_] = match name {
             "p1" | "cr" => &["vertices"],
             "p2" => &["nodes", "midpoints", "bernstein"],
-            name if name.ends_with("-p2") => &["nodes", "midpoints", "cell-means", "bernstein"],
+            name if name.ends_with("-p2") => &["nodes", "midpoints", "bernstein"],
             _ => &["vertices", "facet-means"],
         };
         for placement in placements {

@@ -80,12 +80,6 @@ const REQUESTS: &[Request] = &[
     quick("lifted-quadratic-lines", OF_LIFTED_ON_LINES, LIFTED_QUADRATIC, "--levels 4,8"),
     quick("linear-lines", ON_LINES, LINEAR, "--levels 8,16"),
     quick("quadratic-lines", ON_LINES, QUADRATIC, "--levels 4,8"),
-    quick(
-        "cell-means",
-        "radial-2d,lshape-2d",
-        "sipg-p2:cell-means,wopsip-p2:cell-means",
-        "--levels 4,8",
-    ),
     quick("bernstein", "radial-1d,radial-2d,lshape-2d,signorini-2d", BERNSTEIN, "--levels 4,8"),
     quick("bernstein-space", "radial-3d,signorini-line-3d", BERNSTEIN, "--levels 2"),
     quick("quick-plane", "radial-2d,hertz-2d,contrast-disc-2d", FEW, "--levels 8"),

@@ -157,6 +157,6 @@ fn figures_are_as_wide_as_their_longest_label() {
         start.split('"').next().unwrap().parse::<f64>().unwrap()
     };
     assert_eq!(width("@factor=1.05"), 400.0);
-    let long = ":cell-means@factor=10,weight=anisotropic, iterative, f32, and something else";
+    let long = ":facet-means@factor=10,weight=anisotropic, iterative, f32, and something else";
     assert!(width(long) > 500.0);
 }

@@ -1,4 +1,4 @@
-//! Quadratic elements and their four sets of constraints.
+//! Quadratic elements and their three sets of constraints.
 
 mod bernstein;
 mod bernstein_jumps;
@@ -36,7 +36,6 @@ fn all<const D: usize>() -> Vec<Entry<D>> {
     let mut schemes = conforming();
     schemes.push(entry(broken(), Nodes));
     schemes.push(entry(broken(), Midpoints));
-    schemes.push(entry(broken(), CellMeans));
     schemes.push(entry(broken(), Bernstein));
     schemes
 }
@@ -269,9 +268,6 @@ fn numbering_does_not_matter() {
         .obstacle_below(|x| -0.05 - 0.1 * x[1])
         .signorini(|x| 0.02 * x[0] - 0.03);
     for scheme in all::<2>() {
-        if scheme.constraint() == "cell-means" {
-            continue;
-        }
         let [first, second] = [&mesh, &shuffled].map(|mesh| {
             let problem = scheme.constrain(&problem);
             let inequality = scheme.inequality(&problem, mesh, Default::default()).unwrap();
@@ -299,56 +295,6 @@ fn numbering_does_not_matter() {
     }
 }
 
-/// The broken form in the basis with the cell mean is that in the nodal basis, changed by the matrix
-/// of its nodes.
-#[test]
-fn the_basis_with_the_cell_mean_spans_the_quadratics() {
-    fn check<const D: usize>(n: usize) {
-        let mesh = Raw::<D>::jittered(&mixed_box(), n, 0.4, &mut Random(5)).mesh();
-        let problem = Problem::new().reaction(2.0).source(|x| x[0].exp()).dirichlet(|x| x[0]);
-        let of = |problem: &Problem<D>| {
-            let discretisation =
-                Discretisation::new(&broken(), problem, &mesh, Default::default()).unwrap();
-            discretisation.inequality().unwrap()
-        };
-        let (nodal, mean) = (of(&problem), of(&problem.clone().on(CellMeans)));
-        let size = (D + 1) * (D + 2) / 2;
-        let simplex = Rule::new(D, 2);
-        // the last midpoint of a function of the other basis, from the rule for its mean
-        let mut means = [0.0; 10];
-        for (point, weight) in simplex.iter() {
-            let mut values = vec![0.0; 10];
-            Element::<D>::values(&P2, &point[..=D], &mut values);
-            means.iter_mut().zip(&values).for_each(|(m, v)| *m += weight * v);
-        }
-        let to_nodal = |i: usize, v: &[f64]| {
-            if i + 1 < size {
-                return v[i];
-            }
-            let others: f64 = (0..size - 1).map(|j| means[j] * v[j]).sum();
-            (v[size - 1] - others) / means[size - 1]
-        };
-        let random = &mut Random(6);
-        let mut vector = || -> Vec<f64> { (0..mean.size()).map(|_| random.unit() - 0.5).collect() };
-        let (u, v) = (vector(), vector());
-        let nodal_values = |u: &[f64]| -> Vec<f64> {
-            u.chunks(size).flat_map(|u| (0..size).map(move |i| to_nodal(i, u))).collect()
-        };
-        let form = |of: &unilateral::algebra::Inequality<f64>, u: &[f64], v: &[f64]| {
-            let rows = (0..of.size()).map(|i| v[i] * of.matrix.row_dot(i, u));
-            let load: f64 = of.assembled_load().iter().zip(v).map(|(b, v)| b * v).sum();
-            [rows.sum::<f64>(), load]
-        };
-        let (a, b) = (form(&mean, &u, &v), form(&nodal, &nodal_values(&u), &nodal_values(&v)));
-        let scale = form(&nodal, &nodal_values(&u), &nodal_values(&u))[0];
-        assert!((a[0] - b[0]).abs() < 1e-12 * scale, "{D}d: {} {}", a[0], b[0]);
-        assert!((a[1] - b[1]).abs() < 1e-12 * scale, "{D}d: {} {}", a[1], b[1]);
-    }
-    check::<1>(6);
-    check::<2>(3);
-    check::<3>(2);
-}
-
 /// The load that presses a flat obstacle everywhere is its multiplier, whatever the set; names are
 /// those that reports state.
 #[test]
@@ -356,7 +302,7 @@ fn multipliers_names_and_single_precision() {
     let names: Vec<_> = all::<2>().iter().map(|s| s.constraint()).collect();
     let of_both = ["nodes", "midpoints", "bernstein"];
     assert_eq!(names[..3], of_both);
-    assert_eq!(names[3..], ["nodes", "midpoints", "cell-means", "bernstein"]);
+    assert_eq!(names[3..], of_both);
     let named = scheme_by_name::<2>("p2", &SchemeOptions::default()).unwrap();
     assert_eq!((named.name(), named.constraint_on(&Nodes)), ("p2", Some("nodes".to_owned())));
     fn check<const D: usize>(checks: &mut Checks, level: usize) {
