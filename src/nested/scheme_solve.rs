@@ -19,8 +19,7 @@ use crate::real::Precision;
 use crate::scheme::Scheme;
 
 /// The ratio of the diameter of a cell to its least height from which the bound looks at a conforming solution beside the
-/// means of a function of another scheme. With the ratio 1000 the bound of `cr` is 3 times its error in place of 321
-/// (problem stretched of the tests).
+/// means of a function of another scheme (problem stretched of the tests, `cr`).
 const STRETCHED: f64 = 16.0;
 
 impl<'a, const D: usize> NestedIteration<'a, D> {

@@ -29,8 +29,7 @@ pub(super) fn short_edges<const D: usize>(
 }
 
 /// Rounding in the assembled matrix of over-penalised quadratics, relative to a solution, from which corrections by its
-/// factors do not converge. They do at 0.2 and 0.6 (`wopsip-p2` on signorini-2d at 8 with `eta` 1e9, at 64 with 1e4),
-/// and the matrix is singular to working precision at 2.3 (at 8 with 1e10).
+/// factors do not converge: the matrix is singular to working precision at 2.3 (signorini-2d, `wopsip-p2@eta=1e10`, 8).
 const NO_DIGITS: f64 = 1.0;
 
 /// Why over-penalised quadratics in the plane and in space are not solved, if rounding in the assembled matrix, which is

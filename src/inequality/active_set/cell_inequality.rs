@@ -2,10 +2,8 @@
 //!
 //! A penalty on jumps of means couples unknowns so strongly that the violation of one of them alone says little: where
 //! this unknown changes its state, others violate their bounds in the next system. The inequality of a cell takes its
-//! unknowns together. On radial-3d at 32 the iteration of WOPSIP with bounds at vertices then takes 13 systems for 18,
-//! on biactive-half-2d at 64 the iteration of WOPSIP with bounds on facet means 17 for 34. Vertex values of triangles
-//! keep the prediction of single unknowns: with the prediction of cells WOPSIP takes more systems on coarse meshes in
-//! the plane, and about as many on fine ones.
+//! unknowns together: radial-3d, `wopsip`, 32 takes 13 systems for 18. Vertex values of triangles keep the prediction of
+//! single unknowns, which takes fewer systems on coarse meshes.
 //!
 //! For an M-matrix, bounds from below and exactly solved systems the iteration remains finite. The solution of a cell
 //! has no value below the present one, so that the solutions of all cells, put together, have no negative residual on

@@ -13,8 +13,7 @@ use crate::inequality::history::Recorder;
 use crate::real::Real;
 
 /// Number of steps, since the start or the last local inequality, after which few state changes call [`solve_locally`].
-/// WOPSIP with bounds at vertices on radial-3d at 32, whose last state changes move along the free boundary from cell to
-/// cell, then takes three quarters of the steps.
+/// The last of them move along the free boundary from cell to cell (radial-3d, `wopsip`, 32).
 const MANY_STEPS: usize = 8;
 
 /// Largest number of state changes, divided by the number of unknowns, that counts as few.

@@ -9,13 +9,11 @@ use crate::real::Real;
 
 /// Largest distance, in couplings of the matrix, of the unknowns of a local inequality from those whose states change.
 /// The values of different tetrahedra at one vertex, which are coupled from cell to cell, are at most half a dozen
-/// couplings apart: three reach half way around. With two, and states predicted one by one, WOPSIP with bounds at
-/// vertices takes six more systems on radial-3d at 32.
+/// couplings apart: three reach half way around (radial-3d, `wopsip`, 32).
 const MAX_DISTANCE: usize = 3;
 
 /// Largest number of unknowns of a local inequality, which is solved with factors, divided by the number of all
-/// unknowns. WOPSIP with bounds at vertices on pyramid-full-2d at 64 takes twice as long with a local inequality of nine
-/// tenths as with factors of the whole matrix by static condensation.
+/// unknowns: pyramid-full-2d, `wopsip`, 64.
 const MAX_SHARE: f64 = 0.5;
 
 /// Solves the inequality for the unknowns near `changed`, with the values of all other unknowns held, and stores values

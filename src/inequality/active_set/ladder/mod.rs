@@ -13,22 +13,13 @@ use crate::linear::{CoarseSpaces, LinearMethod, PreconditionerFamily};
 use crate::real::Real;
 use stages::{Ladder, suits_monotone_multigrid};
 
-/// Number of unknowns from which a Krylov method solves the linear systems by default if coarse spaces are known.
-///
-/// Solves of radial-2d with factors take 1.2 to 2.6 times as long as with Krylov methods at 300 to 6 000
-/// unknowns of P1, Crouzeix-Raviart, SIPG and WOPSIP, and 1.8 to 4.4 times at 12 000 to 98 000
-/// (`compare --scene radial-2d --scheme p1,cr,sipg,wopsip --levels 16,32,64,128 --threads 1 --repeat 3`,
-/// with `--linear direct` and `iterative`). Below the threshold both take less than 0.03 s, and factors
-/// are accurate to rounding.
+/// Number of unknowns from which a Krylov method solves the linear systems by default if coarse spaces are known: with
+/// factors, which are accurate to rounding, radial-2d takes up to 4.4 times as long from here on.
 pub(super) const CROSSOVER: usize = 10_000;
 
 /// Number of stored entries of the matrix from which a Krylov method solves the linear systems of a start, whose
-/// solution is the initial guess of another solve and need not be accurate. Matrices of conforming P1 have so many
-/// entries at 8 600 unknowns in the plane and at 4 300 in space, where factors have more fill.
-///
-/// The start of radial-3d 32 takes a third of the time that it takes with factors at 4913 unknowns (`compare --scene
-/// radial-3d --scheme p1 --levels 32 --threads 1`, the seconds of its start). In the plane, starts from 1 000 unknowns
-/// on save as much on regular scenes as they cost where contact without force needs exact starts.
+/// solution is the initial guess of another solve and need not be accurate: the start of radial-3d, `p1`, 32 takes a
+/// third of the time that it takes with factors. Entries are counted because factors have more fill in space.
 const CROSSOVER_OF_STARTS: usize = 60_000;
 
 /// Solves an inequality.

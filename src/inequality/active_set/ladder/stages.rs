@@ -24,27 +24,22 @@ use crate::real::Real;
 /// Relative tolerance of accurate solutions by Krylov methods, divided by the limit of the certificate.
 const TOLERANCE_TO_LIMIT: f64 = 0.1;
 
-/// That tolerance for broken quadratics, divided by the tolerance for linear functions: the L2 error of quadratics
-/// falls by eight with each refinement. On biactive-half-2d, where gap and multiplier vanish together in half of the
-/// domain, the algebraic error of `sipg-p2:midpoints` at 128 falls from 1e-3 of the L2 error to 3e-6
-/// (`algebraic_errors` in docs/solvers.md). Solves of `sipg-p2` on radial-2d and signorini-2d at 128 take 1.1 times as
-/// long.
+/// That tolerance for broken quadratics, whose L2 error falls by eight with each refinement, divided by the tolerance for
+/// linear functions: biactive-half-2d, `sipg-p2:midpoints`, 128 (`algebraic_errors` in docs/solvers.md).
 const QUADRATIC_TO_LINEAR: f64 = 0.1;
 
 /// Least tolerance for broken quadratics, divided by machine epsilon, unless that for linear functions is smaller.
 const LEAST_TOLERANCE: f64 = 100.0;
 
 /// Largest number of local inequalities, near unknowns whose states change, that the iteration with a Krylov method
-/// solves before the next method follows. WOPSIP with bounds at vertices solves one of them on radial-3d at 32, nine on
-/// lshape-2d at 128.
+/// solves before the next method follows: lshape-2d, `wopsip`, 128 needs nine.
 const MAX_LOCAL_SOLVES: usize = 10;
 
 /// Dimension of the space of linear functions on a tetrahedron.
 const MAX_LINEAR_BASIS: usize = 4;
 
-/// Number of cycles of monotone multigrid without halving the change of a cycle after which the next method follows.
-/// While the active set changes, cycles make little progress: lshape-2d with `wopsip:facet-means` at 128 needs 26
-/// cycles, of which 12 in a row do not halve the change; factors take ten times as long there.
+/// Number of cycles of monotone multigrid without halving the change of a cycle after which the next method follows:
+/// while the active set changes, cycles make little progress (lshape-2d, `wopsip:facet-means`, 128).
 const CYCLES_WITHOUT_HALVING: usize = 60;
 
 /// Whether monotone multigrid suits the inequality: the matrix is symmetric, coarse spaces are known, and each jump
