@@ -250,13 +250,14 @@ impl<const D: usize> Space<'_, D> {
         Ok(PartOfBound { totals, friedrichs, by_eigenvalue, squares, unproven })
     }
 
-    /// The bounds `total` and `discrete` of a pair, without the term of the solver.
-    pub(super) fn bounds_of(
+    /// The bound `discrete` of a pair, without the term of the solver.
+    pub(super) fn discrete_bound(
         &self,
         pair: &PrimalDualPair<D>,
         u: &[f64],
-    ) -> Result<[f64; 2], NoBound> {
-        Ok(self.terms_of_bound((pair, u), &|_| true)?.0.bounds(0.0))
+    ) -> Result<f64, NoBound> {
+        let [_, discrete] = self.terms_of_bound((pair, u), &|_| true)?.0.bounds(0.0);
+        Ok(discrete)
     }
 
     /// The degree of the rule for the terms of cells: exact for polynomial data, at least that of the load elsewhere.

@@ -4,6 +4,7 @@ use std::cell::OnceCell;
 
 use super::NoBound;
 use super::contact_forces::NodeForce;
+use super::exchange::ROUNDING;
 use super::facet_forces::FacetForce;
 use super::flux::Flux;
 use crate::algebra::{Contact, Inequality};
@@ -19,9 +20,6 @@ use crate::instances::compiled;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
 use crate::parallel::vectors::{collect, largest};
-
-/// Multipliers of quadratics below this share of the largest one are rounding.
-const ROUNDING: f64 = 1e-10;
 
 /// A continuous, piecewise linear or quadratic function within the constraints, and a flux of the space of
 /// Raviart and Thomas of degree one less, whose normal component is single-valued but for forces of obstacles on facets:
@@ -58,8 +56,8 @@ impl<const D: usize> Discretisation<'_, D> {
     /// and one; inside cells the divergence balances load and multiplier tested with linear functions.
     ///
     /// Where obstacles press on facets, multipliers of cells move there ([`PrimalDualPair::forces`]), if that makes the
-    /// bound `discrete` smaller. Where obstacles bind, multipliers of cells are then exchanged for flux through their facets, and
-    /// contact forces of quadratics between facets, which makes mismatch and complementarity smaller: see
+    /// bound `discrete` smaller. Where obstacles bind, multipliers of cells are then exchanged for flux through the facets
+    /// of the cells, and contact forces of quadratics between facets, which makes mismatch and complementarity smaller: see
     /// [`docs::bound`](crate::docs::bound).
     ///
     /// # Errors
@@ -130,6 +128,7 @@ impl<const D: usize> Discretisation<'_, D> {
         };
         if is_known { Ok(()) } else { Err(NoBound::Element) }
     }
+    /// The pair with forces of obstacles on facets where its bound `discrete` is smaller, else that without.
     fn pair(
         &self,
         inequality: &Inequality<f64>,
@@ -183,12 +182,11 @@ impl<const D: usize> Discretisation<'_, D> {
         }
         // without this choice the bounds of quadratics on pyramid-2d at 4 are 1.4 times as large
         let without = with_flux(false)?;
-        let bound =
-            |pair: &PrimalDualPair<D>| space.bounds_of(pair, u).map(|[_, discrete]| discrete);
-        Ok(if bound(&with)? < bound(&without)? { with } else { without })
+        let is_better = space.discrete_bound(&with, u)? < space.discrete_bound(&without, u)?;
+        Ok(if is_better { with } else { without })
     }
 
-    /// The pair of a linear function, with forces of obstacles on facets if asked for.
+    /// The pair of a linear function; if `on_facets`, with forces of obstacles on facets.
     fn with_flux_of_linears(
         &self,
         mut pair: PrimalDualPair<D>,
@@ -243,7 +241,7 @@ impl<const D: usize> Discretisation<'_, D> {
         Ok(pair)
     }
 
-    /// The pair of a quadratic function, with forces of obstacles on facets if asked for.
+    /// The pair of a quadratic function; if `on_facets`, with forces of obstacles on facets.
     fn with_flux_of_quadratics(
         &self,
         mut pair: PrimalDualPair<D>,

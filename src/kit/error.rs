@@ -25,7 +25,7 @@ pub enum Law {
     /// The symmetric part of the matrix is positive definite on the free unknowns. Figure: the `smallest` eigenvalue of
     /// this part, scaled to a diagonal of ones, on all test meshes.
     Coercivity,
-    /// Matrix, load and solution do not depend on the numbers of vertices and cells, nor on the order in which a cell
+    /// Matrix, load and solution do not depend on the numbering of vertices and cells, nor on the order in which a cell
     /// lists its vertices. Figures: the largest changes of an entry of `matrix`, `load` and `solution`, relative to the
     /// size of what is compared.
     Invariance,

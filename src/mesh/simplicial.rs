@@ -73,6 +73,11 @@ impl<const D: usize> Mesh<D> {
     pub fn facet_vertices(&self, c: usize, local: usize) -> impl Iterator<Item = u32> + '_ {
         self.cell(c).iter().enumerate().filter(move |(i, _)| *i != local).map(|(_, &v)| v)
     }
+    /// The number in a cell of a vertex that the cell has.
+    pub(crate) fn number_in(&self, c: usize, vertex: u32) -> usize {
+        let number = self.cell(c).iter().position(|&v| v == vertex);
+        number.expect("the cell has the vertex")
+    }
     /// The barycentre of a cell.
     pub fn barycentre(&self, c: usize) -> Point<D> {
         let sum = self

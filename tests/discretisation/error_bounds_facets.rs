@@ -261,6 +261,36 @@ fn fluxes_jump_by_the_forces() {
     checks.finish();
 }
 
+/// What a flux has besides its mean on a Neumann facet counts by the trace inequality, where no data are given too: in
+/// one cell `T = (|F| / |K| (1/pi^2 + 1/pi))^1/2 h |t|`, here with `t` linear and zero at the middle.
+#[test]
+fn the_slope_of_a_flux_on_a_neumann_facet_counts_without_data() {
+    let mesh = strip::<2>(1.0, [Dirichlet, Neumann], 1);
+    let problem = Problem::<2>::new().constant_source(1.0).dirichlet(|_| 0.0);
+    let solved = solve(&problem, &mesh, &ConformingP2).unwrap();
+    let mut pair = solved.primal_dual_pair().unwrap();
+    let of = |pair: &PrimalDualPair<2>| {
+        solved.discretisation().error_bound(pair, &solved.solution().values).unwrap()
+    };
+    assert!(of(&pair).total < 1e-12, "the solution x - x^2/2 is one of the space");
+    let (cell, local) = (0..mesh.n_cells())
+        .flat_map(|cell| (0..3).map(move |local| (cell, local)))
+        .find(|&(cell, local)| (mesh.facet_barycentre(cell, local)[0] - 1.0).abs() < 1e-12)
+        .unwrap();
+    for (vertex, change) in (0..3).filter(|&j| j != local).zip([0.1, -0.1]) {
+        // the divergence stays
+        pair.flux.add_density(cell, local, vertex, change);
+        pair.flux.add_inner(cell, vertex, -change);
+    }
+    let bound = of(&pair);
+    let pi = std::f64::consts::PI;
+    let of_trace = 2.0 * (1.0 / (pi * pi) + 1.0 / pi);
+    let expected = of_trace.sqrt() * 2.0_f64.sqrt() * (0.01_f64 / 3.0).sqrt();
+    let mismatch = bound.terms.mismatch.sqrt() * bound.total;
+    let found = bound.total - mismatch;
+    assert!((found - expected).abs() < 1e-10, "{found} for {expected}, mismatch {mismatch}");
+}
+
 /// A force that no obstacle can have, or that has both signs, gives no bound.
 #[test]
 fn forces_of_the_wrong_sign_are_refused() {

@@ -14,8 +14,7 @@ use super::cells_of_quadratics::CellsOfQuadratics;
 use crate::arrays::map_entries;
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
-use crate::error_bound::flux::Flux;
-use crate::error_bound::flux::share_of_one_sign;
+use crate::error_bound::flux::{Flux, share_of_one_sign};
 use crate::error_bound::quadratics::vertices_of;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
 use crate::parallel::vectors::indices;
@@ -200,10 +199,7 @@ impl<const D: usize> Space<'_, D> {
         ((k, entered), length): (HalfFacet, usize),
     ) {
         let Around { facets, here, numbers, neighbours, vertex } = *around;
-        let corner = |cell: u32| {
-            let position = self.mesh.cell(cell as usize).iter().position(|&v| v == vertex);
-            position.expect("all cells of a chain have its vertex")
-        };
+        let corner = |cell: u32| self.mesh.number_in(cell as usize, vertex);
         let j = corner(numbers[k]);
         for local in (0..D + 1).filter(|&local| local != j && local != entered) {
             chain[2 * length - 1] = (k, local * (D + 1) + j, 1.0);

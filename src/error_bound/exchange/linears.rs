@@ -140,8 +140,8 @@ impl<const D: usize> Space<'_, D> {
         by_cell
     }
 
-    /// Exchanges multipliers for flux of linears, in and between the cells that count. Those that are rounding beside the
-    /// largest one before facets had a share are not exchanged.
+    /// Exchanges multipliers for flux of linears, in and between the cells that count. Multipliers
+    /// that are rounding beside `largest`, the largest one before facets took any, are not exchanged.
     pub(in crate::error_bound) fn exchange_linears(
         &self,
         pair: &mut PrimalDualPair<D>,

@@ -12,10 +12,11 @@
 //!
 //! Facet by facet the least value is taken, among those numbers that keep the signs of both multipliers. Through a
 //! Dirichlet facet the flux is free, and `K` is alone. Cells beside those in contact count, too: their multipliers
-//! may grow, if the distance costs less than the mismatch. Each facet is visited four times, for quadratics eight
-//! times: the mass matrix of fluxes has a condition that does not grow with the number of cells. With two visits the bound of
-//! `wopsip-p2` on torsion-2d is a fifth larger, with four that of `p2` under half an obstacle twice as large. Facets within a chunk of cells are visited on one thread, chunks in
-//! parallel, then the facets between chunks: the order depends on the number of cells alone.
+//! may grow, if the distance costs less than the mismatch. Each facet is visited four times, for quadratics eight times:
+//! the mass matrix of fluxes has a condition that does not grow with the number of cells. With two visits the bound of
+//! `wopsip-p2` on torsion-2d is a fifth larger, with four that of `p2` under half an obstacle twice as large. Facets
+//! within a chunk of cells are visited on one thread, chunks in parallel, then the facets between chunks: the order depends
+//! on the number of cells alone.
 
 mod cells_of_quadratics;
 mod forces;
@@ -31,7 +32,7 @@ use crate::parallel::vectors::{
 };
 
 /// Multipliers below this share of the largest one are rounding.
-const ROUNDING: f64 = 1e-10;
+pub(super) const ROUNDING: f64 = 1e-10;
 
 /// A facet of a cell of an exchange: the number of the cell among these, and that of the facet in it.
 #[derive(Clone, Copy)]

@@ -10,8 +10,7 @@ use super::{ExchangeStep, FacetOfCell, ROUNDING};
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
-use crate::error_bound::flux::Flux;
-use crate::error_bound::flux::share_of_one_sign;
+use crate::error_bound::flux::{Flux, share_of_one_sign};
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
 use crate::mesh::{HalfFacet, Mesh, Neighbours};
 use crate::parallel::vectors::{collect, for_each_chunk, largest};
@@ -124,8 +123,8 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// Exchanges multipliers for flux of quadratics, these less what facets have of them. What is rounding beside the
-    /// multipliers before that is not exchanged.
+    /// Exchanges multipliers of quadratics for flux. `on_facets` has what facets took of the multipliers; multipliers that
+    /// are rounding beside the largest one before facets took any are not exchanged.
     pub(in crate::error_bound) fn exchange_quadratics(
         &self,
         pair: &mut PrimalDualPair<D>,

@@ -10,9 +10,9 @@
 //! ```
 //!
 //! is such a force where it has the sign of the obstacle; in cells that touch everywhere the obstacle takes the place of
-//! `v`, so that smooth obstacles have none. Distances count as shares of `S h / alpha`, the smaller one of both sides, `h` the
-//! diameter of the cell: where no force takes it, the jump costs there the least. What hangs on a distance fades to zero
-//! between half of a limit and the limit: a decision would hang on rounding.
+//! `v`, so that smooth obstacles have none. The unit of distances from the obstacle is `S h / alpha`, `h` the diameter of the
+//! cell, `S` per measure: of both sides the smaller one, where a jump that no force takes costs the least. A force that
+//! depends on a distance fades to zero between half of a limit and the limit: a threshold would leave it to rounding.
 
 use super::{FacetForce, FluxJump};
 use crate::algebra::NO_INDEX;
@@ -50,8 +50,8 @@ pub(in crate::error_bound) fn fade(share: f64) -> f64 {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The jumps of the normal flux of a function on facets that touch, at a vertex of cells that press, in ascending
-    /// order.
+    /// The jumps of the normal flux of a function, facets in ascending order: on facets that touch an obstacle and whose
+    /// cells have a vertex in common with a cell that has a multiplier, which `presses` tells.
     pub(in crate::error_bound) fn flux_jumps(
         &self,
         function: &PrimalDualPair<D>,
@@ -104,8 +104,8 @@ impl<const D: usize> Space<'_, D> {
         Ok(jumps.into_iter().collect::<Result<Vec<_>, NoBound>>()?.concat())
     }
 
-    /// The jump on a facet, by its sides, with the normal fluxes of the function from there; none where it does not touch
-    /// or has the wrong sign.
+    /// The jump on a facet, from its sides and the normal fluxes of the function there; none where the facet touches no
+    /// obstacle, and where the jump has the sign of none.
     fn flux_jump(
         &self,
         function: &PrimalDualPair<D>,
@@ -121,17 +121,16 @@ impl<const D: usize> Space<'_, D> {
         if sign * sum <= NEGLIGIBLE * size || obstacles.iter().all(Option::is_none) {
             return Ok(None);
         }
-        // the force times the diameter over the coefficient, of a jump
         let of_side = |(cell, _): &HalfFacet| self.mesh.cell_diameter(*cell) / self.alpha(*cell);
         let least = sides.iter().flatten().map(of_side).fold(f64::INFINITY, f64::min);
         let per_sum = least / (D as f64 * self.facet_measure(facet));
-        let height = per_sum * sign * sum;
+        let unit = per_sum * sign * sum;
         let mut distance = f64::INFINITY;
         for (k, (side, obstacle)) in sides.iter().zip(obstacles).enumerate() {
             let Some((side, obstacle)) = side.zip(obstacle) else { continue };
             let (on_facet, in_cell) = self.distances(function, side, obstacle);
             distance = distance.min(on_facet);
-            let in_contact = fade(in_cell / (IN_CONTACT * height));
+            let in_contact = fade(in_cell / (IN_CONTACT * unit));
             if in_contact > 0.0 {
                 let of_obstacle = self.obstacle_flux(obstacle, side);
                 let blend = |(flux, there): (&mut f64, f64)| *flux += in_contact * (there - *flux);
@@ -143,8 +142,8 @@ impl<const D: usize> Space<'_, D> {
         if sum <= NEGLIGIBLE * size {
             return Ok(None);
         }
-        let height = per_sum * sum;
-        let mut share = fade(distance / (TOUCHES * height));
+        let unit = per_sum * sum;
+        let mut share = fade(distance / (TOUCHES * unit));
         share *= (sum / (NEGLIGIBLE * size) - 1.0).min(1.0);
         // the force has one sign at all points; a jump that has not is none
         let (mean, mut values) = (sign * sum / D as f64, [0.0; 3]);
@@ -158,7 +157,7 @@ impl<const D: usize> Space<'_, D> {
             densities[j] = sign * share * (sign * limited).max(0.0);
         }
         let force = FacetForce { facet, other: sides[1], densities };
-        Ok((share > 0.0).then_some(FluxJump { force, normal, jump, height, share }))
+        Ok((share > 0.0).then_some(FluxJump { force, normal, jump, unit, share }))
     }
 
     /// The sum of the fluxes from the sides of a facet, on the boundary less the Neumann datum, at the vertices of the
@@ -174,8 +173,7 @@ impl<const D: usize> Space<'_, D> {
             let Some((cell, _)) = *side else { continue };
             for j in vertices_of::<D>(facet.1) {
                 let vertex = self.mesh.cell(facet.0)[j];
-                let there = self.mesh.cell(cell).iter().position(|&v| v == vertex);
-                let flux = normal[there.expect("both cells of a facet have its vertices")];
+                let flux = normal[self.mesh.number_in(cell, vertex)];
                 sums[j] += flux;
                 size += flux.abs();
             }
@@ -257,10 +255,14 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// Sets the values of the function of a pair to those of the obstacle at nodes of facets with a force, where they are
-    /// equal but for rounding: else the force would count times rounding.
-    pub(in crate::error_bound) fn touch_under(&self, function: &mut PrimalDualPair<D>) {
+    /// equal but for rounding, and no Dirichlet datum holds: else the force would count times rounding.
+    pub(in crate::error_bound) fn touch_under(
+        &self,
+        function: &mut PrimalDualPair<D>,
+        has_dirichlet_datum: impl Fn(usize) -> bool,
+    ) {
         let of_values = ROUNDING * largest(function.function.len(), |i| function.function[i].abs());
-        let is_fixed = self.dirichlet_groups();
+        let n_vertices = self.mesh.vertices().len();
         for force in &function.forces {
             let upper = usize::from(force.densities.iter().sum::<f64>() < 0.0);
             for (cell, local) in force.sides() {
@@ -272,8 +274,8 @@ impl<const D: usize> Space<'_, D> {
                 for ([a, b], node) in nodes {
                     let at = self.at(obstacle, cell, &((corners[a] + corners[b]) * 0.5));
                     let value = &mut function.function[node];
-                    let is_free = is_fixed.get(node).is_none_or(Option::is_none);
-                    if is_free && (*value - at).abs() <= rounding {
+                    let is_fixed = node < n_vertices && has_dirichlet_datum(node);
+                    if !is_fixed && (*value - at).abs() <= rounding {
                         *value = at;
                     }
                 }

@@ -47,8 +47,9 @@ pub(in crate::error_bound) struct FluxJump {
     pub normal: [[f64; 4]; 2],
     /// The measure of the facet times the jump, at the vertices of the first cell.
     pub jump: [f64; 4],
-    /// The jump times the diameter of the cell over the coefficient, the smaller one of the two sides.
-    pub height: f64,
-    /// The share of the jump that the force has.
+    /// The unit of distances from the obstacle: jump per measure times the diameter of the cell over the coefficient, the
+    /// smaller one of the two sides.
+    pub unit: f64,
+    /// The share of the jump that becomes the force, before the force is limited to one sign.
     pub share: f64,
 }

@@ -118,14 +118,13 @@ impl<const D: usize> Space<'_, D> {
     ) {
         let mut changes = Vec::new();
         for FluxJump { force, normal, jump, share, .. } in &pressing.jumps {
-            let (share, first) = (share.min(1.0), self.mesh.cell(force.facet.0));
+            let share = share.min(1.0);
             let n_sides = force.sides().count() as f64;
             for ((cell, local), normal) in force.sides().zip(normal) {
                 let mut change = [0.0; 4];
                 for j in vertices_of::<D>(local) {
                     let vertex = self.mesh.cell(cell)[j];
-                    let place = first.iter().position(|&v| v == vertex);
-                    let place = place.expect("both cells of a facet have its vertices");
+                    let place = self.mesh.number_in(force.facet.0, vertex);
                     // what the force has beside the share of the jump goes half to each side
                     let beside = force.densities[place] - share * jump[place];
                     change[j] = share * (normal[j] - pair.flux.density(cell, local, j));

@@ -10,7 +10,7 @@ use crate::mesh::{HalfFacet, Mesh, Neighbours};
 /// where all multipliers are as much less, the jump is an error of the discrete solution. Both fade.
 const MOST: f64 = 2.0;
 
-/// A cell is open whole at this distance from the obstacle, as a share of the largest `S h / alpha` of a jump at its vertex.
+/// Cells at this distance from the obstacle, in the largest unit of the jumps at a vertex, do not touch; nearer ones in part.
 const OPEN: f64 = 1e-3;
 
 /// The products `(mu, phi lambda_j)` of the multiplier of a cell with the hat function of one of its vertices and all
@@ -66,9 +66,9 @@ impl Pressing {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The forces on facets where the normal flux of the function of a pair jumps, as far as the multipliers around their
-    /// vertices have them: all of what presses in cells that are not in contact everywhere, and of the others as much as
-    /// jumps. None if nothing presses on facets, and on a part of a mesh. The pair takes them.
+    /// The forces on facets where the normal flux of the function of a pair jumps, as far as multipliers around the
+    /// vertices of the facets have them: all multipliers of cells that do not touch everywhere, and of those of the others as
+    /// much as the flux jumps. None if the flux does not jump, and on a part of a mesh. The pair gets the forces.
     pub(in crate::error_bound) fn pressing(
         &self,
         function: &mut PrimalDualPair<D>,
@@ -83,7 +83,7 @@ impl<const D: usize> Space<'_, D> {
             return Ok(None);
         }
         let corners = self.corners();
-        let (of_jumps, heights) = (self.forces_at_vertices(&jumps), self.heights(&jumps));
+        let (of_jumps, units) = (self.forces_at_vertices(&jumps), self.units(&jumps));
         // the balance of a patch with a Dirichlet facet has no condition
         let has_dirichlet_facet = self.dirichlet_groups();
         let mut all_there = vec![0.0; of_jumps.len()];
@@ -96,12 +96,12 @@ impl<const D: usize> Space<'_, D> {
                 let (cell, own) = (corner.cell(), corner.own());
                 let of_cell: f64 = tested(cell, own).iter().sum();
                 let obstacle = obstacles.of(self.mesh.region(cell));
-                let is_open = obstacle.map_or(1.0, |obstacle| {
+                let open_share = obstacle.map_or(1.0, |obstacle| {
                     let (_, distance) = self.distances(function, (cell, own), obstacle);
-                    (distance / (OPEN * heights[v])).min(1.0)
+                    (distance / (OPEN * units[v])).min(1.0)
                 });
                 all += of_cell;
-                open += is_open * of_cell;
+                open += open_share * of_cell;
             }
             all_there[v] = all;
             let (open, all) = (open / of_jumps[v], all / of_jumps[v]);
@@ -132,7 +132,7 @@ impl<const D: usize> Space<'_, D> {
         let shares = given.iter().zip(&all_there).map(share).collect();
         let vertices = (0..given.len()).filter(|&v| given[v] != 0.0).collect();
         function.forces = jumps.iter().map(|jump| jump.force).collect();
-        self.touch_under(function);
+        self.touch_under(function, |v| has_dirichlet_facet[v].is_some());
         Ok(Some(Pressing { jumps, corners, vertices, shares }))
     }
 
@@ -147,14 +147,14 @@ impl<const D: usize> Space<'_, D> {
         sums
     }
 
-    /// By vertex the largest height of the jumps on its facets.
-    fn heights(&self, jumps: &[FluxJump]) -> Vec<f64> {
-        let mut heights = vec![0.0_f64; self.mesh.vertices().len()];
-        for FluxJump { force, height, .. } in jumps {
+    /// By vertex the largest unit of the jumps on its facets.
+    fn units(&self, jumps: &[FluxJump]) -> Vec<f64> {
+        let mut units = vec![0.0_f64; self.mesh.vertices().len()];
+        for FluxJump { force, unit, .. } in jumps {
             for v in self.mesh.facet_vertices(force.facet.0, force.facet.1) {
-                heights[v as usize] = heights[v as usize].max(*height);
+                units[v as usize] = units[v as usize].max(*unit);
             }
         }
-        heights
+        units
     }
 }

@@ -30,7 +30,7 @@ pub enum SpectrumError {
     /// The residual did not fall to the tolerance.
     #[error("{0}")]
     NotReached(String),
-    /// A number that is not finite or a direction in which the matrix is not positive, after so many steps.
+    /// The steps after which a number is not finite, or the matrix is not positive in a direction.
     #[error("after {0} steps the matrix proved not to be positive definite or not finite")]
     NotPositive(usize),
     /// The two matrices have different sizes, or none.
