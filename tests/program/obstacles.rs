@@ -127,3 +127,32 @@ fn obstacles_that_cross_are_found_before_the_first_row() {
     let report = scratch.report(&format!("{} --scheme {schemes} --levels 1,2,8", data("cross")));
     assert!(rows(&report).iter().all(|row| row["status"] == "converged"));
 }
+
+/// Bounds that cross by little, and a gap that does within a contact side and at the middle of a facet.
+#[test]
+fn bounds_cross_by_little_and_on_a_contact_side() {
+    let scratch = Scratch::new("cross-little");
+    let sides: String = ["left", "right", "top"]
+        .map(|side| format!("[boundary.{side}]\nkind = \"dirichlet\"\n"))
+        .concat();
+    for (k, (lower, gap)) in [
+        ("0.1 + 1e-7", "-1"),
+        ("-1", "if(abs(x - 0.2372) < 1e-2, 0.5, -1)"),
+        ("-1", "if(abs(x - 0.5) < 1e-2, 0.5, -1)"),
+        ("-1", "0.09"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let text = format!(
+            "box = [[0,0],[1,1]]\n[obstacle]\nlower.default = {lower:?}\nupper.default = 0.1\n{sides}\
+             [boundary.bottom]\nkind = \"contact\"\ngap = {gap:?}\n"
+        );
+        let path = scratch.file(&format!("cross{k}.toml"), &text);
+        scratch.run(&format!("{path} --scheme p1 --levels 1"));
+        let row = rows(&read_json(&scratch.0.join("out/report.json")))[0].clone();
+        let message = row["message"].as_str().unwrap_or_default();
+        let is_found = message.contains("of the finest mesh, the lower bound");
+        assert_eq!(is_found, k < 3, "{lower}, {gap}: {} {message}", row["status"]);
+    }
+}

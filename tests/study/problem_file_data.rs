@@ -6,6 +6,9 @@ use super::problem_files::{BOX, SIDES, problem};
 use crate::support::scratch::Scratch;
 use unilateral::mesh::{BoundaryCondition, Mesh};
 use unilateral::prelude::*;
+use unilateral::problem::Datum;
+use unilateral::problem_file::read;
+use unilateral::scenes::AnyScene;
 
 /// Which data must have values at vertices: those that nodes or gradients read there, and no others.
 #[test]
@@ -91,6 +94,42 @@ fn a_default_is_not_given_to_groups_of_another_kind() {
         assert!(error.contains(&expected), "{error}");
     }
     assert_eq!(of_tables(&format!("{dirichlet}{contact}")), Ok(()));
+}
+
+/// A default goes to a group by the name that no group with a table has: the bottom alone is a Dirichlet side.
+#[test]
+fn a_default_is_given_by_a_name_of_no_other_table() {
+    let folder = Scratch::new("problem-default-name");
+    let nodes = "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n";
+    let names = "4\n1 1 \"wall\"\n1 2 \"left\"\n1 3 \"bottom\"\n1 4 \"others\"\n";
+    let elements = "8\n1 1 2 1 1 4 1\n2 1 2 2 1 4 1\n3 1 2 1 2 1 2\n4 1 2 3 2 1 2\n5 1 2 4 3 2 3\n\
+                    6 1 2 4 4 3 4\n7 2 2 9 1 1 2 3\n8 2 2 9 1 1 3 4\n";
+    let of = |name: &str, text: &str| format!("${name}\n{text}$End{name}\n");
+    let mesh = [("MeshFormat", "2.2 0 8\n"), ("PhysicalNames", names), ("Nodes", nodes)];
+    let mesh: String = mesh.into_iter().map(|(name, text)| of(name, text)).collect();
+    folder.file("wall.msh", &(mesh + &of("Elements", elements)));
+    let text = "mesh = \"wall.msh\"\n[boundary.default]\nkind = \"dirichlet\"\n\
+                [boundary.left]\nkind = \"neumann\"\nflux = 1\n[boundary.others]\nkind = \"neumann\"\n";
+    let scene = problem(&folder, text).unwrap();
+    let mesh = scene.domain.mesh(0).unwrap();
+    let facets = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Dirichlet);
+    let middles: Vec<Point<2>> =
+        facets.map(|f| mesh.facet_barycentre(f.cell as usize, f.local as usize)).collect();
+    assert_eq!(middles, [Point::from([0.5, 0.0])]);
+}
+
+/// Whole numbers of a file may have another radix.
+#[test]
+fn numbers_are_those_of_toml() {
+    let folder = Scratch::new("problem-radix");
+    let text = "box = [[0], [0b11]]\n[boundary.default]\nkind = \"dirichlet\"\n\
+                [source]\ndefault = 0x1f\n[reaction]\ndefault = 1_0\n";
+    let read = read(Path::new(&folder.file("line.toml", text))).unwrap();
+    let AnyScene::One(scene) = read.scene else { panic!("a line") };
+    let at = |datum: &Datum<1>| datum.at(&Point::zeros());
+    assert_eq!(scene.problem.source.everywhere.as_ref().map(at), Some(31.0));
+    assert_eq!(scene.problem.reaction.everywhere.as_ref().map(at), Some(10.0));
+    assert_eq!(scene.domain.bounding_box().upper, Point::from([3.0]));
 }
 
 /// Every kind of datum by region or by side is that of its table.
