@@ -5,6 +5,7 @@
 //! the difference of both, or rounding, the data as integrated do not tell it from zero: it is undecided.
 
 use std::ops::Range;
+use std::slice::from_ref;
 
 use super::cut_simplices::CutRule;
 use super::space::{Space, checks};
@@ -215,15 +216,14 @@ impl<const D: usize> Space<'_, D> {
         for k in 0..2 {
             let cut = rules.cut.as_ref().map(|cut| &cut[k]).zip(source.level());
             let mut outcome = Ok(());
-            let is_cut =
-                cut.is_some_and(|(rule, level)| {
-                    rule.visit_if_cut(self.mesh, cell, level, &mut |_, x, weight| {
-                        match checks::finite(self.at(source, cell, x), "source", x, cell) {
-                            Ok(value) => add(&mut integrals, k, weight * volume * value),
-                            Err(error) => outcome = Err(error),
-                        }
-                    })
-                });
+            let is_cut = cut.is_some_and(|(rule, level)| {
+                rule.visit_if_cut(self.mesh, cell, from_ref(level), &mut |_, x, weight| {
+                    match checks::finite(self.at(source, cell, x), "source", x, cell) {
+                        Ok(value) => add(&mut integrals, k, weight * volume * value),
+                        Err(error) => outcome = Err(error),
+                    }
+                })
+            });
             outcome?;
             if is_cut {
                 continue;

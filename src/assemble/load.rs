@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::convert::Infallible;
 use std::ops::Range;
+use std::slice::from_ref;
 
 use super::bodies::FreeBodies;
 use super::cut_simplices::CutRule;
@@ -116,7 +117,7 @@ impl<const D: usize> Space<'_, D> {
             };
             if let Some((level, rule)) = f.level().zip(cut_rule.as_ref()) {
                 let mut outcome = Ok(());
-                if rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
+                if rule.visit_if_cut(self.mesh, cell, from_ref(level), &mut |point, x, weight| {
                     if outcome.is_ok() {
                         outcome = add(x, weight, &self.basis_at(point));
                     }

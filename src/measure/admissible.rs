@@ -72,13 +72,4 @@ impl<const D: usize> Admissible<'_, D> {
         let mut given = bounds.filter_map(|(bound, sign)| Some((bound?, sign)));
         self.excess.is_none() && !given.any(is_beyond)
     }
-    /// Whether the function has the value of an obstacle at some of the corners of its cell and not at all of them:
-    /// the obstacle may exceed it in a piece of the cell that is small.
-    pub fn touches_in_piece(&self, corners: &[Point<D>; 4]) -> bool {
-        self.bounds.iter().flatten().any(|bound| {
-            let (mesh, cell) = self.place;
-            let touches = |k: &usize| bound.in_cell(mesh, cell, &corners[*k]) == self.values[*k];
-            (1..=D).contains(&(0..D + 1).filter(touches).count())
-        })
-    }
 }

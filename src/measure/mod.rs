@@ -8,7 +8,6 @@ mod energy;
 mod errors;
 mod evaluation;
 mod fields;
-mod kinks;
 mod norms;
 mod order;
 mod penetration;

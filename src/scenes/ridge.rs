@@ -32,7 +32,8 @@ pub fn ridge<const D: usize>() -> Scene<D> {
 /// `u = psi` takes the Dirichlet data zero. The multiplier is `-f = 1` plus the measure of density
 /// `sqrt(2)` on both diagonals, by which the normal derivative falls across them; both are
 /// positive. `u` lies in `H^s` for `s < 3/2`. On meshes of which one diagonal is not a line the
-/// error of conforming linear elements is that of interpolation.
+/// error of conforming linear elements is that of interpolation. The level of the load vanishes on both diagonals, where
+/// the gradient jumps.
 pub fn pyramid_full_2d() -> Scene<2> {
     let height = |x: &Point<2>| 1.0 - x[0].abs().max(x[1].abs());
     let gradient = |x: &Point<2>| {
@@ -44,7 +45,7 @@ pub fn pyramid_full_2d() -> Scene<2> {
         summary: "contact everywhere with a pyramid; a force on its edges",
         domain: BoxDomain::centred(1.0).into(),
         problem: Problem::new()
-            .constant_source(-1.0)
+            .piecewise_source(|_| -1.0, |x| x[0].abs() - x[1].abs())
             .obstacle_below(height)
             .solved_by(Exact::new(height, gradient).with_contact(|_| 1.0, Vec::new())),
         regularity: Regularity::new(1.5),

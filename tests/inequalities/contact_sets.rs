@@ -166,17 +166,17 @@ fn the_distance_of_free_boundaries_is_that_of_hausdorff() {
 }
 
 /// The string of the last test, constant along further axes: its discrete free boundary is where the first coordinate is
-/// 1/4 or 3/4, and facets there are sampled by points an eighth apart. Stated points outside the mesh do not count,
-/// however many and however far; others count as often as they are stated.
+/// 1/4 or 3/4, and its points are vertices, half a unit apart. Stated points outside the mesh do not count, however many
+/// and however far; others count as often as they are stated.
 #[test]
 fn stated_points_count_where_the_mesh_is() {
     fn check<const D: usize>() {
         let mut domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         domain.sides[1..].fill([BoundaryCondition::Neumann; 2]);
         let mesh = Mesh::<D>::kuhn_box(&domain, std::array::from_fn(|k| [8, 2, 2][k])).unwrap();
-        let others = 9_usize.pow(D as u32 - 1);
+        let others = 3_usize.pow(D as u32 - 1);
         let sample = |k: usize| {
-            let place = |axis: usize| (k % others / 9_usize.pow(axis as u32 - 1) % 9) as f64 / 8.0;
+            let place = |axis: usize| (k % others / 3_usize.pow(axis as u32 - 1) % 3) as f64 / 2.0;
             let first = if k < others { 0.25 } else { 0.75 };
             Point::<D>::from_fn(|axis, _| if axis == 0 { first } else { place(axis) })
         };

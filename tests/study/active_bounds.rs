@@ -1,6 +1,6 @@
 //! To which obstacle or gap a multiplier belongs, and how far a solution lies beyond these.
 
-use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::assemble::DataQuadrature;
 use unilateral::measure::Fields;
 use unilateral::mesh::{BoundaryCondition, BoxDomain, Mesh};
 use unilateral::prelude::*;
@@ -98,31 +98,4 @@ fn penetration_is_that_between_the_nodes() {
     assert!((found - 0.25).abs() < 1e-14, "{found}");
     let found = of(&ConformingP1, &|x| 1.0 - x);
     assert!(found < 0.0, "{found}");
-}
-
-/// On an edge the function `x (2 x - 1)`, which vanishes at an end and in the middle, lies lowest at a quarter.
-#[test]
-fn penetration_of_quadratics_is_largest_within_edges() {
-    fn check<const D: usize>(problem: Problem<D>, sign: f64) {
-        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-        let domain = domain.side(D - 1, 0, BoundaryCondition::Contact);
-        let mesh = Mesh::<D>::kuhn_box(&domain, [1; D]).unwrap();
-        let scheme = Sipg::default().on(P2);
-        let space =
-            Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
-        let middle = |vertices: &[u32]| {
-            let xs = vertices.iter().map(|&v| mesh.vertices()[v as usize][0]);
-            xs.sum::<f64>() / vertices.len() as f64
-        };
-        let value = |x: f64| sign * x * (2.0 * x - 1.0);
-        let places = space.locations();
-        let values: Vec<f64> = places.iter().map(|place| value(middle(place.vertices()))).collect();
-        let found = space.penetration(&values).unwrap().unwrap().largest();
-        assert!((found - 0.125).abs() < 1e-15, "{D}d: {found}");
-    }
-    check::<1>(Problem::new().obstacle_below(|_| 0.0), 1.0);
-    check::<2>(Problem::new().obstacle_below(|_| 0.0), 1.0);
-    check::<2>(Problem::new().obstacle_above(|_| 0.0), -1.0);
-    check::<2>(Problem::new().signorini(|_| 0.0), 1.0);
-    check::<3>(Problem::new().signorini(|_| 0.0), 1.0);
 }

@@ -1,6 +1,7 @@
 //! The reaction term in the matrix of a cell.
 
 use super::checks::finite;
+use std::slice::from_ref;
 use std::sync::Arc;
 
 use super::tables::{BasisAt, CellTable};
@@ -104,6 +105,6 @@ impl<const D: usize> ReactionTerm<D> {
         visit: Visit<'_, D>,
     ) -> bool {
         let cut = self.cut.as_ref().zip(datum.level());
-        cut.is_some_and(|(rule, level)| rule.visit_if_cut(mesh, cell, level, visit))
+        cut.is_some_and(|(rule, level)| rule.visit_if_cut(mesh, cell, from_ref(level), visit))
     }
 }

@@ -24,6 +24,7 @@ mod cell_flux;
 mod totals;
 
 use std::f64::consts::PI;
+use std::slice::from_ref;
 
 use boundary::BoundaryTerms;
 use cell_flux::CellFlux;
@@ -151,7 +152,7 @@ impl<const D: usize> Space<'_, D> {
         mut visit: impl FnMut(&[f64; 4], &Point<D>, f64, &BasisAt),
     ) {
         let is_cut = cut.is_some_and(|(rule, level)| {
-            rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
+            rule.visit_if_cut(self.mesh, cell, from_ref(level), &mut |point, x, weight| {
                 visit(point, x, weight, &self.basis_at(point));
             })
         });

@@ -1,16 +1,14 @@
 //! Exact multiplier and contact set on the entities of a mesh.
 
 use std::ops::Range;
+use std::slice::from_ref;
 
 use super::entity::ContactEntity;
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::{Space, checks};
 use crate::error::Error;
-use crate::measure::evaluation::Reference;
-use crate::measure::kinks::is_far;
 use crate::parallel::cells;
 use crate::problem::Exact;
-use crate::real::Point;
 
 /// Degree of the rule on a simplex, or on the pieces into which the free boundary cuts it.
 const DEGREE: usize = 5;
@@ -23,41 +21,23 @@ pub(super) struct ExactContact {
     pub tested: [f64; 4],
     /// The share of the entity out of contact, and the share in contact. Without a contact set the first is one.
     pub shares: [f64; 2],
-    /// Whether the free boundary may meet the entity.
-    pub is_near: bool,
-}
-
-impl ExactContact {
-    /// The exact solution on an entity out of contact.
-    pub const FREE: Self = Self { tested: [0.0; 4], shares: [1.0, 0.0], is_near: false };
-
-    fn counts(&self) -> bool {
-        self.is_near || self.shares[1] > 0.0 || self.tested != [0.0; 4]
-    }
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The exact multiplier and contact set on some entities, at the same points: a list for each chunk of entities,
-    /// with the positions of those that have a multiplier or a share in contact, or are near the free boundary.
+    /// The exact multiplier and contact set on each of these entities, at the same points.
     pub(super) fn exact_contact(
         &self,
         exact: &Exact<D>,
         entities: &[ContactEntity],
-    ) -> Result<Vec<Vec<(usize, ExactContact)>>, Error> {
+    ) -> Result<Vec<ExactContact>, Error> {
         // all entities are facets, or all are cells
         let Some(first) = entities.first() else { return Ok(Vec::new()) };
-        let rule = CutRule::new(first.dimension::<D>(), DEGREE).without_needless_bisections();
-        let at_vertices = self.contact_at_vertices(&Reference::Exact(exact));
+        let rule = CutRule::new(first.dimension::<D>(), DEGREE);
         let chunks = cells::map(entities.len(), &|range: Range<usize>| {
-            let on_entity = |k: usize| {
-                let at_corners =
-                    at_vertices.as_ref().map(|values| self.at_corners(values, entities[k].cell));
-                let found = self.exact_contact_on(exact, entities[k], &rule, at_corners);
-                found.map(|found| found.counts().then_some((k, found))).transpose()
-            };
-            range.filter_map(on_entity).collect::<Result<Vec<_>, _>>()
+            let on_entity = |&entity: &ContactEntity| self.exact_contact_on(exact, entity, &rule);
+            entities[range].iter().map(on_entity).collect::<Result<Vec<_>, _>>()
         });
-        chunks.into_iter().collect()
+        Ok(chunks.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     fn exact_contact_on(
@@ -65,51 +45,24 @@ impl<const D: usize> Space<'_, D> {
         exact: &Exact<D>,
         entity: ContactEntity,
         rule: &CutRule,
-        at_corners: Option<[f64; 4]>,
     ) -> Result<ExactContact, Error> {
         let corners = self.corner_points(entity);
+        let level = exact.contact.as_ref().map(|set| &set.indicator);
         let mut found = ExactContact::default();
-        let (mut not_finite, mut is_near) = (None, false);
-        let mut add = |hats: &[f64; 4], weight: f64, is_in_contact: &dyn Fn(&Point<D>) -> bool| {
+        let mut outcome = Ok(());
+        rule.visit(&corners, level.map_or(&[], from_ref), &mut |hats, weight| {
             let x = in_space(hats, &corners);
-            let is_in_contact = is_in_contact(&x);
+            let is_in_contact = level.is_some_and(|level| level(&x) > 0.0);
             found.shares[usize::from(is_in_contact)] += weight;
-            let Some(multiplier) = &exact.multiplier else { return };
+            // by complementarity there is no multiplier out of contact
+            let acts = is_in_contact || level.is_none();
+            let Some(multiplier) = exact.multiplier.as_ref().filter(|_| acts) else { return };
             let density = multiplier(&x);
-            if !density.is_finite() {
-                not_finite = not_finite.or(Some((density, x)));
+            if outcome.is_ok() {
+                outcome = checks::finite(density, "exact multiplier", &x, entity.cell).map(|_| ());
             }
             found.tested.iter_mut().zip(hats).for_each(|(sum, hat)| *sum += weight * density * hat);
-        };
-        let mut add_whole = |is_in_contact: bool| {
-            rule.visit_whole(&mut |hats, weight| add(hats, weight, &|_| is_in_contact))
-        };
-        match &exact.contact {
-            None => add_whole(false),
-            Some(set) => {
-                let level = &set.indicator;
-                let own = &corners[..=entity.dimension::<D>()];
-                is_near = !is_far(level, own, at_corners);
-                let sign = match is_near {
-                    true => rule.sign_of_uncut(&corners, level),
-                    false => Some(level(&corners[0]) > 0.0),
-                };
-                match sign {
-                    Some(true) => add_whole(true),
-                    // by complementarity there is no multiplier
-                    Some(false) => found.shares[0] = 1.0,
-                    None => {
-                        let is_in_contact = |x: &Point<D>| level(x) > 0.0;
-                        rule.visit(&corners, level, &mut |hats, weight| {
-                            add(hats, weight, &is_in_contact);
-                        });
-                    }
-                }
-            }
-        }
-        if let Some((density, x)) = not_finite {
-            checks::finite(density, "exact multiplier", &x, entity.cell)?;
-        }
-        Ok(ExactContact { is_near, ..found })
+        });
+        outcome.map(|()| found)
     }
 }

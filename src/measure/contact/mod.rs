@@ -12,7 +12,6 @@ mod free_boundary;
 mod multiplier_density;
 mod multiplier_shares;
 mod nodal_multipliers;
-mod point_grid;
 
 pub use contact_set::DiscreteContact;
 pub(crate) use difference::contact_difference;
@@ -32,7 +31,6 @@ use crate::parallel::vectors::collect;
 use crate::real::Point;
 use entity::ContactEntity;
 pub(super) use entity::SolvedInequality;
-use exact_contact::ExactContact;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
 const TOUCHING: f64 = 1e-9;
@@ -63,7 +61,8 @@ impl<const D: usize> Discretisation<'_, D> {
     /// with a positive mean over it (those of quadratics at vertices of triangles and tetrahedra have none); where no
     /// unknown has both, if all its unknowns with bounds are; `docs/conventions.md` says where this set is too small.
     /// The area error is the measure of the symmetric difference with the exact set. The distance is that of
-    /// Hausdorff between the exact free boundary and the facets between cells in contact and cells that are not.
+    /// Hausdorff between the points that state the exact free boundary and the vertices of cells in contact and of
+    /// others.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::Parameter`] unless the solution has one value for each unknown.
@@ -165,18 +164,11 @@ impl<const D: usize> Space<'_, D> {
         }
         if let Some(set) = &exact.contact {
             let touching = self.in_contact(&entities, solved);
-            let mut exact = on_entities.iter().flatten().peekable();
-            let wrong = |(k, (measure, touches)): (usize, (&f64, &bool))| {
-                let found = exact.next_if(|(of, _)| *of == k);
-                let exact = found.map_or(ExactContact::FREE, |(_, exact)| *exact);
-                exact.shares[usize::from(!touches)] * measure
-            };
-            let area = measures.iter().zip(&touching).enumerate().map(wrong).sum();
-            errors.contact_area_error = Some(area);
-            let near = on_entities.iter().flatten().filter(|(_, exact)| exact.is_near);
-            let near: Vec<ContactEntity> = near.map(|(k, _)| entities[*k]).collect();
-            let of_entities = (&entities[..], &touching[..]);
-            errors.free_boundary_distance = self.free_boundary_distance(set, of_entities, &near);
+            let states = measures.iter().zip(&touching).zip(&on_entities);
+            let wrong = states
+                .map(|((measure, touches), exact)| exact.shares[usize::from(!touches)] * measure);
+            errors.contact_area_error = Some(wrong.sum());
+            errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
         }
         Ok(errors)
     }

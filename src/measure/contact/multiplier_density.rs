@@ -12,15 +12,14 @@ impl<const D: usize> Space<'_, D> {
     pub(super) fn multiplier_errors(
         &self,
         (entities, measures): (&[ContactEntity], &[f64]),
-        exact: &[Vec<(usize, ExactContact)>],
+        exact: &[ExactContact],
         solved: SolvedInequality<'_>,
     ) -> [Option<f64>; 2] {
         let weights = self.hat_integrals(entities, measures);
         let Some(mut multipliers) = self.vertex_multipliers(solved) else {
             return [None; 2];
         };
-        for &(k, exact) in exact.iter().flatten() {
-            let (entity, measure) = (entities[k], measures[k]);
+        for ((entity, measure), exact) in entities.iter().zip(measures).zip(exact) {
             let cell = self.mesh.cell(entity.cell);
             for (local, tested) in entity.corners::<D>().zip(exact.tested) {
                 multipliers[cell[local] as usize] -= measure * tested;

@@ -81,15 +81,16 @@ fn jump_at_a_sphere<const D: usize>() -> Datum<D> {
     Datum::piecewise(move |x| if level(x) > 0.0 { -2.0 } else { 1.0 }, level)
 }
 
+/// Planes in pieces of a cell replace the sphere: of order two.
 #[test]
 fn a_load_that_jumps_at_a_sphere_is_integrated_along_it() {
     let exact = |volume: f64, box_volume: f64| volume - 2.0 * (box_volume - volume);
     let disc = exact(PI * 0.49, 4.0);
     let error = |n| (integral::<2>(&ConformingP1, n, jump_at_a_sphere()) - disc).abs();
-    assert!(error(8) < 1e-4 && error(32) < 1e-6, "{:e} {:e}", error(8), error(32));
+    assert!(error(8) < 1e-3 && error(32) < 5e-5, "{:e} {:e}", error(8), error(32));
     let ball = exact(4.0 / 3.0 * PI * 0.343, 8.0);
     let error = |n| (integral::<3>(&ConformingP2, n, jump_at_a_sphere()) - ball).abs();
-    assert!(error(8) < 2e-3 && error(16) < 4e-4, "{:e} {:e}", error(8), error(16));
+    assert!(error(8) < 1e-2 && error(32) < 2e-3, "{:e} {:e}", error(8), error(32));
 }
 
 /// Loads that are smooth within cells, on coarse meshes: with rules of twice the degree no error of
@@ -168,7 +169,7 @@ fn errors_see_jumps_of_a_coefficient_within_cells() {
     const PARTS: usize = 200;
     let scene = || scenes::contrast_disc_2d(1000.0);
     let problem = scene().problem;
-    let mesh: Mesh<2> = scene().domain.mesh(4).unwrap();
+    let mesh: Mesh<2> = scene().domain.mesh(8).unwrap();
     let exact = problem.exact.clone().unwrap();
     let alpha = |x: &Point<2>| if x.norm() < 1.0 { 1000.0 } else { 1.0 };
     let mut expected = 0.0;
