@@ -16,16 +16,45 @@ fn part_of_square(
         .filter(|&c| keeps(&whole.barycentre(c)))
         .map(|c| whole.cell(c))
         .collect();
+    mesh_of(whole.vertices().to_vec(), kept.concat(), condition)
+}
+
+/// A mesh of these cells; edges of one cell have a condition by their middle.
+fn mesh_of(
+    vertices: Vec<Point<2>>,
+    cells: Vec<u32>,
+    condition: impl Fn(&Point<2>) -> BoundaryCondition,
+) -> Mesh<2> {
     let edges = |cell: &[u32]| [[0, 1], [0, 2], [1, 2]].map(|[a, b]| [cell[a], cell[b]]);
     let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-    let all: Vec<[u32; 2]> = kept.iter().flat_map(|cell| edges(cell)).map(sorted).collect();
+    let all: Vec<[u32; 2]> = cells.chunks(3).flat_map(edges).map(sorted).collect();
     let ends = all.iter().filter(|edge| all.iter().filter(|other| other == edge).count() == 1);
-    let facet = |&vertices: &[u32; 2]| {
-        let [x, y] = vertices.map(|v| whole.vertices()[v as usize]);
-        TaggedFacet { vertices, condition: condition(&((x + y) * 0.5)) }
+    let facet = |&ends: &[u32; 2]| {
+        let [x, y] = ends.map(|v| vertices[v as usize]);
+        TaggedFacet { vertices: ends, condition: condition(&((x + y) * 0.5)) }
     };
     let facets: Vec<_> = ends.map(facet).collect();
-    Mesh::new(whole.vertices().to_vec(), kept.concat(), &facets).unwrap()
+    Mesh::new(vertices, cells, &facets).unwrap()
+}
+
+/// The square of side two with a slit from its centre to a side, whose vertices come twice.
+fn slit(n: usize) -> Mesh<2> {
+    let whole = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [2 * n, 2 * n]).unwrap();
+    let mut vertices = whole.vertices().to_vec();
+    let mut below: Vec<u32> = (0..vertices.len() as u32).collect();
+    for v in 0..below.len() {
+        if vertices[v][1] == 0.0 && vertices[v][0] > 0.0 {
+            below[v] = vertices.len() as u32;
+            vertices.push(vertices[v]);
+        }
+    }
+    let side = |cell: usize, v: u32| match whole.barycentre(cell)[1] < 0.0 {
+        true => below[v as usize],
+        false => v,
+    };
+    let of_cell = |cell: usize| whole.cell(cell).iter().map(move |&v| side(cell, v));
+    let cells = (0..whole.n_cells()).flat_map(of_cell).collect();
+    mesh_of(vertices, cells, |_| BoundaryCondition::Dirichlet)
 }
 
 /// Known eigenvalues bound those that are found from above; twice these, on fine meshes, from below.
@@ -44,8 +73,12 @@ fn eigenvalues_are_bounded_from_below() {
         Mesh::kuhn_box(&domain, [n, n]).unwrap()
     };
     let l_shape = |n: usize| Domain::<2>::LShape { half: 1.0 }.mesh(n).unwrap();
-    let known: [(&dyn Fn(usize) -> Mesh<2>, f64); 3] =
-        [(&square, 2.0 * PI * PI), (&left, PI * PI / 4.0), (&l_shape, 9.639_723_844)];
+    let known: [(&dyn Fn(usize) -> Mesh<2>, f64); 4] = [
+        (&square, 2.0 * PI * PI),
+        (&left, PI * PI / 4.0),
+        (&l_shape, 9.639_723_844),
+        (&slit, 8.371_329_711),
+    ];
     for (mesh, known) in known {
         for n in [1, 2, 4, 16] {
             let found = least_eigenvalue(&mesh(n)).unwrap().unwrap();
