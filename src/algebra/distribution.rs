@@ -28,7 +28,23 @@ pub trait Distribution: Debug + Send + Sync {
     fn largest(&self, numbers: &mut [f64]);
 }
 
-/// What solvers ask of a distribution, where there is one; without one there is one part.
+/// The distribution of an inequality in one process: all unknowns are its own.
+#[derive(Debug)]
+pub(crate) struct OnePart;
+
+impl Distribution for OnePart {
+    fn owns(&self, _: usize) -> bool {
+        true
+    }
+    fn number(&self, unknown: usize) -> u64 {
+        unknown as u64
+    }
+    fn exchange(&self, _: &dyn Fn(usize) -> f64, _: &mut dyn FnMut(usize, f64)) {}
+    fn sum(&self, _: &mut [f64]) {}
+    fn largest(&self, _: &mut [f64]) {}
+}
+
+/// What solvers ask of a distribution.
 impl dyn Distribution + '_ {
     /// Gives ghosts the values that their owners have.
     pub(crate) fn update<T: Real>(&self, values: &mut [T]) {
@@ -52,19 +68,15 @@ impl dyn Distribution + '_ {
 }
 
 /// The sum of a number over all parts.
-pub(crate) fn sum_over_parts(distribution: Option<&dyn Distribution>, number: f64) -> f64 {
+pub(crate) fn sum_over_parts(distribution: &dyn Distribution, number: f64) -> f64 {
     let mut numbers = [number];
-    if let Some(distribution) = distribution {
-        distribution.sum(&mut numbers);
-    }
+    distribution.sum(&mut numbers);
     numbers[0]
 }
 
 /// Whether a statement is true in one part or more.
-pub(crate) fn any_part(distribution: Option<&dyn Distribution>, is_true: bool) -> bool {
-    distribution.map_or(is_true, |distribution| {
-        let mut numbers = [f64::from(u8::from(is_true))];
-        distribution.largest(&mut numbers);
-        numbers[0] != 0.0
-    })
+pub(crate) fn any_part(distribution: &dyn Distribution, is_true: bool) -> bool {
+    let mut numbers = [f64::from(u8::from(is_true))];
+    distribution.largest(&mut numbers);
+    numbers[0] != 0.0
 }

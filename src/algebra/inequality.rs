@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::NO_INDEX;
 use super::bound::{Bound, Contact};
 use super::dirichlet_energy::DirichletEnergy;
-use super::distribution::{Distribution, sum_over_parts};
+use super::distribution::{Distribution, OnePart, sum_over_parts};
 use super::free_body::{FreeBody, Sum};
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
@@ -136,12 +136,17 @@ impl<T: Real> Inequality<T> {
             distribution: None,
         }
     }
-    /// The other parts, if there are any.
-    pub(crate) fn distribution(&self) -> Option<&dyn Distribution> {
-        self.distribution.as_deref()
+    /// How the unknowns are distributed.
+    pub(crate) fn distribution(&self) -> &dyn Distribution {
+        self.distribution.as_deref().unwrap_or(&OnePart)
     }
-    /// Whether an unknown belongs to this part; all do where there is one part.
+    /// Whether there are other parts.
+    pub(crate) fn is_in_parts(&self) -> bool {
+        self.distribution.is_some()
+    }
+    /// Whether an unknown belongs to this part.
     pub(crate) fn owns(&self, unknown: usize) -> bool {
+        // in loops over unknowns, without a call where there is one part
         self.distribution.as_ref().is_none_or(|distribution| distribution.owns(unknown))
     }
     /// Number of unknowns, fixed ones included.

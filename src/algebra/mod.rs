@@ -26,7 +26,7 @@ mod side_penalties;
 pub use bound::{Bound, Contact};
 pub use dirichlet_energy::{DirichletEnergy, DirichletTerm};
 pub use distribution::Distribution;
-pub(crate) use distribution::{any_part, sum_over_parts};
+pub(crate) use distribution::{OnePart, any_part, sum_over_parts};
 pub use free_body::FreeBody;
 pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
 pub(crate) use in_precision::rounded;

@@ -78,7 +78,7 @@ impl OnOwnUnknowns {
             true => pairs.filter(|(one, other)| one != other).count() as f64,
             false => f64::INFINITY,
         };
-        sum_over_parts(Some(&*self.over_parts), changes) <= self.few_changes
+        sum_over_parts(&*self.over_parts, changes) <= self.few_changes
     }
 }
 

@@ -118,7 +118,7 @@ impl Preconditioner<f64> for WithGhosts<'_> {
         distribution.update_flags(&mut fixed);
         let set = self.inner.set_fixed(&fixed);
         // one error in all parts, so that all take the same way on
-        match any_part(Some(distribution), set.is_err()) {
+        match any_part(distribution, set.is_err()) {
             true => Err(FactorError::NotPositive),
             false => Ok(()),
         }

@@ -6,7 +6,7 @@ use super::eigenvalue::least_eigenvalue;
 use super::friedrichs::FriedrichsData;
 use super::integrals::Totals;
 use super::{NoBound, PrimalDualPair};
-use crate::algebra::Distribution;
+use crate::algebra::{Distribution, OnePart};
 use crate::assemble::Discretisation;
 use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
@@ -96,7 +96,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// If the pair is not one of this mesh, or `u` has not one value for each unknown.
     pub fn error_bound(&self, pair: &PrimalDualPair<D>, u: &[f64]) -> Result<ErrorBound, NoBound> {
         self.demand_length(u);
-        self.part_of_bound(pair, u, &|_| true)?.bound(None)
+        self.part_of_bound(pair, u, &|_| true)?.bound(&OnePart)
     }
 
     /// The energy norm of the difference of the exact solution and the admissible function of a pair; none
@@ -213,17 +213,15 @@ pub(crate) struct PartOfBound<const D: usize> {
 impl<const D: usize> PartOfBound<D> {
     /// The bound over all parts of a mesh, or over the one part that is the mesh, with the shares of the cells of this
     /// part. All parts call it.
-    pub fn bound(self, distribution: Option<&dyn Distribution>) -> Result<ErrorBound, NoBound> {
+    pub fn bound(self, distribution: &dyn Distribution) -> Result<ErrorBound, NoBound> {
         let Self { mut totals, mut friedrichs, by_eigenvalue, squares, mut unproven } = self;
-        if let Some(distribution) = distribution {
-            totals.add_over_parts(distribution);
-            friedrichs = friedrichs.over_parts(distribution);
-            let of_all = [Unproven::Quadrature, Unproven::Boundary, Unproven::Obstacle];
-            let mut is_found = of_all.map(|term| f64::from(u8::from(unproven.contains(&term))));
-            distribution.largest(&mut is_found);
-            let found = of_all.into_iter().zip(is_found).filter(|(_, is_found)| *is_found != 0.0);
-            unproven = found.map(|(term, _)| term).collect();
-        }
+        totals.add_over_parts(distribution);
+        friedrichs = friedrichs.over_parts(distribution);
+        let of_all = [Unproven::Quadrature, Unproven::Boundary, Unproven::Obstacle];
+        let mut is_found = of_all.map(|term| f64::from(u8::from(unproven.contains(&term))));
+        distribution.largest(&mut is_found);
+        let found = of_all.into_iter().zip(is_found).filter(|(_, is_found)| *is_found != 0.0);
+        unproven = found.map(|(term, _)| term).collect();
         let of_solver = totals.of_solver(friedrichs.constant().or(by_eigenvalue))?;
         if of_solver.is_none() {
             unproven.push(Unproven::Algebra);

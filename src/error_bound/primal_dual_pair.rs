@@ -85,7 +85,7 @@ impl<const D: usize> Discretisation<'_, D> {
         solution: &Solution<f64>,
         counts: Counts<'_>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
-        match inequality.distribution.is_some() && self.space.degree == 1 {
+        match inequality.is_in_parts() && self.space.degree == 1 {
             true => self.check_element()?,
             false => self.check_flux()?,
         }
@@ -151,9 +151,7 @@ impl<const D: usize> Discretisation<'_, D> {
             }
             _ => inequality.residual_f64(u, &mut residual),
         }
-        if let Some(distribution) = &inequality.distribution {
-            distribution.update(&mut residual);
-        }
+        inequality.distribution().update(&mut residual);
         let obstacles = &space.active_obstacles(&inequality.bounds, &solution.contact);
         let of_solver = (&residual[..], obstacles);
         let forces = &space.contact_forces(inequality, &solution.contact, of_solver, u);

@@ -58,9 +58,7 @@ impl ContactForces {
             let Self { values, rounding } = &mut forces;
             nodes.share(u, &state, values, Some((rounding, *precision)));
         }
-        if let Some(distribution) = inequality.distribution() {
-            distribution.update(&mut forces.values);
-        }
+        inequality.distribution().update(&mut forces.values);
         forces
     }
 
@@ -76,9 +74,7 @@ impl ContactForces {
     ) -> bool {
         let size = |i: usize| solution.values[i].to_f64().abs();
         let mut largest = [vectors::largest(solution.values.len(), size)];
-        if let Some(distribution) = inequality.distribution() {
-            distribution.largest(&mut largest);
-        }
+        inequality.distribution().largest(&mut largest);
         let slack = solution.precision.certificate_limit() * largest[0];
         let is_near = |i: usize| {
             let bound = &inequality.bounds[i];
@@ -98,9 +94,7 @@ impl ContactForces {
         };
         let chunks = map_chunks(self.values.len(), of_chunk);
         let mut sums = [0, 1, 2, 3].map(|k| chunks.iter().map(|sums| sums[k]).sum::<f64>());
-        if let Some(distribution) = inequality.distribution() {
-            distribution.sum(&mut sums);
-        }
+        inequality.distribution().sum(&mut sums);
         let [forces, rounding, diagonal, load] = sums;
         let error = rounding + solution.dual_residual * diagonal.sqrt();
         error <= LARGEST_ERROR * forces || error <= NO_LOAD * load
@@ -151,7 +145,7 @@ impl<'a, T: Real> BalancedNodes<'a, T> {
     /// The nodes; none without a penalised matrix and on one part of several, which does not have all copies.
     pub fn of(inequality: &'a Inequality<T>) -> Option<Self> {
         let penalised = inequality.penalised.as_ref()?;
-        if inequality.distribution().is_some() {
+        if inequality.is_in_parts() {
             return None;
         }
         let node = nodes(&penalised.jumps);

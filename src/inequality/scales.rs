@@ -57,9 +57,7 @@ impl Scales {
         precision: Precision,
     ) -> Self {
         let mut sums = Sums::of(inequality, values, diagonal, &|i| inequality.owns(i));
-        if let Some(distribution) = inequality.distribution() {
-            sums = sums.over_parts(distribution);
-        }
+        sums = sums.over_parts(inequality.distribution());
         sums.scales(precision.epsilon())
     }
 }

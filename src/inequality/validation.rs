@@ -57,9 +57,7 @@ pub(super) fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_for
     });
     let mut largest =
         chunks.iter().fold([0.0; 2], |[a, b]: [f64; 2], chunk| [a.max(chunk[0]), b.max(chunk[1])]);
-    if let Some(distribution) = inequality.distribution() {
-        distribution.largest(&mut largest);
-    }
+    inequality.distribution().largest(&mut largest);
     let [least, most] = DATA_RANGE;
     largest.iter().all(|&magnitude| magnitude == 0.0 || (magnitude >= least && magnitude <= most))
 }
@@ -74,7 +72,7 @@ pub(super) fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_for
 /// the matrix is declared symmetric and is not.
 pub(crate) fn check<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
     over_all_parts(inequality, check_input(inequality))?;
-    if inequality.is_definite || inequality.distribution.is_some() {
+    if inequality.is_definite || inequality.is_in_parts() {
         return Ok(());
     }
     match factor_free_unknowns(inequality) {
@@ -96,10 +94,9 @@ fn over_all_parts<T: Real>(
 ) -> Result<(), Outcome> {
     const OUTCOMES: [Outcome; 4] =
         [Outcome::OutOfRange, Outcome::Infeasible, Outcome::NotFinite, Outcome::Malformed];
-    let Some(distribution) = inequality.distribution() else { return checked };
     let code = |outcome: Outcome| OUTCOMES.iter().position(|&other| other == outcome);
     let mut largest = [checked.err().map_or(0, |outcome| code(outcome).unwrap_or(0) + 1) as f64];
-    distribution.largest(&mut largest);
+    inequality.distribution().largest(&mut largest);
     match largest[0] as usize {
         0 if largest[0] == 0.0 => Ok(()),
         // not a number

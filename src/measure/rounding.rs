@@ -68,10 +68,8 @@ impl<const D: usize> Discretisation<'_, D> {
             largest[0] = maximum(largest[0], of_chunk);
             sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
         }
-        if let Some(distribution) = inequality.distribution() {
-            distribution.largest(&mut largest);
-            distribution.sum(&mut sums);
-        }
+        inequality.distribution().largest(&mut largest);
+        inequality.distribution().sum(&mut sums);
         let [diagonal, stiffness, squares, force, load_energy] = sums;
         let dimension = D as f64;
         let (n, length) = ((cells as f64).powf(dimension.recip()), self.mesh().domain_diameter());

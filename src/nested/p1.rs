@@ -275,7 +275,7 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
 /// Whether multigrid uses the levels of conforming P1: in one dimension factors are as sparse as the matrix, and over
 /// parts of a mesh the multigrid is that of an engine.
 fn has_levels<const D: usize>(inequality: &Inequality<f64>) -> bool {
-    D > 1 && inequality.distribution.is_none()
+    D > 1 && !inequality.is_in_parts()
 }
 
 /// The unknowns with Dirichlet data.

@@ -172,9 +172,7 @@ impl<'a, const D: usize> System<'a, D> {
     }
     /// Numbers of this part summed over all parts.
     pub(super) fn sums<const N: usize>(&self, mut own: [f64; N]) -> [f64; N] {
-        if let Some(distribution) = self.inequality.distribution() {
-            distribution.sum(&mut own);
-        }
+        self.inequality.distribution().sum(&mut own);
         own
     }
     /// The numbers of cells, unknowns and stored entries of the matrix; over all parts.

@@ -94,9 +94,7 @@ impl<T: Real> Iterate<'_, T> {
             evaluation.multiplier_violation += chunk.multiplier_violation;
         }
         evaluation.n_changes = evaluation.state_changes.len();
-        if let Some(distribution) = self.inequality.distribution() {
-            evaluation.add_other_parts(distribution);
-        }
+        evaluation.add_other_parts(self.inequality.distribution());
         evaluation.multiplier_violation = evaluation.multiplier_violation.sqrt();
         self.energy_norm = energy_norm;
         evaluation

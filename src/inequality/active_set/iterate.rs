@@ -108,18 +108,16 @@ impl<'a, T: Real> Iterate<'a, T> {
             }
         });
         self.residual_is_current = false;
-        if let Some(distribution) = self.inequality.distribution() {
-            distribution.update(&mut self.values);
-        }
+        self.inequality.distribution().update(&mut self.values);
     }
 
     /// Changes contact states to admissible ones and sets the values that they prescribe. The residual of a symmetric
     /// matrix without jump multipliers is updated by the columns of the matrix that belong to these unknowns.
     pub fn change_states(&mut self, changes: &[(u32, Contact)]) {
-        let distribution = self.inequality.distribution();
+        let inequality = self.inequality;
         // changes in other parts are not known here
         let is_updated =
-            self.inequality.symmetric && self.jump_multipliers.is_empty() && distribution.is_none();
+            inequality.symmetric && self.jump_multipliers.is_empty() && !inequality.is_in_parts();
         self.residual_is_current &= is_updated;
         for &(i, contact) in changes {
             let i = i as usize;
@@ -137,9 +135,7 @@ impl<'a, T: Real> Iterate<'a, T> {
                 }
             }
         }
-        if let Some(distribution) = distribution {
-            distribution.update(&mut self.values);
-        }
+        inequality.distribution().update(&mut self.values);
     }
 
     /// Computes the residual from the values and the jump multipliers.
@@ -167,9 +163,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             n_changed
         });
         let distribution = self.inequality.distribution();
-        if let Some(distribution) = distribution {
-            distribution.update(&mut self.values);
-        }
+        distribution.update(&mut self.values);
         let is_changed = any_part(distribution, n_changed > 0.0);
         self.residual_is_current &= !is_changed;
         is_changed

@@ -101,9 +101,9 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
     /// The failure after a run or the preconditioner found the symmetric part of the matrix not to be positive
     /// definite. The check before the solve has factored a matrix that is not distributed: rounding is the reason.
     fn loss_of_positivity(&self) -> End {
-        match self.inequality.distribution {
-            Some(_) => End::Outcome(Outcome::NotCoercive),
-            None => End::Unsuitable,
+        match self.inequality.is_in_parts() {
+            true => End::Outcome(Outcome::NotCoercive),
+            false => End::Unsuitable,
         }
     }
 
@@ -135,7 +135,7 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
             if any_part(distribution, eliminated != *present) {
                 match preconditioner.set_fixed(eliminated) {
                     Ok(()) => present.copy_from_slice(eliminated),
-                    Err(FactorError::NotPositive) if distribution.is_some() => {
+                    Err(FactorError::NotPositive) if inequality.is_in_parts() => {
                         return Err(Outcome::NotCoercive);
                     }
                     Err(_) => return Ok(None),

@@ -21,7 +21,7 @@ pub(crate) struct ProgressMonitor<'d> {
     /// Number of systems within which the number of state changes must halve; `None` for no limit.
     limit: Option<usize>,
     /// The other parts of the mesh, if the states are those of one part.
-    distribution: Option<&'d dyn Distribution>,
+    distribution: &'d dyn Distribution,
     /// The fingerprint of the present active set, less that of the first; see [`fingerprint_change`].
     fingerprint: u128,
     /// The fingerprints of the preceding active sets, each with whether its system was solved accurately.
@@ -39,11 +39,7 @@ pub(crate) struct ProgressMonitor<'d> {
 impl<'d> ProgressMonitor<'d> {
     /// The progress before the first system, which is solved accurately if the problem is linear: no unknown has an
     /// inequality as bound.
-    pub fn new(
-        limit: Option<usize>,
-        is_linear: bool,
-        distribution: Option<&'d dyn Distribution>,
-    ) -> Self {
+    pub fn new(limit: Option<usize>, is_linear: bool, distribution: &'d dyn Distribution) -> Self {
         Self {
             limit,
             distribution,
@@ -130,16 +126,15 @@ impl<'d> ProgressMonitor<'d> {
 fn fingerprint_change(
     changes: &[(u32, Contact)],
     before: &[Contact],
-    distribution: Option<&dyn Distribution>,
+    distribution: &dyn Distribution,
 ) -> (u128, usize) {
     let mut fingerprint = 0_u128;
     for &(i, contact) in changes {
-        let number = distribution.map_or(u64::from(i), |of| of.number(i as usize));
+        let number = distribution.number(i as usize);
         fingerprint = fingerprint
             .wrapping_sub(state_key(number, before[i as usize]))
             .wrapping_add(state_key(number, contact));
     }
-    let Some(distribution) = distribution else { return (fingerprint, changes.len()) };
     // quarters of 32 bits are added separately, so that their sums are exact in `f64`
     let quarter = |k: u32| f64::from((fingerprint >> (32 * k)) as u32);
     let mut sums = [quarter(0), quarter(1), quarter(2), quarter(3), changes.len() as f64];

@@ -68,7 +68,7 @@ impl<T: Real> InequalitySolver<T> for InteriorPoint {
     /// Solves the inequality; starting values have no effect. [`ActiveSet`] solves the inequality of one part of a
     /// mesh.
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-        if inequality.distribution.is_some() {
+        if inequality.is_in_parts() {
             return ActiveSet::default().solve_from(inequality, guess);
         }
         compiled!(

@@ -2,7 +2,7 @@
 
 use super::cycle::MultigridIterate;
 use super::settings::MonotoneMultigrid;
-use crate::algebra::Inequality;
+use crate::algebra::{Inequality, OnePart};
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::history::Recorder;
@@ -112,7 +112,7 @@ impl<T: Real> MultigridIterate<'_, T> {
         let diagonal = collect(values.len(), |i| positive_diagonal(inequality, i));
         let of = |i: usize| diagonal[i];
         let matrix = Product::of(inequality);
-        let run = eigenvalue_run(matrix, None, preconditioner, &fixed, of, MAX_ITERATIONS);
+        let run = eigenvalue_run(matrix, &OnePart, preconditioner, &fixed, of, MAX_ITERATIONS);
         let (smallest, _) = run.ritz.filter(|ritz| ritz.0 > 0.0)?;
         if run.reason != StopReason::Converged {
             return None;

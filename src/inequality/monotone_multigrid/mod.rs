@@ -34,7 +34,7 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
 
     /// Solves the inequality. [`ActiveSet`] solves that of one part of a mesh, which has no coarse spaces here.
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-        if inequality.symmetric && inequality.distribution.is_some() {
+        if inequality.symmetric && inequality.is_in_parts() {
             return ActiveSet::default().solve_from(inequality, guess);
         }
         compiled!(

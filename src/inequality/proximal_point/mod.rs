@@ -69,7 +69,7 @@ impl<T: Real> InequalitySolver<T> for ProximalPoint {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-        if inequality.distribution.is_some() {
+        if inequality.is_in_parts() {
             return Solution::without_iterate(inequality, Outcome::Unsuitable);
         }
         compiled!(

@@ -123,10 +123,10 @@ impl Violations {
         values: (&[T], &[T]),
         precision: Precision,
     ) -> Self {
-        let has_all_copies = inequality.distribution().is_none();
+        let has_all_copies = !inequality.is_in_parts();
         let owns = |i: usize| inequality.owns(i);
         let own = Self::at(inequality, values, &owns, (precision, has_all_copies));
-        inequality.distribution().map_or(own, |distribution| own.over_parts(distribution))
+        own.over_parts(inequality.distribution())
     }
 
     /// [`Violations::of`] without the dispatch to a compiled instance; with the forces of nodes, whose sums over copies

@@ -13,7 +13,7 @@ pub(crate) struct ConjugateGradients<'m, T> {
     matrix: Product<'m, T>,
     /// The distribution of the unknowns over the parts of a mesh, if the matrix is that of one part; unknowns that
     /// other parts own are fixed.
-    distribution: Option<&'m dyn Distribution>,
+    distribution: &'m dyn Distribution,
     /// The preconditioned residual.
     z: Vec<T>,
     /// The search direction.
@@ -28,7 +28,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
     /// The method for a symmetric matrix, or for the rows of one part of a mesh. Unknowns that other parts own must be
     /// fixed, and zero in preconditioned residuals; on return of [`ConjugateGradients::solve`] their values in `x` are
     /// those that the owners computed.
-    pub fn new(matrix: Product<'m, T>, distribution: Option<&'m dyn Distribution>) -> Self {
+    pub fn new(matrix: Product<'m, T>, distribution: &'m dyn Distribution) -> Self {
         let n = matrix.size();
         Self { matrix, distribution, z: zeros(n), p: zeros(n), q: zeros(n), largest_ritz: 1.0 }
     }
@@ -88,17 +88,13 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
         if run.reason == StopReason::Converged && run.residual_norm > rule.absolute_tolerance {
             self.richardson_step(T::lit(1.0 / self.largest_ritz), x);
         }
-        if let Some(distribution) = self.distribution {
-            distribution.update(x);
-        }
+        self.distribution.update(x);
         run
     }
 
     /// `q = A p` on free unknowns, zero on fixed ones; returns `p . q`.
     fn multiply(&mut self, fixed: &[bool]) -> f64 {
-        if let Some(distribution) = self.distribution {
-            distribution.update(&mut self.p);
-        }
+        self.distribution.update(&mut self.p);
         let (matrix, p) = (&self.matrix, &self.p);
         let own =
             sum_chunks(&mut self.q, matrix.group(), |range, q| matrix.rows(range, fixed, p, q));

@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 1e-6;
 /// concentrated in a region with a small coefficient.
 pub(crate) fn eigenvalue_run<T: Real>(
     matrix: Product<'_, T>,
-    distribution: Option<&dyn Distribution>,
+    distribution: &dyn Distribution,
     preconditioner: &mut dyn Preconditioner<T>,
     fixed: &[bool],
     diagonal: impl Fn(usize) -> f64,

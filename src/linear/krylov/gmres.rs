@@ -31,7 +31,7 @@ const LEAST_SQUARES_FACTOR: f64 = 0.99;
 pub(crate) struct Gmres<'m, T> {
     /// The distribution of the unknowns over the parts of a mesh, if the matrices are those of one part: unknowns that
     /// other parts own are fixed, and zero in preconditioned residuals.
-    distribution: Option<&'m dyn Distribution>,
+    distribution: &'m dyn Distribution,
     /// The Krylov basis `v_k`, orthonormal in the inner product `v . B w`.
     basis: Vec<Vec<T>>,
     /// The directions `B v_k`. The correction of `x` is a combination of them, without a further application of `B`, so
@@ -41,7 +41,7 @@ pub(crate) struct Gmres<'m, T> {
 
 impl<'m, T: Real> Gmres<'m, T> {
     /// The method for matrices of this size.
-    pub fn new(size: usize, distribution: Option<&'m dyn Distribution>) -> Self {
+    pub fn new(size: usize, distribution: &'m dyn Distribution) -> Self {
         Self { distribution, basis: vec![zeros(size)], directions: vec![zeros(size)] }
     }
 
@@ -141,9 +141,7 @@ impl<'m, T: Real> Gmres<'m, T> {
             let next = &mut next[0];
             scale(&mut basis[k], 1.0 / norm);
             scale(&mut self.directions[k], 1.0 / norm);
-            if let Some(distribution) = self.distribution {
-                distribution.update(&mut self.directions[k]);
-            }
+            self.distribution.update(&mut self.directions[k]);
             let last = &self.directions[k];
             for_each_chunk(next, |range, next| {
                 for (i, next) in range.zip(next) {

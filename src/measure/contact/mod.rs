@@ -242,9 +242,7 @@ impl<const D: usize> Space<'_, D> {
         locations.dedup();
         let given = self.dirichlet_groups();
         let mut largest = [solution.values.iter().map(|u| u.abs()).fold(0.0, f64::max)];
-        if let Some(distribution) = inequality.distribution() {
-            distribution.largest(&mut largest);
-        }
+        inequality.distribution().largest(&mut largest);
         let rounding = 64.0 * self.body_constants.rounding();
         let slack = largest[0] * TOUCHING.max(64.0 * solution.precision.epsilon()) + rounding;
         let support_touches = |entity: ContactEntity, unknown: usize| {

@@ -70,9 +70,7 @@ impl<const D: usize> Solved<'_, D> {
             .penetration_of((&self.solution.values, self.solution().precision), &counts);
         let Some(own) = self.system.agreed(own)? else { return Ok(None) };
         let mut numbers = own.numbers();
-        if let Some(distribution) = self.inequality().distribution() {
-            distribution.largest(&mut numbers);
-        }
+        self.inequality().distribution().largest(&mut numbers);
         Ok(Some(own.with_numbers(numbers)))
     }
 }

@@ -60,7 +60,7 @@ pub(super) fn solve<T: Real>(
             end = ladder.monotone_multigrid();
         }
     }
-    if inequality.distribution.is_none() {
+    if !inequality.is_in_parts() {
         if end == End::Unsuitable {
             end = ladder.active_set_by_factors();
         }
@@ -79,7 +79,7 @@ fn uses_krylov<T: Real>(
     guess: &InitialGuess<T>,
 ) -> bool {
     match settings.linear {
-        _ if inequality.distribution.is_some() => true,
+        _ if inequality.is_in_parts() => true,
         LinearMethod::Direct => false,
         LinearMethod::Iterative => true,
         LinearMethod::BySize => {

@@ -120,10 +120,10 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
     fn run_krylov(&mut self, family: &dyn PreconditionerFamily<T>) -> Result<End, End> {
         let (inequality, guess) = (self.inequality, self.guess);
         let matrix = symmetric_part(inequality);
-        let spaces = match inequality.distribution {
+        let spaces = match inequality.is_in_parts() {
             // the preconditioner of a distributed matrix has its own coarse spaces
-            Some(_) => Cow::Borrowed(&guess.coarse_spaces),
-            None => guess.coarse_spaces.complete(&matrix, inequality).ok_or(End::Unsuitable)?,
+            true => Cow::Borrowed(&guess.coarse_spaces),
+            false => guess.coarse_spaces.complete(&matrix, inequality).ok_or(End::Unsuitable)?,
         };
         let system = PreconditionedSystem::new(&matrix, inequality, &spaces);
         let preconditioner = family.preconditioner(system).ok_or(End::Unsuitable)?;
@@ -132,7 +132,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
         let mut solver = PreconditionedSolver::new(inequality, &matrix, preconditioner, tolerance);
         let limit = self.krylov_limit();
         let has_local_solves =
-            inequality.distribution.is_none() && !suits_monotone_multigrid(inequality, guess);
+            !inequality.is_in_parts() && !suits_monotone_multigrid(inequality, guess);
         let mut iteration = Iteration {
             settings: self.settings,
             iterate: &mut self.iterate,
@@ -308,7 +308,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
         // a matrix that is not symmetric, although it is declared so, explains a failure
         if outcome != Outcome::Converged
             && inequality.symmetric
-            && inequality.distribution.is_none()
+            && !inequality.is_in_parts()
             && !inequality.matrix.is_symmetric()
         {
             outcome = Outcome::Malformed;
