@@ -128,6 +128,8 @@ fn another_request_is_refused_and_nothing_changes() {
     let keys = study().keys();
     let single = Program::new("test", "f32", 1, 1).with_request("load", 5);
     other(single, &keys, ["precision f64", "precision f32"]);
+    let twice = Program::new("test", "f64", 1, 2).with_request("load", 5);
+    other(twice, &keys, ["repeat 1", "repeat 2"]);
     let load = program().with_request("load", 6);
     other(load, &keys, ["load 5", "load 6"]);
     let mesh = program().with_request("mesh", "a");

@@ -421,3 +421,15 @@ fn a_bound_above_the_norm_of_the_solution_stands_without_a_quotient() {
         "{text}"
     );
 }
+
+/// The least quotient of a column is its best, but for one below one: such a bound is none.
+#[test]
+fn a_bound_below_the_error_is_not_the_best() {
+    let mut rows = vec![row("a", "p1", 8), row("a", "p2", 8), row("a", "cr", 8)];
+    for (row, effectivity) in rows.iter_mut().zip([0.93, 1.42, 1.21]) {
+        row.bound.effectivity = Some(effectivity);
+        row.bound.discrete = Some(0.5);
+    }
+    let text = report(rows).summary_to_text(100);
+    assert!(text.contains("\u{2022} 1.21") && !text.contains("\u{2022} 0.93"), "{text}");
+}

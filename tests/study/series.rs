@@ -4,7 +4,7 @@ use crate::rows::row;
 use crate::support::scratch::Scratch;
 use unilateral::plot;
 use unilateral::prelude::*;
-use unilateral::study::{Meshes, Series, fill_orders};
+use unilateral::study::{Meshes, Program, Series, fill_orders};
 
 /// The reports of a scheme on uniform and on adaptive meshes, and that of all their rows.
 fn reports() -> [Report; 3] {
@@ -100,4 +100,22 @@ fn each_share_of_marked_cells_is_a_series() {
     let report = crate::rows::report(rows);
     let names: Vec<String> = report.series().into_iter().map(|series| series.name).collect();
     assert_eq!(names, ["p1, theta 0.5", "p1, theta 0.3"]);
+}
+
+/// The orders of an adaptive series are fitted over the last half of its steps: those before may be coarse.
+#[test]
+fn rates_are_those_of_the_last_half_of_the_steps() {
+    let mut rows: Vec<_> = (0..6).map(|step| row("a", "p1", step)).collect();
+    for (step, row) in rows.iter_mut().enumerate() {
+        row.level_kind = Some("steps".into());
+        row.theta = Some(0.5);
+        let unknowns = 100 << (2 * step);
+        row.unknowns = Some(unknowns);
+        // no order over the first half, then one half in unknowns, one in the mesh size
+        row.bound.discrete = Some(if step < 3 { 1.0 } else { 40.0 / (unknowns as f64).sqrt() });
+        row.seconds.total = (step + 1) as f64;
+    }
+    let text = Report::new(Program::new("test", "f64", 1, 1), rows).details_to_text(200);
+    assert!(text.contains("p1: order bound 1.00"), "{text}");
+    assert!(text.contains("from step 3 on") && text.contains("take 6.0 times the last"), "{text}");
 }
