@@ -149,3 +149,40 @@ fn algebraic_bounds_of_quadratics_hold_in_single_precision() {
         assert!(rounded.converged() && distance <= stated && stated < 1e-2, "{what}");
     }
 }
+
+/// The formulas of [`Rounding`](unilateral::measure::Rounding), written a second time for linears in the plane with a
+/// load and without Dirichlet data but zero: `a` is eight roundings.
+#[test]
+fn rounding_errors_are_those_of_the_formulas() {
+    let square = BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(2.0));
+    let problem = Problem::new().constant_source(-3.0).obstacle_below(|_| -0.1).dirichlet(|_| 0.0);
+    let problem = problem.exact(|_| 0.0, |_| Point::zeros());
+    let mesh = Mesh::<2>::kuhn_box(&square, [6, 6]).unwrap();
+    let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
+    let (inequality, u) = (solved.inequality(), &solved.solution().values);
+    let scene = Scene::new("load", square, problem.clone());
+    let row = &rows::<2>(Precision::Double, scene, &["p1"], &[6])[0];
+    let found = row.rounding.unwrap();
+    let diagonal: Vec<f64> = (0..u.len()).map(|i| inequality.matrix.get(i, i)).collect();
+    let load: f64 = inequality.load.iter().map(|c| c.abs()).sum();
+    let squares: f64 = inequality.load.iter().zip(&diagonal).map(|(c, k)| c * c / k).sum();
+    let n = (mesh.n_cells() as f64).sqrt();
+    let largest = u.iter().fold(0.0_f64, |a, u| a.max(u.abs())).max(n * n * squares / load);
+    let a = 8.0 * f64::EPSILON;
+    let max = a * n * largest / 16.0;
+    let length = 8.0_f64.sqrt();
+    let sum: f64 = diagonal.iter().sum();
+    let sum_of_squares: f64 = diagonal.iter().map(|k| k * k).sum();
+    let broken = a * largest * sum.sqrt();
+    let norm = row.error.broken_energy.unwrap();
+    for (name, found, expected) in [
+        ("max", found.error.max.unwrap(), max),
+        ("L2", found.error.l2.unwrap(), max * length),
+        ("H1", found.error.h1.unwrap(), 16.0 * max),
+        ("broken energy", found.error.broken_energy.unwrap(), broken),
+        ("force", found.force, a * (largest * sum_of_squares.sqrt() + load) / 8.0),
+        ("energy", found.energy, a * (norm * norm + largest * load)),
+    ] {
+        assert!((found / expected - 1.0).abs() < 1e-9, "{name}: {found:e} for {expected:e}");
+    }
+}

@@ -4,7 +4,7 @@ use crate::support::checks::Checks;
 use crate::support::rows::label;
 use unilateral::element::Basis;
 use unilateral::prelude::*;
-use unilateral::scheme::{Regularity, Setting};
+use unilateral::scheme::{Regularity, Setting, scheme_by_name};
 
 /// The values at all vertices of a cell but its last one.
 struct AllVerticesButOne;
@@ -113,6 +113,34 @@ fn refusals_name_what_the_element_offers() {
         let message = refusal(scheme, problem);
         assert!(message.ends_with(&format!("choose {offered}")), "{message}");
     }
+}
+
+/// Under an inequality the proofs for broken schemes ask for solutions in `H^2`, those for quadratics leave out Signorini
+/// conditions; of weakly over-penalised quadratics there is one for equations in the plane.
+#[test]
+fn promises_of_broken_schemes_are_those_that_are_proven() {
+    fn h1<const D: usize>(name: &str, sobolev: f64, [obstacle, contact]: [bool; 2]) -> Option<f64> {
+        let setting = Setting::new(D, Regularity::new(sobolev));
+        let setting = setting.with_obstacle(obstacle).with_contact(contact);
+        let scheme = scheme_by_name::<D>(name, &Default::default()).unwrap();
+        scheme.expected_orders(&setting).h1
+    }
+    let (none, obstacle, contact) = ([false; 2], [true, false], [false, true]);
+    for name in ["sipg", "nipg", "ldg", "wopsip"] {
+        assert_eq!(h1::<2>(name, 1.75, none), Some(0.75), "{name}");
+        assert_eq!(h1::<2>(name, 1.75, obstacle), None, "{name}");
+        assert_eq!(h1::<2>(name, 1.75, contact), None, "{name}");
+        assert_eq!(h1::<2>(name, 2.0, obstacle), Some(1.0), "{name}");
+        assert_eq!(h1::<2>(name, 2.0, contact), Some(1.0), "{name}");
+    }
+    assert_eq!(h1::<2>("p1", 1.75, obstacle), Some(0.75));
+    assert_eq!(h1::<2>("sipg-p2", 2.5, obstacle), Some(1.5));
+    assert_eq!(h1::<2>("sipg-p2", 2.5, contact), None);
+    assert_eq!(h1::<3>("sipg-p2", 3.0, none), Some(2.0));
+    assert_eq!(h1::<3>("sipg-p2", 2.5, obstacle), None);
+    assert_eq!(h1::<2>("wopsip-p2", 3.0, none), Some(2.0));
+    assert_eq!(h1::<2>("wopsip-p2", 2.5, obstacle), None);
+    assert_eq!(h1::<3>("wopsip-p2", 3.0, none), None);
 }
 
 /// On the elements that have them natively, sets keep the orders that nodes have.
