@@ -95,18 +95,6 @@ comparison() {
     cp "$OUT/times-space/radial-3d-time.svg" docs/results/
 }
 
-orders() {
-    head "Observed and promised orders" "orders FILE 1d --summary FILE" "orders FILE 2d --quick --summary FILE" \
-        "orders FILE 3d --summary FILE"
-    for dimension in 1d "2d --quick" 3d; do
-        program "orders $OUT/orders.md $dimension --summary $OUT/summary.md"
-        echo "## ${dimension%% *}"
-        echo
-        cat "$OUT/summary.md"
-        echo
-    done
-}
-
 stability() {
     local command="stability --mesh tests/data/cube.msh --out $OUT/stability"
     head "Stability: hard cases and their criteria" "$command"
@@ -119,6 +107,6 @@ assembly() {
     cargo bench --bench assembly -- --table
 }
 
-PAGE=${1:?"a page: comparison, orders, stability, assembly"}
+PAGE=${1:?"a page: comparison, stability, assembly"}
 "$PAGE" > "$OUT/$PAGE.md"
 mv "$OUT/$PAGE.md" "docs/results/$PAGE.md"

@@ -49,9 +49,6 @@ pub enum Error {
         /// What the two are: "lower obstacle", "gap", "Dirichlet value on `wall`".
         of: Box<[String; 2]>,
     },
-    /// Lower bounds exceed upper ones at a point of the finest mesh of a study.
-    #[error("{0}")]
-    BoundsCross(String),
     /// No unknown of the constraint set can carry the bounds of an inequality.
     #[error("{0}")]
     NothingToBound(String),

@@ -79,7 +79,7 @@ impl Outcome {
         match error {
             Error::CoefficientNotPositive(_) => Some(Outcome::NotCoercive),
             Error::DataNotFinite(_) => Some(Outcome::NotFinite),
-            Error::EmptyConstraint { .. } | Error::BoundsCross(_) => Some(Outcome::Infeasible),
+            Error::EmptyConstraint { .. } => Some(Outcome::Infeasible),
             Error::Parameter(_) => Some(Outcome::OutOfRange),
             Error::NotEnoughMemory(_) => Some(Outcome::OutOfMemory),
             _ => None,

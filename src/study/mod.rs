@@ -1,7 +1,6 @@
 //! Studies: schemes side by side on a scene, their rows and reports.
 
 mod compatibility;
-mod crossing;
 mod extrapolate;
 #[cfg(feature = "report")]
 mod fields;
@@ -28,13 +27,8 @@ pub use extrapolate::{Extrapolated, Limit};
 pub use file_name::file_name;
 #[cfg(feature = "report")]
 pub use journal::Journal;
-#[cfg(target_os = "linux")]
-pub use memory::allowed_memory_bytes;
 pub use memory::peak_memory_bytes;
-pub use orders::{
-    ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders, orders_summary,
-    orders_table,
-};
+pub use orders::{ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders};
 pub use part_figures::{PartFigures, PartSeconds};
 pub use program::Program;
 pub use report::Report;

@@ -65,7 +65,7 @@ impl Rounds {
     /// of time: each case in every round, and before them the reference and each case against it.
     ///
     /// # Errors
-    /// Those of [`Study::check`] and [`Study::check_memory`]; [`Error::EqualNames`] for studies with the same schemes,
+    /// Those of [`Study::check`]; [`Error::NotEnoughMemory`]; [`Error::EqualNames`] for studies with the same schemes,
     /// solvers and kind of meshes.
     pub fn check<const D: usize>(&self, studies: &[Study<'_, D>]) -> Result<usize, Error> {
         compiled!(

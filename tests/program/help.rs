@@ -12,7 +12,6 @@ fn pages_of_help_fit_a_screen_and_have_groups_and_examples() {
         ("work-precision", &["Problem:", "Schemes:", "Meshes:", "Solver:", "Output:"]),
         ("stability", &["Problem:", "Schemes:", "Meshes:", "Solver:", "Output:"]),
         ("pictures", &["Problem:", "Schemes:", "Meshes:", "Output:"]),
-        ("orders", &["Output:", "Problem:", "Schemes:", "Meshes:"]),
         ("judge", &["Problem:", "Output:"]),
     ] {
         let page = |option: &str| stdout(&command(name).arg(option).output().unwrap());

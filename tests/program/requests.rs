@@ -103,9 +103,6 @@ fn the_other_commands_refuse_before_the_work_too() {
         ("work-precision", format!("--scene radial-2d --reference 20 --out {out}"), "reference"),
         ("stability", format!("--quick --markdown {below} --out {out}"), "cannot write"),
         ("stability", format!("--quick --scheme none --out {out}"), "scheme"),
-        ("orders", below.clone(), "cannot write"),
-        ("orders", format!("{out} --summary {below}"), "cannot write"),
-        ("orders", format!("{out} nowhere"), "no scene has nowhere in its name; there are: "),
         (
             "work-precision",
             format!("--scene radial-2d --scheme p1,cr --subject sipg --out {out}"),

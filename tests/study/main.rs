@@ -17,6 +17,7 @@ mod memory_estimate;
 mod named_schemes;
 mod noise;
 mod one_problem;
+mod orders_page;
 mod pictures;
 mod problem_file_data;
 mod problem_file_mistakes;

@@ -4,7 +4,7 @@ use crate::rows::{self, report, row};
 use unilateral::inequality::Outcome;
 use unilateral::measure::{ErrorNorm, Errors};
 use unilateral::scheme::ExpectedOrders;
-use unilateral::study::{OrderVerdict, Row, fill_orders, orders_summary, orders_table};
+use unilateral::study::{OrderVerdict, Row, fill_orders};
 
 #[test]
 fn orders_are_taken_within_a_scheme_and_between_runs_that_converged() {
@@ -179,53 +179,4 @@ fn a_promise_that_cannot_be_tested_is_missed() {
     assert_eq!(missed.0[0].to_string(), expected);
     rows.iter_mut().for_each(|row| row.expected_order = ExpectedOrders::default());
     assert_eq!(report(rows).assert_orders(0.1), Ok(()));
-}
-
-#[test]
-fn the_tables_of_orders_give_a_verdict_for_every_scheme() {
-    let mut rows: Vec<Row> = ["p1", "sipg", "wopsip"].into_iter().flat_map(four_levels).collect();
-    rows[4..8].iter_mut().for_each(|row| row.expected_order = ExpectedOrders::default());
-    rows[8..11].iter_mut().for_each(|row| row.status = Outcome::Cycling);
-    rows[8..12].iter_mut().for_each(|row| row.constraint = "facet-means".into());
-    rows.extend(with_local_orders("cr", &[1.0, 1.0, 1.0]));
-    rows.extend(with_local_orders("p2", &[0.82, 2.2, 0.81]));
-    let observed = report(rows).observed_orders();
-    let after_rule = |text: &str| -> Vec<String> {
-        let lines = text.lines().skip_while(|line| !line.starts_with("| :--"));
-        lines.skip(1).map(str::to_owned).collect()
-    };
-    assert_eq!(
-        after_rule(&orders_table(&observed, 0.1)),
-        [
-            "| radial-2d | p1 | vertices | 8 to 64 (4) | 2.00 ± 0.00 | 2 | 1.00 ± 0.00 | 1 | kept |",
-            "| radial-2d | sipg | vertices | 8 to 64 (4) | 2.00 ± 0.00 | - | 1.00 ± 0.00 | - | nothing promised |",
-            "| radial-2d | wopsip | facet-means | 64 (1) | - | 2 | - | 1 | too few levels; \
-             level 8 cycling; level 16 cycling; level 32 cycling |",
-            "| radial-2d | cr | vertices | 8 to 64 (4) | - | - | 1.00 ± 0.00 | 1.5 | missed in H1 |",
-            "| radial-2d | p2 | vertices | 8 to 64 (4) | - | - | 1.37 ± 0.20 | 1.5 | undecided |",
-        ]
-    );
-    assert_eq!(
-        after_rule(&orders_summary(&observed, 0.1)),
-        [
-            "| p1 | 2 | 0 | 0 | 0 | 0 | 0 |",
-            "| sipg | 0 | 0 | 0 | 0 | 0 | 2 |",
-            "| wopsip | 0 | 0 | 0 | 2 | 0 | 0 |",
-            "| cr | 0 | 1 | 0 | 0 | 0 | 1 |",
-            "| p2 | 0 | 0 | 1 | 0 | 0 | 1 |",
-            "| all | 2 | 1 | 1 | 2 | 0 | 4 |",
-            "",
-            "### Promises that were not seen to be kept",
-            "",
-            "| scene | scheme | norm | levels | order | promised | level to level | verdict |",
-            "| :-- | :-- | :-- | :-- | --: | --: | --: | :-- |",
-            "| radial-2d | wopsip | L2 | 64 (1) | - | 2 | - | too few levels |",
-            "| radial-2d | wopsip | H1 | 64 (1) | - | 1 | - | too few levels |",
-            "| radial-2d | cr | H1 | 8 to 64 (4) | 1.00 ± 0.00 | 1.5 | 1.00, 1.00, 1.00 | missed |",
-            "| radial-2d | p2 | H1 | 8 to 64 (4) | 1.37 ± 0.20 | 1.5 | 0.82, 2.20, 0.81 | undecided |",
-            "",
-            "Levels that did not converge: radial-2d wopsip 8 cycling; radial-2d wopsip 16 cycling; \
-             radial-2d wopsip 32 cycling.",
-        ]
-    );
 }

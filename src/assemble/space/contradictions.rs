@@ -1,10 +1,14 @@
 //! Bounds that leave no admissible value.
 
+use std::ops::Range;
+
 use super::Space;
 use crate::algebra::Bound;
 use crate::error::Error;
 use crate::input::excerpt;
-use crate::mesh::{Mesh, describe_point};
+use crate::mesh::{BoundaryCondition, Mesh, describe_point};
+use crate::parallel::cells;
+use crate::problem::Datum;
 use crate::real::Point;
 
 /// What a value is that a boundary group imposes.
@@ -60,6 +64,39 @@ impl<const D: usize> BoundedNode<D> {
 const ROUNDINGS_OF_CONSTANTS: f64 = 1e4;
 
 impl<const D: usize> Space<'_, D> {
+    /// Notes lower bounds above upper ones at the points of the rules for data in cells and on contact facets.
+    pub(super) fn compare_between_nodes(&self, found: &mut Vec<Contradiction<D>>) {
+        let data = &self.data;
+        if !data.upper.is_given() {
+            return;
+        }
+        let compare = |cell, x, bounds: [&Datum<D>; 2], found: &mut Vec<Contradiction<D>>| {
+            let node = BoundedNode { unknown: self.dofs.of(cell, 0), cell, x };
+            let of = (["lower bound", "upper bound"], None);
+            node.compare(of, bounds.map(|bound| self.at(bound, cell, &x)), found);
+        };
+        let in_cells = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+            let mut found = Vec::new();
+            for cell in cells {
+                let region = self.mesh.region(cell);
+                let both = data.lower.of(region).zip(data.upper.of(region));
+                let Some((lower, upper)) = both else { continue };
+                for point in &self.cell_rule.points {
+                    compare(cell, self.cell_point(point, cell), [lower, upper], &mut found);
+                }
+            }
+            found
+        });
+        found.extend(in_cells.into_iter().flatten());
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
+            let upper = data.upper.of(self.mesh.region(cell));
+            let Some((gap, upper)) = data.gap.of(group).zip(upper) else { continue };
+            for (point, _) in self.facet_rule.iter() {
+                compare(cell, self.facet_point(point, cell, local), [gap, upper], found);
+            }
+        }
+    }
+
     /// The largest absolute value of bounds, of those that contradict each other, and of a share of what the load does.
     pub fn size_of_data(&self, bounds: &[Bound<f64>], found: &[Contradiction<D>]) -> f64 {
         let of_load = SHARE_OF_LOAD * if found.is_empty() { 0.0 } else { self.size_of_load() };

@@ -161,8 +161,5 @@ fn row<const D: usize>(
     if let Some((scheme, level)) = reference {
         study = study.named_reference(scheme, *level);
     }
-    study
-        .check_memory()
-        .and_then(|()| study.judge_beside(values, constants))
-        .map_err(|e| e.to_string())
+    study.judge_beside(values, constants).map_err(|e| e.to_string())
 }

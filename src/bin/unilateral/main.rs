@@ -10,7 +10,6 @@ mod compare;
 mod judge;
 mod mesh_file;
 mod one_run;
-mod orders;
 mod pictures;
 mod shared;
 mod stability;
@@ -41,7 +40,6 @@ enum Command {
     WorkPrecision(Box<work_precision::Options>),
     Stability(stability::Options),
     Pictures(pictures::Options),
-    Orders(orders::Options),
     Judge(judge::Options),
     /// Names every scene, scheme, constraint placement and solver, as `compare --list` does
     List,
@@ -79,7 +77,6 @@ fn run(command: Command) -> Result<bool, Failure> {
         Command::WorkPrecision(options) => work_precision::run(&options),
         Command::Stability(options) => stability::run(&options),
         Command::Pictures(options) => pictures::run(&options),
-        Command::Orders(options) => orders::run(&options),
         Command::Judge(options) => Ok(judge::run(&options)?),
         Command::List => Ok(print(&compare::list()).map(|()| true)?),
     }

@@ -104,11 +104,11 @@ fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Result<bool, Fail
         written.borrow_mut().extend(draw_solution(&title, solved, &options.out, &stem)?);
         Ok(())
     });
-    picture.check().and_then(|()| picture.check_memory()).map_err(|e| e.to_string())?;
+    picture.check().map_err(|e| e.to_string())?;
     let series = study().levels(options.series.clone()).fields_to(&options.out);
     let series = series.fields_of_all_levels();
     if !options.series.is_empty() {
-        series.check().and_then(|()| series.check_memory()).map_err(|e| e.to_string())?;
+        series.check().map_err(|e| e.to_string())?;
     }
     take_directory(&options.out)?;
     end_at_interrupt("pictures and fields that are finished are there")?;

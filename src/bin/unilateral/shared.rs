@@ -113,9 +113,6 @@ pub fn end_at_interrupt(left: &'static str) -> Request<()> {
     .map_err(|e| format!("cannot handle interrupts: {e}"))
 }
 
-/// An observed order that falls below the promised one by no more than this counts as kept.
-pub const ORDER_TOLERANCE: f64 = 0.1;
-
 /// Prints to standard output.
 pub fn print(text: &str) -> Request<()> {
     print_to(std::io::stdout(), text)

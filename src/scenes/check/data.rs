@@ -1,7 +1,7 @@
 //! Conditions on the data alone, with or without an exact solution.
 
 use super::samples::{BoundaryPoint, boundary, lattice};
-use super::violation::{Condition, Violation};
+use super::violation::Violation;
 use crate::mesh::BoundaryCondition;
 use crate::real::Point;
 use crate::scenes::scene::Scene;
@@ -18,7 +18,13 @@ impl<const D: usize> Scene<D> {
             match condition {
                 BoundaryCondition::Dirichlet => self.check_dirichlet(&x)?,
                 BoundaryCondition::Contact if !self.problem.has_gap() => {
-                    return Err(Violation::new(&self.name, Condition::GapGiven, &x, f64::NAN, 0.0));
+                    return Err(Violation::new(
+                        &self.name,
+                        "a gap for the contact side",
+                        &x,
+                        f64::NAN,
+                        0.0,
+                    ));
                 }
                 BoundaryCondition::Neumann => {
                     if let Some(q) = &self.problem.neumann.everywhere {
@@ -35,7 +41,7 @@ impl<const D: usize> Scene<D> {
         if value.is_finite() {
             return Ok(());
         }
-        Err(Violation::new(&self.name, Condition::Finite(datum), x, value, 0.0))
+        Err(Violation::new(&self.name, &format!("{datum} finite"), x, value, 0.0))
     }
 
     fn check_data_at(&self, x: &Point<D>) -> Result<(), Violation> {
@@ -62,7 +68,13 @@ impl<const D: usize> Scene<D> {
         let reaction = problem.reaction.everywhere.as_ref().map_or(0.0, |c| c.at(x));
         for (value, passes) in [(alpha, alpha > 0.0), (reaction, reaction >= 0.0)] {
             if !passes {
-                return Err(Violation::new(&self.name, Condition::Ellipticity, x, value, 0.0));
+                return Err(Violation::new(
+                    &self.name,
+                    "coefficient positive and reaction not negative",
+                    x,
+                    value,
+                    0.0,
+                ));
             }
         }
         let (lower, upper) = self.bounds(x);
@@ -89,6 +101,12 @@ impl<const D: usize> Scene<D> {
         if a <= b || a - b <= allowed {
             return Ok(());
         }
-        Err(Violation::new(&self.name, Condition::Admissible, x, a - b, allowed))
+        Err(Violation::new(
+            &self.name,
+            "bounds in order and Dirichlet data between them",
+            x,
+            a - b,
+            allowed,
+        ))
     }
 }

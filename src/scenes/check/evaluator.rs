@@ -1,6 +1,6 @@
 //! Evaluation of the data and the exact solution of a scene, and their scales.
 
-use super::violation::{Condition, Violation};
+use super::violation::Violation;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
 
@@ -107,7 +107,7 @@ impl<'a, const D: usize> Evaluator<'a, D> {
     /// A violation unless `by <= allowed`; a violation if `by` is not a number.
     pub fn require(
         &self,
-        condition: Condition,
+        condition: &str,
         at: &Point<D>,
         by: f64,
         allowed: f64,

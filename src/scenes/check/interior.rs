@@ -2,7 +2,7 @@
 
 use super::differences::settled_derivative;
 use super::evaluator::{Evaluator, TOUCHING};
-use super::violation::{Condition, Violation};
+use super::violation::Violation;
 use crate::real::Point;
 
 /// Error allowed in a derivative by differences, relative to its scale.
@@ -30,7 +30,12 @@ impl<const D: usize> Evaluator<'_, D> {
                 match settled_derivative(along, reach, SETTLED * slope) {
                     Some(found) => {
                         let error = (found - stated[axis]).abs();
-                        self.require(Condition::Gradient, x, error, DERIVATIVE * slope)?;
+                        self.require(
+                            "gradient equal to the derivative of the value",
+                            x,
+                            error,
+                            DERIVATIVE * slope,
+                        )?;
                     }
                     None => skipped.push(x),
                 }
@@ -43,8 +48,8 @@ impl<const D: usize> Evaluator<'_, D> {
     pub(super) fn check_obstacles(&self, points: &[Point<D>]) -> Result<(), Violation> {
         let allowed = TOUCHING * self.scales.value;
         for x in points {
-            self.require(Condition::LowerObstacle, x, -self.above_lower(x), allowed)?;
-            self.require(Condition::UpperObstacle, x, -self.below_upper(x), allowed)?;
+            self.require("solution above the lower obstacle", x, -self.above_lower(x), allowed)?;
+            self.require("solution below the upper obstacle", x, -self.below_upper(x), allowed)?;
         }
         Ok(())
     }
@@ -72,10 +77,10 @@ impl<const D: usize> Evaluator<'_, D> {
         let Some(multiplier) = self.multiplier(x, depth) else { return Ok(false) };
         let (condition, by) =
             match (self.above_lower(x) <= touching, self.below_upper(x) <= touching) {
-                (false, false) => (Condition::Equation, multiplier.abs()),
-                (true, false) => (Condition::MultiplierSign, -multiplier),
-                (false, true) => (Condition::MultiplierSign, multiplier),
-                (true, true) => (Condition::MultiplierSign, 0.0),
+                (false, false) => ("-div(alpha grad u) + c u = f off contact", multiplier.abs()),
+                (true, false) => ("sign of the multiplier on contact", -multiplier),
+                (false, true) => ("sign of the multiplier on contact", multiplier),
+                (true, true) => ("sign of the multiplier on contact", 0.0),
             };
         self.require(condition, x, by, allowed)?;
         self.check_stated_inside(x, multiplier, allowed)?;
@@ -103,7 +108,7 @@ impl<const D: usize> Evaluator<'_, D> {
     fn check_resolution(&self, skipped: &[&Point<D>], total: usize) -> Result<(), Violation> {
         let Some(last) = skipped.last() else { return Ok(()) };
         let (by, allowed) = (skipped.len() as f64, (total / 4) as f64);
-        self.require(Condition::Resolution, last, by, allowed)
+        self.require("second derivatives that differences can resolve", last, by, allowed)
     }
 }
 

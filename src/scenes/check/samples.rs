@@ -58,15 +58,6 @@ impl<const D: usize> BoundaryPoint<D> {
     fn dirichlet(x: Point<D>, normal: Point<D>) -> Self {
         Self { x, normal, condition: BoundaryCondition::Dirichlet }
     }
-    /// Points that differ from this one by rounding: a few units in the last place inside and outside,
-    /// and with `-0.0` in place of `0.0`.
-    pub fn rounded(&self, length: f64) -> [Point<D>; 3] {
-        let level = self.x.dot(&self.normal).abs();
-        let shift = self.normal * (4.0 * f64::EPSILON * length.max(level));
-        let negated =
-            self.x.zip_map(&self.normal, |x, n| if n != 0.0 && x == 0.0 { -0.0 } else { x });
-        [self.x - shift, self.x + shift, negated]
-    }
 }
 
 /// Quasi-random points of the boundary: as many on each side, or twice as many on a circle.
@@ -116,14 +107,4 @@ fn beside_quadrant<const D: usize>(x: Point<D>) -> BoundaryPoint<D> {
         BoundaryPoint::dirichlet(axis(along, at), axis(across, normal))
     };
     if x[0] > 0.0 { on(0, x[0], 1, -1.0) } else { on(1, x[0], 0, 1.0) }
-}
-
-/// A sufficient condition for the segment between two points of a domain to lie in it.
-pub(super) fn sees<const D: usize>(domain: &Domain<D>, a: &Point<D>, b: &Point<D>) -> bool {
-    match domain {
-        // both halves of the L-shape are convex
-        Domain::LShape { .. } => a[0].max(b[0]) < 0.0 || a[1 % D].min(b[1 % D]) > 0.0,
-        Domain::Box(_) | Domain::Disc { .. } => true,
-        Domain::Mesh(_) => unreachable!("{NO_MESH}"),
-    }
 }

@@ -1,7 +1,7 @@
 //! Conditions on the stated multiplier and contact set.
 
 use super::evaluator::{Evaluator, TOUCHING};
-use super::violation::{Condition, Violation};
+use super::violation::Violation;
 use crate::real::Point;
 
 /// Error allowed in a multiplier on the boundary, relative to the scale of the flux.
@@ -45,19 +45,39 @@ impl<const D: usize> Evaluator<'_, D> {
         allowed: f64,
     ) -> Result<(), Violation> {
         if let Some(stated) = &self.exact.multiplier {
-            self.require(Condition::Multiplier, x, (multiplier - stated(x)).abs(), allowed)?;
+            self.require(
+                "stated multiplier equal to that of the solution",
+                x,
+                (multiplier - stated(x)).abs(),
+                allowed,
+            )?;
         }
         let Some(contact) = &self.exact.contact else { return Ok(()) };
         let indicator = (contact.indicator)(x);
         if indicator > 0.0 {
-            return self.require(Condition::ContactSet, x, gap, TOUCHING * self.scales.value);
+            return self.require(
+                "contact inside the stated contact set and nowhere else",
+                x,
+                gap,
+                TOUCHING * self.scales.value,
+            );
         }
         if indicator < 0.0 {
-            self.require(Condition::ContactSet, x, multiplier.abs(), allowed)?;
-            self.require(Condition::ContactSet, x, f64::from(u8::from(gap <= 0.0)), 0.0)?;
+            self.require(
+                "contact inside the stated contact set and nowhere else",
+                x,
+                multiplier.abs(),
+                allowed,
+            )?;
+            self.require(
+                "contact inside the stated contact set and nowhere else",
+                x,
+                f64::from(u8::from(gap <= 0.0)),
+                0.0,
+            )?;
         }
         let is_none = f64::from(u8::from(indicator.is_nan()));
-        self.require(Condition::Finite("indicator"), x, is_none, 0.0)
+        self.require("indicator finite", x, is_none, 0.0)
     }
 
     /// The indicator vanishes on the stated free boundary.
@@ -66,7 +86,7 @@ impl<const D: usize> Evaluator<'_, D> {
         let largest = points.iter().map(|x| (contact.indicator)(x).abs()).fold(0.0, f64::max);
         for x in &contact.free_boundary {
             let value = (contact.indicator)(x).abs();
-            self.require(Condition::FreeBoundary, x, value, ZERO * largest)?;
+            self.require("free boundary between contact and no contact", x, value, ZERO * largest)?;
         }
         Ok(())
     }

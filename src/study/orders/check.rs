@@ -102,7 +102,7 @@ pub struct ObservedOrders {
 }
 
 /// The norms in which theory promises orders.
-pub(crate) const PROMISED: [ErrorNorm; 2] = [ErrorNorm::L2, ErrorNorm::H1];
+const PROMISED: [ErrorNorm; 2] = [ErrorNorm::L2, ErrorNorm::H1];
 
 /// A promise that was not seen to be kept.
 #[derive(Clone, PartialEq)]
@@ -145,7 +145,7 @@ pub struct OrdersMissed(pub Vec<OrderMissed>);
 debug_by_display!(OrderMissed, OrdersMissed);
 
 /// First and last level, with their number.
-pub(crate) fn levels_in_words(levels: &[usize]) -> String {
+fn levels_in_words(levels: &[usize]) -> String {
     match levels {
         [] => "none".to_owned(),
         [only] => format!("{only} (1)"),
@@ -154,7 +154,7 @@ pub(crate) fn levels_in_words(levels: &[usize]) -> String {
 }
 
 /// The order and half its spread.
-pub(crate) fn order_in_words(fitted: &FittedOrder) -> String {
+fn order_in_words(fitted: &FittedOrder) -> String {
     let FittedOrder { order, spread, .. } = fitted;
     match spread.is_finite() {
         true => format!("{order:.2} ± {:.2}", 0.5 * spread),

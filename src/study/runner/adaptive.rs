@@ -92,8 +92,6 @@ impl<const D: usize> Study<'_, D> {
         (self.observer)(Progress::Entered(Phase::Mesh));
         let (mut rows, mut unwritten) = (Vec::new(), None);
         let first = self.first_mesh()?;
-        // no finest mesh is asked for: the first one is looked at, later ones by their rows
-        let crossing = self.find_crossing([&first])?;
         let measured = Measured { failure, reference: None };
         for entry in &self.entries {
             for solver in self.solvers() {
@@ -104,17 +102,15 @@ impl<const D: usize> Study<'_, D> {
                 for level in 0.. {
                     (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
                     let cells = meshes.finest().n_cells();
-                    if let Err(error) = self.check_step(&*entry.scheme, (level, cells)) {
+                    let place = (format!("step {level} with {cells} cells"), cells as f64);
+                    let fits = self.check_fits(&*entry.scheme, place, memory_of_process());
+                    if let Err(error) = fits {
                         let place = (level, cells as f64);
                         let row = self.row_without_memory(entry, place, solver.name(), error)?;
                         self.finish(row, &mut rows)?;
                         break;
                     }
-                    let step = match &crossing {
-                        Some(crossing) => Some(Err(crossing.error())),
-                        None => steps.next(),
-                    };
-                    let step = match step {
+                    let step = match steps.next() {
                         Some(Ok(step)) => step,
                         Some(Err(error)) => {
                             let place = (level, meshes.finest());

@@ -3,7 +3,6 @@
 mod adaptive;
 #[cfg(feature = "report")]
 mod cases;
-mod crossing;
 mod judge;
 mod memory;
 mod on_parts;
@@ -221,9 +220,7 @@ impl<'a, const D: usize> Study<'a, D> {
             true => Vec::new(),
             false => self.hierarchies(available)?,
         };
-        let crossing = self.find_crossing(hierarchies.iter().map(Hierarchy::finest))?;
-        let find_reference = || self.find_reference(&hierarchies);
-        let reference = crossing.is_none().then(find_reference).flatten();
+        let reference = self.find_reference(&hierarchies);
         let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let mut by_solver: Vec<Vec<NestedIteration<'_, D>>> = self
             .solvers()
@@ -247,9 +244,8 @@ impl<'a, const D: usize> Study<'a, D> {
                         continue;
                     }
                     (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
-                    let why_not = (&crossing, available);
                     let place = (level, solver.name());
-                    let (row, solved) = self.row(nested, entry, place, measured, why_not)?;
+                    let (row, solved) = self.row(nested, entry, place, measured, available)?;
                     let row = match &kept {
                         Some(row) => row,
                         None => self.finish(row, &mut rows)?,

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::mesh::{Layers, Mesh};
 use crate::nested::{Hierarchy, NestedIteration, Solved};
-use crate::processes::{ExchangeError, agree, agree_on_data};
+use crate::processes::{ExchangeError, agree};
 use crate::real::Precision;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
@@ -54,17 +54,13 @@ impl<const D: usize> Study<'_, D> {
             nested.quadrature(self.quadrature).system_solver(solver.clone())
         };
         let mut nested: Vec<NestedIteration<'_, D>> = hierarchies.iter().map(on_parts).collect();
-        let admissible = self.check_crossing_on_parts(&hierarchies, process)?;
         let mut rows = Vec::new();
         for entry in &self.entries {
             for &level in &self.levels {
                 (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
                 let (position, nested) = with_level(&mut nested, level);
                 nested.replace_constraint_set(&entry.problem);
-                let solved = match &admissible {
-                    Ok(()) => nested.solve_on(position, &*entry.scheme),
-                    Err(error) => Err(error.clone().into()),
-                };
+                let solved = nested.solve_on(position, &*entry.scheme);
                 let place = (level, nested.mesh(position));
                 let failed =
                     |error: &Error| self.row_of_failure(entry, place, error, (process, checks));
@@ -83,24 +79,6 @@ impl<const D: usize> Study<'_, D> {
             }
         }
         Ok(self.report(rows))
-    }
-
-    /// The error of all parts if lower bounds exceed upper ones on a part of the finest meshes.
-    fn check_crossing_on_parts(
-        &self,
-        hierarchies: &[Hierarchy<D>],
-        process: &Process,
-    ) -> Result<Result<(), ExchangeError>, Error> {
-        let Some(points) = self.points_of_bounds()? else { return Ok(Ok(())) };
-        let look_at = |hierarchy: &Hierarchy<D>| {
-            let Some(part) = hierarchy.part(hierarchy.n_meshes() - 1) else { return Ok(()) };
-            let own = points.look(&self.scene.problem, &part.mesh);
-            let seen = agree(own, &*process.exchange)?;
-            let size = process.exchange.largest(&[seen.size])?[0];
-            let own = seen.crossing(size).map_or(Ok(()), |found| Err(found.error()));
-            agree_on_data(own, &part.cells, &*process.exchange)
-        };
-        Ok(hierarchies.iter().try_for_each(look_at))
     }
 
     /// The parts of the fewest hierarchies that have all levels.

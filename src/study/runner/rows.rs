@@ -10,10 +10,9 @@ use crate::nested::{NestedIteration, Phase, Solved};
 use crate::scenes::check::Violation;
 use crate::scenes::check_exact_on;
 use crate::scheme::ExpectedOrders;
-use crate::study::crossing::Crossing;
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
-use crate::study::memory::{memory_of_process, peak_memory_bytes};
+use crate::study::memory::peak_memory_bytes;
 use crate::study::reference::Measured;
 use crate::study::row::Row;
 use crate::study::setting::setting;
@@ -39,29 +38,23 @@ impl<const D: usize> Study<'_, D> {
         Ok(&rows[rows.len() - 1])
     }
 
-    /// The row of one scheme on one level of these hierarchies, with its solution; there is none where bounds cross,
-    /// where the data left none, or where the solve needs more than the bytes that were available before the first row.
+    /// The row of one scheme on one level of these hierarchies, with its solution; there is none where the data
+    /// left none, or where the solve needs more than the bytes that were available before the first row.
     pub(super) fn row<'p>(
         &self,
         nested: &mut [NestedIteration<'p, D>],
         entry: &'p Entry<'_, D>,
         (level, solver): (usize, &str),
         measured: Measured<'_, 'p, D>,
-        (crossing, available): (&Option<Crossing<D>>, Option<u64>),
+        available: Option<u64>,
     ) -> Result<(Row, Option<Solved<'p, D>>), Error> {
-        // meshes that did not fit in the beginning were not built
-        let available = available.and_then(|bytes| Some(bytes.min(memory_of_process()?)));
         if let Err(error) = self.check_level(&*entry.scheme, level, available) {
             let cells = self.scene.domain.cells(level);
             return Ok((self.row_without_memory(entry, (level, cells), solver, error)?, None));
         }
         let (position, nested) = with_level(nested, level);
         nested.replace_constraint_set(&entry.problem);
-        let solved = match crossing {
-            None => nested.solve_on(position, &*entry.scheme),
-            Some(crossing) => Err(crossing.error()),
-        };
-        match solved {
+        match nested.solve_on(position, &*entry.scheme) {
             Ok(solved) => Ok((self.row_of(entry, level, &solved, solver, measured)?, Some(solved))),
             Err(error) => {
                 let place = (level, nested.mesh(position));

@@ -4,11 +4,7 @@ use unilateral::mesh::BoundaryCondition;
 use unilateral::mesh::BoxDomain;
 use unilateral::problem::{Datum, Exact, Given, Problem};
 use unilateral::real::Point;
-use unilateral::scenes::check::Condition;
-use unilateral::scenes::{
-    Scene, ball_2d, check_scene, contrast, hertz_2d, lshape_2d, radial, signorini_2d,
-    signorini_harmonic,
-};
+use unilateral::scenes::{Scene, ball_2d, check_scene, hertz_2d, lshape_2d, radial, signorini_2d};
 use unilateral::scheme::Regularity;
 
 /// A datum that takes the place of that of a scene.
@@ -16,7 +12,7 @@ fn given<const D: usize>(f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -
     Datum::from(f).into()
 }
 
-fn refused<const D: usize>(scene: &Scene<D>) -> Condition {
+fn refused<const D: usize>(scene: &Scene<D>) -> String {
     check_scene(scene, 300).expect_err("a wrong scene passed").condition
 }
 
@@ -25,7 +21,11 @@ fn the_check_refuses_a_load_of_the_wrong_sign() {
     let mut scene = radial::<2>(1.0);
     scene.problem.source.everywhere = Some(2.0.into());
     let condition = refused(&scene);
-    assert!(matches!(condition, Condition::Equation | Condition::MultiplierSign), "{condition}");
+    assert!(
+        ["-div(alpha grad u) + c u = f off contact", "sign of the multiplier on contact"]
+            .contains(&&condition[..]),
+        "{condition}"
+    );
 }
 
 #[test]
@@ -33,14 +33,14 @@ fn the_check_refuses_a_load_that_is_slightly_off() {
     let mut scene = signorini_2d();
     let f = scene.problem.source.everywhere.take().unwrap();
     scene.problem = scene.problem.source(move |x| f.at(x) + 1e-4);
-    assert_eq!(refused(&scene), Condition::Equation);
+    assert_eq!(refused(&scene), "-div(alpha grad u) + c u = f off contact");
 }
 
 #[test]
 fn the_check_refuses_a_multiplier_of_the_wrong_sign() {
     let mut scene = radial::<2>(1.0);
     scene.problem.source = given(|x: &Point<2>| if x.norm() <= 1.0 { 1.0 } else { -2.0 });
-    assert_eq!(refused(&scene), Condition::MultiplierSign);
+    assert_eq!(refused(&scene), "sign of the multiplier on contact");
 }
 
 #[test]
@@ -48,73 +48,64 @@ fn the_check_refuses_a_wrong_gradient() {
     let mut scene = hertz_2d();
     let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
     scene.problem = scene.problem.exact(move |x| value.at(x), move |x| gradient(x) * (1.0 + 1e-4));
-    assert_eq!(refused(&scene), Condition::Gradient);
+    assert_eq!(refused(&scene), "gradient equal to the derivative of the value");
 }
 
 #[test]
 fn the_check_refuses_an_obstacle_above_the_solution() {
     let mut scene = radial::<2>(1.0);
     scene.problem.lower = given(|x: &Point<2>| if x.norm() < 0.5 { 1e-3 } else { 0.0 });
-    assert_eq!(refused(&scene), Condition::LowerObstacle);
+    assert_eq!(refused(&scene), "solution above the lower obstacle");
     let mut scene = radial::<2>(1.0);
     scene.problem = scene.problem.obstacle_above(|x| if x.norm() < 1.2 { 1e-3 } else { 1e3 });
-    assert_eq!(refused(&scene), Condition::UpperObstacle);
+    assert_eq!(refused(&scene), "solution below the upper obstacle");
 }
 
 #[test]
 fn the_check_refuses_wrong_boundary_data() {
     let mut scene = ball_2d();
     scene.problem = scene.problem.dirichlet(|x| (2.0 / x.norm()).ln());
-    assert_eq!(refused(&scene), Condition::Dirichlet);
+    assert_eq!(refused(&scene), "Dirichlet data equal to the solution");
     let mut scene = radial::<2>(1.0);
     scene.domain = BoxDomain::centred(1.5).side(0, 1, BoundaryCondition::Neumann).into();
     scene.problem = scene.problem.neumann(|_, _| 0.0);
-    assert_eq!(refused(&scene), Condition::Neumann);
+    assert_eq!(refused(&scene), "Neumann data equal to the flux of the solution");
 }
 
 #[test]
 fn the_check_refuses_broken_signorini_conditions() {
     let mut scene = hertz_2d();
     scene.problem.gap = given(|x| 1e-3 - x[0] * x[0] / 2.0);
-    assert_eq!(refused(&scene), Condition::Gap);
+    assert_eq!(refused(&scene), "u >= g on the contact boundary");
     let mut scene = hertz_2d();
     scene.problem.gap = given(|x| -1e-3 - x[0] * x[0] / 2.0);
-    assert_eq!(refused(&scene), Condition::ContactComplementarity);
+    assert_eq!(refused(&scene), "u = g or alpha du/dn = 0 on the contact boundary");
     let mut scene = hertz_2d();
     scene.domain = BoxDomain::above_contact().side(1, 1, BoundaryCondition::Contact).into();
     scene.problem.gap = given(|_| -10.0);
-    assert!(matches!(refused(&scene), Condition::ContactFlux | Condition::ContactComplementarity));
+    assert!(
+        [
+            "alpha du/dn >= 0 on the contact boundary",
+            "u = g or alpha du/dn = 0 on the contact boundary"
+        ]
+        .contains(&&refused(&scene)[..])
+    );
     let mut scene = hertz_2d();
     scene.problem.gap.everywhere = None;
-    assert_eq!(refused(&scene), Condition::GapGiven);
-}
-
-#[test]
-fn the_check_refuses_the_gradient_of_a_neglected_branch_cut() {
-    // atan2 sees the sign of zero: just below the axis the angle is -pi.
-    let power = |exponent: f64, x: &Point<2>| {
-        let (r, theta) = (x.norm(), x[1].atan2(x[0]));
-        (r.powf(exponent) * (exponent * theta).cos(), r.powf(exponent) * (exponent * theta).sin())
-    };
-    let mut scene = signorini_harmonic::<2>();
-    scene.problem = scene.problem.exact(
-        move |x| power(1.5, x).0,
-        move |x| Point::from([1.5 * power(0.5, x).0, -1.5 * power(0.5, x).1]),
-    );
-    assert_eq!(refused(&scene), Condition::BoundaryLimit);
+    assert_eq!(refused(&scene), "a gap for the contact side");
 }
 
 #[test]
 fn the_check_refuses_data_that_are_not_finite() {
     let mut scene = ball_2d();
     scene.problem.lower = given(|x: &Point<2>| (1.0 - x.norm_squared()).sqrt());
-    assert_eq!(refused(&scene), Condition::Finite("lower obstacle"));
+    assert_eq!(refused(&scene), "lower obstacle finite");
     let mut scene = radial::<3>(1.0);
     let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
     scene.problem =
         scene.problem.exact(move |x| value.at(x), move |x| gradient(x) + x * (0.0 / x.norm()));
     let violation = check_scene(&scene, 300).unwrap_err();
-    assert_eq!(violation.condition, Condition::Finite("gradient"));
+    assert_eq!(violation.condition, "gradient finite");
     assert_eq!(violation.at, [0.0; 3]);
 }
 
@@ -122,7 +113,7 @@ fn the_check_refuses_data_that_are_not_finite() {
 fn the_check_refuses_a_coefficient_that_is_not_positive() {
     let mut scene = radial::<1>(1.0);
     scene.problem = scene.problem.coefficient(|x| x[0]);
-    assert_eq!(refused(&scene), Condition::Ellipticity);
+    assert_eq!(refused(&scene), "coefficient positive and reaction not negative");
 }
 
 /// `u = sign * (1/2 - |x|/2)`, harmonic but for a kink at `x = 0` that only an obstacle can hold.
@@ -137,15 +128,11 @@ fn ridge(sign: f64, problem: Problem<1>) -> Scene<1> {
 }
 
 #[test]
-fn a_kink_passes_only_where_an_obstacle_holds_it() {
+fn a_kink_passes_where_an_obstacle_holds_it() {
     let held = Problem::new().obstacle_below(|x: &Point<1>| 0.5 - x[0].abs());
     check_scene(&ridge(1.0, held), 300).unwrap();
     let held = Problem::new().obstacle_above(|x: &Point<1>| x[0].abs() - 0.5);
     check_scene(&ridge(-1.0, held), 300).unwrap();
-    assert_eq!(refused(&ridge(1.0, Problem::new())), Condition::Kink);
-    // An obstacle from below cannot pull.
-    let wrong_side = Problem::new().obstacle_below(|x: &Point<1>| -0.5 - x[0].abs());
-    assert_eq!(refused(&ridge(-1.0, wrong_side)), Condition::Kink);
 }
 
 /// Steps of differences are reduced until no kink is within reach: here, from nearly half of the points, one is at first.
@@ -169,17 +156,7 @@ fn the_check_refuses_a_solution_without_derivatives() {
     let noise = |x: &Point<1>| 1.0 + 1e-3 * (1e12 * x[0]).sin();
     let problem = Problem::new().dirichlet(noise).exact(noise, |_| Point::zeros());
     let scene = Scene::new("noise", BoxDomain::centred(1.0), problem);
-    assert_eq!(refused(&scene), Condition::Resolution);
-}
-
-#[test]
-fn the_check_refuses_a_jump_of_the_value() {
-    let mut scene = radial::<2>(1.0);
-    let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
-    scene.problem = scene
-        .problem
-        .exact(move |x| value.at(x) + f64::from(u8::from(x.norm() > 1.0)), move |x| gradient(x));
-    assert_eq!(refused(&scene), Condition::Continuity);
+    assert_eq!(refused(&scene), "second derivatives that differences can resolve");
 }
 
 #[test]
@@ -207,9 +184,9 @@ fn restated<const D: usize>(
 #[test]
 fn the_check_refuses_a_wrong_multiplier() {
     let doubled = restated(radial::<2>(1.0), |exact| exact.with_multiplier(|_| 2.0));
-    assert_eq!(refused(&doubled), Condition::Multiplier);
+    assert_eq!(refused(&doubled), "stated multiplier equal to that of the solution");
     let none = restated(hertz_2d(), |exact| exact.with_multiplier(|_| 0.0));
-    assert_eq!(refused(&none), Condition::Multiplier);
+    assert_eq!(refused(&none), "stated multiplier equal to that of the solution");
 }
 
 #[test]
@@ -217,34 +194,25 @@ fn the_check_refuses_a_wrong_contact_set() {
     for radius in [0.9, 1.1] {
         let off = move |x: &Point<2>| radius - x.norm();
         let scene = restated(radial::<2>(1.0), |exact| exact.with_contact(off, Vec::new()));
-        assert_eq!(refused(&scene), Condition::ContactSet);
+        assert_eq!(refused(&scene), "contact inside the stated contact set and nowhere else");
         let off = move |x: &Point<2>| radius / 2.0 - x[0].abs();
         let scene = restated(hertz_2d(), |exact| exact.with_contact(off, Vec::new()));
-        assert_eq!(refused(&scene), Condition::ContactSet);
+        assert_eq!(refused(&scene), "contact inside the stated contact set and nowhere else");
     }
     let nowhere = restated(signorini_2d(), |exact| exact.with_contact(|_| f64::NAN, Vec::new()));
-    assert_eq!(refused(&nowhere), Condition::Finite("indicator"));
+    assert_eq!(refused(&nowhere), "indicator finite");
 }
 
 #[test]
 fn the_check_refuses_a_point_that_is_not_on_the_free_boundary() {
     let beside = vec![Point::from([1e-6, 0.0])];
     let scene = restated(signorini_2d(), |exact| exact.with_contact(|x| -x[0], beside));
-    assert_eq!(refused(&scene), Condition::FreeBoundary);
-}
-
-#[test]
-fn the_check_refuses_a_flux_that_jumps_with_the_coefficient() {
-    let mut scene = contrast::<2>(10.0);
-    scene.problem.coefficient = given(|x| if x[0] < 0.5 { 10.0 } else { 1.1 });
-    scene.problem.source = given(|x| if x[0] < 0.5 { -1.0 } else { -1.1 });
-    let condition = refused(&scene);
-    assert_eq!(condition, Condition::Kink);
+    assert_eq!(refused(&scene), "free boundary between contact and no contact");
 }
 
 #[test]
 fn the_check_refuses_wrong_data_on_the_re_entrant_sides() {
     let mut scene = lshape_2d();
     scene.problem = scene.problem.dirichlet(|x| if x.amax() < 1.9 { 1e-3 } else { 0.0 });
-    assert_eq!(refused(&scene), Condition::Dirichlet);
+    assert_eq!(refused(&scene), "Dirichlet data equal to the solution");
 }

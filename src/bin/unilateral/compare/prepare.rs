@@ -97,7 +97,7 @@ pub fn prepare<'a, const D: usize>(
     }
     match study.check() {
         Err(Error::UnfitMesh(_)) if !options.asked.scenes_are_named() => return Ok(None),
-        other => other.and_then(|()| study.check_memory()).map_err(|e| format!("{place}: {e}"))?,
+        other => other.map_err(|e| format!("{place}: {e}"))?,
     }
     let keys = study.keys();
     // how many steps a bound takes is not known before
