@@ -37,8 +37,6 @@ pub struct Fields {
     pub pressure: Vec<f64>,
     /// The gap that is left on each of these facets: the mean of `u - g`.
     pub gap: Vec<f64>,
-    /// The share of each cell in the square of the error bound; empty unless the caller sets it.
-    pub bound: Vec<f64>,
 }
 
 impl Fields {
@@ -112,7 +110,6 @@ impl<const D: usize> Space<'_, D> {
                 None => vec![f64::NAN; contact_boundary.len()],
             },
             gap: contact_boundary.iter().map(|&facet| self.mean_gap(facet, u)).collect(),
-            bound: Vec::new(),
             contact_boundary,
         }
     }

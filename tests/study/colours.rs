@@ -1,15 +1,15 @@
 //! Colours of pictures: what they say of a function, the lines between them, and the exact free boundary.
 
-use super::svg::{FINE, area, areas, length, lines, paths, picture_of, segments, square, texts};
-use unilateral::measure::Fields;
+use super::svg::{FINE, area, areas, length, paths, picture_of, segments, square, texts};
 use unilateral::mesh::{BoundaryCondition, TaggedFacet};
 use unilateral::plot::Picture;
 use unilateral::prelude::*;
 
 /// The upper left corner of the data of the first panel, and of the second beside it, in units of the file.
 const CORNERS: [[f64; 2]; 2] = [[66.0 * FINE, 62.0 * FINE], [342.0 * FINE, 62.0 * FINE]];
-/// The width of the data, in units of the file.
-const WIDE: f64 = 204.0 * FINE;
+/// The width of the data of a panel that stands alone, and of one of two in a row, in units of the file.
+const WIDE: f64 = 358.0 * FINE;
+const NARROW: f64 = 204.0 * FINE;
 
 /// A mesh of triangles in the plane with Dirichlet data on these facets.
 fn triangles(vertices: &[[f64; 2]], cells: Vec<u32>, boundary: &[[u32; 2]]) -> Mesh<2> {
@@ -42,8 +42,7 @@ fn a_constant_has_one_band_around_it_and_no_number_has_none() {
     let svg = picture_of(&square(1), |_| 2.0);
     assert_eq!(areas(&svg).len(), 2, "the square, and the bar");
     let said: Vec<String> = texts(&svg, 124, "middle").into_iter().map(|text| text.1).collect();
-    let whole: Vec<&String> = said.iter().filter(|text| text.parse::<u32>().is_ok()).collect();
-    assert_eq!(whole, ["1", "2", "3"]);
+    assert!(said.ends_with(&["1.0", "1.5", "2.0", "2.5", "3.0"].map(str::to_owned)), "{said:?}");
     let name = |svg: &str| texts(svg, 132, "middle").iter().filter(|text| text.1 == "u").count();
     let none = picture_of(&square(1), |_| f64::NAN);
     assert_eq!((name(&svg), name(&none), areas(&none).len()), (1, 0, 0));
@@ -126,32 +125,6 @@ fn bands_are_nested_parts_of_triangles_and_contour_lines_end_them() {
     assert_eq!([of_one, of_two], [2, 3]);
 }
 
-/// Jumps of 0.08, 2e-3 and 1e-9 have the colours of six decades up to the largest; those that are all rounding are grey.
-#[test]
-fn a_logarithmic_scale_shows_six_decades_at_most() {
-    let mesh = square(2);
-    let mut fields = Fields::default();
-    fields.u = vec![0.0; 24];
-    for (cell, value) in [(0, 0.08), (7, 2e-3), (2, 1e-9), (4, 1e-30)] {
-        fields.u[3 * cell..3 * cell + 3].fill(value);
-    }
-    let svg = Picture::of("t", &Problem::new(), &mesh, &fields).unwrap().to_svg().unwrap();
-    let bar: Vec<String> = paths(&svg).into_iter().rev().take(13).map(|path| path.0).collect();
-    let said: Vec<String> = texts(&svg, 124, "middle").into_iter().map(|text| text.1).collect();
-    let powers: Vec<&String> = said.iter().filter(|text| text.starts_with("10")).collect();
-    assert_eq!(powers, ["10−7", "10−5", "10−3", "10−1"]);
-    for (jump, band, is_shown) in
-        [("1e-9", 0, true), ("2e-3", 9, true), ("0.08", 12, true), ("none", 5, false)]
-    {
-        assert_eq!(!lines(&svg, &bar[12 - band], 24).is_empty(), is_shown, "{jump}");
-    }
-    assert!(!lines(&svg, "#CDCDCD", 4).is_empty());
-    fields.u.fill(1.0);
-    fields.u[0] += 1e-15;
-    let svg = Picture::of("t", &Problem::new(), &mesh, &fields).unwrap().to_svg().unwrap();
-    assert!(svg.contains("none beyond rounding"));
-}
-
 /// The exact free boundary is the unit circle in a square of side three, found from the sign of a function.
 #[test]
 fn a_circle_is_found_from_its_inside_alone() {
@@ -160,11 +133,11 @@ fn a_circle_is_found_from_its_inside_alone() {
     let solved = solve(&scene.problem, &meshes, &ConformingP1).unwrap();
     let fields = solved.fields().unwrap();
     let svg = Picture::of("t", &scene.problem, solved.mesh(), &fields).unwrap().to_svg().unwrap();
-    let unit = WIDE / 3.0;
-    let centre = CORNERS[1].map(|edge| edge + 0.5 * WIDE);
+    let unit = NARROW / 3.0;
+    let centre = CORNERS[1].map(|edge| edge + 0.5 * NARROW);
     let radius = |x: [f64; 2]| (x[0] - centre[0]).hypot(x[1] - centre[1]);
     // the legend has a line of this style too, further away
-    let is_inside = |[from, _]: &[[f64; 2]; 2]| radius(*from) < 0.5 * WIDE;
+    let is_inside = |[from, _]: &[[f64; 2]; 2]| radius(*from) < 0.5 * NARROW;
     let found: Vec<_> = segments(&svg, "#D55E00", 14).into_iter().filter(is_inside).collect();
     for end in found.as_flattened() {
         assert!((radius(*end) - unit).abs() <= 1.0, "{end:?}");

@@ -17,8 +17,8 @@ const HEAD: &str = "\
 # Observed and promised orders
 
 Written by `cargo test --release --test study -- --ignored needs_time_to_write_the_page_of_orders`. Every scheme on the
-scenes of the catalogue with default penalties and constraint sets, on five levels, in space four, each half of what is
-needed for the figures elsewhere. `docs/conventions.md` says how an order is judged.
+scenes of the catalogue with default penalties and constraint sets, on four coarse levels. `docs/conventions.md` says how
+an order is judged.
 
 | scene | scheme | levels | L2 | promised | H1 | promised | verdict |
 |---|---|---|--:|--:|--:|--:|---|
@@ -31,10 +31,10 @@ fn observed<const D: usize>(
     degree: usize,
 ) -> Vec<ObservedOrders> {
     let levels: &[usize] = match (D, degree) {
-        (1, _) => &[8, 16, 32, 64, 128],
-        (2, 1) => &[4, 8, 16, 32, 64],
-        (2, _) => &[2, 4, 8, 16, 32],
-        _ => &[1, 2, 4, 8],
+        (1, _) => &[8, 16, 32, 64],
+        (2, 1) => &[4, 8, 16, 32],
+        (2, _) => &[2, 4, 8, 16],
+        _ => &[1, 2, 3, 4],
     };
     let study = Study::<D>::new(scene).levels(levels.iter().copied());
     schemes.iter().fold(study, Study::named_scheme).run().unwrap().observed_orders()

@@ -85,7 +85,7 @@ fn all_that_is_drawn_lies_on_the_paper_and_the_legend_names_it() {
     let svg = picture.to_svg().unwrap();
     let n_paths = paths_on_paper(&svg);
     assert!(n_paths > 20, "{n_paths}");
-    for text in ["in contact", "free boundary, found", "free boundary, exact", "|mean jump|"] {
+    for text in ["in contact", "free boundary, found", "free boundary, exact"] {
         assert!(svg.contains(text), "{text}");
     }
     assert!(svg.contains("a &amp; b") && svg.ends_with("</svg>\n"));
@@ -99,14 +99,11 @@ fn jumps_are_drawn_as_they_are() {
     let problem = Problem::new();
     let picture = Picture::of("two", &problem, &mesh, &fields).unwrap();
     let halves = areas(&picture.to_svg().unwrap());
-    let square = (FINE * ACROSS).powi(2);
+    let square = (FINE * ACROSS_ALONE).powi(2);
     let large: Vec<_> = halves.iter().filter(|(_, area)| *area > 0.4 * square).collect();
     assert_eq!(large.len(), 2, "{halves:?}");
     assert_ne!(large[0].0, large[1].0);
     assert!(large.iter().all(|(_, area)| (area / square - 0.5).abs() < 1e-3));
-    // a continuous function has none
-    let continuous = Picture::of("one", &problem, &mesh, &function(&mesh, |_| 1.0));
-    assert!(continuous.unwrap().to_svg().unwrap().contains("none beyond rounding"));
 }
 
 /// A picture of cells in contact in a cube of Dirichlet data: only their surface is drawn.
@@ -187,7 +184,7 @@ fn a_contact_boundary_in_space_is_seen_flat_beside_the_solution_on_the_surface()
     let unit = FINE * ACROSS / 2.0;
     let largest = of_contact.fold(0.0, f64::max);
     assert!((largest / unit.powi(2) / area - 1.0).abs() < 2e-3, "{largest} {area}");
-    for text in ["solution on the surface", "free boundary, exact", "density of the multiplier"] {
+    for text in ["solution on the surface", "free boundary, exact"] {
         assert!(svg.contains(text), "{text}");
     }
 }
@@ -241,7 +238,7 @@ fn a_string_is_drawn_as_a_curve_over_its_obstacle() {
         areas(&svg).iter().filter(|(fill, _)| fill == CONTACT).map(|p| p.1).fold(0.0, f64::max);
     let bar = 9.0 * FINE.powi(2) * ACROSS_ALONE * contact / 3.0;
     assert!((largest / bar - 1.0).abs() < 2e-3, "{largest} {bar}");
-    for text in ["obstacle", "density found", "exact density", "free boundary, exact"] {
+    for text in ["obstacle", "free boundary, exact"] {
         assert!(svg.contains(text), "{text}");
     }
 }

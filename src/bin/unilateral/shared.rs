@@ -242,16 +242,14 @@ pub fn reference(text: &str) -> Request<(NamedScheme, usize)> {
     Ok((scheme.parse().map_err(|e: unilateral::scheme::SchemeNameError| e.to_string())?, level))
 }
 
-/// Draws a solution as `STEM.svg`, with the share of each cell in the error bound where there is one. Returns the file;
-/// none without an iterate.
+/// Draws a solution as `STEM.svg`. Returns the file; none without an iterate.
 pub fn draw_solution<const D: usize>(
     title: &str,
     solved: &Solved<'_, D>,
     directory: &Path,
     stem: &str,
 ) -> Result<Option<PathBuf>, Error> {
-    let Some(mut fields) = solved.fields() else { return Ok(None) };
-    fields.bound = solved.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
+    let Some(fields) = solved.fields() else { return Ok(None) };
     let problem = solved.discretisation().problem();
     Picture::of(title, problem, solved.mesh(), &fields)?.write(directory, stem).map(Some)
 }

@@ -14,8 +14,8 @@ const STRIDE: usize = 2;
 /// A point with the value of the function there.
 pub(crate) type Valued = (PlanePoint, f64);
 
-/// Fills a map with the bands of a function, perhaps with its contour lines.
-pub(crate) fn shade(map: &mut Map, name: &str, triangles: &[[Valued; 3]], with_lines: bool) {
+/// Fills a map with the bands of a function and its contour lines.
+pub(crate) fn shade(map: &mut Map, name: &str, triangles: &[[Valued; 3]]) {
     let values = triangles.as_flattened().iter().map(|corner| corner.1);
     let Some(scale) = Scale::linear(name, values) else { return };
     let mut fills: Vec<_> = triangles.iter().flat_map(|t| bands(&scale, t)).collect();
@@ -23,7 +23,7 @@ pub(crate) fn shade(map: &mut Map, name: &str, triangles: &[[Valued; 3]], with_l
     fills.sort_by_key(|fill| fill.0);
     map.fills.extend(fills.into_iter().map(|(k, area)| (scale.colour(k), area)));
     let ink = |k: usize| if 2 * k < scale.bands() { PAPER } else { INK };
-    for k in (STRIDE..scale.bands()).step_by(STRIDE).filter(|_| with_lines) {
+    for k in (STRIDE..scale.bands()).step_by(STRIDE) {
         let lines = triangles.iter().filter_map(|t| contour(t, scale.levels[k]));
         map.lines.extend(lines.map(|ends| (Stroke::Coloured(ink(k), 0.6), ends)));
     }

@@ -27,18 +27,15 @@ pub(crate) fn colour(share: f64) -> Colour {
 pub(crate) struct Scale {
     /// Name of the quantity.
     pub name: String,
-    /// The ends of the bands, ascending; in a logarithmic scale exponents of ten.
+    /// The ends of the bands, ascending.
     pub levels: Vec<f64>,
-    /// Whether the levels are exponents of ten.
-    pub logarithmic: bool,
 }
 
-/// Fewest bands of a scale, and decades that a logarithmic one shows at most.
+/// Fewest bands of a scale.
 const BANDS: f64 = 10.0;
-const DECADES: f64 = 6.0;
 
 impl Scale {
-    /// A linear scale over these numbers; none if there are none.
+    /// The scale over these numbers; none if there are none.
     pub fn linear(name: &str, values: impl Iterator<Item = f64>) -> Option<Self> {
         let (low, high) = range(values)?;
         let step = round_step((high - low) / BANDS);
@@ -50,19 +47,7 @@ impl Scale {
             let last = (high / step - 1e-9).ceil();
             (0..=(last - first) as i32).map(|k| (first + f64::from(k)) * step).collect()
         };
-        Some(Scale { name: name.to_owned(), levels, logarithmic: false })
-    }
-
-    /// A logarithmic scale over the numbers above a floor; none if there are none.
-    pub fn logarithmic(name: &str, values: impl Iterator<Item = f64>, floor: f64) -> Option<Self> {
-        let (low, high) = range(values.filter(|v| *v > floor).map(f64::log10))?;
-        let (low, high) = (low.max(high - DECADES), high);
-        let per_decade = if high - low > 3.0 { 2.0 } else { 5.0 };
-        let first = (low * per_decade).floor();
-        let last = (high * per_decade).ceil().max(first + 1.0);
-        let levels =
-            (0..=(last - first) as i32).map(|k| (first + f64::from(k)) / per_decade).collect();
-        Some(Scale { name: name.to_owned(), levels, logarithmic: true })
+        Some(Scale { name: name.to_owned(), levels })
     }
 
     /// Number of bands.
@@ -72,7 +57,6 @@ impl Scale {
 
     /// The band of a number; what is beyond the ends belongs to the last band before them.
     pub fn band(&self, value: f64) -> usize {
-        let value = if self.logarithmic { value.log10() } else { value };
         self.levels[1..self.bands()].partition_point(|level| *level <= value)
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::triangle::{Triangle, View};
+use super::triangle::Triangle;
 use crate::mesh::Mesh;
 
 /// An edge, and the triangles beside it by their numbers.
@@ -21,27 +21,4 @@ pub(crate) fn edges<const D: usize>(mesh: &Mesh<D>, triangles: &[Triangle]) -> V
         }
     }
     known.into_iter().map(|(vertices, sides)| Edge { vertices, sides }).collect()
-}
-
-/// The size of the mean jump of the function across an edge; none at the boundary.
-pub(crate) fn mean_jump<const D: usize>(
-    view: &View<'_, D>,
-    triangles: &[Triangle],
-    edge: &Edge,
-) -> Option<f64> {
-    let [one, other] = edge.sides[..] else { return None };
-    // Simpson's rule is exact for quadratics
-    let mean = |side: usize| {
-        let cell = triangles[side].cell;
-        let (mut ends, mut middle) = (0.0, [0.0; 4]);
-        for (k, v) in view.mesh.cell(cell).iter().enumerate() {
-            if edge.vertices.contains(v) {
-                let mut end = [0.0; 4];
-                (end[k], middle[k]) = (1.0, 0.5);
-                ends += view.value(cell, &end);
-            }
-        }
-        (ends + 4.0 * view.value(cell, &middle)) / 6.0
-    };
-    Some((mean(one) - mean(other)).abs())
 }

@@ -1,6 +1,6 @@
 //! The panels of a picture in one dimension: functions over the line.
 
-use super::axes::{CONTACT, Stroke, Symbol};
+use super::axes::{Stroke, Symbol};
 use super::graph::Graph;
 use crate::arrays::map_entries;
 use crate::measure::Fields;
@@ -21,15 +21,6 @@ pub(crate) struct Line<'a, const D: usize> {
 impl<'a, const D: usize> Line<'a, D> {
     pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<D>, fields: &'a Fields) -> Self {
         Line { problem, mesh, fields }
-    }
-
-    /// The solution, and the multiplier if it is a density.
-    pub fn panels(&self) -> Vec<Graph> {
-        let mut panels = vec![self.solution()];
-        let is_density =
-            self.problem.has_obstacle() && !self.fields.discrete_contact.density.is_empty();
-        panels.extend(is_density.then(|| self.multiplier()));
-        panels
     }
 
     /// The ends of a cell.
@@ -76,7 +67,8 @@ impl<'a, const D: usize> Line<'a, D> {
         graph.mark(self.contact(), marks);
     }
 
-    fn solution(&self) -> Graph {
+    /// The solution over its obstacles, with the contact set and the free boundary.
+    pub fn solution(&self) -> Graph {
         let mut graph = Graph::of_found("solution", ["x", "u"], "u");
         // a problem that was solved on the mesh has its data there
         if let Ok(data) = DataOnMesh::new(self.problem, self.mesh) {
@@ -104,43 +96,6 @@ impl<'a, const D: usize> Line<'a, D> {
                     graph.lines.extend((0..PARTS).map(|k| (Stroke::Solution, [at(k), at(k + 1)])));
                 }
             }
-        }
-        self.mark_contact(&mut graph);
-        self.list_point_multipliers(&mut graph);
-        graph
-    }
-
-    /// Adds nodal multipliers on the contact boundary to the legend: in one dimension each is a
-    /// number at a point, not a curve.
-    fn list_point_multipliers(&self, graph: &mut Graph) {
-        for &(cell, local) in &self.fields.discrete_contact.facets {
-            let vertex = self.mesh.cell(cell)[1 - local] as usize;
-            if let Some(Some(multiplier)) = self.fields.discrete_contact.density.get(vertex) {
-                let x = self.ends(cell)[1 - local];
-                graph.legend.push((
-                    Symbol::Area(CONTACT),
-                    format!("multiplier {multiplier:.4} at x = {x}"),
-                ));
-            }
-        }
-    }
-
-    fn multiplier(&self) -> Graph {
-        let mut graph = Graph::of_found("multiplier", ["x", "density"], "density found");
-        for cell in 0..self.mesh.n_cells() {
-            let x = self.ends(cell);
-            let vertices = self.mesh.cell(cell);
-            let density =
-                map_entries([0, 1], |k| self.fields.discrete_contact.density[vertices[k] as usize]);
-            if let [Some(a), Some(b)] = density {
-                graph.lines.push((Stroke::Solution, [[x[0], a], [x[1], b]]));
-            }
-        }
-        let exact = self.problem.exact.as_ref();
-        if let Some(multiplier) = exact.and_then(|e| e.multiplier.as_ref()) {
-            let density = Datum::Function(multiplier.clone());
-            graph.lines.extend(self.given(&|_| Some(&density), Stroke::Exact));
-            graph.legend.push((Symbol::Line(Stroke::Exact), "exact density".to_owned()));
         }
         self.mark_contact(&mut graph);
         graph

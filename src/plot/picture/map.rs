@@ -132,24 +132,11 @@ fn draw_bar(pen: &mut Pen, scale: &Scale, (left, top): ScreenPoint, width: f64) 
     pen.outline(&[(left, top), (right, top), (right, bottom), (left, bottom)], 0.8, INK);
     let (low, high) = (scale.levels[0], scale.levels[scale.bands()]);
     let most = if width < 300.0 { 4 } else { 8 };
-    let mut power = 0;
-    if scale.logarithmic {
-        let (first, last) = (low.ceil() as i32, high.floor() as i32);
-        let step = ((last - first + 1).max(1) as usize).div_ceil(most).max(1);
-        for exponent in (first..=last).step_by(step) {
-            let x = at(scale.position(f64::from(exponent)));
-            pen.line((x, bottom), (x, bottom + 3.0), 0.8, INK);
-            let text = exponent.to_string().replace('-', "\u{2212}");
-            pen.power("10", &text, (x, bottom + 13.0), TICK, INK, Align::Centre);
-        }
-    } else {
-        let (ticks, common) = labels(low, high, most);
-        power = common;
-        for (value, text) in ticks {
-            let x = at(scale.position(value));
-            pen.line((x, bottom), (x, bottom + 3.0), 0.8, INK);
-            pen.text(&text, (x, bottom + 12.0), TICK, INK, Align::Centre);
-        }
+    let (ticks, power) = labels(low, high, most);
+    for (value, text) in ticks {
+        let x = at(scale.position(value));
+        pen.line((x, bottom), (x, bottom + 3.0), 0.8, INK);
+        pen.text(&text, (x, bottom + 12.0), TICK, INK, Align::Centre);
     }
     draw_quantity(pen, &scale.name, power, (left + 0.5 * width, bottom + 33.0))
 }

@@ -1,7 +1,5 @@
-//! Pictures of a solution: in the plane panels with the function, the contact set found against the
-//! exact free boundary, the jumps across facets, the multiplier and, if it is given, the share of each
-//! cell in the error bound; on the line curves; in space the solution on the
-//! surface and the contact set, seen from outside.
+//! Pictures of a solution: in the plane panels with the function and with the contact set found against the
+//! exact free boundary; on the line a curve; in space the solution on the surface and the contact set, seen from outside.
 //!
 //! A discontinuous function is drawn cell by cell as it is. The bands of a colour are cut exactly
 //! along the levels of the function on each cell, of a quadratic one on the pieces between vertices
@@ -95,7 +93,7 @@ impl Picture {
     ) -> Result<Self, Error> {
         check_fields(mesh, fields)?;
         let panels = match D {
-            1 => Line::new(problem, mesh, fields).panels().into_iter().map(Panel::Graph).collect(),
+            1 => vec![Panel::Graph(Line::new(problem, mesh, fields).solution())],
             2 => Plane::of_cells(problem, mesh, fields).panels(),
             _ => Space::new(problem, mesh, fields).panels(),
         };
@@ -168,7 +166,6 @@ fn check_fields<const D: usize>(mesh: &Mesh<D>, fields: &Fields) -> Result<(), E
     let fits = fields.u.len() == n * (D + 1)
         && [0, n * edge_vertices(D).len()].contains(&fields.midpoints.len())
         && [0, mesh.vertices().len()].contains(&found.density.len())
-        && [0, n].contains(&fields.bound.len())
         && found.cells.iter().all(|&cell| cell < n)
         && found.facets.iter().all(|&(cell, local)| cell < n && local <= D);
     match fits {

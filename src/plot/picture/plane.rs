@@ -2,10 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use super::axes::{CONTACT, FAINT, Stroke, Symbol};
+use super::axes::{CONTACT, Stroke, Symbol};
 use super::bands::shade;
-use super::colour::Scale;
-use super::edges::{Edge, edges, mean_jump};
+use super::edges::{Edge, edges};
 use super::level_line::{distance, level_line};
 use super::map::Map;
 use super::panel::Panel;
@@ -18,8 +17,6 @@ use crate::problem::{ContactSet, Problem};
 
 /// Most triangles whose edges are drawn.
 const MOST_EDGES: usize = 1500;
-/// Jumps below this many roundings of the largest value are none.
-const ROUNDINGS: f64 = 256.0;
 
 /// The data of the panels.
 pub(crate) struct Plane<'a, const D: usize> {
@@ -68,23 +65,10 @@ impl<'a, const D: usize> Plane<'a, D> {
         Plane { problem, axes, edges, view, triangles, touches, is_partial }
     }
 
-    /// All panels of a domain in the plane that are not empty.
+    /// The panels of a domain in the plane.
     pub fn panels(&self) -> Vec<Panel> {
-        let mut panels = vec![Panel::Map(self.solution())];
-        if self.problem.is_constrained() {
-            panels.push(Panel::Map(self.contact()));
-        }
-        panels.push(Panel::Map(self.jumps()));
-        panels.extend(self.multiplier());
-        if !self.view.fields.bound.is_empty() {
-            panels.push(Panel::Map(self.bound()));
-        }
-        panels
-    }
-
-    /// The panels of a contact boundary.
-    pub fn panels_of_contact(&self) -> Vec<Panel> {
-        [Panel::Map(self.contact())].into_iter().chain(self.multiplier()).collect()
+        let contact = self.problem.is_constrained().then(|| self.contact());
+        [self.solution()].into_iter().chain(contact).map(Panel::Map).collect()
     }
 
     fn map(&self, title: &str) -> Map {
@@ -105,12 +89,13 @@ impl<'a, const D: usize> Plane<'a, D> {
     fn solution(&self) -> Map {
         let pieces = self.triangles.iter().flat_map(|t| self.view.linear_pieces(t));
         let mut map = self.map("solution");
-        shade(&mut map, "u", &pieces.collect::<Vec<_>>(), true);
+        shade(&mut map, "u", &pieces.collect::<Vec<_>>());
         map.lines.extend(self.rim());
         map
     }
 
-    fn contact(&self) -> Map {
+    /// The contact set, with the free boundary.
+    pub fn contact(&self) -> Map {
         let mut map = self.map(match self.is_partial {
             true => "contact set (one side)",
             false => "contact set",
@@ -189,104 +174,5 @@ impl<'a, const D: usize> Plane<'a, D> {
         if !map.marks.is_empty() {
             map.legend.push((Symbol::Mark, "free boundary, exact".to_owned()));
         }
-    }
-
-    fn jumps(&self) -> Map {
-        let mut map = self.map("jumps across facets");
-        let largest = self.view.fields.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-        let floor = ROUNDINGS * f64::EPSILON * largest;
-        let jumps: Vec<(f64, [PlanePoint; 2])> = self
-            .edges
-            .iter()
-            .filter_map(|e| Some((mean_jump(&self.view, &self.triangles, e)?, self.ends(e))))
-            .collect();
-        map.scale = Scale::logarithmic("|mean jump|", jumps.iter().map(|j| j.0), floor);
-        let none = jumps.iter().filter(|j| j.0 <= floor);
-        if self.triangles.len() <= MOST_EDGES {
-            map.lines.extend(none.map(|j| (Stroke::Coloured(FAINT, 0.5), j.1)));
-        }
-        match &map.scale {
-            None => map.note = Some("none beyond rounding"),
-            Some(scale) => {
-                let mean = jumps.iter().map(|j| distance(j.1[0], j.1[1])).sum::<f64>()
-                    / jumps.len().max(1) as f64;
-                let on_paper = 200.0 * mean / (map.high[0] - map.low[0]);
-                let width = (0.35 * on_paper).clamp(0.6, 3.0);
-                let mut coloured: Vec<(usize, [PlanePoint; 2])> =
-                    jumps.iter().filter(|j| j.0 > floor).map(|j| (scale.band(j.0), j.1)).collect();
-                coloured.sort_by_key(|line| line.0);
-                let stroke = |band| Stroke::Coloured(scale.colour(band), width);
-                map.lines.extend(coloured.into_iter().map(|(band, ends)| (stroke(band), ends)));
-            }
-        }
-        map.lines.extend(self.rim());
-        map
-    }
-
-    /// The density of the multiplier; none where it is not known.
-    fn multiplier(&self) -> Option<Panel> {
-        if self.view.fields.discrete_contact.density.is_empty() {
-            return None;
-        }
-        if !self.problem.has_obstacle() && D == 2 {
-            let graph = trace::graph(self.problem, self.view.mesh, self.view.fields);
-            return Some(match graph {
-                Some(graph) => Panel::Graph(graph),
-                None => Panel::Map(self.multiplier_on_facets()),
-            });
-        }
-        let mut map = self.map("multiplier");
-        let with_touches = self.triangles.iter().zip(&self.touches);
-        let valued = with_touches.filter_map(|(t, touches)| self.view.density(t, *touches));
-        let valued: Vec<_> = valued.collect();
-        shade(&mut map, "density of the multiplier", &valued, false);
-        if map.scale.is_none() {
-            map.note = Some("none known");
-        } else if valued.len() < self.triangles.len() {
-            map.title += " (white: none known)";
-        }
-        map.lines.extend(self.rim());
-        Some(Panel::Map(map))
-    }
-
-    /// The share of each cell in the square of the error bound.
-    fn bound(&self) -> Map {
-        let mut map = self.map("share in the error bound");
-        let share = |triangle: &Triangle| self.view.fields.bound[triangle.cell];
-        let shares = self.triangles.iter().map(share);
-        map.scale = Scale::logarithmic("share in the square of the bound", shares, 0.0);
-        if let Some(scale) = &map.scale {
-            // those of a colour together, which keeps files short
-            let with_band = |t: &Triangle| (scale.band(share(t)), t.places());
-            let mut fills: Vec<_> = self.triangles.iter().map(with_band).collect();
-            fills.sort_by_key(|fill| fill.0);
-            map.fills.extend(fills.into_iter().map(|(band, area)| (scale.colour(band), area)));
-        }
-        map.lines.extend(self.rim());
-        map
-    }
-
-    /// The multiplier on a contact boundary that is not straight.
-    fn multiplier_on_facets(&self) -> Map {
-        let mut map = self.map("multiplier");
-        let density = &self.view.fields.discrete_contact.density;
-        let mut facets = Vec::new();
-        for facet in trace::facets(self.view.mesh) {
-            let ends = self.view.mesh.facet_vertices(facet.0, facet.1);
-            let values: Vec<f64> = ends.filter_map(|v| density[v as usize]).collect();
-            if !values.is_empty() {
-                let mean = values.iter().sum::<f64>() / values.len() as f64;
-                facets.push((mean, self.facet_ends(facet)));
-            }
-        }
-        map.scale = Scale::linear("density of the multiplier", facets.iter().map(|f| f.0));
-        map.lines.extend(self.rim());
-        if let Some(scale) = &map.scale {
-            let coloured = |f: &(f64, [PlanePoint; 2])| {
-                (Stroke::Coloured(scale.colour(scale.band(f.0)), 6.0), f.1)
-            };
-            map.lines.extend(facets.iter().map(coloured));
-        }
-        map
     }
 }

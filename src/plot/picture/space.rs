@@ -1,7 +1,7 @@
 //! The panels of a picture of a domain in space: its surface and the contact set, seen from outside in a parallel
 //! projection, and the contact boundary seen flat.
 
-use super::axes::{CONTACT, FAINT, Stroke, Symbol};
+use super::axes::{CONTACT, Stroke, Symbol};
 use super::bands::bands;
 use super::colour::Scale;
 use super::edges::edges;
@@ -107,7 +107,7 @@ impl<'a, const D: usize> Space<'a, D> {
         if let Some(facing) = self.facing.filter(|_| self.problem.has_gap()) {
             let (problem, fields) = (self.problem, self.view.fields);
             let plane = Plane::of_contact_boundary(problem, mesh, fields, facing);
-            panels.extend(plane.panels_of_contact());
+            panels.push(Panel::Map(plane.contact()));
         }
         panels
     }
@@ -149,8 +149,8 @@ impl<'a, const D: usize> Space<'a, D> {
     }
 
     /// A map with these shapes and the edges of the domain, painted from back to front.
-    fn map(&self, title: &str, mut shapes: Vec<Shape>, hidden_edges: bool) -> Map {
-        shapes.extend(self.outline(hidden_edges));
+    fn map(&self, title: &str, mut shapes: Vec<Shape>) -> Map {
+        shapes.extend(self.outline());
         shapes.sort_by(|a, b| a.0.total_cmp(&b.0));
         let corners = self.surface.iter().flat_map(|facet| facet.triangle.corners);
         let unit = |axis: usize| map_entries([0, 1], |k| self.view.axes[k][axis]);
@@ -161,8 +161,8 @@ impl<'a, const D: usize> Space<'a, D> {
         }
     }
 
-    /// The edges of the domain and of its silhouette, perhaps with those that the domain hides, which are faint.
-    fn outline(&self, hidden_edges: bool) -> Vec<Shape> {
+    /// The edges of the domain and of its silhouette that are seen.
+    fn outline(&self) -> Vec<Shape> {
         let triangles: Vec<Triangle> = self.surface.iter().map(|facet| facet.triangle).collect();
         let mut shapes = Vec::new();
         for edge in edges(self.view.mesh, &triangles) {
@@ -170,12 +170,9 @@ impl<'a, const D: usize> Space<'a, D> {
             let seen = sides().filter(|facet| self.is_seen(facet));
             let is_flat = sides().is_sorted_by(|a, b| a.normal.dot(&b.normal) > SHARP);
             let n_seen = seen.clone().count();
-            let in_front = seen.map(|facet| facet.depth).reduce(f64::max);
-            if n_seen == 1 || !is_flat && (hidden_edges || n_seen > 1) {
-                let behind = || sides().map(|facet| facet.depth).fold(f64::INFINITY, f64::min);
-                let colour = if in_front.is_some() { INK } else { FAINT };
-                let depth = in_front.unwrap_or_else(behind);
-                shapes.push((depth, colour, self.view.places(edge.vertices).to_vec()));
+            let Some(depth) = seen.map(|facet| facet.depth).reduce(f64::max) else { continue };
+            if n_seen == 1 || !is_flat {
+                shapes.push((depth, INK, self.view.places(edge.vertices).to_vec()));
             }
         }
         shapes
@@ -187,7 +184,7 @@ impl<'a, const D: usize> Space<'a, D> {
         let pieces = |facet: &Facet<D>| self.view.linear_pieces(&facet.triangle);
         let values = seen().flat_map(pieces).flatten().map(|corner| corner.1);
         let Some(scale) = Scale::linear("u", values) else {
-            return self.map("solution on the surface", Vec::new(), false);
+            return self.map("solution on the surface", Vec::new());
         };
         // facets of a convex domain hide nothing: those of a colour together keep files short
         let is_convex = self.is_convex();
@@ -200,7 +197,7 @@ impl<'a, const D: usize> Space<'a, D> {
         areas.sort_by_key(|area| area.0);
         let shape = |(band, depth, area)| (depth, scale.colour(band), area);
         let shapes = areas.into_iter().map(shape).collect();
-        Map { scale: Some(scale), ..self.map("solution on the surface", shapes, false) }
+        Map { scale: Some(scale), ..self.map("solution on the surface", shapes) }
     }
 
     /// The surface of the cells in contact, within the edges of the domain.
@@ -211,7 +208,7 @@ impl<'a, const D: usize> Space<'a, D> {
         let surface = self.surface_of(&|cell| touches[cell]);
         let seen = surface.iter().filter(|facet| self.is_seen(facet));
         let shape = |f: &Facet<D>| (f.depth, self.lit(&f.normal), f.triangle.places());
-        let mut map = self.map("contact set", seen.map(shape).collect(), true);
+        let mut map = self.map("contact set", seen.map(shape).collect());
         if surface.is_empty() {
             map.note = Some("no cell is in contact");
             return map;

@@ -1,17 +1,11 @@
 //! The contact boundary of a domain in the plane.
 
-use super::axes::{Stroke, Symbol};
-use super::graph::Graph;
 use crate::arrays::{array_of, map_entries};
-use crate::measure::Fields;
 use crate::mesh::{BoundaryCondition, HalfFacet, Mesh};
-use crate::problem::Problem;
 use crate::real::Point;
 
 /// Pieces of a facet at which exact data are looked at.
 const PARTS: usize = 8;
-/// A boundary that departs by less than this from a line, in units of the domain, is straight.
-const STRAIGHT: f64 = 1e-9;
 
 /// The facets of the contact boundary.
 pub(crate) fn facets<const D: usize>(mesh: &Mesh<D>) -> Vec<HalfFacet> {
@@ -34,47 +28,4 @@ pub(crate) fn samples<const D: usize>(mesh: &Mesh<D>) -> Vec<[Point<D>; 2]> {
         samples.extend((0..PARTS).map(|k| [at(k), at(k + 1)]));
     }
     samples
-}
-
-/// The multiplier along a straight contact boundary; none on another.
-pub(crate) fn graph<const D: usize>(
-    problem: &Problem<D>,
-    mesh: &Mesh<D>,
-    fields: &Fields,
-) -> Option<Graph> {
-    let facets: Vec<[u32; 2]> = facets(mesh).into_iter().map(|facet| ends(mesh, facet)).collect();
-    let points = || facets.as_flattened().iter().map(|&v| mesh.vertices()[v as usize]);
-    let extent = |axis: usize| {
-        let (low, high) = points()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[axis]), h.max(x[axis])));
-        high - low
-    };
-    let axis = usize::from(extent(1) > extent(0));
-    if extent(1 - axis) > STRAIGHT * mesh.domain_diameter() {
-        return None;
-    }
-    let along = |v: u32| mesh.vertices()[v as usize][axis];
-    let mut graph = Graph::of_found("multiplier", [["x", "y"][axis], "density"], "density found");
-    let density = &fields.discrete_contact.density;
-    for &[from, to] in &facets {
-        if let [Some(a), Some(b)] = [from, to].map(|v| density[v as usize]) {
-            graph.lines.push((Stroke::Solution, [[along(from), a], [along(to), b]]));
-        }
-    }
-    let exact = problem.exact.as_ref();
-    if let Some(multiplier) = exact.and_then(|e| e.multiplier.as_ref()) {
-        for sample in samples(mesh) {
-            let ends = sample.map(|x| [x[axis], multiplier(&x)]);
-            graph.lines.push((Stroke::Exact, ends));
-        }
-        graph.legend.push((Symbol::Line(Stroke::Exact), "exact density".to_owned()));
-    }
-    let contact = fields.discrete_contact.facets.iter().map(|&facet| {
-        let [a, b] = ends(mesh, facet).map(along);
-        [a.min(b), a.max(b)]
-    });
-    let set = exact.and_then(|e| e.contact.as_ref());
-    let marks = set.iter().flat_map(|set| &set.free_boundary).map(|x| x[axis]).collect();
-    graph.mark(contact.collect(), marks);
-    Some(graph)
 }

@@ -98,21 +98,6 @@ impl<'a, const D: usize> View<'a, D> {
         let at_middles = edges.iter().zip(middles).map(|(&[i, j], u)| 4.0 * u * b[i] * b[j]);
         at_corners + at_middles.sum::<f64>()
     }
-
-    /// The density of the multiplier at the corners of a triangle. Dirichlet vertices have no density: there it is
-    /// zero in a cell that is not in contact and has zero density at its other vertices, and unknown otherwise.
-    pub fn density(&self, triangle: &Triangle, touches: bool) -> Option<[(PlanePoint, f64); 3]> {
-        let known = &self.fields.discrete_contact.density;
-        let cell = self.mesh.cell(triangle.cell);
-        let at = |k: usize| known.get(cell[k] as usize).copied().flatten();
-        let free = !touches && (0..D + 1).all(|k| at(k).is_none_or(|density| density == 0.0));
-        let mut valued = [([0.0; 2], 0.0); 3];
-        for k in 0..3 {
-            let density = at(triangle.locals[k]).or(free.then_some(0.0))?;
-            valued[k] = (triangle.corners[k].at, density);
-        }
-        Some(valued)
-    }
 }
 
 /// The triangles between the corners of a triangle and the midpoints of its edges.
