@@ -3,7 +3,7 @@
 //! A cut simplex is bisected a few times, so that a zero set that meets an edge twice is seen. Each piece that is still
 //! cut is divided at the zeros on its edges, and planes between these zeros replace the zero set. Between planes the
 //! rule is exact. A curved zero set leaves a layer between it and the planes, on a sphere of a mean thickness of about
-//! 1/1700 of `h^2` over the radius in the plane and 1/60 in space, `h` the shortest side of a cell.
+//! 1/400 of `h^2` over the radius in the plane and 1/60 in space, `h` the shortest side of a cell.
 
 use crate::arrays::{array_of, map_entries};
 use crate::mesh::Mesh;
@@ -26,7 +26,10 @@ struct Piece {
 
 /// How often a simplex is bisected, by dimension: a zero set that meets a segment twice is seen if
 /// the two points lie further apart than the pieces are wide.
-const BISECTIONS: [usize; 4] = [0, 3, 6, 3];
+const BISECTIONS: [usize; 4] = [0, 3, 4, 3];
+
+/// Steps after which the search for a zero on a segment ends.
+const MOST_STEPS: usize = 60;
 
 /// The largest degree of the rule on pieces. The square of an error of linears has a leading term of degree four.
 const MOST_IN_PIECES: usize = 5;
@@ -192,16 +195,29 @@ fn rule(dimension: usize, degree: usize) -> Rule {
     FullySymmetric.rule(dimension, degree).unwrap_or_else(|_| Rule::new(dimension, degree))
 }
 
-/// A point of `(0, 1)` where a function with different signs at the ends changes its sign, to rounding, by bisection: at
-/// jumps too.
+/// A point of `(0, 1)` where a function with different signs at the ends changes its sign, to rounding, at jumps too: by
+/// the method of C. J. F. Ridders, IEEE Trans. Circuits Syst. 26 (1979), 979-980.
 fn zero_between(function: impl Fn(f64) -> f64) -> f64 {
-    let ([mut low, mut high], is_positive) = ([0.0, 1.0], function(0.0) > 0.0);
-    for _ in 0..f64::MANTISSA_DIGITS {
-        let middle = 0.5 * (low + high);
-        let side = if (function(middle) > 0.0) == is_positive { &mut low } else { &mut high };
-        *side = middle;
+    let ([mut low, mut high], mut zero) = ([0.0, 1.0].map(|r| (r, function(r))), 0.5);
+    for _ in 0..MOST_STEPS {
+        let middle = 0.5 * (low.0 + high.0);
+        let at_middle = function(middle);
+        let scale = (at_middle * at_middle - low.1 * high.1).sqrt();
+        let step = (middle - low.0) * (low.1 - high.1).signum() * at_middle / scale;
+        let before = std::mem::replace(&mut zero, middle + step);
+        let at_zero = function(zero);
+        for (r, value) in [(middle, at_middle), (zero, at_zero)] {
+            match (value > 0.0) == (low.1 > 0.0) {
+                true if r > low.0 => low = (r, value),
+                false if r < high.0 => high = (r, value),
+                _ => {}
+            }
+        }
+        if at_zero == 0.0 || (zero - before).abs() <= f64::EPSILON {
+            break;
+        }
     }
-    0.5 * (low + high)
+    zero
 }
 
 /// The point with these barycentric coordinates in a simplex with these corners; corners beyond its

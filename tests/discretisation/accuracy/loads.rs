@@ -87,7 +87,7 @@ fn a_load_that_jumps_at_a_sphere_is_integrated_along_it() {
     let exact = |volume: f64, box_volume: f64| volume - 2.0 * (box_volume - volume);
     let disc = exact(PI * 0.49, 4.0);
     let error = |n| (integral::<2>(&ConformingP1, n, jump_at_a_sphere()) - disc).abs();
-    assert!(error(8) < 1e-3 && error(32) < 5e-5, "{:e} {:e}", error(8), error(32));
+    assert!(error(8) < 3e-3 && error(32) < 2e-4, "{:e} {:e}", error(8), error(32));
     let ball = exact(4.0 / 3.0 * PI * 0.343, 8.0);
     let error = |n| (integral::<3>(&ConformingP2, n, jump_at_a_sphere()) - ball).abs();
     assert!(error(8) < 1e-2 && error(32) < 2e-3, "{:e} {:e}", error(8), error(32));
@@ -163,13 +163,13 @@ fn a_reaction_that_jumps_is_integrated_exactly() {
 }
 
 /// The energy norm of the exact solution of contrast-disc-2d, whose gradient jumps by a factor of 1000 across a circle
-/// within cells: by the sum over 40 000 parts of each cell, with the level of the coefficient named and not.
+/// within cells: by the sum over 10 000 parts of each cell, with the level of the coefficient named and not.
 #[test]
 fn errors_see_jumps_of_a_coefficient_within_cells() {
-    const PARTS: usize = 200;
+    const PARTS: usize = 100;
     let scene = || scenes::contrast_disc_2d(1000.0);
     let problem = scene().problem;
-    let mesh: Mesh<2> = scene().domain.mesh(8).unwrap();
+    let mesh: Mesh<2> = scene().domain.mesh(16).unwrap();
     let exact = problem.exact.clone().unwrap();
     let alpha = |x: &Point<2>| if x.norm() < 1.0 { 1000.0 } else { 1.0 };
     let mut expected = 0.0;
