@@ -8,7 +8,7 @@ use super::cases::{STABILITY_CASES, criteria};
 use super::criterion::Criterion;
 use super::plan::Effort;
 use super::row::{StabilityRow, Verdict};
-use super::summary::{by_criterion, by_scheme, conditions, missed, robust, safe_ranges};
+use super::summary::{by_criterion, by_scheme, conditions, missed};
 use crate::error::Error;
 use crate::files::replace_text;
 use crate::output::csv;
@@ -19,7 +19,7 @@ use crate::table::{Cell, Table, WIDTH};
 
 /// Notes before the tables.
 const READING: [&str; 3] = [
-    "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Figures have the digits that decide. A safe range of a penalty factor is the longest part of its sweep in which every factor stays within the limits of errors, of forces and of definiteness; a penalty is robust in a case if all its figures stay within their limits.",
+    "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Figures have the digits that decide.",
     "Schemes: p1 and p2, conforming linear and quadratic elements with bounds at nodes; cr, Crouzeix-Raviart elements with bounds on facet means; sipg and nipg, symmetric and non-symmetric interior penalty on broken linears; wopsip, the weakly over-penalised method on broken linears with bounds at vertices, wopsip:facet-means the same with bounds on facet means.",
     "Penalties: sipg has 1.5 times the proven bound, the least interior penalty that is provably enough on each cell, nipg 1/h_F, with h_F the diameter of a facet; sigma is the factor of 1/h_F. wopsip has eta/h_F^3, with eta the square of the diameter of the domain unless it is given; weight=anisotropic puts h^2 l_F in place of h_F^3, with h the mesh size and l_F the height of the cells over the facet. All but what ignores it carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
 ];
@@ -57,18 +57,6 @@ impl StabilityReport {
         self.rows.iter().filter(|row| row.verdict == verdict).count()
     }
 
-    /// The ranges of penalty factors within which a scheme stays in all limits of errors and of
-    /// definiteness: a line for every sweep of a factor.
-    pub fn safe_ranges(&self) -> Vec<String> {
-        safe_ranges(&self.rows)
-    }
-
-    /// The penalties that were measured within all limits, for every other case with several penalties
-    /// of a scheme: a sentence each, made from the verdicts.
-    pub fn robust_choices(&self) -> Vec<String> {
-        robust(&self.rows)
-    }
-
     /// Verdicts by scheme and by criterion, and what was missed.
     fn verdict_tables(&self) -> Vec<Table> {
         let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
@@ -83,8 +71,7 @@ impl StabilityReport {
         cases.map(|case| self.case_table(case))
     }
 
-    /// Verdicts, what was missed, safe ranges of factors and robust choices, for a terminal: the report
-    /// without its rows.
+    /// Verdicts and what was missed, for a terminal: the report without its rows.
     pub fn summary(&self) -> String {
         let mut opening = vec![self.heading()];
         opening.extend(self.findings());
@@ -117,8 +104,7 @@ impl StabilityReport {
         }
     }
 
-    /// The report as JSON: `program`, `complete`, `criteria`, `rows`, `failures`, `safe_ranges` and
-    /// `robust_choices`. What does not apply is null.
+    /// The report as JSON: `program`, `complete`, `criteria`, `rows` and `failures`. What does not apply is null.
     pub fn to_json(&self) -> String {
         let criterion = |(case, c): (_, &Criterion)| json!({ "name": c.name, "case": case, "sentence": c.sentence() });
         let value = json!({
@@ -127,8 +113,6 @@ impl StabilityReport {
             "criteria": criteria().map(criterion).collect::<Vec<_>>(),
             "rows": self.rows,
             "failures": self.failures,
-            "safe_ranges": self.safe_ranges(),
-            "robust_choices": self.robust_choices(),
         });
         format!("{value:#}\n")
     }
@@ -220,11 +204,9 @@ impl StabilityReport {
         paragraphs
     }
 
-    /// Safe ranges, robust choices, and jobs that ended in an error.
+    /// The jobs that ended in an error.
     fn findings(&self) -> impl Iterator<Item = String> {
-        let failures = self.failures.iter().map(|f| format!("Not run to the end: {f}."));
-        let found = self.safe_ranges().into_iter().chain(self.robust_choices());
-        found.chain(failures).collect::<Vec<_>>().into_iter()
+        self.failures.iter().map(|failure| format!("Not run to the end: {failure}."))
     }
 
     /// Program, provenance and the count of verdicts in one line.

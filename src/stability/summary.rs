@@ -1,8 +1,8 @@
-//! Counts of verdicts, and robust choices of penalties.
+//! Counts of verdicts, and what was missed.
 
-use super::cases::{OVER_FACTORS, SWEEPS, criteria};
+use super::cases::criteria;
 use super::criterion::Criterion;
-use super::row::{StabilityRow, Verdict, factor_in_words, short};
+use super::row::{StabilityRow, Verdict, factor_in_words};
 use crate::study::row::distinct;
 use crate::table::{Cell, Table};
 
@@ -72,92 +72,4 @@ pub(crate) fn conditions(rows: &[StabilityRow]) -> Table {
     let line =
         |(_, c): (_, &Criterion)| vec![Cell::Words(c.name.to_owned()), Cell::Words(c.sentence())];
     Table::new("The criteria", "criterion,condition", asked(rows).map(line).collect())
-}
-
-/// For every scheme whose penalty factor is swept, the longest part of the sweep in which each factor
-/// keeps the limits, and what the factors next to it miss.
-pub(crate) fn safe_ranges(rows: &[StabilityRow]) -> Vec<String> {
-    let swept = || {
-        let is_judged = |r: &StabilityRow| OVER_FACTORS.iter().any(|c| c.name == r.criterion);
-        rows.iter().filter(move |r| r.sweeps_factor() && is_judged(r))
-    };
-    let sentence = |(scheme, parameter): (&String, &String)| {
-        let mine = || swept().filter(|r| (&r.scheme, &r.parameter) == (scheme, parameter));
-        let mut factors = distinct(mine().filter_map(|r| r.value));
-        factors.sort_by(f64::total_cmp);
-        let misses = |factor: f64| {
-            let keeps = |r: &StabilityRow| r.measured.is_some_and(|x| r.expected.holds(x));
-            mine().find(|r| r.value == Some(factor) && !keeps(r))
-        };
-        let runs = factors.chunk_by(|a, b| misses(*a).is_none() == misses(*b).is_none());
-        let safe = runs.filter(|run| misses(run[0]).is_none()).max_by_key(|run| run.len());
-        let (first, last) = (factors.first()?, factors.last()?);
-        let measured = format!(
-            "{} factors measured from {} to {}",
-            factors.len(),
-            short(*first),
-            short(*last)
-        );
-        let Some((from, to)) = safe.and_then(|run| run.first().zip(run.last())) else {
-            return Some(format!("{scheme}: no safe {parameter}; {measured}."));
-        };
-        let mut text = format!(
-            "{scheme}: safe range of {parameter}: {} to {}; {measured}",
-            short(*from),
-            short(*to)
-        );
-        let below = factors.iter().rfind(|f| *f < from);
-        for factor in below.into_iter().chain(factors.iter().find(|f| *f > to)) {
-            if let Some(row) = misses(*factor) {
-                let figure = row.figure_in_words().unwrap_or_else(|| "no solution".to_owned());
-                text += &format!(
-                    "; at {} {} on {} is {figure}, {} allowed",
-                    short(*factor),
-                    row.quantity,
-                    row.problem,
-                    row.expected.words()
-                );
-            }
-        }
-        Some(text + ".")
-    };
-    let series = distinct(swept().map(|r| (&r.scheme, &r.parameter)));
-    series.into_iter().filter_map(sentence).collect()
-}
-
-/// The penalties of a scheme that stay within all limits of a case, for schemes with several
-/// penalties; sweeps of factors have their [`safe_ranges`].
-pub(crate) fn robust(rows: &[StabilityRow]) -> Vec<String> {
-    let sentence = |(case, scheme): (&String, &String)| {
-        let mine = || rows.iter().filter(|r| (&r.case, &r.scheme) == (case, scheme));
-        let judged = |label: &String| {
-            let of_label = mine().filter(|r| r.label == *label);
-            let verdicts = of_label.filter_map(|r| match r.verdict {
-                // a solve that failed keeps nothing, whatever its limits
-                Verdict::Reported => r.measured.is_none().then_some(false),
-                Verdict::NotApplicable => None,
-                verdict => Some(matches!(verdict, Verdict::Met | Verdict::BetterThanExpected)),
-            });
-            verdicts.collect::<Vec<bool>>()
-        };
-        let (mut robust, mut others) = (Vec::new(), Vec::new());
-        for label in distinct(mine().map(|r| &r.label)) {
-            let verdicts = judged(label);
-            let (kept, all) = (verdicts.iter().filter(|kept| **kept).count(), verdicts.len());
-            match kept == all {
-                _ if all == 0 => {}
-                true => robust.push(format!("\"{label}\"")),
-                false => others.push(format!("\"{label}\" ({kept} of {all} rows)")),
-            }
-        }
-        let text = match (robust.len(), others.len()) {
-            (0, 0) | (1, 0) | (0, 1) => return None,
-            (_, 0) => format!("every penalty shown is robust: {}", robust.join(", ")),
-            (0, _) => format!("no penalty shown is robust: {}", others.join(", ")),
-            _ => format!("robust: {}; not robust: {}", robust.join(", "), others.join(", ")),
-        };
-        Some(format!("{case}, {scheme}: {text}."))
-    };
-    let compared = rows.iter().filter(|r| !SWEEPS.contains(&&r.case[..]));
-    distinct(compared.map(|r| (&r.case, &r.scheme))).into_iter().filter_map(sentence).collect()
 }

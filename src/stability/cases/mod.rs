@@ -50,16 +50,3 @@ pub const STABILITY_CASES: [&str; CASES.len()] = {
 pub fn criteria() -> impl Iterator<Item = (&'static str, &'static Criterion)> {
     CASES.into_iter().flat_map(|case| case.criteria.iter().map(move |c| (case.name, c)))
 }
-
-/// The criteria of errors, of forces and of definiteness over sweeps of a penalty factor.
-pub(crate) const OVER_FACTORS: [&Criterion; 6] = [
-    &penalty_factor::DEFINITE,
-    &penalty_factor::ERROR,
-    &penalty_factor::MULTIPLIER,
-    &penalty_factor::EQUILIBRIUM,
-    &coercivity::INERTIA,
-    &coercivity::ERROR,
-];
-
-/// The cases of these sweeps.
-pub(crate) const SWEEPS: [&str; 2] = [penalty_factor::CASE.name, coercivity::CASE.name];
