@@ -31,6 +31,9 @@ const BISECTIONS: [usize; 4] = [0, 3, 4, 3];
 /// Steps after which the search for a zero on a segment ends.
 const MOST_STEPS: usize = 60;
 
+/// How far from the end of a segment of length one a function is asked whether it vanishes at the end only.
+const BESIDE: f64 = 1.0 / (1 << 26) as f64;
+
 /// The largest degree of the rule on pieces. The square of an error of linears has a leading term of degree four.
 const MOST_IN_PIECES: usize = 5;
 
@@ -195,16 +198,25 @@ fn rule(dimension: usize, degree: usize) -> Rule {
     FullySymmetric.rule(dimension, degree).unwrap_or_else(|_| Rule::new(dimension, degree))
 }
 
-/// A point of `(0, 1)` where a function with different signs at the ends changes its sign, to rounding, at jumps too: by
-/// the method of C. J. F. Ridders, IEEE Trans. Circuits Syst. 26 (1979), 979-980.
+/// A point of `[0, 1]` between an end at which a function is positive and one at which it is not, where that changes, to
+/// rounding, at jumps too: by the method of C. J. F. Ridders, IEEE Trans. Circuits Syst. 26 (1979), 979-980, and by halves
+/// where the function vanishes on one side, or squares of its values are no numbers. An end where the function vanishes,
+/// but not beside it, is that point.
 fn zero_between(function: impl Fn(f64) -> f64) -> f64 {
-    let ([mut low, mut high], mut zero) = ([0.0, 1.0].map(|r| (r, function(r))), 0.5);
+    let [mut low, mut high] = [0.0, 1.0].map(|r| (r, function(r)));
+    for ((end, value), beside) in [(low, BESIDE), (high, 1.0 - BESIDE)] {
+        if value == 0.0 && function(beside) != 0.0 {
+            return end;
+        }
+    }
+    let mut zero = f64::INFINITY;
     for _ in 0..MOST_STEPS {
         let middle = 0.5 * (low.0 + high.0);
         let at_middle = function(middle);
         let scale = (at_middle * at_middle - low.1 * high.1).sqrt();
         let step = (middle - low.0) * (low.1 - high.1).signum() * at_middle / scale;
-        let before = std::mem::replace(&mut zero, middle + step);
+        let is_between = low.1 * high.1 < 0.0 && step.is_finite();
+        let before = std::mem::replace(&mut zero, if is_between { middle + step } else { middle });
         let at_zero = function(zero);
         for (r, value) in [(middle, at_middle), (zero, at_zero)] {
             match (value > 0.0) == (low.1 > 0.0) {
@@ -213,7 +225,7 @@ fn zero_between(function: impl Fn(f64) -> f64) -> f64 {
                 _ => {}
             }
         }
-        if at_zero == 0.0 || (zero - before).abs() <= f64::EPSILON {
+        if is_between && at_zero == 0.0 || (zero - before).abs() <= f64::EPSILON {
             break;
         }
     }

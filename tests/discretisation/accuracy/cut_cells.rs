@@ -90,6 +90,13 @@ fn zeros_are_found_at_jumps_too_and_in_pairs() {
     assert!((mean(1, &flat, |_| 1.0) - 0.7).abs() < 1e-14);
     let pair: Level<1> = Arc::new(|x| (x[0] - 0.6) * (x[0] - 0.3));
     assert!((mean(1, &pair, |_| 1.0) - 0.7).abs() < 1e-14);
+    // levels that vanish on one side, and values of which products underflow
+    let hinge: Level<1> = Arc::new(|x| (x[0] - 0.3).max(0.0));
+    assert!((mean(1, &hinge, |_| 1.0) - 0.7).abs() < 1e-14);
+    let indicator: Level<1> = Arc::new(|x| f64::from(u8::from(x[0] > 0.3)));
+    assert!((mean(1, &indicator, |_| 1.0) - 0.7).abs() < 1e-14);
+    let tiny: Level<1> = Arc::new(|x| 1e-200 * (x[0] - 0.3));
+    assert!((mean(1, &tiny, |_| 1.0) - 0.7).abs() < 1e-14);
 }
 
 /// The errors of a solution without contact against a multiplier on the contact set `level > 0`, and the number of
@@ -115,7 +122,7 @@ fn contact_errors<const D: usize>(level: &Level<D>) -> (usize, ContactErrors) {
 /// A plane is the same set of zeros whether the indicator vanishes or jumps there. A cell out of contact has no
 /// multiplier, a cell in contact that of a whole rule.
 #[test]
-fn zeros_are_found_at_jumps_too() {
+fn contact_sets_are_those_of_levels_that_jump() {
     fn check<const D: usize>() {
         let plane = plane::<D>();
         let of_jump = Arc::clone(&plane);
@@ -131,7 +138,7 @@ fn zeros_are_found_at_jumps_too() {
         }
         let (n_far, far) = contact_errors::<D>(&(Arc::new(|x: &Point<D>| x[0] - 2.0) as Level<D>));
         assert_eq!((n_far, far.contact_area_error), (0, Some(0.0)));
-        // a level that is not far, whose values have one sign
+        // a level that vanishes close to the mesh
         let (n_near, near) =
             contact_errors::<D>(&(Arc::new(|x: &Point<D>| x[0] - 1.1) as Level<D>));
         assert_eq!((n_near, near.contact_area_error), (0, Some(0.0)));

@@ -87,10 +87,10 @@ fn a_load_that_jumps_at_a_sphere_is_integrated_along_it() {
     let exact = |volume: f64, box_volume: f64| volume - 2.0 * (box_volume - volume);
     let disc = exact(PI * 0.49, 4.0);
     let error = |n| (integral::<2>(&ConformingP1, n, jump_at_a_sphere()) - disc).abs();
-    assert!(error(8) < 3e-3 && error(32) < 2e-4, "{:e} {:e}", error(8), error(32));
+    assert!(error(8) < 3e-3 && 12.0 * error(32) < error(8), "{:e} {:e}", error(8), error(32));
     let ball = exact(4.0 / 3.0 * PI * 0.343, 8.0);
     let error = |n| (integral::<3>(&ConformingP2, n, jump_at_a_sphere()) - ball).abs();
-    assert!(error(8) < 1e-2 && error(32) < 2e-3, "{:e} {:e}", error(8), error(32));
+    assert!(error(8) < 1e-2 && 5.0 * error(32) < error(8), "{:e} {:e}", error(8), error(32));
 }
 
 /// Loads that are smooth within cells, on coarse meshes: with rules of twice the degree no error of
