@@ -82,7 +82,7 @@ pub enum Error {
     /// A parameter outside its range: "parameter = value: what is allowed".
     #[error("{0}")]
     Parameter(String),
-    /// A run would need more memory than the machine, the limits of the process and its control group leave.
+    /// A run would need more memory than the process has and the machine has left.
     #[error("{0}")]
     NotEnoughMemory(String),
     /// Two schemes or two solvers of a study have one name, and so have their rows and files.

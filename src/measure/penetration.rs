@@ -14,7 +14,7 @@ use crate::mesh::{BoundaryCondition, edge_vertices};
 use crate::parallel::cells;
 use crate::problem::Datum;
 use crate::quadrature::facet_to_cell;
-use crate::real::Precision;
+use crate::real::{Precision, maximum};
 
 /// Beyond a bound by more than this share of the largest distance from it there is a warning.
 const SHARE_OF_DISTANCE: f64 = 0.1;
@@ -48,18 +48,18 @@ impl Penetration {
     /// How far the function lies beyond a bound at most: negative where it reaches none.
     pub fn largest(&self) -> f64 {
         // a distance of zero has no sign
-        self.beyond.into_iter().fold(f64::NEG_INFINITY, f64::max) + 0.0
+        self.beyond.into_iter().fold(f64::NEG_INFINITY, maximum) + 0.0
     }
 
     /// The numbers of which over several parts of a mesh the largest count.
-    pub(crate) fn numbers(&self) -> [f64; 6] {
+    pub(crate) fn numbers(&self) -> [f64; 7] {
         let ([a, b, c], [d, e, f]) = (self.beyond, self.away);
-        [a, b, c, d, e, f]
+        [a, b, c, d, e, f, self.rounding]
     }
 
     /// The penetration with these numbers.
-    pub(crate) fn with_numbers(self, [a, b, c, d, e, f]: [f64; 6]) -> Self {
-        Self { beyond: [a, b, c], away: [d, e, f], ..self }
+    pub(crate) fn with_numbers([a, b, c, d, e, f, rounding]: [f64; 7]) -> Self {
+        Self { beyond: [a, b, c], away: [d, e, f], rounding }
     }
 
     /// A warning, if the function lies beyond a bound by more than a tenth of its largest distance from it.
@@ -79,15 +79,15 @@ impl Penetration {
     /// What a value adds at a point where datum `k` is given.
     fn add(&mut self, k: usize, value: f64, datum: f64) {
         let away = SIGNS[k] * (value - datum);
-        self.beyond[k] = self.beyond[k].max(-away);
-        self.away[k] = self.away[k].max(away);
+        self.beyond[k] = maximum(self.beyond[k], -away);
+        self.away[k] = maximum(self.away[k], away);
     }
 
     /// Both together.
     fn merged(mut self, other: &Self) -> Self {
         for k in 0..3 {
-            self.beyond[k] = self.beyond[k].max(other.beyond[k]);
-            self.away[k] = self.away[k].max(other.away[k]);
+            self.beyond[k] = maximum(self.beyond[k], other.beyond[k]);
+            self.away[k] = maximum(self.away[k], other.away[k]);
         }
         self
     }

@@ -81,21 +81,40 @@ fn a_vertex_of_two_groups_is_divided_by_their_facets() {
     }
 }
 
-/// Between its nodes a quadratic leaves an obstacle that it touches at all of them; a linear function does not.
+/// A quadratic that touches a bound at all vertices of a unit box with one cell along each axis lies beyond it by a quarter
+/// in the middle of edges, whatever bound it is; where a solution keeps away from it, that distance has the other sign.
 #[test]
 fn penetration_is_that_between_the_nodes() {
-    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let mesh = Mesh::<2>::kuhn_box(&domain, [1, 1]).unwrap();
-    let problem = Problem::new().constant_source(-1.0).obstacle_below(|x| -x[0] * x[0]);
-    let of = |scheme: &dyn Scheme<2>, u: &dyn Fn(f64) -> f64| {
-        let space = scheme.discretise(&problem, &mesh, DataQuadrature::default()).unwrap();
-        let xs = mesh.vertices().iter().map(|x| x[0]);
-        let values: Vec<f64> = xs.map(u).collect();
-        space.penetration(&values).unwrap().unwrap().largest()
-    };
-    // the chord of a concave parabola lies below it by a quarter in the middle
-    let found = of(&ConformingP1, &|x| -x * x);
-    assert!((found - 0.25).abs() < 1e-14, "{found}");
-    let found = of(&ConformingP1, &|x| 1.0 - x);
-    assert!(found < 0.0, "{found}");
+    fn check<const D: usize>() {
+        let contact = (D - 1, 0, BoundaryCondition::Contact);
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let domain = domain.side(contact.0, contact.1, contact.2);
+        let mesh = Mesh::<D>::kuhn_box(&domain, [1; D]).unwrap();
+        let of = |problem: Problem<D>, scheme: &dyn Scheme<D>, u: fn(f64) -> f64| {
+            let space = scheme.discretise(&problem, &mesh, DataQuadrature::default()).unwrap();
+            // unknowns belong to vertices and to the middles of edges
+            let node = |vertices: &[u32]| {
+                let sum: f64 = vertices.iter().map(|&v| mesh.vertices()[v as usize][0]).sum();
+                sum / vertices.len() as f64
+            };
+            let values: Vec<f64> =
+                space.locations().iter().map(|location| u(node(location.vertices()))).collect();
+            space.penetration(&values).unwrap().unwrap().largest()
+        };
+        let free = || Problem::<D>::new().constant_source(-1.0);
+        let (p1, p2): (&dyn Scheme<D>, &dyn Scheme<D>) = (&ConformingP1, &ConformingP2);
+        let close = |found: f64, exact: f64| assert!((found - exact).abs() < 1e-14, "{found}");
+        close(of(free().obstacle_below(|_| 0.0), p2, |x| x * x - x), 0.25);
+        close(of(free().obstacle_above(|_| 0.0), p2, |x| x - x * x), 0.25);
+        close(of(free().obstacle_below(|_| 0.0), p1, |_| 0.5), -0.5);
+        // the chord of a concave parabola lies below it
+        close(of(free().obstacle_below(|x| -x[0] * x[0]), p1, |x| -x), 0.25);
+        if D > 1 {
+            close(of(free().signorini(|_| 0.0), p2, |x| x * x - x), 0.25);
+            close(of(free().signorini(|x| -x[0] * x[0]), p1, |x| -x), 0.25);
+        }
+    }
+    check::<1>();
+    check::<2>();
+    check::<3>();
 }

@@ -37,7 +37,7 @@ impl<const D: usize> Space<'_, D> {
         if self.pins {
             self.pin(&mut bounds, &mut found)?;
         }
-        self.compare_between_nodes(&mut found);
+        self.compare_between_nodes(&mut found)?;
         Ok((bounds, found))
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::Space;
+use super::{Space, checks};
 use crate::algebra::Bound;
 use crate::error::Error;
 use crate::input::excerpt;
@@ -65,16 +65,17 @@ const ROUNDINGS_OF_CONSTANTS: f64 = 1e4;
 
 impl<const D: usize> Space<'_, D> {
     /// Notes lower bounds above upper ones at the points of the rules for data in cells and on contact facets.
-    pub(super) fn compare_between_nodes(&self, found: &mut Vec<Contradiction<D>>) {
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub(super) fn compare_between_nodes(
+        &self,
+        found: &mut Vec<Contradiction<D>>,
+    ) -> Result<(), Error> {
         let data = &self.data;
         if !data.upper.is_given() {
-            return;
+            return Ok(());
         }
-        let compare = |cell, x, bounds: [&Datum<D>; 2], found: &mut Vec<Contradiction<D>>| {
-            let node = BoundedNode { unknown: self.dofs.of(cell, 0), cell, x };
-            let of = (["lower bound", "upper bound"], None);
-            node.compare(of, bounds.map(|bound| self.at(bound, cell, &x)), found);
-        };
         let in_cells = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut found = Vec::new();
             for cell in cells {
@@ -82,19 +83,42 @@ impl<const D: usize> Space<'_, D> {
                 let both = data.lower.of(region).zip(data.upper.of(region));
                 let Some((lower, upper)) = both else { continue };
                 for point in &self.cell_rule.points {
-                    compare(cell, self.cell_point(point, cell), [lower, upper], &mut found);
+                    let x = self.cell_point(point, cell);
+                    self.compare_at(
+                        (cell, x),
+                        [("obstacle", lower), ("obstacle", upper)],
+                        &mut found,
+                    )?;
                 }
             }
-            found
+            Ok::<_, Error>(found)
         });
-        found.extend(in_cells.into_iter().flatten());
+        for of_chunk in in_cells {
+            found.append(&mut of_chunk?);
+        }
         for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             let upper = data.upper.of(self.mesh.region(cell));
             let Some((gap, upper)) = data.gap.of(group).zip(upper) else { continue };
             for (point, _) in self.facet_rule.iter() {
-                compare(cell, self.facet_point(point, cell, local), [gap, upper], found);
+                let x = self.facet_point(point, cell, local);
+                self.compare_at((cell, x), [("gap", gap), ("obstacle", upper)], found)?;
             }
         }
+        Ok(())
+    }
+
+    /// Compares a lower and an upper bound, each with its name, at a point of a cell.
+    fn compare_at(
+        &self,
+        (cell, x): (usize, Point<D>),
+        bounds: [(&'static str, &Datum<D>); 2],
+        found: &mut Vec<Contradiction<D>>,
+    ) -> Result<(), Error> {
+        let at = |(name, bound)| checks::finite(self.at(bound, cell, &x), name, &x, cell);
+        let [lower, upper] = bounds.map(at);
+        let node = BoundedNode { unknown: self.dofs.of(cell, 0), cell, x };
+        node.compare((["lower bound", "upper bound"], None), [lower?, upper?], found);
+        Ok(())
     }
 
     /// The largest absolute value of bounds, of those that contradict each other, and of a share of what the load does.

@@ -1,9 +1,9 @@
 //! The reaction term in the matrix of a cell.
 
-use super::checks::finite;
 use std::slice::from_ref;
 use std::sync::Arc;
 
+use super::checks::finite;
 use super::tables::{BasisAt, CellTable};
 use crate::assemble::cut_simplices::{CutRule, Visit};
 use crate::assemble::stiffness::Local;

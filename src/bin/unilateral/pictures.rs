@@ -1,5 +1,4 @@
-//! A solution as a picture: the function, the contact set found against the exact free boundary, the
-//! jumps across facets, the multiplier and the share of each cell in the error bound, as SVG.
+//! A solution as a picture: the function, and the contact set found against the exact free boundary, as SVG.
 //!
 //! `cargo run --release -- pictures --help` lists the options. Of a solve that did not converge the last iterate is
 //! drawn, and said to be one.

@@ -20,7 +20,7 @@ pub(crate) const SYSTEMS_WITHOUT_HALVING: usize = 4;
 pub(crate) struct ProgressMonitor<'d> {
     /// Number of systems within which the number of state changes must halve; `None` for no limit.
     limit: Option<usize>,
-    /// The other parts of the mesh, if the states are those of one part.
+    /// The distribution of the unknowns over the parts of a mesh.
     distribution: &'d dyn Distribution,
     /// The fingerprint of the present active set, less that of the first; see [`fingerprint_change`].
     fingerprint: u128,

@@ -11,8 +11,7 @@ use crate::real::Real;
 /// Conjugate gradients for a symmetric matrix, with vectors that are allocated once.
 pub(crate) struct ConjugateGradients<'m, T> {
     matrix: Product<'m, T>,
-    /// The distribution of the unknowns over the parts of a mesh, if the matrix is that of one part; unknowns that
-    /// other parts own are fixed.
+    /// The distribution of the unknowns over the parts of a mesh; unknowns that other parts own are fixed.
     distribution: &'m dyn Distribution,
     /// The preconditioned residual.
     z: Vec<T>,

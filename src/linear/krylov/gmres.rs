@@ -29,8 +29,8 @@ const LEAST_SQUARES_FACTOR: f64 = 0.99;
 /// Restarted GMRES. It minimises the preconditioned norm `(r . B r)^(1/2)` of [`StoppingRule`]. A cycle is the part of
 /// a run between two restarts. The vectors are kept for all runs.
 pub(crate) struct Gmres<'m, T> {
-    /// The distribution of the unknowns over the parts of a mesh, if the matrices are those of one part: unknowns that
-    /// other parts own are fixed, and zero in preconditioned residuals.
+    /// The distribution of the unknowns over the parts of a mesh; unknowns that other parts own are fixed, and zero in
+    /// preconditioned residuals.
     distribution: &'m dyn Distribution,
     /// The Krylov basis `v_k`, orthonormal in the inner product `v . B w`.
     basis: Vec<Vec<T>>,

@@ -71,6 +71,6 @@ impl<const D: usize> Solved<'_, D> {
         let Some(own) = self.system.agreed(own)? else { return Ok(None) };
         let mut numbers = own.numbers();
         self.inequality().distribution().largest(&mut numbers);
-        Ok(Some(own.with_numbers(numbers)))
+        Ok(Some(Penetration::with_numbers(numbers)))
     }
 }

@@ -44,8 +44,8 @@ use evaluator::Evaluator;
 /// boundary.
 ///
 /// Tolerances are relative to the largest values met, `1e-6` for the multiplier and the gradient
-/// and `1e-8` for the rest. Errors confined to regions without sample points are not detected, nor are kinks of the
-/// solution between them.
+/// and `1e-8` for the rest. Errors confined to regions without sample points are not detected, nor are jumps and kinks
+/// of the solution between them.
 ///
 /// # Errors
 ///

@@ -8,7 +8,7 @@ use crate::study::memory::{bytes_about, memory_of_process, peak_memory_bytes, un
 use crate::study::row::Row;
 
 impl<const D: usize> Study<'_, D> {
-    /// Checks that all runs of a study fit into the memory.
+    /// Checks that all runs of a study fit into the memory. The reference solution and adaptive meshes do not count.
     ///
     /// # Errors
     /// [`Error::NotEnoughMemory`].
@@ -20,7 +20,7 @@ impl<const D: usize> Study<'_, D> {
     }
 
     /// Bytes that the process needs for the largest run of a scheme on a level, about: right to a factor of two without
-    /// factors of matrices, of three with them. None for a study without schemes or levels. No mesh is built.
+    /// factors of matrices, of three with them; the reference solution and adaptive meshes do not count. None for a study without schemes or levels. No mesh is built.
     pub fn memory_bytes(&self) -> Option<f64> {
         let schemes = self.entries.iter().map(|entry| &*entry.scheme);
         let of = |scheme| {

@@ -2,7 +2,7 @@
 
 use crate::support::meshes::mixed_box;
 use unilateral::algebra::Bound;
-use unilateral::mesh::{BoxDomain, Mesh};
+use unilateral::mesh::{BoundaryCondition, BoxDomain, Mesh};
 use unilateral::prelude::*;
 
 /// Vertices with their bounds.
@@ -66,6 +66,44 @@ fn contradictions_are_told_from_rounding() {
             assert!(bounds(&problem(by)).is_ok(), "{what} by {by}");
         }
     }
+}
+
+/// Bounds that agree at the vertices may cross between them, in cells and on contact facets, and need not be numbers there.
+#[test]
+fn bounds_are_compared_between_nodes() {
+    fn check<const D: usize>() {
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let domain = domain.side(D - 1, 0, BoundaryCondition::Contact);
+        let mesh = Mesh::<D>::kuhn_box(&domain, [1; D]).unwrap();
+        let of = |problem: Problem<D>| {
+            Discretisation::new(&ConformingP1, &problem, &mesh, Default::default())?.bounds()
+        };
+        let bump = |x: &Point<D>| x[0] * (1.0 - x[0]);
+        let hole = move |x: &Point<D>| if bump(x) > 0.01 { f64::NAN } else { 0.0 };
+        let crosses = |found: Result<_, Error>| {
+            let Err(Error::EmptyConstraint { lower, upper, .. }) = found else {
+                panic!("{D}: {found:?}")
+            };
+            assert!(lower - upper > 0.01 && lower - upper <= 0.25, "{D}: {lower} {upper}");
+        };
+        let is_no_number = |found: Result<_, Error>| {
+            assert!(matches!(found, Err(Error::DataNotFinite { .. })), "{D}: {found:?}");
+        };
+        let above = || Problem::<D>::new().obstacle_above(|_| 0.0);
+        crosses(of(above().obstacle_below(bump)));
+        crosses(of(Problem::new().obstacle_below(|_| 0.0).obstacle_above(move |x| -bump(x))));
+        is_no_number(of(above().obstacle_below(hole)));
+        is_no_number(of(Problem::new().obstacle_below(|_| 0.0).obstacle_above(hole)));
+        assert!(of(above().obstacle_below(move |x| -bump(x))).is_ok());
+        if D > 1 {
+            crosses(of(above().signorini(bump)));
+            is_no_number(of(above().signorini(hole)));
+            assert!(of(above().signorini(move |x| -bump(x))).is_ok());
+        }
+    }
+    check::<1>();
+    check::<2>();
+    check::<3>();
 }
 
 /// A Signorini condition binds the mean over a facet by the mean of the gap, an obstacle by its value
