@@ -77,6 +77,7 @@ impl Cell {
 
 impl Table {
     /// A table with these heads, separated by commas.
+    #[cfg(feature = "report")]
     pub(crate) fn new(title: impl Into<String>, heads: &str, rows: Vec<Vec<Cell>>) -> Self {
         let columns = heads.split(',').map(str::to_owned).collect();
         Self { title: title.into(), columns, rows, ..Self::default() }

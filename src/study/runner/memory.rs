@@ -4,7 +4,7 @@ use super::{Entry, Study};
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::scheme::Scheme;
-use crate::study::memory::{bytes_about, memory_of_process, peak_memory_bytes, unknowns_about};
+use crate::study::memory::{bytes_about, peak_memory_bytes, unknowns_about};
 use crate::study::row::Row;
 
 impl<const D: usize> Study<'_, D> {
@@ -12,15 +12,17 @@ impl<const D: usize> Study<'_, D> {
     ///
     /// # Errors
     /// [`Error::NotEnoughMemory`].
+    #[cfg(feature = "report")]
     pub(crate) fn check_memory(&self) -> Result<(), Error> {
-        let available = memory_of_process();
+        let available = crate::study::memory::memory_of_process();
         self.entries.iter().try_for_each(|entry| {
             self.levels.iter().try_for_each(|&k| self.check_level(&*entry.scheme, k, available))
         })
     }
 
     /// Bytes that the process needs for the largest run of a scheme on a level, about: right to a factor of two without
-    /// factors of matrices, of three with them; the reference solution and adaptive meshes do not count. None for a study without schemes or levels. No mesh is built.
+    /// factors of matrices, of three with them; the reference solution and adaptive meshes do not count. None for a study
+    /// without schemes or levels. No mesh is built.
     pub fn memory_bytes(&self) -> Option<f64> {
         let schemes = self.entries.iter().map(|entry| &*entry.scheme);
         let of = |scheme| {
