@@ -7,9 +7,9 @@ use crate::real::Real;
 /// How the unknowns of an inequality are distributed over the parts of a mesh, seen from one part.
 ///
 /// A part has rows, load and bounds of its own unknowns, and besides unknowns that other parts own, its
-/// *ghosts*: their values take part in products, their rows are incomplete and count nowhere. A mesh in one process is one part. Solvers of an
-/// inequality run in all parts at once. Sums and maxima over the parts decide, so that
-/// all parts take the same decision.
+/// *ghosts*: their values take part in products, their rows are incomplete and count nowhere. A mesh in one process
+/// is one part. Solvers of an inequality run in all parts at once. Sums and maxima over the parts decide, so that all
+/// parts take the same decision.
 ///
 /// [`exchange`](Self::exchange), [`sum`](Self::sum) and [`largest`](Self::largest) are collective: all parts
 /// call them as often as one another, in the same order. Where messages fail, the numbers that come back are

@@ -123,8 +123,8 @@ impl<const D: usize> CellsOfQuadratics<'_, D> {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// Exchanges multipliers of quadratics for flux. `on_facets` has what facets took of the multipliers; multipliers that
-    /// are rounding beside the largest one before facets took any are not exchanged.
+    /// Exchanges multipliers of quadratics for flux. `on_facets` are the parts of the multipliers that moved to facets. A
+    /// multiplier that is rounding beside the largest one before that is not exchanged.
     pub(in crate::error_bound) fn exchange_quadratics(
         &self,
         pair: &mut PrimalDualPair<D>,

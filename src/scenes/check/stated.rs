@@ -4,6 +4,9 @@ use super::evaluator::{Evaluator, TOUCHING};
 use super::violation::Violation;
 use crate::real::Point;
 
+/// The condition on the stated contact set.
+const CONTACT_SET: &str = "contact inside the stated contact set and nowhere else";
+
 /// Error allowed in a multiplier on the boundary, relative to the scale of the flux.
 const EXACT: f64 = 1e-8;
 /// Size of the indicator on the free boundary that counts as zero, relative to its largest value.
@@ -55,26 +58,11 @@ impl<const D: usize> Evaluator<'_, D> {
         let Some(contact) = &self.exact.contact else { return Ok(()) };
         let indicator = (contact.indicator)(x);
         if indicator > 0.0 {
-            return self.require(
-                "contact inside the stated contact set and nowhere else",
-                x,
-                gap,
-                TOUCHING * self.scales.value,
-            );
+            return self.require(CONTACT_SET, x, gap, TOUCHING * self.scales.value);
         }
         if indicator < 0.0 {
-            self.require(
-                "contact inside the stated contact set and nowhere else",
-                x,
-                multiplier.abs(),
-                allowed,
-            )?;
-            self.require(
-                "contact inside the stated contact set and nowhere else",
-                x,
-                f64::from(u8::from(gap <= 0.0)),
-                0.0,
-            )?;
+            self.require(CONTACT_SET, x, multiplier.abs(), allowed)?;
+            self.require(CONTACT_SET, x, f64::from(u8::from(gap <= 0.0)), 0.0)?;
         }
         let is_none = f64::from(u8::from(indicator.is_nan()));
         self.require("indicator finite", x, is_none, 0.0)

@@ -1,8 +1,9 @@
-//! The cases of a study: what runs alone, and reuses nothing of other runs.
+//! The cases of a study: what runs alone, and reuses nothing of other runs; whether all cases fit into the memory.
 
 use super::Study;
 use crate::error::Error;
 use crate::inequality::Outcome;
+use crate::study::memory::memory_of_process;
 use crate::study::{Row, Variant};
 
 impl<'a, const D: usize> Study<'a, D> {
@@ -29,6 +30,17 @@ impl<'a, const D: usize> Study<'a, D> {
             }
         }
         cases
+    }
+
+    /// Checks that all runs of a study fit into the memory. The reference solution and adaptive meshes do not count.
+    ///
+    /// # Errors
+    /// [`Error::NotEnoughMemory`].
+    pub(crate) fn check_memory(&self) -> Result<(), Error> {
+        let available = memory_of_process();
+        self.entries.iter().try_for_each(|entry| {
+            self.levels.iter().try_for_each(|&k| self.check_level(&*entry.scheme, k, available))
+        })
     }
 
     /// The row of a case that is not run since a coarser level took too long, for this reason.

@@ -8,18 +8,6 @@ use crate::study::memory::{bytes_about, peak_memory_bytes, unknowns_about};
 use crate::study::row::Row;
 
 impl<const D: usize> Study<'_, D> {
-    /// Checks that all runs of a study fit into the memory. The reference solution and adaptive meshes do not count.
-    ///
-    /// # Errors
-    /// [`Error::NotEnoughMemory`].
-    #[cfg(feature = "report")]
-    pub(crate) fn check_memory(&self) -> Result<(), Error> {
-        let available = crate::study::memory::memory_of_process();
-        self.entries.iter().try_for_each(|entry| {
-            self.levels.iter().try_for_each(|&k| self.check_level(&*entry.scheme, k, available))
-        })
-    }
-
     /// Bytes that the process needs for the largest run of a scheme on a level, about: right to a factor of two without
     /// factors of matrices, of three with them; the reference solution and adaptive meshes do not count. None for a study
     /// without schemes or levels. No mesh is built.
