@@ -25,7 +25,7 @@ impl BasisAt {
     }
     /// The function with these coefficients.
     #[inline(always)]
-    pub fn value(&self, coefficients: &[f64; MAX_BASIS]) -> f64 {
+    pub fn value(&self, coefficients: &[f64]) -> f64 {
         coefficients.iter().zip(&self.values).map(|(c, v)| c * v).sum()
     }
     /// The gradient of the function with these coefficients, from the gradients of the barycentric coordinates.

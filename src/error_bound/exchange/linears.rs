@@ -12,7 +12,7 @@ use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::measure::Counts;
-use crate::mesh::{BoundaryCondition, HalfFacet, Mesh, Neighbours};
+use crate::mesh::{BoundaryCondition, HalfFacet, Neighbours};
 use crate::parallel::vectors::{collect, for_each_chunk, for_each_chunk_of_groups, largest};
 use crate::quadrature::Rule;
 use crate::real::Point;
@@ -25,12 +25,10 @@ const DEGREE: usize = 2;
 
 /// The data of a cell that the exchange needs.
 struct CellOfLinears<const D: usize> {
-    /// The number of the cell.
-    number: usize,
     /// The flux through each facet.
     flux: [f64; 4],
-    /// `1 / (D |K|)`.
-    per_volume: f64,
+    /// The values at the centre of the fluxes that leave through one facet, with the integral one there.
+    at_centre: [Point<D>; 4],
     /// The mean square of the flux through one facet, with the integral one there, less its value at the centre.
     variance: f64,
     /// The volume over the coefficient.
@@ -45,16 +43,9 @@ struct CellOfLinears<const D: usize> {
 }
 
 impl<const D: usize> CellOfLinears<D> {
-    /// The value at the centre of the flux that leaves through a facet, with the integral one there.
-    fn at_centre(&self, mesh: &Mesh<D>, facet: usize) -> Point<D> {
-        let corners = mesh.corners(self.number);
-        let centre: Point<D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
-        (centre - corners[facet]) * self.per_volume
-    }
-
-    /// Half of the derivative of the square of the mismatch by the flux through a facet, which has this value at the
-    /// centre, and half of the second derivative.
-    fn slopes(&self, at_centre: &Point<D>) -> [f64; 2] {
+    /// Half of the derivative of the square of the mismatch by the flux through a facet, and half of the second derivative.
+    fn slopes(&self, facet: usize) -> [f64; 2] {
+        let at_centre = &self.at_centre[facet];
         [
             self.weight * (at_centre.dot(&self.difference) + self.variance * self.sum()),
             self.weight * (at_centre.norm_squared() + self.variance),
@@ -71,10 +62,10 @@ impl<const D: usize> CellOfLinears<D> {
         Some(self.gaps[usize::from(sign < 0.0)]).filter(|gap| gap.is_finite())
     }
 
-    /// Adds to the flux through a facet, which has this value at the centre, what the multiplier gives.
-    fn add(&mut self, facet: usize, at_centre: &Point<D>, exchange: f64) {
+    /// Adds to the flux through a facet what the multiplier gives.
+    fn add(&mut self, facet: usize, exchange: f64) {
         self.flux[facet] += exchange;
-        self.difference += at_centre * exchange;
+        self.difference += self.at_centre[facet] * exchange;
         self.multiplier -= exchange;
     }
 }
@@ -156,11 +147,10 @@ impl<const D: usize> Space<'_, D> {
             let multiplier = if presses(number) { multipliers[number] } else { 0.0 };
             self.cell_of_linears(number, pair, multiplier, &rule)
         });
-        let mesh = self.mesh;
         steps.visit(SWEEPS, &mut cells, |cells, _, step| match step {
-            ExchangeStep::Between(at) => exchange_between(mesh, cells, at.map(FacetOfCell::half)),
+            ExchangeStep::Between(at) => exchange_between(cells, at.map(FacetOfCell::half)),
             ExchangeStep::WithDirichlet(FacetOfCell { cell, local }) => {
-                exchange_with_dirichlet(mesh, &mut cells[cell as usize], local.into())
+                exchange_with_dirichlet(&mut cells[cell as usize], local.into())
             }
             ExchangeStep::Inside(_) => {}
         });
@@ -198,9 +188,8 @@ impl<const D: usize> Space<'_, D> {
             rule.iter().map(|(point, weight)| weight * at_point(point)).sum()
         };
         let mut cell = CellOfLinears {
-            number,
             flux: array_of(|k| flux.get(k).copied().unwrap_or(0.0)),
-            per_volume,
+            at_centre: array_of(|k| (centre - corners[k]) * per_volume),
             variance: squares * per_volume * per_volume / ((D + 1) * (D + 2)) as f64,
             weight: volume / alpha,
             difference: -admissible.gradient * alpha,
@@ -208,7 +197,7 @@ impl<const D: usize> Space<'_, D> {
             multiplier,
         };
         for facet in 0..=D {
-            cell.difference += cell.at_centre(self.mesh, facet) * cell.flux[facet];
+            cell.difference += cell.at_centre[facet] * cell.flux[facet];
         }
         cell
     }
@@ -216,7 +205,6 @@ impl<const D: usize> Space<'_, D> {
 
 /// Exchanges the multipliers of two cells for the flux through their facet.
 fn exchange_between<const D: usize>(
-    mesh: &Mesh<D>,
     cells: &mut [CellOfLinears<D>],
     [(here, facet_here), (there, facet_there)]: [HalfFacet; 2],
 ) {
@@ -225,32 +213,26 @@ fn exchange_between<const D: usize>(
     let gaps = of_here.gap(sign).zip(of_there.gap(sign));
     let gaps = gaps.filter(|_| of_here.multiplier * of_there.multiplier >= 0.0);
     let Some((gap_here, gap_there)) = gaps else { return };
-    let at_centre = [of_here.at_centre(mesh, facet_here), of_there.at_centre(mesh, facet_there)];
-    let [slope, curvature] = of_here.slopes(&at_centre[0]);
-    let [slope_there, curvature_there] = of_there.slopes(&at_centre[1]);
+    let [slope, curvature] = of_here.slopes(facet_here);
+    let [slope_there, curvature_there] = of_there.slopes(facet_there);
     let slope = slope - slope_there + sign * (gap_there - gap_here);
     let curvature = curvature + curvature_there;
     let (a, b) = (-of_there.multiplier, of_here.multiplier);
     let exchange = (-slope / curvature).max(a.min(b)).min(a.max(b));
     if exchange.is_finite() {
-        cells[here].add(facet_here, &at_centre[0], exchange);
-        cells[there].add(facet_there, &at_centre[1], -exchange);
+        cells[here].add(facet_here, exchange);
+        cells[there].add(facet_there, -exchange);
     }
 }
 
 /// Exchanges the multiplier of a cell for the flux through a Dirichlet facet.
-fn exchange_with_dirichlet<const D: usize>(
-    mesh: &Mesh<D>,
-    cell: &mut CellOfLinears<D>,
-    local: usize,
-) {
+fn exchange_with_dirichlet<const D: usize>(cell: &mut CellOfLinears<D>, local: usize) {
     let sign = cell.multiplier.signum();
     let Some(gap) = cell.gap(sign) else { return };
-    let at_centre = cell.at_centre(mesh, local);
-    let [slope, curvature] = cell.slopes(&at_centre);
+    let [slope, curvature] = cell.slopes(local);
     let slope = slope - sign * gap;
     let exchange = sign * (-sign * slope / curvature).min(sign * cell.multiplier);
     if exchange.is_finite() {
-        cell.add(local, &at_centre, exchange);
+        cell.add(local, exchange);
     }
 }
