@@ -27,9 +27,12 @@ const WIDTH: f64 = 1.0;
 /// Times to expiry at which the exercise price is drawn.
 const DRAWN: usize = 16;
 
-/// The worth of a put at the strike a year before expiry, and the exercise prices at times to expiry.
+/// The worth of a put at the strike a year before expiry with its first and second derivative by the price, and the exercise
+/// prices at times to expiry.
 pub struct Worth {
     pub at_strike: f64,
+    pub delta: f64,
+    pub gamma: f64,
     pub exercise: Vec<[f64; 2]>,
 }
 
@@ -67,7 +70,11 @@ pub fn by_tree(steps: usize) -> Worth {
             exercise.push([done as f64 * dt, exercise_price(excess.filter(|(_, e)| *e > 1e-12))]);
         }
     }
-    Worth { at_strike: STRIKE * worth[(all - steps) / 2], exercise }
+    let middle = (all - steps) / 2;
+    let [below, at, above] = [middle - 1, middle, middle + 1].map(|j| worth[j]);
+    let delta = (above - below) / (4.0 * up);
+    let gamma = ((above - 2.0 * at + below) / (2.0 * up).powi(2) - delta) / STRIKE;
+    Worth { at_strike: STRIKE * at, delta, gamma, exercise }
 }
 
 /// The worth by a scheme on so many cells and with so many implicit steps.
@@ -105,8 +112,15 @@ pub fn by_steps(scheme: &dyn Scheme<1>, cells: usize, steps: usize) -> Result<Wo
             exercise.push([k as f64 * dt, exercise_price(beyond)]);
         }
     }
-    let at_strike = last.and_then(|last| last.function.value_at(&Point::zeros()));
-    Ok(Worth { at_strike: STRIKE * at_strike.unwrap_or(f64::NAN), exercise })
+    let function = last.expect("there is at least one step").function;
+    // vertices in the order of x, one of them at the strike
+    let (slopes, middle) = (function.recovered_gradient(), cells / 2);
+    let [below, slope, above] = [middle - 1, middle, middle + 1].map(|v| slopes[v][0]);
+    let curvature = (above - below) * cells as f64 / (4.0 * WIDTH);
+    let at = function.value_at(&Point::zeros()).unwrap_or(f64::NAN);
+    let delta = g * at + slope;
+    let gamma = (g * g * at + 2.0 * g * slope + curvature - delta) / STRIKE;
+    Ok(Worth { at_strike: STRIKE * at, delta, gamma, exercise })
 }
 
 fn main() -> Result<(), Error> {
@@ -118,6 +132,7 @@ fn main() -> Result<(), Error> {
     let price = 2.0 * fine - coarse;
     println!("binomial tree: {price:.5}, last extrapolated by {:.0e}", (fine - coarse).abs());
     let tree = by_tree(8192);
+    println!("delta {:.4}, gamma {:.5}", tree.delta, tree.gamma);
     let mut curves = vec![("tree", tree.exercise.clone())];
     for scheme in &schemes {
         let on_fine = by_steps(&**scheme, 2048, 16)?.at_strike;
@@ -127,7 +142,9 @@ fn main() -> Result<(), Error> {
             ("space, against 2048 cells", [(64, 16), (128, 16), (256, 16), (512, 16)], on_fine),
         ] {
             println!("\n{}, refined in {what}", scheme.name());
-            println!("cells steps   price    error (order)  exercise price (error)");
+            println!(
+                "cells steps   price    error (order)  exercise price (error)  delta    gamma"
+            );
             let mut before: Option<f64> = None;
             for (cells, steps) in levels {
                 let found = by_steps(&**scheme, cells, steps)?;
@@ -135,7 +152,8 @@ fn main() -> Result<(), Error> {
                 let order = before.map_or(String::new(), |b| format!("{:.2}", (b / error).log2()));
                 let last = [&found, &tree].map(|w| w.exercise[DRAWN][1]);
                 print!("{cells:5} {steps:5} {:.5} {error:.2e} ({order:>4})", found.at_strike);
-                println!("  {:.3} ({:.1e})", last[0], (last[0] - last[1]).abs());
+                print!("  {:.3} ({:.1e})        ", last[0], (last[0] - last[1]).abs());
+                println!(" {:.4}  {:.5}", found.delta, found.gamma);
                 before = Some(error);
                 if (cells, steps) == (256, 1024) {
                     curves.push((scheme.name(), found.exercise));

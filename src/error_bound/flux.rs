@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use crate::memory::in_large_pages;
+use crate::mesh::Mesh;
 use crate::parallel::vectors::for_each_chunk_of_groups;
+use crate::real::Point;
 
 /// A flux `q` in the space of Raviart and Thomas of degree zero or one. Numbers `c` describe it in each cell `K`, with
 /// the functions `phi_F = (x - a_F) / (D |K|)`, `a_F` the vertex opposite the facet `F`:
@@ -68,6 +70,20 @@ impl<const D: usize> Flux<D> {
     #[must_use]
     pub fn inner(&self, cell: usize, vertex: usize) -> f64 {
         if self.degree == 0 { 0.0 } else { self.of_cell(cell)[Self::place(vertex, vertex)] }
+    }
+
+    /// The mean of the flux over a cell of the mesh that it belongs to.
+    #[must_use]
+    pub fn mean_in(&self, mesh: &Mesh<D>, cell: usize) -> Point<D> {
+        let (corners, n) = (mesh.corners(cell), (D + 1) as f64);
+        let middle = corners[..=D].iter().sum::<Point<D>>() / n;
+        // the mean of lambda_j (x - a_F), over that of lambda_j
+        let along = |facet: usize, j: usize| (middle * n + corners[j]) / (n + 1.0) - corners[facet];
+        let of_facet = |facet: usize| match self.degree {
+            0 => (middle - corners[facet]) * self.density(cell, facet, facet),
+            _ => (0..=D).map(|j| along(facet, j) * (self.density(cell, facet, j) / n)).sum(),
+        };
+        (0..=D).map(of_facet).sum::<Point<D>>() / (D as f64 * mesh.geometry(cell).volume)
     }
 
     /// Adds to the integral of `q.n` over a facet of one cell, the same density everywhere on the facet.

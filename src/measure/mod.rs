@@ -11,6 +11,7 @@ mod fields;
 mod norms;
 mod order;
 mod penetration;
+mod recovered_gradient;
 mod rounding;
 mod squared_errors;
 

@@ -7,18 +7,19 @@
 use std::fmt;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
+use std::iter::repeat_n;
 use std::path::{Path, PathBuf};
 
 use super::encode::{Arrays, doubles, integers};
 use super::grid::{Grid, values_per_cell};
 use super::groups::{array_names, members};
 use super::pvd::relative_to;
-use crate::arrays::map_entries;
+use crate::arrays::{array_of, map_entries};
 use crate::error::Error;
 use crate::files::{replace, replace_text};
 use crate::input::escaped;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryFacet, Mesh};
+use crate::mesh::{BoundaryFacet, Mesh, edge_vertices};
 use crate::real::Point;
 
 /// A function of space that may jump between cells: of the number of a cell and a point in it.
@@ -51,7 +52,15 @@ pub struct VtuFile<'a, const D: usize> {
     exact: Option<InCell<'a, D>>,
     on_cells: Vec<(&'a str, &'a [f64])>,
     on_facets: Vec<OnFacets<'a>>,
+    vectors: Vec<(&'a str, Vectors<'a, D>)>,
     numbers: Vec<(String, f64)>,
+}
+
+/// Vectors, one for each cell or one for each vertex of the mesh.
+#[derive(Clone, Copy)]
+enum Vectors<'a, const D: usize> {
+    OnCells(&'a [Point<D>]),
+    AtVertices(&'a [Point<D>]),
 }
 
 impl<const D: usize> fmt::Debug for VtuFile<'_, D> {
@@ -77,6 +86,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             exact: None,
             on_cells: Vec::new(),
             on_facets: Vec::new(),
+            vectors: Vec::new(),
             numbers: Vec::new(),
         }
     }
@@ -112,6 +122,16 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         values: &'a [f64],
     ) -> Self {
         self.on_facets.push((name, facets, values));
+        self
+    }
+    /// Adds cell data, one vector for each cell.
+    pub fn vectors_on_cells(mut self, name: &'a str, vectors: &'a [Point<D>]) -> Self {
+        self.vectors.push((name, Vectors::OnCells(vectors)));
+        self
+    }
+    /// Adds point data, one vector for each vertex of the mesh; at midpoints of edges the mean of the ends.
+    pub fn vectors_at_vertices(mut self, name: &'a str, vectors: &'a [Point<D>]) -> Self {
+        self.vectors.push((name, Vectors::AtVertices(vectors)));
         self
     }
     /// Adds a number to the field data.
@@ -157,10 +177,17 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escaped(name))
         };
         let array = |name: &str| typed("Float64", name);
+        let vector = |name: &str| array(name).replace("/>", " NumberOfComponents=\"3\"/>");
         let functions = self.functions.iter().map(|(name, _)| *name);
         let of_points = functions.chain(self.exact.as_ref().map(|_| "error")).chain(["u"]);
-        let of_points: String = of_points.map(array).collect();
+        let mut of_points: String = of_points.map(array).collect();
         let mut of_cells: String = self.cell_names().into_iter().map(array).collect();
+        for (name, vectors) in &self.vectors {
+            match vectors {
+                Vectors::OnCells(_) => of_cells += &vector(name),
+                Vectors::AtVertices(_) => of_points += &vector(name),
+            }
+        }
         let names = ["dimension".to_owned()].into_iter();
         let names = names.chain(self.groups().into_iter().map(|(name, _)| name));
         of_cells.extend(names.map(|name| typed("UInt8", &name)));
@@ -193,7 +220,8 @@ impl<'a, const D: usize> VtuFile<'a, D> {
 
     /// The groups of the mesh: the name of the array of each, and its own.
     fn groups(&self) -> Vec<(String, &str)> {
-        let fields = self.cell_names().into_iter().chain(["dimension"]);
+        let vectors = self.vectors.iter().map(|(name, _)| *name);
+        let fields = self.cell_names().into_iter().chain(vectors).chain(["dimension"]);
         array_names(self.mesh, fields.map(str::to_owned).collect())
     }
 
@@ -212,6 +240,15 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         }
         if let Some((name, values)) = self.on_cells.iter().find(|(_, v)| v.len() != cells) {
             return wrong(name, values.len(), cells);
+        }
+        for (name, vectors) in &self.vectors {
+            let (length, needed) = match vectors {
+                Vectors::OnCells(vectors) => (vectors.len(), cells),
+                Vectors::AtVertices(vectors) => (vectors.len(), self.mesh.vertices().len()),
+            };
+            if length != needed {
+                return wrong(name, length, needed);
+            }
         }
         for (name, facets, values) in &self.on_facets {
             if values.len() != facets.len() {
@@ -259,15 +296,21 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             push_floats(to, "error", &mut error)?;
         }
         push_floats(to, "u", &mut u.iter().copied())?;
+        for (name, vectors) in &self.vectors {
+            let Vectors::AtVertices(vectors) = vectors else { continue };
+            let at = |&k: &usize| {
+                let corner = |j: usize| vectors[self.mesh.cell(k / per_cell)[j] as usize];
+                match (k % per_cell).checked_sub(D + 1) {
+                    None => corner(k % per_cell),
+                    Some(edge) => edge_vertices(D)[edge].map(corner).iter().sum::<Point<D>>() / 2.0,
+                }
+            };
+            push_vectors(to, name, grid.sources.iter().map(at))?;
+        }
         writeln!(to.text, "</PointData>\n<CellData>")?;
         self.push_cell_data(to)?;
         writeln!(to.text, "</CellData>\n<Points>")?;
-        let mut coordinates = Vec::with_capacity(3 * n_points);
-        for x in &grid.points {
-            coordinates.extend_from_slice(x.as_slice());
-            coordinates.resize(coordinates.len() + 3 - D, 0.0);
-        }
-        to.push("Float64", "Points", 3, &doubles(&mut coordinates.into_iter()))?;
+        push_vectors(to, "Points", grid.points.iter().copied())?;
         writeln!(to.text, "</Points>\n<Cells>")?;
         let corners = integers(&mut grid.connectivity.iter().map(|&k| i64::from(k)));
         to.push("Int64", "connectivity", 1, &corners)?;
@@ -306,6 +349,11 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             }
             push_floats(to, name, &mut all.into_iter())?;
         }
+        for (name, vectors) in &self.vectors {
+            let Vectors::OnCells(vectors) = vectors else { continue };
+            let on_facets = repeat_n(Point::repeat(f64::NAN), facets);
+            push_vectors(to, name, vectors.iter().copied().chain(on_facets))?;
+        }
         let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
         to.push("UInt8", "dimension", 1, &dimensions)?;
         for (name, group) in self.groups() {
@@ -321,4 +369,15 @@ fn push_floats(
     values: &mut dyn Iterator<Item = f64>,
 ) -> io::Result<()> {
     to.push("Float64", &escaped(name), 1, &doubles(values))
+}
+
+/// Vectors have three components, missing ones zero.
+fn push_vectors<const D: usize>(
+    to: &mut Arrays,
+    name: &str,
+    vectors: impl Iterator<Item = Point<D>>,
+) -> io::Result<()> {
+    let mut components =
+        vectors.flat_map(|x| -> [f64; 3] { array_of(|k| if k < D { x[k] } else { 0.0 }) });
+    to.push("Float64", &escaped(name), 3, &doubles(&mut components))
 }

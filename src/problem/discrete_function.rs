@@ -1,11 +1,16 @@
 //! A discrete function that owns its mesh: what one solve found, as a datum of other problems.
 
 use std::fmt;
+use std::ops::Div;
 use std::sync::{Arc, OnceLock};
 
+use num_traits::Zero;
+
+use crate::arrays::array_of;
 use crate::element::{Element, MAX_BASIS};
 use crate::mesh::{BoxSearch, Mesh};
 use crate::parallel::once;
+use crate::parallel::vectors::collect;
 use crate::real::Point;
 
 /// A point lies in a cell if its barycentric coordinates are above minus this.
@@ -72,17 +77,34 @@ impl<const D: usize> DiscreteFunction<D> {
     /// The value at a point: the mean over the cells that contain it. Beyond the mesh, by less than a quarter of the
     /// height of a cell, that of the polynomial in the cell; farther none.
     pub fn value_at(&self, x: &Point<D>) -> Option<f64> {
+        self.mean_at(x, |cell, barycentric| self.value(cell, barycentric))
+    }
+    /// The gradient at a point: the mean over the cells that contain it, beyond the mesh as [`Self::value_at`].
+    pub fn gradient_at(&self, x: &Point<D>) -> Option<Point<D>> {
+        self.mean_at(x, |cell, barycentric| self.gradient(cell, barycentric))
+    }
+    /// The gradient at the barycentre of each cell; up to degree two the mean over the cell.
+    pub fn cell_gradients(&self) -> Vec<Point<D>> {
+        let barycentre = array_of(|k| if k <= D { 1.0 / (D + 1) as f64 } else { 0.0 });
+        collect(self.cells.mesh.n_cells(), |cell| self.gradient(cell, &barycentre))
+    }
+    /// The mean of what the cells have that contain a point.
+    fn mean_at<V: Zero + Div<f64, Output = V>>(
+        &self,
+        x: &Point<D>,
+        of_cell: impl Fn(usize, &[f64; 4]) -> V,
+    ) -> Option<V> {
         let (mesh, search) = (&self.cells.mesh, self.search());
-        let (mut sum, mut count) = (0.0, 0.0);
+        let (mut sum, mut count) = (V::zero(), 0.0);
         let mut beyond = (-BEYOND, None);
         for cell in search.candidates(x) {
             let barycentric = mesh.barycentric(cell, x);
             let least = least::<D>(&barycentric);
             if least >= -ROUNDING {
-                sum += self.value(cell, &barycentric);
+                sum = sum + of_cell(cell, &barycentric);
                 count += 1.0;
             } else if least > beyond.0 {
-                beyond = (least, Some(self.value(cell, &barycentric)));
+                beyond = (least, Some(of_cell(cell, &barycentric)));
             }
         }
         if count > 0.0 { Some(sum / count) } else { beyond.1 }
@@ -131,6 +153,18 @@ impl<const D: usize> DiscreteFunction<D> {
         let mut basis = [0.0; MAX_BASIS];
         self.cells.element.values(&barycentric[..=D], &mut basis[..n]);
         self.values[cell * n..][..n].iter().zip(&basis).map(|(value, phi)| value * phi).sum()
+    }
+    /// The gradient at a point of an own cell.
+    fn gradient(&self, cell: usize, barycentric: &[f64; 4]) -> Point<D> {
+        let n = self.values.len() / self.cells.mesh.n_cells();
+        let mut derivatives = [[0.0; 4]; MAX_BASIS];
+        self.cells.element.derivatives(&barycentric[..=D], &mut derivatives[..n]);
+        let (values, geometry) = (&self.values[cell * n..][..n], self.cells.mesh.geometry(cell));
+        // gradients of barycentric coordinates sum to zero: without their common slope a constant adds no rounding
+        let slope = |k: usize| -> f64 {
+            values.iter().zip(&derivatives).map(|(value, d)| value * (d[k] - d[0])).sum()
+        };
+        (1..=D).map(|k| geometry.gradient(k) * slope(k)).sum()
     }
 }
 

@@ -15,7 +15,11 @@ fn a_put_has_the_worth_of_a_binomial_tree_and_its_exercise_price() {
     let mean = |steps| (by_tree(steps).at_strike + by_tree(steps + 1).at_strike) / 2.0;
     let price = 2.0 * mean(1024) - mean(512);
     assert!((price - 6.0904).abs() < 2e-4, "{price}");
-    let exercise = by_tree(2048).exercise;
+    let tree = by_tree(2048);
+    // derivatives of the tree oscillate by less
+    let half = by_tree(1024);
+    assert!((tree.delta - half.delta).abs() < 2e-4 && (tree.gamma - half.gamma).abs() < 2e-5);
+    let exercise = tree.exercise;
     let schemes: [Box<dyn Scheme<1>>; 3] =
         [Box::new(ConformingP1), Box::new(Sipg::default()), Box::new(Wopsip::default())];
     for scheme in schemes {
@@ -33,6 +37,10 @@ fn a_put_has_the_worth_of_a_binomial_tree_and_its_exercise_price() {
         assert!(of_time.iter().all(|order| *order > 0.9 && *order < 1.0), "{name}: {of_time:?}");
         let found = of(256, 256);
         assert!((found.at_strike - price).abs() < 7e-3, "{name}: {}", found.at_strike);
+        let of_delta = (found.delta - tree.delta).abs();
+        assert!(of_delta < 2e-3, "{name}: {} for {}", found.delta, tree.delta);
+        let of_gamma = (found.gamma - tree.gamma).abs();
+        assert!(of_gamma < 2e-4, "{name}: {} for {}", found.gamma, tree.gamma);
         assert_eq!(found.exercise.len(), exercise.len());
         for (found, by_tree) in found.exercise.iter().zip(&exercise) {
             assert_eq!(found[0], by_tree[0]);

@@ -7,6 +7,7 @@ use crate::error::{Error, write_error};
 use crate::instances::compiled;
 use crate::measure::Fields;
 use crate::mesh::{HalfFacet, Layers};
+use crate::parallel::vectors::collect;
 use crate::paraview::VtuFile;
 use crate::problem::DataOnMesh;
 use crate::real::Point;
@@ -44,8 +45,12 @@ impl<const D: usize> Solved<'_, D> {
     /// there are both, `error`, which is `u` less the exact solution where that is known (for rows of a study
     /// with a reference: less the reference). Cell data of obstacle problems: `multiplier` and `contact` of
     /// [`Fields`](crate::measure::Fields); of all for which there is one, `bound`, the share of the cell in the square
-    /// of the error bound ([`ErrorBound::cells`](crate::error_bound::ErrorBound::cells)). The facets of the boundary
-    /// are further cells, of `dimension` `D - 1`. Those of the contact boundary have `pressure` and `gap` of these
+    /// of the error bound ([`ErrorBound::cells`](crate::error_bound::ErrorBound::cells)), `flux`, the mean of the flux of
+    /// the bound, and on the facets of the boundary `normal_flux`, the mean of its normal component, outward; of all
+    /// problems `gradient`, the mean of that of `u`. The flux balances load, multiplier and forces in each cell and on each
+    /// facet; the coefficient times the gradient does not. Linear functions on whole meshes have as point data
+    /// `recovered_gradient` ([`DiscreteFunction::recovered_gradient`](crate::problem::DiscreteFunction::recovered_gradient)).
+    /// The facets of the boundary are further cells, of `dimension` `D - 1`. Those of the contact boundary have `pressure` and `gap` of these
     /// fields and `contact`, which is one on facets in contact as a whole; the integral of `pressure` over them is the
     /// total contact force. Each region and each boundary group is an array called by its name, one in the group and
     /// zero elsewhere.
@@ -111,11 +116,21 @@ impl<const D: usize> Solved<'_, D> {
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };
-        let bound = self.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
+        let (bound, flux, normal_flux) = self.bound_fields();
+        let function = self.function().expect("there are fields, hence an iterate");
+        let recovered = match function.degree() == 1 && self.part().is_none() {
+            true => function.recovered_gradient(),
+            false => Vec::new(),
+        };
         let u = fields.values_by_cell(D);
         let in_contact = in_contact(&fields);
         let [u, bound, multiplier, contact] =
             [u, bound, fields.multiplier, fields.contact].map(|values| self.of_own_cells(values));
+        let [gradient, flux] =
+            [function.cell_gradients(), flux].map(|values| self.of_own_cells(values));
+        let boundary = self.boundary_facets();
+        let normal_flux = self.of_own_facets(&boundary, normal_flux);
+        let boundary = self.own_facets(boundary);
         let [pressure, gap, in_contact] = [fields.pressure, fields.gap, in_contact]
             .map(|values| self.of_own_facets(&fields.contact_boundary, values));
         let facets = self.own_facets(fields.contact_boundary);
@@ -135,6 +150,12 @@ impl<const D: usize> Solved<'_, D> {
         }
         if !bound.is_empty() {
             file = file.on_cells("bound", &bound);
+            file = file.vectors_on_cells("flux", &flux);
+            file = file.on_facets("normal_flux", &boundary, &normal_flux);
+        }
+        file = file.vectors_on_cells("gradient", &gradient);
+        if !recovered.is_empty() {
+            file = file.vectors_at_vertices("recovered_gradient", &recovered);
         }
         match (reference.filter(|r| r.has_iterate).zip(self.hierarchy), &problem.exact) {
             (Some((reference, (_, own))), _) => {
@@ -160,11 +181,26 @@ impl<const D: usize> Solved<'_, D> {
         list.map_or(Ok(()), |(list, pieces)| file.write_list(list, pieces))
     }
 
-    /// The numbers of own cells, from numbers by cell. The file of a part has the own cells in their order.
-    fn of_own_cells(&self, values: Vec<f64>) -> Vec<f64> {
+    /// What files have of the bound: the shares of the cells, the means of the flux in cells and, on the facets of the
+    /// boundary, those of its normal component. Empty without a bound.
+    fn bound_fields(&self) -> (Vec<f64>, Vec<Point<D>>, Vec<f64>) {
+        let Ok((pair, bound, _)) = self.pair_and_bound() else { return Default::default() };
+        let (mesh, flux) = (self.mesh(), &pair.flux);
+        let means = collect(mesh.n_cells(), |cell| flux.mean_in(mesh, cell));
+        let normal = |(cell, local): HalfFacet| {
+            flux.through(cell, local) / mesh.geometry(cell).facet_measure(local)
+        };
+        (bound.cells.clone(), means, self.boundary_facets().into_iter().map(normal).collect())
+    }
+    /// The facets of the boundary, as cell and number in the cell.
+    fn boundary_facets(&self) -> Vec<HalfFacet> {
+        self.mesh().boundary().iter().map(|f| (f.cell as usize, f.local.into())).collect()
+    }
+    /// What own cells have, from values by cell. The file of a part has the own cells in their order.
+    fn of_own_cells<V: Clone>(&self, values: Vec<V>) -> Vec<V> {
         let Some(part) = self.part().filter(|_| !values.is_empty()) else { return values };
         let by_cell = values.chunks_exact(values.len() / part.owners.len()).enumerate();
-        by_cell.filter(|(cell, _)| part.owns(*cell)).flat_map(|(_, own)| own).copied().collect()
+        by_cell.filter(|(cell, _)| part.owns(*cell)).flat_map(|(_, own)| own).cloned().collect()
     }
     /// The numbers of the facets of own cells, from numbers by facet.
     fn of_own_facets(&self, facets: &[HalfFacet], values: Vec<f64>) -> Vec<f64> {
