@@ -98,8 +98,8 @@ comparison() {
 stability() {
     local command="stability --mesh tests/data/cube.msh --out $OUT/stability"
     head "Stability: hard cases and their criteria" "$command"
-    program "$command --quiet --markdown $OUT/stability.md"
-    sed 1d "$OUT/stability.md"
+    program "$command --quiet"
+    sed 1d "$OUT/stability/stability.md"
 }
 
 assembly() {

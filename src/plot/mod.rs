@@ -14,7 +14,6 @@ mod picture;
 mod series;
 mod slopes;
 mod style;
-mod sweep;
 
 pub(crate) use cost::cost_figure;
 pub(crate) use figure::overview;
@@ -22,4 +21,3 @@ pub use figure::{Figure, convergence, work_precision};
 pub(crate) use history::history_figure;
 pub use picture::Picture;
 pub(crate) use series::Quantity;
-pub(crate) use sweep::{SweepPoint, sweep_figure};

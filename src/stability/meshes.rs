@@ -1,7 +1,5 @@
 //! Difficult meshes: stretched, graded, with slivers.
 
-use std::collections::HashMap;
-
 use crate::error::Error;
 use crate::kit::meshes::tagged;
 use crate::mesh::{BoundaryCondition, BoxDomain, Mesh, TaggedFacet};
@@ -22,25 +20,21 @@ pub(crate) fn graded(n: usize, power: i32) -> Result<Mesh<2>, Error> {
     Ok(Mesh::new(vertices, mesh.cells().to_vec(), &tagged(&mesh, |v| v))?)
 }
 
-/// A mesh of tetrahedra with Dirichlet data on the whole boundary.
-pub(crate) fn clamped(vertices: Vec<Point<3>>, cells: Vec<u32>) -> Result<Mesh<3>, Error> {
-    let mut seen: HashMap<[u32; 3], usize> = HashMap::new();
-    let facets = |cell: &[u32]| {
-        let mut sorted = [cell[0], cell[1], cell[2], cell[3]];
-        sorted.sort_unstable();
-        let [a, b, c, d] = sorted;
-        [[b, c, d], [a, c, d], [a, b, d], [a, b, c]]
-    };
-    for cell in cells.chunks_exact(4) {
-        facets(cell).into_iter().for_each(|f| *seen.entry(f).or_default() += 1);
-    }
-    let mut boundary: Vec<TaggedFacet<3>> = seen
-        .into_iter()
-        .filter(|&(_, count)| count == 1)
-        .map(|(vertices, _)| TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet })
-        .collect();
-    boundary.sort_unstable_by_key(|f| f.vertices);
-    Ok(Mesh::new(vertices, cells, &boundary)?)
+/// A mesh with Dirichlet data on the whole boundary.
+pub(crate) fn clamped(mesh: &Mesh<3>) -> Result<Mesh<3>, Error> {
+    let facets = tagged(mesh, |v| v).into_iter().map(|facet| facet.vertices).collect();
+    with_dirichlet(mesh.vertices().to_vec(), mesh.cells().to_vec(), facets)
+}
+
+fn with_dirichlet(
+    vertices: Vec<Point<3>>,
+    cells: Vec<u32>,
+    mut facets: Vec<[u32; 3]>,
+) -> Result<Mesh<3>, Error> {
+    facets.iter_mut().for_each(|facet| facet.sort_unstable());
+    facets.sort_unstable();
+    let tag = |vertices| TaggedFacet { vertices, condition: BoundaryCondition::Dirichlet };
+    Ok(Mesh::new(vertices, cells, &facets.into_iter().map(tag).collect::<Vec<_>>())?)
 }
 
 /// The cube `(-half, half)^3` in `n^3` smaller ones, `n` even, each cut into five tetrahedra, with
@@ -84,5 +78,15 @@ pub fn slivers(half: f64, n: usize, flatness: f64) -> Result<Mesh<3>, Error> {
             cells.extend((0..4).map(|k| number(corner(k))));
         }
     }
-    clamped(vertices, cells)
+    let index = |v: u32, axis: u32| v as usize / stride.pow(axis) % stride;
+    let is_on_side = |facet: &[u32; 3]| {
+        let ends = (0..3).flat_map(|axis| [(axis, 0), (axis, n)]);
+        ends.into_iter().any(|(axis, end)| facet.iter().all(|&v| index(v, axis) == end))
+    };
+    let facets = |cell: &[u32]| {
+        let [a, b, c, d] = [cell[0], cell[1], cell[2], cell[3]];
+        [[b, c, d], [a, c, d], [a, b, d], [a, b, c]]
+    };
+    let sides = cells.chunks_exact(4).flat_map(facets).filter(is_on_side).collect();
+    with_dirichlet(vertices, cells, sides)
 }

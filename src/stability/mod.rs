@@ -1,24 +1,15 @@
-//! Stability study: difficult cases, each with a sweep, a criterion, and a verdict on each figure.
+//! Stability study: difficult cases, each with sweeps, criteria, and a verdict on each figure.
 
+mod at;
 mod case;
 mod cases;
-mod choice;
-mod criterion;
-#[cfg(feature = "plot")]
-mod figures;
 mod meshes;
-mod plan;
 mod report;
 mod row;
-mod row_builder;
-mod runs;
-mod summary;
-mod unweighted;
 
+pub use case::{Criterion, Effort};
 pub use cases::{STABILITY_CASES, criteria};
-pub use criterion::Criterion;
 pub use meshes::slivers;
-pub use plan::Effort;
 pub use report::StabilityReport;
 pub use row::{ExpectedRange, StabilityRow, Verdict};
 
@@ -29,23 +20,16 @@ use std::time::{Duration, Instant};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::scheme::NamedScheme;
+use crate::study::row::distinct;
+use at::{At, Ran, Run};
+use case::Sweep;
 use cases::CASES;
-use plan::Plan;
 
 /// The least time between two writes of finished rows.
 const WRITE_INTERVAL: Duration = Duration::from_millis(500);
 
-/// Progress of a study.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum StabilityProgress<'a> {
-    /// The number of jobs that follow.
-    Planned(usize),
-    /// A job begins: case, and scheme or problem.
-    Started(&'a str, &'a str),
-    /// The job ended.
-    Finished,
-}
+/// A function that receives the case and the scheme that begin.
+type Observer<'a> = Box<dyn Fn(&str, &str) + 'a>;
 
 /// The stability study.
 ///
@@ -61,26 +45,28 @@ pub struct Stability<'a> {
     effort: Effort,
     cases: Vec<String>,
     schemes: Vec<String>,
-    given: Vec<(String, Mesh<3>)>,
+    meshes: Vec<(String, Mesh<3>)>,
     command: Option<String>,
     directory: Option<PathBuf>,
-    observer: Box<dyn Fn(StabilityProgress<'_>) + 'a>,
+    observer: Observer<'a>,
 }
 
 impl fmt::Debug for Stability<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let meshes: Vec<&str> = self.given.iter().map(|(name, _)| &**name).collect();
         f.debug_struct("Stability")
             .field("effort", &self.effort)
             .field("cases", &self.cases)
             .field("schemes", &self.schemes)
-            .field("meshes", &meshes)
-            .field("directory", &self.directory)
             .finish_non_exhaustive()
     }
 }
 
 impl<'a> Stability<'a> {
+    /// The schemes there are, with the placement of their bounds after a colon if it is not the default. All but the
+    /// last are compared in every case.
+    pub const SCHEMES: [&'static str; 7] =
+        ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "p2", "nipg"];
+
     /// A study of all cases and schemes.
     #[must_use]
     pub fn new(effort: Effort) -> Self {
@@ -88,10 +74,10 @@ impl<'a> Stability<'a> {
             effort,
             cases: Vec::new(),
             schemes: Vec::new(),
-            given: Vec::new(),
+            meshes: Vec::new(),
             command: None,
             directory: None,
-            observer: Box::new(|_| {}),
+            observer: Box::new(|_, _| {}),
         }
     }
     /// Runs these cases only, by name: see [`STABILITY_CASES`].
@@ -108,7 +94,7 @@ impl<'a> Stability<'a> {
     /// Adds a mesh of tetrahedra under a name.
     #[must_use]
     pub fn mesh(mut self, name: &str, mesh: Mesh<3>) -> Self {
-        self.given.push((name.to_owned(), mesh));
+        self.meshes.push((name.to_owned(), mesh));
         self
     }
     /// States the command that makes the report again.
@@ -123,55 +109,86 @@ impl<'a> Stability<'a> {
         self.directory = Some(directory.into());
         self
     }
-    /// Sets a function that receives the progress of the study.
+    /// Sets a function that receives the case and the scheme that begin.
     #[must_use]
-    pub fn observer(mut self, observer: impl Fn(StabilityProgress<'_>) + 'a) -> Self {
+    pub fn observer(mut self, observer: impl Fn(&str, &str) + 'a) -> Self {
         self.observer = Box::new(observer);
         self
     }
-    /// The schemes there are, with the placement of their bounds after a colon if it is not the
-    /// default.
-    pub const SCHEMES: [&'static str; 7] = choice::NAMES;
 
-    /// Checks cases and schemes without running any.
+    /// Checks cases and schemes without running any. Returns the schemes that are asked for.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a case that does not exist or a scheme that is wrong.
-    pub fn check(&self) -> Result<(), Error> {
-        self.plan().map(|_| ())
+    pub fn check(&self) -> Result<Vec<NamedScheme>, Error> {
+        if let Some(name) = self.cases.iter().find(|name| !STABILITY_CASES.contains(&&name[..])) {
+            let allowed = format!("there are: {}", STABILITY_CASES.join(", "));
+            return Err(Error::parameter("case", name, allowed));
+        }
+        NamedScheme::list(self.schemes.iter().map(String::as_str))
+            .map_err(|why| Error::parameter("scheme", self.schemes.join(","), why))
     }
 
     /// Runs everything.
     ///
     /// # Errors
-    /// Those of [`Self::check`], before anything runs; [`Error::Write`]. Errors of a job are listed in
+    /// Those of [`Self::check`], before anything runs; [`Error::Write`]. Errors of a run are listed in
     /// [`StabilityReport::failures`].
     pub fn run(&self) -> Result<StabilityReport, Error> {
-        let plan = self.plan()?;
-        (self.observer)(StabilityProgress::Planned(plan.jobs.len()));
+        let wanted = self.check()?;
         let mut report = StabilityReport::new(self.effort);
         report.program.command.clone_from(&self.command);
         let mut written = Instant::now();
-        for job in &plan.jobs {
-            (self.observer)(StabilityProgress::Started(job.case, &job.label));
-            let mut saved = Ok(());
-            let mut take = |row: StabilityRow| {
-                report.rows.push(StabilityRow { case: job.case.to_owned(), ..row });
+        for case in &CASES {
+            if !self.cases.is_empty() && !self.cases.iter().any(|name| name == case.name) {
+                continue;
+            }
+            for sweep in (case.sweeps)(self)? {
+                self.run_sweep(case.name, &sweep, &wanted, &mut report);
                 // rows are saved early, so that an interrupted study keeps them
-                if written.elapsed() > WRITE_INTERVAL && saved.is_ok() {
-                    saved = self.save(&report);
+                if written.elapsed() > WRITE_INTERVAL {
+                    self.save(&report)?;
                     written = Instant::now();
                 }
-            };
-            if let Err(why) = (job.run)(&mut take) {
-                report.failures.push(format!("{}, {}: {why}", job.case, job.label));
             }
-            saved?;
-            (self.observer)(StabilityProgress::Finished);
         }
         report.complete = true;
         self.save(&report)?;
         Ok(report)
+    }
+
+    /// Runs the schemes of a sweep at all places, those first to which figures refer, and adds the rows of those that are
+    /// asked for.
+    fn run_sweep(
+        &self,
+        case: &str,
+        sweep: &Sweep,
+        wanted: &[NamedScheme],
+        report: &mut StabilityReport,
+    ) {
+        let judged = judged(sweep, wanted);
+        let beside = sweep.beside.iter().filter(|_| !judged.is_empty()).map(|name| named(name));
+        let mut ran = Ran { sweep, runs: Vec::new() };
+        for scheme in distinct(beside.chain(judged.iter().copied())) {
+            (self.observer)(case, &scheme.to_string());
+            let mut run = |place| {
+                at::run(sweep, place, &scheme).unwrap_or_else(|why| {
+                    report.failures.push(format!("{case}, {scheme}: {why}"));
+                    Run::default()
+                })
+            };
+            let runs = sweep.places.iter().map(&mut run).collect();
+            ran.runs.push((scheme, runs));
+        }
+        for scheme in (0..ran.runs.len()).filter(|&k| judged.contains(&ran.runs[k].0)) {
+            for place in 0..sweep.places.len() {
+                let at = At { ran: &ran, scheme, place };
+                let is_last = place + 1 == sweep.places.len();
+                let columns = sweep.columns.iter().filter(|of| is_last || !of.is_of_all);
+                let columns = columns.filter(|_| !at.rows().is_empty());
+                report.rows.extend(columns.filter_map(|of| StabilityRow::new(case, &at, of)));
+            }
+        }
     }
 
     fn save(&self, report: &StabilityReport) -> Result<(), Error> {
@@ -180,21 +197,23 @@ impl<'a> Stability<'a> {
             None => Ok(()),
         }
     }
+}
 
-    fn plan(&self) -> Result<Plan<'_>, Error> {
-        if let Some(name) = self.cases.iter().find(|name| !STABILITY_CASES.contains(&&name[..])) {
-            let allowed = format!("there are: {}", STABILITY_CASES.join(", "));
-            return Err(Error::parameter("case", name, allowed));
-        }
-        let wanted = NamedScheme::list(self.schemes.iter().map(String::as_str))
-            .map_err(|why| Error::parameter("scheme", self.schemes.join(","), why))?;
-        let (effort, given) = (self.effort, &self.given[..]);
-        let mut plan = Plan { effort, wanted, given, case: "", jobs: Vec::new() };
-        let is_chosen = |case: &str| self.cases.is_empty() || self.cases.iter().any(|c| c == case);
-        for case in CASES.into_iter().filter(|case| is_chosen(case.name)) {
-            plan.case = case.name;
-            (case.plan)(&mut plan);
-        }
-        Ok(plan)
-    }
+/// A scheme that a case names.
+fn named(name: &str) -> NamedScheme {
+    name.parse().expect("cases name schemes that exist")
+}
+
+/// The schemes of a sweep whose rows are asked for, by the schemes themselves or without choices of penalties.
+fn judged(sweep: &Sweep, wanted: &[NamedScheme]) -> Vec<NamedScheme> {
+    let known = Stability::SCHEMES;
+    let besides = wanted.iter().filter(|scheme| !known.contains(&&scheme.to_string()[..]));
+    let compared = known[..6].iter().map(|name| named(name)).chain(besides.copied());
+    let of_case = sweep.schemes.iter().map(|name| named(name));
+    let mut all = distinct(compared.filter(|_| sweep.compares).chain(of_case));
+    all.retain(|scheme| {
+        let names = [scheme.to_string(), scheme.label_without_choices()];
+        wanted.is_empty() || wanted.iter().any(|of| names.contains(&of.to_string()))
+    });
+    all
 }

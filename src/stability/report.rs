@@ -4,24 +4,23 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use super::case::{Criterion, Effort};
 use super::cases::{STABILITY_CASES, criteria};
-use super::criterion::Criterion;
-use super::plan::Effort;
 use super::row::{StabilityRow, Verdict};
-use super::summary::{by_criterion, by_scheme, conditions, missed};
 use crate::error::Error;
 use crate::files::replace_text;
 use crate::output::csv;
 use crate::output::document::Document;
 use crate::output::html::{HtmlPage, Section};
 use crate::study::Program;
+use crate::study::row::distinct;
 use crate::table::{Cell, Table, WIDTH};
 
 /// Notes before the tables.
 const READING: [&str; 3] = [
     "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Figures have the digits that decide.",
     "Schemes: p1 and p2, conforming linear and quadratic elements with bounds at nodes; cr, Crouzeix-Raviart elements with bounds on facet means; sipg and nipg, symmetric and non-symmetric interior penalty on broken linears; wopsip, the weakly over-penalised method on broken linears with bounds at vertices, wopsip:facet-means the same with bounds on facet means.",
-    "Penalties: sipg has 1.5 times the proven bound, the least interior penalty that is provably enough on each cell, nipg 1/h_F, with h_F the diameter of a facet; sigma is the factor of 1/h_F. wopsip has eta/h_F^3, with eta the square of the diameter of the domain unless it is given; weight=anisotropic puts h^2 l_F in place of h_F^3, with h the mesh size and l_F the height of the cells over the facet. All but what ignores it carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
+    "Penalties: sipg has 1.5 times the proven bound, the least interior penalty that is provably enough on each cell, nipg 1/h_F, with h_F the diameter of a facet; sigma is the factor of 1/h_F. wopsip has eta/h_F^3, with eta the square of the diameter of the domain unless it is given; weight=anisotropic puts h^2 l_F in place of h_F^3, with h the mesh size and l_F the height of the cells over the facet. All carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
 ];
 
 /// All rows, in the order run.
@@ -30,13 +29,13 @@ const READING: [&str; 3] = [
 pub struct StabilityReport {
     /// The program.
     pub program: Program,
-    /// Whether all jobs have run.
+    /// Whether everything has run.
     pub complete: bool,
     /// The size of the study.
     pub effort: Effort,
     /// One row for every figure.
     pub rows: Vec<StabilityRow>,
-    /// Jobs that ended in an error, with the error.
+    /// Runs that ended in an error, with the error.
     pub failures: Vec<String>,
 }
 
@@ -57,56 +56,77 @@ impl StabilityReport {
         self.rows.iter().filter(|row| row.verdict == verdict).count()
     }
 
-    /// Verdicts by scheme and by criterion, and what was missed.
-    fn verdict_tables(&self) -> Vec<Table> {
-        let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
-        tables.extend(missed(&self.rows));
-        tables
+    /// The criteria that have rows, each with its case and its rows.
+    fn asked(
+        &self,
+    ) -> impl Iterator<Item = (&'static str, &'static Criterion, Vec<&StabilityRow>)> {
+        let of = |(case, criterion): (_, &'static Criterion)| {
+            let rows = self.rows.iter().filter(|row| row.criterion == criterion.name);
+            (case, criterion, rows.collect::<Vec<_>>())
+        };
+        criteria().map(of).filter(|(.., rows)| !rows.is_empty())
     }
 
-    /// The rows case by case.
-    fn case_tables(&self) -> impl Iterator<Item = Table> + '_ {
-        let cases =
-            STABILITY_CASES.iter().filter(|case| self.rows.iter().any(|r| r.case == **case));
-        cases.map(|case| self.case_table(case))
+    /// Verdicts of every scheme with its choices; all values of a factor that is swept are one line.
+    fn by_scheme(&self) -> Table {
+        let line = |series: String| {
+            let rows: Vec<_> = self.rows.iter().filter(|row| row.series() == series).collect();
+            [Cell::Words(series)].into_iter().chain(counts(&rows)).collect()
+        };
+        let lines = distinct(self.rows.iter().map(StabilityRow::series)).into_iter().map(line);
+        Table::new("Verdicts by scheme", &format!("scheme,{}", verdicts()), lines.collect())
+    }
+
+    /// Verdicts of every criterion.
+    fn by_criterion(&self) -> Table {
+        let line = |(case, criterion, rows): (&str, &Criterion, Vec<&StabilityRow>)| {
+            let missed = rows.iter().filter(|row| row.verdict == Verdict::Missed);
+            let missed = distinct(missed.map(|row| &row.label[..])).join("; ");
+            let names = [case, criterion.name].map(|name| Cell::Words(name.to_owned()));
+            names.into_iter().chain(counts(&rows)).chain([Cell::Words(missed)]).collect()
+        };
+        let heads = format!("case,criterion,{},missed by", verdicts());
+        Table::new("Verdicts by criterion", &heads, self.asked().map(line).collect())
+    }
+
+    /// Every row that misses its range, with the factor; no table without such rows.
+    fn missed(&self) -> Option<Table> {
+        let rows = self.rows.iter().filter(|row| row.verdict == Verdict::Missed);
+        let title = "What was missed, and by what factor";
+        let table = rows_of(title, rows.collect());
+        (!table.rows.is_empty()).then_some(table)
+    }
+
+    /// The rows of every case, with its criteria.
+    fn cases(&self) -> impl Iterator<Item = Table> + '_ {
+        let rows = |case| self.rows.iter().filter(move |row| row.case == case).collect::<Vec<_>>();
+        let cases = STABILITY_CASES.iter().map(move |&case| (case, rows(case)));
+        cases.filter(|(_, rows)| !rows.is_empty()).map(|(case, rows)| Table {
+            remarks: self
+                .asked()
+                .filter(|of| of.0 == case)
+                .map(|(_, c, _)| format!("{}: {}", c.name, c.sentence))
+                .collect(),
+            ..rows_of(&format!("Case {case}"), rows)
+        })
+    }
+
+    /// Verdicts by scheme and by criterion, and what was missed.
+    fn tables(&self) -> Vec<Table> {
+        [self.by_scheme(), self.by_criterion()].into_iter().chain(self.missed()).collect()
     }
 
     /// Verdicts and what was missed, for a terminal: the report without its rows.
     pub fn summary(&self) -> String {
         let mut opening = vec![self.heading()];
         opening.extend(self.findings());
-        let tables = self.verdict_tables();
+        let tables = self.tables();
         Document { title: "Stability", opening, tables, closing: Vec::new() }.to_text(WIDTH)
-    }
-
-    fn case_table(&self, case: &str) -> Table {
-        let rows: Vec<&StabilityRow> = self.rows.iter().filter(|r| r.case == case).collect();
-        let line = |row: &&StabilityRow| {
-            vec![
-                Cell::Words(row.criterion.clone()),
-                Cell::Words(row.label.clone()),
-                Cell::Words(format!("{} {}", row.problem, row.precision)),
-                Cell::whole(row.level),
-                Cell::Words(row.place()),
-                Cell::Words(row.quantity.clone()),
-                Cell::Words(row.expected.words()),
-                Cell::number(row.figure_in_words()),
-                Cell::Words(row.verdict_words()),
-                Cell::Words(row.detail.clone()),
-            ]
-        };
-        let asked = criteria().filter(|of| rows.iter().any(|r| r.criterion == of.1.name));
-        let heads =
-            "criterion,scheme,problem,n,at,quantity,expected,measured,verdict,further figures";
-        Table {
-            remarks: asked.map(|(_, c)| format!("{}: {}", c.name, c.sentence())).collect(),
-            ..Table::new(format!("Case {case}"), heads, rows.iter().map(line).collect())
-        }
     }
 
     /// The report as JSON: `program`, `complete`, `criteria`, `rows` and `failures`. What does not apply is null.
     pub fn to_json(&self) -> String {
-        let criterion = |(case, c): (_, &Criterion)| json!({ "name": c.name, "case": case, "sentence": c.sentence() });
+        let criterion = |(case, c): (_, &Criterion)| json!({ "name": c.name, "case": case, "sentence": c.sentence });
         let value = json!({
             "program": self.program,
             "complete": self.complete,
@@ -117,78 +137,38 @@ impl StabilityReport {
         format!("{value:#}\n")
     }
 
-    /// The rows as comma-separated values, the keys of JSON joined by dots.
-    pub fn to_csv(&self) -> String {
-        csv::lines(&self.rows)
-    }
-
-    /// Tables, provenance and notes in Markdown.
-    pub fn to_markdown(&self) -> String {
-        self.document(self.verdict_tables().into_iter().chain(self.case_tables()).collect())
-            .to_markdown()
-    }
-
-    /// A summary in Markdown without the rows: verdicts, limits that were missed, criteria in words,
-    /// provenance and notes.
-    pub fn summary_to_markdown(&self) -> String {
-        self.document(self.summary_tables()).to_markdown()
-    }
-
-    fn document(&self, tables: Vec<Table>) -> Document {
+    /// Provenance, notes, verdicts, what was missed, and the criteria in words.
+    fn document(&self) -> Document {
+        let words = |(_, c, _): (_, &Criterion, _)| {
+            [c.name, c.sentence].map(|text| Cell::Words(text.to_owned())).to_vec()
+        };
+        let criteria = self.asked().map(words).collect();
+        let criteria = Table::new("The criteria", "criterion,condition", criteria);
+        let tables = self.tables().into_iter().chain([criteria]).collect();
         Document { title: "Stability", opening: self.paragraphs(), tables, closing: Vec::new() }
     }
 
-    /// Provenance, notes, verdicts, what was missed and the criteria in LaTeX, for `\input`; see
+    /// Provenance, notes and verdicts in LaTeX, for `\input`; see
     /// [`LATEX_PACKAGES`](crate::output::LATEX_PACKAGES).
     pub fn to_latex(&self) -> String {
-        self.document(self.summary_tables()).to_latex()
+        self.document().to_latex()
     }
 
-    /// Verdicts, limits that were missed, and the criteria in words.
-    fn summary_tables(&self) -> Vec<Table> {
-        self.verdict_tables().into_iter().chain([conditions(&self.rows)]).collect()
-    }
-
-    /// The sweeps of every case over a parameter, drawn: names of files and SVG.
-    #[cfg(feature = "plot")]
-    fn svg_files(&self) -> Vec<(String, String)> {
-        let figures = super::figures::figures(&self.rows).into_iter();
-        figures.map(|(name, figure)| (format!("{name}.svg"), figure.to_svg())).collect()
-    }
-    /// Without the feature `plot` there are no figures.
-    #[cfg(not(feature = "plot"))]
-    fn svg_files(&self) -> Vec<(String, String)> {
-        Vec::new()
-    }
-
-    /// One page with all tables, which links these figures.
-    fn page(&self, figures: &[(String, String)]) -> HtmlPage {
-        let mut paragraphs = self.paragraphs().into_iter();
-        let picture =
-            |(file, _): &(String, String)| (file.trim_end_matches(".svg").to_owned(), file.clone());
+    /// One page with all tables.
+    fn page(&self) -> HtmlPage {
+        let section = |title: &str, paragraphs, tables| Section {
+            title: title.to_owned(),
+            paragraphs,
+            tables,
+            ..Section::default()
+        };
         HtmlPage {
             title: "Stability".to_owned(),
-            lead: paragraphs.next().expect("the heading is the first paragraph"),
-            summary: self.verdict_tables(),
+            lead: self.heading(),
+            summary: self.tables(),
             sections: vec![
-                Section {
-                    title: "Reading".to_owned(),
-                    paragraphs: paragraphs.collect(),
-                    ..Section::default()
-                },
-                Section {
-                    title: "Sweeps".to_owned(),
-                    pictures: figures.iter().map(picture).collect(),
-                    ..Section::default()
-                },
-                Section {
-                    title: "Cases".to_owned(),
-                    tables: [conditions(&self.rows)]
-                        .into_iter()
-                        .chain(self.case_tables())
-                        .collect(),
-                    ..Section::default()
-                },
+                section("Reading", self.paragraphs().split_off(1), Vec::new()),
+                section("Cases", Vec::new(), self.cases().collect()),
             ],
             ..HtmlPage::default()
         }
@@ -204,45 +184,71 @@ impl StabilityReport {
         paragraphs
     }
 
-    /// The jobs that ended in an error.
+    /// The runs that ended in an error.
     fn findings(&self) -> impl Iterator<Item = String> {
         self.failures.iter().map(|failure| format!("Not run to the end: {failure}."))
     }
 
     /// Program, provenance and the count of verdicts in one line.
     fn heading(&self) -> String {
-        let effort = match self.effort {
-            Effort::Trial => "trial",
-            Effort::Quick => "quick",
-            Effort::Full => "full",
-        };
+        let effort = self.effort.pick(["trial", "quick", "full"]);
         let end = if self.complete { "" } else { " (interrupted or still running)" };
-        let counts: Vec<String> = Verdict::ALL
-            .into_iter()
-            .map(|verdict| format!("{} {}", self.count(verdict), verdict.name()))
-            .collect();
+        let count = |verdict: Verdict| format!("{} {}", self.count(verdict), verdict.name());
         let (program, rows) = (self.program.words(), self.rows.len());
-        format!("{program}; {effort} run{end}; {rows} rows: {}.", counts.join(", "))
+        format!(
+            "{program}; {effort} run{end}; {rows} rows: {}.",
+            Verdict::ALL.map(count).join(", ")
+        )
     }
 
     /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be, and, if the report
-    /// is complete, `stability.html` and its figures `stability-CASE.svg`. Each file takes the place of an earlier one
-    /// only when it is whole.
+    /// is complete, `stability.html`, where all rows stand. Each file takes the place of an earlier one only when it is
+    /// whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     pub fn write(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
         let mut files = vec![
-            ("stability.json".to_owned(), self.to_json()),
-            ("stability.csv".to_owned(), self.to_csv()),
-            ("stability.md".to_owned(), self.to_markdown()),
-            ("stability.tex".to_owned(), self.to_latex()),
+            ("json", self.to_json()),
+            ("csv", csv::lines(&self.rows)),
+            ("md", self.document().to_markdown()),
+            ("tex", self.to_latex()),
         ];
         if self.complete {
-            let figures = self.svg_files();
-            files.push(("stability.html".to_owned(), self.page(&figures).to_html()));
-            files.extend(figures);
+            files.push(("html", self.page().to_html()));
         }
-        files.iter().map(|(name, text)| replace_text(&directory.join(name), text)).collect()
+        let path = |end| directory.join(format!("stability.{end}"));
+        files.iter().map(|(end, text)| replace_text(&path(end), text)).collect()
     }
+}
+
+/// The heads of columns for each verdict.
+fn verdicts() -> String {
+    Verdict::ALL.map(Verdict::name).join(",")
+}
+
+/// The number of rows for each verdict.
+fn counts(rows: &[&StabilityRow]) -> [Cell; 5] {
+    let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
+    Verdict::ALL.map(|verdict| Cell::whole(Some(count(verdict))))
+}
+
+/// A table of rows.
+fn rows_of(title: &str, rows: Vec<&StabilityRow>) -> Table {
+    let line = |row: &StabilityRow| {
+        vec![
+            Cell::Words(row.criterion.clone()),
+            Cell::Words(row.label.clone()),
+            Cell::Words(format!("{} {}", row.problem, row.precision)),
+            Cell::whole(row.level),
+            Cell::Words(row.place()),
+            Cell::Words(row.quantity.clone()),
+            Cell::Words(row.expected.words()),
+            Cell::number(row.figure_in_words()),
+            Cell::Words(row.verdict_words()),
+            Cell::Words(row.detail.clone()),
+        ]
+    };
+    let heads = "criterion,scheme,problem,n,at,quantity,expected,measured,verdict,further figures";
+    Table::new(title, heads, rows.into_iter().map(line).collect())
 }

@@ -2,6 +2,10 @@
 
 use serde::Serialize;
 
+use super::at::At;
+use super::case::{Asked, Column};
+use crate::in_its_dimension;
+
 /// The range of a figure that a criterion asks for. A figure without limits is reported and not
 /// judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -80,32 +84,19 @@ pub(crate) fn short(x: f64) -> String {
 
 /// A number in three digits and some `more`, without a power of ten where the number needs none.
 fn with_digits(x: f64, more: usize) -> String {
-    match x.abs() {
-        0.0 => "0".to_owned(),
+    let trimmed = |digits: &str| digits.trim_end_matches('0').trim_end_matches('.').to_owned();
+    let places = match x.abs() {
+        0.0 => return "0".to_owned(),
         a if !(1e-2..1e4).contains(&a) => {
-            let places = 2 + more;
-            let text = format!("{x:.places$e}");
-            match text.split_once('e') {
-                Some((digits, power)) => {
-                    let digits = digits.trim_end_matches('0').trim_end_matches('.');
-                    format!("{digits}e{power}")
-                }
-                None => text,
-            }
+            let text = format!("{x:.*e}", 2 + more);
+            let (digits, power) = text.split_once('e').expect("the format has a power");
+            return format!("{}e{power}", trimmed(digits));
         }
-        a => {
-            let places = if a >= 100.0 {
-                1
-            } else if a >= 10.0 {
-                2
-            } else {
-                3
-            };
-            let places = places + more;
-            let text = format!("{x:.places$}");
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        }
-    }
+        a if a >= 100.0 => 1,
+        a if a >= 10.0 => 2,
+        _ => 3,
+    };
+    trimmed(&format!("{x:.*}", places + more))
 }
 
 /// The verdict on a figure and its expected range.
@@ -122,20 +113,12 @@ pub enum Verdict {
     BetterThanExpected,
     /// There is no expected range.
     Reported,
-    /// The criterion does not apply, or its input is absent.
-    NotApplicable,
 }
 
 impl Verdict {
     /// All, in the order of summaries.
-    pub const ALL: [Self; 6] = [
-        Self::Met,
-        Self::Missed,
-        Self::FailsAsExpected,
-        Self::BetterThanExpected,
-        Self::Reported,
-        Self::NotApplicable,
-    ];
+    pub const ALL: [Self; 5] =
+        [Self::Met, Self::Missed, Self::FailsAsExpected, Self::BetterThanExpected, Self::Reported];
 
     /// The words of reports.
     pub fn name(self) -> &'static str {
@@ -145,7 +128,6 @@ impl Verdict {
             Self::FailsAsExpected => "fails as expected",
             Self::BetterThanExpected => "better than expected",
             Self::Reported => "reported",
-            Self::NotApplicable => "not applicable",
         }
     }
 
@@ -191,11 +173,7 @@ pub struct StabilityRow {
     pub expected: ExpectedRange,
     /// The figure; none if nothing was solved.
     pub measured: Option<f64>,
-    /// The error or condition number itself, where the figure is a ratio of two.
-    pub underlying: Option<f64>,
-    /// Name of that number.
-    pub underlying_quantity: String,
-    /// Further figures, or why there is none.
+    /// Further figures.
     pub detail: String,
     /// The verdict on figure and range.
     pub verdict: Verdict,
@@ -204,6 +182,36 @@ pub struct StabilityRow {
 }
 
 impl StabilityRow {
+    /// The row of a run in a column; none if nothing is asked of it.
+    pub(super) fn new(case: &str, at: &At<'_>, column: &Column) -> Option<Self> {
+        let limits = column.criterion.limits;
+        let expected = match (column.asked)(at) {
+            Asked::NoRow => return None,
+            Asked::Report => ExpectedRange::default(),
+            Asked::Limit(number) => limits[number],
+            Asked::Failure(number) => ExpectedRange { to_fail: true, ..limits[number] },
+        };
+        let measured = (column.figure)(at).filter(|figure| figure.is_finite());
+        let (place, value) = (at.place(), at.value());
+        Some(Self {
+            case: case.to_owned(),
+            criterion: column.criterion.name.to_owned(),
+            scheme: at.scheme().label_without_choices(),
+            label: at.scheme().to_string(),
+            precision: place.precision.name().to_owned(),
+            problem: in_its_dimension!(&place.scene, |scene| scene.name.clone()),
+            level: place.shown.filter(|_| !column.is_of_all),
+            parameter: value.map_or("", |_| at.ran.sweep.parameter).to_owned(),
+            value,
+            quantity: column.quantity.clone(),
+            expected,
+            measured,
+            detail: (column.detail)(at),
+            verdict: Verdict::on(&expected, measured),
+            missed_by: measured.and_then(|figure| expected.missed_by(figure)),
+        })
+    }
+
     /// The verdict in words, with the factor by which a limit is missed.
     pub fn verdict_words(&self) -> String {
         match (self.verdict, self.missed_by, self.measured) {
@@ -222,14 +230,9 @@ impl StabilityRow {
         self.value.map_or_else(String::new, |value| format!("{} {}", self.parameter, short(value)))
     }
 
-    /// Whether the parameter of the sweep is the penalty factor of the scheme.
-    pub(crate) fn sweeps_factor(&self) -> bool {
-        self.parameter == "eta" || self.parameter == "sigma"
-    }
-
     /// The label, of a sweep of a penalty factor without its value: `wopsip@eta`.
     pub(crate) fn series(&self) -> String {
-        match self.sweeps_factor() {
+        match self.parameter == "eta" || self.parameter == "sigma" {
             true => format!("{}@{}", self.scheme, self.parameter),
             false => self.label.clone(),
         }
@@ -238,15 +241,6 @@ impl StabilityRow {
     /// The figure, with the digit that decides.
     pub(crate) fn figure_in_words(&self) -> Option<String> {
         self.measured.map(|figure| self.expected.deciding(figure))
-    }
-
-    /// Draws the verdict from the figures.
-    pub(crate) fn judged(mut self) -> Self {
-        self.measured = self.measured.filter(|figure| figure.is_finite());
-        self.underlying = self.underlying.filter(|figure| figure.is_finite());
-        self.verdict = Verdict::on(&self.expected, self.measured);
-        self.missed_by = self.measured.and_then(|figure| self.expected.missed_by(figure));
-        self
     }
 }
 

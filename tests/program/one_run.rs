@@ -183,7 +183,7 @@ fn an_output_that_is_an_input_is_refused() {
     std::os::unix::fs::symlink(&mesh, scratch.0.join("link")).unwrap();
     let here = scratch.0.display().to_string();
     let cube = format!("{}/tests/data/unstructured_cube.msh", env!("CARGO_MANIFEST_DIR"));
-    let own_cube = scratch.path("cube.msh");
+    let own_cube = scratch.path("cube.md");
     fs::copy(cube, &own_cube).unwrap();
     let before = files(&scratch.0);
     let scene = ["--scene", "radial-2d", "--mesh", &mesh];
@@ -198,7 +198,7 @@ fn an_output_that_is_an_input_is_refused() {
         ("compare", vec![&report, "--dump", &here], &report, &report),
         ("work-precision", vec![&report, "--out", &here], &report, &report),
         ("pictures", vec![&report, "--out", &here], &report, &report),
-        ("stability", vec!["--mesh", &own_cube, "--markdown", &own_cube], &own_cube, &own_cube),
+        ("stability", vec!["--mesh", &own_cube, "--out", &here], &own_cube, &own_cube),
         #[cfg(unix)]
         ("compare", vec![&problem, "--json", &link], &link, &mesh),
     ];

@@ -101,7 +101,7 @@ fn the_other_commands_refuse_before_the_work_too() {
     for (name, options, words) in [
         ("work-precision", format!("--quick --out {below}"), "cannot write"),
         ("work-precision", format!("--scene radial-2d --reference 20 --out {out}"), "reference"),
-        ("stability", format!("--quick --markdown {below} --out {out}"), "cannot write"),
+        ("stability", format!("--quick --out {below}"), "cannot write"),
         ("stability", format!("--quick --scheme none --out {out}"), "scheme"),
         (
             "work-precision",

@@ -1,45 +1,80 @@
 //! Condition numbers over penalty factors, by the method of Lanczos: a part of the case of penalty factors.
 
+use super::table::*;
 use crate::algebra::SparseMatrix;
-use crate::error::Error;
 use crate::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos, MeanJump, PositiveDefinite};
 use crate::measure::observed_order;
-use crate::mesh::Mesh;
-use crate::scenes::sines;
-use crate::stability::choice::Choice;
-use crate::stability::criterion::Criterion;
-use crate::stability::plan::{Plan, Sink};
-use crate::stability::row::ExpectedRange;
-use crate::stability::row_builder::{RowBuilder, quotient};
-use crate::stability::runs::free_matrix;
+use crate::stability::Effort;
 
 pub(super) const OVER_FACTORS: Criterion = Criterion::new(
     "condition-over-factors",
     &[ExpectedRange::at_most(2.0)],
-    "The condition number, preconditioned by the diagonal in means and jumps, is at most {} times that at eta = 1 for all larger eta. Without preconditioning it grows like eta, and below one it is known to grow like 1/eta.",
+    "The condition number, preconditioned by the diagonal in means and jumps, is at most 2 times that at eta = 1 for all larger eta. Without preconditioning it grows like eta, and below one it is known to grow like 1/eta.",
 );
 pub(super) const OVER_MESHES: Criterion = Criterion::new(
     "condition-over-meshes",
     &[ExpectedRange::at_most(2.1)],
-    "The preconditioned condition number grows like h^-2 (order at most {}). Without preconditioning it grows like h^-4.",
+    "The preconditioned condition number grows like h^-2 (order at most 2.1). Without preconditioning it grows like h^-4.",
 );
 
-/// The two matrices with a condition number.
-const PARTS: [&str; 2] = ["not preconditioned", "diagonal of means and jumps"];
+/// A condition number by the matrix to which it belongs.
+type Part = (&'static str, fn(&At<'_>) -> Option<f64>);
 
-pub(super) fn plan(plan: &mut Plan<'_>) {
-    let level = plan.pick(8, 16);
-    let exponents: &[i32] = plan.pick(&[-2, 2, 6], &[-4, -2, 2, 4, 6]);
-    for &exponent in exponents {
-        let choice = Choice::with_eta("wopsip", exponent);
-        plan.add(choice, "condition number", move |c, sink| over_factors(c, exponent, level, sink));
-    }
-    let finest = plan.pick(16, 32);
-    for scheme in ["wopsip@eta=1", "p1", "cr", "sipg", "p2"] {
-        plan.add(Choice::of(scheme), "condition number", move |c, sink| {
-            over_meshes(c, finest, sink)
-        });
-    }
+const PARTS: [Part; 2] =
+    [("not preconditioned", plain), ("diagonal of means and jumps", in_means_and_jumps)];
+
+pub(super) fn sweeps(effort: Effort) -> [Sweep; 2] {
+    let level = effort.pick([8, 8, 16]);
+    let exponents = effort.pick([&[-2, 2, 6][..], &[-2, 2, 6], &[-4, -2, 2, 4, 6]]);
+    let over_factors = Sweep {
+        schemes: exponents.iter().map(|k| format!("wopsip@eta=1e{k}")).collect(),
+        beside: vec!["wopsip@eta=1".to_owned()],
+        parameter: "eta",
+        places: vec![Place::new(sines::<2>(), level)],
+        columns: PARTS.map(over_factors).into(),
+        ..Sweep::default()
+    };
+    let over_meshes = Sweep {
+        schemes: ["wopsip@eta=1", "p1", "cr", "sipg", "p2"].map(str::to_owned).into(),
+        places: [level, 2 * level].map(|n| Place::new(sines::<2>(), n)).into(),
+        columns: PARTS.map(over_meshes).into(),
+        ..Sweep::default()
+    };
+    [over_factors, over_meshes]
+}
+
+fn over_factors((name, condition): Part) -> Column {
+    let quantity = format!("condition number over that at eta = 1, {name}");
+    let ratio = move |at: &At<'_>| Some(condition(at)? / condition(&at.beside("wopsip@eta=1"))?);
+    let is_plain = name == PARTS[0].0;
+    Column::new(&OVER_FACTORS, &quantity, ratio)
+        .asked(move |at| Asked::limit_unless(is_plain || at.value() < Some(1.0)))
+        .detail(move |at| in_words(condition(at)))
+}
+
+fn over_meshes((name, condition): Part) -> Column {
+    let order = move |at: &At<'_>| {
+        let coarse = at.before()?;
+        let order = observed_order(condition(&coarse)?, condition(at)?, coarse.size(), at.size());
+        order.map(|order| -order)
+    };
+    let is_plain = name == PARTS[0].0;
+    let asked = move |at: &At<'_>| match (at.place, is_over_penalised(at)) {
+        (0, _) => Asked::NoRow,
+        (_, false) if !is_plain => Asked::NoRow,
+        (_, is_over_penalised) => Asked::limit_unless(is_over_penalised && is_plain),
+    };
+    Column::new(&OVER_MESHES, &format!("order of growth, {name}"), order)
+        .asked(asked)
+        .detail(move |at| in_words(condition(at)))
+}
+
+fn is_over_penalised(at: &At<'_>) -> bool {
+    at.scheme().name() == "wopsip"
+}
+
+fn in_words(condition: Option<f64>) -> String {
+    condition.map_or_else(String::new, |number| format!("condition number {number:.3e}"))
 }
 
 /// The condition number of `B^-1 A`; none where a factorisation fails or Lanczos' method does not converge.
@@ -49,59 +84,16 @@ fn condition(matrix: &SparseMatrix<f64>, b: &dyn PositiveDefinite) -> Option<f64
     lanczos.extremes(&a, b).ok().map(|found| found.condition())
 }
 
-/// The condition numbers of the matrix as it is, and in means and jumps with its diagonal as preconditioner.
-fn both(choice: &Choice, level: usize) -> Result<[Option<f64>; 2], Error> {
-    let scene = sines::<2>();
-    let mesh: Mesh<2> = scene.domain.mesh(level)?;
-    let matrix = free_matrix(&scene, &mesh, choice)?;
-    let plain = condition(&matrix, &Diagonal::identity(matrix.size()));
-    if !choice.is_over_penalised() {
-        return Ok([plain, None]);
-    }
-    // the values of broken linears at facet means are the nodes of means and jumps
-    let means = Choice::of(&format!("wopsip:facet-means@{}", choice.options()));
-    let matrix = MeanJump::new(&mesh).transform(&free_matrix(&scene, &mesh, &means)?);
-    Ok([plain, condition(&matrix, &Diagonal(matrix.diagonal()))])
+/// Of the matrix as it is.
+fn plain(at: &At<'_>) -> Option<f64> {
+    let matrix = at.matrix(None)?;
+    condition(&matrix, &Diagonal::identity(matrix.size()))
 }
 
-fn over_factors(choice: &Choice, exponent: i32, level: usize, sink: Sink<'_>) -> Result<(), Error> {
-    let here = both(choice, level)?;
-    let at_one = both(&Choice::with_eta("wopsip", 0), level)?;
-    for (k, part) in PARTS.into_iter().enumerate() {
-        sink(
-            RowBuilder::new(&OVER_FACTORS, choice)
-                .known_to_fail(k == 0 || exponent < 0)
-                .on("sines-2d")
-                .level(level)
-                .at("eta", 10.0_f64.powi(exponent))
-                .quantity(&format!("condition number over that at eta = 1, {part}"))
-                .underlying(&format!("condition number, {part}"), here[k])
-                .detail(here[k].map_or(String::new(), |c| format!("condition number {c:.3e}")))
-                .measured(quotient(here[k], at_one[k])),
-        );
-    }
-    Ok(())
-}
-
-fn over_meshes(choice: &Choice, finest: usize, sink: Sink<'_>) -> Result<(), Error> {
-    let levels = [finest / 2, finest];
-    let [coarse, fine] = [both(choice, levels[0])?, both(choice, levels[1])?];
-    let parts: &[&str] = if choice.is_over_penalised() { &PARTS } else { &PARTS[..1] };
-    for (k, part) in parts.iter().enumerate() {
-        let pair = coarse[k].zip(fine[k]);
-        let order = pair.and_then(|(a, b)| {
-            let [h, half] = levels.map(|n| 1.0 / n as f64);
-            observed_order(a, b, h, half).map(|order| -order)
-        });
-        sink(
-            RowBuilder::new(&OVER_MESHES, choice)
-                .known_to_fail(choice.is_over_penalised() && k == 0)
-                .on("sines-2d")
-                .level(finest)
-                .quantity(&format!("order of growth, {part}"))
-                .detail(fine[k].map_or(String::new(), |c| format!("condition number {c:.3e}")))
-                .measured(order),
-        );
-    }
-    Ok(())
+/// In means and jumps with the diagonal as preconditioner. The values of broken linears at facet means are the nodes of
+/// means and jumps.
+fn in_means_and_jumps(at: &At<'_>) -> Option<f64> {
+    let mesh = at.scene()?.domain.mesh(at.place().level).ok()?;
+    let matrix = MeanJump::new(&mesh).transform(&at.matrix(Some("facet-means"))?);
+    condition(&matrix, &Diagonal(matrix.diagonal()))
 }

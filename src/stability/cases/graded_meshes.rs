@@ -1,57 +1,37 @@
 //! Graded meshes: cells of very different sizes beside each other.
 
-use crate::error::Error;
-use crate::scenes;
-use crate::stability::case::Case;
-use crate::stability::choice::Choice;
-use crate::stability::criterion::Criterion;
+use super::table::*;
 use crate::stability::meshes::graded;
-use crate::stability::plan::{Plan, Sink};
-use crate::stability::row::ExpectedRange;
-use crate::stability::row_builder::{RowBuilder, figures};
-use crate::stability::runs::{over, row};
 
 const ERROR: Criterion = Criterion::new(
     "error-on-graded-meshes",
     &[ExpectedRange::at_most(2.0)],
-    "Signorini on meshes graded to the end of contact, shortest over longest side of cells to 1e-6 and 1e-12: a finite solution, with a broken H1 error at most {} times that of Crouzeix-Raviart elements on the same mesh.",
+    "Signorini on meshes graded to the end of contact, shortest over longest side of cells to 1e-6 and 1e-12: a finite solution, with a broken H1 error at most 2 times that of Crouzeix-Raviart elements on the same mesh.",
 );
-pub(crate) const CASE: Case = Case { name: "graded-meshes", criteria: &[ERROR], plan };
+pub(crate) const CASE: Case = Case { name: "graded-meshes", criteria: &[ERROR], sweeps };
 
-fn plan(plan: &mut Plan<'_>) {
-    let n = plan.pick_of(8, 16, 32);
-    let further = [
-        Choice::of("wopsip@weight=anisotropic"),
-        Choice::of("wopsip:facet-means@weight=anisotropic"),
-        Choice::with_eta("wopsip", 0),
-    ];
-    for choice in plan.compared_and(&further) {
-        for power in [1, 2, 4, 8] {
-            plan.add(choice, &format!("power {power}"), move |c, sink| compare(c, n, power, sink));
-        }
-    }
-}
-
-fn compare(choice: &Choice, n: usize, power: i32, sink: Sink<'_>) -> Result<(), Error> {
-    let scene = scenes::signorini_harmonic::<2>();
-    let claim = RowBuilder::new(&ERROR, choice)
-        // the factor over the cube of an edge that vanishes
-        .known_to_fail(choice.options().eta == Some(1.0) && power >= 4)
-        .on(&scene.name)
-        .level(n)
-        .at("power", f64::from(power))
-        .quantity("H1 error over that of cr");
-    let mesh = match graded(n, power) {
-        Ok(mesh) => mesh,
-        Err(why) => {
-            sink(claim.detail(why.to_string()).measured(None));
-            return Ok(());
-        }
+fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+    let n = study.effort.pick([8, 16, 32]);
+    let place = |power: i32| {
+        let mesh = graded(n, power)?;
+        let note = format!("shortest edge {:.1e}", mesh.shortest_edge());
+        let scene = scenes::signorini_harmonic::<2>().domain(mesh);
+        Ok(Place { note, ..Place::on_mesh(scene, Some(n)).at(f64::from(power)) })
     };
-    let shortest = mesh.shortest_edge();
-    let scene = scene.domain(mesh);
-    let ours = row(&scene, choice, 0)?;
-    let ratio = over("cr", &scene, &ours, |r| r.error.h1)?;
-    sink(claim.detail(format!("shortest edge {shortest:.1e}, {}", figures(&ours))).measured(ratio));
-    Ok(())
+    let schemes =
+        ["wopsip@weight=anisotropic", "wopsip:facet-means@weight=anisotropic", "wopsip@eta=1"];
+    // the factor over the cube of an edge that vanishes
+    let is_off = |at: &At<'_>| at.scheme().options().eta.is_some() && at.value() >= Some(4.0);
+    Ok(vec![Sweep {
+        compares: true,
+        schemes: schemes.map(str::to_owned).into(),
+        beside: vec!["cr".to_owned()],
+        parameter: "power",
+        places: [1, 2, 4, 8].into_iter().map(place).collect::<Result<_, Error>>()?,
+        columns: vec![
+            Column::new(&ERROR, "H1 error over that of cr", |at| at.over("cr", H1))
+                .asked(move |at| Asked::limit_unless(is_off(at))),
+        ],
+        ..Sweep::default()
+    }])
 }

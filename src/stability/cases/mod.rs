@@ -15,8 +15,7 @@ mod scaling;
 mod slivers;
 mod stretched_cells;
 
-use super::case::Case;
-use super::criterion::Criterion;
+use super::case::{Case, Criterion};
 
 /// All cases.
 pub(crate) const CASES: [Case; 13] = [
@@ -49,4 +48,16 @@ pub const STABILITY_CASES: [&str; CASES.len()] = {
 /// All criteria, each with the name of its case, in the order of reports.
 pub fn criteria() -> impl Iterator<Item = (&'static str, &'static Criterion)> {
     CASES.into_iter().flat_map(|case| case.criteria.iter().map(move |c| (case.name, c)))
+}
+
+/// What the table of a case is made of.
+mod table {
+    pub(super) use super::super::Stability;
+    pub(super) use super::super::at::At;
+    pub(super) use super::super::case::{
+        Asked, Case, Column, Criterion, ENERGY, H1, JUMPS, L2, Norm, Place, Sweep,
+    };
+    pub(super) use super::super::row::ExpectedRange;
+    pub(super) use crate::error::Error;
+    pub(super) use crate::scenes::{self, Scene, sines};
 }

@@ -81,6 +81,7 @@ pub struct Study<'a, const D: usize> {
     quadrature: DataQuadrature,
     repeat: usize,
     keeps_history: bool,
+    has_cold_start: bool,
     #[cfg(feature = "report")]
     journal: Option<&'a Journal>,
     #[cfg(feature = "report")]
@@ -135,6 +136,7 @@ impl<'a, const D: usize> Study<'a, D> {
             quadrature: DataQuadrature::default(),
             repeat: 1,
             keeps_history: false,
+            has_cold_start: false,
             #[cfg(feature = "report")]
             journal: None,
             #[cfg(feature = "report")]
@@ -350,6 +352,7 @@ impl<'a, const D: usize> Study<'a, D> {
             .quadrature(self.quadrature)
             .repeat(self.repeat)
             .history(self.keeps_history)
+            .cold_start(self.has_cold_start)
             .steps(self.steps.clone())
             .observer(|phase| (self.observer)(Progress::Entered(phase)))
     }

@@ -121,6 +121,12 @@ impl<'a, const D: usize> Study<'a, D> {
         self.linear_asked = Some(name.to_owned());
         self
     }
+    /// Sets whether schemes start without contact and without coarser levels.
+    #[must_use]
+    pub fn cold_start(mut self, has_cold_start: bool) -> Self {
+        self.has_cold_start = has_cold_start;
+        self
+    }
     /// Sets the quadrature of data.
     #[must_use]
     pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {

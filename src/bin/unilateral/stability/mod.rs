@@ -15,28 +15,20 @@ pub use options::Options;
 use crate::asked::command;
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
-use crate::shared::{
-    Failure, bar, check_apart, check_writable, end_at_interrupt, print, tick, use_threads, warn,
-    write,
-};
-use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
+use crate::shared::{Failure, bar, check_apart, end_at_interrupt, print, tick, use_threads, warn};
+use unilateral::stability::{Effort, Stability, Verdict};
 
 /// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
 pub fn run(options: &Options) -> Result<bool, Failure> {
     use_threads(options.threads.map(usize::from))?;
-    let bar = bar(options.quiet, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}");
+    let bar = bar(options.quiet, "{spinner} {elapsed}: {msg}");
     tick(&bar);
     let mut study = Stability::new(if options.quick { Effort::Quick } else { Effort::Full })
         .cases(options.cases.clone())
         .schemes(options.schemes.clone())
         .command(command())
         .write_to(&options.out)
-        .observer(|progress| match progress {
-            StabilityProgress::Planned(n) => bar.set_length(n as u64),
-            StabilityProgress::Started(case, label) => bar.set_message(format!("{case}: {label}")),
-            StabilityProgress::Finished => bar.inc(1),
-            _ => {}
-        });
+        .observer(|case, scheme| bar.set_message(format!("{case}, {scheme}")));
     let warn = |warning: String| {
         if !options.quiet {
             warn(&warning);
@@ -50,15 +42,11 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         study = study.mesh(&name.unwrap_or_default(), mesh);
     }
     study.check().map_err(|e| e.to_string())?;
-    check_apart(&options.meshes, &options.markdown, [&options.out])?;
-    check_writable(&options.markdown)?;
+    check_apart(&options.meshes, None, [&options.out])?;
     take_directory(&options.out)?;
     end_at_interrupt("the report has the rows so far and is not complete")?;
     let report = study.run().map_err(Failure::of_work)?;
     bar.finish_and_clear();
-    if let Some(path) = &options.markdown {
-        write(path, report.summary_to_markdown()).map_err(Failure::Work)?;
-    }
     if !options.quiet {
         print(&report.summary())?;
         print(&format!("\nReports are in {}\n", options.out.display()))?;

@@ -43,9 +43,6 @@ pub struct Options {
     /// Where the report goes
     #[arg(help_heading = OUTPUT, long, value_name = "DIR", default_value = "target/stability")]
     pub out: PathBuf,
-    /// Also write the summary of the report in Markdown to this file
-    #[arg(help_heading = OUTPUT, long, value_name = "FILE")]
-    pub markdown: Option<PathBuf>,
     /// No progress, no summary
     #[arg(help_heading = OUTPUT, long)]
     pub quiet: bool,
