@@ -2,8 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::case::{Norm, Place, Sweep};
-use super::named;
+use super::case::{self, Norm, Place, Sweep};
 use super::row::short;
 use crate::algebra::{Inequality, SparseMatrix};
 use crate::assemble::DataQuadrature;
@@ -106,7 +105,7 @@ pub(crate) struct At<'r> {
 impl<'r> At<'r> {
     /// Another scheme at the same place, which the sweep names.
     pub fn beside(self, name: &str) -> Self {
-        let wanted = named(name);
+        let wanted = case::scheme(name);
         let scheme = self.ran.runs.iter().position(|(scheme, _)| *scheme == wanted);
         Self { scheme: scheme.expect("the sweep runs the schemes to which figures refer"), ..self }
     }

@@ -6,6 +6,7 @@ use super::row::ExpectedRange;
 use crate::error::Error;
 use crate::real::Precision;
 use crate::scenes::AnyScene;
+use crate::scheme::NamedScheme;
 use crate::study::Row;
 
 /// A hard case: what is judged, and the sweeps that are run for it.
@@ -66,10 +67,10 @@ impl Effort {
 pub(crate) struct Sweep {
     /// Whether the schemes that every case compares are among those judged.
     pub compares: bool,
-    /// The further schemes that are judged, as users write them.
-    pub schemes: Vec<String>,
+    /// The further schemes that are judged.
+    pub schemes: Vec<NamedScheme>,
     /// Schemes that figures of the others refer to.
-    pub beside: Vec<String>,
+    pub beside: Vec<NamedScheme>,
     /// The name of the parameter. The value of `eta` or `sigma` is that of the scheme, others are those of places.
     pub parameter: &'static str,
     pub places: Vec<Place>,
@@ -78,6 +79,21 @@ pub(crate) struct Sweep {
     /// Whether every scheme runs with the interior point method too.
     pub has_interior_point: bool,
     pub columns: Vec<Column>,
+}
+
+/// A scheme that a case names.
+pub(crate) fn scheme(name: &str) -> NamedScheme {
+    name.parse().expect("cases name schemes that exist")
+}
+
+/// Schemes that a case names, separated by blanks.
+pub(crate) fn schemes(names: &str) -> Vec<NamedScheme> {
+    names.split_whitespace().map(scheme).collect()
+}
+
+/// A scheme with powers of ten as its over-penalty factor `eta`.
+pub(crate) fn with_eta(name: &str, exponents: &[i32]) -> Vec<NamedScheme> {
+    exponents.iter().map(|exponent| scheme(&format!("{name}@eta=1e{exponent}"))).collect()
 }
 
 /// A place of a sweep.

@@ -138,6 +138,7 @@ impl<'a> Stability<'a> {
         let wanted = self.check()?;
         let mut report = StabilityReport::new(self.effort);
         report.program.command.clone_from(&self.command);
+        self.save(&report)?;
         let mut written = Instant::now();
         for case in &CASES {
             if !self.cases.is_empty() && !self.cases.iter().any(|name| name == case.name) {
@@ -167,9 +168,9 @@ impl<'a> Stability<'a> {
         report: &mut StabilityReport,
     ) {
         let judged = judged(sweep, wanted);
-        let beside = sweep.beside.iter().filter(|_| !judged.is_empty()).map(|name| named(name));
+        let beside = sweep.beside.iter().filter(|_| !judged.is_empty());
         let mut ran = Ran { sweep, runs: Vec::new() };
-        for scheme in distinct(beside.chain(judged.iter().copied())) {
+        for &scheme in distinct(beside.chain(&judged)) {
             (self.observer)(case, &scheme.to_string());
             let mut run = |place| {
                 at::run(sweep, place, &scheme).unwrap_or_else(|why| {
@@ -199,18 +200,13 @@ impl<'a> Stability<'a> {
     }
 }
 
-/// A scheme that a case names.
-fn named(name: &str) -> NamedScheme {
-    name.parse().expect("cases name schemes that exist")
-}
-
 /// The schemes of a sweep whose rows are asked for, by the schemes themselves or without choices of penalties.
 fn judged(sweep: &Sweep, wanted: &[NamedScheme]) -> Vec<NamedScheme> {
     let known = Stability::SCHEMES;
     let besides = wanted.iter().filter(|scheme| !known.contains(&&scheme.to_string()[..]));
-    let compared = known[..6].iter().map(|name| named(name)).chain(besides.copied());
-    let of_case = sweep.schemes.iter().map(|name| named(name));
-    let mut all = distinct(compared.filter(|_| sweep.compares).chain(of_case));
+    let compared = known[..6].iter().map(|name| case::scheme(name)).chain(besides.copied());
+    let mut all =
+        distinct(compared.filter(|_| sweep.compares).chain(sweep.schemes.iter().copied()));
     all.retain(|scheme| {
         let names = [scheme.to_string(), scheme.label_without_choices()];
         wanted.is_empty() || wanted.iter().any(|of| names.contains(&of.to_string()))

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::instances::compiled;
-use crate::study::{Program, Report, Row, Study, Variant, fill_orders};
+use crate::study::{Program, Progress, Report, Row, Study, Variant, fill_orders};
 
 /// The least time between two calls of what keeps the rows within a round.
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
@@ -133,7 +133,8 @@ impl Rounds {
                 order.reverse();
             }
             for (done, &k) in order.iter().enumerate() {
-                cases[k].of.notify_started(&cases[k].variant, cases[k].level);
+                let Case { of, variant, level, .. } = &cases[k];
+                of.notify(Progress::Started(&variant.scene, &variant.label, *level));
                 self.run_case(&mut cases, k, round, &known)?;
                 if done + 1 == order.len() || kept.elapsed() > WRITE_INTERVAL {
                     report.rows.truncate(before);
@@ -175,6 +176,7 @@ impl Rounds {
             // an adaptive step has no peak of its own
             let has_peak = is_reset && !case.study.is_adaptive();
             row.peak_memory_bytes = row.peak_memory_bytes.filter(|_| has_peak);
+            case.of.notify(Progress::Finished(&row));
             match case.rows.get_mut(step) {
                 Some(first) => first.add_run(&row),
                 None => {

@@ -5,11 +5,17 @@ use super::run::{command, stdout};
 const HEIGHT: usize = 50;
 const WIDTH: usize = 100;
 
+/// A command of several rounds has a name of its own.
+#[test]
+fn work_precision_is_compare_with_rounds() {
+    let page = |name: &str| stdout(&command(name).arg("--help").output().unwrap());
+    assert_eq!(page("work-precision"), page("compare"));
+}
+
 #[test]
 fn pages_of_help_fit_a_screen_and_have_groups_and_examples() {
     for (name, groups) in [
         ("compare", &["Problem:", "Schemes:", "Meshes:", "Solver:", "Output:"][..]),
-        ("work-precision", &["Problem:", "Schemes:", "Meshes:", "Solver:", "Output:"]),
         ("stability", &["Problem:", "Schemes:", "Meshes:", "Solver:", "Output:"]),
         ("pictures", &["Problem:", "Schemes:", "Meshes:", "Output:"]),
         ("judge", &["Problem:", "Output:"]),

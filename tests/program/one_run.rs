@@ -54,7 +54,7 @@ fn a_second_run_into_a_directory_is_refused() {
     for (name, options) in [
         ("compare", ""),
         ("compare", "--resume"),
-        ("work-precision", "--quick"),
+        ("work-precision", "--rounds 2"),
         ("stability", "--quick"),
         ("pictures", "--level 4"),
     ] {

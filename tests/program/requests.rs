@@ -99,7 +99,7 @@ fn the_other_commands_refuse_before_the_work_too() {
     let file = scratch.file("file", "");
     let (below, out) = (scratch.path("file/report"), scratch.path("out"));
     for (name, options, words) in [
-        ("work-precision", format!("--quick --out {below}"), "cannot write"),
+        ("work-precision", format!("--rounds 2 --out {below}"), "cannot write"),
         ("work-precision", format!("--scene radial-2d --reference 20 --out {out}"), "reference"),
         ("stability", format!("--quick --out {below}"), "cannot write"),
         ("stability", format!("--quick --scheme none --out {out}"), "scheme"),
@@ -108,6 +108,9 @@ fn the_other_commands_refuse_before_the_work_too() {
             format!("--scene radial-2d --scheme p1,cr --subject sipg --out {out}"),
             "--subject sipg: no scheme has this label; there are: cr, p1",
         ),
+        ("work-precision", format!("--resume --out {out}"), "--resume"),
+        ("compare", format!("--rounds 0 --out {out}"), "--rounds 0: must be at least 1"),
+        ("compare", format!("--linear direct,iterative --out {out}"), "--rounds"),
         ("pictures", format!("--series 0 --out {out}"), "level"),
         ("pictures", format!("--out {below}"), "cannot write"),
     ] {

@@ -51,9 +51,8 @@ pub struct Asked {
     #[arg(help_heading = MESHES, long, alias = "level", value_delimiter = ',',
         value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
     pub levels: Vec<usize>,
-    /// Meshes that follow the error bound, until it is GOAL or by keys:
-    /// theta=0.5,steps=20,unknowns=1e6,goal=GOAL
-    #[arg(help_heading = MESHES, verbatim_doc_comment, long, value_name = "GOAL|KEY=X", allow_negative_numbers = true,
+    /// Meshes that follow the bound, to GOAL or by theta=0.5,steps=20,unknowns=1e6
+    #[arg(help_heading = MESHES, long, value_name = "GOAL|KEY=X", allow_negative_numbers = true,
         value_parser = adaptivity)]
     pub adaptive: Option<Adaptivity>,
     #[command(flatten)]

@@ -13,7 +13,6 @@ mod one_run;
 mod pictures;
 mod shared;
 mod stability;
-mod work_precision;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -34,10 +33,14 @@ struct Program {
     command: Command,
 }
 
+/// A name for `compare` with rounds, of which there are [`ROUNDS`] unless their number is given.
+const WORK_PRECISION: &str = "work-precision";
+const ROUNDS: &str = "--rounds=5";
+
 #[derive(Subcommand)]
 enum Command {
+    #[command(visible_alias = WORK_PRECISION)]
     Compare(Box<compare::Options>),
-    WorkPrecision(Box<work_precision::Options>),
     Stability(stability::Options),
     Pictures(pictures::Options),
     Judge(judge::Options),
@@ -74,7 +77,6 @@ fn run(command: Command) -> Result<bool, Failure> {
     check_environment()?;
     match command {
         Command::Compare(options) => Ok(compare::run(&options)?),
-        Command::WorkPrecision(options) => work_precision::run(&options),
         Command::Stability(options) => stability::run(&options),
         Command::Pictures(options) => pictures::run(&options),
         Command::Judge(options) => Ok(judge::run(&options)?),
@@ -92,7 +94,7 @@ fn parse() -> Request<Command> {
     }
 }
 
-/// The words of the command line, `compare` inserted where no command is named.
+/// The words of the command line, `compare` inserted where no command is named, and its rounds where they have a name.
 fn words(mut words: Vec<OsString>) -> Vec<OsString> {
     const OF_THE_PROGRAM: [&str; 4] = ["-h", "--help", "-V", "--version"];
     let first = words.get(1).map(|word| word.to_string_lossy());
@@ -100,6 +102,11 @@ fn words(mut words: Vec<OsString>) -> Vec<OsString> {
     if first.is_none_or(|word| is_option(&word)) {
         words.resize_with(words.len().max(1), OsString::new);
         words.insert(1, "compare".into());
+    } else if words[1] == WORK_PRECISION {
+        let is_rounds = |word: &OsString| word.to_string_lossy().starts_with("--rounds");
+        let has_rounds = words.iter().any(is_rounds);
+        words[1] = "compare".into();
+        words.splice(2..2, (!has_rounds).then(|| ROUNDS.into()));
     }
     words
 }

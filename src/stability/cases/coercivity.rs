@@ -27,8 +27,8 @@ const THRESHOLD: f64 = 3.0;
 
 fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     let level = study.effort.pick([8, 8, 16]);
-    let schemes = ["0.5", "1", "2", "2.9", "3.1", "4", "10", "1000"];
-    let schemes = schemes.map(|sigma| format!("sipg@sigma={sigma}"));
+    let factors = ["0.5", "1", "2", "2.9", "3.1", "4", "10", "1000"];
+    let with_sigma = schemes(&factors.map(|sigma| format!("sipg@sigma={sigma}")).join(" "));
     // on Dirichlet facets |dK|/|K| with |dK| = (2 + root 2) h and |K| = h^2 / 2
     let proven = 2.0 * (2.0 + 2.0_f64.sqrt());
     let is_below = |at: &At<'_>, bound: f64| at.value().is_some_and(|sigma| sigma < bound);
@@ -40,7 +40,7 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     Ok(vec![
         Sweep {
             compares: true,
-            schemes: schemes.to_vec(),
+            schemes: with_sigma.clone(),
             parameter: "sigma",
             places: vec![Place::new(sines::<2>(), level)],
             columns: vec![
@@ -59,8 +59,8 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
             ..Sweep::default()
         },
         Sweep {
-            schemes: schemes.to_vec(),
-            beside: vec!["cr".to_owned()],
+            schemes: with_sigma.clone(),
+            beside: schemes("cr"),
             parameter: "sigma",
             places: vec![Place::new(scenes::radial::<2>(1.0), 2 * level)],
             columns: vec![

@@ -27,15 +27,15 @@ pub(super) fn sweeps(effort: Effort) -> [Sweep; 2] {
     let level = effort.pick([8, 8, 16]);
     let exponents = effort.pick([&[-2, 2, 6][..], &[-2, 2, 6], &[-4, -2, 2, 4, 6]]);
     let over_factors = Sweep {
-        schemes: exponents.iter().map(|k| format!("wopsip@eta=1e{k}")).collect(),
-        beside: vec!["wopsip@eta=1".to_owned()],
+        schemes: with_eta("wopsip", exponents),
+        beside: schemes("wopsip@eta=1"),
         parameter: "eta",
         places: vec![Place::new(sines::<2>(), level)],
         columns: PARTS.map(over_factors).into(),
         ..Sweep::default()
     };
     let over_meshes = Sweep {
-        schemes: ["wopsip@eta=1", "p1", "cr", "sipg", "p2"].map(str::to_owned).into(),
+        schemes: schemes("wopsip@eta=1 p1 cr sipg p2"),
         places: [level, 2 * level].map(|n| Place::new(sines::<2>(), n)).into(),
         columns: PARTS.map(over_meshes).into(),
         ..Sweep::default()

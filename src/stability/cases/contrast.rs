@@ -48,7 +48,7 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     let asked = |at: &At<'_>| if at.place == 0 { Asked::NoRow } else { Asked::Limit(0) };
     Ok(vec![
         Sweep {
-            schemes: vec!["sipg@sigma=10".to_owned()],
+            schemes: schemes("sipg@sigma=10"),
             ..sweep(
                 aligned.map(layers).collect(),
                 vec![
@@ -61,7 +61,7 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
             )
         },
         Sweep {
-            beside: vec!["p1".to_owned()],
+            beside: schemes("p1"),
             ..sweep(
                 [1e-6, 1e6].map(across).into(),
                 vec![Column::new(&ACROSS_FLUX, "H1 error over that of p1", |at| at.over("p1", H1))],

@@ -40,12 +40,6 @@ type Touched = (fn() -> Scene<2>, f64, Asked);
 fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     let levels = study.effort.pick([&[8][..], &[8, 16, 32], &[8, 16, 32, 64]]);
     let fitted = study.effort.pick([&[4, 8][..], &[16, 32, 64], &[16, 32, 64]]);
-    let schemes = [
-        "wopsip@eta=1",
-        "wopsip@eta=100",
-        "wopsip:facet-means@eta=1",
-        "wopsip:facet-means@eta=100",
-    ];
     // the multiplier of the cone is not bounded
     let problems: [Touched; 2] = [
         (scenes::ball_2d, 0.697_965_148_223_373_6, Asked::Limit(0)),
@@ -55,7 +49,7 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
         let size = move |level: usize| scene().domain.length() / level as f64;
         let sweep = || Sweep {
             compares: true,
-            schemes: schemes.map(str::to_owned).into(),
+            schemes: ["wopsip", "wopsip:facet-means"].map(|name| with_eta(name, &[0, 2])).concat(),
             ..Sweep::default()
         };
         let quantity = "order of the multiplier in L1, fitted";

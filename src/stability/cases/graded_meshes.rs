@@ -18,14 +18,14 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
         let scene = scenes::signorini_harmonic::<2>().domain(mesh);
         Ok(Place { note, ..Place::on_mesh(scene, Some(n)).at(f64::from(power)) })
     };
-    let schemes =
-        ["wopsip@weight=anisotropic", "wopsip:facet-means@weight=anisotropic", "wopsip@eta=1"];
+    let further = "wopsip@weight=anisotropic \
+        wopsip:facet-means@weight=anisotropic wopsip@eta=1";
     // the factor over the cube of an edge that vanishes
     let is_off = |at: &At<'_>| at.scheme().options().eta.is_some() && at.value() >= Some(4.0);
     Ok(vec![Sweep {
         compares: true,
-        schemes: schemes.map(str::to_owned).into(),
-        beside: vec!["cr".to_owned()],
+        schemes: schemes(further),
+        beside: schemes("cr"),
         parameter: "power",
         places: [1, 2, 4, 8].into_iter().map(place).collect::<Result<_, Error>>()?,
         columns: vec![

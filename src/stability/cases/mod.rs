@@ -55,7 +55,8 @@ mod table {
     pub(super) use super::super::Stability;
     pub(super) use super::super::at::At;
     pub(super) use super::super::case::{
-        Asked, Case, Column, Criterion, ENERGY, H1, JUMPS, L2, Norm, Place, Sweep,
+        Asked, Case, Column, Criterion, ENERGY, H1, JUMPS, L2, Norm, Place, Sweep, schemes,
+        with_eta,
     };
     pub(super) use super::super::row::ExpectedRange;
     pub(super) use crate::error::Error;

@@ -51,27 +51,27 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     let n_scenes = study.effort.pick([1, 1, PLANE.len()]);
     let strings = [32, 64, 128, 256];
     let norms = [L2, H1, JUMPS];
-    let both = ["wopsip", "wopsip:facet-means"];
+    let both = "wopsip wopsip:facet-means";
     let mut sweeps = Vec::new();
     for scene in &PLANE[..n_scenes] {
-        sweeps.push(fits(&both, || scene().into(), levels, &OVER_PENALTY, &norms));
+        sweeps.push(fits(both, || scene().into(), levels, &OVER_PENALTY, &norms));
     }
     for scene in [scenes::parabola_1d, scenes::signorini_reaction_1d] {
-        sweeps.push(fits(&both, || scene().into(), &strings, &OVER_PENALTY, &norms));
+        sweeps.push(fits(both, || scene().into(), &strings, &OVER_PENALTY, &norms));
     }
     let coarse = study.effort.pick([[8, 16, 32], [8, 16, 32], [16, 32, 64]]);
     // jumps in L2 over facets: the penalty's part of the norm weighs them with `1/h`
     let in_l2: Norm = ("jumps", |row| JUMPS.1(row).map(|j| j / (row.level as f64).sqrt()));
     let poisson = || sines::<2>().into();
-    sweeps.push(fits(&["sipg", "nipg"], poisson, &coarse, &INTERIOR_PENALTY, &[in_l2]));
-    sweeps.push(fits(&["nipg"], poisson, &coarse, &DUALITY, &[L2]));
+    sweeps.push(fits("sipg nipg", poisson, &coarse, &INTERIOR_PENALTY, &[in_l2]));
+    sweeps.push(fits("nipg", poisson, &coarse, &DUALITY, &[L2]));
     let levels = [8, 16, 32, 64, 128, 256];
-    let strings = fits(&[], || scenes::icelike_1d().into(), &levels, &STRINGS, &[H1, L2]);
+    let strings = fits("", || scenes::icelike_1d().into(), &levels, &STRINGS, &[H1, L2]);
     sweeps.push(Sweep { compares: true, ..strings });
     let boxes = study.effort.pick([&[2][..], &[4], &[4, 8, 12]]);
     sweeps.push(Sweep {
-        schemes: ["wopsip@eta=1", "wopsip"].map(str::to_owned).into(),
-        beside: vec!["p1".to_owned()],
+        schemes: schemes("wopsip@eta=1 wopsip"),
+        beside: schemes("p1"),
         places: boxes.iter().map(|&n| Place::new(scenes::radial::<3>(1.0), n)).collect(),
         columns: vec![Column::new(&BOXES, "L2 error over that of p1", |at| at.over("p1", L2))],
         ..Sweep::default()
@@ -81,14 +81,14 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
 
 /// Orders of schemes on a scene, fitted over levels.
 fn fits(
-    schemes: &[&str],
+    names: &str,
     scene: impl Fn() -> AnyScene,
     levels: &[usize],
     criterion: &'static Criterion,
     norms: &[Norm],
 ) -> Sweep {
     Sweep {
-        schemes: schemes.iter().map(|&name| name.to_owned()).collect(),
+        schemes: schemes(names),
         places: levels.iter().map(|&level| Place::new(scene(), level)).collect(),
         columns: Column::all_fitted(criterion, norms),
         ..Sweep::default()

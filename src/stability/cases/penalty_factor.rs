@@ -3,6 +3,7 @@
 use super::condition_numbers;
 use super::table::*;
 use crate::real::Precision;
+use crate::scheme::NamedScheme;
 
 const DEFINITE: Criterion = Criterion::new(
     "definite-for-every-factor",
@@ -54,24 +55,22 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     let mut sweeps = Vec::new();
     for scheme in ["wopsip", "wopsip:facet-means"] {
         for scene in [scenes::polynomial::<2>, scenes::signorini_2d] {
-            let with = |exponents: &[i32]| {
-                exponents.iter().map(|k| format!("{scheme}@eta=1e{k}")).collect()
-            };
-            sweeps.push(factors(with(&exponents), format!("{scheme}@eta=100"), scene(), level));
-            sweeps.push(forces(with(&large), scene));
+            sweeps.push(factors(scheme, &exponents, Place::new(scene(), level)));
+            sweeps.push(forces(with_eta(scheme, &large), scene));
         }
     }
     sweeps.extend(condition_numbers::sweeps(study.effort));
     Ok(sweeps)
 }
 
-fn factors(schemes: Vec<String>, at_100: String, scene: Scene<2>, level: usize) -> Sweep {
+fn factors(scheme: &str, exponents: &[i32], place: Place) -> Sweep {
+    let at_100 = format!("{scheme}@eta=100");
     let asked = |at: &At<'_>| Asked::limit_unless(at.value() < Some(1.0));
     Sweep {
-        schemes,
-        beside: vec!["cr".to_owned(), at_100.clone()],
+        schemes: with_eta(scheme, exponents),
+        beside: schemes(&format!("cr {at_100}")),
         parameter: "eta",
-        places: vec![Place::new(scene, level)],
+        places: vec![place],
         columns: vec![
             Column::new(&DEFINITE, "has a Cholesky factor", |at| at.definite()),
             Column::new(&ERROR, "H1 error over that of cr", |at| at.over("cr", H1)).asked(asked),
@@ -86,15 +85,15 @@ fn factors(schemes: Vec<String>, at_100: String, scene: Scene<2>, level: usize) 
     }
 }
 
-fn forces(schemes: Vec<String>, scene: fn() -> Scene<2>) -> Sweep {
+fn forces(of: Vec<NamedScheme>, scene: fn() -> Scene<2>) -> Sweep {
     let place = |precision| Place::new(scene(), LEVEL_OF_FORCES).precision(precision);
     let is_single = |at: &At<'_>| at.place().precision == Precision::Single;
     // the factors of the active set have no quarter of the digits of single precision
     let is_singular = move |at: &At<'_>| is_single(at) && at.value() >= Some(1e12);
     let multiplier = |at: At<'_>| at.of(|row| row.contact.multiplier_l1);
     Sweep {
-        schemes,
-        beside: vec!["cr".to_owned()],
+        schemes: of,
+        beside: schemes("cr"),
         parameter: "eta",
         places: [Precision::Double, Precision::Single].map(place).into(),
         columns: vec![

@@ -46,8 +46,8 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
         ("wopsip:facet-means", scenes::radial(1.0)),
     ] {
         sweeps.push(Sweep {
-            schemes: exponents.iter().map(|k| format!("{scheme}@eta=1e{k}")).collect(),
-            beside: vec!["cr".to_owned()],
+            schemes: with_eta(scheme, exponents),
+            beside: schemes("cr"),
             parameter: "eta",
             places: vec![Place::new(scene, level)],
             columns: vec![
@@ -90,7 +90,7 @@ fn halvings(scene: fn() -> AnyScene, finest: u32, precision: Precision) -> Sweep
     let ratio = |at: &At<'_>| Some(at.of(L2.1)? / at.before()?.of(L2.1)?);
     Sweep {
         compares: true,
-        schemes: ["wopsip@eta=1", "wopsip:facet-means@eta=1"].map(str::to_owned).into(),
+        schemes: schemes("wopsip@eta=1 wopsip:facet-means@eta=1"),
         parameter: "h",
         places: (2..=finest).map(place).collect(),
         columns: vec![

@@ -40,8 +40,11 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
         }
     };
     let domain = sweep(&DOMAIN, "L", lengths, scenes::radial);
-    let schemes = ["wopsip@eta=1", "wopsip:facet-means@eta=1"].map(str::to_owned).into();
-    Ok(vec![Sweep { schemes, ..domain }, sweep(&COEFFICIENT, "c", factors, with_coefficient)])
+    let further = schemes("wopsip@eta=1 wopsip:facet-means@eta=1");
+    Ok(vec![
+        Sweep { schemes: further, ..domain },
+        sweep(&COEFFICIENT, "c", factors, with_coefficient),
+    ])
 }
 
 /// The scene of radius one with coefficient and load times a factor.

@@ -44,11 +44,11 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     // on the meshes of the caller the height is none
     let has_sigma = |at: &At<'_>| at.scheme().options().sigma.is_some() && at.value() != Some(1.0);
     let asked = move |at: &At<'_>| Asked::limit_unless(has_sigma(at));
-    let schemes =
-        ["wopsip@weight=anisotropic", "wopsip:facet-means@weight=anisotropic", "sipg@sigma=10"];
+    let further = "wopsip@weight=anisotropic \
+        wopsip:facet-means@weight=anisotropic sipg@sigma=10";
     let sweep = |places, columns| Sweep {
         compares: true,
-        schemes: schemes.map(str::to_owned).into(),
+        schemes: schemes(further),
         parameter: "relative height",
         places,
         columns,
@@ -65,7 +65,7 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     let given = study.meshes.iter().map(given).collect::<Result<_, Error>>()?;
     Ok(vec![
         Sweep {
-            beside: vec!["cr".to_owned()],
+            beside: schemes("cr"),
             ..sweep(on_slivers(sines)?, vec![definite(&DEFINITE), error.asked(asked)])
         },
         sweep(on_slivers(scenes::polynomial)?, vec![obstacle.asked(asked)]),

@@ -24,12 +24,8 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
         let scene = sines::<2>().domain(stretched(n, ratio)?);
         Ok(Place::on_mesh(scene, Some(n)).at(ratio as f64))
     };
-    let schemes = [
-        "wopsip@weight=anisotropic",
-        "wopsip:facet-means@weight=anisotropic",
-        "wopsip@eta=1",
-        "sipg@sigma=10",
-    ];
+    let further = "wopsip@weight=anisotropic \
+        wopsip:facet-means@weight=anisotropic wopsip@eta=1 sipg@sigma=10";
     let is_indefinite = |at: &At<'_>| {
         // the threshold of sigma/h_F is about twice the aspect ratio
         at.scheme().options().sigma < at.value().map(|ratio| 2.0 * ratio) && has_sigma(at)
@@ -42,8 +38,8 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     };
     Ok(vec![Sweep {
         compares: true,
-        schemes: schemes.map(str::to_owned).into(),
-        beside: vec!["cr".to_owned()],
+        schemes: schemes(further),
+        beside: schemes("cr"),
         parameter: "aspect ratio",
         places: ratios.iter().map(place).collect::<Result<_, Error>>()?,
         columns: vec![

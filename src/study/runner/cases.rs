@@ -1,6 +1,6 @@
 //! The cases of a study: what runs alone, and reuses nothing of other runs; whether all cases fit into the memory.
 
-use super::Study;
+use super::{Progress, Study};
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::study::memory::memory_of_process;
@@ -79,8 +79,8 @@ impl<'a, const D: usize> Study<'a, D> {
         self.reference.as_ref().map_or(0, |_| 1 + self.keys().len())
     }
 
-    /// Says that a run begins.
-    pub(crate) fn notify_started(&self, variant: &Variant, level: usize) {
-        (self.observer)(super::Progress::Started(&variant.scene, &variant.label, level));
+    /// Tells the observer.
+    pub(crate) fn notify(&self, progress: Progress<'_>) {
+        (self.observer)(progress);
     }
 }

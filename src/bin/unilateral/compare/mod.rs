@@ -8,6 +8,7 @@ mod options;
 #[cfg(feature = "petsc")]
 mod over_processes;
 mod prepare;
+mod rounds;
 mod watcher;
 
 use std::path::PathBuf;
@@ -42,6 +43,10 @@ pub fn run(options: &Options) -> Request<bool> {
     }
     check_numbers(options)?;
     use_threads(options.asked.threads)?;
+    if let Some(count) = options.rounds {
+        let watcher = Watcher::new(options);
+        return rounds::run(Chosen::new(options, &watcher)?, options, &watcher, count);
+    }
     let copy = options.clone();
     let resumes = options.asked.adaptive.is_none() && options.dump.is_none();
     let interrupt = Interrupt::install(resumes, move |report| write_all(&copy, report))?;
@@ -69,8 +74,13 @@ fn run_over_processes(_: &Options) -> Request<bool> {
 /// The program, with all that its rows depend on and do not say.
 fn program(options: &Options, files: &[(&str, String)]) -> Program {
     let threads = rayon::current_num_threads();
-    let program = Program::new("compare", &options.precision, threads, options.repeat);
+    let (name, repeat) =
+        options.rounds.map_or(("compare", options.repeat), |count| ("work-precision", count));
+    let program = Program::new(name, &options.precision, threads, repeat);
     let program = options.asked.stated_in(program, files);
+    if options.rounds.is_some() {
+        return program;
+    }
     let program = match options.history {
         true => program.with_request("history", "after every outer step"),
         false => program,
@@ -96,8 +106,11 @@ impl Chosen {
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
         let warn = |warning| watcher.warn_once(warning);
-        let default = ["radial-2d", "signorini-2d"];
-        let FoundScenes { scenes, fingerprints, paths } = options.asked.scenes(&default, &warn)?;
+        let default = match options.rounds {
+            Some(_) => &rounds::SCENES[..],
+            None => &["radial-2d", "signorini-2d"],
+        };
+        let FoundScenes { scenes, fingerprints, paths } = options.asked.scenes(default, &warn)?;
         Ok(Self { scenes, schemes, solvers, fingerprints, inputs: paths })
     }
 
@@ -191,13 +204,18 @@ fn check_output(options: &Options, inputs: &[PathBuf]) -> Request<()> {
 /// Writes the report and prints its tables, of an incomplete one the files only.
 fn write_all(options: &Options, report: &Report) -> Request<()> {
     let to_stdout = options.json.as_deref().is_some_and(|p| p.as_os_str() == "-");
-    let files = report.write(&options.out).map_err(|e| e.to_string());
+    let work = options.rounds.map(|_| rounds::work(options, report));
+    let files = match work {
+        Some(work) => work.write(&options.out),
+        None => report.write(&options.out),
+    };
+    let text = || work.map_or_else(|| report.to_json(), |work| work.to_json());
     let json = match &options.json {
-        Some(_) if to_stdout => print(&report.to_json()),
-        Some(path) => write(path, report.to_json()),
+        Some(_) if to_stdout => print(&text()),
+        Some(path) => write(path, text()),
         None => Ok(()),
     };
-    files.and(json)
+    files.map_err(|e| e.to_string()).and(json)
 }
 
 /// Prints the tables of a run that ended of itself.
@@ -205,16 +223,22 @@ fn show(options: &Options, report: &Report) -> Request<()> {
     if options.asked.quiet || report.rows.is_empty() {
         return Ok(());
     }
-    let (out, is_whole) = (options.out.display(), report.complete);
-    let files = if is_whole { "Report, plots and fields are" } else { "The incomplete report is" };
-    let width = terminal_width();
-    let details = match options.details {
-        true => format!("\n{}", report.details_to_text(width)),
-        false => String::new(),
+    let (out, is_whole, width) = (options.out.display(), report.complete, terminal_width());
+    let tables = match (options.rounds, options.details) {
+        (Some(_), _) => rounds::work(options, report).to_text(width),
+        (None, true) => {
+            format!("{}\n{}", report.summary_to_text(width), report.details_to_text(width))
+        }
+        (None, false) => report.summary_to_text(width),
     };
-    let more = if options.details { "" } else { "; --details shows all levels" };
-    let summary = report.summary_to_text(width);
-    let text = format!("{summary}{details}\nTimes are in seconds{more}. {files} in {out}\n");
+    let shows_all = options.details || options.rounds.is_some();
+    let more = if shows_all { "" } else { "; --details shows all levels" };
+    let files = match (is_whole, options.rounds) {
+        (false, _) => "The incomplete report is",
+        (_, Some(_)) => "Report and plots are",
+        (_, None) => "Report, plots and fields are",
+    };
+    let text = format!("{tables}\nTimes are in seconds{more}. {files} in {out}\n");
     match options.json.as_deref().is_some_and(|path| path.as_os_str() == "-") {
         true => print_to(std::io::stderr(), &text),
         false => print(&text),

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use unilateral::constraint::CONSTRAINT_SETS;
 use unilateral::inequality::SOLVERS;
+use unilateral::linear::LinearMethod;
 use unilateral::scenes;
 use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 
+use super::rounds;
 use crate::asked::{Asked, OUTPUT, PROBLEM, SCHEMES as OF_SCHEMES, SOLVER};
 use crate::asked::{check_count, known, number, whole};
 use crate::shared::{Request, schemes};
@@ -39,15 +41,25 @@ pub struct Options {
     /// Solvers of the inequality, side by side; active-set by default
     #[arg(help_heading = SOLVER, long = "solver", value_delimiter = ',', value_name = "A[,B...]")]
     pub solvers: Vec<String>,
-    /// Linear solver: direct or iterative; by default whichever is faster
-    #[arg(help_heading = SOLVER, long, value_name = "NAME")]
-    pub linear: Option<String>,
+    /// Linear solver: direct, iterative or by-size, the default; several with --rounds
+    #[arg(help_heading = SOLVER, long, value_delimiter = ',', value_name = "A[,B...]")]
+    pub linear: Vec<String>,
     /// Scalar of the solve
     #[arg(help_heading = SOLVER, long, value_name = "NAME", value_parser = ["f64", "f32"], default_value = "f64")]
     pub precision: String,
     /// Every time is the least of K runs
     #[arg(help_heading = SOLVER, long, value_name = "K", allow_negative_numbers = true, value_parser = whole, default_value_t = 1)]
     pub repeat: usize,
+    /// Time to reach an error: every case runs K times, alone
+    #[arg(help_heading = SOLVER, long, value_name = "K", allow_negative_numbers = true, value_parser = whole,
+        conflicts_with_all = ["repeat", "history", "details", "resume", "dump", "fields_of_all_levels"])]
+    pub rounds: Option<usize>,
+    /// With rounds: runs of over S seconds are neither repeated nor refined
+    #[arg(help_heading = SOLVER, long, value_name = "S", default_value_t = 20.0, requires = "rounds", hide = true)]
+    pub limit: f64,
+    /// With rounds: the scheme of which verdicts speak, by its label; wopsip, or the fastest
+    #[arg(help_heading = SOLVER, long, value_name = "NAME", requires = "rounds", hide = true)]
+    pub subject: Option<String>,
     /// Certificates after every outer step, of one more run
     #[arg(help_heading = SOLVER, long)]
     pub history: bool,
@@ -82,9 +94,10 @@ pub struct Options {
 }
 
 /// Linear solvers inside those of the inequality, with one line each.
-const LINEAR: [(&str, &str); 2] = [
+const LINEAR: [(&str, &str); 3] = [
     ("direct", "sparse Cholesky or LU"),
     ("iterative", "conjugate gradients with multigrid on conforming P1, for symmetric schemes"),
+    ("by-size", "whichever of the two is faster for the number of unknowns, the default"),
 ];
 /// The times of a thousand runs have no smaller least than those of more.
 const MOST_REPEATS: usize = 1000;
@@ -119,7 +132,11 @@ fn with_keys((name, summary): &(&str, &str)) -> String {
 
 /// The schemes asked for; refuses a penalty factor that none of them takes.
 pub fn choose_schemes(options: &Options) -> Request<Vec<NamedScheme>> {
-    let chosen = schemes(&options.asked.schemes, &["p1", "sipg", "wopsip", "wopsip:facet-means"])?;
+    let default = match options.rounds {
+        Some(_) => &rounds::SCHEMES[..],
+        None => &["p1", "sipg", "wopsip", "wopsip:facet-means"],
+    };
+    let chosen = schemes(&options.asked.schemes, default)?;
     for (key, given) in [("sigma", options.sigma), ("eta", options.eta)] {
         let takes = |name: &str| keys_of_scheme(name).contains(&key);
         if let Some(x) = given.filter(|_| !chosen.iter().any(|scheme| takes(scheme.name()))) {
@@ -145,10 +162,30 @@ pub fn check_numbers(options: &Options) -> Request<()> {
         }
     }
     options.asked.check()?;
-    if options.asked.adaptive.is_some() && options.asked.reference.is_some() {
+    let has_rounds = options.rounds.is_some();
+    if !has_rounds && options.asked.adaptive.is_some() && options.asked.reference.is_some() {
         return Err("--adaptive cannot be used with --reference, which needs uniform refinements of all meshes".to_owned());
     }
     check_count("--repeat", Some(options.repeat), MOST_REPEATS)?;
     let names = LINEAR.map(|of| of.0);
-    options.linear.iter().try_for_each(|name| known("linear solver", name, &names))
+    options.linear.iter().try_for_each(|name| known("linear solver", name, &names))?;
+    if options.linear.len() > 1 && !has_rounds {
+        return Err("--linear: several linear solvers stand side by side with --rounds".to_owned());
+    }
+    check_count("--rounds", options.rounds, MOST_REPEATS)?;
+    match options.limit > 0.0 {
+        true => Ok(()),
+        false => Err(format!("--limit {}: must be positive", options.limit)),
+    }
+}
+
+impl Options {
+    /// The linear solvers asked for, each with its name.
+    pub fn linear(&self) -> Vec<(&'static str, LinearMethod)> {
+        let is_asked = |name: &str| match &self.linear[..] {
+            [] => name == "by-size",
+            some => some.iter().any(|of| of == name),
+        };
+        LinearMethod::NAMES.into_iter().filter(|of| is_asked(of.0)).collect()
+    }
 }

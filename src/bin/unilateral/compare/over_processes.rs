@@ -144,7 +144,8 @@ fn check_options(options: &Options) -> Request<()> {
         ("--repeat", options.repeat > 1),
         ("--history", options.history),
         ("--fields-of-all-levels", options.fields_of_all_levels),
-        ("--linear direct", options.linear.as_deref() == Some("direct")),
+        ("--linear direct", options.linear.iter().any(|name| name == "direct")),
+        ("--rounds", options.rounds.is_some()),
         ("--solver", options.solvers.iter().any(|name| name != "active-set")),
     ];
     match asked.iter().find(|(_, is_asked)| *is_asked) {

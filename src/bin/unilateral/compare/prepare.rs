@@ -35,14 +35,15 @@ pub fn study<'a, const D: usize>(
     schemes: &[NamedScheme],
     watcher: &'a Watcher,
 ) -> Study<'a, D> {
+    let has_rounds = options.rounds.is_some();
     let levels = match &options.asked.levels[..] {
-        [] if options.asked.adaptive.is_some() => Vec::new(),
-        [] => default_levels(D, scene.domain.is_mesh()),
+        [] if options.asked.adaptive.is_some() && !has_rounds => Vec::new(),
+        [] => default_levels(D, scene.domain.is_mesh(), has_rounds),
         some => each_once(some),
     };
     let study = Study::new(scene).levels(levels).observer(|progress| watcher.tell(&progress));
     let study = schemes.iter().fold(study, Study::named_scheme);
-    if options.no_fields { study } else { study.fields_to(&options.out) }
+    if options.no_fields || has_rounds { study } else { study.fields_to(&options.out) }
 }
 
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
@@ -55,11 +56,7 @@ pub fn prepare<'a, const D: usize>(
     let place = options.asked.place(&scene.name);
     let scene_name = scene.name.clone();
     let has_mesh = scene.domain.is_mesh();
-    let linear = match options.linear.as_deref() {
-        Some("direct") => LinearMethod::Direct,
-        Some(_) => LinearMethod::Iterative,
-        None => LinearMethod::BySize,
-    };
+    let linear = options.linear()[0].1;
     let mut study = study(scene, options, schemes, watcher);
     study = study.repeat(options.repeat).history(options.history).steps(watcher.steps());
     let drawn = RefCell::new(BTreeMap::new());
@@ -82,13 +79,7 @@ pub fn prepare<'a, const D: usize>(
     if let Some(directory) = &options.dump {
         study = study.inequalities_to(directory);
     }
-    let precision = Precision::by_name(&options.precision);
-    let precision = precision.expect("the command line takes the names of precisions alone");
-    for name in solvers {
-        study = solver_by_name(name, linear, precision)
-            .map(|solver| study.boxed_solver(solver))
-            .ok_or_else(|| format!("there is no solver {name}"))?;
-    }
+    study = with_solvers(study, solvers, linear, options)?;
     if let Some(of) = options.asked.adaptive {
         study = study.adaptive(of);
     }
@@ -108,11 +99,27 @@ pub fn prepare<'a, const D: usize>(
     Ok(Some(Run { keys, place, run: Box::new(run) }))
 }
 
-/// The levels where none are named.
-fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
+/// A study with the solvers of these names.
+pub fn with_solvers<'a, const D: usize>(
+    study: Study<'a, D>,
+    solvers: &[String],
+    linear: LinearMethod,
+    options: &Options,
+) -> Request<Study<'a, D>> {
+    let precision = Precision::by_name(&options.precision);
+    let precision = precision.expect("the command line takes the names of precisions alone");
+    solvers.iter().try_fold(study, |study, name| {
+        let solver = solver_by_name(name, linear, precision);
+        let solver = solver.ok_or_else(|| format!("there is no solver {name}"))?;
+        Ok(study.boxed_solver(solver))
+    })
+}
+
+/// The levels where none are named: with rounds one more on meshes and in space.
+fn default_levels(dimension: usize, on_mesh: bool, has_rounds: bool) -> Vec<usize> {
     match dimension {
-        _ if on_mesh => vec![0, 1],
-        3 => vec![2, 4, 8],
+        _ if on_mesh => (0..2 + usize::from(has_rounds)).collect(),
+        3 => [2, 4, 8].into_iter().chain(has_rounds.then_some(16)).collect(),
         _ => vec![8, 16, 32, 64, 128],
     }
 }
