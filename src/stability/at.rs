@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::case::{self, Norm, Place, Sweep};
+use super::place::{self, Norm, Place};
 use super::row::short;
 use crate::algebra::{Inequality, SparseMatrix};
 use crate::assemble::DataQuadrature;
@@ -27,14 +27,13 @@ pub(crate) struct Run {
     imbalance: Option<f64>,
 }
 
-/// Runs a scheme at a place of a sweep.
-pub(crate) fn run(sweep: &Sweep, place: &Place, scheme: &NamedScheme) -> Result<Run, Error> {
-    in_its_dimension!(&place.scene, |scene| run_on(scene, sweep, place, scheme))
+/// Runs a scheme at a place.
+pub(crate) fn run(place: &Place, scheme: &NamedScheme) -> Result<Run, Error> {
+    in_its_dimension!(&place.scene, |scene| run_on(scene, place, scheme))
 }
 
 fn run_on<const D: usize>(
     scene: &Scene<D>,
-    sweep: &Sweep,
     place: &Place,
     scheme: &NamedScheme,
 ) -> Result<Run, Error> {
@@ -43,11 +42,11 @@ fn run_on<const D: usize>(
     let solver = ActiveSet::default().linear(LinearMethod::Direct);
     let mut solvers: Vec<Box<dyn InequalitySolver<f64>>> =
         vec![in_precision(place.precision, solver)];
-    if sweep.has_interior_point {
+    if place.has_interior_point {
         solvers.push(Box::new(InteriorPoint));
     }
     let study = Study::<D>::new(scene.clone()).named_scheme(scheme).levels([place.level]);
-    let study = solvers.into_iter().fold(study, Study::boxed_solver).cold_start(sweep.is_cold);
+    let study = solvers.into_iter().fold(study, Study::boxed_solver).cold_start(place.is_cold);
     let study = study.each_solution(|_, _, solved| {
         let mut found = found.borrow_mut();
         // those of the first solver
@@ -90,7 +89,9 @@ fn imbalance<const D: usize>(solved: &Solved<'_, D>) -> Option<f64> {
 
 /// The schemes that ran at the places of a sweep, each with its runs.
 pub(crate) struct Ran<'s> {
-    pub sweep: &'s Sweep,
+    /// The name of the parameter.
+    pub parameter: &'static str,
+    pub places: &'s [Place],
     pub runs: Vec<(NamedScheme, Vec<Run>)>,
 }
 
@@ -105,7 +106,7 @@ pub(crate) struct At<'r> {
 impl<'r> At<'r> {
     /// Another scheme at the same place, which the sweep names.
     pub fn beside(self, name: &str) -> Self {
-        let wanted = case::scheme(name);
+        let wanted = place::scheme(name);
         let scheme = self.ran.runs.iter().position(|(scheme, _)| *scheme == wanted);
         Self { scheme: scheme.expect("the sweep runs the schemes to which figures refer"), ..self }
     }
@@ -122,7 +123,7 @@ impl<'r> At<'r> {
         &self.ran.runs[self.scheme].0
     }
     pub fn place(&self) -> &'r Place {
-        &self.ran.sweep.places[self.place]
+        &self.ran.places[self.place]
     }
     fn run(&self) -> &'r Run {
         &self.ran.runs[self.scheme].1[self.place]
@@ -134,7 +135,7 @@ impl<'r> At<'r> {
     /// The value of the parameter.
     pub fn value(&self) -> Option<f64> {
         let options = self.scheme().options();
-        match self.ran.sweep.parameter {
+        match self.ran.parameter {
             "eta" => options.eta,
             "sigma" => options.sigma,
             _ => self.place().value,
@@ -185,7 +186,7 @@ impl<'r> At<'r> {
         format!("error {}", self.all_places().filter_map(words).collect::<Vec<_>>().join(", "))
     }
     fn all_places(self) -> impl Iterator<Item = Self> {
-        (0..self.ran.sweep.places.len()).map(move |place| Self { place, ..self })
+        (0..self.ran.places.len()).map(move |place| Self { place, ..self })
     }
 
     /// The scene in the plane.

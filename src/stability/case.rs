@@ -1,11 +1,10 @@
 //! A case of the stability study as a table: schemes at the places of a sweep, and the figures of every run.
 
-use super::Stability;
 use super::at::At;
+use super::place::{Norm, Place};
 use super::row::ExpectedRange;
 use crate::error::Error;
-use crate::real::Precision;
-use crate::scenes::AnyScene;
+use crate::mesh::Mesh;
 use crate::scheme::NamedScheme;
 use crate::study::Row;
 
@@ -13,7 +12,14 @@ use crate::study::Row;
 pub(crate) struct Case {
     pub name: &'static str,
     pub criteria: &'static [Criterion],
-    pub sweeps: fn(&Stability<'_>) -> Result<Vec<Sweep>, Error>,
+    pub sweeps: fn(&Plan<'_>) -> Result<Vec<Sweep>, Error>,
+}
+
+/// What a study asks of its cases.
+pub(crate) struct Plan<'p> {
+    pub effort: Effort,
+    /// Meshes that users give, with their names.
+    pub meshes: &'p [(String, Mesh<3>)],
 }
 
 /// A condition on figures: every run of the study has at least one row for it.
@@ -74,67 +80,7 @@ pub(crate) struct Sweep {
     /// The name of the parameter. The value of `eta` or `sigma` is that of the scheme, others are those of places.
     pub parameter: &'static str,
     pub places: Vec<Place>,
-    /// Whether schemes start without contact and without coarser levels.
-    pub is_cold: bool,
-    /// Whether every scheme runs with the interior point method too.
-    pub has_interior_point: bool,
     pub columns: Vec<Column>,
-}
-
-/// A scheme that a case names.
-pub(crate) fn scheme(name: &str) -> NamedScheme {
-    name.parse().expect("cases name schemes that exist")
-}
-
-/// Schemes that a case names, separated by blanks.
-pub(crate) fn schemes(names: &str) -> Vec<NamedScheme> {
-    names.split_whitespace().map(scheme).collect()
-}
-
-/// A scheme with powers of ten as its over-penalty factor `eta`.
-pub(crate) fn with_eta(name: &str, exponents: &[i32]) -> Vec<NamedScheme> {
-    exponents.iter().map(|exponent| scheme(&format!("{name}@eta=1e{exponent}"))).collect()
-}
-
-/// A place of a sweep.
-pub(crate) struct Place {
-    pub scene: AnyScene,
-    /// The level of the study.
-    pub level: usize,
-    /// The level that rows show: subdivisions, also of a mesh that is made by hand.
-    pub shown: Option<usize>,
-    /// The value of the parameter.
-    pub value: Option<f64>,
-    /// The scalar of assembly and solve.
-    pub precision: Precision,
-    /// What is said of the place before the figures of a run.
-    pub note: String,
-}
-
-impl Place {
-    /// A scene on a level.
-    pub fn new(scene: impl Into<AnyScene>, level: usize) -> Self {
-        Self {
-            scene: scene.into(),
-            level,
-            shown: Some(level),
-            value: None,
-            precision: Precision::Double,
-            note: String::new(),
-        }
-    }
-    /// A scene whose domain is a mesh, for which rows show this level.
-    pub fn on_mesh(scene: impl Into<AnyScene>, shown: Option<usize>) -> Self {
-        Self { shown, ..Self::new(scene, 0) }
-    }
-    /// At a value of the parameter.
-    pub fn at(self, value: f64) -> Self {
-        Self { value: Some(value), ..self }
-    }
-    /// In a precision.
-    pub fn precision(self, precision: Precision) -> Self {
-        Self { precision, ..self }
-    }
 }
 
 /// What a criterion asks of a figure.
@@ -220,15 +166,3 @@ impl Column {
         Self { asked: Box::new(asked), ..self }
     }
 }
-
-/// A norm of the error by name.
-pub(crate) type Norm = (&'static str, fn(&Row) -> Option<f64>);
-
-pub(crate) const L2: Norm = ("L2", |row| row.error.l2);
-pub(crate) const H1: Norm = ("H1", |row| row.error.h1);
-pub(crate) const ENERGY: Norm = ("energy", |row| row.error.energy);
-/// The jump seminorm: the penalty's part of the energy norm.
-pub(crate) const JUMPS: Norm = ("jumps", |row| {
-    let (energy, h1) = (row.error.energy?, row.error.h1?);
-    Some((energy * energy - h1 * h1).max(0.0).sqrt())
-});

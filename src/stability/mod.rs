@@ -4,8 +4,10 @@ mod at;
 mod case;
 mod cases;
 mod meshes;
+mod place;
 mod report;
 mod row;
+mod table;
 
 pub use case::{Criterion, Effort};
 pub use cases::{STABILITY_CASES, criteria};
@@ -18,11 +20,12 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crate::error::Error;
+use crate::in_its_dimension;
 use crate::mesh::Mesh;
 use crate::scheme::NamedScheme;
 use crate::study::row::distinct;
 use at::{At, Ran, Run};
-use case::Sweep;
+use case::{Asked, Column, Plan, Sweep};
 use cases::CASES;
 
 /// The least time between two writes of finished rows.
@@ -136,6 +139,7 @@ impl<'a> Stability<'a> {
     /// [`StabilityReport::failures`].
     pub fn run(&self) -> Result<StabilityReport, Error> {
         let wanted = self.check()?;
+        let plan = Plan { effort: self.effort, meshes: &self.meshes };
         let mut report = StabilityReport::new(self.effort);
         report.program.command.clone_from(&self.command);
         self.save(&report)?;
@@ -144,7 +148,11 @@ impl<'a> Stability<'a> {
             if !self.cases.is_empty() && !self.cases.iter().any(|name| name == case.name) {
                 continue;
             }
-            for sweep in (case.sweeps)(self)? {
+            let sweeps = (case.sweeps)(&plan).unwrap_or_else(|why| {
+                report.failures.push(format!("{}: {why}", case.name));
+                Vec::new()
+            });
+            for sweep in sweeps {
                 self.run_sweep(case.name, &sweep, &wanted, &mut report);
                 // rows are saved early, so that an interrupted study keeps them
                 if written.elapsed() > WRITE_INTERVAL {
@@ -169,11 +177,11 @@ impl<'a> Stability<'a> {
     ) {
         let judged = judged(sweep, wanted);
         let beside = sweep.beside.iter().filter(|_| !judged.is_empty());
-        let mut ran = Ran { sweep, runs: Vec::new() };
+        let mut ran = Ran { parameter: sweep.parameter, places: &sweep.places, runs: Vec::new() };
         for &scheme in distinct(beside.chain(&judged)) {
             (self.observer)(case, &scheme.to_string());
             let mut run = |place| {
-                at::run(sweep, place, &scheme).unwrap_or_else(|why| {
+                at::run(place, &scheme).unwrap_or_else(|why| {
                     report.failures.push(format!("{case}, {scheme}: {why}"));
                     Run::default()
                 })
@@ -187,7 +195,7 @@ impl<'a> Stability<'a> {
                 let is_last = place + 1 == sweep.places.len();
                 let columns = sweep.columns.iter().filter(|of| is_last || !of.is_of_all);
                 let columns = columns.filter(|_| !at.rows().is_empty());
-                report.rows.extend(columns.filter_map(|of| StabilityRow::new(case, &at, of)));
+                report.rows.extend(columns.filter_map(|of| row_of(case, &at, of)));
             }
         }
     }
@@ -200,11 +208,41 @@ impl<'a> Stability<'a> {
     }
 }
 
+/// The row of a run in a column; none if nothing is asked of it.
+fn row_of(case: &str, at: &At<'_>, column: &Column) -> Option<StabilityRow> {
+    let limits = column.criterion.limits;
+    let expected = match (column.asked)(at) {
+        Asked::NoRow => return None,
+        Asked::Report => ExpectedRange::default(),
+        Asked::Limit(number) => limits[number],
+        Asked::Failure(number) => ExpectedRange { to_fail: true, ..limits[number] },
+    };
+    let measured = (column.figure)(at).filter(|figure| figure.is_finite());
+    let (place, value) = (at.place(), at.value());
+    Some(StabilityRow {
+        case: case.to_owned(),
+        criterion: column.criterion.name.to_owned(),
+        scheme: at.scheme().label_without_choices(),
+        label: at.scheme().to_string(),
+        precision: place.precision.name().to_owned(),
+        problem: in_its_dimension!(&place.scene, |scene| scene.name.clone()),
+        level: place.shown.filter(|_| !column.is_of_all),
+        parameter: value.map_or("", |_| at.ran.parameter).to_owned(),
+        value,
+        quantity: column.quantity.clone(),
+        expected,
+        measured,
+        detail: (column.detail)(at),
+        verdict: Verdict::on(&expected, measured),
+        missed_by: measured.and_then(|figure| expected.missed_by(figure)),
+    })
+}
+
 /// The schemes of a sweep whose rows are asked for, by the schemes themselves or without choices of penalties.
 fn judged(sweep: &Sweep, wanted: &[NamedScheme]) -> Vec<NamedScheme> {
     let known = Stability::SCHEMES;
     let besides = wanted.iter().filter(|scheme| !known.contains(&&scheme.to_string()[..]));
-    let compared = known[..6].iter().map(|name| case::scheme(name)).chain(besides.copied());
+    let compared = known[..6].iter().map(|name| place::scheme(name)).chain(besides.copied());
     let mut all =
         distinct(compared.filter(|_| sweep.compares).chain(sweep.schemes.iter().copied()));
     all.retain(|scheme| {

@@ -2,10 +2,6 @@
 
 use serde::Serialize;
 
-use super::at::At;
-use super::case::{Asked, Column};
-use crate::in_its_dimension;
-
 /// The range of a figure that a criterion asks for. A figure without limits is reported and not
 /// judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -182,36 +178,6 @@ pub struct StabilityRow {
 }
 
 impl StabilityRow {
-    /// The row of a run in a column; none if nothing is asked of it.
-    pub(super) fn new(case: &str, at: &At<'_>, column: &Column) -> Option<Self> {
-        let limits = column.criterion.limits;
-        let expected = match (column.asked)(at) {
-            Asked::NoRow => return None,
-            Asked::Report => ExpectedRange::default(),
-            Asked::Limit(number) => limits[number],
-            Asked::Failure(number) => ExpectedRange { to_fail: true, ..limits[number] },
-        };
-        let measured = (column.figure)(at).filter(|figure| figure.is_finite());
-        let (place, value) = (at.place(), at.value());
-        Some(Self {
-            case: case.to_owned(),
-            criterion: column.criterion.name.to_owned(),
-            scheme: at.scheme().label_without_choices(),
-            label: at.scheme().to_string(),
-            precision: place.precision.name().to_owned(),
-            problem: in_its_dimension!(&place.scene, |scene| scene.name.clone()),
-            level: place.shown.filter(|_| !column.is_of_all),
-            parameter: value.map_or("", |_| at.ran.sweep.parameter).to_owned(),
-            value,
-            quantity: column.quantity.clone(),
-            expected,
-            measured,
-            detail: (column.detail)(at),
-            verdict: Verdict::on(&expected, measured),
-            missed_by: measured.and_then(|figure| expected.missed_by(figure)),
-        })
-    }
-
     /// The verdict in words, with the factor by which a limit is missed.
     pub fn verdict_words(&self) -> String {
         match (self.verdict, self.missed_by, self.measured) {

@@ -51,7 +51,7 @@ pub struct Asked {
     #[arg(help_heading = MESHES, long, alias = "level", value_delimiter = ',',
         value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
     pub levels: Vec<usize>,
-    /// Meshes that follow the bound, to GOAL or by theta=0.5,steps=20,unknowns=1e6
+    /// Meshes by the bound, to GOAL or theta=X,steps=N,unknowns=N,goal=X
     #[arg(help_heading = MESHES, long, value_name = "GOAL|KEY=X", allow_negative_numbers = true,
         value_parser = adaptivity)]
     pub adaptive: Option<Adaptivity>,

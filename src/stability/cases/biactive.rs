@@ -1,7 +1,6 @@
 //! No strict complementarity: gap and multiplier vanish together.
 
-use super::table::*;
-use crate::scenes::AnyScene;
+use crate::stability::table::*;
 
 const ORDERS: Criterion = Criterion::new(
     "orders-on-biactive-sets",
@@ -29,54 +28,46 @@ pub(crate) const CASE: Case = Case {
     sweeps,
 };
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let levels = study.effort.pick([&[4, 8][..], &[8, 16, 32], &[8, 16, 32, 64]]);
     let n_scenes = study.effort.pick([1, 1, 4]);
     let strings = study.effort.pick([&[64, 128, 256][..], &[64, 128, 256], &[64, 128, 256, 512]]);
-    let plane: [fn() -> AnyScene; 4] = [
-        || scenes::biactive_half_2d().into(),
-        || scenes::biactive_ring_2d().into(),
-        || scenes::degenerate(4).into(),
-        || scenes::lshape_2d().into(),
-    ];
     let mut sweeps = Vec::new();
-    for (number, scene) in plane.into_iter().take(n_scenes).enumerate() {
-        // a re-entrant corner limits the orders whatever the contact
-        sweeps.extend([orders(scene, levels, number < 3), steps(scene, levels)]);
+    for scene in
+        &["biactive-half-2d", "biactive-ring-2d", "degenerate4-2d", "lshape-2d"][..n_scenes]
+    {
+        sweeps.extend([orders(scene, levels), steps(scene, levels)]);
     }
-    let oscillating: fn() -> AnyScene = || scenes::oscillating_1d().into();
-    sweeps.extend([orders(oscillating, strings, true), steps(oscillating, &strings[..1])]);
+    sweeps.extend([orders("oscillating-1d", strings), steps("oscillating-1d", &strings[..1])]);
     let finest = study.effort.pick([8, 16, 32]);
-    let scene = scenes::polynomial::<2>();
-    let size = scene.domain.length() / finest as f64;
     sweeps.push(Sweep {
         compares: true,
-        places: vec![Place::new(scene, finest)],
-        columns: vec![Column::new(&FREE_BOUNDARY, "distance over h", move |at| {
-            at.of(|row| row.contact.free_boundary_distance.map(|distance| distance / size))
+        parameter: "h",
+        places: Place::levels("polynomial-2d", &[finest]).into_iter().map(Place::at_size).collect(),
+        columns: vec![Column::new(&FREE_BOUNDARY, "distance over h", |at| {
+            Some(at.of(|row| row.contact.free_boundary_distance)? / at.value()?)
         })],
         ..Sweep::default()
     });
     Ok(sweeps)
 }
 
-fn orders(scene: fn() -> AnyScene, levels: &[usize], is_judged: bool) -> Sweep {
+fn orders(scene: &str, levels: &[usize]) -> Sweep {
     let mut columns = Column::all_fitted(&ORDERS, &[L2, H1]);
-    if !is_judged {
+    // a re-entrant corner limits the orders whatever the contact
+    if scene == "lshape-2d" {
         columns = columns.into_iter().map(|column| column.asked(|_| Asked::Report)).collect();
     }
-    let places = levels.iter().map(|&level| Place::new(scene(), level)).collect();
-    Sweep { compares: true, places, columns, ..Sweep::default() }
+    Sweep { compares: true, places: Place::levels(scene, levels), columns, ..Sweep::default() }
 }
 
 /// Linear systems of the library's own solver and of the interior point method from a cold start.
-fn steps(scene: fn() -> AnyScene, levels: &[usize]) -> Sweep {
+fn steps(scene: &str, levels: &[usize]) -> Sweep {
     let quantity = "linear systems, cold";
+    let places = Place::levels(scene, levels).into_iter();
     Sweep {
         compares: true,
-        places: levels.iter().map(|&level| Place::new(scene(), level)).collect(),
-        is_cold: true,
-        has_interior_point: true,
+        places: places.map(|place| place.with_interior_point(true)).collect(),
         columns: vec![
             Column::new(&ACTIVE_SETS, quantity, |at| at.outer(0)),
             Column::new(&INTERIOR_POINT, quantity, |at| at.outer(1)),

@@ -1,8 +1,8 @@
 //! Interior penalty across its threshold of coercivity, by inertia.
 
-use super::table::*;
 use crate::inequality::Outcome;
 use crate::kit::spectrum::{negative_eigenvalues, smallest_eigenvalue};
+use crate::stability::table::*;
 
 const INERTIA: Criterion = Criterion::new(
     "inertia",
@@ -25,7 +25,7 @@ pub(crate) const CASE: Case =
 /// The factor below which `sigma/h_F` is indefinite on right isosceles triangles.
 const THRESHOLD: f64 = 3.0;
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let level = study.effort.pick([8, 8, 16]);
     let factors = ["0.5", "1", "2", "2.9", "3.1", "4", "10", "1000"];
     let with_sigma = schemes(&factors.map(|sigma| format!("sipg@sigma={sigma}")).join(" "));
@@ -42,7 +42,7 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
             compares: true,
             schemes: with_sigma.clone(),
             parameter: "sigma",
-            places: vec![Place::new(sines::<2>(), level)],
+            places: Place::levels("sines-2d", &[level]),
             columns: vec![
                 Column::new(&INERTIA, "negative eigenvalues", |at| {
                     negative_eigenvalues(&at.matrix(None)?).map(|n| n as f64)
@@ -62,7 +62,7 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
             schemes: with_sigma.clone(),
             beside: schemes("cr"),
             parameter: "sigma",
-            places: vec![Place::new(scenes::radial::<2>(1.0), 2 * level)],
+            places: Place::levels("radial-2d", &[2 * level]),
             columns: vec![
                 Column::new(&ERROR, "H1 error over that of cr", |at| at.over("cr", H1))
                     .asked(move |at| Asked::limit_unless(is_below(at, proven))),

@@ -1,10 +1,9 @@
 //! Condition numbers over penalty factors, by the method of Lanczos: a part of the case of penalty factors.
 
-use super::table::*;
 use crate::algebra::SparseMatrix;
 use crate::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos, MeanJump, PositiveDefinite};
 use crate::measure::observed_order;
-use crate::stability::Effort;
+use crate::stability::table::*;
 
 pub(super) const OVER_FACTORS: Criterion = Criterion::new(
     "condition-over-factors",
@@ -30,13 +29,13 @@ pub(super) fn sweeps(effort: Effort) -> [Sweep; 2] {
         schemes: with_eta("wopsip", exponents),
         beside: schemes("wopsip@eta=1"),
         parameter: "eta",
-        places: vec![Place::new(sines::<2>(), level)],
+        places: Place::levels("sines-2d", &[level]),
         columns: PARTS.map(over_factors).into(),
         ..Sweep::default()
     };
     let over_meshes = Sweep {
         schemes: schemes("wopsip@eta=1 p1 cr sipg p2"),
-        places: [level, 2 * level].map(|n| Place::new(sines::<2>(), n)).into(),
+        places: Place::levels("sines-2d", &[level, 2 * level]),
         columns: PARTS.map(over_meshes).into(),
         ..Sweep::default()
     };

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::table::*;
 use crate::problem::Datum;
 use crate::real::maximum;
+use crate::stability::table::*;
 
 const CONSTANT: Criterion = Criterion::new(
     "constant-in-the-data",
@@ -13,7 +13,7 @@ const CONSTANT: Criterion = Criterion::new(
 );
 pub(crate) const CASE: Case = Case { name: "constant", criteria: &[CONSTANT], sweeps };
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let level = study.effort.pick([8, 8, 32]);
     let constants = study.effort.pick([&[300.0, -1e7][..], &[300.0, -1e7], &[300.0, 1e5, -1e7]]);
     let at = |&constant: &f64| Place::new(with_constant(constant), level).at(constant);

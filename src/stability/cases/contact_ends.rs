@@ -1,8 +1,8 @@
 //! The end of contact at a vertex and off all vertices.
 
-use super::table::*;
 use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
 use crate::real::Point;
+use crate::stability::table::*;
 
 const ORDER: Criterion = Criterion::new(
     "order-with-ends-off-mesh",
@@ -27,18 +27,18 @@ const JUNCTION: Criterion = Criterion::new(
 pub(crate) const CASE: Case =
     Case { name: "contact-ends", criteria: &[ORDER, END, VALUES, JUNCTION], sweeps };
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let levels = study.effort.pick([&[4, 8][..], &[16, 32], &[16, 32, 64, 128]]);
     // contact for x at most c
-    let problems: [(fn() -> Scene<2>, f64); 3] = [
-        (scenes::signorini_2d, 0.0),
-        (scenes::signorini_shifted_2d, 0.3),
-        (scenes::signorini_irrational_2d, std::f64::consts::SQRT_2 / 10.0),
+    let problems = [
+        ("signorini-2d", 0.0),
+        ("signorini-shifted-2d", 0.3),
+        ("signorini-irrational-2d", std::f64::consts::SQRT_2 / 10.0),
     ];
-    let of = |(scene, end): (fn() -> Scene<2>, f64)| Sweep {
+    let of = |(scene, end)| Sweep {
         compares: true,
         parameter: "c",
-        places: levels.iter().map(|&level| Place::new(scene(), level).at(end)).collect(),
+        places: Place::levels(scene, levels).into_iter().map(|place| place.at(end)).collect(),
         columns: vec![
             Column::fitted(&ORDER, "order in H1, fitted", H1.1, |_| Asked::Limit(0)),
             Column::new(&END, "distance of the ends over 2h", |at| {

@@ -1,7 +1,7 @@
 //! Coefficients that jump.
 
-use super::table::*;
 use crate::scheme::ConformingP1;
+use crate::stability::table::*;
 use crate::study::Study;
 
 const ERROR: Criterion = Criterion::new(
@@ -27,7 +27,7 @@ const INSIDE_CELLS: Criterion = Criterion::new(
 pub(crate) const CASE: Case =
     Case { name: "contrast", criteria: &[ERROR, ITERATIONS, ACROSS_FLUX, INSIDE_CELLS], sweeps };
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let [level, middle] = study.effort.pick([[8, 8], [16, 32], [32, 32]]);
     let exponents =
         study.effort.pick([&[-8, -4, 4, 8][..], &[-8, -4, 4, 8], &[-8, -6, -4, -2, 2, 4, 6, 8]]);
@@ -43,7 +43,6 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
         |contrast: f64| Place::new(scenes::signorini_layers_2d(contrast), level).at(contrast);
     let aligned = [1.0].into_iter().chain(exponents.iter().map(|&k| 10.0_f64.powi(k)));
     let across = |contrast: f64| Place::new(scenes::contrast::<2>(contrast), middle).at(contrast);
-    let disc = |&level: &usize| Place::new(scenes::contrast_disc_2d(1e6), level).at(1e6);
     // the contrast one is that with which the others are compared
     let asked = |at: &At<'_>| if at.place == 0 { Asked::NoRow } else { Asked::Limit(0) };
     Ok(vec![
@@ -67,7 +66,13 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
                 vec![Column::new(&ACROSS_FLUX, "H1 error over that of p1", |at| at.over("p1", H1))],
             )
         },
-        sweep(levels.iter().map(disc).collect(), Column::all_fitted(&INSIDE_CELLS, &[H1])),
+        sweep(
+            Place::levels("contrast-disc-2d", levels)
+                .into_iter()
+                .map(|place| place.at(1e6))
+                .collect(),
+            Column::all_fitted(&INSIDE_CELLS, &[H1]),
+        ),
     ])
 }
 

@@ -1,7 +1,7 @@
 //! Curved obstacles, on which an over-penalty with bounds at vertices lifts off in a pattern.
 
-use super::table::*;
 use crate::real::Precision;
+use crate::stability::table::*;
 
 const SILENT: Criterion = Criterion::new(
     "no-silent-failure",
@@ -35,18 +35,15 @@ pub(crate) const CASE: Case = Case {
 };
 
 /// An obstacle touched in a disc around the origin, its radius, and what is asked of the order of the multiplier.
-type Touched = (fn() -> Scene<2>, f64, Asked);
+type Touched = (&'static str, f64, Asked);
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let levels = study.effort.pick([&[8][..], &[8, 16, 32], &[8, 16, 32, 64]]);
     let fitted = study.effort.pick([&[4, 8][..], &[16, 32, 64], &[16, 32, 64]]);
     // the multiplier of the cone is not bounded
-    let problems: [Touched; 2] = [
-        (scenes::ball_2d, 0.697_965_148_223_373_6, Asked::Limit(0)),
-        (scenes::cone::<2>, 0.5, Asked::Report),
-    ];
+    let problems: [Touched; 2] =
+        [("ball-2d", 0.697_965_148_223_373_6, Asked::Limit(0)), ("cone-2d", 0.5, Asked::Report)];
     let of = |(scene, radius, asked): Touched| {
-        let size = move |level: usize| scene().domain.length() / level as f64;
         let sweep = || Sweep {
             compares: true,
             schemes: ["wopsip", "wopsip:facet-means"].map(|name| with_eta(name, &[0, 2])).concat(),
@@ -54,7 +51,7 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
         };
         let quantity = "order of the multiplier in L1, fitted";
         let orders = Sweep {
-            places: fitted.iter().map(|&level| Place::new(scene(), level)).collect(),
+            places: Place::levels(scene, fitted),
             columns: vec![Column::fitted(
                 &MULTIPLIER,
                 quantity,
@@ -65,8 +62,10 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
         };
         let single = Sweep {
             parameter: "h",
-            places: levels.iter().map(|&n| Place::new(scene(), n).at(size(n))).collect(),
-            has_interior_point: true,
+            places: Place::levels(scene, levels)
+                .into_iter()
+                .map(|place| place.at_size().with_interior_point(false))
+                .collect(),
             columns: vec![
                 Column::new(&CERTIFICATE, "largest violation of the conditions", |at| {
                     at.violation()

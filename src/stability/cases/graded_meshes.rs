@@ -1,7 +1,7 @@
 //! Graded meshes: cells of very different sizes beside each other.
 
-use super::table::*;
 use crate::stability::meshes::graded;
+use crate::stability::table::*;
 
 const ERROR: Criterion = Criterion::new(
     "error-on-graded-meshes",
@@ -10,7 +10,7 @@ const ERROR: Criterion = Criterion::new(
 );
 pub(crate) const CASE: Case = Case { name: "graded-meshes", criteria: &[ERROR], sweeps };
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let n = study.effort.pick([8, 16, 32]);
     let place = |power: i32| {
         let mesh = graded(n, power)?;
@@ -32,6 +32,5 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
             Column::new(&ERROR, "H1 error over that of cr", |at| at.over("cr", H1))
                 .asked(move |at| Asked::limit_unless(is_off(at))),
         ],
-        ..Sweep::default()
     }])
 }

@@ -49,16 +49,3 @@ pub const STABILITY_CASES: [&str; CASES.len()] = {
 pub fn criteria() -> impl Iterator<Item = (&'static str, &'static Criterion)> {
     CASES.into_iter().flat_map(|case| case.criteria.iter().map(move |c| (case.name, c)))
 }
-
-/// What the table of a case is made of.
-mod table {
-    pub(super) use super::super::Stability;
-    pub(super) use super::super::at::At;
-    pub(super) use super::super::case::{
-        Asked, Case, Column, Criterion, ENERGY, H1, JUMPS, L2, Norm, Place, Sweep, schemes,
-        with_eta,
-    };
-    pub(super) use super::super::row::ExpectedRange;
-    pub(super) use crate::error::Error;
-    pub(super) use crate::scenes::{self, Scene, sines};
-}

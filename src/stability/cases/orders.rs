@@ -1,7 +1,6 @@
 //! Orders that experience expects.
 
-use super::table::*;
-use crate::scenes::AnyScene;
+use crate::stability::table::*;
 
 const OVER_PENALTY: Criterion = Criterion::new(
     "orders-of-over-penalty",
@@ -35,18 +34,18 @@ pub(crate) const CASE: Case = Case {
 };
 
 /// Problems in the plane on which the over-penalty is to show its orders.
-const PLANE: [fn() -> Scene<2>; 8] = [
-    || scenes::radial(1.0),
-    scenes::polynomial::<2>,
-    scenes::signorini_harmonic::<2>,
-    scenes::signorini_2d,
-    || scenes::signorini_smooth(3),
-    scenes::signorini_biactive_2d,
-    scenes::signorini_two_2d,
-    || scenes::signorini_layers_2d(1e4),
+const PLANE: [&str; 8] = [
+    "radial-2d",
+    "polynomial-2d",
+    "signorini-harmonic-2d",
+    "signorini-2d",
+    "signorini-smooth3-2d",
+    "signorini-biactive-2d",
+    "signorini-two-2d",
+    "signorini-layers-2d",
 ];
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let levels = study.effort.pick([&[8, 16][..], &[16, 32, 64], &[32, 64, 128]]);
     let n_scenes = study.effort.pick([1, 1, PLANE.len()]);
     let strings = [32, 64, 128, 256];
@@ -54,25 +53,24 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     let both = "wopsip wopsip:facet-means";
     let mut sweeps = Vec::new();
     for scene in &PLANE[..n_scenes] {
-        sweeps.push(fits(both, || scene().into(), levels, &OVER_PENALTY, &norms));
+        sweeps.push(fits(both, scene, levels, &OVER_PENALTY, &norms));
     }
-    for scene in [scenes::parabola_1d, scenes::signorini_reaction_1d] {
-        sweeps.push(fits(both, || scene().into(), &strings, &OVER_PENALTY, &norms));
+    for scene in ["parabola-1d", "signorini-reaction-1d"] {
+        sweeps.push(fits(both, scene, &strings, &OVER_PENALTY, &norms));
     }
     let coarse = study.effort.pick([[8, 16, 32], [8, 16, 32], [16, 32, 64]]);
     // jumps in L2 over facets: the penalty's part of the norm weighs them with `1/h`
     let in_l2: Norm = ("jumps", |row| JUMPS.1(row).map(|j| j / (row.level as f64).sqrt()));
-    let poisson = || sines::<2>().into();
-    sweeps.push(fits("sipg nipg", poisson, &coarse, &INTERIOR_PENALTY, &[in_l2]));
-    sweeps.push(fits("nipg", poisson, &coarse, &DUALITY, &[L2]));
+    sweeps.push(fits("sipg nipg", "sines-2d", &coarse, &INTERIOR_PENALTY, &[in_l2]));
+    sweeps.push(fits("nipg", "sines-2d", &coarse, &DUALITY, &[L2]));
     let levels = [8, 16, 32, 64, 128, 256];
-    let strings = fits("", || scenes::icelike_1d().into(), &levels, &STRINGS, &[H1, L2]);
+    let strings = fits("", "icelike-1d", &levels, &STRINGS, &[H1, L2]);
     sweeps.push(Sweep { compares: true, ..strings });
     let boxes = study.effort.pick([&[2][..], &[4], &[4, 8, 12]]);
     sweeps.push(Sweep {
         schemes: schemes("wopsip@eta=1 wopsip"),
         beside: schemes("p1"),
-        places: boxes.iter().map(|&n| Place::new(scenes::radial::<3>(1.0), n)).collect(),
+        places: Place::levels("radial-3d", boxes),
         columns: vec![Column::new(&BOXES, "L2 error over that of p1", |at| at.over("p1", L2))],
         ..Sweep::default()
     });
@@ -82,14 +80,14 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
 /// Orders of schemes on a scene, fitted over levels.
 fn fits(
     names: &str,
-    scene: impl Fn() -> AnyScene,
+    scene: &str,
     levels: &[usize],
     criterion: &'static Criterion,
     norms: &[Norm],
 ) -> Sweep {
     Sweep {
         schemes: schemes(names),
-        places: levels.iter().map(|&level| Place::new(scene(), level)).collect(),
+        places: Place::levels(scene, levels),
         columns: Column::all_fitted(criterion, norms),
         ..Sweep::default()
     }

@@ -1,9 +1,9 @@
 //! The over-penalty factor over fourteen powers of ten, and contact forces over larger ones.
 
 use super::condition_numbers;
-use super::table::*;
 use crate::real::Precision;
 use crate::scheme::NamedScheme;
+use crate::stability::table::*;
 
 const DEFINITE: Criterion = Criterion::new(
     "definite-for-every-factor",
@@ -48,14 +48,14 @@ pub(crate) const CASE: Case = Case {
 /// rounding.
 const LEVEL_OF_FORCES: usize = 32;
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let level = study.effort.pick([8, 32, 32]);
     let exponents = study.effort.pick([vec![-4, 2], vec![-4, 0, 2, 6, 10], (-4..=10).collect()]);
     let large = study.effort.pick([vec![2], vec![2, 8, 14], (0..=14).collect()]);
     let mut sweeps = Vec::new();
     for scheme in ["wopsip", "wopsip:facet-means"] {
-        for scene in [scenes::polynomial::<2>, scenes::signorini_2d] {
-            sweeps.push(factors(scheme, &exponents, Place::new(scene(), level)));
+        for scene in ["polynomial-2d", "signorini-2d"] {
+            sweeps.push(factors(scheme, &exponents, Place::levels(scene, &[level])));
             sweeps.push(forces(with_eta(scheme, &large), scene));
         }
     }
@@ -63,14 +63,14 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
     Ok(sweeps)
 }
 
-fn factors(scheme: &str, exponents: &[i32], place: Place) -> Sweep {
+fn factors(scheme: &str, exponents: &[i32], places: Vec<Place>) -> Sweep {
     let at_100 = format!("{scheme}@eta=100");
     let asked = |at: &At<'_>| Asked::limit_unless(at.value() < Some(1.0));
     Sweep {
         schemes: with_eta(scheme, exponents),
         beside: schemes(&format!("cr {at_100}")),
         parameter: "eta",
-        places: vec![place],
+        places,
         columns: vec![
             Column::new(&DEFINITE, "has a Cholesky factor", |at| at.definite()),
             Column::new(&ERROR, "H1 error over that of cr", |at| at.over("cr", H1)).asked(asked),
@@ -85,8 +85,9 @@ fn factors(scheme: &str, exponents: &[i32], place: Place) -> Sweep {
     }
 }
 
-fn forces(of: Vec<NamedScheme>, scene: fn() -> Scene<2>) -> Sweep {
-    let place = |precision| Place::new(scene(), LEVEL_OF_FORCES).precision(precision);
+fn forces(of: Vec<NamedScheme>, scene: &str) -> Sweep {
+    let places = Place::levels(scene, &[LEVEL_OF_FORCES; 2]).into_iter();
+    let precisions = [Precision::Double, Precision::Single];
     let is_single = |at: &At<'_>| at.place().precision == Precision::Single;
     // the factors of the active set have no quarter of the digits of single precision
     let is_singular = move |at: &At<'_>| is_single(at) && at.value() >= Some(1e12);
@@ -95,7 +96,7 @@ fn forces(of: Vec<NamedScheme>, scene: fn() -> Scene<2>) -> Sweep {
         schemes: of,
         beside: schemes("cr"),
         parameter: "eta",
-        places: [Precision::Double, Precision::Single].map(place).into(),
+        places: places.zip(precisions).map(|(place, of)| place.precision(of)).collect(),
         columns: vec![
             Column::new(&MULTIPLIER, "L1 error of the multiplier over that of cr", move |at| {
                 // in double precision

@@ -1,9 +1,8 @@
 //! Over-penalty and rounding: Poisson on meshes fine enough for it to show, and the limit of large factors, which is
 //! the Crouzeix-Raviart scheme.
 
-use super::table::*;
 use crate::real::Precision;
-use crate::scenes::AnyScene;
+use crate::stability::table::*;
 
 /// The largest factor between errors of a mesh and of the coarser one.
 const HALVING: ExpectedRange = ExpectedRange::at_most(0.3);
@@ -29,27 +28,26 @@ pub(crate) const CASE: Case =
 /// The largest factor for which the limit is met; rounding dominates for larger factors.
 const JUDGED: f64 = 1e6;
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let [strings, squares] = study.effort.pick([[7, 4], [10, 5], [15, 7]]);
-    let [line, plane]: [fn() -> AnyScene; 2] = [|| sines::<1>().into(), || sines::<2>().into()];
     let mut sweeps = vec![
-        halvings(line, strings, Precision::Double),
-        halvings(line, strings.min(12), Precision::Single),
-        halvings(plane, squares, Precision::Single),
-        halvings(plane, squares, Precision::Double),
+        halvings("sines-1d", strings, Precision::Double),
+        halvings("sines-1d", strings.min(12), Precision::Single),
+        halvings("sines-2d", squares, Precision::Single),
+        halvings("sines-2d", squares, Precision::Double),
     ];
     let level = study.effort.pick([16, 16, 32]);
     let exponents = study.effort.pick([&[2, 6][..], &[2, 6], &[0, 2, 4, 6, 8, 10]]);
     for (scheme, scene) in [
-        ("wopsip", sines::<2>()),
-        ("wopsip:facet-means", sines()),
-        ("wopsip:facet-means", scenes::radial(1.0)),
+        ("wopsip", "sines-2d"),
+        ("wopsip:facet-means", "sines-2d"),
+        ("wopsip:facet-means", "radial-2d"),
     ] {
         sweeps.push(Sweep {
             schemes: with_eta(scheme, exponents),
             beside: schemes("cr"),
             parameter: "eta",
-            places: vec![Place::new(scene, level)],
+            places: Place::levels(scene, &[level]),
             columns: vec![
                 Column::new(&LIMIT, "relative L2 distance to cr, times eta^(1/2)", |at| {
                     Some(relative_distance(at)? * at.value()?.sqrt())
@@ -63,11 +61,9 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
 }
 
 /// Halves the mesh size from four subdivisions on.
-fn halvings(scene: fn() -> AnyScene, finest: u32, precision: Precision) -> Sweep {
-    let place = |k| {
-        let level = 2_usize.pow(k);
-        Place::new(scene(), level).at(1.0 / level as f64).precision(precision)
-    };
+fn halvings(scene: &str, finest: u32, precision: Precision) -> Sweep {
+    let levels: Vec<usize> = (2..=finest).map(|k| 2_usize.pow(k)).collect();
+    let places = Place::levels(scene, &levels).into_iter();
     let rounding = 0.5 * precision.epsilon();
     let barrier = 4.0 * rounding.powf(1.0 / 6.0);
     let floor = rounding.powf(0.25);
@@ -92,7 +88,7 @@ fn halvings(scene: fn() -> AnyScene, finest: u32, precision: Precision) -> Sweep
         compares: true,
         schemes: schemes("wopsip@eta=1 wopsip:facet-means@eta=1"),
         parameter: "h",
-        places: (2..=finest).map(place).collect(),
+        places: places.map(|place| place.at_size().precision(precision)).collect(),
         columns: vec![
             Column::new(&ABOVE_BARRIER, quantity, ratio).asked(above_barrier),
             Column::new(&TO_FLOOR, quantity, ratio).asked(to_floor),

@@ -1,8 +1,8 @@
 //! Invariance under a change of units.
 
-use super::table::*;
 use crate::problem::Datum;
 use crate::real::maximum;
+use crate::stability::table::*;
 
 const DOMAIN: Criterion = Criterion::new(
     "size-of-domain",
@@ -16,7 +16,7 @@ const COEFFICIENT: Criterion = Criterion::new(
 );
 pub(crate) const CASE: Case = Case { name: "scaling", criteria: &[DOMAIN, COEFFICIENT], sweeps };
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let level = study.effort.pick([8, 8, 32]);
     let lengths = study.effort.pick([&[1e-6, 1e6][..], &[1e-6, 1e6], &[1e-6, 1e-3, 1e3, 1e6]]);
     let factors = study.effort.pick([&[1e-8, 1e8][..], &[1e-8, 1e8], &[1e-8, 1e-4, 1e4, 1e8]]);

@@ -1,7 +1,7 @@
 //! Tetrahedra without volume to speak of.
 
-use super::table::*;
 use crate::stability::meshes::{clamped, slivers};
+use crate::stability::table::*;
 
 const ERROR: Criterion = Criterion::new(
     "error-on-slivers",
@@ -26,7 +26,7 @@ const GIVEN: Criterion = Criterion::new(
 pub(crate) const CASE: Case =
     Case { name: "slivers", criteria: &[ERROR, DEFINITE, OBSTACLE, GIVEN], sweeps };
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let n = study.effort.pick([2, 4, 6]);
     let heights =
         study.effort.pick([&[1.0, 1e-3][..], &[1.0, 1e-3], &[1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6]]);

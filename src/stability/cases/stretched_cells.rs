@@ -1,8 +1,8 @@
 //! Stretched cells.
 
-use super::table::*;
 use crate::facet::WeightRule;
 use crate::stability::meshes::stretched;
+use crate::stability::table::*;
 
 const ERROR: Criterion = Criterion::new(
     "error-on-stretched-cells",
@@ -17,7 +17,7 @@ const DEFINITE: Criterion = Criterion::new(
 pub(crate) const CASE: Case =
     Case { name: "stretched-cells", criteria: &[ERROR, DEFINITE], sweeps };
 
-fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
+fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
     let n = study.effort.pick([8, 8, 16]);
     let ratios = study.effort.pick([&[1, 16][..], &[1, 16, 64], &[1, 4, 16, 64, 256]]);
     let place = |&ratio: &usize| {
@@ -50,7 +50,6 @@ fn sweeps(study: &Stability<'_>) -> Result<Vec<Sweep>, Error> {
             })
             .asked(move |at| Asked::limit_unless(is_off(at))),
         ],
-        ..Sweep::default()
     }])
 }
 

@@ -41,7 +41,7 @@ pub struct Options {
     /// Solvers of the inequality, side by side; active-set by default
     #[arg(help_heading = SOLVER, long = "solver", value_delimiter = ',', value_name = "A[,B...]")]
     pub solvers: Vec<String>,
-    /// Linear solver: direct, iterative or by-size, the default; several with --rounds
+    /// Linear solver: direct, iterative, by-size; several with --rounds
     #[arg(help_heading = SOLVER, long, value_delimiter = ',', value_name = "A[,B...]")]
     pub linear: Vec<String>,
     /// Scalar of the solve
@@ -173,6 +173,9 @@ pub fn check_numbers(options: &Options) -> Request<()> {
         return Err("--linear: several linear solvers stand side by side with --rounds".to_owned());
     }
     check_count("--rounds", options.rounds, MOST_REPEATS)?;
+    if has_rounds && options.asked.mesh.path.is_some() && options.asked.scenes.is_empty() {
+        return Err("--mesh: name the scenes that run on the mesh by --scene".to_owned());
+    }
     match options.limit > 0.0 {
         true => Ok(()),
         false => Err(format!("--limit {}: must be positive", options.limit)),

@@ -3,9 +3,8 @@
 use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::io::Write;
-use std::time::{Duration, Instant};
 
-use indicatif::{HumanDuration, ProgressBar, ProgressState};
+use indicatif::{ProgressBar, ProgressState};
 use unilateral::inequality::StepCounter;
 use unilateral::study::{Progress, Row};
 
@@ -17,17 +16,15 @@ use crate::shared::{bar, tick, warn};
 pub struct Watcher {
     bar: ProgressBar,
     quiet: bool,
+    /// Whether a line is printed for each finished row where there is no bar: rounds finish a row several times.
+    lists_rows: bool,
     warned: RefCell<Vec<String>>,
     /// The outer step of the solve that runs.
     steps: StepCounter,
     /// The scene, scheme and level that run.
     run: RefCell<String>,
-    /// Numbers of cells, up to a factor, of the runs that are expected, and of those that are finished.
-    expected: Cell<f64>,
-    finished: Cell<f64>,
     /// Whether levels are refinements of a mesh, not subdivisions of a side.
     levels_are_refinements: Cell<bool>,
-    begin: Instant,
 }
 
 impl Watcher {
@@ -40,19 +37,21 @@ impl Watcher {
                 step => write!(w, ", step {step}"),
             };
         };
-        let template = "{spinner} {pos} of {len} done, {elapsed}: {msg}{step}";
+        // how many steps a bound takes is not known before
+        let template = match options.asked.adaptive {
+            Some(_) => "{spinner} {elapsed}: {msg}{step}",
+            None => "{spinner} {percent} %, {elapsed}, {eta} left: {msg}{step}",
+        };
         let bar = bar(options.asked.quiet, template);
         bar.set_style(bar.style().with_key("step", step));
         Self {
             bar,
             quiet: options.asked.quiet,
+            lists_rows: !options.asked.quiet && options.rounds.is_none(),
             warned: RefCell::default(),
             steps,
             run: RefCell::default(),
-            expected: Cell::default(),
-            finished: Cell::default(),
             levels_are_refinements: Cell::default(),
-            begin: Instant::now(),
         }
     }
     /// Announces the runs of a scene, by their levels, which are refinements of a mesh or subdivisions of a
@@ -60,8 +59,7 @@ impl Watcher {
     pub fn expect(&self, dimension: usize, has_mesh: bool, levels: impl Iterator<Item = usize>) {
         self.levels_are_refinements.set(has_mesh);
         for level in levels {
-            self.bar.inc_length(1);
-            self.expected.set(self.expected.get() + self.size(dimension, level));
+            self.bar.inc_length(self.size(dimension, level));
         }
     }
     pub fn tell(&self, progress: &Progress<'_>) {
@@ -72,42 +70,29 @@ impl Watcher {
             }
             Progress::Entered(phase) => {
                 let run = self.run.borrow().clone();
-                let left = self.estimate().map(|left| format!("{left} left"));
-                let parts =
-                    [Some(run).filter(|run| !run.is_empty()), left, Some(phase.to_string())];
+                let comma = if run.is_empty() { "" } else { ", " };
                 self.steps.set(0);
-                self.bar.set_message(parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
+                self.bar.set_message(format!("{run}{comma}{phase}"));
             }
             Progress::Finished(row) => {
-                self.finished.set(self.finished.get() + self.size(row.dimension, row.level));
-                self.bar.inc(1);
-                if !self.quiet && self.bar.is_hidden() {
+                self.bar.inc(self.size(row.dimension, row.level));
+                if self.lists_rows && self.bar.is_hidden() {
                     let _ = writeln!(std::io::stderr(), "{}", line(row));
                 }
             }
             Progress::Kept(row) => {
-                self.expected.set(self.expected.get() - self.size(row.dimension, row.level));
-                self.bar.inc(1);
+                self.bar.dec_length(self.size(row.dimension, row.level));
             }
             _ => {}
         }
     }
-    /// The number of cells of a level, up to a factor.
-    fn size(&self, dimension: usize, level: usize) -> f64 {
+    /// The number of cells of a level, up to a factor: what the bar counts.
+    fn size(&self, dimension: usize, level: usize) -> u64 {
+        let dimension = dimension as u32;
         match self.levels_are_refinements.get() {
-            true => 2_f64.powf((dimension * level) as f64),
-            false => (level as f64).powf(dimension as f64),
+            true => 2_u64.saturating_pow(dimension.saturating_mul(level as u32)),
+            false => (level as u64).saturating_pow(dimension),
         }
-    }
-    /// The time that the other runs will take if a cell takes as long in them as before.
-    fn estimate(&self) -> Option<HumanDuration> {
-        let share = self.finished.get() / self.expected.get();
-        if !share.is_finite() {
-            return None;
-        }
-        let left = self.begin.elapsed().as_secs_f64() * (1.0 / share - 1.0);
-        let left = (share > 0.02).then(|| Duration::try_from_secs_f64(left.max(0.0)).ok())?;
-        left.map(HumanDuration)
     }
     /// The counter that receives the outer steps of solves.
     pub fn steps(&self) -> StepCounter {
