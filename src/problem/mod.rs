@@ -34,6 +34,7 @@ pub use exact::{ContactSet, Exact, ReferenceEnergy};
 pub use given::Given;
 pub(crate) use on_mesh::{DataByGroup, DataOnMesh};
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
@@ -72,6 +73,8 @@ pub struct Problem<const D: usize> {
     pub exact: Option<Exact<D>>,
     /// The minimum of the energy, where it is known and the solution is not.
     pub reference_energy: Option<ReferenceEnergy>,
+    /// The numbers by name from which the data were made, for rows of reports: the constants of a problem file.
+    pub constants: BTreeMap<String, f64>,
 }
 
 /// Lists the data that are present.

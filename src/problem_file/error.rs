@@ -51,6 +51,8 @@ pub enum ProblemFileErrorKind {
     WrongType,
     /// An expression cannot be read.
     Expression,
+    /// A constant has a name or a value that it cannot have, or there is none of a name that a caller sets.
+    Constant,
     /// A number or expression has a value that the datum cannot have.
     Value,
     /// A component of the gradient of the exact solution is not that of its value.

@@ -4,10 +4,14 @@
 //! name = "plate"
 //! mesh = "plate.msh"                 # beside this file; or: box = [[-1, 0], [1, 1]]
 //!
+//! [constants]                        # numbers by name, for the expressions and numbers of the file
+//! load = 10.0
+//! half = "load / 2"                  # from those above it
+//!
 //! [coefficient]                      # by region of the mesh; "default" for the rest
 //! inclusion = 100.0
 //! [source]
-//! default = "-10 * sin(pi * x) * y"  # numbers, or expressions in x, y, z
+//! default = "-load * sin(pi * x) * y"  # numbers, or expressions in x, y, z
 //! inclusion = { value = "sign(x)", level = "x" }  # jumps where the level vanishes: cells are cut there
 //! [reaction]
 //! default = 0.5
@@ -37,6 +41,7 @@
 //! have `+ - * / ^`, comparisons, `&& || !`, the constants `pi` and `e`, and functions of which an error
 //! message lists the names; `if(condition, yes, no)` among them.
 
+mod constants;
 mod contents;
 mod data;
 mod error;
@@ -49,6 +54,7 @@ pub use error::{ProblemFileError, ProblemFileErrorKind};
 use std::path::Path;
 
 use crate::input::read_file;
+use constants::{combinations, suffix};
 use table::Source;
 
 /// Reads a problem and holds its data against its mesh: names, and values at vertices and barycentres.
@@ -56,16 +62,32 @@ use table::Source;
 /// # Errors
 /// Every [`ProblemFileError`].
 pub fn read(path: &Path) -> Result<ProblemFile, ProblemFileError> {
+    read_with(path, &[]).map(|mut problems| problems.remove(0))
+}
+
+/// Reads a problem for every combination of values of its constants, which take the place of those in the file. The
+/// names of the problems end in the values of the constants that have several: `plate[load=2]`.
+///
+/// # Errors
+/// Every [`ProblemFileError`].
+pub fn read_with(
+    path: &Path,
+    constants: &[(String, Vec<f64>)],
+) -> Result<Vec<ProblemFile>, ProblemFileError> {
     let unreadable =
         |error| ProblemFileError::of_file(path, ProblemFileErrorKind::Unreadable, error);
     let text = String::from_utf8(read_file(path).map_err(unreadable)?)
         .map_err(|e| unreadable(std::io::Error::new(std::io::ErrorKind::InvalidData, e)))?;
-    let source = Source { path, text: &text };
-    let root = source.root()?;
-    let place = source.place(&root)?;
-    match place.dimension() {
-        1 => data::problem::<1>(&source, &root, &place),
-        2 => data::problem::<2>(&source, &root, &place),
-        _ => data::problem::<3>(&source, &root, &place),
-    }
+    let of = |chosen| {
+        let mut source = Source { path, text: &text, constants: Vec::new() };
+        let root = source.root()?;
+        source.read_constants(&root, &chosen)?;
+        let (place, suffix) = (source.place(&root)?, suffix(constants, &chosen));
+        match place.dimension() {
+            1 => data::problem::<1>(&source, &root, &place, &suffix),
+            2 => data::problem::<2>(&source, &root, &place, &suffix),
+            _ => data::problem::<3>(&source, &root, &place, &suffix),
+        }
+    };
+    combinations(constants).into_iter().map(of).collect()
 }

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{ProblemFileError, ProblemFileErrorKind};
-use super::expression::Expression;
+use super::expression::{Expression, Names};
 use crate::input::excerpt;
 use crate::mesh::FacetSearch;
 use crate::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile};
@@ -114,10 +114,15 @@ impl Place {
     }
 }
 
+/// Constants by name.
+pub(super) type Constants = Vec<(String, f64)>;
+
 /// A problem file.
 pub(super) struct Source<'t> {
     pub path: &'t Path,
     pub text: &'t str,
+    /// Its constants, once they are read.
+    pub constants: Constants,
 }
 
 type Found<V> = Result<V, ProblemFileError>;
@@ -200,7 +205,12 @@ impl<'t> Source<'t> {
         let wrong = || self.wrong_type("box", value, "two corners of one to three numbers each");
         let corner = |corner: &Value<'t>| -> Found<Vec<f64>> {
             let numbers = corner.get_ref().as_array().ok_or_else(wrong)?;
-            numbers.iter().map(|x| self.number(x).ok_or_else(wrong)).collect()
+            let number = |x| match self.formula("box", x, &[]) {
+                Ok(Formula::Number(x)) => Ok(x),
+                Err(error) if error.kind == ProblemFileErrorKind::Expression => Err(error),
+                _ => Err(wrong()),
+            };
+            numbers.iter().map(number).collect()
         };
         let corners = value.get_ref().as_array().ok_or_else(wrong)?;
         let corners = corners.iter().map(corner).collect::<Found<Vec<_>>>()?;
@@ -255,13 +265,18 @@ impl<'t> Source<'t> {
 
     /// A number, or an expression in these variables.
     pub fn formula(&self, key: &str, value: &Value<'t>, variables: &[&str]) -> Found<Formula> {
+        let names = Names { variables, constants: &self.constants, below: &[] };
+        self.formula_of(key, value, names)
+    }
+    /// A number, or an expression in these names.
+    pub fn formula_of(&self, key: &str, value: &Value<'t>, names: Names<'_>) -> Found<Formula> {
         if let Some(number) = self.number(value) {
             return Ok(Formula::Number(number));
         }
         let Some(text) = value.get_ref().as_str() else {
             return Err(self.wrong_type(key, value, "a number, or an expression as a string"));
         };
-        let expression = Expression::parse(text, variables).map_err(|error| {
+        let expression = Expression::parse(text, names).map_err(|error| {
             let raw = &self.text[value.span()];
             let quotes = raw.len() - raw.trim_start_matches(['"', '\'']).len();
             // an empty string is all quotes

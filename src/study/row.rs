@@ -104,6 +104,9 @@ pub struct Row {
     pub scene: String,
     /// Dimension of space.
     pub dimension: usize,
+    /// The constants of the file of the problem, by name; rows of problems without constants do not have the key.
+    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "BTreeMap::is_empty"))]
+    pub constants: BTreeMap<String, f64>,
     /// Name of the scheme.
     pub scheme: String,
     /// Where the inequality is imposed: `vertices`, `facet-means`, `nodes`, `midpoints`,
@@ -206,6 +209,7 @@ impl Row {
         Self {
             scene: scene.to_owned(),
             dimension,
+            constants: BTreeMap::new(),
             scheme: scheme.to_owned(),
             constraint: String::new(),
             label: scheme.to_owned(),

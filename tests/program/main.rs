@@ -28,6 +28,7 @@ mod rows;
 mod run;
 mod square;
 mod stretched;
+mod sweeps;
 #[cfg(target_os = "linux")]
 mod threads;
 

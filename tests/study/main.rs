@@ -19,6 +19,7 @@ mod noise;
 mod one_problem;
 mod orders_page;
 mod pictures;
+mod problem_file_constants;
 mod problem_file_data;
 mod problem_file_mistakes;
 mod problem_files;

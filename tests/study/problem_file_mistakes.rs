@@ -20,7 +20,8 @@ fn mistakes_are_found_where_they_are() {
         ("name = \"a\"\n".to_owned(), (1, 1), "`mesh` is missing"),
         (format!("{BOX}mesh = \"a.msh\""), (1, 7), "not both"),
         ("box = [[0, 1], [1]]".to_owned(), (1, 7), "two corners"),
-        ("box = [[0], [\"1\"]]".to_owned(), (1, 7), "two corners"),
+        ("box = [[0], [true]]".to_owned(), (1, 7), "two corners"),
+        ("box = [[0], [\"w\"]]".to_owned(), (1, 15), "there is no `w`; there are e, pi"),
         (format!("{BOX}sources = 1\n"), (2, 1), "unknown key `sources`; allowed are name, mesh"),
         (format!("{BOX}source = 1\n"), (2, 10), "`source` must be a table"),
         (

@@ -7,14 +7,14 @@ use clap::Args;
 use unilateral::input::excerpt;
 use unilateral::mesh::gmsh::GmshFile;
 use unilateral::nested::Adaptivity;
-use unilateral::problem_file::ProblemFile;
 use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::Program;
 
 use crate::adaptive::{adaptivity, words};
+use crate::constants::Constants;
 use crate::mesh_file::MeshFile;
-use crate::shared::{MOST_THREADS, Request, each_once, problem, reference};
+use crate::shared::{MOST_THREADS, Request, each_once, reference};
 
 /// The groups of options in pages of help.
 pub const PROBLEM: &str = "Problem";
@@ -32,6 +32,8 @@ pub struct Asked {
     /// Scenes by name, or `all`
     #[arg(help_heading = PROBLEM, long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
     pub scenes: Vec<String>,
+    #[command(flatten)]
+    pub constants: Constants,
     /// Length scale of scenes that have one
     #[arg(help_heading = PROBLEM, long, value_name = "L", allow_negative_numbers = true, value_parser = number)]
     pub scale: Option<f64>,
@@ -88,7 +90,8 @@ impl Asked {
     /// The subject of a message: the file of a problem, or a scene, perhaps on the mesh of a file.
     pub fn place(&self, name: &str) -> String {
         match (&self.problem, &self.mesh.path) {
-            (Some(path), _) => path.display().to_string(),
+            (Some(path), _) if self.constants.set.is_empty() => path.display().to_string(),
+            (Some(path), _) => format!("{}, problem {name}", path.display()),
             (None, Some(mesh)) => format!("{}, scene {name}", mesh.display()),
             (None, None) => format!("scene {name}"),
         }
@@ -106,9 +109,13 @@ impl Asked {
         };
         if let Some(path) = &self.problem {
             self.check_problem(path)?;
-            let ProblemFile { scene, fingerprints, paths, .. } = problem(path, &warn)?;
-            return Ok(FoundScenes { scenes: vec![scene], fingerprints, paths });
+            let problems = self.constants.problems(path, &warn)?;
+            let first = problems.first().expect("every constant has a value");
+            let (fingerprints, paths) = (first.fingerprints.clone(), first.paths.clone());
+            let scenes = problems.into_iter().map(|read| read.scene).collect();
+            return Ok(FoundScenes { scenes, fingerprints, paths });
         }
+        self.constants.check_absent()?;
         let mesh = self.mesh.read()?;
         let scenes = self.scenes_of_catalogue(default, mesh.as_ref().map(GmshFile::dimension))?;
         let on_mesh = |scene| self.mesh.under(scene, mesh.as_ref(), &warn);
@@ -192,6 +199,9 @@ impl Asked {
             if let Some(x) = value {
                 program = program.with_request(name, format!("{x:?}"));
             }
+        }
+        for (name, value) in self.constants.unnamed() {
+            program = program.with_request(&format!("constant {name}"), value);
         }
         if let Some((scheme, level)) = &self.reference {
             program = program.with_request("reference", format!("{scheme} at level {level}"));

@@ -16,8 +16,9 @@ use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Report, Row, Study};
 
 use crate::asked::{OUTPUT, PROBLEM};
+use crate::constants::Constants;
 use crate::mesh_file::MeshFile;
-use crate::shared::{Request, each_once, print, problem, read};
+use crate::shared::{Request, each_once, print, read};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -85,11 +86,22 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
     let scene = match request["problem"].as_str() {
         Some(path) => {
             let path = found_beside(&options.directory, path);
-            let read = problem(&path, &|_| {})?;
+            let given = request["constants"].as_object().into_iter().flatten();
+            let of = |(name, value): (&String, &Value)| {
+                let value = value.as_f64().ok_or_else(|| wrong("constants"))?;
+                Ok((name.clone(), vec![value]))
+            };
+            let constants = Constants { set: given.map(of).collect::<Request<_>>()? };
+            let read = constants.problems(&path, &|_| {})?.remove(0);
             for (place, (_, fingerprint)) in read.fingerprints.into_iter().enumerate() {
                 is_unchanged(place, &path, fingerprint)?;
             }
-            read.scene
+            let name = text("scene")?;
+            in_its_dimension!(read.scene, |scene| {
+                let mut scene = scene;
+                scene.name = name.to_owned();
+                scene.into()
+            })
         }
         None => {
             let entry = scenes::by_name(text("scene")?).ok_or_else(|| wrong("scene"))?;

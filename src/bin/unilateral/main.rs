@@ -7,6 +7,7 @@
 mod adaptive;
 mod asked;
 mod compare;
+mod constants;
 mod judge;
 mod mesh_file;
 mod one_run;

@@ -9,17 +9,17 @@ use std::path::PathBuf;
 use clap::Args;
 use unilateral::in_its_dimension;
 use unilateral::nested::Adaptivity;
-use unilateral::problem_file::ProblemFile;
-use unilateral::scenes::Scene;
+use unilateral::scenes::{AnyScene, Scene};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Row, Study, file_name};
 
 use crate::adaptive::adaptivity;
 use crate::asked::{MESHES, OUTPUT, PROBLEM, SCHEMES};
+use crate::constants::Constants;
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
 use crate::shared::{
-    Failure, check_apart, draw_solution, end_at_interrupt, print, problem, scene, warn,
+    Failure, Request, check_apart, draw_solution, end_at_interrupt, print, scene, warn,
 };
 
 const EXAMPLES: &str = "\
@@ -34,6 +34,8 @@ pub struct Options {
     /// A problem of your own, as for compare
     #[arg(help_heading = PROBLEM, value_name = "PROBLEM.toml", conflicts_with_all = ["scene", "mesh", "boundary"])]
     problem: Option<PathBuf>,
+    #[command(flatten)]
+    constants: Constants,
     /// Scene by name
     #[arg(help_heading = PROBLEM, long, value_name = "A", default_value = "radial-2d")]
     scene: String,
@@ -61,38 +63,62 @@ pub struct Options {
 /// Whether every solve converged.
 pub fn run(options: &Options) -> Result<bool, Failure> {
     let warn = |warning: String| warn(&warning);
-    let (scene, paths) = match &options.problem {
+    let (scenes, paths): (Vec<AnyScene>, Vec<PathBuf>) = match &options.problem {
         Some(path) => {
-            let ProblemFile { scene, paths, .. } = problem(path, &warn)?;
-            (scene, paths)
+            let problems = options.constants.problems(path, &warn)?;
+            let paths = problems.iter().flat_map(|read| read.paths.clone()).collect();
+            (problems.into_iter().map(|read| read.scene).collect(), paths)
         }
         None => {
+            options.constants.check_absent()?;
             let scene = scene(&options.scene)?;
             let scene = options.mesh.under(scene, options.mesh.read()?.as_ref(), &warn)?;
-            (scene, options.mesh.path.iter().cloned().collect())
+            (vec![scene], options.mesh.path.iter().cloned().collect())
         }
     };
     check_apart(&paths, None, [&options.out])?;
-    in_its_dimension!(scene, |scene| draw(options, scene))
+    scenes.iter().try_for_each(|scene| in_its_dimension!(scene, |scene| check(options, scene)))?;
+    take_directory(&options.out)?;
+    end_at_interrupt("pictures and fields that are finished are there")?;
+    let draw = |scene| in_its_dimension!(scene, |scene| draw(options, &scene));
+    let drawn = scenes.into_iter().map(draw).collect::<Result<Vec<bool>, _>>()?;
+    Ok(drawn.iter().all(|&converged| converged))
 }
 
-/// Draws one level, and writes the fields of the series.
-fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Result<bool, Failure> {
-    let study = || {
-        let study = Study::new(scene.clone()).named_scheme(&options.scheme);
-        match options.adaptive {
-            Some(adaptivity) => study.adaptive(adaptivity),
-            None => study,
-        }
-    };
-    let default = match scene.domain.is_mesh() {
+/// The study of a scene, without levels.
+fn study<'a, const D: usize>(options: &Options, scene: &Scene<D>) -> Study<'a, D> {
+    let study = Study::new(scene.clone()).named_scheme(&options.scheme);
+    match options.adaptive {
+        Some(adaptivity) => study.adaptive(adaptivity),
+        None => study,
+    }
+}
+
+/// The level that is drawn.
+fn level<const D: usize>(options: &Options, scene: &Scene<D>) -> usize {
+    options.level.unwrap_or(match scene.domain.is_mesh() {
         true => 0,
         false if options.adaptive.is_some() => 4,
         false if D == 3 => 8,
         false => 16,
-    };
+    })
+}
+
+/// Checks the studies of a scene before anything is written.
+fn check<const D: usize>(options: &Options, scene: &Scene<D>) -> Request<()> {
+    let study = || study(options, scene);
+    study().levels([level(options, scene)]).check().map_err(|e| e.to_string())?;
+    match options.series.is_empty() {
+        true => Ok(()),
+        false => study().levels(options.series.clone()).check().map_err(|e| e.to_string()),
+    }
+}
+
+/// Draws one level, and writes the fields of the series.
+fn draw<const D: usize>(options: &Options, scene: &Scene<D>) -> Result<bool, Failure> {
+    let study = || study(options, scene);
     let written = RefCell::new(Vec::new());
-    let level = options.level.unwrap_or(default);
+    let level = level(options, scene);
     let picture = study().levels([level]).each_solution(|label, level, solved| {
         let stem = file_name(&format!("{}-{label}-{level}", scene.name));
         let unit = if options.adaptive.is_some() { "step" } else { "level" };
@@ -103,14 +129,8 @@ fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Result<bool, Fail
         written.borrow_mut().extend(draw_solution(&title, solved, &options.out, &stem)?);
         Ok(())
     });
-    picture.check().map_err(|e| e.to_string())?;
     let series = study().levels(options.series.clone()).fields_to(&options.out);
     let series = series.fields_of_all_levels();
-    if !options.series.is_empty() {
-        series.check().map_err(|e| e.to_string())?;
-    }
-    take_directory(&options.out)?;
-    end_at_interrupt("pictures and fields that are finished are there")?;
     let mut rows = picture.run().map_err(Failure::of_work)?.rows;
     if let (true, Some(row)) = (written.borrow().is_empty(), rows.first()) {
         let message = row.message.as_deref().unwrap_or_default();

@@ -10,7 +10,6 @@ use unilateral::error::Error;
 use unilateral::input::{beginning, excerpt, read_file};
 use unilateral::nested::Solved;
 use unilateral::plot::Picture;
-use unilateral::problem_file::{self, ProblemFile};
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
@@ -184,13 +183,6 @@ pub fn scene(name: &str) -> Request<AnyScene> {
         format!("there is no scene {}; there are: {}", excerpt(name), names.join(", "))
     })?;
     entry.make(&Parameters::default()).map_err(|e| e.to_string())
-}
-
-/// A problem of a file as a scene; warnings of its mesh file go to `warn`.
-pub fn problem(path: &Path, warn: &dyn Fn(String)) -> Request<ProblemFile> {
-    let read = problem_file::read(path).map_err(|e| e.to_string())?;
-    read.warnings.iter().for_each(|warning| warn(format!("warning: {warning}")));
-    Ok(read)
 }
 
 /// The schemes of an option whose value was cut at commas, or the default ones.

@@ -16,8 +16,18 @@ use crate::real::Point;
 use crate::scenes::{AnyScene, Scene};
 use check::{Allowed, Checks, Entry};
 
-const KEYS: [&str; 9] =
-    ["name", "mesh", "box", "coefficient", "source", "reaction", "obstacle", "boundary", "exact"];
+const KEYS: [&str; 10] = [
+    "name",
+    "mesh",
+    "box",
+    "constants",
+    "coefficient",
+    "source",
+    "reaction",
+    "obstacle",
+    "boundary",
+    "exact",
+];
 /// The coordinates, then the components of the normal.
 const VARIABLES: [[&str; 3]; 2] = [["x", "y", "z"], ["nx", "ny", "nz"]];
 /// The group of cells in no group with data.
@@ -275,6 +285,7 @@ pub(super) fn problem<'t, const D: usize>(
     source: &Source<'t>,
     root: &DeTable<'t>,
     place: &Place,
+    suffix: &str,
 ) -> Done<ProblemFile>
 where
     AnyScene: From<Scene<D>>,
@@ -288,7 +299,10 @@ where
     let name = beginning(name.as_bytes(), LONGEST_NAME);
     let mut builder = Builder {
         source,
-        problem: Problem::<D>::new(),
+        problem: Problem::<D> {
+            constants: source.constants.iter().cloned().collect(),
+            ..Problem::new()
+        },
         entries: Vec::new(),
         conditions: Vec::new(),
         on_other_groups: None,
@@ -360,7 +374,7 @@ where
     .run(&mesh)?;
     let mesh = problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
     let domain = if domain.is_mesh() { mesh.into() } else { domain };
-    let scene = Scene::new(name, domain, problem).into();
+    let scene = Scene::new(name + suffix, domain, problem).into();
     Ok(ProblemFile { scene, fingerprints, paths, warnings })
 }
 

@@ -19,6 +19,7 @@ use winnow::prelude::*;
 
 use crate::real::Point;
 use grammar::{Left, sum};
+pub(super) use names::{Names, use_of_name};
 use names::{SyntaxError, resolve};
 use node::Node;
 
@@ -32,8 +33,8 @@ const DEEPEST: usize = 100;
 pub(super) struct Expression(Node);
 
 impl Expression {
-    /// Reads an expression in these variables.
-    pub fn parse(text: &str, variables: &[&str]) -> Result<Self, SyntaxError> {
+    /// Reads an expression in these names.
+    pub fn parse(text: &str, names: Names<'_>) -> Result<Self, SyntaxError> {
         let at = |offset: usize, message: String| SyntaxError { offset, message };
         if text.chars().count() > LONGEST {
             return Err(at(0, format!("an expression has at most {LONGEST} characters")));
@@ -50,7 +51,7 @@ impl Expression {
             Err(Left { bytes, .. }) => text.len() - bytes,
         };
         match node {
-            Ok(node) if rest.is_empty() => Ok(Self(resolve(node, text.len(), variables)?)),
+            Ok(node) if rest.is_empty() => Ok(Self(resolve(node, text.len(), names)?)),
             _ if offset == text.len() => Err(at(
                 offset,
                 "the expression ends where a number, a name or a parenthesis is expected"

@@ -10,9 +10,41 @@ pub(crate) struct SyntaxError {
     pub message: String,
 }
 
+/// What names in an expression may mean, besides functions and the constants of all expressions.
+#[derive(Clone, Copy)]
+pub(crate) struct Names<'n> {
+    pub variables: &'n [&'n str],
+    /// The constants of the file.
+    pub constants: &'n [(String, f64)],
+    /// Constants of the file that this expression cannot use: its own, and those below it.
+    pub below: &'n [String],
+}
+
+/// The coordinates and the components of the normal in every dimension.
+const COORDINATES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
+
+/// Why a constant of a file cannot have this name, if it cannot.
+pub(crate) fn use_of_name(name: &str) -> Option<&'static str> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let starts = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+    let of_two = FUNCTIONS_OF_TWO.iter().chain(&FUNCTIONS_OF_MANY).map(|(name, _)| *name);
+    let mut functions = FUNCTIONS.iter().map(|(name, _)| *name).chain(of_two).chain(["if"]);
+    if COORDINATES.contains(&name) {
+        Some("that is a coordinate")
+    } else if CONSTANTS.iter().any(|(known, _)| *known == name) {
+        Some("every expression has this number")
+    } else if functions.any(|known| known == name) {
+        Some("that is a function")
+    } else if !starts || !name.chars().all(is_plain) {
+        Some("a name has letters, digits and _, no digit first")
+    } else {
+        None
+    }
+}
+
 /// Gives names their meaning.
-pub(super) fn resolve(node: Node, length: usize, variables: &[&str]) -> Result<Node, SyntaxError> {
-    let of = |node| resolve(node, length, variables);
+pub(super) fn resolve(node: Node, length: usize, names: Names<'_>) -> Result<Node, SyntaxError> {
+    let of = |node| resolve(node, length, names);
     Ok(match node {
         Node::Negative(a) => Node::Negative(Box::new(of(*a)?)),
         Node::Arithmetic(operator, ab) => {
@@ -29,15 +61,23 @@ pub(super) fn resolve(node: Node, length: usize, variables: &[&str]) -> Result<N
             Node::If(Box::new((of(condition)?, of(yes)?, of(no)?)))
         }
         Node::Name(name, left) => {
+            let Names { variables, constants, below } = names;
             if let Some(k) = variables.iter().position(|variable| *variable == name) {
                 return Ok(Node::Variable(k));
             }
-            match CONSTANTS.iter().find(|(constant, _)| *constant == name) {
-                Some((_, value)) => Node::Number(*value),
+            let own = constants.iter().map(|(name, value)| (&name[..], *value));
+            let numbers = || CONSTANTS.into_iter().chain(own.clone());
+            match numbers().find(|(constant, _)| *constant == name) {
+                Some((_, value)) => Node::Number(value),
                 None => {
-                    let known = variables.iter().chain(CONSTANTS.iter().map(|(name, _)| name));
-                    let known: Vec<&str> = known.copied().collect();
-                    let message = format!("there is no `{name}`; there are {}", known.join(", "));
+                    let known = variables.iter().copied().chain(numbers().map(|(name, _)| name));
+                    let known: Vec<&str> = known.collect();
+                    let message = match below.contains(&name) {
+                        true => {
+                            format!("`{name}` is not known here: a constant uses those above it")
+                        }
+                        false => format!("there is no `{name}`; there are {}", known.join(", ")),
+                    };
                     return Err(SyntaxError { offset: length - left, message });
                 }
             }

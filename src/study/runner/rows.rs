@@ -206,6 +206,7 @@ impl<const D: usize> Study<'_, D> {
             _ => ExpectedOrders::default(),
         };
         Row {
+            constants: self.scene.problem.constants.clone(),
             level_kind: Some(kind.to_owned()),
             theta: self.adaptive.map(|of| of.theta),
             linear_asked: self.linear_asked.clone(),

@@ -124,6 +124,10 @@ fn heading(rows: &[&Row]) -> String {
         Some("refinements") => "n refinements of the mesh; ".to_owned(),
         _ => String::new(),
     };
+    if let Some(constants) = rows.first().map(|row| &row.constants).filter(|c| !c.is_empty()) {
+        let words = constants.iter().map(|(name, value)| format!("{name} = {value}"));
+        text += &format!("{}; ", words.collect::<Vec<_>>().join(", "));
+    }
     text += &format!("solver {}", solvers.join(", "));
     let references = distinct(rows.iter().filter_map(|r| r.reference()));
     if !references.is_empty() {

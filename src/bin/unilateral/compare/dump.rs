@@ -12,7 +12,11 @@ use crate::judge::REQUEST;
 use crate::shared::{Request, cannot_write, write};
 
 /// Writes what `judge` must know of each inequality, with the fingerprints of all files that were read.
-pub fn write_requests(options: &Options, contents: &[String], keys: &[RowKey]) -> Request<()> {
+pub fn write_requests(
+    options: &Options,
+    contents: &[String],
+    (keys, constants): (&[RowKey], &BTreeMap<String, f64>),
+) -> Request<()> {
     let Some(directory) = &options.dump else { return Ok(()) };
     let absolute = |path: &Option<PathBuf>| path.as_ref().map(std::path::absolute).transpose();
     let files = [absolute(&options.asked.mesh.path), absolute(&options.asked.problem)];
@@ -34,6 +38,7 @@ pub fn write_requests(options: &Options, contents: &[String], keys: &[RowKey]) -
                 json!({ "scheme": scheme.to_string(), "level": level })
             }),
             "mesh": mesh, "problem": problem, "contents": contents, "boundary": boundary,
+            "constants": constants,
         });
         std::fs::create_dir_all(&folder).map_err(|e| cannot_write(&folder, e))?;
         let path = folder.join(REQUEST);

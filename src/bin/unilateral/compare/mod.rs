@@ -153,7 +153,7 @@ fn run_all(
     journal: &'static Journal,
 ) -> (Vec<Row>, Vec<String>) {
     let (mut rows, mut messages) = (Vec::new(), Vec::new());
-    let write = |run: &Run<'_>| write_requests(options, contents, &run.keys);
+    let write = |run: &Run<'_>| write_requests(options, contents, (&run.keys, &run.constants));
     if let Err(why) = runs.iter().try_for_each(write) {
         return (rows, vec![why]);
     }

@@ -19,6 +19,8 @@ use unilateral::study::{Journal, Row, RowKey, Study, file_name};
 pub struct Run<'a> {
     /// The keys of its rows.
     pub keys: Vec<RowKey>,
+    /// The constants of its problem.
+    pub constants: BTreeMap<String, f64>,
     /// Problem file, or scene and mesh, for messages.
     pub place: String,
     /// Runs it.
@@ -55,6 +57,7 @@ pub fn prepare<'a, const D: usize>(
 ) -> Request<Option<Run<'a>>> {
     let place = options.asked.place(&scene.name);
     let scene_name = scene.name.clone();
+    let constants = scene.problem.constants.clone();
     let has_mesh = scene.domain.is_mesh();
     let linear = options.linear()[0].1;
     let mut study = study(scene, options, schemes, watcher);
@@ -96,7 +99,7 @@ pub fn prepare<'a, const D: usize>(
         watcher.expect(D, has_mesh, keys.iter().map(|key| key.level));
     }
     let run = move |journal| Ok(study.journal(journal).run()?.rows);
-    Ok(Some(Run { keys, place, run: Box::new(run) }))
+    Ok(Some(Run { keys, constants, place, run: Box::new(run) }))
 }
 
 /// A study with the solvers of these names.
