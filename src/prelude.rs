@@ -11,7 +11,7 @@ pub use crate::facet::{
 pub use crate::mesh::{BoundaryCondition, BoxDomain, Mesh};
 pub use crate::nested::{AdaptiveMeshes, Adaptivity, Stop, adapt};
 pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
-pub use crate::problem::{DiscreteFunction, Problem};
+pub use crate::problem::{DiscreteFunction, Problem, ValueOf};
 pub use crate::real::Point;
 pub use crate::scenes::{self, Scene};
 pub use crate::scheme::*;

@@ -17,6 +17,7 @@ use crate::facet::FacetForm;
 use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::vectors::zeros;
 use crate::parallel::{cells, once};
+use crate::problem::Exact;
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
 
@@ -172,17 +173,21 @@ impl<const D: usize> Space<'_, D> {
         point: &[f64; 4],
     ) -> Result<f64, Error> {
         let x = self.facet_point(point, cell, local);
-        let normal = || self.mesh.geometry(cell).normal(local);
         let flux = match (self.data.neumann.of(group), &self.problem.exact) {
-            (Some(q), _) => q.at(&x, &normal()),
-            (None, Some(exact)) => {
-                let middle = [1.0 / (D + 1) as f64; 4];
-                let inward = x + (self.cell_point(&middle, cell) - x) * INWARD;
-                self.alpha_at(cell, &inward) * (exact.gradient)(&x).dot(&normal())
-            }
+            (Some(q), _) => q.at(&x, &self.mesh.geometry(cell).normal(local)),
+            (None, Some(exact)) => self.exact_flux(exact, (cell, local), point),
             (None, None) => 0.0,
         };
         checks::finite(flux, "neumann", &x, cell)
+    }
+
+    /// The normal flux of an exact solution at a point of a facet.
+    pub fn exact_flux(&self, exact: &Exact<D>, (cell, local): HalfFacet, point: &[f64; 4]) -> f64 {
+        let x = self.facet_point(point, cell, local);
+        let middle = [1.0 / (D + 1) as f64; 4];
+        let inward = x + (self.cell_point(&middle, cell) - x) * INWARD;
+        self.alpha_at(cell, &inward)
+            * (exact.gradient)(&x).dot(&self.mesh.geometry(cell).normal(local))
     }
 
     /// The load of all unknowns, with or without the Dirichlet data that the facet form imposes, and these data. The

@@ -94,7 +94,7 @@ impl Certificate {
 }
 
 /// Sets `residual` to `b - A u`, or to `c - K u - M^T p` if the jump multipliers `p` are given.
-pub(super) fn residual<T: Real>(
+pub(crate) fn residual<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
     jump_multipliers: &[T],

@@ -59,7 +59,7 @@ pub use active_set::{ActiveSet, Preconditioned};
 pub use by_name::{SOLVERS, solver_by_name};
 pub(crate) use certificate::count_active;
 pub use certificate::{Certificate, contact_of};
-pub(crate) use certificate::{positive_diagonal, stiffness_diagonal};
+pub(crate) use certificate::{positive_diagonal, residual, stiffness_diagonal};
 pub(crate) use contact_forces::ContactForces;
 pub use history::HistoryPoint;
 pub use initial_guess::InitialGuess;

@@ -1,7 +1,9 @@
 //! Errors of a discrete solution, as plain numbers, and the norms in which they are measured.
 
+use std::collections::BTreeMap;
+
 /// Errors against the exact solution.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Errors {
@@ -16,6 +18,9 @@ pub struct Errors {
     pub broken_energy: Option<f64>,
     /// Maximum over nodes.
     pub max: Option<f64>,
+    /// Of the values by name that the problem asks for; rows of problems that ask for none do not have the key.
+    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "BTreeMap::is_empty"))]
+    pub values: BTreeMap<String, Option<f64>>,
 }
 
 impl Errors {

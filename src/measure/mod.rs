@@ -1,5 +1,5 @@
 //! Measures of a discrete solution: error norms, multiplier, contact set, free boundary, penetration,
-//! fields.
+//! fields, values by name.
 
 mod admissible;
 mod cell_errors;
@@ -14,6 +14,7 @@ mod penetration;
 mod recovered_gradient;
 mod rounding;
 mod squared_errors;
+mod values;
 
 pub(crate) use admissible::Admissible;
 pub(crate) use cell_errors::Counts;
@@ -25,3 +26,4 @@ pub use order::{FittedOrder, fit_order, observed_order};
 pub use penetration::Penetration;
 pub use rounding::Rounding;
 pub use squared_errors::SquaredErrors;
+pub use values::FoundValue;

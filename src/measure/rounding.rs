@@ -24,7 +24,7 @@ const OF_PENALTY: f64 = 1.0 / 6.0;
 /// the load, `n^2 (sum c_i^2 / k_i) / sum |c_i|`, where values vanish but for rounding; plus the rounding of the constants
 /// of bodies, in double precision, over machine epsilon. A solve amplifies machine epsilon by `a`: 8, on a line and for
 /// quadratics `8 + n/4`. For discontinuous quadratics the maximum, L2, H1 and forces have the factor `1 + n/6` besides.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Rounding {
@@ -89,6 +89,7 @@ impl<const D: usize> Discretisation<'_, D> {
             energy: Some(value * (one * stiffness.sqrt() + 0.25 * epsilon * diagonal.sqrt())),
             broken_energy: Some(one * value * stiffness.sqrt()),
             max: Some(max),
+            ..Errors::default()
         };
         let energy = one * (energy_norm * energy_norm + value * force);
         let force = smooth * one * (value * squares.sqrt() + force) / 8.0;

@@ -51,6 +51,7 @@ impl SquaredErrors {
             energy: Some((broken_energy + self.of_facets).sqrt()),
             broken_energy: Some(broken_energy.sqrt()),
             max: Some(self.max),
+            ..Errors::default()
         }
     }
     /// The energy norm of the error of the function in cells.

@@ -13,8 +13,9 @@ use crate::real::Precision;
 #[cfg(feature = "plot")]
 use crate::study::row::distinct;
 use crate::study::tables::summary::summaries;
+use crate::study::tables::values;
 use crate::study::{Report, Series, Variant, file_name};
-use crate::table::latex_document;
+use crate::table::{Table, latex_document};
 
 impl Report {
     /// Rows as comma-separated values after a header of keys, nested keys joined by dots (`error.l2`,
@@ -68,7 +69,9 @@ impl Report {
         put("report.json", &self.to_json());
         put("report.csv", &self.to_csv());
         put("report.md", &self.to_markdown());
-        put("report.tex", &latex_document(&[], &summaries(&self.rows)));
+        let tables: Vec<Table> =
+            summaries(&self.rows).into_iter().chain(values(&self.rows)).collect();
+        put("report.tex", &latex_document(&[], &tables));
         #[cfg(feature = "plot")]
         {
             put("convergence.svg", &convergence(&self.rows).to_svg());

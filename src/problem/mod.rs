@@ -23,6 +23,7 @@ mod given;
 mod levels;
 mod named;
 mod on_mesh;
+mod values;
 
 pub(crate) use body_constants::BodyConstants;
 #[cfg(feature = "problem-files")]
@@ -33,6 +34,8 @@ pub use discrete_function::DiscreteFunction;
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
 pub use given::Given;
 pub(crate) use on_mesh::{DataByGroup, DataOnMesh};
+pub use values::ValueOf;
+pub(crate) use values::containing;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -75,6 +78,8 @@ pub struct Problem<const D: usize> {
     pub reference_energy: Option<ReferenceEnergy>,
     /// The numbers by name from which the data were made, for rows of reports: the constants of a problem file.
     pub constants: BTreeMap<String, f64>,
+    /// Numbers of the solution by name, for rows of reports.
+    pub values: Vec<(String, ValueOf<D>)>,
 }
 
 /// Lists the data that are present.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::datum::{BoundaryFlux, Datum};
-use super::{Given, Problem};
+use super::{Given, Problem, ValueOf};
 use crate::error::Error;
 use crate::input::excerpt;
 use crate::instances::compiled;
@@ -37,6 +37,12 @@ use crate::real::Point;
 /// # }
 /// ```
 impl<const D: usize> Problem<D> {
+    /// Asks for a number of the solution, which rows of reports have under this name.
+    #[must_use]
+    pub fn value(mut self, name: &str, of: ValueOf<D>) -> Self {
+        self.values.push((name.to_owned(), of));
+        self
+    }
     /// Sets the diffusion coefficient in a region: a number, or a closure whose argument is written with
     /// its type, `|x: &Point<2>| ..`. It is one in regions for which none is given.
     #[must_use]

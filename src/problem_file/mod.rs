@@ -33,6 +33,11 @@
 //! [exact]                            # where the solution is known
 //! value = "x * y"
 //! gradient = ["y", "x"]
+//!
+//! [values]                           # numbers of the solution by name, for rows of reports
+//! tip = { at = [0.5, 0.5] }
+//! mean = { mean = "inclusion" }      # by region, as largest and smallest; "default": all
+//! held = { reaction = "bore" }       # by boundary group, as integral and, of contact groups, force
 //! ```
 //!
 //! The sides of a box are its boundary groups: `left` and `right` across the first axis, `bottom` and `top`

@@ -205,12 +205,7 @@ impl<'t> Source<'t> {
         let wrong = || self.wrong_type("box", value, "two corners of one to three numbers each");
         let corner = |corner: &Value<'t>| -> Found<Vec<f64>> {
             let numbers = corner.get_ref().as_array().ok_or_else(wrong)?;
-            let number = |x| match self.formula("box", x, &[]) {
-                Ok(Formula::Number(x)) => Ok(x),
-                Err(error) if error.kind == ProblemFileErrorKind::Expression => Err(error),
-                _ => Err(wrong()),
-            };
-            numbers.iter().map(number).collect()
+            numbers.iter().map(|x| self.number("box", x)?.ok_or_else(wrong)).collect()
         };
         let corners = value.get_ref().as_array().ok_or_else(wrong)?;
         let corners = corners.iter().map(corner).collect::<Found<Vec<_>>>()?;
@@ -253,7 +248,20 @@ impl<'t> Source<'t> {
         value.get_ref().as_str().ok_or_else(|| self.wrong_type(key, value, "a string"))
     }
 
-    fn number(&self, value: &Value<'t>) -> Option<f64> {
+    /// A number, or an expression in constants; none where the value is neither.
+    pub fn number(&self, key: &str, value: &Value<'t>) -> Found<Option<f64>> {
+        match value.get_ref() {
+            DeValue::Float(_) | DeValue::Integer(_) | DeValue::String(_) => {
+                match self.formula(key, value, &[])? {
+                    Formula::Number(x) => Ok(Some(x)),
+                    Formula::Expression(_) => Ok(None),
+                }
+            }
+            _ => Ok(None),
+        }
+    }
+
+    fn literal(&self, value: &Value<'t>) -> Option<f64> {
         match value.get_ref() {
             DeValue::Float(float) => float.as_str().parse().ok(),
             DeValue::Integer(integer) => {
@@ -270,7 +278,7 @@ impl<'t> Source<'t> {
     }
     /// A number, or an expression in these names.
     pub fn formula_of(&self, key: &str, value: &Value<'t>, names: Names<'_>) -> Found<Formula> {
-        if let Some(number) = self.number(value) {
+        if let Some(number) = self.literal(value) {
             return Ok(Formula::Number(number));
         }
         let Some(text) = value.get_ref().as_str() else {

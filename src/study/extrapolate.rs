@@ -1,6 +1,7 @@
 //! The limits of energy, contact measure and contact force as the mesh size tends to zero, from three levels.
 
 use std::borrow::Borrow;
+use std::collections::BTreeMap;
 
 use super::row::Row;
 use super::series::{Meshes, Series, Variant, series_of};
@@ -70,6 +71,9 @@ pub struct Extrapolated {
     pub contact_measure: Option<Limit>,
     /// Limit of the total contact force.
     pub resultant: Option<Limit>,
+    /// Limits of values by name; reports of problems that ask for none do not have the key.
+    #[cfg_attr(feature = "report", serde(skip_serializing_if = "BTreeMap::is_empty"))]
+    pub values: BTreeMap<String, Option<Limit>>,
 }
 
 /// The limits of [`Report::extrapolated`](crate::study::Report::extrapolated); figures that are all rounding have none.
@@ -77,10 +81,10 @@ pub(crate) fn extrapolate<R: Borrow<Row>>(rows: &[R]) -> Vec<Extrapolated> {
     let of_series = |series: Series<'_>| {
         let levels: Vec<&Row> = series.rows.iter().copied().filter(|r| r.converged()).collect();
         let three: &[&Row; 3] = levels.last_chunk()?;
-        let of = |figure: fn(&Row) -> Option<f64>, rounding: fn(Rounding) -> f64| {
+        let of = |figure: &dyn Fn(&Row) -> Option<f64>, rounding: fn(&Rounding) -> f64| {
             let [a, b, c] = three.map(figure);
             let figures = [a?, b?, c?];
-            let rounding = three.map(|r| r.rounding.map_or(0.0, rounding));
+            let rounding = three.map(|r| r.rounding.as_ref().map_or(0.0, rounding));
             let rounding = rounding.into_iter().fold(0.0, f64::max);
             let is_within = |x: f64| rounding > 0.0 && x.abs() <= rounding;
             let [a, b, c] = figures;
@@ -97,9 +101,14 @@ pub(crate) fn extrapolate<R: Borrow<Row>>(rows: &[R]) -> Vec<Extrapolated> {
             scene,
             label,
             solver,
-            energy: of(|r| r.energy, |rounding| rounding.energy),
-            contact_measure: of(|r| r.contact_measure, |_| 0.0),
-            resultant: of(|r| r.resultant, |rounding| rounding.force),
+            energy: of(&|r| r.energy, |rounding| rounding.energy),
+            contact_measure: of(&|r| r.contact_measure, |_| 0.0),
+            resultant: of(&|r| r.resultant, |rounding| rounding.force),
+            values: three[2]
+                .values
+                .keys()
+                .map(|name| (name.clone(), of(&|r| *r.values.get(name)?, |_| 0.0)))
+                .collect(),
         })
     };
     let uniform = series_of(rows).into_iter().filter(|s| s.variant.meshes == Meshes::Uniform);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::mesh::Domain;
 use crate::nested::Solved;
-use crate::problem::Problem;
+use crate::problem::{Problem, ValueOf};
 use crate::scheme::Scheme;
 use crate::study::row::Row;
 
@@ -68,8 +68,22 @@ impl<const D: usize> Reference<'_, D> {
     }
 }
 
-/// A solution in place of the exact one with its name, or why there is none.
-pub(super) type FoundReference<'p, const D: usize> = Result<(Solved<'p, D>, String), String>;
+/// A solution in place of the exact one.
+pub(super) struct ReferenceSolution<'p, const D: usize> {
+    pub solved: Solved<'p, D>,
+    /// The name in rows.
+    pub name: String,
+    /// The values for which the problem asks.
+    pub values: Vec<Option<f64>>,
+}
+
+/// A solution in place of the exact one, or why there is none.
+pub(super) type FoundReference<'p, const D: usize> = Result<ReferenceSolution<'p, D>, String>;
+
+/// The kinds of the values for which a problem asks.
+pub(super) fn kinds<const D: usize>(wanted: &[(String, ValueOf<D>)]) -> Vec<ValueOf<D>> {
+    wanted.iter().map(|(_, of)| of.clone()).collect()
+}
 
 /// Against what rows are measured.
 #[derive(Clone, Copy)]
@@ -86,10 +100,10 @@ impl<const D: usize> Measured<'_, '_, D> {
         row.energy = solved.energy()?;
         row.set_penetration(solved.penetration()?);
         match (self.reference, self.failure) {
-            (Some(Ok((reference, name))), _) => {
-                row.error = solved.difference(reference)?;
-                row.contact = solved.contact_difference(reference)?;
-                row.against = Some(name.clone());
+            (Some(Ok(reference)), _) => {
+                row.error = solved.difference(&reference.solved)?;
+                row.contact = solved.contact_difference(&reference.solved)?;
+                row.against = Some(reference.name.clone());
             }
             (Some(Err(why)), _) => row.warnings.push(format!("{why}: no errors")),
             (None, Some(at)) => row.warnings.push(format!(
@@ -106,9 +120,31 @@ impl<const D: usize> Measured<'_, '_, D> {
             let with_v = self.failure.is_none() && self.reference.is_some();
             row.bound = solved.bound_figures(row.error.broken_energy, with_v);
         }
+        self.set_values(row, solved)?;
         row.seconds.bound = solved.bound_seconds();
         let remark = row.bound.remark(row.against.as_deref());
         row.warnings.extend(remark.filter(|_| row.converged()));
+        Ok(())
+    }
+
+    /// Fills in the values for which the problem asks, and their errors.
+    fn set_values(&self, row: &mut Row, solved: &Solved<'_, D>) -> Result<(), Error> {
+        let wanted = &solved.discretisation().problem().values;
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        let kinds = kinds(wanted);
+        let found = solved.values_of(&kinds)?;
+        let of_exact;
+        let known = match (self.reference, row.against.as_deref()) {
+            (Some(Ok(reference)), _) => &reference.values[..],
+            (_, Some("exact")) => {
+                of_exact = solved.discretisation().exact_values_of(&kinds)?;
+                &of_exact
+            }
+            _ => &[],
+        };
+        row.set_values(wanted, &found, known);
         Ok(())
     }
 }

@@ -7,8 +7,9 @@ use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, HistoryPoint, Outcome, StageRun, explanation};
-use crate::measure::{ContactErrors, Errors, Penetration, Rounding};
+use crate::measure::{ContactErrors, Errors, FoundValue, Penetration, Rounding};
 use crate::nested::{Solved, warnings_of_forces};
+use crate::problem::ValueOf;
 use crate::scheme::ExpectedOrders;
 
 /// Observed orders.
@@ -179,6 +180,12 @@ pub struct Row {
     /// where it reaches none: [`Discretisation::penetration`](crate::assemble::Discretisation::penetration). Null
     /// without an inequality.
     pub penetration: Option<f64>,
+    /// The values by name that the problem asks for; rows of problems that ask for none do not have the key.
+    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "BTreeMap::is_empty"))]
+    pub values: BTreeMap<String, Option<f64>>,
+    /// Where the solution has largest and smallest values, by name; rows without such values do not have the key.
+    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "BTreeMap::is_empty"))]
+    pub values_at: BTreeMap<String, Vec<f64>>,
     /// Iteration counts.
     pub iterations: Iterations,
     /// The certificate.
@@ -240,6 +247,8 @@ impl Row {
             resultant: None,
             resultants: None,
             penetration: None,
+            values: BTreeMap::new(),
+            values_at: BTreeMap::new(),
             iterations: Iterations::default(),
             certificate: Certificate::INVALID,
             seconds: Seconds::default(),
@@ -309,6 +318,25 @@ impl Row {
         self.warnings.extend(found.and_then(|found| found.remark()));
     }
 
+    /// Sets the values by name, with their errors where the values of the solution are known.
+    pub(super) fn set_values<const D: usize>(
+        &mut self,
+        wanted: &[(String, ValueOf<D>)],
+        found: &[FoundValue<D>],
+        known: &[Option<f64>],
+    ) {
+        for (k, ((name, _), found)) in wanted.iter().zip(found).enumerate() {
+            self.values.insert(name.clone(), found.value);
+            if let Some(place) = found.place {
+                self.values_at.insert(name.clone(), place.as_slice().to_vec());
+            }
+            if let Some(known) = known.get(k) {
+                let error = found.value.zip(*known).map(|(a, b)| (a - b).abs());
+                self.error.values.insert(name.clone(), error);
+            }
+        }
+    }
+
     /// The row with the outcome that an error of the data stands for, and the message of the error.
     ///
     /// # Errors
@@ -343,15 +371,15 @@ impl Row {
     /// The errors of the row that are more than rounding, each under the name of its order.
     pub(crate) fn errors_above_rounding(&self) -> Orders {
         let Self { error, contact, bound, rounding, .. } = self;
-        let of = rounding.map_or_else(Errors::default, |rounding| rounding.error);
-        let force = rounding.map(|rounding| rounding.force);
+        let of = rounding.as_ref().map_or_else(Errors::default, |rounding| rounding.error.clone());
+        let force = rounding.as_ref().map(|rounding| rounding.force);
         let above = |error: Option<f64>, rounding: Option<f64>| {
             error.filter(|error| rounding.is_none_or(|rounding| *error > rounding))
         };
         // where the space contains the solution all errors are rounding, whatever their size
         let is_exact =
             error.broken_energy.is_some() && above(error.broken_energy, of.broken_energy).is_none();
-        let errors = if is_exact { Errors::default() } else { *error };
+        let errors = if is_exact { &Errors::default() } else { error };
         // of a function and of a flux
         let of_bound = of.broken_energy.map(|rounding| 2.0 * rounding);
         let multiplier_l1 = above(contact.multiplier_l1, force);

@@ -225,7 +225,7 @@ fn take_errors(row: &mut Row, known: &[Row]) {
     if let Some(known) = known.iter().find(same) {
         row.against.clone_from(&known.against);
         row.warnings.clone_from(&known.warnings);
-        (row.error, row.contact) = (known.error, known.contact);
+        (row.error, row.contact) = (known.error.clone(), known.contact);
         row.bound.clone_from(&known.bound);
     }
 }

@@ -109,7 +109,7 @@ fn a_history_changes_nothing_else() {
     for (with, without) in with.iter().zip(&without) {
         assert!(with.history.is_some() && without.history.is_none());
         assert_eq!(with.iterations, without.iterations);
-        assert_eq!((with.error, with.certificate), (without.error, without.certificate));
+        assert_eq!((&with.error, with.certificate), (&without.error, without.certificate));
     }
 }
 

@@ -31,6 +31,7 @@ mod stretched;
 mod sweeps;
 #[cfg(target_os = "linux")]
 mod threads;
+mod values;
 
 /// The handlers of the program for panics and interrupts, and what they need of it.
 #[path = "../../src/bin/unilateral/compare/interrupt.rs"]

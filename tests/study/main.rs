@@ -34,6 +34,7 @@ mod svg;
 mod table_formats;
 mod tables;
 mod totals;
+mod values;
 mod vectors;
 mod verdicts;
 mod vtu;

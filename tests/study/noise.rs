@@ -107,8 +107,8 @@ fn single_precision_changes_quadratics_by_rounding() {
     let of = |precision| rows::<2>(precision, scenes::hertz_2d(), &schemes, &[16]);
     let (single, double) = (of(Precision::Single), of(Precision::Double));
     for (single, double) in single.iter().zip(&double) {
-        let rounding = single.rounding.unwrap();
-        let (a, b, most) = (single.error, double.error, rounding.error);
+        let rounding = single.rounding.clone().unwrap();
+        let (a, b, most) = (single.error.clone(), double.error.clone(), rounding.error);
         let figures = [
             ("L2", a.l2, b.l2, most.l2),
             ("H1", a.h1, b.h1, most.h1),
@@ -162,7 +162,7 @@ fn rounding_errors_are_those_of_the_formulas() {
     let (inequality, u) = (solved.inequality(), &solved.solution().values);
     let scene = Scene::new("load", square, problem.clone());
     let row = &rows::<2>(Precision::Double, scene, &["p1"], &[6])[0];
-    let found = row.rounding.unwrap();
+    let found = row.rounding.as_ref().unwrap();
     let diagonal: Vec<f64> = (0..u.len()).map(|i| inequality.matrix.get(i, i)).collect();
     let load: f64 = inequality.load.iter().map(|c| c.abs()).sum();
     let squares: f64 = inequality.load.iter().zip(&diagonal).map(|(c, k)| c * c / k).sum();

@@ -173,3 +173,42 @@ fn mistakes_are_found_where_they_are() {
     assert_eq!(error.kind, ProblemFileErrorKind::Missing);
     assert!(error.place.is_some(), "{error}");
 }
+
+/// Each key of `[values]`: names that the mesh does not have, points outside, other types.
+#[test]
+fn mistakes_in_values_are_found_where_they_are() {
+    let folder = Scratch::new("values-mistakes");
+    for (value, column, expected) in [
+        ("3", 5, "`a` must be a table, not 3"),
+        ("{}", 5, "`a` must be a table with one key of at, mean, largest, smallest, integral"),
+        ("{ mean = \"default\", at = [0, 0] }", 5, "`a` must be a table with one key"),
+        ("{ median = \"default\" }", 7, "unknown key `median`; allowed are at, mean"),
+        ("{ at = [0] }", 12, "`at` must be a list of two numbers, not [0]"),
+        ("{ at = [0, true] }", 12, "a list of two numbers"),
+        ("{ at = [0, \"w\"] }", 17, "there is no `w`; there are e, pi"),
+        ("{ at = [0, 2] }", 12, "values.a: the point (0.000000, 2.000000) lies outside of"),
+        ("{ mean = \"steel\" }", 14, "values.a: the mesh has no region `steel`; it has none"),
+        ("{ largest = \"steel\" }", 17, "the mesh has no region `steel`"),
+        ("{ smallest = 1 }", 18, "`smallest` must be a string, not 1"),
+        ("{ integral = \"lid\" }", 18, "the mesh has no boundary group `lid`; it has left, right"),
+        (
+            "{ reaction = \"top\" }",
+            18,
+            "the mesh has no dirichlet boundary group `top`; it has left",
+        ),
+        (
+            "{ force = \"left\" }",
+            15,
+            "the mesh has no contact boundary group `left`; it has bottom",
+        ),
+    ] {
+        let text = format!("{BOX}[values]\na = {value}\n{SIDES}");
+        let error = read(Path::new(&folder.file("values.toml", &text))).unwrap_err();
+        assert_eq!(error.place, Some([3, column]), "{value}: {error}");
+        let message = error.to_string();
+        assert!(
+            message.contains(expected) && message.contains("values.toml"),
+            "{value}: {message}"
+        );
+    }
+}

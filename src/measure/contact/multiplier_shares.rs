@@ -94,6 +94,20 @@ impl<const D: usize> Space<'_, D> {
         Some(sums)
     }
 
+    /// By boundary group the contact force on its facets; none where rounding leaves no digit.
+    pub(in crate::measure) fn forces_of_groups(
+        &self,
+        solved: SolvedInequality<'_>,
+    ) -> Option<Vec<f64>> {
+        let multipliers = self.multipliers(solved)?;
+        let facets: Vec<_> = self.grouped_facets_of(BoundaryCondition::Contact).collect();
+        let mut forces = vec![0.0; self.mesh.boundary_groups().len()];
+        for share in self.shares_of_gaps(&solved.0.bounds, &multipliers) {
+            forces[facets[share.place].1] += share.value;
+        }
+        Some(forces)
+    }
+
     /// The names of all resultants: the same on all parts of a mesh.
     fn names_of_resultants(&self) -> Vec<String> {
         let obstacles = [("lower", &self.data.lower), ("upper", &self.data.upper)];

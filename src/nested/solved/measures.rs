@@ -201,8 +201,7 @@ impl<const D: usize> Solved<'_, D> {
     pub fn rounding(&self) -> Option<Rounding> {
         let [cells, ..] = self.has_iterate.then(|| self.sizes())?;
         let of = (cells as usize, self.energy_norm);
-        *once(&self.rounding, || {
-            self.discretisation().rounding(self.inequality(), &self.solution, of)
-        })
+        let rounding = || self.discretisation().rounding(self.inequality(), &self.solution, of);
+        once(&self.rounding, rounding).clone()
     }
 }

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use super::Solved;
 use crate::error::Error;
-use crate::measure::Penetration;
+use crate::measure::{FoundValue, Penetration};
+use crate::problem::ValueOf;
 
 impl<const D: usize> Solved<'_, D> {
     /// The energy of the solution, by one formula for every scheme: see
@@ -54,6 +55,32 @@ impl<const D: usize> Solved<'_, D> {
             *of_all = self.system.sums([*of_all])[0];
         }
         Some(resultants)
+    }
+    /// Numbers of the solution: see [`values_of`](crate::assemble::Discretisation::values_of). None without an iterate, and
+    /// on parts of a mesh.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let mesh = Mesh::<2>::kuhn_box(&BoxDomain::centred(1.0), [8, 8])?;
+    /// let problem = Problem::new().constant_source(-1.0);
+    /// let solved = solve(&problem, &mesh, &Sipg::default())?;
+    /// let held = ValueOf::Reaction("default".to_owned());
+    /// let values = solved.values_of(&[held, ValueOf::Smallest("default".to_owned())])?;
+    /// // the sides hold the load
+    /// assert!((values[0].value.unwrap() - 4.0).abs() < 1e-8);
+    /// assert!(values[1].place.unwrap().norm() < 0.1);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::UnknownGroup`], [`Error::DataNotFinite`].
+    pub fn values_of(&self, wanted: &[ValueOf<D>]) -> Result<Vec<FoundValue<D>>, Error> {
+        match self.has_iterate && self.part().is_none() {
+            true => self.discretisation().values_of(wanted, self.inequality(), &self.solution),
+            false => Ok(vec![FoundValue { value: None, place: None }; wanted.len()]),
+        }
     }
     /// How far the solution lies beyond obstacles and gaps, between its nodes too: see
     /// [`penetration`](crate::assemble::Discretisation::penetration). None without an inequality or an iterate.

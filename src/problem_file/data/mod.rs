@@ -1,6 +1,7 @@
 //! The data of a problem file, checked on its mesh.
 
 mod check;
+mod values;
 
 use toml::de::DeTable;
 
@@ -16,7 +17,7 @@ use crate::real::Point;
 use crate::scenes::{AnyScene, Scene};
 use check::{Allowed, Checks, Entry};
 
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "name",
     "mesh",
     "box",
@@ -27,6 +28,7 @@ const KEYS: [&str; 10] = [
     "obstacle",
     "boundary",
     "exact",
+    "values",
 ];
 /// The coordinates, then the components of the normal.
 const VARIABLES: [[&str; 3]; 2] = [["x", "y", "z"], ["nx", "ny", "nz"]];
@@ -310,6 +312,7 @@ where
         has_exact: root.contains_key("exact"),
         gradient_offset: 0,
     };
+    let mut wanted = Vec::new();
     let mut fingerprints = vec![("problem", fingerprint(source.text.as_bytes()))];
     let mut paths = vec![source.path.to_owned()];
     let mut warnings = Vec::new();
@@ -344,6 +347,7 @@ where
             "obstacle" => builder.obstacles(value)?,
             "boundary" => builder.boundary(value)?,
             "exact" => builder.exact(value)?,
+            "values" => wanted = values::values(source, value)?,
             _ => {}
         }
     }
@@ -363,7 +367,7 @@ where
         |error: Error| ProblemFileError::of_file(source.path, ProblemFileErrorKind::Problem, error);
     let mesh = sample_mesh(&domain).map_err(|error| failed(error.into()))?;
     builder.put_normals(&mesh);
-    let Builder { problem, entries, conditions, gradient_offset, .. } = builder;
+    let Builder { mut problem, entries, conditions, gradient_offset, .. } = builder;
     Checks {
         source,
         problem: &problem,
@@ -373,6 +377,8 @@ where
     }
     .run(&mesh)?;
     let mesh = problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
+    values::check(source, &wanted, &mesh)?;
+    problem.values = wanted.into_iter().map(|(name, value, _)| (name, value)).collect();
     let domain = if domain.is_mesh() { mesh.into() } else { domain };
     let scene = Scene::new(name + suffix, domain, problem).into();
     Ok(ProblemFile { scene, fingerprints, paths, warnings })

@@ -131,13 +131,14 @@ impl<const D: usize> Study<'_, D> {
             ("adaptive meshes", self.adaptive.is_some()),
             ("reference", self.reference.is_some()),
             ("history", self.keeps_history),
+            ("values", !self.scene.problem.values.is_empty()),
         ];
         match asked.iter().find(|(_, is_asked)| *is_asked) {
             None => Ok(()),
             Some((parameter, _)) => Err(Error::parameter(
                 parameter,
                 "over several processes",
-                "the active set method in `f64` on uniform meshes, with errors against the exact solution, without a history",
+                "the active set method in `f64` on uniform meshes, with errors against the exact solution, without a history and values by name",
             )),
         }
     }

@@ -6,7 +6,7 @@ use super::{Progress, Study};
 use crate::inequality::ActiveSet;
 use crate::nested::{Hierarchy, NestedIteration};
 use crate::real::Precision;
-use crate::study::reference::FoundReference;
+use crate::study::reference::{FoundReference, ReferenceSolution, kinds};
 
 impl<const D: usize> Study<'_, D> {
     /// The reference on the finest mesh and its name in rows, where one is asked for. Where it cannot be had, rows have
@@ -28,7 +28,15 @@ impl<const D: usize> Study<'_, D> {
             .quadrature(self.quadrature);
         let fails = |why: &str| format!("the reference, {name}, was not found: {why}");
         Some(match nested.solve(&*reference.scheme) {
-            Ok(solved) if solved.converged() => Ok((solved, name)),
+            Ok(solved) if solved.converged() => {
+                match solved.values_of(&kinds(&reference.problem.values)) {
+                    Ok(found) => {
+                        let values = found.iter().map(|found| found.value).collect();
+                        Ok(ReferenceSolution { solved, name, values })
+                    }
+                    Err(error) => Err(fails(&error.to_string())),
+                }
+            }
             Ok(solved) => Err(fails(solved.outcome().message())),
             Err(error) => Err(fails(&error.to_string())),
         })

@@ -139,7 +139,7 @@ impl<const D: usize> Study<'_, D> {
         #[cfg(feature = "report")]
         {
             let reference = measured.reference.and_then(|found| found.as_ref().ok());
-            let reference = reference.map(|(reference, _)| reference);
+            let reference = reference.map(|found| &found.solved);
             let fields = self.fields.write((scene, &name), *level, levels, solved, reference);
             let dumped = self.inequalities.as_ref().map_or(Ok(()), |directory| {
                 let folder = directory.join(file_name(&format!("{scene}-{label}-{level}")));

@@ -1,6 +1,7 @@
 //! All levels: the tables of each scene.
 
 use super::remarks::{ReasonsGiven, warnings};
+use super::values::values_of;
 use crate::inequality::Outcome;
 use crate::study::extrapolate::{Limit, extrapolate};
 use crate::study::orders::rates::rates;
@@ -68,7 +69,7 @@ pub(crate) fn tables_of(scene: &str, rows: &[&Row]) -> Vec<Table> {
         second.remarks = limits(rows);
     }
     let third = further("several processes", of_processes(rows));
-    [Some(first), second, third].into_iter().flatten().collect()
+    [Some(first), second, third, values_of(scene, rows)].into_iter().flatten().collect()
 }
 
 /// A table without remarks.

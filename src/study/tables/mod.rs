@@ -3,13 +3,21 @@
 pub(crate) mod levels;
 pub(crate) mod remarks;
 pub(crate) mod summary;
+pub(crate) mod values;
 
 use std::fmt;
 
 use crate::study::report::Report;
+use crate::study::row::Row;
 use crate::table::{Table, WIDTH, wrapped};
 use levels::{scenes, tables_of};
 use summary::{lead, summaries};
+use values::values_of;
+
+/// The tables of values of all scenes that have any.
+pub(crate) fn values(rows: &[Row]) -> Vec<Table> {
+    scenes(rows).iter().filter_map(|(title, rows)| values_of(title, rows)).collect()
+}
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -19,12 +27,13 @@ impl fmt::Display for Report {
 
 impl Report {
     /// The summary in lines of this many characters: a sentence that says what was compared and how it ended, and for
-    /// each scene a table at the finest level of every series.
+    /// each scene a table at the finest level of every series; then the values by name.
     pub fn summary_to_text(&self, width: usize) -> String {
         if self.rows.is_empty() {
             return String::new();
         }
-        let tables = summaries(&self.rows).into_iter().map(|table| table.to_text(width));
+        let tables = summaries(&self.rows).into_iter().chain(values(&self.rows));
+        let tables = tables.map(|table| table.to_text(width));
         let lead = wrapped(&lead(&self.rows), width, 0);
         [lead].into_iter().chain(tables).collect::<Vec<_>>().join("\n")
     }

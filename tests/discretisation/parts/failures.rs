@@ -101,6 +101,17 @@ fn levels_are_refused_where_numbers_of_cells_end() {
     }
 }
 
+#[test]
+fn values_by_name_are_refused_over_parts() {
+    let results = in_process(2, |number, exchange| {
+        let mut scene = scenes::radial::<2>(1.0);
+        scene.problem = scene.problem.value("mean", ValueOf::Mean("default".to_owned()));
+        let study = Study::new(scene).scheme(ConformingP1).levels([4]);
+        study.check_on_parts(&process(number, exchange)).unwrap_err().to_string()
+    });
+    assert!(results.iter().all(|message| message.contains("values by name")), "{results:?}");
+}
+
 /// A thread that ends, by an error or by a panic, ends the exchanges of the others.
 #[test]
 fn a_part_that_ends_leaves_no_other_waiting() {

@@ -85,7 +85,7 @@ fn holds<const D: usize>(scene: &Scene<D>, schemes: &[&str], levels: &[usize], p
         }
         for rows in &of_parts[1..] {
             for (row, first) in rows.iter().zip(&of_parts[0]) {
-                assert_eq!((row.error, &row.iterations), (first.error, &first.iterations));
+                assert_eq!((&row.error, &row.iterations), (&first.error, &first.iterations));
             }
         }
     }

@@ -1,0 +1,85 @@
+//! What of a solution is a number by name: in rows of reports, and for programs.
+
+use crate::input::{excerpt, excerpts};
+use crate::mesh::{BoundaryCondition, Mesh, describe_point};
+use crate::real::Point;
+
+/// The name of all regions, and of all boundary groups.
+const ALL: &str = "default";
+
+/// A barycentric coordinate that is negative by no more than this counts as zero.
+const ROUNDING: f64 = 1e-8;
+
+/// A number that a solution has. Names are those of regions or of boundary groups; `default` stands for all of them.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ValueOf<const D: usize> {
+    /// The solution at a point: the mean over the cells that contain it.
+    At(Point<D>),
+    /// The mean over a region.
+    Mean(String),
+    /// The largest value in a region.
+    Largest(String),
+    /// The smallest value in a region.
+    Smallest(String),
+    /// The integral over a boundary group.
+    Integral(String),
+    /// The force that a Dirichlet group exerts on the body, positive in the direction of the solution.
+    Reaction(String),
+    /// The force of a contact group on the body.
+    Force(String),
+}
+
+impl<const D: usize> ValueOf<D> {
+    /// Whether a region or boundary group with these names is meant by a name.
+    pub(crate) fn is_meant(name: &str, names: &[String]) -> bool {
+        name == ALL || names.iter().any(|of| of == name)
+    }
+
+    /// Why a mesh does not have the value, in a sentence, if it does not.
+    pub(crate) fn fault(&self, mesh: &Mesh<D>) -> Option<String> {
+        let (name, condition) = match self {
+            Self::At(x) => {
+                return (!containing(mesh, x).any(|_| true)).then(|| {
+                    format!("the point {} lies outside of the domain", describe_point(x))
+                });
+            }
+            Self::Mean(name) | Self::Largest(name) | Self::Smallest(name) => {
+                let known = mesh.regions();
+                return (!known.iter().any(|names| Self::is_meant(name, names)))
+                    .then(|| unknown("region", name, known.iter().flatten()));
+            }
+            Self::Integral(name) => (name, None),
+            Self::Reaction(name) => (name, Some(BoundaryCondition::Dirichlet)),
+            Self::Force(name) => (name, Some(BoundaryCondition::Contact)),
+        };
+        let is_of_kind = |group: &usize| {
+            let own = mesh.boundary_groups()[*group].condition;
+            condition.is_none_or(|condition| own == Some(condition))
+        };
+        let names = |group: usize| &mesh.boundary_groups()[group].names;
+        let mut known = (0..mesh.boundary_groups().len()).filter(is_of_kind);
+        let kind = condition.map_or(String::new(), |of| format!("{} ", of.name()));
+        let all = known.clone().flat_map(names);
+        (!known.any(|group| Self::is_meant(name, names(group))))
+            .then(|| unknown(&format!("{kind}boundary group"), name, all))
+    }
+}
+
+/// The sentence for a name that the mesh does not have.
+fn unknown<'n>(kind: &str, name: &str, known: impl Iterator<Item = &'n String>) -> String {
+    let known = match &excerpts(known)[..] {
+        "" => "it has none with a name".to_owned(),
+        known => format!("it has {known}"),
+    };
+    format!("the mesh has no {kind} `{}`; {known}", excerpt(name))
+}
+
+/// The cells of a mesh that contain a point.
+pub(crate) fn containing<'m, const D: usize>(
+    mesh: &'m Mesh<D>,
+    x: &'m Point<D>,
+) -> impl Iterator<Item = usize> + 'm {
+    let contains = |cell: &usize| mesh.barycentric(*cell, x)[..=D].iter().all(|&l| l >= -ROUNDING);
+    (0..mesh.n_cells()).filter(contains)
+}
