@@ -190,7 +190,7 @@ fn mistakes_in_values_are_found_where_they_are() {
         ("{ mean = \"steel\" }", 14, "values.a: the mesh has no region `steel`; it has none"),
         ("{ largest = \"steel\" }", 17, "the mesh has no region `steel`"),
         ("{ smallest = 1 }", 18, "`smallest` must be a string, not 1"),
-        ("{ integral = \"lid\" }", 18, "the mesh has no boundary group `lid`; it has left, right"),
+        ("{ integral = \"lid\" }", 18, "the mesh has no boundary group `lid`; it has bottom, left"),
         (
             "{ reaction = \"top\" }",
             18,

@@ -1,11 +1,12 @@
 //! The numbers of the solution for which a file asks.
 
-use super::Done;
 use crate::mesh::Mesh;
 use crate::problem::ValueOf;
-use crate::problem_file::error::ProblemFileErrorKind;
+use crate::problem_file::error::{ProblemFileError, ProblemFileErrorKind};
 use crate::problem_file::table::{Source, Value};
 use crate::real::Point;
+
+type Done<V = ()> = Result<V, ProblemFileError>;
 
 /// What a value may be.
 const KINDS: [&str; 7] = ["at", "mean", "largest", "smallest", "integral", "reaction", "force"];
