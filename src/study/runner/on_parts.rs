@@ -34,6 +34,7 @@ impl<const D: usize> Study<'_, D> {
     /// # Errors
     /// Those of [`Study::check`].
     pub fn check_on_parts(&self, process: &Process) -> Result<(), Error> {
+        self.check_parts()?;
         self.where_exact_fails(process.count()).map(|_| ())
     }
 

@@ -34,9 +34,9 @@ pub struct Options {
     /// WOPSIP weight X / h_F^3 (P2: h_F^5), for schemes without a penalty
     #[arg(help_heading = OF_SCHEMES, long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub eta: Option<f64>,
-    /// Placement of schemes named without one; vertices by default
-    #[arg(help_heading = OF_SCHEMES, long, value_name = "PLACEMENT", default_value = "vertices", hide_default_value = true,
-        value_parser = CONSTRAINT_SETS.map(|set| set.0), hide_possible_values = true)]
+    /// Placement of schemes named without one; not on the page of help, since `--scheme NAME:PLACEMENT` says it
+    #[arg(help_heading = OF_SCHEMES, long, value_name = "PLACEMENT", default_value = "vertices",
+        value_parser = CONSTRAINT_SETS.map(|set| set.0), hide = true)]
     pub constraint: String,
     /// Solvers of the inequality, side by side; active-set by default
     #[arg(help_heading = SOLVER, long = "solver", value_delimiter = ',', value_name = "A[,B...]")]
