@@ -38,7 +38,9 @@ mod values;
 mod vectors;
 mod verdicts;
 mod vtu;
+mod vtu_grid;
 mod vtu_readers;
+mod vtu_vectors;
 mod work_precision;
 
 #[path = "../support"]

@@ -1,9 +1,7 @@
 //! Files of fields, read back: encoding, cells, points, fields on cells and on the contact boundary.
 
-use std::io::Read;
 use std::path::Path;
 
-use flate2::read::ZlibDecoder;
 use unilateral::element::{Element, P2};
 use unilateral::mesh::{BoundaryCondition, BoxDomain, Domain, GroupedFacet, Mesh};
 use unilateral::paraview::VtuFile;
@@ -15,111 +13,7 @@ use unilateral::scenes::Scene;
 use unilateral::study::file_name;
 
 use crate::support::scratch::Scratch;
-
-/// A file: its text, and the arrays that follow.
-struct Grid {
-    text: String,
-    data: Vec<u8>,
-}
-
-fn read(path: impl AsRef<Path>) -> Grid {
-    let bytes = std::fs::read(path).unwrap();
-    let start = b"<AppendedData encoding=\"raw\">\n_";
-    let at = bytes.windows(start.len()).position(|w| w == start).unwrap() + start.len();
-    let text = String::from_utf8(bytes[..at].to_vec()).unwrap();
-    assert_eq!(text.matches("<Piece").count(), 1);
-    for said in ["\"LittleEndian\"", "header_type=\"UInt64\"", "\"vtkZLibDataCompressor\""] {
-        assert!(text.contains(said), "{said}");
-    }
-    // other readers know numbers only
-    for kind in text.split("<DataArray type=\"").skip(1) {
-        let kind = kind.split('"').next().unwrap();
-        assert!(["Float64", "Int64", "UInt8"].contains(&kind), "{kind}");
-    }
-    let end = b"\n</AppendedData>\n</VTKFile>\n";
-    assert!(bytes.ends_with(end));
-    Grid { text, data: bytes[at..bytes.len() - end.len()].to_vec() }
-}
-
-/// The numbers of a header or of an array.
-fn integers(bytes: &[u8], width: usize) -> Vec<usize> {
-    let number = |b: &[u8]| b.iter().rev().fold(0, |n, &byte| n << 8 | usize::from(byte));
-    bytes.chunks(width).map(number).collect()
-}
-
-/// The array that begins here.
-fn decode(data: &[u8]) -> Vec<u8> {
-    let blocks = integers(&data[..8], 8)[0];
-    let header = integers(&data[..8 * (3 + blocks)], 8);
-    let (mut start, mut decoded) = (8 * (3 + blocks), Vec::new());
-    for (k, length) in header[3..].iter().enumerate() {
-        let before = decoded.len();
-        ZlibDecoder::new(&data[start..start + length]).read_to_end(&mut decoded).unwrap();
-        start += length;
-        let is_last = k + 1 == blocks;
-        let expected = if is_last && header[2] > 0 { header[2] } else { header[1] };
-        assert_eq!(decoded.len() - before, expected);
-    }
-    decoded
-}
-
-impl Grid {
-    /// What stands between two tags.
-    fn section(&self, name: &str) -> &str {
-        let start =
-            self.text.find(&format!("<{name}>")).or_else(|| self.text.find(&format!("<{name} ")));
-        let end = self.text.find(&format!("</{name}>")).unwrap();
-        &self.text[start.unwrap()..end]
-    }
-    fn names(&self, section: &str) -> Vec<&str> {
-        let parts = self.section(section).split("Name=\"").skip(1);
-        parts.map(|part| part.split('"').next().unwrap()).collect()
-    }
-    /// Type and bytes of an array.
-    fn bytes(&self, section: &str, name: &str) -> (&str, Vec<u8>) {
-        let (kind, _) = self.array(section, name);
-        let tag = self.section(section).split(&format!("Name=\"{name}\"")).nth(1).unwrap();
-        let offset = tag.split("offset=\"").nth(1).unwrap().split('"').next().unwrap();
-        (kind, decode(&self.data[offset.parse().unwrap()..]))
-    }
-    /// Type and text of an array.
-    fn array(&self, section: &str, name: &str) -> (&str, &str) {
-        let wanted = format!("Name=\"{name}\"");
-        let array = self.section(section).split("<DataArray").find(|a| a.contains(&wanted));
-        let array = array.unwrap_or_else(|| panic!("no {name} in {section}"));
-        let kind = array.split("type=\"").nth(1).unwrap().split('"').next().unwrap();
-        (kind, array.split('>').nth(1).unwrap().split('<').next().unwrap().trim())
-    }
-    fn floats(&self, section: &str, name: &str) -> Vec<f64> {
-        let (kind, bytes) = self.bytes(section, name);
-        assert_eq!(kind, "Float64", "{name}");
-        bytes.chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect()
-    }
-    fn integers(&self, section: &str, name: &str) -> Vec<usize> {
-        let (kind, bytes) = self.bytes(section, name);
-        integers(&bytes, if kind == "UInt8" { 1 } else { 8 })
-    }
-    /// The points of each cell.
-    fn cells(&self) -> Vec<Vec<usize>> {
-        let corners = self.integers("Cells", "connectivity");
-        let mut start = 0;
-        let of = |end: usize| corners[std::mem::replace(&mut start, end)..end].to_vec();
-        self.integers("Cells", "offsets").into_iter().map(of).collect()
-    }
-    fn points(&self) -> Vec<Point<3>> {
-        self.floats("Points", "Points").chunks(3).map(Point::from_column_slice).collect()
-    }
-    /// The measure of a cell by its vertices: length, area or volume, signed except that of a facet.
-    fn measure(&self, points: &[Point<3>], cell: &[usize], dimension: usize) -> f64 {
-        let edge = |i: usize| points[cell[i]] - points[cell[0]];
-        match dimension {
-            0 => 1.0,
-            1 => edge(1).norm(),
-            2 => edge(1).cross(&edge(2)).norm() / 2.0,
-            _ => edge(1).cross(&edge(2)).dot(&edge(3)) / 6.0,
-        }
-    }
-}
+use crate::vtu_grid::{Grid, read};
 
 fn cube<const D: usize>(lower: f64, upper: f64) -> BoxDomain<D> {
     BoxDomain::dirichlet(Point::repeat(lower), Point::repeat(upper))
@@ -460,68 +354,4 @@ fn names_of_groups_are_told_from_those_of_fields() {
         expected[facet] = 1;
         assert_eq!(grid.integers("CellData", name), expected, "{name}");
     }
-}
-
-/// The file of a problem on the unit cube.
-fn file_of<const D: usize>(problem: &Problem<D>, scheme: &NamedScheme) -> Grid {
-    let scratch = Scratch::new(&format!("vtu-flux-{D}-{}", file_name(&scheme.to_string())));
-    let mesh = Mesh::<D>::kuhn_box(&cube(0.0, 1.0), [3; D]).unwrap();
-    let path = scratch.0.join("fields.vtu");
-    solve(problem, &mesh, &*scheme.make()).unwrap().write_vtu(&path).unwrap();
-    read(&path)
-}
-
-/// Gradient and flux of a linear function with the coefficient two are exact, and the flux through the boundary is the
-/// load.
-fn writes_fluxes<const D: usize>() {
-    let slope = Point::<D>::from_fn(|k, _| 1.0 + k as f64);
-    let linear = Problem::new().coefficient(|_| 2.0).dirichlet(move |x| slope.dot(x) - 7.0);
-    for scheme in NamedScheme::list(["p1", "p2", "cr", "sipg", "sipg-p2"]).unwrap() {
-        let grid = file_of(&linear, &scheme);
-        let is_cell: Vec<bool> =
-            grid.integers("CellData", "dimension").iter().map(|&d| d == D).collect();
-        for (name, factor) in [("gradient", 1.0), ("flux", 2.0)] {
-            let vectors = grid.floats("CellData", name);
-            assert_eq!(vectors.len(), 3 * is_cell.len());
-            for (found, is_cell) in vectors.chunks(3).zip(&is_cell) {
-                let expected = |k: usize| if k < D { factor * slope[k] } else { 0.0 };
-                let near = |k: usize| (found[k] - expected(k)).abs() < 1e-9;
-                assert!(
-                    if *is_cell { (0..3).all(near) } else { found[0].is_nan() },
-                    "{name} {found:?}"
-                );
-            }
-        }
-        let is_linear = !scheme.to_string().contains("p2");
-        assert_eq!(grid.names("PointData").contains(&"recovered_gradient"), is_linear);
-        if is_linear {
-            let vectors = grid.floats("PointData", "recovered_gradient");
-            assert_eq!(vectors.len(), 3 * grid.points().len());
-            assert!(vectors.chunks(3).all(|x| (x[D - 1] - slope[D - 1]).abs() < 1e-9));
-        }
-        let loaded = file_of::<D>(&Problem::new().constant_source(3.0), &scheme);
-        let (points, through) = (loaded.points(), loaded.floats("CellData", "normal_flux"));
-        let facets = loaded.cells().into_iter().zip(through).filter(|(_, q)| !q.is_nan());
-        let total: f64 = facets.map(|(cell, q)| q * loaded.measure(&points, &cell, D - 1)).sum();
-        assert!((total + 3.0).abs() < 1e-9, "{scheme}: {total}");
-    }
-}
-
-#[test]
-fn files_have_gradients_and_fluxes() {
-    writes_fluxes::<1>();
-    writes_fluxes::<2>();
-    writes_fluxes::<3>();
-}
-
-#[test]
-fn vectors_of_the_wrong_length_are_refused_by_name() {
-    let mesh = Mesh::<2>::kuhn_box(&cube::<2>(0.0, 1.0), [1, 1]).unwrap();
-    let (u, vectors) = ([1.0; 6], [Point::zeros(); 3]);
-    let path = Path::new("nowhere/fields.vtu");
-    let said = |file: VtuFile<'_, 2>| file.write(path).unwrap_err().to_string();
-    let wrong = said(VtuFile::new(&mesh, &u).vectors_on_cells("flux", &vectors));
-    assert!(wrong.ends_with("field flux has 3 values, the mesh needs 2"), "{wrong}");
-    let wrong = said(VtuFile::new(&mesh, &u).vectors_at_vertices("slope", &vectors));
-    assert!(wrong.ends_with("field slope has 3 values, the mesh needs 4"), "{wrong}");
 }
