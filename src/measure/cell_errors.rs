@@ -50,9 +50,8 @@ struct InCell<'c, const D: usize> {
     volume: f64,
     /// The gradients of the barycentric coordinates.
     gradients: [Point<D>; 4],
-    /// The values of the discrete function at its `n_unknowns` unknowns, if its error is measured.
+    /// The unknowns of the discrete function, if its error is measured.
     discrete: Option<[f64; MAX_BASIS]>,
-    n_unknowns: usize,
     /// The admissible function, if its error is measured.
     admissible: Option<Admissible<'c, D>>,
     /// The diffusion coefficient in the energy norm of the discrete function, where it is constant in the cell.
@@ -77,7 +76,6 @@ impl<const D: usize> InCell<'_, D> {
         let gradient = self.exact.gradient(self.cell, x);
         let reaction = self.reaction.map_or(0.0, |c| c.at(x));
         if let Some(discrete) = &self.discrete {
-            let discrete = &discrete[..self.n_unknowns];
             let square = (basis.gradient(discrete, &self.gradients) - gradient).norm_squared();
             let of_value = (basis.value(discrete) - value).powi(2);
             let alpha = self.varying.map_or(self.alpha, |alpha| alpha.at(x));
@@ -162,7 +160,6 @@ impl<const D: usize> Space<'_, D> {
             volume: geometry.volume,
             gradients: array_of(|k| gradient(k).unwrap_or_else(Point::zeros)),
             discrete: of.u.map(|u| self.local_values(cell, u)),
-            n_unknowns: self.per_cell(),
             admissible: of.function.map(|function| function(cell)),
             alpha: self.alpha(cell),
             varying: coefficient.filter(|_| self.varying_in(cell).is_some()),

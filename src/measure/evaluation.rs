@@ -58,10 +58,8 @@ impl<const D: usize> Space<'_, D> {
         basis.value(&local) + self.body_constants.of_cell(cell)
     }
     fn value_at(&self, u: &[f64], x: &Point<D>) -> Option<f64> {
-        let contains = |&cell: &usize| {
-            self.mesh.barycentric(cell, x)[..=D].iter().all(|&lambda| lambda >= -ROUNDING)
-        };
-        (0..self.mesh.n_cells()).find(contains).map(|cell| self.value_in(u, cell, x))
+        let mut cells = self.mesh.cells_containing(x, ROUNDING);
+        cells.next().map(|cell| self.value_in(u, cell, x))
     }
 }
 

@@ -178,7 +178,7 @@ impl<const D: usize> Space<'_, D> {
         for (point, basis) in points {
             let x = in_space(point, &corners);
             let bound = finite(self.at(datum, cell, &x), DATA[k], &x, cell)?;
-            found.add(k, basis.value(&values[..self.per_cell()]), bound);
+            found.add(k, basis.value(&values), bound);
         }
         Ok(())
     }

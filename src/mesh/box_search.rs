@@ -50,6 +50,18 @@ impl<const D: usize> BoxSearch<D> {
 }
 
 impl<const D: usize> Mesh<D> {
+    /// The cells that contain a point, whose barycentric coordinates are at least minus `rounding` there; all cells are
+    /// looked at.
+    pub(crate) fn cells_containing(
+        &self,
+        x: &Point<D>,
+        rounding: f64,
+    ) -> impl Iterator<Item = usize> {
+        let contains = move |&cell: &usize| {
+            self.barycentric(cell, x)[..=D].iter().all(|&lambda| lambda >= -rounding)
+        };
+        (0..self.n_cells()).filter(contains)
+    }
     /// The search for the cells near a point, by boxes that are larger than the cells by a share of their sizes.
     pub(crate) fn cell_search(&self, share: f64) -> BoxSearch<D> {
         let around = |cell: usize| {

@@ -173,11 +173,11 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     /// # Errors
     /// [`Error::Write`].
     pub fn write_list(&self, path: &Path, parts: &[PathBuf]) -> Result<(), Error> {
-        let typed = |kind: &str, name: &str| {
-            format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escaped(name))
+        let typed = |kind: &str, name: &str, components: &str| {
+            format!("<PDataArray type=\"{kind}\" Name=\"{}\"{components}/>\n", escaped(name))
         };
-        let array = |name: &str| typed("Float64", name);
-        let vector = |name: &str| array(name).replace("/>", " NumberOfComponents=\"3\"/>");
+        let array = |name: &str| typed("Float64", name, "");
+        let vector = |name: &str| typed("Float64", name, " NumberOfComponents=\"3\"");
         let functions = self.functions.iter().map(|(name, _)| *name);
         let of_points = functions.chain(self.exact.as_ref().map(|_| "error")).chain(["u"]);
         let mut of_points: String = of_points.map(array).collect();
@@ -190,7 +190,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         }
         let names = ["dimension".to_owned()].into_iter();
         let names = names.chain(self.groups().into_iter().map(|(name, _)| name));
-        of_cells.extend(names.map(|name| typed("UInt8", &name)));
+        of_cells.extend(names.map(|name| typed("UInt8", &name, "")));
         let directory = path.parent().unwrap_or(Path::new(""));
         let source =
             |part: &PathBuf| format!("<Piece Source=\"{}\"/>\n", relative_to(directory, part));
@@ -371,7 +371,7 @@ fn push_floats(
     to.push("Float64", &escaped(name), 1, &doubles(values))
 }
 
-/// Vectors have three components, missing ones zero.
+/// Adds an array of vectors with three components, missing ones zero.
 fn push_vectors<const D: usize>(
     to: &mut Arrays,
     name: &str,

@@ -6,7 +6,6 @@ use std::sync::{Arc, OnceLock};
 
 use num_traits::Zero;
 
-use crate::arrays::array_of;
 use crate::element::{Element, MAX_BASIS};
 use crate::mesh::{BoxSearch, Mesh};
 use crate::parallel::once;
@@ -85,7 +84,7 @@ impl<const D: usize> DiscreteFunction<D> {
     }
     /// The gradient at the barycentre of each cell; up to degree two the mean over the cell.
     pub fn cell_gradients(&self) -> Vec<Point<D>> {
-        let barycentre = array_of(|k| if k <= D { 1.0 / (D + 1) as f64 } else { 0.0 });
+        let barycentre = [1.0 / (D + 1) as f64; 4];
         collect(self.cells.mesh.n_cells(), |cell| self.gradient(cell, &barycentre))
     }
     /// The mean of what the cells have that contain a point.

@@ -34,8 +34,8 @@ pub use discrete_function::DiscreteFunction;
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
 pub use given::Given;
 pub(crate) use on_mesh::{DataByGroup, DataOnMesh};
+pub(crate) use values::ROUNDING;
 pub use values::ValueOf;
-pub(crate) use values::containing;
 
 use std::collections::BTreeMap;
 use std::fmt;

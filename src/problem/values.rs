@@ -1,4 +1,4 @@
-//! What of a solution is a number by name: in rows of reports, and for programs.
+//! Numbers of a solution for which a problem asks by name.
 
 use crate::input::{excerpt, excerpts};
 use crate::mesh::{BoundaryCondition, Mesh, describe_point};
@@ -8,7 +8,7 @@ use crate::real::Point;
 const ALL: &str = "default";
 
 /// A barycentric coordinate that is negative by no more than this counts as zero.
-const ROUNDING: f64 = 1e-8;
+pub(crate) const ROUNDING: f64 = 1e-8;
 
 /// A number that a solution has. Names are those of regions or of boundary groups; `default` stands for all of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl<const D: usize> ValueOf<D> {
     pub(crate) fn fault(&self, mesh: &Mesh<D>) -> Option<String> {
         let (name, condition) = match self {
             Self::At(x) => {
-                return (!containing(mesh, x).any(|_| true)).then(|| {
+                return mesh.cells_containing(x, ROUNDING).next().is_none().then(|| {
                     format!("the point {} lies outside of the domain", describe_point(x))
                 });
             }
@@ -73,13 +73,4 @@ fn unknown<'n>(kind: &str, name: &str, known: impl Iterator<Item = &'n String>) 
         known => format!("it has {known}"),
     };
     format!("the mesh has no {kind} `{}`; {known}", excerpt(name))
-}
-
-/// The cells of a mesh that contain a point.
-pub(crate) fn containing<'m, const D: usize>(
-    mesh: &'m Mesh<D>,
-    x: &'m Point<D>,
-) -> impl Iterator<Item = usize> + 'm {
-    let contains = |cell: &usize| mesh.barycentric(*cell, x)[..=D].iter().all(|&l| l >= -ROUNDING);
-    (0..mesh.n_cells()).filter(contains)
 }

@@ -51,7 +51,7 @@ pub enum ProblemFileErrorKind {
     WrongType,
     /// An expression cannot be read.
     Expression,
-    /// A constant has a name or a value that it cannot have, or there is none of a name that a caller sets.
+    /// The name or the value of a constant is not allowed, or a caller sets a constant that the file does not have.
     Constant,
     /// A number or expression has a value that the datum cannot have.
     Value,

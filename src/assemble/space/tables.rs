@@ -11,6 +11,8 @@ pub(crate) type Derivatives = [[f64; 4]; MAX_BASIS];
 /// Values and derivatives of all basis functions at one point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BasisAt {
+    /// The number of basis functions: there is room for those of the largest element.
+    n: usize,
     pub values: [f64; MAX_BASIS],
     pub derivatives: Derivatives,
 }
@@ -18,15 +20,16 @@ pub(crate) struct BasisAt {
 impl BasisAt {
     /// The basis of an element at a point of the cell.
     pub fn new<const D: usize>(element: &dyn Element<D>, point: &[f64; 4]) -> Self {
-        let (mut basis, n) = (Self::zero(), element.per_cell());
+        let n = element.per_cell();
+        let mut basis = Self::zero(n);
         element.values(&point[..=D], &mut basis.values[..n]);
         element.derivatives(&point[..=D], &mut basis.derivatives[..n]);
         basis
     }
     /// The function with these coefficients.
     #[inline(always)]
-    pub fn value(&self, coefficients: &[f64]) -> f64 {
-        coefficients.iter().zip(&self.values).map(|(c, v)| c * v).sum()
+    pub fn value(&self, coefficients: &[f64; MAX_BASIS]) -> f64 {
+        coefficients.iter().zip(&self.values[..self.n]).map(|(c, v)| c * v).sum()
     }
     /// The gradient of the function with these coefficients, from the gradients of the barycentric coordinates.
     #[inline(always)]
@@ -37,14 +40,14 @@ impl BasisAt {
     ) -> Point<D> {
         let mut gradient = Point::zeros();
         for (k, of_coordinate) in of_coordinates.iter().enumerate().take(D + 1) {
-            let terms = coefficients.iter().zip(&self.derivatives);
+            let terms = coefficients.iter().zip(&self.derivatives[..self.n]);
             let slope: f64 = terms.map(|(c, d)| c * d[k]).sum();
             gradient += of_coordinate * slope;
         }
         gradient
     }
-    fn zero() -> Self {
-        Self { values: [0.0; MAX_BASIS], derivatives: [[0.0; 4]; MAX_BASIS] }
+    fn zero(n: usize) -> Self {
+        Self { n, values: [0.0; MAX_BASIS], derivatives: [[0.0; 4]; MAX_BASIS] }
     }
     fn add(&mut self, weight: f64, other: &Self) {
         for i in 0..MAX_BASIS {
@@ -87,14 +90,14 @@ impl FacetTable {
         let polynomials = OrthonormalPolynomials::new(D - 1, degree);
         let rule = Rule::new(D - 1, degree + basis_degree);
         let moment = |local: usize, k: usize| {
-            let mut moment = BasisAt::zero();
+            let mut moment = BasisAt::zero(element.per_cell());
             for (point, w) in rule.iter() {
                 let basis = BasisAt::new(element, &facet_to_cell(point, local));
                 moment.add(w * polynomials.value(k, point), &basis);
             }
             // derivatives have no moments of the element's own degree: what is left is rounding
             if polynomials.degree(k) >= basis_degree {
-                moment.derivatives = BasisAt::zero().derivatives;
+                moment.derivatives = [[0.0; 4]; MAX_BASIS];
             }
             moment
         };

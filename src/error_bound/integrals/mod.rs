@@ -249,7 +249,7 @@ impl<const D: usize> Space<'_, D> {
             reaction_from_below,
             ..CellIntegrals::default()
         };
-        let (admissible, values) = (&data.admissible, &data.values[..self.per_cell()]);
+        let admissible = &data.admissible;
         let cut = cut.zip(data.source.and_then(|f| f.level()));
         self.visit_points(cell, table, cut, |point, x, weight, basis| {
             let weight = weight * data.volume;
@@ -258,9 +258,10 @@ impl<const D: usize> Space<'_, D> {
             let (value, gradient) = admissible.at(point, x);
             let q = data.flux.at(point, x);
             sums.mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
-            let discrete = basis.value(values);
+            let discrete = basis.value(&data.values);
             sums.from_values += weight * reaction * (discrete - value).powi(2);
-            let slope = data.slope.unwrap_or_else(|| basis.gradient(values, &admissible.gradients));
+            let slope =
+                data.slope.unwrap_or_else(|| basis.gradient(&data.values, &admissible.gradients));
             sums.distance += weight * alpha * (gradient - slope).norm_squared();
             let from_midpoint = (gradient * alpha + q) * 0.5 - slope * alpha;
             sums.from_midpoint += weight * from_midpoint.norm_squared() / alpha;

@@ -1,5 +1,7 @@
 //! The largest value of a function that is quadratic in cells.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::{FoundValue, InCells};
 use crate::assemble::space::Space;
 use crate::measure::penetration::middle;
@@ -77,32 +79,17 @@ fn largest_in_simplex(dimension: usize, values: &[f64]) -> (f64, [f64; 4]) {
 }
 
 /// Where `l.H l / 2 - g.l` is stationary among the points with these barycentric coordinates only, if all are positive:
-/// by elimination in `H l - mu = g`, `sum l = 1`.
+/// the solution of `H l - mu = g`, `sum l = 1`.
 fn stationary(vertices: &[usize], h: &[[f64; 4]; 4], g: &[f64]) -> Option<[f64; 4]> {
     let n = vertices.len();
-    let mut rows = [[0.0; 6]; 5];
-    for (row, &k) in rows.iter_mut().zip(vertices) {
-        vertices.iter().enumerate().for_each(|(c, &j)| row[c] = h[k][j]);
-        (row[n], row[5]) = (-1.0, g[k]);
-    }
-    rows[n][..n].fill(1.0);
-    rows[n][5] = 1.0;
-    for column in 0..=n {
-        let size = |row: usize| rows[row][column].abs();
-        let pivot = (column..=n).max_by(|&a, &b| size(a).total_cmp(&size(b)))?;
-        rows.swap(column, pivot);
-        let of_pivot = rows[column];
-        if of_pivot[column] == 0.0 {
-            return None;
-        }
-        for (_, row) in rows.iter_mut().take(n + 1).enumerate().filter(|(k, _)| *k != column) {
-            let factor = row[column] / of_pivot[column];
-            row.iter_mut().zip(of_pivot).for_each(|(entry, of)| *entry -= factor * of);
-        }
-    }
+    let matrix = DMatrix::from_fn(n + 1, n + 1, |row, column| match (row < n, column < n) {
+        (true, true) => h[vertices[row]][vertices[column]],
+        (true, false) => -1.0,
+        (false, is_coordinate) => f64::from(u8::from(is_coordinate)),
+    });
+    let right = DVector::from_fn(n + 1, |row, _| if row < n { g[vertices[row]] } else { 1.0 });
+    let solution = matrix.lu().solve(&right)?;
     let mut point = [0.0; 4];
-    for (k, &vertex) in vertices.iter().enumerate() {
-        point[vertex] = rows[k][5] / rows[k][k];
-    }
+    vertices.iter().zip(&solution).for_each(|(&vertex, x)| point[vertex] = *x);
     vertices.iter().all(|&k| point[k] > 0.0 && point[k].is_finite()).then_some(point)
 }

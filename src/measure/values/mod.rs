@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryCondition, HalfFacet};
-use crate::problem::{ValueOf, containing};
+use crate::problem::{ROUNDING, ValueOf};
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
 
@@ -161,7 +161,7 @@ impl<const D: usize> Space<'_, D> {
         match of {
             ValueOf::At(x) => {
                 let (mut sum, mut count) = (0.0, 0.0);
-                for cell in containing(self.mesh, x) {
+                for cell in self.mesh.cells_containing(x, ROUNDING) {
                     sum += (function.value)(cell, &self.mesh.barycentric(cell, x));
                     count += 1.0;
                 }

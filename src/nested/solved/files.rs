@@ -7,7 +7,6 @@ use crate::error::{Error, write_error};
 use crate::instances::compiled;
 use crate::measure::Fields;
 use crate::mesh::{HalfFacet, Layers};
-use crate::parallel::vectors::collect;
 use crate::paraview::VtuFile;
 use crate::problem::DataOnMesh;
 use crate::real::Point;
@@ -50,8 +49,8 @@ impl<const D: usize> Solved<'_, D> {
     /// problems `gradient`, the mean of that of `u`. The flux balances load, multiplier and forces in each cell and on each
     /// facet; the coefficient times the gradient does not. Linear functions on whole meshes have as point data
     /// `recovered_gradient` ([`DiscreteFunction::recovered_gradient`](crate::problem::DiscreteFunction::recovered_gradient)).
-    /// The facets of the boundary are further cells, of `dimension` `D - 1`. Those of the contact boundary have `pressure` and `gap` of these
-    /// fields and `contact`, which is one on facets in contact as a whole; the integral of `pressure` over them is the
+    /// The facets of the boundary are further cells, of `dimension` `D - 1`. Those of the contact boundary have
+    /// `pressure` and `gap` of these fields and `contact`, which is one on facets in contact as a whole; the integral of `pressure` over them is the
     /// total contact force. Each region and each boundary group is an array called by its name, one in the group and
     /// zero elsewhere.
     ///
@@ -116,21 +115,11 @@ impl<const D: usize> Solved<'_, D> {
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };
-        let (bound, flux, normal_flux) = self.bound_fields();
-        let function = self.function().expect("there are fields, hence an iterate");
-        let recovered = match function.degree() == 1 && self.part().is_none() {
-            true => function.recovered_gradient(),
-            false => Vec::new(),
-        };
+        let gradients = self.gradient_fields();
         let u = fields.values_by_cell(D);
         let in_contact = in_contact(&fields);
-        let [u, bound, multiplier, contact] =
-            [u, bound, fields.multiplier, fields.contact].map(|values| self.of_own_cells(values));
-        let [gradient, flux] =
-            [function.cell_gradients(), flux].map(|values| self.of_own_cells(values));
-        let boundary = self.boundary_facets();
-        let normal_flux = self.of_own_facets(&boundary, normal_flux);
-        let boundary = self.own_facets(boundary);
+        let [u, multiplier, contact] =
+            [u, fields.multiplier, fields.contact].map(|values| self.of_own_cells(values));
         let [pressure, gap, in_contact] = [fields.pressure, fields.gap, in_contact]
             .map(|values| self.of_own_facets(&fields.contact_boundary, values));
         let facets = self.own_facets(fields.contact_boundary);
@@ -148,15 +137,7 @@ impl<const D: usize> Solved<'_, D> {
                 bound.of(mesh.region(cell)).map_or(f64::NAN, |bound| bound.in_cell(mesh, cell, x))
             });
         }
-        if !bound.is_empty() {
-            file = file.on_cells("bound", &bound);
-            file = file.vectors_on_cells("flux", &flux);
-            file = file.on_facets("normal_flux", &boundary, &normal_flux);
-        }
-        file = file.vectors_on_cells("gradient", &gradient);
-        if !recovered.is_empty() {
-            file = file.vectors_at_vertices("recovered_gradient", &recovered);
-        }
+        file = gradients.add_to(file);
         match (reference.filter(|r| r.has_iterate).zip(self.hierarchy), &problem.exact) {
             (Some((reference, (_, own))), _) => {
                 file =
@@ -181,35 +162,20 @@ impl<const D: usize> Solved<'_, D> {
         list.map_or(Ok(()), |(list, pieces)| file.write_list(list, pieces))
     }
 
-    /// What files have of the bound: the shares of the cells, the means of the flux in cells and, on the facets of the
-    /// boundary, those of its normal component. Empty without a bound.
-    fn bound_fields(&self) -> (Vec<f64>, Vec<Point<D>>, Vec<f64>) {
-        let Ok((pair, bound, _)) = self.pair_and_bound() else { return Default::default() };
-        let (mesh, flux) = (self.mesh(), &pair.flux);
-        let means = collect(mesh.n_cells(), |cell| flux.mean_in(mesh, cell));
-        let normal = |(cell, local): HalfFacet| {
-            flux.through(cell, local) / mesh.geometry(cell).facet_measure(local)
-        };
-        (bound.cells.clone(), means, self.boundary_facets().into_iter().map(normal).collect())
-    }
-    /// The facets of the boundary, as cell and number in the cell.
-    fn boundary_facets(&self) -> Vec<HalfFacet> {
-        self.mesh().boundary().iter().map(|f| (f.cell as usize, f.local.into())).collect()
-    }
     /// What own cells have, from values by cell. The file of a part has the own cells in their order.
-    fn of_own_cells<V: Clone>(&self, values: Vec<V>) -> Vec<V> {
+    pub(super) fn of_own_cells<V: Clone>(&self, values: Vec<V>) -> Vec<V> {
         let Some(part) = self.part().filter(|_| !values.is_empty()) else { return values };
         let by_cell = values.chunks_exact(values.len() / part.owners.len()).enumerate();
         by_cell.filter(|(cell, _)| part.owns(*cell)).flat_map(|(_, own)| own).cloned().collect()
     }
     /// The numbers of the facets of own cells, from numbers by facet.
-    fn of_own_facets(&self, facets: &[HalfFacet], values: Vec<f64>) -> Vec<f64> {
+    pub(super) fn of_own_facets(&self, facets: &[HalfFacet], values: Vec<f64>) -> Vec<f64> {
         let Some(part) = self.part() else { return values };
         let by_facet = facets.iter().zip(values);
         by_facet.filter(|((cell, _), _)| part.owns(*cell)).map(|(_, value)| value).collect()
     }
     /// The facets of own cells, each with the number of its cell among own cells.
-    fn own_facets(&self, facets: Vec<HalfFacet>) -> Vec<HalfFacet> {
+    pub(super) fn own_facets(&self, facets: Vec<HalfFacet>) -> Vec<HalfFacet> {
         let Some(part) = self.part() else { return facets };
         let own: Vec<usize> = (0..part.owners.len()).filter(|&cell| part.owns(cell)).collect();
         let number = |(cell, local)| Some((own.binary_search(&cell).ok()?, local));

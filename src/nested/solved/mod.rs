@@ -2,6 +2,8 @@
 
 #[cfg(feature = "report")]
 mod files;
+#[cfg(feature = "report")]
+mod gradient_fields;
 mod kept;
 mod measures;
 mod totals;

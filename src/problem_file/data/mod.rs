@@ -7,6 +7,7 @@ use toml::de::DeTable;
 
 use super::contents::ProblemFile;
 use super::error::{ProblemFileError, ProblemFileErrorKind};
+use super::expression::VARIABLES;
 use super::table::{Formula, Place, Source, Value};
 use crate::arrays::array_of;
 use crate::error::Error;
@@ -30,8 +31,6 @@ const KEYS: [&str; 11] = [
     "exact",
     "values",
 ];
-/// The coordinates, then the components of the normal.
-const VARIABLES: [[&str; 3]; 2] = [["x", "y", "z"], ["nx", "ny", "nz"]];
 /// The group of cells in no group with data.
 const DEFAULT: &str = "default";
 /// The data that may be given with a level, where they jump.

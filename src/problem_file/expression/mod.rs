@@ -19,7 +19,7 @@ use winnow::prelude::*;
 
 use crate::real::Point;
 use grammar::{Left, sum};
-pub(super) use names::{Names, use_of_name};
+pub(super) use names::{Names, VARIABLES, use_of_name};
 use names::{SyntaxError, resolve};
 use node::Node;
 

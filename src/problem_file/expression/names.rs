@@ -20,8 +20,8 @@ pub(crate) struct Names<'n> {
     pub below: &'n [String],
 }
 
-/// The coordinates and the components of the normal in every dimension.
-const COORDINATES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
+/// The coordinates, then the components of the normal.
+pub(crate) const VARIABLES: [[&str; 3]; 2] = [["x", "y", "z"], ["nx", "ny", "nz"]];
 
 /// Why a constant of a file cannot have this name, if it cannot.
 pub(crate) fn use_of_name(name: &str) -> Option<&'static str> {
@@ -29,7 +29,7 @@ pub(crate) fn use_of_name(name: &str) -> Option<&'static str> {
     let starts = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     let of_two = FUNCTIONS_OF_TWO.iter().chain(&FUNCTIONS_OF_MANY).map(|(name, _)| *name);
     let mut functions = FUNCTIONS.iter().map(|(name, _)| *name).chain(of_two).chain(["if"]);
-    if COORDINATES.contains(&name) {
+    if VARIABLES.concat().contains(&name) {
         Some("that is a coordinate")
     } else if CONSTANTS.iter().any(|(known, _)| *known == name) {
         Some("every expression has this number")

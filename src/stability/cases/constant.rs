@@ -41,7 +41,8 @@ fn with_constant(constant: f64) -> Scene<2> {
     scene
 }
 
-/// The largest difference between the solution less the constant and the one without a constant, where both converged.
+/// The largest difference between the solution of the shifted data less the constant and that of the data as they are, in
+/// units of rounding of the constant; none unless both converged.
 fn difference(at: &At<'_>) -> Option<f64> {
     let (with, without, constant) = (at.values()?, at.first().values()?, at.value()?);
     let apart = |(a, b): (&f64, &f64)| (a + constant - b).abs();

@@ -21,15 +21,17 @@ pub(crate) fn values_of(title: &str, rows: &[&Row]) -> Option<Table> {
     columns.extend(["limit", "order"]);
     columns.extend(has_places.then_some("place"));
     table.columns = columns.into_iter().map(str::to_owned).collect();
-    let series = series_of(rows);
+    let series: Vec<_> = series_of(rows)
+        .into_iter()
+        .map(|series| (extrapolate(&series.rows).pop(), series))
+        .collect();
     let mut names: Vec<&String> = rows.iter().flat_map(|row| row.values.keys()).collect();
     names.sort_unstable();
     names.dedup();
     for name in names {
-        for series in &series {
+        for (limits, series) in &series {
             let Some(row) = series.rows.last() else { continue };
-            let limits = extrapolate(&series.rows).pop();
-            let limit = limits.and_then(|found| *found.values.get(name)?);
+            let limit = limits.as_ref().and_then(|found| *found.values.get(name)?);
             let words = |text: &str| Cell::Words(text.to_owned());
             let mut cells = vec![words(name), words(&series.name), Cell::whole(Some(row.level))];
             cells.push(Cell::digits(row.values.get(name).copied().flatten(), 6));

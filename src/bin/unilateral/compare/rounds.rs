@@ -43,7 +43,7 @@ pub fn work<'r>(options: &'r Options, report: &'r Report) -> WorkPrecision<'r> {
 /// Whether every run converged.
 pub fn run(chosen: Chosen, options: &Options, watcher: &Watcher, count: usize) -> Request<bool> {
     let Chosen { scenes, schemes, solvers, fingerprints: files, inputs } = chosen;
-    let rounds = Rounds::new(count).limit(options.limit);
+    let rounds = (Rounds::new(count).limit(options.limit), count);
     let names = (&schemes[..], &solvers[..]);
     let mut runs = Vec::new();
     for scene in scenes {
@@ -100,7 +100,7 @@ fn prepare<'a, const D: usize>(
     options: &'a Options,
     (schemes, solvers): (&[NamedScheme], &[String]),
     watcher: &'a Watcher,
-    rounds: Rounds,
+    (rounds, count): (Rounds, usize),
 ) -> Request<Option<Run<'a>>> {
     let asked = &options.asked;
     let place = asked.place(&scene.name);
@@ -131,7 +131,7 @@ fn prepare<'a, const D: usize>(
         ));
     }
     let keys: Vec<_> = studies.iter().flat_map(Study::keys).collect();
-    for _ in 0..options.rounds.unwrap_or(1) + usize::from(asked.reference.is_some()) {
+    for _ in 0..count + usize::from(asked.reference.is_some()) {
         watcher.expect(D, scene.domain.is_mesh(), keys.iter().map(|key| key.level));
     }
     let labels = keys.into_iter().map(|key| key.label).collect();
