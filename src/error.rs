@@ -30,7 +30,7 @@ pub enum Error {
     /// A datum is not a finite number at a point where it is evaluated.
     #[error("{0}")]
     DataNotFinite(InCell),
-    /// A diffusion coefficient is not positive.
+    /// A diffusion coefficient is not positive, or the coefficient of a Robin side is negative.
     #[error("{0}")]
     CoefficientNotPositive(InCell),
     /// Two constraints leave no admissible value.
@@ -128,7 +128,7 @@ pub struct InCell {
 impl InCell {
     /// A value of a datum that is not allowed, at a point of a cell.
     pub(crate) fn value<const D: usize>(
-        (datum, value): (&str, f64),
+        (datum, value): (&str, impl Display),
         at: &Point<D>,
         cell: usize,
         rest: &'static str,

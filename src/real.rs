@@ -125,6 +125,8 @@ impl Real for f32 {
 
 /// A point or vector of `D`-dimensional space.
 pub type Point<const D: usize> = nalgebra::SVector<f64, D>;
+/// A matrix of `D`-dimensional space.
+pub type Matrix<const D: usize> = nalgebra::SMatrix<f64, D, D>;
 
 /// The ends of the smallest box around points; zero without any.
 pub(crate) fn box_around<'p, const D: usize>(

@@ -185,7 +185,7 @@ impl<const D: usize> Space<'_, D> {
                 let (mut integrals, measure) = ([0.0; 3], self.facet_measure(facet));
                 for (k, rule) in rules.iter().enumerate() {
                     for (point, weight) in rule.iter() {
-                        let flux = self.neumann_at(facet, group, point)?;
+                        let flux = self.neumann_at(facet, group, point, None)?;
                         add(&mut integrals, k, weight * measure * flux);
                     }
                 }

@@ -112,8 +112,12 @@ impl FacetCoefficients {
                         (out[1], out[2]) = if space.varies_at(facet.here, facet.there) {
                             (average_weight, 1.0 - average_weight)
                         } else {
-                            let of = |is_here| flux_weight(&of_facet, average_weight, is_here);
-                            (of(true), of(false))
+                            let of = |side, is_here| {
+                                let of_normal = space.normal_component(side);
+                                flux_weight(&of_facet, average_weight, (is_here, of_normal))
+                            };
+                            let there = facet.there.unwrap_or(facet.here);
+                            (of(facet.here, true), of(there, false))
                         };
                     }
                 }

@@ -155,7 +155,7 @@ impl<const D: usize> Space<'_, D> {
             let ((cell, local), measure) = (facet, self.facet_measure(facet));
             let out = &mut load[cell * n..(cell + 1) * n];
             for (point, weight) in self.facet_rule.iter() {
-                let flux = weight * measure * self.neumann_at(facet, group, point)?;
+                let flux = weight * measure * self.neumann_at(facet, group, point, None)?;
                 let basis = self.basis_at(&facet_to_cell(point, local));
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
                     *out += flux * phi;
@@ -165,14 +165,21 @@ impl<const D: usize> Space<'_, D> {
         Ok(())
     }
 
-    /// The Neumann datum at a point of a facet.
+    /// The Neumann datum at a point of a facet; on a Robin side `k (g - u)` with a discrete function, zero without one.
     pub fn neumann_at(
         &self,
         (cell, local): HalfFacet,
         group: usize,
         point: &[f64; 4],
+        u: Option<&[f64]>,
     ) -> Result<f64, Error> {
         let x = self.facet_point(point, cell, local);
+        if let Some(side) = self.data.robin.of(group) {
+            let basis = || self.basis_at(&facet_to_cell(point, local));
+            let own = u.map_or(0.0, |u| basis().value(&self.local_values(cell, u)));
+            let [coefficient, value] = side.data().map(|datum| self.at(datum, cell, &x));
+            return checks::finite(coefficient * (value - own), "robin", &x, cell);
+        }
         let flux = match (self.data.neumann.of(group), &self.problem.exact) {
             (Some(q), _) => q.at(&x, &self.mesh.geometry(cell).normal(local)),
             (None, Some(exact)) => self.exact_flux(exact, (cell, local), point),
@@ -181,13 +188,26 @@ impl<const D: usize> Space<'_, D> {
         checks::finite(flux, "neumann", &x, cell)
     }
 
+    /// The integral of the Neumann datum over a facet, on a Robin side with the discrete function.
+    pub fn neumann_flux(&self, facet: HalfFacet, group: usize, u: &[f64]) -> Result<f64, Error> {
+        let measure = self.facet_measure(facet);
+        let mut sum = 0.0;
+        for (point, weight) in self.facet_rule.iter() {
+            sum += weight * measure * self.neumann_at(facet, group, point, Some(u))?;
+        }
+        Ok(sum)
+    }
+
     /// The normal flux of an exact solution at a point of a facet.
     pub fn exact_flux(&self, exact: &Exact<D>, (cell, local): HalfFacet, point: &[f64; 4]) -> f64 {
         let x = self.facet_point(point, cell, local);
         let middle = [1.0 / (D + 1) as f64; 4];
         let inward = x + (self.cell_point(&middle, cell) - x) * INWARD;
         self.alpha_at(cell, &inward)
-            * (exact.gradient)(&x).dot(&self.mesh.geometry(cell).normal(local))
+            * self
+                .tensor_at(cell, &inward)
+                .map_or((exact.gradient)(&x), |tensor| tensor.flux(&(exact.gradient)(&x)))
+                .dot(&self.mesh.geometry(cell).normal(local))
     }
 
     /// The load of all unknowns, with or without the Dirichlet data that the facet form imposes, and these data. The

@@ -114,10 +114,11 @@ impl<const D: usize> Space<'_, D> {
                 let penalty = penalty * form.moment_weight(table.degrees[k]);
                 let weighted = self.flux_derivatives(datum.facet, None, 1.0, k);
                 let basis = (basis, weighted.as_ref());
+                let side = (true, self.normal_component(datum.facet));
                 visit(DatumMoment {
                     cell,
                     moment: k,
-                    functions: &traces(form, &facet, (&metric, local), true, basis, n)[..n],
+                    functions: &traces(form, &facet, (&metric, local), side, basis, n)[..n],
                     datum: Trace { jump: value, flux: 0.0 },
                     form: &|v, u| facet.measure * form.integrand(&facet, v, u, penalty),
                 });

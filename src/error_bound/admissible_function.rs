@@ -121,7 +121,8 @@ impl<const D: usize> Space<'_, D> {
         Some(states.into_iter().map(Option::unwrap_or_default).collect())
     }
 
-    /// At each node the mean of the values in the cells around, with the coefficient as weights.
+    /// At each node the mean of the values in the cells around, with the coefficient as weights; cells with the node on a
+    /// Robin side weigh more, so that a large coefficient holds the value of these.
     fn means(&self, u: &[f64], nodes: &Dofs<'_>) -> Vec<f64> {
         if self.is_conforming_linear() {
             return u.to_vec();
@@ -133,15 +134,37 @@ impl<const D: usize> Space<'_, D> {
             .map(|node| self.basis_at(&node.centre(D)))
             .collect();
         let n = self.per_cell();
+        let of_sides = self.weights_of_sides(nodes);
         let mut sums = vec![(0.0, 0.0); nodes.size()];
         let Ok(()) = for_each_place::<D, _, Infallible>(nodes, &mut sums, |of_node, (cell, i)| {
-            let (alpha, local) = (self.alpha(cell), self.local_values(cell, u));
+            let local = self.local_values(cell, u);
+            let of_side = of_sides.get(cell * nodes.per_cell() + i).unwrap_or(&0.0);
+            let weight = self.alpha(cell) + of_side;
             let value: f64 = (0..n).map(|j| local[j] * basis[i].values[j]).sum();
-            of_node.0 += alpha * value;
-            of_node.1 += alpha;
+            of_node.0 += weight * value;
+            of_node.1 += weight;
             Ok(())
         });
         sums.into_iter().map(|(sum, weight)| sum / weight).collect()
+    }
+
+    /// By cell and node the coefficient of the Robin side on which the node lies, times the diameter of the cell; empty
+    /// without Robin sides.
+    fn weights_of_sides(&self, nodes: &Dofs<'_>) -> Vec<f64> {
+        let Some(reaction) = self.reaction.as_ref().filter(|_| self.data.robin.is_given()) else {
+            return Vec::new();
+        };
+        let mut weights = vec![0.0; self.mesh.n_cells() * nodes.per_cell()];
+        for ((cell, local), side) in reaction.sides() {
+            let x = self.mesh.facet_barycentre(*cell, *local);
+            let weight = self.at(&side.coefficient, *cell, &x) * self.mesh.cell_diameter(*cell);
+            let vertices = (0..D + 1).map(|k| [k, k]);
+            let all = vertices.chain(edge_vertices(D).iter().copied()).take(nodes.per_cell());
+            for (i, _) in all.enumerate().filter(|(_, ends)| !ends.contains(local)) {
+                weights[cell * nodes.per_cell() + i] += weight;
+            }
+        }
+        weights
     }
 
     /// Sets values at vertices to Dirichlet data, and moves the others into the constraints.

@@ -105,7 +105,8 @@ impl<const D: usize> Space<'_, D> {
     /// The integral over a facet of `alpha grad u . n` times a basis function.
     fn flux_at_node(&self, (cell, local): HalfFacet, node: usize, u: &[f64]) -> f64 {
         let geometry = self.mesh.geometry(cell);
-        let (values, normal) = (self.local_values(cell, u), (geometry.normal(local)));
+        let values = self.local_values(cell, u);
+        let normal = self.tensor_times(cell, &geometry.normal(local));
         let scale = self.facet_measure((cell, local)) * self.alpha(cell);
         let mut sum = 0.0;
         for (point, weight) in self.facet_rule.iter() {

@@ -289,7 +289,7 @@ impl<const D: usize> Space<'_, D> {
         let table = self.cell_table(Rule::new(D, self.degree_of_terms(pair.degree)));
         let has_level = self.data.source.any(&|f| f.level().is_some());
         let cut = has_level.then(|| CutRule::new(D, self.cell_degree));
-        let boundary = self.boundary_terms(pair)?;
+        let boundary = self.boundary_terms(pair, u)?;
         let rules = (&table, cut.as_ref());
         let chunks = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut totals = Totals::NONE;

@@ -7,7 +7,7 @@ use crate::arrays::map_entries;
 use crate::assemble::space::Space;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet};
-use crate::problem::{DataByGroup, Datum};
+use crate::problem::{DataByGroup, Datum, Robin};
 use crate::real::Point;
 
 /// Numbers that differ by less than this share are equal but for rounding.
@@ -38,6 +38,7 @@ impl<const D: usize> Space<'_, D> {
         let is_inexact = self.has_inexact_facets()
             || has_jumps
             || !is_below(&data.coefficient, 0)
+            || self.has_varying_tensor()
             || !(is_below(&data.reaction, 2) && has_reaction_bound)
             || integrands.iter().any(|data| self.degree_of(data).is_none());
         let obstacles = [&data.lower, &data.upper, &data.gap];
@@ -76,16 +77,25 @@ impl<const D: usize> Space<'_, D> {
         let stated = self.problem.data_degree;
         self.largest_degree(data.all().map(|datum| datum.degree_on(self.mesh, stated)))
     }
-    /// The degree of Neumann data on facets, likewise; that of the flux of an exact solution is unknown.
+    /// The degree of Neumann data on facets, likewise, and of those of Robin sides with the discrete function; that of the
+    /// flux of an exact solution is unknown, and a Robin coefficient of degree three has no known least value.
     pub(super) fn neumann_degree(&self) -> Option<usize> {
-        let flux = |group| self.data.neumann.of(group);
+        let has_data =
+            |group| self.data.neumann.of(group).is_some() || self.data.robin.of(group).is_some();
         let mut facets = self.grouped_facets_of(BoundaryCondition::Neumann);
-        let is_exact =
-            self.problem.exact.is_some() && facets.any(|(_, group)| flux(group).is_none());
+        let is_exact = self.problem.exact.is_some() && facets.any(|(_, group)| !has_data(group));
         let of_exact = is_exact.then_some(None);
         let stated = self.problem.data_degree;
         let degrees = self.data.neumann.all().map(|flux| flux.degree());
-        self.largest_degree(degrees.chain(of_exact).map(|degree| degree.or(stated)))
+        let of_side = |side: &Robin<D>| {
+            let [of_coefficient, of_value] =
+                side.data().map(|datum| datum.degree_on(self.mesh, stated));
+            let of_coefficient = of_coefficient.filter(|degree| *degree <= 2)?;
+            Some(of_coefficient + of_value?.max(self.basis_degree))
+        };
+        let of_sides: Vec<_> = self.data.robin.all().map(of_side).collect();
+        let degrees = degrees.chain(of_exact).map(|degree| degree.or(stated)).chain(of_sides);
+        self.largest_degree(degrees)
     }
     fn largest_degree(&self, mut degrees: impl Iterator<Item = Option<usize>>) -> Option<usize> {
         degrees

@@ -12,13 +12,12 @@ use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::assemble::space::metric::shape;
 use crate::assemble::stiffness::zero_local;
 use crate::element::Entity;
 use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::measure::Counts;
-use crate::mesh::{BoundaryCondition, HalfFacet, Neighbour, Neighbours};
+use crate::mesh::{BoundaryCondition, Neighbour, Neighbours};
 use crate::parallel::vectors::{collect, largest};
 
 /// A continuous, piecewise linear or quadratic function within the constraints, and a flux of the space of
@@ -219,7 +218,7 @@ impl<const D: usize> Discretisation<'_, D> {
         } else {
             space.crouzeix_raviart_fluxes(u, of_solver.1)?
         };
-        space.set_boundary_fluxes(forces, &mut pair.flux)?;
+        space.set_boundary_fluxes(forces, u, &mut pair.flux)?;
         if let Some(pressing) = &pressing {
             match space.is_conforming_linear() {
                 true => add_boundary_forces(&mut pair),
@@ -316,26 +315,21 @@ fn add_boundary_forces<const D: usize>(pair: &mut PrimalDualPair<D>) {
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// The integral of the Neumann datum over a facet.
-    fn neumann_flux(&self, facet: HalfFacet, group: usize) -> Result<f64, NoBound> {
-        let measure = self.facet_measure(facet);
-        let mut sum = 0.0;
-        for (point, weight) in self.facet_rule.iter() {
-            sum += weight * measure * self.neumann_at(facet, group, point)?;
-        }
-        Ok(sum)
-    }
-
     /// Sets the fluxes through the boundary but for the Dirichlet boundary: Neumann data and contact forces. Residuals
     /// there are multipliers, and sums of patches are rounding, which may have the wrong sign for a contact force.
-    fn set_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut Flux<D>) -> Result<(), NoBound> {
+    fn set_boundary_fluxes(
+        &self,
+        forces: &[NodeForce],
+        u: &[f64],
+        flux: &mut Flux<D>,
+    ) -> Result<(), NoBound> {
         for f in self.mesh.boundary().iter().filter(|f| f.condition != BoundaryCondition::Dirichlet)
         {
             flux.set_zero_on(f.cell as usize, f.local.into());
         }
         if self.problem.has_neumann_data() {
             for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
-                flux.add_through(cell, local, self.neumann_flux((cell, local), group)?);
+                flux.add_through(cell, local, self.neumann_flux((cell, local), group, u)?);
             }
         }
         for force in forces {
@@ -350,7 +344,7 @@ impl<const D: usize> Space<'_, D> {
         let gradient = self.gradient_factor().unwrap_or(1.0);
         let scale = self.alpha(cell) * gradient * gradient;
         let values = self.local_values(cell, u);
-        let (volume, products) = shape(self.mesh, cell, 1.0);
+        let (volume, products) = self.shape(cell, 1.0);
         let mut residual = self.reaction_less_load(cell, volume, &values, load);
         for (residual, products) in residual.iter_mut().zip(&products).take(D + 1) {
             // gradients sum to zero: without their common value a constant adds no rounding

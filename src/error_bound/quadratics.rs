@@ -135,7 +135,7 @@ impl<const D: usize> Space<'_, D> {
             array_of(|a| array_of(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum()))
         };
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
-        let neumann = self.neumann_products()?;
+        let neumann = self.neumann_products(u)?;
         let contact = contact_products(forces, &functionals);
         Ok(CellLoads { values, given, neumann, contact, functionals, shared })
     }
@@ -175,26 +175,27 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The products of Neumann data, by facet.
-    fn neumann_products(&self) -> Result<Vec<(HalfFacet, Products)>, NoBound> {
+    fn neumann_products(&self, u: &[f64]) -> Result<Vec<(HalfFacet, Products)>, NoBound> {
         let mut neumann = Vec::new();
         if self.problem.has_neumann_data() {
             for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
-                neumann.push((facet, self.neumann_products_on(facet, group)?));
+                neumann.push((facet, self.neumann_products_on(facet, group, Some(u))?));
             }
         }
         Ok(neumann)
     }
 
-    /// The products of the Neumann datum on a facet.
+    /// The products of the Neumann datum on a facet, on a Robin side with the discrete function.
     pub(super) fn neumann_products_on(
         &self,
         facet: HalfFacet,
         group: usize,
+        u: Option<&[f64]>,
     ) -> Result<Products, NoBound> {
         let measure = self.facet_measure(facet);
         let mut products = Products::default();
         for (point, weight) in self.facet_rule.iter() {
-            let flux = weight * measure * self.neumann_at(facet, group, point)?;
+            let flux = weight * measure * self.neumann_at(facet, group, point, u)?;
             let point = facet_to_cell(point, facet.1);
             add(&mut products, |a, j| flux * point[a] * point[j]);
         }

@@ -59,6 +59,7 @@ struct InCell<'c, const D: usize> {
     /// The diffusion coefficient where the scheme evaluates it at the points of a rule.
     varying: Option<&'c Datum<D>>,
     coefficient: Option<&'c Datum<D>>,
+    space: &'c Space<'c, D>,
     reaction: Option<&'c Datum<D>>,
 }
 
@@ -76,18 +77,43 @@ impl<const D: usize> InCell<'_, D> {
         let gradient = self.exact.gradient(self.cell, x);
         let reaction = self.reaction.map_or(0.0, |c| c.at(x));
         if let Some(discrete) = &self.discrete {
-            let square = (basis.gradient(discrete, &self.gradients) - gradient).norm_squared();
+            let difference = basis.gradient(discrete, &self.gradients) - gradient;
+            let square = difference.norm_squared();
+            let in_energy = match self.space.tensor_in(self.cell) {
+                None => square,
+                Some(tensor) => tensor.gradient(&difference).norm_squared(),
+            };
             let of_value = (basis.value(discrete) - value).powi(2);
             let alpha = self.varying.map_or(self.alpha, |alpha| alpha.at(x));
             sums[0] += weight * of_value;
             sums[1] += weight * square;
-            sums[2] += weight * (alpha * square + reaction * of_value);
+            sums[2] += weight * (alpha * in_energy + reaction * of_value);
         }
         if let Some(admissible) = &self.admissible {
             let (own, slope) = admissible.at(point, x);
             let alpha = self.coefficient.map_or(1.0, |alpha| alpha.at(x));
-            let square = (slope - gradient).norm_squared();
+            let difference = slope - gradient;
+            let tensor = self.space.tensor_at(self.cell, x);
+            let difference = tensor.map_or(difference, |tensor| tensor.gradient(&difference));
+            let square = difference.norm_squared();
             sums[3] += weight * (alpha * square + reaction * (own - value).powi(2));
+        }
+    }
+
+    /// Adds the square of the error at a point of a Robin side to those of the energy, with the weight of the point.
+    fn add_on_side(
+        &self,
+        sums: &mut Squares,
+        (point, x): (&[f64; 4], &Point<D>),
+        weight: f64,
+        basis: &BasisAt,
+    ) {
+        let value = self.exact.value(self.cell, x, self.constant);
+        if let Some(discrete) = &self.discrete {
+            sums[2] += weight * (basis.value(discrete) - value).powi(2);
+        }
+        if let Some(admissible) = &self.admissible {
+            sums[3] += weight * (admissible.at(point, x).0 - value).powi(2);
         }
     }
 
@@ -164,6 +190,7 @@ impl<const D: usize> Space<'_, D> {
             alpha: self.alpha(cell),
             varying: coefficient.filter(|_| self.varying_in(cell).is_some()),
             coefficient,
+            space: self,
             reaction: self.data.reaction.of(self.mesh.region(cell)),
         }
     }
@@ -179,6 +206,11 @@ impl<const D: usize> Space<'_, D> {
         let is_cut = of.cut.visit_if_cut(self.mesh, cell, kinks, &mut |point, x, weight| {
             in_cell.add(&mut sums, (point, x), weight, &self.basis_at(point));
         });
+        if let Some(reaction) = self.reaction.as_ref().filter(|_| self.data.robin.is_given()) {
+            reaction.visit_sides(self.mesh, cell, &mut |point, x, weight| {
+                in_cell.add_on_side(&mut sums, (point, x), weight, &self.basis_at(point));
+            });
+        }
         let corners = self.mesh.corners(cell);
         if !is_cut {
             let CellTable { points, basis, weights } = &of.table;

@@ -15,15 +15,15 @@ impl<const D: usize> Discretisation<'_, D> {
     /// The energy of a vector of unknowns,
     ///
     /// ```text
-    /// 1/2 int alpha |grad u|^2 + 1/2 int c u^2 - int f u - int_N q u
+    /// 1/2 int alpha grad u . T grad u + 1/2 int c u^2 - int f u - int_N q u + 1/2 int_R k u^2 - int_R k g u
     /// ```
     ///
-    /// with the gradient in each cell and the Neumann boundary `N`. No facet form enters, so that a function
+    /// with the gradient in each cell, the Neumann boundary `N` and Robin sides `R`. No facet form enters, so that a function
     /// has the same energy in every scheme; the minimum over the admissible functions is that of the
     /// continuous problem, and a discontinuous function may lie below it. Coefficient, reaction and loads
     /// are integrated by the rules of the assembly. `u` is the vector with the constants of bodies: with `w` the vector
     /// without, `J` the energy of `w` with the data less the constants and `l` their load, it is
-    /// `J(w) - l(c) - 1/2 int reaction c^2`.
+    /// `J(w) - l(c) - 1/2 int reaction c^2 - 1/2 int_R k c^2`.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::Parameter`] unless there is one value for each unknown.
@@ -77,6 +77,7 @@ impl<const D: usize> Space<'_, D> {
                     let gradient = (1..=D).fold(Point::zeros(), |sum: Point<D>, k| {
                         sum + geometry.gradient(k) * (slope(k) - slope(0))
                     });
+                    let gradient = self.isotropic_gradient(cell, &gradient);
                     let alpha = self.alpha_at(cell, &self.cell_point(point, cell));
                     gradients += weight * alpha * gradient.norm_squared();
                 }

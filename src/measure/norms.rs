@@ -21,7 +21,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// solution.
     ///
     /// The energy norm of the scheme is the broken seminorm weighted with the coefficient, plus the reaction
-    /// term, plus the facet form at jumps without flux and without products of lifts, and at
+    /// term and that of Robin sides, plus the facet form at jumps without flux and without products of lifts, and at
     /// differences from Dirichlet data that the form imposes: for interior penalty the usual norm
     /// `|.|_1^2 + sum sigma_F ||[.]||^2`, for WOPSIP the square root of the form itself.
     ///

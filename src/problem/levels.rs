@@ -38,7 +38,7 @@ impl Range {
 /// The ranges of the data of one body, by rank: the first that has numbers says at which level the body is.
 #[derive(Clone, Copy, Debug)]
 struct Ranges {
-    /// Of Dirichlet values, obstacles and gaps.
+    /// Of Dirichlet values with those of Robin sides, obstacles and gaps.
     of_values: [Range; 3],
     /// Of source over reaction.
     of_quotients: Range,
@@ -72,6 +72,7 @@ impl BodyConstants {
     /// Those of [`DataOnMesh::new`].
     pub fn of<const D: usize>(problem: &Problem<D>, mesh: &Mesh<D>) -> Result<Self, Error> {
         let has_level = problem.has_dirichlet_data()
+            || problem.robin.is_given()
             || problem.is_constrained()
             || problem.reaction.is_given() && problem.source.is_given();
         if mesh.is_part() || !has_level {
@@ -91,6 +92,10 @@ impl BodyConstants {
             body,
             &mut ranges,
         );
+        let robin = |group: usize, cell: usize, x: &Point<D>| {
+            data.robin.of(group).map(|side| side.value.in_cell(mesh, cell, x))
+        };
+        add_on_facets(mesh, (BoundaryCondition::Neumann, DIRICHLET), robin, body, &mut ranges);
         // a range of Dirichlet values that reaches zero decides without the other data
         let is_decided =
             |of: &Ranges| of.of_values[DIRICHLET].has_numbers() && of.constant() == 0.0;

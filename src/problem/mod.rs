@@ -4,6 +4,7 @@
 //! -div(alpha grad u) + c u = f + lambda      in the domain
 //! u = u_D                                    on the Dirichlet boundary
 //! alpha du/dn = q                            on the Neumann boundary
+//! alpha du/dn + k (u - g) = 0                on Robin sides, which are parts of the Neumann boundary
 //! obstacle:   psi_lower <= u <= psi_upper    in the domain
 //! Signorini:  u >= g, alpha du/dn >= 0, (u - g) alpha du/dn = 0   on the contact boundary
 //! ```
@@ -23,6 +24,8 @@ mod given;
 mod levels;
 mod named;
 mod on_mesh;
+mod robin;
+mod tensor;
 mod values;
 
 pub(crate) use body_constants::BodyConstants;
@@ -33,7 +36,9 @@ pub use datum::{BoundaryFlux, Datum, Shifted, Sum};
 pub use discrete_function::DiscreteFunction;
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
 pub use given::Given;
-pub(crate) use on_mesh::{DataByGroup, DataOnMesh};
+pub(crate) use on_mesh::{ByGroup, DataByGroup, DataOnMesh};
+pub use robin::Robin;
+pub use tensor::Tensor;
 pub(crate) use values::ROUNDING;
 pub use values::ValueOf;
 
@@ -55,10 +60,14 @@ pub struct Problem<const D: usize> {
     pub dirichlet: Given<Datum<D>>,
     /// Neumann data `q = alpha du/dn`; zero where absent.
     pub neumann: Given<BoundaryFlux<D>>,
+    /// Robin sides: groups of the Neumann boundary with data of their own.
+    pub robin: Given<Robin<D>>,
     /// The diffusion coefficient; one where absent. Elements of degree one take its value at the barycentre
     /// of each cell, others its values at the points of rules in the cells in which it varies, see
     /// [`Problem::coefficient`].
     pub coefficient: Given<Datum<D>>,
+    /// A tensor by which the diffusion coefficient is multiplied; one where absent. The energy norm has both.
+    pub tensor: Given<Tensor<D>>,
     /// The reaction coefficient `c >= 0`.
     pub reaction: Given<Datum<D>>,
     /// Obstacle from below.
@@ -101,6 +110,12 @@ impl<const D: usize> fmt::Debug for Problem<D> {
         }
         if let Some(flux) = &self.neumann.everywhere {
             out.field("neumann", flux);
+        }
+        if let Some(tensor) = &self.tensor.everywhere {
+            out.field("tensor", tensor);
+        }
+        if let Some(robin) = &self.robin.everywhere {
+            out.field("robin", robin);
         }
         let names: Vec<&str> = self.region_names().chain(self.boundary_names()).collect();
         if !names.is_empty() {
@@ -213,6 +228,14 @@ impl<const D: usize> Problem<D> {
         level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         self.coefficient.give(None, Datum::piecewise(alpha, level));
+        self
+    }
+    /// Sets the tensor by which the diffusion coefficient is multiplied: rows of numbers, or [`Tensor::function`]. It must be
+    /// symmetric and positive definite. Linear elements take its value at the barycentre of each cell; on others only
+    /// constants are possible.
+    #[must_use]
+    pub fn tensor(mut self, tensor: impl Into<Tensor<D>>) -> Self {
+        self.tensor.give(None, tensor.into());
         self
     }
     /// Sets the reaction coefficient: a number, a closure whose argument is written with its
@@ -357,8 +380,8 @@ impl<const D: usize> Problem<D> {
     pub fn has_dirichlet_data(&self) -> bool {
         self.dirichlet.is_given() || self.exact.is_some()
     }
-    /// Whether Neumann data are given, by themselves or by the exact solution.
+    /// Whether Neumann data are given, by themselves, by Robin sides or by the exact solution.
     pub fn has_neumann_data(&self) -> bool {
-        self.neumann.is_given() || self.exact.is_some()
+        self.neumann.is_given() || self.robin.is_given() || self.exact.is_some()
     }
 }

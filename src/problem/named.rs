@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::datum::{BoundaryFlux, Datum};
-use super::{Given, Problem, ValueOf};
+use super::{Given, Problem, Robin, Tensor, ValueOf};
 use crate::error::Error;
 use crate::input::excerpt;
 use crate::instances::compiled;
@@ -48,6 +48,12 @@ impl<const D: usize> Problem<D> {
     #[must_use]
     pub fn coefficient_in(mut self, region: &str, alpha: impl Into<Datum<D>>) -> Self {
         self.coefficient.give(Some(region), alpha.into());
+        self
+    }
+    /// Sets the tensor of the diffusion coefficient in a region, as [`Problem::tensor`].
+    #[must_use]
+    pub fn tensor_in(mut self, region: &str, tensor: impl Into<Tensor<D>>) -> Self {
+        self.tensor.give(Some(region), tensor.into());
         self
     }
     /// Adds a load in a region: a number or a closure, as for [`Problem::coefficient_in`].
@@ -95,6 +101,18 @@ impl<const D: usize> Problem<D> {
         self.neumann.give(Some(group), flux);
         self
     }
+    /// Makes a boundary group a Robin side, `alpha du/dn + k (u - g) = 0` with the coefficient `k >= 0` and the value `g`:
+    /// numbers or closures, as for [`Problem::coefficient_in`].
+    #[must_use]
+    pub fn robin_on(
+        mut self,
+        group: &str,
+        coefficient: impl Into<Datum<D>>,
+        value: impl Into<Datum<D>>,
+    ) -> Self {
+        self.robin.give(Some(group), Robin::new(coefficient, value));
+        self
+    }
     /// Sets the Signorini condition `u >= g` on a boundary group.
     #[must_use]
     pub fn signorini_on(mut self, group: &str, gap: impl Into<Datum<D>>) -> Self {
@@ -105,7 +123,7 @@ impl<const D: usize> Problem<D> {
     /// The names of regions that have data.
     pub(super) fn region_names(&self) -> impl Iterator<Item = &str> {
         let data = [&self.coefficient, &self.source, &self.reaction, &self.lower, &self.upper];
-        data.into_iter().flat_map(Given::names)
+        data.into_iter().flat_map(Given::names).chain(self.tensor.names())
     }
     /// Refuses two data of one kind for one name, or without a name.
     pub(crate) fn check_given_once(&self) -> Result<(), Error> {
@@ -122,21 +140,31 @@ impl<const D: usize> Problem<D> {
         let data = [
             ("source", self.source.given_twice()),
             ("coefficient", self.coefficient.given_twice()),
+            ("tensor coefficient", self.tensor.given_twice()),
             ("reaction", self.reaction.given_twice()),
             ("lower obstacle", self.lower.given_twice()),
             ("upper obstacle", self.upper.given_twice()),
             ("Dirichlet datum", self.dirichlet.given_twice()),
             ("Neumann datum", self.neumann.given_twice()),
             ("gap", self.gap.given_twice()),
+            ("Robin datum", self.robin.given_twice()),
         ];
-        data.into_iter().try_for_each(check)
+        data.into_iter().try_for_each(check)?;
+        match self.robin.names().find(|name| self.neumann.names().any(|other| other == *name)) {
+            None => Ok(()),
+            Some(name) => Err(Error::GivenTwice(format!(
+                "boundary group {} has a flux and Robin data: give one of them",
+                excerpt(name)
+            ))),
+        }
     }
     /// The boundary groups that have data, each with its condition.
     fn boundary_groups(&self) -> impl Iterator<Item = (&str, BoundaryCondition)> {
         let dirichlet = self.dirichlet.names().map(|name| (name, BoundaryCondition::Dirichlet));
         let contact = self.gap.names().map(|name| (name, BoundaryCondition::Contact));
         let neumann = self.neumann.names().map(|name| (name, BoundaryCondition::Neumann));
-        dirichlet.chain(contact).chain(neumann)
+        let robin = self.robin.names().map(|name| (name, BoundaryCondition::Neumann));
+        dirichlet.chain(contact).chain(neumann).chain(robin)
     }
     /// The names of boundary groups that have data.
     pub(super) fn boundary_names(&self) -> impl Iterator<Item = &str> {
@@ -157,12 +185,14 @@ impl<const D: usize> Problem<D> {
         }
         Self {
             coefficient: of(&self.coefficient, region),
+            tensor: of(&self.tensor, region),
             source: of(&self.source, region),
             reaction: of(&self.reaction, region),
             lower: of(&self.lower, region),
             upper: of(&self.upper, region),
             dirichlet: of(&self.dirichlet, boundary),
             neumann: of(&self.neumann, boundary),
+            robin: of(&self.robin, boundary),
             gap: of(&self.gap, boundary),
             ..self.clone()
         }

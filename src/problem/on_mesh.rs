@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::datum::{BoundaryFlux, Datum, Shifted};
-use super::{BodyConstants, Given, Problem};
+use super::{BodyConstants, Given, Problem, Robin, Tensor};
 use crate::error::Error;
 use crate::input::{excerpt, excerpts};
 use crate::mesh::{BoundaryCondition, BoundaryGroup, Mesh, MeshError};
@@ -99,6 +99,7 @@ pub(crate) type DataByGroup<const D: usize> = ByGroup<Datum<D>>;
 #[derive(Clone)]
 pub(crate) struct DataOnMesh<const D: usize> {
     pub coefficient: DataByGroup<D>,
+    pub tensor: ByGroup<Tensor<D>>,
     pub source: DataByGroup<D>,
     pub reaction: DataByGroup<D>,
     pub lower: DataByGroup<D>,
@@ -106,6 +107,7 @@ pub(crate) struct DataOnMesh<const D: usize> {
     pub dirichlet: DataByGroup<D>,
     pub gap: DataByGroup<D>,
     pub neumann: ByGroup<BoundaryFlux<D>>,
+    pub robin: ByGroup<Robin<D>>,
     /// For each boundary group the rank of its Dirichlet datum: of unknowns on several groups those of
     /// the lowest rank take precedence.
     pub dirichlet_rank: Vec<usize>,
@@ -129,7 +131,9 @@ impl<const D: usize> DataOnMesh<D> {
         found.source = found.source.changed((groups.0.len(), false), on_mesh);
         let Self { coefficient, source, reaction, lower, upper, gap, .. } = &found;
         let data = [coefficient, source, reaction, lower, upper, gap].into_iter();
-        let discrete = data.flat_map(|data| data.all()).flat_map(|datum| datum.discrete());
+        let robin = found.robin.all().flat_map(Robin::data);
+        let data = data.flat_map(|data| data.all()).chain(robin);
+        let discrete = data.flat_map(|datum| datum.discrete());
         discrete.for_each(|u| u.prepare_for(mesh));
         Ok(found)
     }
@@ -152,6 +156,8 @@ impl<const D: usize> DataOnMesh<D> {
         self.dirichlet = self.dirichlet.changed((groups, false), |_, datum| {
             Some(Shifted::datum(datum, None, (constants, mesh)))
         });
+        self.robin =
+            self.robin.changed((groups, false), |_, side| Some(side?.less(constants, mesh)));
         let reaction = &self.reaction;
         self.source = self.source.changed((regions, reaction.has_names()), |region, source| {
             match reaction.of(region) {
@@ -212,6 +218,7 @@ impl<const D: usize> DataOnMesh<D> {
         };
         Ok(Self {
             coefficient: in_regions(&problem.coefficient),
+            tensor: ByGroup::new(&problem.tensor, &regions),
             source: in_regions(&problem.source),
             reaction: in_regions(&problem.reaction),
             lower: in_regions(&problem.lower),
@@ -222,6 +229,7 @@ impl<const D: usize> DataOnMesh<D> {
             gap: ByGroup::new(&problem.gap, &groups).on(BoundaryCondition::Contact, boundary),
             neumann: ByGroup::new(&problem.neumann, &groups)
                 .on(BoundaryCondition::Neumann, boundary),
+            robin: ByGroup::new(&problem.robin, &groups).on(BoundaryCondition::Neumann, boundary),
             dirichlet_rank: groups.iter().map(|names| rank(names)).collect(),
             constants_differ: false,
         })

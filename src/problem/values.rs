@@ -1,5 +1,6 @@
 //! Numbers of a solution for which a problem asks by name.
 
+use super::Problem;
 use crate::input::{excerpt, excerpts};
 use crate::mesh::{BoundaryCondition, Mesh, describe_point};
 use crate::real::Point;
@@ -24,7 +25,7 @@ pub enum ValueOf<const D: usize> {
     Smallest(String),
     /// The integral over a boundary group.
     Integral(String),
-    /// The force that a Dirichlet group exerts on the body, positive in the direction of the solution.
+    /// The force that a Dirichlet group or a Robin side exerts on the body, positive in the direction of the solution.
     Reaction(String),
     /// The force of a contact group on the body.
     Force(String),
@@ -37,7 +38,7 @@ impl<const D: usize> ValueOf<D> {
     }
 
     /// Why a mesh does not have the value, in a sentence, if it does not.
-    pub(crate) fn fault(&self, mesh: &Mesh<D>) -> Option<String> {
+    pub(crate) fn fault(&self, problem: &Problem<D>, mesh: &Mesh<D>) -> Option<String> {
         let (name, condition) = match self {
             Self::At(x) => {
                 return mesh.cells_containing(x, ROUNDING).next().is_none().then(|| {
@@ -54,8 +55,10 @@ impl<const D: usize> ValueOf<D> {
             Self::Force(name) => (name, Some(BoundaryCondition::Contact)),
         };
         let is_of_kind = |group: &usize| {
-            let own = mesh.boundary_groups()[*group].condition;
-            condition.is_none_or(|condition| own == Some(condition))
+            let group = &mesh.boundary_groups()[*group];
+            let is_side =
+                || matches!(self, Self::Reaction(_)) && problem.robin.of(&group.names).is_some();
+            condition.is_none_or(|condition| group.condition == Some(condition) || is_side())
         };
         let names = |group: usize| &mesh.boundary_groups()[group].names;
         let mut known = (0..mesh.boundary_groups().len()).filter(is_of_kind);

@@ -157,6 +157,8 @@ fn first_failure<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Option<Str
         let middle = mesh.barycentre(cell);
         let alpha = data.coefficient.of(mesh.region(cell)).map_or(1.0, |a| a.at(&middle));
         let gradient = (exact.gradient)(&x);
+        let gradient =
+            data.tensor.of(mesh.region(cell)).map_or(gradient, |t| t.at(&middle) * gradient);
         let opening = exact.value.at(&x) - gap.at(&x);
         let pressure = alpha * gradient.dot(&normal);
         let size = 1.0 + opening.abs() + alpha * gradient.norm();

@@ -11,12 +11,13 @@ pub(super) fn setting<const D: usize>(scene: &Scene<D>) -> Setting {
     let all_dirichlet = ![BoundaryCondition::Neumann, BoundaryCondition::Contact]
         .iter()
         .any(|&p| domain.has_condition(p));
+    let has_coefficient = problem.coefficient.is_given() || problem.tensor.is_given();
     Setting {
         dimension: D,
         obstacle: problem.has_obstacle(),
         contact: problem.has_gap(),
         regularity: scene.regularity,
-        coefficient: problem.coefficient.is_given(),
-        regular_dual: !problem.coefficient.is_given() && (D == 1 || is_convex && all_dirichlet),
+        coefficient: has_coefficient,
+        regular_dual: !has_coefficient && (D == 1 || is_convex && all_dirichlet),
     }
 }

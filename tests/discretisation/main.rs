@@ -23,7 +23,9 @@ mod named_data;
 mod observed_orders;
 mod parts;
 mod problems;
+mod robin;
 mod runs;
+mod tensors;
 mod unknowns;
 
 #[path = "../support"]

@@ -38,6 +38,25 @@ fn values_stand_in_rows_tables_and_columns() {
     }
 }
 
+/// A Robin side and a tensor: the solution is quadratic, and forces balance the loads.
+#[test]
+fn an_aquifer_has_its_closed_values() {
+    let scratch = Scratch::new("aquifer");
+    let file = format!("{}/examples/problems/aquifer.toml", env!("CARGO_MANIFEST_DIR"));
+    let report = scratch.report(&format!("{file} --scheme p1,cr,sipg,wopsip,p2 --levels 4,8,16"));
+    for row in rows(&report) {
+        let [drained, held] = ["drained", "held"].map(|name| number(row, &["values", name]));
+        assert!((held - 3.5).abs() < 1e-8, "{}: {held}", row["label"]);
+        let error = (drained - 4.25).abs();
+        assert!(error < if row["label"] == "p2" { 1e-8 } else { 0.2 }, "{}: {error}", row["label"]);
+        assert!(row["bound"]["unproven"].as_array().unwrap().len() < 2, "{}", row["bound"]);
+    }
+    for limit in report["extrapolated"].as_array().unwrap() {
+        let [value, expected] = [number(limit, &["values", "drained", "value"]), 4.25];
+        assert!((value - expected).abs() < 1e-2, "{limit}");
+    }
+}
+
 /// Problems that ask for no values have none of their keys.
 #[test]
 fn rows_without_values_have_no_keys_of_them() {

@@ -68,9 +68,43 @@ fn mistakes_are_found_where_they_are() {
         (format!("{BOX}[obstacle]\nlower.default = inf\n{SIDES}"), (3, 17), "must be finite"),
         (format!("{BOX}[boundary.left]\nvalue = 1\n"), (2, 11), "`kind` is missing"),
         (
-            format!("{BOX}[boundary.left]\nkind = \"robin\"\n"),
+            format!("{BOX}[boundary.left]\nkind = \"periodic\"\n"),
             (3, 8),
-            "\"dirichlet\", \"neumann\" or",
+            "\"dirichlet\", \"neumann\", \"robin\" or",
+        ),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"robin\"\nvalue = 1\n"),
+            (2, 11),
+            "`coefficient` is missing: `k` of alpha du/dn + k (u - value) = 0, not negative",
+        ),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"robin\"\nflux = 1\n"),
+            (4, 1),
+            "allowed are kind, value, coefficient",
+        ),
+        (
+            format!(
+                "{BOX}{}",
+                SIDES.replacen("dirichlet\"", "robin\"\ncoefficient = \"y - 0.5\"", 1)
+            ),
+            (2, 11),
+            "boundary.left.coefficient is -0.",
+        ),
+        (
+            format!("{BOX}[coefficient]\ndefault = [[1, 0]]\n{SIDES}"),
+            (3, 11),
+            "a symmetric list of rows, each with an entry for each coordinate",
+        ),
+        (
+            format!("{BOX}[coefficient]\ndefault = [[1, \"x\"], [\"y\", 1]]\n{SIDES}"),
+            (3, 11),
+            "symmetric",
+        ),
+        (format!("{BOX}[coefficient]\ndefault = [[1, 0], [0, \"w\"]]\n{SIDES}"), (3, 25), "no `w`"),
+        (
+            format!("{BOX}[coefficient]\ndefault = [[1, \"2 * x\"], [\"2 * x\", 1]]\n{SIDES}"),
+            (3, 11),
+            "the least pivot of coefficient.default is -",
         ),
         (
             format!("{BOX}[boundary.left]\nkind = \"neumann\"\nvalue = 1\n"),

@@ -212,7 +212,8 @@ impl<'s, 'a, const D: usize> Lifting<'s, 'a, D> {
         let (is_here, other) = (facet.here == own, facet.other(own));
         let view = self.space.facet_view(facet, Some(self.metrics));
         let average_weight = self.form.average_weight(&view);
-        let flux_weight = flux_weight(&view, average_weight, is_here);
+        let of_normal = self.space.normal_component(own);
+        let flux_weight = flux_weight(&view, average_weight, (is_here, of_normal));
         // on the boundary it is not read
         let own_weight = if is_here { average_weight } else { 1.0 - average_weight };
         let product = self.space.flux_products(own, other, own_weight);

@@ -2,7 +2,7 @@
 
 use super::unknowns::CellUnknowns;
 use crate::assemble::space::Space;
-use crate::assemble::space::metric::{CellMetric, shape};
+use crate::assemble::space::metric::CellMetric;
 use crate::assemble::stiffness::{Local, zero_local};
 use crate::element::MAX_BASIS;
 
@@ -73,7 +73,7 @@ impl<'s, 'a, const D: usize> CellMatrices<'s, 'a, D> {
     /// Writes the matrix of a cell.
     #[inline(always)]
     fn write(&self, n: usize, cell: usize, out: &mut Triangle, local: &mut Local) {
-        let (volume, shape) = shape(self.space.mesh, cell, self.space.alpha(cell));
+        let (volume, shape) = self.space.shape(cell, self.space.alpha(cell));
         let mut products = [0.0; PAIRS];
         for (product, (k, l)) in products.iter_mut().zip(pairs_of::<D>()) {
             *product = shape[k][l];
@@ -126,7 +126,7 @@ impl<const D: usize> CellMatrix for Gradients<'_, '_, '_, D> {
     #[inline(always)]
     fn of_cell(&mut self, cell: usize) {
         let space = self.cells.space;
-        self.products = shape(space.mesh, cell, self.square * space.alpha(cell)).1;
+        self.products = space.shape(cell, self.square * space.alpha(cell)).1;
     }
     #[inline(always)]
     fn entry(&self, i: usize, j: usize) -> f64 {

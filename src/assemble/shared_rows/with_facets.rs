@@ -99,7 +99,14 @@ fn facet_matrix<const D: usize>(
     let traces_of = |own: HalfFacet, weight, k: usize| {
         let weighted = space.flux_derivatives(own, facet.other(own), weight, k);
         let basis = (&table.on(own.1)[k], weighted.as_ref());
-        traces(form, &view, (&space.metric(own.0), own.1), own == here, basis, n)
+        traces(
+            form,
+            &view,
+            (&space.metric(own.0), own.1),
+            (own == here, space.normal_component(own)),
+            basis,
+            n,
+        )
     };
     let mut out = [[0.0; 2 * MAX_BASIS]; 2 * MAX_BASIS];
     for (k, &degree) in table.degrees.iter().enumerate() {

@@ -74,8 +74,9 @@ impl<'a, const D: usize> Space<'a, D> {
         other: Option<HalfFacet>,
         kept: Option<&Metrics>,
     ) -> (f64, Side) {
-        let coefficient = self.largest_coefficient(half);
-        let bound_coefficient = self.bound_coefficient(half, other);
+        let of_normal = self.normal_component(half);
+        let coefficient = of_normal * self.largest_coefficient(half);
+        let bound_coefficient = of_normal * self.bound_coefficient(half, other);
         let metric;
         let (volume, measures) = match kept {
             Some(metrics) => metrics.measures::<D>(half.0),

@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 
+use super::Space;
 use super::tables::Derivatives;
 use crate::element::MAX_BASIS;
 use crate::memory::in_large_pages;
@@ -24,8 +25,9 @@ impl<const D: usize> CellMetric<D> {
     const KEPT: usize = 1 + (D + 1) + D * (D + 1) / 2;
 
     #[inline(always)]
-    pub fn of(mesh: &Mesh<D>, cell: usize) -> Self {
-        let (volume, products) = shape(mesh, cell, 1.0);
+    pub fn of(space: &Space<'_, D>, cell: usize) -> Self {
+        let mesh = space.mesh;
+        let (volume, mut products) = shape(mesh, cell, 1.0);
         let mut measures = [0.0; 4];
         for i in 1..=D {
             // |F| = D |K| |grad lambda|
@@ -35,6 +37,10 @@ impl<const D: usize> CellMetric<D> {
         measures[0] = first_facet(mesh, cell);
         if D == 1 {
             measures[1] = 1.0;
+        }
+        // measures are those of space
+        if space.tensor.is_some() {
+            products = space.shape(cell, 1.0).1;
         }
         Self { volume, measures, products }
     }
@@ -101,6 +107,12 @@ pub(crate) fn shape<const D: usize>(
     cell: usize,
     scale: f64,
 ) -> (f64, [[f64; 4]; 4]) {
+    shape_of::<D>(edges_of(mesh, cell), scale)
+}
+
+/// The edges of a cell from its first corner to the others.
+#[inline(always)]
+pub(super) fn edges_of<const D: usize>(mesh: &Mesh<D>, cell: usize) -> [[f64; 3]; 3] {
     let corners = mesh.cell(cell);
     // loops over numbers: differences of points in place of these take half as long again
     let mut edges = [[0.0; 3]; 3];
@@ -111,6 +123,12 @@ pub(crate) fn shape<const D: usize>(
             edges[k][axis] = corner[axis] - origin[axis];
         }
     }
+    edges
+}
+
+/// As [`shape`], of a cell with these edges.
+#[inline(always)]
+pub(super) fn shape_of<const D: usize>(edges: [[f64; 3]; 3], scale: f64) -> (f64, [[f64; 4]; 4]) {
     let (normals, determinant) = cofactors::<D>(edges);
     let size = if determinant < 0.0 { -determinant } else { determinant };
     let scale = if size == 0.0 { 0.0 } else { scale / (size * FACTORIAL[D]) };
@@ -181,12 +199,13 @@ pub(crate) struct Metrics {
 
 impl Metrics {
     /// The metrics of a mesh, in parallel.
-    pub fn of<const D: usize>(mesh: &Mesh<D>) -> Self {
+    pub fn of<const D: usize>(space: &Space<'_, D>) -> Self {
+        let mesh = space.mesh;
         let n = CellMetric::<D>::KEPT;
         let mut kept = in_large_pages(vec![0.0; n * mesh.n_cells()]);
         let fill = |cells: std::ops::Range<usize>, chunk: &mut [f64]| {
             for (cell, out) in cells.zip(chunk.chunks_exact_mut(n)) {
-                CellMetric::of(mesh, cell).write(out);
+                CellMetric::of(space, cell).write(out);
             }
             Ok::<(), Infallible>(())
         };

@@ -12,6 +12,7 @@
 //! | `checks` | data that must be finite, coefficients that must be positive |
 //! | `coefficient` | a coefficient that varies in cells, and the products that it weighs |
 //! | `diffusion` | the coefficient in a cell, on a facet and in a flux |
+//! | `tensor_coefficient` | its tensor |
 //! | `reaction_term` | the reaction term of the matrix |
 //! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
 //! | `obstacle_coefficients` | the Bernstein coefficients of obstacles and gaps, beside jumps too |
@@ -32,6 +33,7 @@ mod node_vertices;
 pub(crate) mod obstacle_coefficients;
 pub(crate) mod reaction_term;
 pub(crate) mod tables;
+mod tensor_coefficient;
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -53,6 +55,7 @@ use metric::CellMetric;
 use node_vertices::NodeVertices;
 use reaction_term::ReactionTerm;
 use tables::{BasisAt, CellTable, FacetTable};
+use tensor_coefficient::TensorCoefficient;
 
 /// A functional as barycentric points with weights.
 pub(crate) type Terms = Vec<([f64; 4], f64)>;
@@ -76,6 +79,8 @@ pub(crate) struct Space<'a, const D: usize> {
     pub dofs: Dofs<'a>,
     /// The coefficient at the barycentre of each cell.
     coefficients: Option<Vec<f64>>,
+    /// The tensor of the coefficient.
+    tensor: Option<TensorCoefficient<D>>,
     /// The coefficient in the cells in which it varies, for elements of degree two and more.
     varying: Option<VaryingCoefficient>,
     /// The functional whose value each unknown of a cell is.
@@ -125,14 +130,17 @@ impl<'a, const D: usize> Space<'a, D> {
         let cell_degree = discrete.map(|f| f.degree() + basis_degree).fold(cell_degree, usize::max);
         let cell_rule = rule(quadrature.family, D, cell_degree)?;
         let facet_rule = rule(quadrature.family, D - 1, quadrature.facet)?;
-        let reaction = match data.reaction.is_given() {
+        let reaction = match data.reaction.is_given() || data.robin.is_given() {
             false => None,
             true => {
                 let products = 2 * basis_degree;
                 let is_constant = data.reaction.all().all(|datum| datum.constant().is_some());
                 let degree = if is_constant { products } else { products.max(cell_degree) };
                 let rule = rule(quadrature.reaction, D, degree)?;
-                Some(ReactionTerm::new(data.reaction.clone(), rule, degree, element.clone()))
+                let rules = (rule, facet_rule.clone());
+                let term = ReactionTerm::new((&data, mesh), rules, degree, element.clone());
+                term.check_sides(mesh)?;
+                Some(term)
             }
         };
         let coefficients = checks::coefficients(&data.coefficient, mesh)?;
@@ -142,6 +150,11 @@ impl<'a, const D: usize> Space<'a, D> {
             }
             _ => None,
         };
+        let tensor = TensorCoefficient::new(&data.tensor, mesh, basis_degree)?;
+        if tensor.is_some() && varying.is_some() {
+            let message = "a tensor coefficient beside a coefficient that varies within cells is made for linear elements only: take one of these, or constants by region";
+            return Err(Error::UnsupportedForm(message.to_owned()));
+        }
         let space = Self {
             problem,
             mesh,
@@ -154,6 +167,7 @@ impl<'a, const D: usize> Space<'a, D> {
             neighbours,
             dofs,
             coefficients,
+            tensor,
             varying,
             in_domain: nodes.iter().map(|node| set.in_domain(node, D)).collect(),
             on_contact: nodes.iter().map(|node| set.on_contact(node, D)).collect(),
@@ -293,6 +307,10 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn group_of(&self, (cell, local): HalfFacet) -> usize {
         self.mesh.boundary_group(cell, local).expect("a boundary facet has a group")
     }
+    /// Whether a boundary facet lies on a Robin side.
+    pub fn is_on_robin_side(&self, facet: HalfFacet) -> bool {
+        self.data.robin.is_given() && self.data.robin.of(self.group_of(facet)).is_some()
+    }
     /// For each vertex on the Dirichlet boundary the boundary group whose datum is given there, and the cell of a facet
     /// of this group.
     pub fn dirichlet_groups(&self) -> Vec<Option<(usize, usize)>> {
@@ -317,7 +335,7 @@ impl<'a, const D: usize> Space<'a, D> {
         self.data.dirichlet.of(group).map_or(0.0, |u| u.of_body(cell, x))
     }
     pub fn metric(&self, cell: usize) -> CellMetric<D> {
-        CellMetric::of(self.mesh, cell)
+        CellMetric::of(self, cell)
     }
     pub fn facet_measure(&self, (cell, local): HalfFacet) -> f64 {
         self.mesh.geometry(cell).facet_measure(local)

@@ -1,4 +1,4 @@
-//! The reaction term in the matrix of a cell.
+//! The reaction term in the matrix of a cell, with that of Robin sides.
 
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -8,10 +8,10 @@ use super::tables::{BasisAt, CellTable};
 use crate::assemble::cut_simplices::{CutRule, Visit};
 use crate::assemble::stiffness::Local;
 use crate::element::Element;
-use crate::error::Error;
-use crate::mesh::Mesh;
-use crate::problem::{DataByGroup, Datum};
-use crate::quadrature::Rule;
+use crate::error::{Error, InCell};
+use crate::mesh::{BoundaryFacet, HalfFacet, Mesh};
+use crate::problem::{DataByGroup, DataOnMesh, Datum, Robin};
+use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
 
 /// The reaction term, with the rule that integrates it.
@@ -22,33 +22,48 @@ pub(crate) struct ReactionTerm<const D: usize> {
     cut: Option<CutRule>,
     element: Arc<dyn Element<D>>,
     n: usize,
+    /// The facets of Robin sides, by cell and number in the cell.
+    sides: Vec<(HalfFacet, Robin<D>)>,
+    /// The rule on them.
+    facet_rule: Rule,
 }
 
 impl<const D: usize> ReactionTerm<D> {
     /// The term of data with the basis of an element at the points of a rule. A rule at vertices alone,
     /// which lumps the term, is used on cells that are cut too.
     pub fn new(
-        data: DataByGroup<D>,
-        rule: Rule,
+        (data, mesh): (&DataOnMesh<D>, &Mesh<D>),
+        (rule, facet_rule): (Rule, Rule),
         degree: usize,
         element: Arc<dyn Element<D>>,
     ) -> Self {
         let is_lumped = rule.points.iter().all(|point| point.contains(&1.0));
+        let data_of_sides = |f: &BoundaryFacet| {
+            let side = data.robin.of(usize::from(f.group)).cloned()?;
+            Some(((f.cell as usize, usize::from(f.local)), side))
+        };
+        let sides = mesh.boundary().iter().filter_map(data_of_sides).collect();
+        let data = data.reaction.clone();
         let has_level = data.any(&|datum| datum.level().is_some());
         let cut = (has_level && !is_lumped).then(|| CutRule::new(D, degree));
-        Self { data, table: CellTable::new(rule, &*element), cut, n: element.per_cell(), element }
+        let (table, n) = (CellTable::new(rule, &*element), element.per_cell());
+        Self { data, table, cut, n, element, sides, facet_rule }
     }
-    /// Adds `(c phi_j, phi_i)` over a cell.
+    /// Adds `(c phi_j, phi_i)` over a cell, and `(k phi_j, phi_i)` over its facets on Robin sides.
     pub fn add(&self, mesh: &Mesh<D>, cell: usize, volume: f64, out: &mut Local) {
-        let Some(datum) = self.data.of(mesh.region(cell)) else { return };
         let mut add = |c: f64, weight: f64, basis: &BasisAt| {
-            let scale = c * volume * weight;
+            let scale = c * weight;
             for i in 0..self.n {
                 for j in 0..self.n {
                     out[i][j] += scale * basis.values[i] * basis.values[j];
                 }
             }
         };
+        self.visit_sides(mesh, cell, &mut |point, _, weight| {
+            add(weight, 1.0, &BasisAt::new(&*self.element, point));
+        });
+        let Some(datum) = self.data.of(mesh.region(cell)) else { return };
+        let mut add = |c: f64, weight: f64, basis: &BasisAt| add(c * volume, weight, basis);
         if self.visit_cut(datum, mesh, cell, &mut |point, x, weight| {
             add(datum.in_cell(mesh, cell, x), weight, &BasisAt::new(&*self.element, point));
         }) {
@@ -70,6 +85,40 @@ impl<const D: usize> ReactionTerm<D> {
             self.visit_values(mesh, cell, &mut |c, _| is_nonnegative &= c >= 0.0);
         }
         is_nonnegative
+    }
+    /// The facets of Robin sides with their data.
+    pub fn sides(&self) -> &[(HalfFacet, Robin<D>)] {
+        &self.sides
+    }
+    /// Visits the points of the rule on the facets of a cell on Robin sides: in barycentric coordinates of the cell, in
+    /// space, and with weight, measure and coefficient multiplied.
+    pub fn visit_sides(&self, mesh: &Mesh<D>, cell: usize, visit: Visit<'_, D>) {
+        let first = self.sides.partition_point(|((of, _), _)| *of < cell);
+        for ((_, local), side) in self.sides[first..].iter().take_while(|((of, _), _)| *of == cell)
+        {
+            let measure = mesh.geometry(cell).facet_measure(*local);
+            for (point, weight) in self.facet_rule.iter() {
+                let point = facet_to_cell(point, *local);
+                let x = mesh.point(cell, &point[..=D]);
+                visit(&point, &x, weight * measure * side.coefficient.in_cell(mesh, cell, &x));
+            }
+        }
+    }
+    /// Refuses a coefficient of a Robin side that is negative or not finite at a point of the rule.
+    pub fn check_sides(&self, mesh: &Mesh<D>) -> Result<(), Error> {
+        for ((cell, local), side) in &self.sides {
+            for (point, _) in self.facet_rule.iter() {
+                let x = mesh.point(*cell, &facet_to_cell(point, *local)[..=D]);
+                let datum = "coefficient of the Robin side";
+                let value = finite(side.coefficient.in_cell(mesh, *cell, &x), datum, &x, *cell)?;
+                if value < 0.0 {
+                    let rest = "it must not be negative";
+                    let found = InCell::value((datum, value), &x, *cell, rest);
+                    return Err(Error::CoefficientNotPositive(found));
+                }
+            }
+        }
+        Ok(())
     }
     /// Finds the point at which a datum is not finite.
     pub fn check(&self, mesh: &Mesh<D>) -> Result<(), Error> {

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 
 use crate::arrays::array_of;
+use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::flux::Flux;
@@ -137,7 +138,7 @@ impl<const D: usize> Space<'_, D> {
         let n = CellsOfQuadratics::<D>::N;
         let volume = self.mesh.geometry(number).volume;
         let per_volume = 1.0 / (D as f64 * volume);
-        let corners = self.mesh.corners(number);
+        let corners = self.isotropic_corners(number);
         let alpha = self.alpha(number);
         let admissible = self.admissible_in(pair, number);
         let flux = pair.flux.of_cell(number);
@@ -147,13 +148,14 @@ impl<const D: usize> Space<'_, D> {
             let x = self.cell_point(point, number);
             let weight = weight * volume;
             let (value, gradient) = admissible.at(point, &x);
+            let gradient = self.isotropic_gradient(number, &gradient);
             energy += weight * alpha * gradient.norm_squared();
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let distance = admissible.bounds[k]
                     .map_or(0.0, |psi| sign * (value - self.at(psi, number, &x)));
                 (0..D + 1).for_each(|j| gaps[k][j] += weight * point[j] * distance);
             }
-            let fluxes = fluxes_at(point, &x, (&corners, per_volume));
+            let fluxes = fluxes_at(point, &in_space(point, &corners), (&corners, per_volume));
             (0..n).for_each(|a| of_gradient[a] += weight * gradient.dot(&fluxes[a]));
         }
         CellOfQuadratics {
@@ -165,7 +167,7 @@ impl<const D: usize> Space<'_, D> {
             divergence: (D + 1) as f64 * per_volume,
             is_given: admissible.bounds.map(|bound| bound.is_some()),
             energy,
-            variation: self.mesh.cell_diameter(number) / PI
+            variation: self.isotropic_diameter(number) / PI
                 * (volume / (alpha * ((D + 1) * (D + 2)) as f64)).sqrt(),
             has_one_sign: false,
         }
@@ -184,9 +186,10 @@ impl<const D: usize> Space<'_, D> {
             {
                 let number = number as usize;
                 let (volume, alpha) = (self.mesh.geometry(number).volume, self.alpha(number));
-                let geometry = (&self.mesh.corners(number), 1.0 / (D as f64 * volume));
+                let corners = self.isotropic_corners(number);
+                let geometry = (&corners, 1.0 / (D as f64 * volume));
                 for (point, weight) in rule.iter() {
-                    let fluxes = fluxes_at(point, &self.cell_point(point, number), geometry);
+                    let fluxes = fluxes_at(point, &in_space(point, &corners), geometry);
                     for (a, products) in products.chunks_exact_mut(n).enumerate() {
                         for (product, of_other) in products.iter_mut().zip(&fluxes) {
                             *product += weight * volume / alpha * fluxes[a].dot(of_other);

@@ -169,8 +169,9 @@ impl<const D: usize> Space<'_, D> {
         let admissible = self.admissible_in(pair, number);
         let flux = pair.flux.of_cell(number);
         let corners = self.mesh.corners(number);
-        let centre: Point<D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
-        let squares: f64 = corners[..=D].iter().map(|x| (centre - x).norm_squared()).sum();
+        let isotropic = self.isotropic_corners(number);
+        let centre: Point<D> = isotropic[..=D].iter().map(|x| x / (D + 1) as f64).sum();
+        let squares: f64 = isotropic[..=D].iter().map(|x| (centre - x).norm_squared()).sum();
         let per_volume = 1.0 / (D as f64 * volume);
         let gap = |k: usize| {
             let Some(bound) = admissible.bounds[k] else { return f64::INFINITY };
@@ -189,10 +190,10 @@ impl<const D: usize> Space<'_, D> {
         };
         let mut cell = CellOfLinears {
             flux: array_of(|k| flux.get(k).copied().unwrap_or(0.0)),
-            at_centre: array_of(|k| (centre - corners[k]) * per_volume),
+            at_centre: array_of(|k| (centre - isotropic[k]) * per_volume),
             variance: squares * per_volume * per_volume / ((D + 1) * (D + 2)) as f64,
             weight: volume / alpha,
-            difference: -admissible.gradient * alpha,
+            difference: -self.isotropic_gradient(number, &admissible.gradient) * alpha,
             gaps: [gap(0), gap(1)],
             multiplier,
         };

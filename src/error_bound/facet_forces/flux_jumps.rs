@@ -90,7 +90,11 @@ impl<const D: usize> Space<'_, D> {
                     Neighbour::Cell { cell: other, local } if other as usize > cell => {
                         Some((other as usize, usize::from(local)))
                     }
-                    Neighbour::Boundary(BoundaryCondition::Neumann) => None,
+                    Neighbour::Boundary(BoundaryCondition::Neumann)
+                        if !self.is_on_robin_side((cell, local)) =>
+                    {
+                        None
+                    }
                     _ => continue,
                 };
                 let sides = [Some((cell, local)), other];
@@ -179,7 +183,7 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         if sides[1].is_none() && self.problem.has_neumann_data() {
-            let products = self.neumann_products_on(facet, self.group_of(facet))?;
+            let products = self.neumann_products_on(facet, self.group_of(facet), None)?;
             let moments = map_entries(products, |row| row.iter().sum());
             // by its mean or, for quadratics, by its linear part
             let of_datum = match self.degree {
@@ -202,7 +206,7 @@ impl<const D: usize> Space<'_, D> {
         let scale = -(D as f64) * geometry.volume * self.alpha(cell);
         let per_facet = fluxes.len() / (D + 1);
         for (local, fluxes) in fluxes.chunks_exact_mut(per_facet).enumerate() {
-            let along = geometry.gradient(local) * scale;
+            let along = self.tensor_times(cell, geometry.gradient(local)) * scale;
             fluxes.iter_mut().zip(&gradients).for_each(|(flux, g)| *flux = g.dot(&along));
         }
     }
@@ -235,12 +239,14 @@ impl<const D: usize> Space<'_, D> {
         }
         let geometry = self.mesh.geometry(cell);
         let normal = geometry.normal(local);
+        // along `T n`, which leaves the cell as `n` does
+        let conormal = self.tensor_times(cell, &normal);
         let scale = self.alpha(cell) * geometry.facet_measure(local);
         let corners = self.mesh.corners(cell);
         let middle = vertices_of::<D>(local).map(|j| corners[j]).sum::<Point<D>>() / D as f64;
-        let step = STEP / geometry.gradient(local).norm();
+        let step = STEP / (geometry.gradient(local).norm() * self.normal_component((cell, local)));
         let slope = |x: &Point<D>| {
-            let at = |steps: f64| self.at(obstacle, cell, &(x - normal * (steps * step)));
+            let at = |steps: f64| self.at(obstacle, cell, &(x - conormal * (steps * step)));
             scale * (3.0 * at(0.0) - 4.0 * at(1.0) + at(2.0)) / (2.0 * step)
         };
         if self.degree == 1 {

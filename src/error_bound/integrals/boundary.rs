@@ -66,6 +66,8 @@ pub(in crate::error_bound) struct BoundaryTerms {
     /// Norms of what Neumann data and contact forces have besides those of the pair, with the constant of the
     /// trace inequality.
     pub(super) traces: Vec<f64>,
+    /// On Robin sides the squares of `k^-1/2 t` where that is smaller than the term with the constant.
+    pub(super) robin: Vec<f64>,
     /// The complementarity of contact.
     pub(super) contact: Vec<f64>,
     /// The complementarity of obstacles on facets, half to each cell.
@@ -78,11 +80,12 @@ pub(in crate::error_bound) struct BoundaryTerms {
 impl<const D: usize> Space<'_, D> {
     /// The constant of the trace inequality on a facet: for `w` with mean zero in a cell the divergence theorem for
     /// `w^2 (x - a_F)` and the inequality of Payne and Weinberger give
-    /// `|w|_F^2 <= |F| / |K| (1/pi^2 + 2/(pi D)) h_K^2 |grad w|_K^2`.
+    /// `|w|_F^2 <= |F| / |K| (1/pi^2 + 2/(pi D)) h_K^2 |grad w|_K^2`. With a tensor `T = L L^T` the inequality is that in
+    /// the coordinates `L^-1 x`: `h_K` is the diameter of the cell there, `L^T grad w` the gradient.
     pub(in crate::error_bound) fn constant_of_trace(&self, facet: HalfFacet) -> f64 {
         let volume = self.mesh.geometry(facet.0).volume;
         let square = self.facet_measure(facet) / volume * (1.0 / (PI * PI) + 2.0 / (PI * D as f64));
-        square.sqrt() * self.mesh.cell_diameter(facet.0)
+        square.sqrt() * self.isotropic_diameter(facet.0)
     }
 
     /// The rule for the square of Neumann data less the flux, and for contact forces times distances from the gap:
@@ -101,6 +104,7 @@ impl<const D: usize> Space<'_, D> {
     pub(in crate::error_bound) fn boundary_terms(
         &self,
         pair: &PrimalDualPair<D>,
+        u: &[f64],
     ) -> Result<BoundaryTerms, NoBound> {
         let n_cells = self.mesh.n_cells();
         let zeros = |is_needed: bool| vec![0.0; if is_needed { n_cells } else { 0 }];
@@ -111,6 +115,7 @@ impl<const D: usize> Space<'_, D> {
         let rule = self.rule_of_facets(pair.degree);
         let mut terms = BoundaryTerms {
             traces: zeros(has_fluxes || has_gap && pair.degree > 1),
+            robin: zeros(self.data.robin.is_given()),
             contact: zeros(has_gap),
             obstacle: self.facet_obstacle_terms(pair)?,
             has_rounding: !pair.forces.is_empty()
@@ -126,11 +131,19 @@ impl<const D: usize> Space<'_, D> {
                 for (point, weight) in rule.iter() {
                     let in_cell = facet_to_cell(point, facet.1);
                     let force: f64 = force.iter().zip(&in_cell).map(|(s, b)| s * b).sum();
-                    let datum = self.neumann_at(facet, group, point)? + force / measure;
+                    let datum = self.neumann_at(facet, group, point, Some(u))? + force / measure;
                     let flux = flux.scale * flux.at(&in_cell) / measure;
                     square += weight * measure * (datum - flux).powi(2);
                 }
-                terms.traces[facet.0] += self.constant_of_trace(facet) * square.sqrt();
+                let of_trace = self.constant_of_trace(facet) * square.sqrt();
+                let least =
+                    self.data.robin.of(group).map_or(0.0, |side| {
+                        self.least_values(facet.0, &side.coefficient)[1].max(0.0)
+                    });
+                match square < least * of_trace.powi(2) / self.alpha(facet.0) {
+                    true => terms.robin[facet.0] += square / least,
+                    false => terms.traces[facet.0] += of_trace,
+                }
             }
         }
         let (mut least, mut largest) = (0.0_f64, 0.0_f64);

@@ -1,8 +1,8 @@
 //! Integrals of a pair over cells and the boundary: what each cell adds to the bound.
 //!
-//! With `w` the discrete function, `m = alpha^-1/2 (alpha grad v - q)`, `z = c^1/2 (w - v)`,
-//! `r = f - c w + div q` less what a multiplier takes, `t` what `q.n` lacks on Neumann and contact facets, and least
-//! values `alpha_K`, `c_K` in the cell,
+//! With `w` the discrete function, `m = alpha^-1/2 (alpha grad v - q)`, `z = c^1/2 (w - v)` in the cell beside
+//! `k^1/2 (w - v)` on Robin sides, `r = f - c w + div q` less what a multiplier takes, `t` what `q.n` lacks on Neumann
+//! and contact facets, and least values `alpha_K`, `c_K` in the cell,
 //!
 //! ```text
 //! mismatch           |m|_K^2 + |z|_K^2
@@ -15,7 +15,9 @@
 //! T_K = sum_F (|F| / |K| (1/pi^2 + 2/(pi D)))^1/2 h_K alpha_K^-1/2 |t|_F
 //! ```
 //!
-//! and `c_K^-1/2 |r|_K` beside `|z|_K` in place of `R_K` where that is smaller. The multiplier `mu` is the mean of what
+//! with the tensor `T = L L^T` of the coefficient, `L^T` times gradients, `L^-1` times fluxes and the diameter in the
+//! coordinates `L^-1 x`; and `c_K^-1/2 |r|_K` beside `|z|_K` in place of `R_K` where that is smaller, on a Robin side `|k^-1/2 t|_F` in place
+//! of the term of `T_K`. The multiplier `mu` is the mean of what
 //! the flux leaves, where an obstacle presses in its direction, with the share of the linear rest that keeps its sign
 //! ([`share_of_one_sign`]); elsewhere the mean is what the solver left ([`Totals::of_solver`]).
 
@@ -215,7 +217,7 @@ impl<const D: usize> Space<'_, D> {
             |datum: Option<&Datum<D>>, absent| datum.map_or(Some(absent), |d| d.constant());
         let alpha = constant_of(data.coefficient, 1.0)?;
         let load = constant_of(data.source, 0.0)?;
-        let slope = data.slope.filter(|_| data.reaction.is_none())?;
+        let slope = data.slope.filter(|_| data.reaction.is_none() && !self.has_tensor())?;
         let corners = self.mesh.corners(cell);
         let distances = self.gaps_of_linear(&data.admissible, (cell, &corners), table)?;
         let gradient = data.admissible.gradient;
@@ -257,11 +259,16 @@ impl<const D: usize> Space<'_, D> {
             let reaction = data.reaction.map_or(0.0, |c| self.at(c, cell, x));
             let (value, gradient) = admissible.at(point, x);
             let q = data.flux.at(point, x);
+            let tensor = self.tensor_at(cell, x);
+            let of_gradient = |g: Point<D>| tensor.as_ref().map_or(g, |tensor| tensor.gradient(&g));
+            let q = tensor.as_ref().map_or(q, |tensor| tensor.vector(&q));
+            let gradient = of_gradient(gradient);
             sums.mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
             let discrete = basis.value(&data.values);
             sums.from_values += weight * reaction * (discrete - value).powi(2);
             let slope =
                 data.slope.unwrap_or_else(|| basis.gradient(&data.values, &admissible.gradients));
+            let slope = of_gradient(slope);
             sums.distance += weight * alpha * (gradient - slope).norm_squared();
             let from_midpoint = (gradient * alpha + q) * 0.5 - slope * alpha;
             sums.from_midpoint += weight * from_midpoint.norm_squared() / alpha;
@@ -297,9 +304,10 @@ impl<const D: usize> Space<'_, D> {
         let sums = self
             .integrals_of_constants(cell, &data, table)
             .unwrap_or_else(|| self.integrals_at_points(cell, &data, table, cut));
+        let from_values = sums.from_values + self.from_values_on_sides(cell, &data);
         let [mismatch, from_values, from_midpoint] =
-            map_entries([sums.mismatch, sums.from_values, sums.from_midpoint], integral_of_square);
-        let by_gradient = self.mesh.cell_diameter(cell) / (PI * sums.least_coefficient.sqrt());
+            map_entries([sums.mismatch, from_values, sums.from_midpoint], integral_of_square);
+        let by_gradient = self.isotropic_diameter(cell) / (PI * sums.least_coefficient.sqrt());
         let by_value = sums.reaction_from_below.max(0.0).sqrt().recip();
         let load = sums.first_load.unwrap_or(0.0);
         let left = data.flux.left_of_load(data.volume, &sums.means, sums.square, load);
@@ -325,9 +333,10 @@ impl<const D: usize> Space<'_, D> {
         let integral = if has_obstacle { 0.0 } else { left.mean * data.volume };
         let of_trace = boundary.traces.get(cell).map_or(0.0, |n| n / sums.least_coefficient.sqrt());
         let of_load = (left.rest + (1.0 - share).powi(2) * left.variation).sqrt();
+        let of_sides = boundary.robin.get(cell).map_or(0.0, |square| square.sqrt());
         let oscillation = match by_value < by_gradient {
-            true => [of_trace, by_value * of_load],
-            false => [by_gradient * of_load + of_trace, 0.0],
+            true => [of_trace, by_value * of_load + of_sides],
+            false => [by_gradient * of_load + of_trace, of_sides],
         };
         Totals {
             mismatch: mismatch + from_values,
@@ -337,10 +346,22 @@ impl<const D: usize> Space<'_, D> {
             contact: boundary.contact.get(cell).map_or(0.0, |c| 2.0 * c),
             unbalanced: integral * integral / data.volume,
             distance: integral_of_square(sums.distance) + from_values,
-            least_coefficient: sums.least_coefficient,
+            least_coefficient: sums.least_coefficient * self.least_of_tensor(cell),
             least_reaction: sums.least_reaction,
             reaction_from_below: sums.reaction_from_below.min(sums.least_reaction),
         }
+    }
+
+    /// The square of the difference of the two functions, times the coefficients of Robin sides.
+    fn from_values_on_sides(&self, cell: usize, data: &CellInputs<'_, D>) -> f64 {
+        let mut sum = 0.0;
+        if let Some(reaction) = self.reaction.as_ref().filter(|_| self.data.robin.is_given()) {
+            reaction.visit_sides(self.mesh, cell, &mut |point, x, weight| {
+                let discrete = self.basis_at(point).value(&data.values);
+                sum += weight * (discrete - data.admissible.at(point, x).0).powi(2);
+            });
+        }
+        sum
     }
 
     /// The least value of a datum at vertices and midpoints of edges and, for a datum of degree two, its least

@@ -51,17 +51,17 @@ impl<const D: usize> ForceCells<'_, '_, D> {
         tested
     }
 
-    /// `grad v - q / alpha` at the vertices of a cell.
+    /// `grad v - q / alpha` at the vertices of a cell, in coordinates in which the coefficient has no direction.
     fn differences(&self, cell: usize) -> [Point<D>; 4] {
         let space = self.space;
         let gradients = space.gradients_at_vertices(self.pair, cell);
-        let corners = space.mesh.corners(cell);
+        let corners = space.isotropic_corners(cell);
         let scale = 1.0 / (D as f64 * space.mesh.geometry(cell).volume * space.alpha(cell));
         let at_vertex = |k: usize| {
             let through = (0..=D).map(|facet| {
                 (corners[k] - corners[facet]) * self.pair.flux.density(cell, facet, k)
             });
-            gradients[k] - through.sum::<Point<D>>() * scale
+            space.isotropic_gradient(cell, &gradients[k]) - through.sum::<Point<D>>() * scale
         };
         array_of(|k| if k <= D { at_vertex(k) } else { Point::zeros() })
     }
@@ -75,7 +75,7 @@ impl<const D: usize> PatchCells<D, 3> for ForceCells<'_, '_, D> {
     /// is `(n m + a_own) / (n + 1)`.
     fn problem(&self, corner: Corner, _: &[Corner]) -> CellProblem<3> {
         let (cell, d, n) = (corner.cell(), D as f64, (D + 1) as f64);
-        let points = self.space.mesh.corners(cell);
+        let points = self.space.isotropic_corners(cell);
         let middle = points[..=D].iter().sum::<Point<D>>() / n;
         let squares: f64 = points[..=D].iter().map(|x| (x - middle).norm_squared()).sum();
         let weighted = (middle * n + points[corner.own()]) / (n + 1.0);

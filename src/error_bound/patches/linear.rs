@@ -10,7 +10,6 @@ use crate::arrays::array_of;
 use crate::assemble::shared_rows::places::for_each_place;
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::assemble::space::metric::shape;
 use crate::error_bound::NoBound;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::memory::in_large_pages;
@@ -57,7 +56,7 @@ impl<const D: usize> Space<'_, D> {
         let mut data = in_large_pages(vec![0.0; n_cells * stride]);
         let fill = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, data) in cells.zip(out.chunks_exact_mut(stride)) {
-                let (volume, products) = shape(self.mesh, cell, 1.0);
+                let (volume, products) = self.shape(cell, 1.0);
                 let values = self.local_values(cell, u);
                 let alpha = self.alpha(cell);
                 data[0] = volume;
@@ -189,13 +188,13 @@ impl<const D: usize> PatchCells<D, 3> for LinearCells<'_, '_, D> {
     /// them are `x` less the barycentre and the constant across the facet.
     fn problem(&self, corner: Corner, corners: &[Corner]) -> CellProblem<3> {
         let (cell, own, d) = (corner.cell(), corner.own(), D as f64);
-        let (_, products) = shape(self.space.mesh, cell, 1.0);
+        let (_, products) = self.space.shape(cell, 1.0);
         let vertex = self.space.mesh.cell(cell)[own] as usize;
         let carried: f64 = corners.iter().map(|corner| self.carried(*corner)).sum();
         let mean = self.load(corner, self.multipliers[vertex] / carried) / (d + 1.0);
         let across = products[own].map(|product| -product / products[own][own]);
         let scale = d * d * self.space.alpha(cell) * self.volume(cell);
-        let points = self.space.mesh.corners(cell);
+        let points = self.space.isotropic_corners(cell);
         let mut facet = [Point::zeros(); 3];
         facet.iter_mut().zip(corner.facets::<D>()).for_each(|(corner, a)| *corner = points[a]);
         let within = products_within(&facet);

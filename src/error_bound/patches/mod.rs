@@ -107,7 +107,8 @@ impl<const D: usize> Space<'_, D> {
         let mut flux = Flux::zero(C::DEGREE, self.mesh.n_cells());
         for (cells, mut vertices) in self.ranges_with_vertices(CELLS_AT_A_TIME) {
             of_vertices.keep(cells.clone());
-            if let Some(of) = linear {
+            // fans and links know no tensors
+            if let Some(of) = linear.filter(|_| !self.has_tensor()) {
                 vertices = of.set_directly(&vertices, &of_vertices);
             }
             if !vertices.is_empty() {

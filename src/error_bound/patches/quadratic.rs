@@ -34,7 +34,8 @@ use crate::real::Point;
 pub(in crate::error_bound) struct KnownOfCell {
     /// By facet the densities of `alpha grad u . n`.
     normal: Products,
-    /// The gradient of the admissible function less that of the discrete function, at the vertices.
+    /// The gradient of the admissible function less that of the discrete function, at the vertices, in coordinates in
+    /// which the coefficient has no direction.
     difference: [[f64; 3]; 4],
     /// The stiffness term of each unknown.
     stiffness: [f64; 10],
@@ -197,6 +198,7 @@ impl<const D: usize> Space<'_, D> {
             for (m, slope) in slopes.iter().enumerate().take(D + 1) {
                 difference -= geometry.gradient(m) * *slope;
             }
+            let difference = self.isotropic_gradient(cell, &difference);
             data.difference[k][..D].copy_from_slice(difference.as_slice());
             let coefficient = match varying {
                 None => alpha,
@@ -270,7 +272,7 @@ pub(super) fn quadratic_problem<const D: usize>(
     difference: &[[f64; 3]; 4],
 ) -> CellProblem<9> {
     let (mesh, cell, d) = (space.mesh, corner.cell(), D as f64);
-    let points = mesh.corners(cell);
+    let points = space.isotropic_corners(cell);
     let volume = mesh.geometry(cell).volume;
     let alpha = space.alpha(cell);
     let scale = 1.0 / (alpha * volume * d * d * (d + 1.0) * (d + 2.0));

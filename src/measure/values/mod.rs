@@ -10,7 +10,7 @@ use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryCondition, HalfFacet};
+use crate::mesh::{BoundaryCondition, BoundaryFacet, HalfFacet};
 use crate::problem::{ROUNDING, ValueOf};
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
@@ -53,8 +53,10 @@ impl<const D: usize> Discretisation<'_, D> {
     /// the solver leaves,
     ///
     /// ```text
-    /// loads - integral of reaction coefficient times u + reactions of all Dirichlet groups + resultant = 0
+    /// loads - integral of reaction coefficient times u + reactions of all groups + resultant = 0
     /// ```
+    ///
+    /// where the reaction of a Robin side is the integral of `k (g - u)`.
     ///
     /// # Errors
     /// [`Error::UnknownGroup`] for a name that the mesh does not have; [`Error::DataNotFinite`]; [`Error::Parameter`]
@@ -134,11 +136,10 @@ impl<const D: usize> Discretisation<'_, D> {
         let function = InCells { value: &value, is_linear: false };
         let flux = |facet: HalfFacet, point: &[f64; 4]| space.exact_flux(exact, facet, point);
         let found = wanted.iter().map(|of| match of {
-            ValueOf::Reaction(name) => {
-                Some(space.on_group(name, Some(BoundaryCondition::Dirichlet), &flux))
-            }
+            ValueOf::Reaction(name) => Some(space.on_group(name, &|f| space.holds(f), &flux)),
             ValueOf::Force(name) => {
-                Some(space.on_group(name, Some(BoundaryCondition::Contact), &flux))
+                let is_contact = |f: &BoundaryFacet| f.condition == BoundaryCondition::Contact;
+                Some(space.on_group(name, &is_contact, &flux))
             }
             _ => space.value_of(&function, of).value,
         });
@@ -148,7 +149,7 @@ impl<const D: usize> Discretisation<'_, D> {
     /// Refuses names that the mesh does not have.
     fn check_values(&self, wanted: &[ValueOf<D>]) -> Result<(), Error> {
         let named = wanted.iter().filter(|of| !matches!(of, ValueOf::At(_)));
-        match named.filter_map(|of| of.fault(self.mesh())).next() {
+        match named.filter_map(|of| of.fault(self.problem(), self.mesh())).next() {
             None => Ok(()),
             Some(fault) => Err(Error::UnknownGroup(fault)),
         }
@@ -184,7 +185,7 @@ impl<const D: usize> Space<'_, D> {
                 let value = |(cell, local): HalfFacet, point: &[f64; 4]| {
                     (function.value)(cell, &facet_to_cell(point, local))
                 };
-                FoundValue::number(Some(self.on_group(name, None, &value)))
+                FoundValue::number(Some(self.on_group(name, &|_| true, &value)))
             }
             ValueOf::Reaction(_) | ValueOf::Force(_) => FoundValue::number(None),
         }
@@ -198,19 +199,24 @@ impl<const D: usize> Space<'_, D> {
         (0..self.mesh.n_cells()).filter(move |&cell| is_meant[self.mesh.region(cell)])
     }
 
-    /// The integral over the facets of a boundary group, those with a condition where one is given.
+    /// Whether a boundary facet holds the body: it has Dirichlet data or lies on a Robin side.
+    fn holds(&self, facet: &BoundaryFacet) -> bool {
+        facet.condition == BoundaryCondition::Dirichlet
+            || self.data.robin.of(usize::from(facet.group)).is_some()
+    }
+
+    /// The integral over the facets of a boundary group that are meant.
     fn on_group(
         &self,
         name: &str,
-        condition: Option<BoundaryCondition>,
+        is_meant: &dyn Fn(&BoundaryFacet) -> bool,
         value: &dyn Fn(HalfFacet, &[f64; 4]) -> f64,
     ) -> f64 {
         let rule = Rule::new(D - 1, DEGREE.max(self.basis_degree));
         let groups = self.mesh.boundary_groups();
         let mut integral = 0.0;
         for of in self.mesh.boundary() {
-            let is_of_kind = condition.is_none_or(|condition| of.condition == condition);
-            if is_of_kind && ValueOf::<D>::is_meant(name, &groups[usize::from(of.group)].names) {
+            if is_meant(of) && ValueOf::<D>::is_meant(name, &groups[usize::from(of.group)].names) {
                 let facet = (of.cell as usize, usize::from(of.local));
                 let terms = rule.iter().map(|(point, weight)| weight * value(facet, point));
                 integral += self.facet_measure(facet) * terms.sum::<f64>();

@@ -1,4 +1,4 @@
-//! The forces of Dirichlet groups, by the equations of the scheme.
+//! The forces of Dirichlet groups, by the equations of the scheme, and of Robin sides.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::measure::contact::SolvedInequality;
 use crate::mesh::BoundaryCondition;
 
 impl<const D: usize> Discretisation<'_, D> {
-    /// By boundary group the force that its Dirichlet data exert on the body.
+    /// By boundary group the force that its Dirichlet data, or its Robin data, exert on the body.
     pub(super) fn reactions(
         &self,
         (inequality, solution): SolvedInequality<'_>,
@@ -47,6 +47,13 @@ impl<const D: usize> Discretisation<'_, D> {
             let fluxes = self.facet_fluxes(values, multipliers, 1)?;
             for ((cell, local), group) in facets {
                 reactions[group] += fluxes[cell * (D + 1) + local];
+            }
+        }
+        if space.data.robin.is_given() {
+            for (facet, group) in space.grouped_facets_of(BoundaryCondition::Neumann) {
+                if space.data.robin.of(group).is_some() {
+                    reactions[group] += space.neumann_flux(facet, group, values)?;
+                }
             }
         }
         Ok(reactions)

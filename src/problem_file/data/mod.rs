@@ -1,6 +1,7 @@
 //! The data of a problem file, checked on its mesh.
 
 mod check;
+mod tensor;
 mod values;
 
 use toml::de::DeTable;
@@ -13,7 +14,7 @@ use crate::arrays::array_of;
 use crate::error::Error;
 use crate::input::{beginning, fingerprint};
 use crate::mesh::{BoundaryCondition, BoundaryFacet, BoxDomain, Domain, Mesh, MeshError, SIDES};
-use crate::problem::{Datum, Given, Problem};
+use crate::problem::{Datum, Given, Problem, Robin};
 use crate::real::Point;
 use crate::scenes::{AnyScene, Scene};
 use check::{Allowed, Checks, Entry};
@@ -65,6 +66,8 @@ struct Builder<'s, 't, const D: usize> {
 struct OnGroup {
     condition: BoundaryCondition,
     formula: Formula,
+    /// The coefficient of a Robin side.
+    coefficient: Option<Formula>,
     /// Its name in the file.
     datum: String,
     offset: usize,
@@ -84,6 +87,14 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let groups: Vec<String> = table.keys().map(|key| key.get_ref().to_string()).collect();
         for (key, value) in table.iter() {
             let group = key.get_ref().to_string();
+            let region = (group != DEFAULT).then_some(&group[..]);
+            if name == "coefficient" && value.get_ref().as_array().is_some() {
+                let offset = if region.is_some() { key.span().start } else { value.span().start };
+                let (tensor, entry) = tensor::read(self.source, (&group, offset, value), &groups)?;
+                self.problem.tensor.give(region, tensor);
+                self.entries.push(entry);
+                continue;
+            }
             let variables = &VARIABLES[0][..D];
             let with_level = value.get_ref().as_table().filter(|_| PIECEWISE.contains(&name));
             let (formula, level) = match with_level {
@@ -100,7 +111,6 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                     (entry("value", "the datum")?.0, Some(level))
                 }
             };
-            let region = (group != DEFAULT).then_some(&group[..]);
             let given = piecewise(&formula, level.as_ref().map(|(level, _)| level));
             of(&mut self.problem).give(region, given);
             let entry = |what: &str, offset, (allowed, at_vertices), formula: &Formula| Entry {
@@ -151,12 +161,17 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     /// Reads the table of a boundary group.
     fn on_group(&self, group: &str, offset: usize, value: &Value<'t>) -> Done<OnGroup> {
         let table = self.source.table(group, value)?;
-        let kinds = "\"dirichlet\", \"neumann\" or \"contact\"";
+        let kinds = "\"dirichlet\", \"neumann\", \"robin\" or \"contact\"";
         let Some(kind) = table.get("kind") else {
             return Err(self.source.missing(offset, "kind", kinds));
         };
-        let condition = BoundaryCondition::from_name(self.source.string("kind", kind)?)
-            .ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?;
+        let (condition, is_robin) = match self.source.string("kind", kind)? {
+            "robin" => (BoundaryCondition::Neumann, true),
+            name => {
+                let condition = BoundaryCondition::from_name(name);
+                (condition.ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?, false)
+            }
+        };
         if BoundaryCondition::from_name(group).is_some_and(|named| named != condition) {
             let expected =
                 "what the name of the group says: dirichlet, neumann and contact fix their kind";
@@ -164,10 +179,12 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         }
         let (name, takes_normal) = match condition {
             BoundaryCondition::Dirichlet => ("value", false),
+            BoundaryCondition::Neumann if is_robin => ("value", false),
             BoundaryCondition::Neumann => ("flux", true),
             BoundaryCondition::Contact => ("gap", true),
         };
-        self.source.allow(table, &["kind", name])?;
+        let of_robin: &[&str] = if is_robin { &["coefficient"] } else { &[] };
+        self.source.allow(table, &[&["kind", name], of_robin].concat())?;
         let variables = match takes_normal {
             true => [&VARIABLES[0][..D], &VARIABLES[1][..D]].concat(),
             false => VARIABLES[0][..D].to_vec(),
@@ -180,31 +197,48 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             }
             None => Formula::Number(0.0),
         };
-        Ok(OnGroup { condition, formula, datum: format!("boundary.{group}.{name}"), offset })
+        let coefficient = match (is_robin, table.get("coefficient")) {
+            (false, _) => None,
+            (true, Some(value)) => Some(self.source.formula("coefficient", value, &variables)?),
+            (true, None) => {
+                let purpose = "`k` of alpha du/dn + k (u - value) = 0, not negative";
+                return Err(self.source.missing(offset, "coefficient", purpose));
+            }
+        };
+        let datum = format!("boundary.{group}.{name}");
+        Ok(OnGroup { condition, formula, coefficient, datum, offset })
     }
 
     /// Puts what is given on a boundary group into the problem.
     fn put_on(&mut self, group: &str, given: &OnGroup) {
-        let OnGroup { condition, formula, datum, offset } = given;
+        let OnGroup { condition, formula, coefficient, datum, offset } = given;
         let (problem, name) = (&mut self.problem, Some(group));
         match condition {
             BoundaryCondition::Dirichlet => problem.dirichlet.give(name, formula.datum()),
-            BoundaryCondition::Neumann => problem.neumann.give(name, formula.flux()),
+            BoundaryCondition::Neumann => match coefficient {
+                Some(k) => problem.robin.give(name, Robin::new(k.datum(), formula.datum())),
+                None => problem.neumann.give(name, formula.flux()),
+            },
             BoundaryCondition::Contact => {
                 self.gaps.push(formula.clone());
                 problem.gap.give(name, formula.datum());
             }
         }
-        self.entries.push(Entry {
-            datum: datum.clone(),
+        let entry = |datum: &str, allowed, formula: &Formula| Entry {
+            datum: datum.to_owned(),
             group: Some(group.to_owned()),
             is_boundary: true,
             others: Vec::new(),
             at_vertices: *condition != BoundaryCondition::Neumann,
             offset: *offset,
-            allowed: Allowed::Finite,
+            allowed,
             value: formula.flux(),
-        });
+        };
+        self.entries.push(entry(datum, Allowed::Finite, formula));
+        if let Some(coefficient) = coefficient {
+            let datum = format!("boundary.{group}.coefficient");
+            self.entries.push(entry(&datum, Allowed::NotNegative, coefficient));
+        }
         self.conditions.push((group.to_owned(), *condition));
     }
 
@@ -376,7 +410,7 @@ where
     }
     .run(&mesh)?;
     let mesh = problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
-    values::check(source, &wanted, &mesh)?;
+    values::check(source, (&wanted, &problem), &mesh)?;
     problem.values = wanted.into_iter().map(|(name, value, _)| (name, value)).collect();
     let domain = if domain.is_mesh() { mesh.into() } else { domain };
     let scene = Scene::new(name + suffix, domain, problem).into();

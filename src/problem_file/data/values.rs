@@ -1,7 +1,7 @@
 //! The numbers of the solution for which a file asks.
 
 use crate::mesh::Mesh;
-use crate::problem::ValueOf;
+use crate::problem::{Problem, ValueOf};
 use crate::problem_file::error::{ProblemFileError, ProblemFileErrorKind};
 use crate::problem_file::table::{Source, Value};
 use crate::real::Point;
@@ -58,11 +58,11 @@ fn point<'t, const D: usize>(source: &Source<'t>, value: &Value<'t>) -> Done<Poi
 /// Refuses values that the mesh of the problem does not have.
 pub(super) fn check<const D: usize>(
     source: &Source<'_>,
-    wanted: &[Wanted<D>],
+    (wanted, problem): (&[Wanted<D>], &Problem<D>),
     mesh: &Mesh<D>,
 ) -> Done {
     for (name, value, offset) in wanted {
-        if let Some(fault) = value.fault(mesh) {
+        if let Some(fault) = value.fault(problem, mesh) {
             let kind = match value {
                 ValueOf::At(_) => ProblemFileErrorKind::Value,
                 _ => ProblemFileErrorKind::UnknownGroup,

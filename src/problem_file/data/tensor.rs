@@ -1,0 +1,72 @@
+//! The tensor of a coefficient: rows of numbers and expressions.
+
+use std::sync::Arc;
+
+use super::check::{Allowed, Entry};
+use crate::problem::{BoundaryFlux, Tensor};
+use crate::problem_file::error::ProblemFileError;
+use crate::problem_file::expression::VARIABLES;
+use crate::problem_file::table::{Formula, Source, Value};
+use crate::real::{Matrix, Point};
+
+/// The least pivot of Gaussian elimination up to the first that is not positive: a symmetric matrix is positive definite
+/// if it is.
+fn least_pivot<const D: usize>(mut of: Matrix<D>) -> f64 {
+    let mut least = f64::INFINITY;
+    for k in 0..D {
+        let pivot = of[(k, k)];
+        least = least.min(pivot);
+        if pivot.is_nan() || pivot <= 0.0 {
+            return pivot;
+        }
+        for (i, j) in (k + 1..D).flat_map(|i| (k + 1..D).map(move |j| (i, j))) {
+            of[(i, j)] -= of[(i, k)] * of[(k, j)] / pivot;
+        }
+    }
+    least
+}
+
+/// Reads the tensor of a region, `[[2, 0], [0, 1]]`, with what is to be checked: that it is positive definite.
+pub(super) fn read<'t, const D: usize>(
+    source: &Source<'t>,
+    (group, offset, value): (&str, usize, &Value<'t>),
+    others: &[String],
+) -> Result<(Tensor<D>, Entry<D>), ProblemFileError> {
+    let expected = "a symmetric list of rows, each with an entry for each coordinate";
+    let wrong = || source.wrong_type(group, value, expected);
+    let list =
+        |value: &Value<'t>| Some(value.get_ref().as_array().filter(|l| l.len() == D)?.clone());
+    let (mut formulas, mut texts) = (Vec::new(), Vec::new());
+    for row in list(value).ok_or_else(wrong)?.iter() {
+        for entry in list(row).ok_or_else(wrong)?.iter() {
+            formulas.push(source.formula(group, entry, &VARIABLES[0][..D])?);
+            texts.push(&source.text[entry.span()]);
+        }
+    }
+    let is_same = |a: usize, b: usize| match (&formulas[a], &formulas[b]) {
+        (Formula::Number(a), Formula::Number(b)) => a == b,
+        _ => texts[a] == texts[b],
+    };
+    if !(0..D).all(|i| (0..i).all(|j| is_same(i * D + j, j * D + i))) {
+        return Err(wrong());
+    }
+    let is_constant = formulas.iter().all(|formula| matches!(formula, Formula::Number(_)));
+    let data: Vec<_> = formulas.iter().map(Formula::datum::<D>).collect();
+    let at = move |x: &Point<D>| Matrix::from_fn(|i, j| data[i * D + j].at(x));
+    let tensor = match is_constant {
+        true => Tensor::Constant(at(&Point::zeros())),
+        false => Tensor::function(at),
+    };
+    let (of, region) = (tensor.clone(), (group != super::DEFAULT).then(|| group.to_owned()));
+    let entry = Entry {
+        datum: format!("the least pivot of coefficient.{group}"),
+        group: region,
+        is_boundary: false,
+        others: others.to_vec(),
+        at_vertices: false,
+        offset,
+        allowed: Allowed::Positive,
+        value: BoundaryFlux::Function(Arc::new(move |x, _| least_pivot(of.at(x)))),
+    };
+    Ok((tensor, entry))
+}
