@@ -11,6 +11,8 @@ pub(crate) struct HtmlPage {
     pub lead: String,
     /// Titles and texts of SVG files that stand side by side on the first screen.
     pub plots: Vec<(String, String)>,
+    /// Titles of pictures and their files, beside the plots.
+    pub pictures: Vec<(String, String)>,
     /// The tables of the first screen.
     pub summary: Vec<Table>,
     pub sections: Vec<Section>,
@@ -37,10 +39,10 @@ const STYLE: &str = "\
 body{font:14px/1.4 system-ui,sans-serif;color:var(--ink);background:var(--ground);margin:.8em auto;max-width:88em;padding:0 1em}
 h1{font-size:1.3em;margin:0}h2{font-size:1.15em;margin:2em 0 .4em;border-bottom:1px solid var(--line)}
 p{margin:.3em 0;max-width:70em}.lead{font-size:1.1em}
-.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(30em,100%),1fr));gap:.5em}
+.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(26em,100%),1fr));gap:.5em}
 figure{margin:.4em 0}figcaption{color:var(--soft);text-align:center}
 .plot svg{display:block;margin:auto;max-width:100%;height:auto}
-.first .plot svg{max-height:21em}
+.first .plot svg,.first .picture img{display:block;margin:auto;max-height:21em}.first .picture img{width:auto;max-width:100%}
 .pictures{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24em,100%),1fr));gap:.8em}
 .picture img{width:100%;height:auto}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums;margin:.3em 0}
@@ -63,25 +65,15 @@ impl HtmlPage {
              <p class=\"lead\">{}</p>\n",
             escaped(&self.lead)
         );
-        text += &plots(&self.plots);
+        text += &figures("plots", &self.plots, &self.pictures);
         self.summary.iter().for_each(|of| text += &table(of));
         text += "</section>\n";
         for section in &self.sections {
             text += &format!("<section>\n<h2>{}</h2>\n", escaped(&section.title));
             section.paragraphs.iter().for_each(|of| text += &paragraph("", of));
             section.tables.iter().for_each(|of| text += &table(of));
-            text += &plots(&section.plots);
-            if !section.pictures.is_empty() {
-                text += "<div class=\"pictures\">\n";
-                for (title, file) in &section.pictures {
-                    let (title, file) = (escaped(title), escaped(file));
-                    text += &format!(
-                        "<figure class=\"picture\"><img src=\"{file}\" alt=\"{title}\" loading=\"lazy\">\
-                         <figcaption>{title}</figcaption></figure>\n"
-                    );
-                }
-                text += "</div>\n";
-            }
+            text += &figures("plots", &section.plots, &[]);
+            text += &figures("pictures", &[], &section.pictures);
             text += "</section>\n";
         }
         if !self.provenance.is_empty() {
@@ -97,17 +89,24 @@ fn paragraph(class: &str, text: &str) -> String {
     format!("<p{class}>{}</p>\n", escaped(text))
 }
 
-/// Drawings side by side.
-fn plots(plots: &[(String, String)]) -> String {
-    if plots.is_empty() {
+/// Drawings, and pictures in files, side by side.
+fn figures(class: &str, plots: &[(String, String)], pictures: &[(String, String)]) -> String {
+    if plots.is_empty() && pictures.is_empty() {
         return String::new();
     }
-    let mut text = "<div class=\"plots\">\n".to_owned();
+    let mut text = format!("<div class=\"{class}\">\n");
     for (title, svg) in plots {
         let svg = svg[svg.find("<svg").expect("a drawing is an SVG file")..].trim_end();
         let title = escaped(title);
         text += &format!(
             "<figure class=\"plot\" role=\"img\" aria-label=\"{title}\">{svg}<figcaption>{title}</figcaption></figure>\n"
+        );
+    }
+    for (title, file) in pictures {
+        let (title, file) = (escaped(title), escaped(file));
+        text += &format!(
+            "<figure class=\"picture\"><img src=\"{file}\" alt=\"{title}\" loading=\"lazy\">\
+             <figcaption>{title}</figcaption></figure>\n"
         );
     }
     text + "</div>\n"

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::document::Document;
 use super::html::{HtmlPage, Section};
 #[cfg(feature = "plot")]
-use crate::plot::overview;
+use crate::plot::{overview, shows_all};
 use crate::study::row::distinct;
 use crate::study::tables::levels::{scenes, tables_of};
 use crate::study::tables::summary::{lead, summaries};
@@ -48,26 +48,37 @@ impl Report {
     /// The report as a page, which links the pictures `SCENE-LABEL.svg` that are in the directory.
     pub(super) fn page(&self, directory: &Path) -> HtmlPage {
         let parts = scenes(&self.rows);
-        let of_scene = |scene: &str| Section {
+        let scenes = distinct(self.rows.iter().map(|row| row.scene.as_str()));
+        // the first picture of a solution stands on the first screen
+        let mut first = Vec::new();
+        let mut pictures: Vec<_> =
+            scenes.iter().map(|scene| self.pictures(scene, directory)).collect();
+        if let Some(of_scene) = pictures.iter_mut().find(|of_scene| !of_scene.is_empty()) {
+            first.push(of_scene.remove(0));
+        }
+        let of_scene = |(scene, pictures): (&str, _)| Section {
             title: scene.to_owned(),
             tables: parts
                 .iter()
                 .filter(|(_, rows)| rows[0].scene == scene)
                 .flat_map(|(title, rows)| tables_of(title, rows))
                 .collect(),
-            pictures: self.pictures(scene, directory),
+            pictures,
             ..Section::default()
         };
-        let scenes = distinct(self.rows.iter().map(|row| row.scene.as_str()));
         HtmlPage {
-            title: "Comparison of schemes".to_owned(),
+            title: match scenes[..] {
+                [scene] => scene.to_owned(),
+                _ => "Comparison of schemes".to_owned(),
+            },
             lead: lead(&self.rows),
             summary: summaries(&self.rows),
             plots: self.overview(),
+            pictures: first,
             sections: [self.plots()]
                 .into_iter()
                 .flatten()
-                .chain(scenes.into_iter().map(of_scene))
+                .chain(scenes.iter().copied().zip(pictures).map(of_scene))
                 .collect(),
             provenance: self.provenance(),
         }
@@ -83,26 +94,28 @@ impl Report {
         Vec::new()
     }
 
-    /// The section of the plots with all errors, which stand beside the page.
+    /// The section of the plots beside the page that have more than the first screen.
+    #[cfg(feature = "plot")]
     fn plots(&self) -> Option<Section> {
-        let plot = |file: &str, title: &str| (title.to_owned(), file.to_owned());
-        cfg!(feature = "plot").then(|| Section {
-            title: "All scenes".to_owned(),
-            pictures: vec![
-                plot("convergence.svg", "Errors against mesh size"),
-                plot("work_precision.svg", "Error against time"),
-            ],
-            ..Section::default()
-        })
+        let [time, size] = shows_all(&self.rows);
+        let plots = [
+            (time, "work_precision.svg", "Error against time"),
+            (size, "convergence.svg", "Errors against mesh size"),
+        ];
+        let more = plots.into_iter().filter(|(is_shown, ..)| !is_shown);
+        let pictures: Vec<_> =
+            more.map(|(_, file, title)| (title.to_owned(), file.to_owned())).collect();
+        let title = "All scenes".to_owned();
+        (!pictures.is_empty()).then(|| Section { title, pictures, ..Section::default() })
+    }
+    #[cfg(not(feature = "plot"))]
+    fn plots(&self) -> Option<Section> {
+        None
     }
 
-    /// The pictures of a scene: titles and files. The plot of histories is there if it has been written.
+    /// The pictures of a scene: titles and files, solutions first. The plot of histories is there if it has been written.
     fn pictures(&self, scene: &str, directory: &Path) -> Vec<(String, String)> {
         let mut pictures = Vec::new();
-        let history = history_file(scene);
-        if directory.join(&history).exists() {
-            pictures.push((format!("Certificates of the solves on {scene}"), history));
-        }
         let of_scene = self.rows.iter().filter(|r| r.scene == scene);
         for (label, solver) in distinct(of_scene.map(|r| (&r.label, &r.solver))) {
             let is_alone = self.rows.iter().all(|r| r.solver == *solver);
@@ -111,6 +124,10 @@ impl Report {
             if directory.join(&file).exists() {
                 pictures.push((format!("{of} on {scene}"), file));
             }
+        }
+        let history = history_file(scene);
+        if directory.join(&history).exists() {
+            pictures.push((format!("Certificates of the solves on {scene}"), history));
         }
         pictures
     }

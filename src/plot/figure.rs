@@ -49,17 +49,33 @@ pub fn convergence(rows: &[Row]) -> Figure {
     Figure { panels, keys: names, columns }
 }
 
-/// The two figures of a first screen with their captions, of the first four scenes: error against time, and the same
-/// error against mesh size or unknowns; one panel for each scene.
+/// The most panels of [`convergence`] that a first screen shows whole.
+const MOST_PANELS: usize = 4;
+/// The most scenes of a first screen.
+const MOST_SCENES: usize = 4;
+
+/// Whether a first screen has all that [`work_precision`] and [`convergence`] show.
+pub(crate) fn shows_all(rows: &[Row]) -> [bool; 2] {
+    let scenes = distinct(rows.iter().map(|row| &*row.scene)).len();
+    [scenes <= MOST_SCENES, convergence(rows).panels.len() <= MOST_PANELS]
+}
+
+/// The two figures of a first screen with their captions, of the first scenes: error against time, one panel for each
+/// scene, and errors against mesh size or unknowns, of many panels those of the same error.
 pub(crate) fn overview(rows: &[Row]) -> [(String, Figure); 2] {
     let all = distinct(rows.iter().map(|row| &*row.scene));
-    let first = &all[..all.len().min(4)];
+    let first = &all[..all.len().min(MOST_SCENES)];
     let of: Vec<Row> = rows.iter().filter(|row| first.contains(&&*row.scene)).cloned().collect();
     let time = work_precision(&of);
     let Figure { panels, keys, .. } = convergence(&of);
     let errors: Vec<&String> = time.panels.iter().map(|panel| &panel.y).collect();
-    let panels = panels.into_iter().filter(|panel| errors.contains(&&panel.y)).collect();
-    let size = Figure { panels, keys, columns: time.columns };
+    let size = match panels.len() <= MOST_PANELS {
+        true => Figure { columns: panels.len().min(2), panels, keys },
+        false => {
+            let panels = panels.into_iter().filter(|panel| errors.contains(&&panel.y)).collect();
+            Figure { panels, keys, columns: time.columns }
+        }
+    };
     let caption = |figure: &Figure| {
         let of = |get: fn(&Panel) -> &str| distinct(figure.panels.iter().map(get)).join(" or ");
         let scenes = match all.len() > first.len() {

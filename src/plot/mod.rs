@@ -16,8 +16,8 @@ mod slopes;
 mod style;
 
 pub(crate) use cost::cost_figure;
-pub(crate) use figure::overview;
 pub use figure::{Figure, convergence, work_precision};
+pub(crate) use figure::{overview, shows_all};
 pub(crate) use history::history_figure;
 pub use picture::Picture;
 pub(crate) use series::Quantity;

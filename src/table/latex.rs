@@ -8,13 +8,13 @@ use super::{Cell, Table};
 pub const LATEX_PACKAGES: &str = "\\usepackage{booktabs,siunitx}\\sisetup{detect-weight=true}";
 
 impl Table {
-    /// A `table` with a `tabular` of all columns, the caption and the label `tab:` with the title. See
+    /// A `table` with a `tabular` of all columns, the remarks below it, the caption and the label `tab:` with the title. See
     /// [`LATEX_PACKAGES`].
     pub fn to_latex(&self) -> String {
         let line = |cells: Vec<String>| format!("{} \\\\\n", cells.join(" & "));
         let kind = |k| if self.is_left(k) { 'l' } else { 'r' };
         let mut text = format!(
-            "\\begin{{table}}\n\\caption{{{}}}\\label{{tab:{}}}\n\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n",
+            "\\begin{{table}}\n\\centering\n\\caption{{{}}}\\label{{tab:{}}}\n\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n",
             latex(&self.caption()),
             self.slug(),
             (0..self.columns.len()).map(kind).collect::<String>(),
@@ -29,11 +29,11 @@ impl Table {
         for row in &self.rows {
             text += &line(row.iter().map(cell).collect());
         }
-        text += "\\bottomrule\n\\end{tabular}\n\\end{table}\n";
+        text += "\\bottomrule\n\\end{tabular}\n";
         for remark in &self.remarks {
-            text += &format!("{}\n\n", latex(remark));
+            text += &format!("\\par\\smallskip{{\\footnotesize {}\\par}}\n", latex(remark));
         }
-        text
+        text + "\\end{table}\n"
     }
 }
 

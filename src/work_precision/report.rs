@@ -101,13 +101,18 @@ impl<'r> WorkPrecision<'r> {
         };
         let tables = self.detail_tables();
         let details = Section { title: "All runs".to_owned(), tables, ..Section::default() };
+        let scenes = distinct(self.report.rows.iter().map(|row| row.scene.as_str()));
         HtmlPage {
-            title: "Work against precision".to_owned(),
+            title: match scenes[..] {
+                [scene] => format!("{scene}: work against precision"),
+                _ => "Work against precision".to_owned(),
+            },
             lead: self.verdicts().join(" "),
             plots: self.report.overview(),
             summary: self.summary_tables(),
             sections: vec![figures, details],
             provenance: self.report.provenance(),
+            ..HtmlPage::default()
         }
     }
 

@@ -32,11 +32,32 @@ impl ReasonsGiven {
     }
 }
 
-/// Each warning of the rows once, after the labels of its rows.
+/// Each warning of the rows once, after the labels of its rows, with their levels where a label has several.
 pub(super) fn warnings<'r>(rows: &[&'r Row]) -> Vec<(String, &'r str)> {
-    let all =
-        || rows.iter().flat_map(|r| r.warnings.iter().map(|w| (r.label.as_str(), w.as_str())));
-    let labels = |warning: &str| distinct(all().filter(|of| of.1 == warning).map(|of| of.0));
-    let once = distinct(all().map(|of| of.1));
-    once.into_iter().map(|warning| (labels(warning).join(", "), warning)).collect()
+    let levels_of = |label: &str, has: &dyn Fn(&Row) -> bool| {
+        distinct(rows.iter().filter(|r| r.label == label && has(r)).map(|r| r.level))
+    };
+    let labels = |warning: &str| {
+        let has = |row: &Row| row.warnings.iter().any(|of| of == warning);
+        let labels = distinct(rows.iter().filter(|r| has(r)).map(|r| r.label.as_str()));
+        let of_label = |label: &str| match levels_of(label, &|_| true).len() {
+            1 => String::new(),
+            _ => {
+                let levels = levels_of(label, &has);
+                format!(
+                    " at {}",
+                    levels.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
+                )
+            }
+        };
+        // labels with the same levels have them once
+        let all = distinct(labels.iter().map(|label| of_label(label)));
+        let with = |levels: &String| {
+            let meant = labels.iter().copied().filter(|label| of_label(label) == *levels);
+            meant.collect::<Vec<_>>().join(", ") + levels
+        };
+        all.iter().map(with).collect::<Vec<_>>().join("; ")
+    };
+    let once = distinct(rows.iter().flat_map(|r| r.warnings.iter().map(String::as_str)));
+    once.into_iter().map(|warning| (labels(warning), warning)).collect()
 }

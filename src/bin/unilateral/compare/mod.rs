@@ -238,7 +238,9 @@ fn show(options: &Options, report: &Report) -> Request<()> {
         (_, Some(_)) => "Report and plots are",
         (_, None) => "Report, plots and fields are",
     };
-    let text = format!("{tables}\nTimes are in seconds{more}. {files} in {out}\n");
+    let dump = options.dump.as_ref().map(|to| format!(". Inequalities are in {}", to.display()));
+    let dump = dump.unwrap_or_default();
+    let text = format!("{tables}\nTimes are in seconds{more}. {files} in {out}{dump}\n");
     match options.json.as_deref().is_some_and(|path| path.as_os_str() == "-") {
         true => print_to(std::io::stderr(), &text),
         false => print(&text),
