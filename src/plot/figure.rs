@@ -70,7 +70,7 @@ pub(crate) fn overview(rows: &[Row]) -> [(String, Figure); 2] {
     let Figure { panels, keys, .. } = convergence(&of);
     let errors: Vec<&String> = time.panels.iter().map(|panel| &panel.y).collect();
     let size = match panels.len() <= MOST_PANELS {
-        true => Figure { columns: panels.len().min(2), panels, keys },
+        true => Figure { columns: panels.len().clamp(1, 2), panels, keys },
         false => {
             let panels = panels.into_iter().filter(|panel| errors.contains(&&panel.y)).collect();
             Figure { panels, keys, columns: time.columns }

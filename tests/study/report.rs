@@ -287,13 +287,47 @@ fn the_page_begins_with_how_the_comparison_ended_and_needs_no_network() {
     assert!(first.matches("<th scope=\"col\"").count() <= 8 * 2, "{first}");
     assert!(first.contains("class=\"n best\">"), "{first}");
     assert!(html.contains("a&lt;b&gt; &amp; &quot;c&quot;") && !html.contains("a<b"));
-    // pictures lie beside the page
+    // the first picture of a solution stands beside the plots, and nothing is shown twice
+    assert_eq!(first.matches("<img src=\"radial-2d-p1.svg\"").count(), 1, "{first}");
     for picture in ["radial-2d-p1.svg", "convergence.svg", "work_precision.svg"] {
-        assert!(rest.contains(&format!("<img src=\"{picture}\"")), "{picture}");
+        assert!(!rest.contains(&format!("<img src=\"{picture}\"")), "{picture}");
         assert!(scratch.0.join(picture).exists(), "{picture}");
     }
     assert!(rest.contains("unilateral --scheme p1,sipg 'my file.toml'"), "{rest}");
     assert!(html.len() < 300_000, "{} bytes", html.len());
+    assert!(html.contains("<title>Comparison of schemes</title>"));
+    // of one problem the page has the name
+    report.rows.retain(|row| row.scene == "radial-2d");
+    report.write(&scratch.0).unwrap();
+    assert!(scratch.read("report.html").contains("<h1>radial-2d</h1>"));
+}
+
+/// With more panels than the first screen holds, the plots of all scenes stand below it.
+#[test]
+fn the_page_of_many_scenes_shows_their_plots_below_the_first_screen() {
+    let scratch = Scratch::new("many-scenes");
+    let scenes = (1..=5).flat_map(|k| [4, 8].map(|n| row(&format!("scene-{k}"), "p1", n)));
+    report(scenes.collect()).write(&scratch.0).unwrap();
+    let html = scratch.read("report.html");
+    let (_, rest) = html.split_once("</section>").unwrap();
+    for picture in ["convergence.svg", "work_precision.svg"] {
+        assert_eq!(rest.matches(&format!("<img src=\"{picture}\"")).count(), 1, "{picture}");
+    }
+}
+
+/// Equal warnings of several levels are one line, with the levels where they are not all.
+#[test]
+fn equal_warnings_are_one_line_with_their_levels() {
+    let mut rows: Vec<Row> = ["p1", "sipg", "wopsip"]
+        .iter()
+        .flat_map(|label| [4, 8, 16].map(|n| row("radial-2d", label, n)))
+        .collect();
+    for k in [0, 1, 3, 4, 8] {
+        rows[k].warnings.push("too coarse".to_owned());
+    }
+    let text = report(rows).details_to_text(100);
+    assert_eq!(text.matches("too coarse").count(), 1, "{text}");
+    assert!(text.contains("warning, p1, sipg at 4, 8; wopsip at 16: too coarse"), "{text}");
 }
 
 #[test]

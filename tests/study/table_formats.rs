@@ -24,7 +24,7 @@ fn a_latex_table_is_a_tabular_with_a_caption() {
     let costs = tables.iter().find(|table| table.to_text(100).contains(": costs at ")).unwrap();
     assert_eq!(
         costs.to_latex(),
-        "\\begin{table}\n\\caption{Case: one\\_two: costs at an error of 5e-3 in L2}\
+        "\\begin{table}\n\\centering\n\\caption{Case: one\\_two: costs at an error of 5e-3 in L2}\
          \\label{tab:case-one-two-costs}\n\\begin{tabular}{lrrrr}\n\\toprule\n\
          scheme & seconds & spread & unknowns & entries \\\\\n\\midrule\n\
          a\\_b \\& 50\\% \\{x\\} \\textbackslash{} \\textasciitilde{}\\textasciicircum{} \\$1 \\#2 \
@@ -32,8 +32,9 @@ fn a_latex_table_is_a_tabular_with_a_caption() {
          \\num{1200} & \\num{14000} \\\\\n\
          sipg & \\num{8.49e-3} (\\num{3.00}) & -- & \\num{1200} & \\num{14000} \\\\\n\
          wopsip & \\num{1.27e-2} (\\num{4.50}) & -- & \\num{1200} & \\num{14000} \\\\\n\
-         \\bottomrule\n\\end{tabular}\n\\end{table}\n\
-         spread: the median time of repeated runs over the least; - for what ran once\n\n"
+         \\bottomrule\n\\end{tabular}\n\\par\\smallskip{\\footnotesize \
+         spread: the median time of repeated runs over the least; - for what ran once\\par}\n\
+         \\end{table}\n"
     );
     let markdown = costs.to_markdown();
     assert!(markdown.starts_with("### Case: one\\_two: costs at an error of 5e-3 in L2\n\n"));

@@ -61,7 +61,7 @@ wopsip  8 1.25e-1      384 1.09e-2     - 2.50e-1     -      8 2.5e-15       4 2.
 wopsip 16 6.25e-2     1536       -     -       -     -     16 2.5e-15       4 2.0e-4 0.0125
     did not converge: iteration-limit: the limit of iterations was reached while the active set
     still changed; raise it, or use another solver
-  warning, wopsip: eta below its bound
+  warning, wopsip at 16: eta below its bound
 ";
     assert_eq!(report(rows).details_to_text(100), expected);
 }
