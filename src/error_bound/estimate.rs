@@ -30,6 +30,9 @@ pub enum Unproven {
     /// Obstacles and gaps of a higher degree than `v` in cells, or of degree two where the Bernstein coefficients of
     /// `v` do not exceed theirs: `v` satisfies them at points only.
     Obstacle,
+    /// The part of the domain between the mesh and the [shape](crate::mesh::Mesh::with_shape) of a boundary group: the
+    /// bound is for the problem on the polygon or polyhedron that the mesh is.
+    Shape,
     /// The residual that the solver left, where no constant of Friedrichs' inequality is known and the reaction
     /// vanishes somewhere.
     Algebra,
@@ -217,7 +220,8 @@ impl<const D: usize> PartOfBound<D> {
         let Self { mut totals, mut friedrichs, by_eigenvalue, squares, mut unproven } = self;
         totals.add_over_parts(distribution);
         friedrichs = friedrichs.over_parts(distribution);
-        let of_all = [Unproven::Quadrature, Unproven::Boundary, Unproven::Obstacle];
+        let of_all =
+            [Unproven::Quadrature, Unproven::Boundary, Unproven::Obstacle, Unproven::Shape];
         let mut is_found = of_all.map(|term| f64::from(u8::from(unproven.contains(&term))));
         distribution.largest(&mut is_found);
         let found = of_all.into_iter().zip(is_found).filter(|(_, is_found)| *is_found != 0.0);

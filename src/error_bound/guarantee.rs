@@ -67,6 +67,7 @@ impl<const D: usize> Space<'_, D> {
                 Unproven::Boundary,
             ),
             (is_curved || may_leave, Unproven::Obstacle),
+            (self.mesh.has_shapes(), Unproven::Shape),
         ];
         found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
     }

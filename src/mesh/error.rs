@@ -65,6 +65,8 @@ pub enum MeshErrorKind {
     UndecidedGroup,
     /// The rounding of its new vertex changes the shape of half a cell.
     TooSmallToBisect,
+    /// The shape of a boundary group does not fit the mesh or its refinement.
+    Shape,
 }
 
 /// What to do with facets that lie on each other.

@@ -28,6 +28,7 @@ mod overlap;
 mod part;
 mod refine;
 mod renumber;
+mod shapes;
 mod simplicial;
 mod validate;
 
@@ -52,5 +53,7 @@ pub use groups::BoundaryGroup;
 pub(crate) use overlap::FacetSearch;
 pub use part::{Across, Extent, Layers, Part};
 pub use refine::Refinement;
+#[cfg(feature = "problem-files")]
+pub(crate) use shapes::{Shape, normal_of};
 pub use simplicial::Mesh;
 pub use validate::{GroupedFacet, TaggedFacet};

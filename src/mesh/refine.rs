@@ -6,8 +6,10 @@ use super::boundary::BoundaryFacet;
 use super::edges::{Edges, edge_vertices};
 use super::error::MeshError;
 use super::part::extent::Extent;
+use super::shapes::Shapes;
 use super::simplicial::Mesh;
 use super::validate::check_size;
+use crate::arrays::map_entries;
 use crate::instances::compiled;
 use crate::memory::in_large_pages;
 
@@ -131,10 +133,11 @@ fn midpoints<const D: usize>(edges: &Edges, cell: &[u32], numbers: &[u32]) -> [[
 }
 
 impl<const D: usize> Mesh<D> {
-    /// Cuts every cell into `2^D` of equal volume; regions, boundary conditions and groups are inherited.
+    /// Cuts every cell into `2^D` of equal volume; regions, boundary conditions and groups are inherited. New vertices
+    /// are middles of edges, or lie on the [shape](Mesh::with_shape) of a boundary group.
     ///
     /// # Errors
-    /// `MeshErrorKind::TooLarge`.
+    /// `MeshErrorKind::TooLarge`, and `MeshErrorKind::Shape` as [`Mesh::with_shape`] says.
     pub fn refine(&self) -> Result<(Self, Refinement), MeshError> {
         compiled!(const D: fn(&Mesh<D>) -> Result<(Mesh<D>, Refinement), MeshError>
                 = Mesh::refine_uniformly
@@ -167,7 +170,7 @@ impl<const D: usize> Mesh<D> {
             cells.chunks_exact_mut(group).enumerate().for_each(|(k, out)| cut(first + k, out));
         });
         let regions = &self.cell_regions;
-        let fine = Self {
+        let mut fine = Self {
             vertices,
             cells,
             boundary: self.refined_boundary(),
@@ -175,7 +178,16 @@ impl<const D: usize> Mesh<D> {
             groups: self.groups.clone(),
             cell_regions: collect(regions.len() << D, |cell| regions[cell >> D]),
             whole: self.whole.map(Extent::refined),
+            shapes: Shapes::default(),
         };
+        if self.has_shapes() {
+            let is_old = |(_, [a, b]): &(u32, &[u32; 2])| a == b;
+            let numbers: Vec<u32> = (0..).zip(&parents).filter(is_old).map(|(v, _)| v).collect();
+            let number = |&ends: &[u32; 2]| map_entries(ends, |v| numbers[v as usize]);
+            fine.shapes = self.shapes.renumbered(&numbers);
+            let in_fine: Vec<[u32; 2]> = parents.iter().map(number).collect();
+            fine.follow_shapes(&in_fine, |cell| cell >> D)?;
+        }
         Ok((fine, Refinement { parents }))
     }
 

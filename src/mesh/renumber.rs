@@ -79,8 +79,17 @@ impl<const D: usize> Mesh<D> {
         };
         let mut boundary: Vec<BoundaryFacet> = self.boundary.iter().map(renumbered).collect();
         BoundaryFacet::sort(&mut boundary);
-        let (groups, is_supported, whole) = (self.groups.clone(), self.is_supported, self.whole);
-        (Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole }, numbers)
+        let mesh = Self {
+            vertices,
+            cells,
+            boundary,
+            is_supported: self.is_supported,
+            groups: self.groups.clone(),
+            cell_regions,
+            whole: self.whole,
+            shapes: self.shapes.renumbered(&numbers),
+        };
+        (mesh, numbers)
     }
 }
 

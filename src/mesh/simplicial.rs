@@ -7,6 +7,7 @@ use super::boundary::{BoundaryCondition, BoundaryFacet};
 use super::geometry::simplex::{fold_edges, longest_edge};
 use super::groups::Groups;
 use super::part::extent::Extent;
+use super::shapes::Shapes;
 use crate::parallel::cells;
 use crate::real::{Point, box_around};
 
@@ -27,6 +28,8 @@ pub struct Mesh<const D: usize> {
     pub(in crate::mesh) cell_regions: Vec<u16>,
     /// The extent of the mesh of which this one is a part.
     pub(in crate::mesh) whole: Option<Extent<D>>,
+    /// The shapes of boundary groups.
+    pub(in crate::mesh) shapes: Shapes<D>,
 }
 
 impl<const D: usize> Mesh<D> {

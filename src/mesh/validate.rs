@@ -10,6 +10,7 @@ use super::geometry::simplex::longest_edge;
 use super::geometry::{CellGeometry, describe_point};
 use super::groups::{BoundaryGroup, Groups, NameSets};
 use super::overlap::{check_folds, check_overlaps, lie_on_others};
+use super::shapes::Shapes;
 use super::simplicial::Mesh;
 use crate::input::excerpt;
 use crate::instances::compiled;
@@ -102,7 +103,17 @@ impl<const D: usize> Mesh<D> {
         let (vertices, cells) = drop_unused(vertices, cells);
         let groups = Arc::new(groups);
         let cell_regions = Vec::new();
-        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole: None })
+        let shapes = Shapes::default();
+        Ok(Self {
+            vertices,
+            cells,
+            boundary,
+            is_supported,
+            groups,
+            cell_regions,
+            whole: None,
+            shapes,
+        })
     }
 }
 

@@ -14,9 +14,6 @@ use crate::parallel::once;
 /// takes at most three times the work of one on the finest level alone, whatever a step refines.
 const GROWTH: f64 = 1.5;
 
-/// A descendant with more than this share of the volume of its ancestor is half of it.
-const HALF: f64 = 0.375;
-
 /// Meshes of adaptive refinement: a first one, and bisections of it, each of the one before.
 ///
 /// The sequence grows through a shared reference, so that solutions on its meshes may borrow them while
@@ -131,7 +128,7 @@ impl<const D: usize> AdaptiveMeshes<D> {
         let (mut bisected, bisection) = finest.bisected.bisect(marked)?;
         let mut parents = bisection.parents;
         if D > 1 {
-            let halves = halves(&finest.mesh, bisected.mesh(), &bisection.ancestors, marked);
+            let halves = halves(bisected.mesh(), finest.n_vertices(), &bisection.ancestors, marked);
             let n = parents.len();
             let (again, bisection) = bisected.bisect(&halves)?;
             bisected = again;
@@ -202,19 +199,19 @@ impl<const D: usize> AdaptiveMeshes<D> {
     }
 }
 
-/// The cells of a bisected mesh that are half of a marked cell.
+/// The cells of a bisected mesh that are half of a marked cell: they have all but one of its vertices, which are the first
+/// `n_old` ones.
 fn halves<const D: usize>(
-    old: &Mesh<D>,
     new: &Mesh<D>,
+    n_old: usize,
     ancestors: &[u32],
     marked: &[usize],
 ) -> Vec<usize> {
-    let mut is_marked = vec![false; old.n_cells()];
+    let mut is_marked = vec![false; ancestors.last().map_or(0, |&last| last as usize + 1)];
     marked.iter().for_each(|&cell| is_marked[cell] = true);
-    let volume = |mesh: &Mesh<D>, cell: usize| mesh.geometry(cell).volume;
     let is_half = |&(cell, &ancestor): &(usize, &u32)| {
-        let ancestor = ancestor as usize;
-        is_marked[ancestor] && volume(new, cell) > HALF * volume(old, ancestor)
+        let old = new.cell(cell).iter().filter(|&&v| (v as usize) < n_old).count();
+        is_marked[ancestor as usize] && old == D
     };
     ancestors.iter().enumerate().filter(is_half).map(|(cell, _)| cell).collect()
 }

@@ -28,7 +28,8 @@ struct Cells<const D: usize> {
 /// A function of a finite element space, with its mesh. It is a datum of any problem on any mesh; a clone shares all of it.
 ///
 /// On its own mesh and on uniform refinements of it the value at a point of a cell is that of the cell's ancestor, by
-/// number: a function with jumps has its own values in each cell. On another mesh the cell is searched for. At a point
+/// number: a function with jumps has its own values in each cell. On another mesh, and where a refined cell on the
+/// [shape](Mesh::with_shape) of a boundary group leaves its ancestor, the cell is searched for. At a point
 /// without a cell, as a Dirichlet datum is read, the value is the mean over the cells that contain the point.
 ///
 /// ```
@@ -124,7 +125,7 @@ impl<const D: usize> DiscreteFunction<D> {
     }
     /// Makes the search for cells before parallel loops over the cells of another mesh ask for it.
     pub(crate) fn prepare_for(&self, mesh: &Mesh<D>) {
-        if !self.may_be_ancestor_of(mesh) {
+        if !self.may_be_ancestor_of(mesh) || mesh.has_shapes() {
             self.search();
         }
     }

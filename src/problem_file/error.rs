@@ -63,6 +63,8 @@ pub enum ProblemFileErrorKind {
     MissingBoundary,
     /// The mesh file that it names is no mesh: the source is a [`GmshError`](crate::mesh::gmsh::GmshError).
     Mesh,
+    /// The shape of a boundary group does not fit the mesh: the message is that of a [`MeshError`](crate::mesh::MeshError).
+    Shape,
     /// Its data do not make a problem: the source is an [`Error`](crate::error::Error).
     Problem,
 }

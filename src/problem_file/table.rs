@@ -9,8 +9,8 @@ use toml::de::{DeTable, DeValue};
 use super::error::{ProblemFileError, ProblemFileErrorKind};
 use super::expression::{Expression, Names};
 use crate::input::excerpt;
-use crate::mesh::FacetSearch;
 use crate::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile};
+use crate::mesh::{FacetSearch, Shape, normal_of};
 use crate::problem::{BoundaryField, BoundaryFlux, Datum, Field};
 use crate::real::Point;
 
@@ -70,6 +70,30 @@ impl Formula {
             }));
         }
         self.datum_with(normal)
+    }
+    /// The formula as a datum on these facets of the boundary, of the point and of the outward normal of a shape there;
+    /// none where facets lie on both sides of the shape.
+    pub fn datum_along<const D: usize>(
+        &self,
+        shape: &Self,
+        length: f64,
+        facets: Vec<FacetWithNormal<D>>,
+    ) -> Option<Datum<D>> {
+        let expression = match self {
+            Self::Expression(expression) if expression.has_variables(D) => expression.clone(),
+            _ => return Some(self.datum()),
+        };
+        let shape = shape.datum::<D>();
+        let shape: Shape<D> = Arc::new(move |x| shape.at(x));
+        let mut sides = facets.iter().map(|(corners, normal)| {
+            let middle = corners.iter().sum::<Point<D>>() / D as f64;
+            normal_of(&shape, &middle, length).dot(normal).signum()
+        });
+        let side = sides.next().unwrap_or(1.0);
+        sides.all(|other| other == side).then(|| {
+            let normal = move |x: &Point<D>| normal_of(&shape, x, length) * side;
+            Datum::Function(Arc::new(move |x| expression.on_boundary(x, &normal(x))))
+        })
     }
     /// The formula as a datum: a constant, a polynomial, or a function of the point.
     pub fn datum<const D: usize>(&self) -> Datum<D> {

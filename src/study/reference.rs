@@ -37,6 +37,12 @@ impl<const D: usize> Reference<'_, D> {
         let refuse =
             |allowed: String| Err(Error::parameter("level of the reference", self.level, allowed));
         let finest = levels.iter().copied().max().unwrap_or(0);
+        if matches!(domain, Domain::Mesh(mesh) if mesh.has_shapes()) {
+            return refuse(
+                "none: a boundary group of the mesh has a shape, onto which refinements move, so that they are not nested"
+                    .to_owned(),
+            );
+        }
         if domain.is_mesh() {
             let least = finest + REFINEMENTS;
             return match self.level >= least {

@@ -25,6 +25,7 @@ mod parts;
 mod problems;
 mod robin;
 mod runs;
+mod shapes;
 mod tensors;
 mod unknowns;
 

@@ -350,6 +350,33 @@ fn a_solution_on_the_disc_is_none_on_a_polygon() {
     assert!(text.contains("the stated solution does not solve this problem"), "{text}");
 }
 
+/// Where a file states the shape of its boundary the stated solution is that of the curved domain, the bound is for the
+/// polygon, and no finer solution is a reference.
+#[test]
+fn a_solution_on_a_curved_domain_has_the_order_of_straight_cells() {
+    let scratch = Scratch::new("torsion");
+    let torsion = example("torsion");
+    let report = scratch.report(&format!("{torsion} --scheme p1,sipg,wopsip,p2 --levels 1,2,3"));
+    for row in rows(&report) {
+        assert!(!warns(row, "the stated solution does not solve"), "{}", row["warnings"]);
+        assert_eq!(row["bound"]["unproven"].as_array().unwrap().last().unwrap(), "shape");
+        if row["level"] == 3 {
+            assert!((number(row, &["values", "mean"]) - 9.0 / 26.0).abs() < 1e-3, "{row}");
+            let held = number(row, &["values", "held"]) + 3.0 * std::f64::consts::PI;
+            assert!(held.abs() < 3e-3, "{row}");
+            let order = number(row, &["order", "energy"]);
+            let least = if row["scheme"] == "p2" { 1.4 } else { 0.95 };
+            assert!(order > least && order < 1.6, "{}: {order}", row["label"]);
+        }
+    }
+    let reference = [&torsion[..], "--levels", "0,1", "--reference", "3"];
+    refused(&scratch, &reference, &["level of the reference", "has a shape", "not nested"]);
+    let report = scratch.report(&format!("{torsion} --scheme p1 --adaptive steps=5"));
+    let steps = rows(&report);
+    let errors = [0, steps.len() - 1].map(|k| number(&steps[k], &["error", "broken_energy"]));
+    assert!(steps.len() == 6 && errors[1] < 0.4 * errors[0], "{errors:?}");
+}
+
 /// Dirichlet values of two groups that differ where they meet belong to no function of finite energy.
 #[test]
 fn dirichlet_values_that_jump_are_named() {

@@ -132,3 +132,46 @@ fn gaps_may_use_the_normals_of_a_curved_boundary() {
     }
     assert!(normals.iter().any(|n| (n - normals[0]).norm() > 1.0));
 }
+
+/// On a group with a shape a gap takes the normals of the shape, outward, in all refinements of the mesh.
+#[test]
+fn gaps_use_the_normals_of_a_shape() {
+    let folder = Scratch::new("normals-of-a-shape");
+    let plate = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.msh");
+    std::fs::copy(plate, folder.0.join("plate.msh")).unwrap();
+    let rest = "[boundary.default]\nkind = \"neumann\"\n[source]\ndefault = -1\n";
+    let of_shape = |shape: &str| {
+        problem(
+            &folder,
+            &format!(
+                "mesh = \"plate.msh\"\n{rest}[boundary.bore]\nkind = \"contact\"\n\
+                gap = \"-1 + 0.1 * nx - 0.2 * ny\"\nshape = \"{shape}\"\n"
+            ),
+        )
+    };
+    for shape in ["(x + 1)^2 + y^2 - 0.16", "0.4 - ((x + 1)^2 + y^2)^(1/2)"] {
+        let scene = of_shape(shape).unwrap();
+        let gap = &scene.problem.gap.named[0].1;
+        let mut mesh = scene.domain.mesh(0).unwrap();
+        for _ in 0..3 {
+            for facet in
+                mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact)
+            {
+                for v in mesh.facet_vertices(facet.cell as usize, facet.local as usize) {
+                    let x = mesh.vertices()[v as usize];
+                    let inward = Point::from([x[0] + 1.0, x[1]]);
+                    assert!((inward.norm() - 0.4).abs() < 1e-7, "{x}");
+                    let n = -inward.normalize();
+                    assert!((gap.at(&x) - (-1.0 + 0.1 * n[0] - 0.2 * n[1])).abs() < 1e-8);
+                }
+            }
+            let solved = solve(&scene.problem, &mesh, &Sipg::default()).unwrap();
+            assert!(solved.converged() && solved.active() > Some(0));
+            mesh = mesh.refine().unwrap().0;
+        }
+    }
+    // positive on the right of the bore, in the plate, negative on the left of it
+    let error = of_shape("((x + 1)^2 + y^2 - 0.16) * (x + 1)").unwrap_err().to_string();
+    let said = "boundary.bore.shape: facets of the group lie on both sides of it";
+    assert!(error.contains("plane.toml:") && error.contains(said), "{error}");
+}

@@ -185,6 +185,31 @@ fn mistakes_are_found_where_they_are() {
             (3, 12),
             "there is no `w`",
         ),
+        (
+            format!("{BOX}{SIDES}shape = \"y\"\n"),
+            (14, 9),
+            "boundary.bottom.shape: the sides of a box are flat; a curved boundary needs a mesh",
+        ),
+        (
+            on_plate(&all.replace("[boundary.edges]\n", "[boundary.edges]\nshape = \"z\"\n")),
+            (7, 10),
+            "there is no `z`",
+        ),
+        (
+            on_plate(&all.replacen("bore]\n", "bore]\nshape = \"(x + 1)^2 + y^2 - 0.2\"\n", 1)),
+            (5, 9),
+            "the shape of boundary group bore: it must be zero at the vertices of the group, but its zero is 4.7e-2 from vertex",
+        ),
+        (
+            on_plate(&all.replacen("bore]\n", "bore]\nshape = 1\n", 1)),
+            (5, 9),
+            "its zero is not near vertex",
+        ),
+        (
+            on_plate(&format!("{all}[boundary.rim]\nkind = \"neumann\"\nshape = \"x\"\n")),
+            (8, 11),
+            "the mesh has no boundary group `rim`",
+        ),
     ];
     let refused = |path: &str| read(Path::new(path)).unwrap_err();
     for (text, place, words) in cases {

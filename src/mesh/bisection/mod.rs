@@ -89,11 +89,12 @@ impl<const D: usize> BisectedMesh<D> {
     /// mesh to be conforming. Neither the order of marks nor their repetition matters.
     ///
     /// A division cuts a cell into two of equal volume. Regions, boundary conditions and groups are
-    /// inherited. New vertices are midpoints of edges, on curved boundaries too.
+    /// inherited. New vertices are midpoints of edges; then they move onto the [shape](Mesh::with_shape) of a
+    /// boundary group that has one.
     ///
     /// # Errors
-    /// [`MeshErrorKind::Parameter`] for a marked cell that does not exist, [`MeshErrorKind::TooLarge`], and
-    /// [`MeshErrorKind::TooSmallToBisect`] for a cell at the size of rounding.
+    /// [`MeshErrorKind::Parameter`] for a marked cell that does not exist, [`MeshErrorKind::TooLarge`],
+    /// [`MeshErrorKind::TooSmallToBisect`] for a cell at the size of rounding, and [`MeshErrorKind::Shape`].
     pub fn bisect(&self, marked: &[usize]) -> Result<(Self, Bisection), MeshError> {
         compiled!(const D: fn(
                 &BisectedMesh<D>,
@@ -117,7 +118,7 @@ impl<const D: usize> BisectedMesh<D> {
             division.divide(cell)?;
         }
         division.make_conforming()?;
-        Ok(division.finish(&self.mesh))
+        division.finish(&self.mesh)
     }
 }
 
@@ -244,7 +245,7 @@ impl<const D: usize> Division<D> {
     }
 
     /// The refined mesh of a mesh.
-    fn finish(mut self, old: &Mesh<D>) -> (BisectedMesh<D>, Bisection) {
+    fn finish(mut self, old: &Mesh<D>) -> Result<(BisectedMesh<D>, Bisection), MeshError> {
         Leaf::sort(&mut self.leaves);
         let mut cells = Vec::with_capacity(self.leaves.len() * (D + 1));
         let mut boundary = Vec::with_capacity(old.boundary.len());
@@ -264,7 +265,7 @@ impl<const D: usize> Division<D> {
         let ancestors: Vec<u32> = self.leaves.iter().map(|leaf| leaf.ancestor).collect();
         // a mesh with one region has no list of them
         let region = |&ancestor: &u32| old.cell_regions.get(ancestor as usize).copied();
-        let mesh = Mesh {
+        let mut mesh = Mesh {
             vertices: self.vertices,
             cells,
             boundary,
@@ -272,8 +273,13 @@ impl<const D: usize> Division<D> {
             groups: old.groups.clone(),
             cell_regions: ancestors.iter().filter_map(region).collect(),
             whole: old.whole.map(Extent::refined),
+            shapes: old.shapes.clone(),
         };
+        let parents = self.midpoints.parents;
+        if old.has_shapes() {
+            mesh.follow_shapes(&parents, |cell| ancestors[cell] as usize)?;
+        }
         let cells = self.leaves.iter().map(|leaf| leaf.cell).collect();
-        (BisectedMesh { mesh, cells }, Bisection { ancestors, parents: self.midpoints.parents })
+        Ok((BisectedMesh { mesh, cells }, Bisection { ancestors, parents }))
     }
 }

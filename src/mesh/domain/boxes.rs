@@ -6,6 +6,7 @@ use crate::arrays::array_of;
 use crate::mesh::boundary::{BoundaryCondition, BoundaryFacet};
 use crate::mesh::error::MeshError;
 use crate::mesh::groups::{BoundaryGroup, Groups};
+use crate::mesh::shapes::Shapes;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::check_size;
 use crate::real::Point;
@@ -135,7 +136,17 @@ impl<const D: usize> Mesh<D> {
         let groups = Groups { regions: vec![Vec::new()], boundary: sides, inside: Vec::new() };
         let groups = Arc::new(groups);
         let cell_regions = Vec::new();
-        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole: None })
+        let shapes = Shapes::default();
+        Ok(Self {
+            vertices,
+            cells,
+            boundary,
+            is_supported,
+            groups,
+            cell_regions,
+            whole: None,
+            shapes,
+        })
     }
 }
 

@@ -9,8 +9,8 @@ use crate::real::Point;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Extent<const D: usize> {
-    /// Lower end of the smallest box that contains the mesh; not a number on a part of a disc that was refined,
-    /// until [`Mesh::with_extent`](crate::mesh::Mesh::with_extent) states it.
+    /// Lower end of the smallest box that contains the mesh; not a number on a refined part of a disc or of a mesh with
+    /// a [shape](crate::mesh::Mesh::with_shape), until [`Mesh::with_extent`](crate::mesh::Mesh::with_extent) states it.
     pub lower: Point<D>,
     /// Its upper end.
     pub upper: Point<D>,

@@ -195,6 +195,7 @@ impl<const D: usize> Mesh<D> {
             groups: self.groups.clone(),
             cell_regions: cells.iter().filter_map(region).collect(),
             whole: self.whole.or_else(|| Some(Extent::of(self))),
+            shapes: self.shapes_of_part(|cell| positions[cell as usize] != UNUSED, &numbers),
         };
         (mesh, vertices)
     }

@@ -61,7 +61,7 @@ impl<const D: usize> Part<D> {
     }
 
     /// The part as one of a mesh with this extent. A refined part does not know the mesh size of the whole, on
-    /// a disc not its box either: the [extents](Extent::of) of all parts merge into that of the whole.
+    /// a disc and with a shape not its box either: the [extents](Extent::of) of all parts merge into that of the whole.
     #[must_use]
     pub fn with_extent(self, whole: Extent<D>) -> Self {
         Self { mesh: self.mesh.with_extent(whole), ..self }

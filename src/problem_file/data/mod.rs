@@ -54,6 +54,8 @@ struct Builder<'s, 't, const D: usize> {
     conditions: Vec<(String, BoundaryCondition)>,
     /// The data on boundary groups without a table of their own.
     on_other_groups: Option<OnGroup>,
+    /// The shapes of boundary groups, and where the file has them.
+    shapes: Vec<(String, Shape)>,
     /// The gaps of the problem, in their order.
     gaps: Vec<Formula>,
     /// Whether the file has the exact solution.
@@ -71,7 +73,11 @@ struct OnGroup {
     /// Its name in the file.
     datum: String,
     offset: usize,
+    shape: Option<Shape>,
 }
+
+/// A formula that is zero on a boundary group, and where the file has it.
+type Shape = (Formula, usize);
 
 type Done<V = ()> = Result<V, ProblemFileError>;
 
@@ -184,7 +190,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             BoundaryCondition::Contact => ("gap", true),
         };
         let of_robin: &[&str] = if is_robin { &["coefficient"] } else { &[] };
-        self.source.allow(table, &[&["kind", name], of_robin].concat())?;
+        self.source.allow(table, &[&["kind", name, "shape"], of_robin].concat())?;
         let variables = match takes_normal {
             true => [&VARIABLES[0][..D], &VARIABLES[1][..D]].concat(),
             false => VARIABLES[0][..D].to_vec(),
@@ -205,13 +211,17 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                 return Err(self.source.missing(offset, "coefficient", purpose));
             }
         };
-        let datum = format!("boundary.{group}.{name}");
-        Ok(OnGroup { condition, formula, coefficient, datum, offset })
+        let shape = table.get("shape").map(|value| {
+            Ok((self.source.formula("shape", value, &VARIABLES[0][..D])?, value.span().start))
+        });
+        let (datum, shape) = (format!("boundary.{group}.{name}"), shape.transpose()?);
+        Ok(OnGroup { condition, formula, coefficient, datum, offset, shape })
     }
 
     /// Puts what is given on a boundary group into the problem.
     fn put_on(&mut self, group: &str, given: &OnGroup) {
-        let OnGroup { condition, formula, coefficient, datum, offset } = given;
+        let OnGroup { condition, formula, coefficient, datum, offset, shape } = given;
+        self.shapes.extend(shape.clone().map(|shape| (group.to_owned(), shape)));
         let (problem, name) = (&mut self.problem, Some(group));
         match condition {
             BoundaryCondition::Dirichlet => problem.dirichlet.give(name, formula.datum()),
@@ -264,8 +274,28 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         }
     }
 
-    /// Gives gaps that depend on the normal those of the facets of their groups.
-    fn put_normals(&mut self, mesh: &Mesh<D>) {
+    /// Gives the mesh the shapes of its boundary groups.
+    fn put_shapes(&self, domain: &Domain<D>, mut mesh: Mesh<D>) -> Done<Mesh<D>> {
+        for (group, (formula, offset)) in &self.shapes {
+            let kind = ProblemFileErrorKind::Shape;
+            if !domain.is_mesh() {
+                let message = format!(
+                    "boundary.{group}.shape: the sides of a box are flat; a curved boundary needs a mesh"
+                );
+                return Err(self.source.error(*offset, kind, message));
+            }
+            // names that the mesh does not have are found with those of other data
+            if mesh.boundary_groups().iter().any(|g| g.names.contains(group)) {
+                let shape = formula.datum::<D>();
+                let shaped = mesh.with_shape(group, move |x| shape.at(x));
+                mesh = shaped.map_err(|e| self.source.error(*offset, kind, e.to_string()))?;
+            }
+        }
+        Ok(mesh)
+    }
+
+    /// Gives gaps that depend on the normal those of the shapes or of the facets of their groups.
+    fn put_normals(&mut self, mesh: &Mesh<D>) -> Done {
         for ((group, datum), formula) in self.problem.gap.named.iter_mut().zip(&self.gaps) {
             let groups = mesh.boundary_groups();
             let is_meant = |f: &&BoundaryFacet| groups[usize::from(f.group)].names.contains(group);
@@ -275,8 +305,20 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                 let corners = array_of(|k| mesh.vertices()[vertices[k] as usize]);
                 (corners, mesh.geometry(cell).normal(local))
             });
-            *datum = formula.datum_on(facets.collect());
+            let (facets, length) = (facets.collect(), mesh.mesh_size());
+            *datum = match self.shapes.iter().find(|(name, _)| name == group) {
+                Some((_, (shape, offset))) => {
+                    formula.datum_along(shape, length, facets).ok_or_else(|| {
+                        let message = format!(
+                            "boundary.{group}.shape: facets of the group lie on both sides of it, where a gap has two normals; give each side a group of its own"
+                        );
+                        self.source.error(*offset, ProblemFileErrorKind::Shape, message)
+                    })?
+                }
+                None => formula.datum_on(facets),
+            };
         }
+        Ok(())
     }
 
     fn exact(&mut self, value: &Value<'t>) -> Done {
@@ -341,6 +383,7 @@ where
         entries: Vec::new(),
         conditions: Vec::new(),
         on_other_groups: None,
+        shapes: Vec::new(),
         gaps: Vec::new(),
         has_exact: root.contains_key("exact"),
         gradient_offset: 0,
@@ -399,7 +442,8 @@ where
     let failed =
         |error: Error| ProblemFileError::of_file(source.path, ProblemFileErrorKind::Problem, error);
     let mesh = sample_mesh(&domain).map_err(|error| failed(error.into()))?;
-    builder.put_normals(&mesh);
+    let mesh = builder.put_shapes(&domain, mesh)?;
+    builder.put_normals(&mesh)?;
     let Builder { mut problem, entries, conditions, gradient_offset, .. } = builder;
     Checks {
         source,

@@ -48,12 +48,11 @@ pub(crate) fn check_exact_on<const D: usize>(
     }
     for k in sampled(mesh.boundary().len()) {
         let facet = &mesh.boundary()[k];
-        let (cell, local) = (facet.cell as usize, facet.local as usize);
+        let cell = facet.cell as usize;
         let group = &mesh.boundary_groups()[usize::from(facet.group)].names;
         let problem = &problem.in_group(&mesh.regions()[mesh.region(cell)], group);
         let evaluator = Evaluator { name, problem, exact, scales };
-        let x = mesh.facet_barycentre(cell, local);
-        let normal = mesh.geometry(cell).normal(local);
+        let (x, normal) = mesh.middle_of(facet);
         let point = BoundaryPoint { x, normal, condition: facet.condition };
         evaluator.check_boundary_at(&point, ROUNDED)?;
     }
