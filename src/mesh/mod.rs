@@ -54,6 +54,6 @@ pub(crate) use overlap::FacetSearch;
 pub use part::{Across, Extent, Layers, Part};
 pub use refine::Refinement;
 #[cfg(feature = "problem-files")]
-pub(crate) use shapes::{Shape, normal_of};
+pub(crate) use shapes::shape::{Shape, normal_of};
 pub use simplicial::Mesh;
 pub use validate::{GroupedFacet, TaggedFacet};

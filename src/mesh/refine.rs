@@ -6,7 +6,7 @@ use super::boundary::BoundaryFacet;
 use super::edges::{Edges, edge_vertices};
 use super::error::MeshError;
 use super::part::extent::Extent;
-use super::shapes::Shapes;
+use super::shapes::shape::Shapes;
 use super::simplicial::Mesh;
 use super::validate::check_size;
 use crate::arrays::map_entries;

@@ -7,7 +7,7 @@ use super::boundary::{BoundaryCondition, BoundaryFacet};
 use super::geometry::simplex::{fold_edges, longest_edge};
 use super::groups::Groups;
 use super::part::extent::Extent;
-use super::shapes::Shapes;
+use super::shapes::shape::Shapes;
 use crate::parallel::cells;
 use crate::real::{Point, box_around};
 

@@ -10,7 +10,7 @@ use super::geometry::simplex::longest_edge;
 use super::geometry::{CellGeometry, describe_point};
 use super::groups::{BoundaryGroup, Groups, NameSets};
 use super::overlap::{check_folds, check_overlaps, lie_on_others};
-use super::shapes::Shapes;
+use super::shapes::shape::Shapes;
 use super::simplicial::Mesh;
 use crate::input::excerpt;
 use crate::instances::compiled;

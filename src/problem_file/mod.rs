@@ -21,6 +21,7 @@
 //! [boundary.bore]                    # by boundary group of the mesh
 //! kind = "dirichlet"
 //! value = 0.0
+//! shape = "x^2 + y^2 - 1"            # zero on the group: new vertices of refinements move there
 //! [boundary.teeth]
 //! kind = "neumann"
 //! flux = "x * nx"                    # nx, ny, nz: the outward unit normal

@@ -6,7 +6,7 @@ use crate::arrays::array_of;
 use crate::mesh::boundary::{BoundaryCondition, BoundaryFacet};
 use crate::mesh::error::MeshError;
 use crate::mesh::groups::{BoundaryGroup, Groups};
-use crate::mesh::shapes::Shapes;
+use crate::mesh::shapes::shape::Shapes;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::check_size;
 use crate::real::Point;
