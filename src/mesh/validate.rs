@@ -103,17 +103,8 @@ impl<const D: usize> Mesh<D> {
         let (vertices, cells) = drop_unused(vertices, cells);
         let groups = Arc::new(groups);
         let cell_regions = Vec::new();
-        let shapes = Shapes::default();
-        Ok(Self {
-            vertices,
-            cells,
-            boundary,
-            is_supported,
-            groups,
-            cell_regions,
-            whole: None,
-            shapes,
-        })
+        let (whole, shapes) = (None, Shapes::default());
+        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole, shapes })
     }
 }
 

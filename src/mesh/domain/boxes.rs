@@ -136,17 +136,8 @@ impl<const D: usize> Mesh<D> {
         let groups = Groups { regions: vec![Vec::new()], boundary: sides, inside: Vec::new() };
         let groups = Arc::new(groups);
         let cell_regions = Vec::new();
-        let shapes = Shapes::default();
-        Ok(Self {
-            vertices,
-            cells,
-            boundary,
-            is_supported,
-            groups,
-            cell_regions,
-            whole: None,
-            shapes,
-        })
+        let (whole, shapes) = (None, Shapes::default());
+        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole, shapes })
     }
 }
 

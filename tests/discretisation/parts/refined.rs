@@ -3,9 +3,10 @@
 use super::compare::{Differences, differences_of};
 use super::meshes::{box_mesh, files, moved};
 use super::problems::{obstacle_problem, schemes, signorini_problem};
+use crate::shapes;
 use crate::support::schemes::Entry;
 use unilateral::assemble::DataQuadrature;
-use unilateral::mesh::{Domain, Extent, Layers, MeshErrorKind, Part};
+use unilateral::mesh::{BoundaryCondition, Domain, Extent, Layers, MeshErrorKind, Part};
 use unilateral::prelude::*;
 
 /// A mesh and its parts.
@@ -193,7 +194,7 @@ fn every_scheme_has_the_rows_of_refined_meshes_in_space() {
     chain(&schemes(), (&box_mesh::<3>(1), None), (2, 2));
 }
 
-/// Schemes of every kind on meshes of files and on the disc, whose vertices move to the circle.
+/// Schemes of every kind on meshes of files, on the disc, whose vertices move to the circle, and with shapes.
 #[test]
 fn parts_of_curved_and_foreign_meshes_have_the_rows_of_the_refined_whole() {
     let list = |names: &[&str]| NamedScheme::list(names.iter().copied()).unwrap();
@@ -207,6 +208,11 @@ fn parts_of_curved_and_foreign_meshes_have_the_rows_of_the_refined_whole() {
     let disc = domain.mesh(3).unwrap();
     let schemes = list(&["p1", "p2", "cr", "sipg", "wopsip@weight=anisotropic", "ldg", "wopsip"]);
     chain(&entries(&schemes), (&disc, Some(&domain)), (3, 3));
+    let decided = |_: &str| Some(BoundaryCondition::Dirichlet);
+    let disc = shapes::disc().with_boundary_conditions(&decided).unwrap();
+    chain(&entries(&schemes), (&disc, None), (3, 2));
+    let ball = shapes::ball().with_boundary_conditions(&decided).unwrap().refine().unwrap().0;
+    chain(&entries(&plane[..4]), (&ball, None), (5, 1));
 }
 
 /// With a layer less some rows differ on the refined mesh, and a part cannot have more layers than its parent

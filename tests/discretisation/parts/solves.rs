@@ -1,6 +1,7 @@
 //! Inequalities solved over the parts of a mesh against one process.
 
 use super::gathered::process;
+use crate::shapes;
 use std::sync::Arc;
 use unilateral::inequality::Outcome;
 use unilateral::prelude::*;
@@ -146,6 +147,13 @@ fn problems_on_a_line_and_in_space_have_the_solution_of_one_process() {
     holds(&scenes::radial::<1>(1.0), &["p1", "sipg", "wopsip"], &[128, 256], &[2, 3]);
     let schemes = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means"];
     holds(&scenes::radial::<3>(1.0), &schemes, &[4], &[2]);
+}
+
+#[test]
+fn problems_on_curved_boundaries_have_the_solution_of_one_process() {
+    let of = |problem: Problem<2>| Scene::of_problem("disc", problem, shapes::disc()).unwrap();
+    let schemes = ["p1", "p2", "cr", "sipg", "wopsip"];
+    holds(&of(shapes::paraboloid(&["rim"])), &schemes, &[0, 1], &[2, 3]);
 }
 
 /// Where the preconditioner does not suffice, factors of the matrix do.
