@@ -80,7 +80,7 @@ fn mistakes_are_found_where_they_are() {
         (
             format!("{BOX}[boundary.left]\nkind = \"robin\"\nflux = 1\n"),
             (4, 1),
-            "allowed are kind, value, coefficient",
+            "allowed are kind, value, shape, coefficient",
         ),
         (
             format!(
