@@ -27,7 +27,8 @@ impl<const D: usize> Mesh<D> {
     /// edges along the gradient. A second shape of a group takes the place of the first.
     ///
     /// A new vertex on an edge in space between two groups with a shape moves to where both are zero; beside a group
-    /// without one it leaves the plane of that group, unless the gradient lies in it.
+    /// without one it leaves the plane of that group, unless the gradient lies in it. A cell with two facets on one curve
+    /// becomes flatter with each refinement: a mesh without such cells keeps its angles.
     ///
     /// ```
     /// use unilateral::prelude::*;
