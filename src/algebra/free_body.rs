@@ -3,7 +3,7 @@
 /// The multiple of machine epsilon times the sum of the absolute loads below which a resultant counts as none.
 pub(crate) const RESULTANT_ROUNDING: f64 = 64.0;
 
-/// A connected body of a mesh that neither Dirichlet data nor a reaction hold, so that bounds alone stop it.
+/// A connected body of a mesh that neither Dirichlet data, Robin sides nor a reaction hold, so that bounds alone stop it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FreeBody {

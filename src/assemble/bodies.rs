@@ -1,4 +1,4 @@
-//! Bodies that neither Dirichlet data nor a reaction hold, with the resultants of their data.
+//! Bodies that neither Dirichlet data, Robin sides nor a reaction hold, with the resultants of their data.
 //!
 //! A body is a set of cells that are connected through facets, whatever the scheme. Its resultant is the integral of
 //! source and Neumann data, by the finer of two rules that are the same for every scheme. Where it is at most twice
@@ -30,7 +30,7 @@ const fn cell_degrees(dimension: usize) -> [usize; 2] {
     }
 }
 
-/// The bodies of a mesh that neither Dirichlet data nor a reaction hold.
+/// The bodies of a mesh that neither Dirichlet data, Robin sides nor a reaction hold.
 #[derive(Default)]
 pub(crate) struct FreeBodies {
     /// The body of each cell; none if it is held. Empty if there are no free bodies.

@@ -12,7 +12,7 @@ pub struct DataQuadrature {
     /// for linears, seven for quadratics. It is at least `k + b - 1`, below which the rule would limit the
     /// orders.
     pub cell: Option<usize>,
-    /// Degree of the facet rule for Dirichlet and Neumann data.
+    /// Degree of the facet rule for Dirichlet, Neumann and Robin data, and for the Robin term of the matrix.
     pub facet: usize,
     /// The family of the rules for loads, Dirichlet and Neumann data and means of data.
     pub family: &'static dyn Quadrature,

@@ -1,4 +1,4 @@
-//! The kernel of the energy: constants that neither Dirichlet data nor a reaction hold.
+//! The kernel of the energy: constants that neither Dirichlet data, Robin sides nor a reaction hold.
 
 use super::bodies::FreeBodies;
 use super::space::Space;

@@ -139,7 +139,7 @@ impl<const D: usize> Space<'_, D> {
         let Ok(()) = for_each_place::<D, _, Infallible>(nodes, &mut sums, |of_node, (cell, i)| {
             let local = self.local_values(cell, u);
             let of_side = of_sides.get(cell * nodes.per_cell() + i).unwrap_or(&0.0);
-            let weight = self.alpha(cell) + of_side;
+            let weight = self.mean_coefficient(cell) + of_side;
             let value: f64 = (0..n).map(|j| local[j] * basis[i].values[j]).sum();
             of_node.0 += weight * value;
             of_node.1 += weight;

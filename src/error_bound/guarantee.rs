@@ -92,7 +92,8 @@ impl<const D: usize> Space<'_, D> {
             let [of_coefficient, of_value] =
                 side.data().map(|datum| datum.degree_on(self.mesh, stated));
             let of_coefficient = of_coefficient.filter(|degree| *degree <= 2)?;
-            Some(of_coefficient + of_value?.max(self.basis_degree))
+            // of the flux, and of squares of the function
+            Some(of_coefficient + of_value?.max(2 * self.basis_degree))
         };
         let of_sides: Vec<_> = self.data.robin.all().map(of_side).collect();
         let degrees = degrees.chain(of_exact).map(|degree| degree.or(stated)).chain(of_sides);

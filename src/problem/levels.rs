@@ -38,9 +38,9 @@ impl Range {
 /// The ranges of the data of one body, by rank: the first that has numbers says at which level the body is.
 #[derive(Clone, Copy, Debug)]
 struct Ranges {
-    /// Of Dirichlet values with those of Robin sides, obstacles and gaps.
+    /// Of Dirichlet values, obstacles and gaps.
     of_values: [Range; 3],
-    /// Of source over reaction.
+    /// Of source over reaction, and of the values of Robin sides.
     of_quotients: Range,
 }
 
@@ -92,10 +92,6 @@ impl BodyConstants {
             body,
             &mut ranges,
         );
-        let robin = |group: usize, cell: usize, x: &Point<D>| {
-            data.robin.of(group).map(|side| side.value.in_cell(mesh, cell, x))
-        };
-        add_on_facets(mesh, (BoundaryCondition::Neumann, DIRICHLET), robin, body, &mut ranges);
         // a range of Dirichlet values that reaches zero decides without the other data
         let is_decided =
             |of: &Ranges| of.of_values[DIRICHLET].has_numbers() && of.constant() == 0.0;
@@ -107,6 +103,14 @@ impl BodyConstants {
         };
         add_on_facets(mesh, (BoundaryCondition::Contact, GAPS), gap, body, &mut ranges);
         add_values_in_cells(&data, mesh, body, &mut ranges);
+        for facet in mesh.boundary() {
+            let Some(side) = data.robin.of(usize::from(facet.group)) else { continue };
+            let cell = facet.cell as usize;
+            for v in mesh.facet_vertices(cell, usize::from(facet.local)) {
+                let value = side.value.in_cell(mesh, cell, &mesh.vertices()[v as usize]);
+                ranges[body(cell)].of_quotients.add(value);
+            }
+        }
         Ok(Self::new(ranges.iter().map(Ranges::constant).collect(), body_of))
     }
 }

@@ -149,14 +149,7 @@ impl<const D: usize> Problem<D> {
             ("gap", self.gap.given_twice()),
             ("Robin datum", self.robin.given_twice()),
         ];
-        data.into_iter().try_for_each(check)?;
-        match self.robin.names().find(|name| self.neumann.names().any(|other| other == *name)) {
-            None => Ok(()),
-            Some(name) => Err(Error::GivenTwice(format!(
-                "boundary group {} has a flux and Robin data: give one of them",
-                excerpt(name)
-            ))),
-        }
+        data.into_iter().try_for_each(check)
     }
     /// The boundary groups that have data, each with its condition.
     fn boundary_groups(&self) -> impl Iterator<Item = (&str, BoundaryCondition)> {

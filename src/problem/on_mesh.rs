@@ -192,6 +192,16 @@ impl<const D: usize> DataOnMesh<D> {
                 return Err(unknown_group(name, (is_boundary, is_inside), all));
             }
         }
+        let both = boundary.iter().find(|group| {
+            problem.robin.position(&group.names).is_some()
+                && problem.neumann.position(&group.names).is_some()
+        });
+        if let Some(group) = both {
+            return Err(Error::GivenTwice(format!(
+                "facets of boundary group {} have a flux and Robin data: give one of them",
+                excerpts(group.names.iter())
+            )));
+        }
         for group in boundary {
             let given = group.names.iter().find_map(|n| Some((n, problem.condition_of(n)?)));
             match (given, group.condition) {

@@ -62,7 +62,10 @@ impl<const D: usize> ValueOf<D> {
         };
         let names = |group: usize| &mesh.boundary_groups()[group].names;
         let mut known = (0..mesh.boundary_groups().len()).filter(is_of_kind);
-        let kind = condition.map_or(String::new(), |of| format!("{} ", of.name()));
+        let kind = match (self, condition) {
+            (Self::Reaction(_), _) => "dirichlet or robin ".to_owned(),
+            (_, condition) => condition.map_or(String::new(), |of| format!("{} ", of.name())),
+        };
         let all = known.clone().flat_map(names);
         (!known.any(|group| Self::is_meant(name, names(group))))
             .then(|| unknown(&format!("{kind}boundary group"), name, all))

@@ -9,7 +9,7 @@
 //! half = "load / 2"                  # from those above it
 //!
 //! [coefficient]                      # by region of the mesh; "default" for the rest
-//! inclusion = 100.0
+//! inclusion = 100.0                 # or a symmetric tensor, [[2, 0.5], [0.5, 1]]
 //! [source]
 //! default = "-load * sin(pi * x) * y"  # numbers, or expressions in x, y, z
 //! inclusion = { value = "sign(x)", level = "x" }  # jumps where the level vanishes: cells are cut there
@@ -25,6 +25,10 @@
 //! [boundary.teeth]
 //! kind = "neumann"
 //! flux = "x * nx"                    # nx, ny, nz: the outward unit normal
+//! [boundary.wall]
+//! kind = "robin"                     # alpha du/dn + coefficient (u - value) = 0
+//! coefficient = 5.0
+//! value = 20.0
 //! [boundary.foot]
 //! kind = "contact"
 //! gap = "0.01 * x^2"                 # may use the normal as well

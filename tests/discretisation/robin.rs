@@ -242,6 +242,23 @@ fn a_body_that_only_robin_sides_hold_has_a_solution_and_a_bound() {
     }
 }
 
+/// A value far away behind a small coefficient is a flux: it costs no digits.
+#[test]
+fn a_small_coefficient_with_a_large_value_is_a_flux() {
+    let energy = |problem: Problem<2>| {
+        let mesh = mesh(&problem, 8, true);
+        let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
+        assert!(solved.converged());
+        solved.energy().unwrap().unwrap()
+    };
+    let body = || Problem::<2>::new().reaction(1.0);
+    let by_flux = energy(body().neumann_on("right", |_, _| 1.0));
+    for k in [1e-6, 1e-9, 1e-12] {
+        let by_side = energy(body().robin_on("right", k, 1.0 / k));
+        assert!((by_side - by_flux).abs() < 2.0 * k + 1e-12, "{k}: {by_side} {by_flux}");
+    }
+}
+
 #[test]
 fn bad_data_of_a_robin_side_are_refused() {
     let refuse = |problem: Problem<2>| {

@@ -47,6 +47,7 @@ fn an_aquifer_has_its_closed_values() {
     for row in rows(&report) {
         let [drained, held] = ["drained", "held"].map(|name| number(row, &["values", name]));
         assert!((held - 3.5).abs() < 1e-8, "{}: {held}", row["label"]);
+        assert!(row["warnings"].as_array().is_none_or(Vec::is_empty), "{}", row["warnings"]);
         let error = (drained - 4.25).abs();
         assert!(error < if row["label"] == "p2" { 1e-8 } else { 0.2 }, "{}: {error}", row["label"]);
         assert!(row["bound"]["unproven"].as_array().unwrap().len() < 2, "{}", row["bound"]);
@@ -55,6 +56,18 @@ fn an_aquifer_has_its_closed_values() {
         let [value, expected] = [number(limit, &["values", "drained", "value"]), 4.25];
         assert!((value - expected).abs() < 1e-2, "{limit}");
     }
+}
+
+/// An exact solution is held against Robin data too.
+#[test]
+fn a_solution_that_breaks_a_robin_condition_is_named() {
+    let scratch = Scratch::new("wrong-robin");
+    let file = format!("{}/examples/problems/aquifer.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(file).unwrap().replace("304 + y / 4", "305 + y / 4");
+    let file = scratch.file("wrong.toml", &text);
+    let report = scratch.report(&format!("{file} --scheme p1 --levels 4"));
+    let warnings = rows(&report)[0]["warnings"].to_string();
+    assert!(warnings.contains("not fulfilled: the Robin condition"), "{warnings}");
 }
 
 /// Problems that ask for no values have none of their keys.

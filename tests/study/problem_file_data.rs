@@ -132,6 +132,49 @@ fn numbers_are_those_of_toml() {
     assert_eq!(scene.domain.bounding_box().upper, Point::from([3.0]));
 }
 
+/// A number and a tensor of two groups of cells are two coefficients, not factors of one.
+#[test]
+fn numbers_and_tensors_of_a_coefficient_exclude_each_other() {
+    let folder = Scratch::new("problem-tensors");
+    let plate = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.msh");
+    std::fs::copy(plate, folder.0.join("plate.msh")).unwrap();
+    let [two, three] = ["[[2, 0], [0, 2]]", "[[3, 0], [0, 3]]"];
+    let energies = [("3", "2"), ("3", two), (three, "2"), (three, two)].map(|(default, of_one)| {
+        let text = format!(
+            "mesh = \"plate.msh\"\n[coefficient]\ndefault = {default}\ninclusion = {of_one}\n\
+             [boundary.default]\nkind = \"dirichlet\"\n"
+        );
+        let own = problem(&folder, &text).unwrap();
+        let mesh = own.domain.mesh(0).unwrap();
+        let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default());
+        let values: Vec<f64> = mesh.vertices().iter().map(|x| x[0]).collect();
+        of.unwrap().energy(&values).unwrap()
+    });
+    assert!(energies[0] > 1.0);
+    for energy in &energies[1..] {
+        assert!((energy / energies[0] - 1.0).abs() < 1e-13, "{energies:?}");
+    }
+}
+
+/// A facet in two groups has a flux or Robin data, not both.
+#[test]
+fn a_flux_and_robin_data_on_one_facet_are_refused() {
+    let folder = Scratch::new("problem-two-groups");
+    let mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"left\"\n\
+        1 2 \"rest\"\n1 3 \"extra\"\n$EndPhysicalNames\n\
+        $Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n\
+        $Elements\n7\n1 1 2 1 1 4 1\n2 1 2 3 1 4 1\n3 1 2 2 2 1 2\n4 1 2 2 3 2 3\n\
+        5 1 2 2 4 3 4\n6 2 2 4 5 1 2 3\n7 2 2 4 5 1 3 4\n$EndElements\n";
+    folder.file("square.msh", mesh);
+    let text = "mesh = \"square.msh\"\n[boundary.extra]\nkind = \"neumann\"\nflux = 100\n\
+        [boundary.left]\nkind = \"robin\"\ncoefficient = 1\n[boundary.rest]\nkind = \"neumann\"\n";
+    let own = problem(&folder, text).unwrap();
+    let mesh = own.domain.mesh(0).unwrap();
+    let refused = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default());
+    let message = refused.map(|_| ()).unwrap_err().to_string();
+    assert!(message.contains("extra") && message.contains("a flux and Robin data"), "{message}");
+}
+
 /// Every kind of datum by region or by side is that of its table.
 #[test]
 fn tables_of_a_file_become_the_data_of_their_name() {

@@ -253,7 +253,7 @@ fn mistakes_in_values_are_found_where_they_are() {
         (
             "{ reaction = \"top\" }",
             18,
-            "the mesh has no dirichlet boundary group `top`; it has left",
+            "the mesh has no dirichlet or robin boundary group `top`; it has left",
         ),
         (
             "{ force = \"left\" }",

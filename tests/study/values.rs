@@ -162,7 +162,7 @@ fn values_of_names_that_the_mesh_does_not_have_are_refused() {
     for (of, expected) in [
         (
             ValueOf::Reaction("right".to_owned()),
-            "no dirichlet boundary group `right`; it has left, top",
+            "no dirichlet or robin boundary group `right`; it has left, top",
         ),
         (ValueOf::Force("left".to_owned()), "no contact boundary group `left`; it has bottom"),
         (ValueOf::Integral("lid".to_owned()), "no boundary group `lid`; it has"),

@@ -12,6 +12,11 @@ impl<const D: usize> Space<'_, D> {
     pub fn alpha(&self, cell: usize) -> f64 {
         self.coefficients.as_ref().map_or_else(|| 1.0, |a| a[cell])
     }
+    /// The diffusion coefficient at the barycentre of a cell; beside a tensor times the mean of its eigenvalues.
+    pub fn mean_coefficient(&self, cell: usize) -> f64 {
+        let of_tensor = self.tensor_in(cell).map_or(1.0, |tensor| tensor.mean_eigenvalue());
+        self.alpha(cell) * of_tensor
+    }
     /// The coefficient and its values in a cell, if it varies there and the element sees it.
     #[inline(always)]
     pub fn varying_in(&self, cell: usize) -> Option<(&VaryingCoefficient, &[f64])> {

@@ -275,7 +275,7 @@ impl<'a, const D: usize> Space<'a, D> {
             let at_barycentre = |f: &Datum<D>| self.at(f, cell, &self.mesh.barycentre(cell));
             let source = self.data.source.of(self.mesh.region(cell));
             let load = source.map_or(0.0, |f| f.constant().unwrap_or_else(|| at_barycentre(f)));
-            load.abs() / self.alpha(cell)
+            load.abs() / self.mean_coefficient(cell)
         };
         let of_chunk = |cells: Range<usize>| cells.map(of_cell).fold(0.0, f64::max);
         let largest = cells::map(self.mesh.n_cells(), &of_chunk).into_iter().fold(0.0, f64::max);

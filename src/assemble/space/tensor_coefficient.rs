@@ -45,6 +45,10 @@ impl<const D: usize> TensorFactor<D> {
     pub fn flux(&self, gradient: &Point<D>) -> Point<D> {
         self.root * self.gradient(gradient)
     }
+    /// The mean of the eigenvalues of the tensor.
+    pub fn mean_eigenvalue(&self) -> f64 {
+        self.root.norm_squared() / D as f64
+    }
     /// A number that the least eigenvalue of the tensor is not below.
     pub fn least(&self) -> f64 {
         self.inverse.norm_squared().recip()

@@ -125,7 +125,8 @@ impl<const D: usize> Space<'_, D> {
         if sign * sum <= NEGLIGIBLE * size || obstacles.iter().all(Option::is_none) {
             return Ok(None);
         }
-        let of_side = |(cell, _): &HalfFacet| self.mesh.cell_diameter(*cell) / self.alpha(*cell);
+        let of_side =
+            |(cell, _): &HalfFacet| self.mesh.cell_diameter(*cell) / self.mean_coefficient(*cell);
         let least = sides.iter().flatten().map(of_side).fold(f64::INFINITY, f64::min);
         let per_sum = least / (D as f64 * self.facet_measure(facet));
         let unit = per_sum * sign * sum;

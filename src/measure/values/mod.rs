@@ -78,8 +78,9 @@ impl<const D: usize> Discretisation<'_, D> {
         )(self, wanted, inequality, solution)
     }
 
-    /// The numbers of the exact solution of the problem on this mesh; none without one. Reactions and contact forces are
-    /// integrals of its normal flux.
+    /// The numbers of the exact solution of the problem on this mesh; none without one, and no integrals and means on a mesh
+    /// with a [shape](Mesh::with_shape), which is another domain. Reactions and contact forces are integrals of its normal
+    /// flux.
     ///
     /// # Errors
     /// Those of [`Self::values_of`].
@@ -135,7 +136,14 @@ impl<const D: usize> Discretisation<'_, D> {
             |cell: usize, point: &[f64; 4]| exact.value.at(&self.mesh().point(cell, &point[..=D]));
         let function = InCells { value: &value, is_linear: false };
         let flux = |facet: HalfFacet, point: &[f64; 4]| space.exact_flux(exact, facet, point);
+        // the mesh is another domain
+        let is_polygon = self.mesh().has_shapes();
         let found = wanted.iter().map(|of| match of {
+            ValueOf::Mean(_) | ValueOf::Integral(_) | ValueOf::Reaction(_) | ValueOf::Force(_)
+                if is_polygon =>
+            {
+                None
+            }
             ValueOf::Reaction(name) => Some(space.on_group(name, &|f| space.holds(f), &flux)),
             ValueOf::Force(name) => {
                 let is_contact = |f: &BoundaryFacet| f.condition == BoundaryCondition::Contact;

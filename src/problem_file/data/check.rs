@@ -15,6 +15,8 @@ pub(super) enum Allowed {
     Finite,
     NotNegative,
     Positive,
+    /// Of the least pivot of a tensor.
+    Definite,
 }
 
 /// The degree of the rule at whose points expressions are evaluated: that of loads of linears.
@@ -32,7 +34,7 @@ impl Allowed {
             && match self {
                 Self::Finite => true,
                 Self::NotNegative => value >= 0.0,
-                Self::Positive => value > 0.0,
+                Self::Positive | Self::Definite => value > 0.0,
             }
     }
     fn describe(self) -> &'static str {
@@ -40,6 +42,7 @@ impl Allowed {
             Self::Finite => "finite",
             Self::NotNegative => "finite and not negative",
             Self::Positive => "finite and positive",
+            Self::Definite => "positive for the tensor to be positive definite",
         }
     }
 }

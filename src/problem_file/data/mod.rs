@@ -14,8 +14,8 @@ use crate::arrays::array_of;
 use crate::error::Error;
 use crate::input::{beginning, fingerprint};
 use crate::mesh::{BoundaryCondition, BoundaryFacet, BoxDomain, Domain, Mesh, MeshError, SIDES};
-use crate::problem::{Datum, Given, Problem, Robin};
-use crate::real::Point;
+use crate::problem::{Datum, Given, Problem, Robin, Tensor};
+use crate::real::{Matrix, Point};
 use crate::scenes::{AnyScene, Scene};
 use check::{Allowed, Checks, Entry};
 
@@ -91,13 +91,17 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     ) -> Done {
         let table = self.source.table(name, value)?;
         let groups: Vec<String> = table.keys().map(|key| key.get_ref().to_string()).collect();
+        // of a number and a tensor the one that a cell takes excludes the other: each is given as both
+        let is_tensor = |value: &Value<'t>| name == "coefficient" && value.get_ref().is_array();
+        let has_tensor = table.values().any(is_tensor);
         for (key, value) in table.iter() {
             let group = key.get_ref().to_string();
             let region = (group != DEFAULT).then_some(&group[..]);
-            if name == "coefficient" && value.get_ref().as_array().is_some() {
+            if is_tensor(value) {
                 let offset = if region.is_some() { key.span().start } else { value.span().start };
                 let (tensor, entry) = tensor::read(self.source, (&group, offset, value), &groups)?;
                 self.problem.tensor.give(region, tensor);
+                self.problem.coefficient.give(region, Datum::Constant(1.0));
                 self.entries.push(entry);
                 continue;
             }
@@ -117,6 +121,9 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                     (entry("value", "the datum")?.0, Some(level))
                 }
             };
+            if has_tensor {
+                self.problem.tensor.give(region, Tensor::Constant(Matrix::identity()));
+            }
             let given = piecewise(&formula, level.as_ref().map(|(level, _)| level));
             of(&mut self.problem).give(region, given);
             let entry = |what: &str, offset, (allowed, at_vertices), formula: &Formula| Entry {
@@ -246,7 +253,8 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         };
         self.entries.push(entry(datum, Allowed::Finite, formula));
         if let Some(coefficient) = coefficient {
-            let datum = format!("boundary.{group}.coefficient");
+            let of_group = datum.rsplit_once('.').map_or("boundary", |(of_group, _)| of_group);
+            let datum = format!("{of_group}.coefficient");
             self.entries.push(entry(&datum, Allowed::NotNegative, coefficient));
         }
         self.conditions.push((group.to_owned(), *condition));

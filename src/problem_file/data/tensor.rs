@@ -40,7 +40,7 @@ pub(super) fn read<'t, const D: usize>(
     for row in list(value).ok_or_else(wrong)?.iter() {
         for entry in list(row).ok_or_else(wrong)?.iter() {
             formulas.push(source.formula(group, entry, &VARIABLES[0][..D])?);
-            texts.push(&source.text[entry.span()]);
+            texts.push(source.text[entry.span()].replace(' ', ""));
         }
     }
     let is_same = |a: usize, b: usize| match (&formulas[a], &formulas[b]) {
@@ -65,7 +65,7 @@ pub(super) fn read<'t, const D: usize>(
         others: others.to_vec(),
         at_vertices: false,
         offset,
-        allowed: Allowed::Positive,
+        allowed: Allowed::Definite,
         value: BoundaryFlux::Function(Arc::new(move |x, _| least_pivot(of.at(x)))),
     };
     Ok((tensor, entry))

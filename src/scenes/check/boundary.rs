@@ -27,6 +27,11 @@ impl<const D: usize> Evaluator<'_, D> {
         let (value, flux) = (exact * self.scales.value, exact * self.scales.flux);
         let problem = self.problem;
         let outflow = self.flux(&x).dot(&normal);
+        if let (BoundaryCondition::Neumann, Some(side)) = (condition, &problem.robin.everywhere) {
+            let force = side.coefficient.at(&x) * (side.value.at(&x) - self.value(&x));
+            let error = (force - outflow).abs();
+            return self.require("the Robin condition", &x, error, flux + exact * force.abs());
+        }
         match (condition, &problem.neumann.everywhere, &problem.gap.everywhere) {
             (BoundaryCondition::Dirichlet, _, _) => {
                 let error = (problem.dirichlet_at(&x) - self.value(&x)).abs();

@@ -78,9 +78,10 @@ impl<'a, const D: usize> Evaluator<'a, D> {
     pub fn coefficient(&self, x: &Point<D>) -> f64 {
         self.problem.coefficient.everywhere.as_ref().map_or(1.0, |alpha| alpha.at(x))
     }
-    /// `alpha grad u`.
+    /// `alpha T grad u` with the tensor `T`.
     pub fn flux(&self, x: &Point<D>) -> Point<D> {
-        self.gradient(x) * self.coefficient(x)
+        let gradient = self.gradient(x) * self.coefficient(x);
+        self.problem.tensor.everywhere.as_ref().map_or(gradient, |tensor| tensor.at(x) * gradient)
     }
     pub fn source(&self, x: &Point<D>) -> f64 {
         self.problem.source.everywhere.as_ref().map_or(0.0, |f| f.at(x))
