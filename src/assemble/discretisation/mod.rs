@@ -96,7 +96,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// The data of cells and facets that facet forms need. Loops over cells ask for them before they begin.
     pub(super) fn prepared(&self) -> &(Metrics, FacetCoefficients) {
         once(&self.prepared, || {
-            let metrics = Metrics::of(&self.space);
+            let metrics = Metrics::of(self.mesh().n_cells(), |cell| self.space.metric(cell));
             let weights = FacetCoefficients::of(&self.space, self.form(), &metrics);
             (metrics, weights)
         })

@@ -2,7 +2,10 @@
 
 use super::Space;
 use super::coefficient::{VaryingCoefficient, limited};
+use super::metric::shape;
 use super::tables::Derivatives;
+use super::tensor_coefficient::{TensorCoefficient, TensorFactor};
+use crate::arrays::array_of;
 use crate::mesh::HalfFacet;
 use crate::real::Point;
 
@@ -119,6 +122,74 @@ impl<const D: usize> Space<'_, D> {
     ) -> Option<impl Fn(usize, usize) -> f64> {
         let (varying, weight) = self.flux_weights(own, other, own_weight)?;
         Some(move |k, l| varying.weighted_product(k, l, &weight))
+    }
+}
+
+/// The tensor of the coefficient.
+impl<const D: usize> Space<'_, D> {
+    /// The tensor of the coefficient in a cell, at its barycentre; none without tensors.
+    #[inline(always)]
+    pub fn tensor_in(&self, cell: usize) -> Option<&TensorFactor<D>> {
+        self.tensor.as_ref().map(|tensor| tensor.in_cell(cell))
+    }
+    /// The tensor at a point of a cell.
+    #[inline(always)]
+    pub fn tensor_at(&self, cell: usize, x: &Point<D>) -> Option<TensorFactor<D>> {
+        self.tensor.as_ref().map(|tensor| tensor.at(self.mesh, cell, x))
+    }
+    /// Whether the coefficient has a tensor.
+    pub fn has_tensor(&self) -> bool {
+        self.tensor.is_some()
+    }
+    /// A number that the least eigenvalue of the tensor of a cell is not below.
+    pub fn least_of_tensor(&self, cell: usize) -> f64 {
+        self.tensor_in(cell).map_or(1.0, TensorFactor::least)
+    }
+    /// Whether tensors are functions of space.
+    pub fn has_varying_tensor(&self) -> bool {
+        self.tensor.as_ref().is_some_and(TensorCoefficient::varies)
+    }
+    /// The volume of a cell and the integrals of the products of its gradients, times a factor.
+    #[inline(always)]
+    pub fn shape(&self, cell: usize, scale: f64) -> (f64, [[f64; 4]; 4]) {
+        match &self.tensor {
+            None => shape(self.mesh, cell, scale),
+            Some(tensor) => tensor.shape(self.mesh, cell, scale),
+        }
+    }
+    /// `n . T n` with the normal of a facet, the tensor from inside its cell.
+    #[inline(always)]
+    pub fn normal_component(&self, (cell, local): HalfFacet) -> f64 {
+        self.tensor_in(cell).map_or(1.0, |factor| {
+            factor.gradient(&self.mesh.geometry(cell).normal(local)).norm_squared()
+        })
+    }
+    /// A gradient in a cell in the coordinates in which the coefficient has no direction.
+    #[inline(always)]
+    pub fn isotropic_gradient(&self, cell: usize, gradient: &Point<D>) -> Point<D> {
+        self.tensor_in(cell).map_or(*gradient, |factor| factor.gradient(gradient))
+    }
+    /// The tensor times a gradient in a cell.
+    #[inline(always)]
+    pub fn tensor_times(&self, cell: usize, gradient: &Point<D>) -> Point<D> {
+        self.tensor_in(cell).map_or(*gradient, |factor| factor.flux(gradient))
+    }
+    /// The corners of a cell in these coordinates.
+    #[inline(always)]
+    pub fn isotropic_corners(&self, cell: usize) -> [Point<D>; 4] {
+        let corners = self.mesh.corners(cell);
+        self.tensor_in(cell).map_or(corners, |factor| array_of(|k| factor.vector(&corners[k])))
+    }
+    /// The diameter of a cell in these coordinates.
+    #[inline(always)]
+    pub fn isotropic_diameter(&self, cell: usize) -> f64 {
+        if self.tensor.is_none() {
+            return self.mesh.cell_diameter(cell);
+        }
+        let corners = self.isotropic_corners(cell);
+        let lengths =
+            |x: &Point<D>| corners[..=D].iter().map(|y| (x - y).norm()).fold(0.0, f64::max);
+        corners[..=D].iter().map(lengths).fold(0.0, f64::max)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::convert::Infallible;
 
-use super::Space;
 use super::tables::Derivatives;
 use crate::element::MAX_BASIS;
 use crate::memory::in_large_pages;
@@ -25,9 +24,8 @@ impl<const D: usize> CellMetric<D> {
     const KEPT: usize = 1 + (D + 1) + D * (D + 1) / 2;
 
     #[inline(always)]
-    pub fn of(space: &Space<'_, D>, cell: usize) -> Self {
-        let mesh = space.mesh;
-        let (volume, mut products) = shape(mesh, cell, 1.0);
+    pub fn of(mesh: &Mesh<D>, cell: usize) -> Self {
+        let (volume, products) = shape(mesh, cell, 1.0);
         let mut measures = [0.0; 4];
         for i in 1..=D {
             // |F| = D |K| |grad lambda|
@@ -37,10 +35,6 @@ impl<const D: usize> CellMetric<D> {
         measures[0] = first_facet(mesh, cell);
         if D == 1 {
             measures[1] = 1.0;
-        }
-        // measures are those of space
-        if space.tensor.is_some() {
-            products = space.shape(cell, 1.0).1;
         }
         Self { volume, measures, products }
     }
@@ -198,18 +192,20 @@ pub(crate) struct Metrics {
 }
 
 impl Metrics {
-    /// The metrics of a mesh, in parallel.
-    pub fn of<const D: usize>(space: &Space<'_, D>) -> Self {
-        let mesh = space.mesh;
+    /// The metrics of so many cells, in parallel.
+    pub fn of<const D: usize>(
+        n_cells: usize,
+        of_cell: impl Fn(usize) -> CellMetric<D> + Sync,
+    ) -> Self {
         let n = CellMetric::<D>::KEPT;
-        let mut kept = in_large_pages(vec![0.0; n * mesh.n_cells()]);
+        let mut kept = in_large_pages(vec![0.0; n * n_cells]);
         let fill = |cells: std::ops::Range<usize>, chunk: &mut [f64]| {
             for (cell, out) in cells.zip(chunk.chunks_exact_mut(n)) {
-                CellMetric::of(space, cell).write(out);
+                of_cell(cell).write(out);
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = cells::for_each(mesh.n_cells(), &|c| c * n, &mut kept, &fill);
+        let Ok(()) = cells::for_each(n_cells, &|c| c * n, &mut kept, &fill);
         Self { kept }
     }
     #[inline(always)]

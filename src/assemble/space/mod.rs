@@ -12,7 +12,7 @@
 //! | `checks` | data that must be finite, coefficients that must be positive |
 //! | `coefficient` | a coefficient that varies in cells, and the products that it weighs |
 //! | `diffusion` | the coefficient in a cell, on a facet and in a flux |
-//! | `tensor_coefficient` | its tensor |
+//! | `tensor_coefficient` | its tensor, as a change of coordinates |
 //! | `reaction_term` | the reaction term of the matrix |
 //! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
 //! | `obstacle_coefficients` | the Bernstein coefficients of obstacles and gaps, beside jumps too |
@@ -334,8 +334,14 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn dirichlet_at(&self, group: usize, cell: usize, x: &Point<D>) -> f64 {
         self.data.dirichlet.of(group).map_or(0.0, |u| u.of_body(cell, x))
     }
+    #[inline(always)]
     pub fn metric(&self, cell: usize) -> CellMetric<D> {
-        CellMetric::of(self, cell)
+        let mut metric = CellMetric::of(self.mesh, cell);
+        // its measures are those of space
+        if let Some(tensor) = &self.tensor {
+            metric.products = tensor.shape(self.mesh, cell, 1.0).1;
+        }
+        metric
     }
     pub fn facet_measure(&self, (cell, local): HalfFacet) -> f64 {
         self.mesh.geometry(cell).facet_measure(local)

@@ -4,11 +4,9 @@
 //! `int q . T^-1 q / alpha`, is `int |L^-1 q|^2 / alpha`: in the coordinates `L^-1 x` the coefficient has no direction.
 //! Forms read a cell by the products of its gradients alone, which are made there.
 
-use super::Space;
-use super::metric::{edges_of, shape, shape_of};
-use crate::arrays::array_of;
+use super::metric::{edges_of, shape_of};
 use crate::error::{Error, InCell};
-use crate::mesh::{HalfFacet, Mesh, with_zeros};
+use crate::mesh::{Mesh, with_zeros};
 use crate::problem::{ByGroup, Tensor};
 use crate::real::{Matrix, Point};
 
@@ -94,8 +92,17 @@ impl<const D: usize> TensorCoefficient<D> {
         let of_cells = (0..mesh.n_cells()).map(of_cell).collect::<Result<_, _>>()?;
         Ok(Some(Self { data: data.clone(), of_cells }))
     }
+    /// The factor in a cell, at its barycentre.
+    #[inline(always)]
+    pub fn in_cell(&self, cell: usize) -> &TensorFactor<D> {
+        &self.of_cells[cell]
+    }
+    /// Whether a tensor is a function of space.
+    pub fn varies(&self) -> bool {
+        !self.data.every(&Tensor::is_constant)
+    }
     /// The factor at a point of a cell; it is not a number where the tensor is not positive definite.
-    fn at(&self, mesh: &Mesh<D>, cell: usize, x: &Point<D>) -> TensorFactor<D> {
+    pub fn at(&self, mesh: &Mesh<D>, cell: usize, x: &Point<D>) -> TensorFactor<D> {
         match self.data.of(mesh.region(cell)) {
             Some(tensor) if !tensor.is_constant() => {
                 let none = Matrix::repeat(f64::NAN);
@@ -105,82 +112,15 @@ impl<const D: usize> TensorCoefficient<D> {
             _ => self.of_cells[cell],
         }
     }
-    /// As [`shape`], with the products `int scale grad lambda_i . T grad lambda_j`.
+    /// The volume of a cell and the products `int scale grad lambda_i . T grad lambda_j`.
     #[cold]
     #[inline(never)]
-    fn shape(&self, mesh: &Mesh<D>, cell: usize, scale: f64) -> (f64, [[f64; 4]; 4]) {
+    pub fn shape(&self, mesh: &Mesh<D>, cell: usize, scale: f64) -> (f64, [[f64; 4]; 4]) {
         let factor = &self.of_cells[cell];
         let edges = edges_of(mesh, cell)
             .map(|edge| with_zeros(factor.vector(&Point::from_fn(|axis, _| edge[axis]))));
         let determinant = factor.root.diagonal().product();
         let (volume, products) = shape_of::<D>(edges, scale * determinant);
         (volume * determinant, products)
-    }
-}
-
-impl<const D: usize> Space<'_, D> {
-    /// The tensor of the coefficient in a cell, at its barycentre; none without tensors.
-    #[inline(always)]
-    pub fn tensor_in(&self, cell: usize) -> Option<&TensorFactor<D>> {
-        self.tensor.as_ref().map(|tensor| &tensor.of_cells[cell])
-    }
-    /// The tensor at a point of a cell.
-    #[inline(always)]
-    pub fn tensor_at(&self, cell: usize, x: &Point<D>) -> Option<TensorFactor<D>> {
-        self.tensor.as_ref().map(|tensor| tensor.at(self.mesh, cell, x))
-    }
-    /// Whether the coefficient has a tensor.
-    pub fn has_tensor(&self) -> bool {
-        self.tensor.is_some()
-    }
-    /// A number that the least eigenvalue of the tensor of a cell is not below.
-    pub fn least_of_tensor(&self, cell: usize) -> f64 {
-        self.tensor_in(cell).map_or(1.0, TensorFactor::least)
-    }
-    /// Whether tensors are functions of space.
-    pub fn has_varying_tensor(&self) -> bool {
-        self.tensor.as_ref().is_some_and(|tensor| !tensor.data.every(&Tensor::is_constant))
-    }
-    /// The volume of a cell and the integrals of the products of its gradients, times a factor.
-    #[inline(always)]
-    pub fn shape(&self, cell: usize, scale: f64) -> (f64, [[f64; 4]; 4]) {
-        match &self.tensor {
-            None => shape(self.mesh, cell, scale),
-            Some(tensor) => tensor.shape(self.mesh, cell, scale),
-        }
-    }
-    /// `n . T n` with the normal of a facet, the tensor from inside its cell.
-    #[inline(always)]
-    pub fn normal_component(&self, (cell, local): HalfFacet) -> f64 {
-        self.tensor_in(cell).map_or(1.0, |factor| {
-            factor.gradient(&self.mesh.geometry(cell).normal(local)).norm_squared()
-        })
-    }
-    /// A gradient in a cell in the coordinates in which the coefficient has no direction.
-    #[inline(always)]
-    pub fn isotropic_gradient(&self, cell: usize, gradient: &Point<D>) -> Point<D> {
-        self.tensor_in(cell).map_or(*gradient, |factor| factor.gradient(gradient))
-    }
-    /// The tensor times a gradient in a cell.
-    #[inline(always)]
-    pub fn tensor_times(&self, cell: usize, gradient: &Point<D>) -> Point<D> {
-        self.tensor_in(cell).map_or(*gradient, |factor| factor.flux(gradient))
-    }
-    /// The corners of a cell in these coordinates.
-    #[inline(always)]
-    pub fn isotropic_corners(&self, cell: usize) -> [Point<D>; 4] {
-        let corners = self.mesh.corners(cell);
-        self.tensor_in(cell).map_or(corners, |factor| array_of(|k| factor.vector(&corners[k])))
-    }
-    /// The diameter of a cell in these coordinates.
-    #[inline(always)]
-    pub fn isotropic_diameter(&self, cell: usize) -> f64 {
-        if self.tensor.is_none() {
-            return self.mesh.cell_diameter(cell);
-        }
-        let corners = self.isotropic_corners(cell);
-        let lengths =
-            |x: &Point<D>| corners[..=D].iter().map(|y| (x - y).norm()).fold(0.0, f64::max);
-        corners[..=D].iter().map(lengths).fold(0.0, f64::max)
     }
 }

@@ -99,7 +99,8 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             let region = (group != DEFAULT).then_some(&group[..]);
             if is_tensor(value) {
                 let offset = if region.is_some() { key.span().start } else { value.span().start };
-                let (tensor, entry) = tensor::read(self.source, (&group, offset, value), &groups)?;
+                let (tensor, entry) =
+                    tensor::read(self.source, ((&group, region), offset, value), &groups)?;
                 self.problem.tensor.give(region, tensor);
                 self.problem.coefficient.give(region, Datum::Constant(1.0));
                 self.entries.push(entry);

@@ -29,7 +29,7 @@ fn least_pivot<const D: usize>(mut of: Matrix<D>) -> f64 {
 /// Reads the tensor of a region, `[[2, 0], [0, 1]]`, with what is to be checked: that it is positive definite.
 pub(super) fn read<'t, const D: usize>(
     source: &Source<'t>,
-    (group, offset, value): (&str, usize, &Value<'t>),
+    ((group, region), offset, value): ((&str, Option<&str>), usize, &Value<'t>),
     others: &[String],
 ) -> Result<(Tensor<D>, Entry<D>), ProblemFileError> {
     let expected = "a symmetric list of rows, each with an entry for each coordinate";
@@ -57,10 +57,10 @@ pub(super) fn read<'t, const D: usize>(
         true => Tensor::Constant(at(&Point::zeros())),
         false => Tensor::function(at),
     };
-    let (of, region) = (tensor.clone(), (group != super::DEFAULT).then(|| group.to_owned()));
+    let of = tensor.clone();
     let entry = Entry {
         datum: format!("the least pivot of coefficient.{group}"),
-        group: region,
+        group: region.map(str::to_owned),
         is_boundary: false,
         others: others.to_vec(),
         at_vertices: false,
