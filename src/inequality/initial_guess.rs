@@ -1,6 +1,6 @@
 //! The data from which a solver of an inequality starts.
 
-use super::step_counter::StepCounter;
+use super::history::StepCounter;
 use crate::algebra::rounded;
 use crate::linear::CoarseSpaces;
 use crate::real::Real;

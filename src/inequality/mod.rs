@@ -25,8 +25,7 @@
 //! | `recession` | whether a solution exists and is unique where only bounds hold a body |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
 //! | `single_precision` | [`SinglePrecision`]: a solver in `f32` for inequalities in `f64` |
-//! | `step_counter` | [`StepCounter`]: the number of the present outer step of a solver |
-//! | `history` | [`HistoryPoint`]; the number of linear systems of a solve, the certificate after each outer step |
+//! | `history` | [`HistoryPoint`], [`StepCounter`]: the certificate after each outer step, the number of the present one |
 //! | `by_name` | [`solver_by_name`] |
 //! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`Stage`], [`StageRun`]: the result of a solver |
 //!
@@ -51,7 +50,6 @@ mod scales;
 mod single_precision;
 mod solution;
 mod stage;
-mod step_counter;
 mod validation;
 mod violations;
 
@@ -61,7 +59,7 @@ pub(crate) use certificate::count_active;
 pub use certificate::{Certificate, contact_of};
 pub(crate) use certificate::{positive_diagonal, residual, stiffness_diagonal};
 pub(crate) use contact_forces::ContactForces;
-pub use history::HistoryPoint;
+pub use history::{HistoryPoint, StepCounter};
 pub use initial_guess::InitialGuess;
 pub use interior_point::InteriorPoint;
 pub use monotone_multigrid::MonotoneMultigrid;
@@ -71,7 +69,6 @@ pub(crate) use recession::explanation;
 pub use single_precision::{SinglePrecision, in_precision};
 pub use solution::Solution;
 pub use stage::{Stage, StageRun};
-pub use step_counter::StepCounter;
 pub(crate) use violations::certify_solution;
 pub use violations::{Violations, certify};
 

@@ -1,10 +1,10 @@
 //! The diffusion coefficient in cells and on facets, and what it makes of derivatives in a flux.
 
 use super::Space;
+use super::coefficient::tensor::{TensorCoefficient, TensorFactor};
 use super::coefficient::{VaryingCoefficient, limited};
 use super::metric::shape;
 use super::tables::Derivatives;
-use super::tensor_coefficient::{TensorCoefficient, TensorFactor};
 use crate::arrays::array_of;
 use crate::mesh::HalfFacet;
 use crate::real::Point;

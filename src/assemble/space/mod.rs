@@ -12,7 +12,7 @@
 //! | `checks` | data that must be finite, coefficients that must be positive |
 //! | `coefficient` | a coefficient that varies in cells, and the products that it weighs |
 //! | `diffusion` | the coefficient in a cell, on a facet and in a flux |
-//! | `tensor_coefficient` | its tensor, as a change of coordinates |
+//! | `coefficient/tensor` | its tensor, as a change of coordinates |
 //! | `reaction_term` | the reaction term of the matrix |
 //! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
 //! | `obstacle_coefficients` | the Bernstein coefficients of obstacles and gaps, beside jumps too |
@@ -33,7 +33,6 @@ mod node_vertices;
 pub(crate) mod obstacle_coefficients;
 pub(crate) mod reaction_term;
 pub(crate) mod tables;
-mod tensor_coefficient;
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -50,12 +49,12 @@ use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell, vertex
 use crate::real::Point;
 pub(crate) use coefficient::INWARD;
 use coefficient::VaryingCoefficient;
+use coefficient::tensor::TensorCoefficient;
 use dofs::Dofs;
 use metric::CellMetric;
 use node_vertices::NodeVertices;
 use reaction_term::ReactionTerm;
 use tables::{BasisAt, CellTable, FacetTable};
-use tensor_coefficient::TensorCoefficient;
 
 /// A functional as barycentric points with weights.
 pub(crate) type Terms = Vec<([f64; 4], f64)>;

@@ -304,7 +304,7 @@ impl<const D: usize> Space<'_, D> {
         let sums = self
             .integrals_of_constants(cell, &data, table)
             .unwrap_or_else(|| self.integrals_at_points(cell, &data, table, cut));
-        let from_values = sums.from_values + self.from_values_on_sides(cell, &data);
+        let from_values = sums.from_values + self.distance_on_sides(cell, &data);
         let [mismatch, from_values, from_midpoint] =
             map_entries([sums.mismatch, from_values, sums.from_midpoint], integral_of_square);
         let by_gradient = self.isotropic_diameter(cell) / (PI * sums.least_coefficient.sqrt());
@@ -353,7 +353,7 @@ impl<const D: usize> Space<'_, D> {
     }
 
     /// The square of the difference of the two functions, times the coefficients of Robin sides.
-    fn from_values_on_sides(&self, cell: usize, data: &CellInputs<'_, D>) -> f64 {
+    fn distance_on_sides(&self, cell: usize, data: &CellInputs<'_, D>) -> f64 {
         let mut sum = 0.0;
         if let Some(reaction) = self.reaction.as_ref().filter(|_| self.data.robin.is_given()) {
             reaction.visit_sides(self.mesh, cell, &mut |point, x, weight| {

@@ -9,6 +9,7 @@
 //! vanish at the boundary of a cell, as `r` does on the axis of a body of revolution: no point of a rule
 //! lies there. In a cell in which the coefficient jumps no rule keeps the order, see [`limited`].
 
+pub(crate) mod tensor;
 pub(crate) mod weighted_polynomials;
 
 use self::weighted_polynomials::{Factor, WeightedPolynomials};

@@ -4,7 +4,7 @@
 //! `int q . T^-1 q / alpha`, is `int |L^-1 q|^2 / alpha`: in the coordinates `L^-1 x` the coefficient has no direction.
 //! Forms read a cell by the products of its gradients alone, which are made there.
 
-use super::metric::{edges_of, shape_of};
+use crate::assemble::space::metric::{edges_of, shape_of};
 use crate::error::{Error, InCell};
 use crate::mesh::{Mesh, with_zeros};
 use crate::problem::{ByGroup, Tensor};
