@@ -72,6 +72,8 @@ pub struct Setting {
     pub obstacle: bool,
     /// Whether a Signorini condition binds on the boundary.
     pub contact: bool,
+    /// Whether there is friction on the boundary.
+    pub friction: bool,
     /// What is known of the solution.
     pub regularity: Regularity,
     /// Whether the problem has a coefficient that is a function of space.
@@ -86,8 +88,15 @@ impl Setting {
     /// not assumed to be regular.
     #[must_use]
     pub const fn new(dimension: usize, regularity: Regularity) -> Self {
-        let (obstacle, contact, coefficient, regular_dual) = (false, false, false, false);
-        Self { dimension, obstacle, contact, regularity, coefficient, regular_dual }
+        Self {
+            dimension,
+            obstacle: false,
+            contact: false,
+            friction: false,
+            regularity,
+            coefficient: false,
+            regular_dual: false,
+        }
     }
     /// Sets whether an obstacle binds in the domain.
     #[must_use]
@@ -98,6 +107,11 @@ impl Setting {
     #[must_use]
     pub const fn with_contact(self, contact: bool) -> Self {
         Self { contact, ..self }
+    }
+    /// Sets whether there is friction on the boundary.
+    #[must_use]
+    pub const fn with_friction(self, friction: bool) -> Self {
+        Self { friction, ..self }
     }
     /// Sets whether the problem has a coefficient that is a function of space.
     #[must_use]
@@ -111,6 +125,6 @@ impl Setting {
     }
     /// Whether no inequality binds.
     pub fn is_linear(&self) -> bool {
-        !self.obstacle && !self.contact
+        !self.obstacle && !self.contact && !self.friction
     }
 }

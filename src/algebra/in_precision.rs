@@ -2,6 +2,7 @@
 
 use super::bound::Bound;
 use super::inequality::Inequality;
+use super::kink::Kink;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
 use super::rectangular_matrix::RectangularMatrix;
@@ -74,6 +75,7 @@ impl Inequality<f64> {
     pub fn in_precision<T: Real>(&self) -> Inequality<T> {
         let kernel_vector =
             |w: &Vec<(u32, f64)>| w.iter().map(|&(i, value)| (i, T::lit(value))).collect();
+        let kink = |of: &Kink<f64>| Kink { unknown: of.unknown, slope: T::lit(of.slope) };
         let mut rounded = Inequality {
             matrix: self.matrix.in_precision(),
             symmetric: self.symmetric,
@@ -85,6 +87,7 @@ impl Inequality<f64> {
             penalised: self.penalised.as_ref().map(PenalisedMatrix::in_precision),
             dirichlet_energy: self.dirichlet_energy.clone(),
             kernel: self.kernel.iter().map(kernel_vector).collect(),
+            kinks: self.kinks.iter().map(kink).collect(),
             bodies: self.bodies.clone(),
             is_definite: self.is_definite,
             distribution: self.distribution.clone(),

@@ -8,6 +8,7 @@ use super::bound::{Bound, Contact};
 use super::dirichlet_energy::DirichletEnergy;
 use super::distribution::{Distribution, OnePart, sum_over_parts};
 use super::free_body::{FreeBody, Sum};
+use super::kink::Kink;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
 use crate::parallel::vectors::{all, collect, indices};
@@ -95,6 +96,9 @@ pub struct Inequality<T> {
     /// unknowns, each by its nonzero entries: the constants on components of the domain that neither
     /// Dirichlet data nor a reaction hold. Only bounds stop them. Empty if the kernel is zero or unknown.
     pub kernel: Vec<Vec<(u32, T)>>,
+    /// The kinks of the convex functions of unknowns, ascending; empty if there are none. Load and bounds are those of one
+    /// side of each: [`Kink`].
+    pub kinks: Vec<Kink<T>>,
     /// The bodies that bounds alone hold, with the resultants of their data. If there are none, each kernel vector
     /// is a body, and its resultant the sum of the load along it.
     pub bodies: Vec<FreeBody>,
@@ -131,6 +135,7 @@ impl<T: Real> Inequality<T> {
             penalised: None,
             dirichlet_energy: None,
             kernel: Vec::new(),
+            kinks: Vec::new(),
             bodies: Vec::new(),
             is_definite: false,
             distribution: None,
@@ -160,7 +165,7 @@ impl<T: Real> Inequality<T> {
     /// Whether matrix, load, bounds, penalised matrix and the locations, if there are any, have the same
     /// size, the two matrices are well formed, and the vertices of locations are below four times the number of
     /// unknowns: an array by vertices is not larger.
-    /// Entries of the kernel and terms of Dirichlet data belong to unknowns, bodies to vectors of the kernel.
+    /// Entries of the kernel, kinks and terms of Dirichlet data belong to unknowns, bodies to vectors of the kernel.
     pub fn is_well_formed(&self) -> bool {
         self.matrix.size() == self.size()
             && self.bounds.len() == self.size()
@@ -171,6 +176,7 @@ impl<T: Real> Inequality<T> {
                 self.locations[i].vertices().iter().all(|&v| (v as usize) < 4 * self.size())
             })
             && self.kernel.iter().all(|w| self.is_kernel_vector(w))
+            && self.has_sound_kinks()
             && self.bodies.iter().all(|body| body.kernel.is_none_or(|k| k < self.kernel.len()))
             && self.dirichlet_energy.as_ref().is_none_or(|e| e.is_well_formed(self.size()))
     }
@@ -237,7 +243,7 @@ impl<T: Real> Inequality<T> {
     pub fn is_feasible(&self) -> bool {
         all(self.bounds.len(), |i| !matches!(self.bounds[i], Bound::Both(l, u) if l > u))
     }
-    /// The energy `u.A u / 2 - b.u`, in `f64`; that of a penalised matrix by its jumps, because differences of
+    /// The energy `u.A u / 2 - b.u`, with the functions of kinks, in `f64`; that of a penalised matrix by its jumps, because differences of
     /// products of its entries would have no digits where the penalty is large.
     ///
     /// # Panics
@@ -246,7 +252,7 @@ impl<T: Real> Inequality<T> {
         let distribution = self.distribution();
         if let Some(penalised) = &self.penalised {
             let own = penalised.objective(&self.load, |i| u[i].to_f64(), |i| self.owns(i));
-            return sum_over_parts(distribution, own);
+            return sum_over_parts(distribution, own - self.slopes_at_places());
         }
         let of_unknown = |i: usize| {
             let (columns, values) = self.matrix.row(i);
@@ -255,6 +261,6 @@ impl<T: Real> Inequality<T> {
             u[i].to_f64() * (0.5 * au - self.load[i].to_f64())
         };
         let terms = collect(self.size(), |i| if self.owns(i) { of_unknown(i) } else { 0.0 });
-        sum_over_parts(distribution, terms.iter().sum())
+        sum_over_parts(distribution, terms.iter().sum::<f64>() - self.slopes_at_places())
     }
 }

@@ -6,7 +6,7 @@
 //! discontinuous linear functions. `dense`: small dense matrices.
 //! `dirichlet_energy`: the terms of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
-//! unknown. `inequality`: locations of unknowns and the inequality. `in_precision`:
+//! unknown. `kink`: kinks of the convex functions of unknowns. `inequality`: locations of unknowns and the inequality. `in_precision`:
 //! matrices, bounds and inequalities rounded.
 
 mod bound;
@@ -17,6 +17,7 @@ mod free_body;
 mod in_precision;
 mod inequality;
 mod jumps;
+mod kink;
 mod matrix;
 mod mean_jumps;
 mod penalised_matrix;
@@ -32,6 +33,7 @@ pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
 pub(crate) use in_precision::rounded;
 pub use inequality::{DofLocation, Inequality, Start};
 pub use jumps::{JumpSide, JumpTerm, Jumps};
+pub use kink::Kink;
 pub use matrix::SparseMatrix;
 pub(crate) use matrix::sort_by_column;
 pub use mean_jumps::MeanJumps;

@@ -180,7 +180,10 @@ impl<const D: usize> Space<'_, D> {
             let [coefficient, value] = side.data().map(|datum| self.at(datum, cell, &x));
             return checks::finite(coefficient * (value - own), "robin", &x, cell);
         }
-        let flux = match (self.data.neumann.of(group), &self.problem.exact) {
+        let exact = self.problem.exact.as_ref();
+        // friction is no load
+        let exact = exact.filter(|_| self.data.friction.of(group).is_none());
+        let flux = match (self.data.neumann.of(group), exact) {
             (Some(q), _) => q.at(&x, &self.mesh.geometry(cell).normal(local)),
             (None, Some(exact)) => self.exact_flux(exact, (cell, local), point),
             (None, None) => 0.0,

@@ -1,11 +1,15 @@
 //! The forces on contact facets.
 
+use super::NoBound;
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::parallel::vectors::collect;
 use crate::quadrature::facet_to_cell;
+
+/// A value that Dirichlet data pin is zero up to this share of the largest one.
+const VALUE_ROUNDING: f64 = 1e-12;
 
 /// The share of the contact force of a node that acts on one of its contact facets.
 #[derive(Clone, Copy, Debug)]
@@ -16,7 +20,7 @@ pub(super) struct NodeForce {
     pub local: usize,
     /// The unknown, by its number in the cell.
     pub node: usize,
-    /// The force, not negative.
+    /// The force: of contact not negative, of friction of any sign.
     pub value: f64,
 }
 
@@ -87,6 +91,42 @@ impl<const D: usize> Space<'_, D> {
             force.value = share * (-residual[unknown]).max(0.0);
         }
         forces
+    }
+
+    /// The forces of friction: that of each unknown with a kink, divided by its weights among the facets. A node that
+    /// Dirichlet data pin has no force of its own: the threshold against its value stands for it, or without a value the
+    /// flux of the discrete function `u`, as far as the threshold reaches.
+    pub(super) fn friction_forces(
+        &self,
+        inequality: &Inequality<f64>,
+        residual: &[f64],
+        u: &[f64],
+    ) -> Result<Vec<NodeForce>, NoBound> {
+        if !self.data.friction.is_given() {
+            return Ok(Vec::new());
+        }
+        let mut forces = Vec::new();
+        let one = self.constants();
+        let largest = u.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        let zero = VALUE_ROUNDING * largest + self.body_constants.rounding();
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
+            for (node, weight) in self.friction_weights((cell, local), group)? {
+                let unknown = self.dofs.of(cell, node);
+                let kinks = &inequality.kinks;
+                let kink = kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown);
+                let own = u[unknown] + self.body_constants.of_cell(cell) * one[node];
+                let value = match kink {
+                    // beyond the threshold is rounding, and what the solver left
+                    Ok(k) => {
+                        (-residual[unknown] * (weight / kinks[k].slope)).clamp(-weight, weight)
+                    }
+                    Err(_) if own.abs() > zero => -weight * own.signum(),
+                    Err(_) => self.flux_at_node((cell, local), node, u).clamp(-weight, weight),
+                };
+                forces.push(NodeForce { cell, local, node, value });
+            }
+        }
+        Ok(forces)
     }
 
     /// The multipliers of obstacles by unknown: minus the residual, less contact forces.

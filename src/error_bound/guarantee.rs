@@ -7,7 +7,7 @@ use crate::arrays::map_entries;
 use crate::assemble::space::Space;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet};
-use crate::problem::{DataByGroup, Datum, Robin};
+use crate::problem::{DataByGroup, DataOnMesh, Datum, Robin};
 use crate::real::Point;
 
 /// Numbers that differ by less than this share are equal but for rounding.
@@ -81,8 +81,10 @@ impl<const D: usize> Space<'_, D> {
     /// The degree of Neumann data on facets, likewise, and of those of Robin sides with the discrete function; that of the
     /// flux of an exact solution is unknown, and a Robin coefficient of degree three has no known least value.
     pub(super) fn neumann_degree(&self) -> Option<usize> {
-        let has_data =
-            |group| self.data.neumann.of(group).is_some() || self.data.robin.of(group).is_some();
+        let DataOnMesh { neumann, robin, friction, .. } = &self.data;
+        let has_data = |group| {
+            neumann.of(group).is_some() || robin.of(group).is_some() || friction.of(group).is_some()
+        };
         let mut facets = self.grouped_facets_of(BoundaryCondition::Neumann);
         let is_exact = self.problem.exact.is_some() && facets.any(|(_, group)| !has_data(group));
         let of_exact = is_exact.then_some(None);
@@ -95,7 +97,8 @@ impl<const D: usize> Space<'_, D> {
             // of the flux, and of squares of the function
             Some(of_coefficient + of_value?.max(2 * self.basis_degree))
         };
-        let of_sides: Vec<_> = self.data.robin.all().map(of_side).collect();
+        let of_friction = friction.all().map(|g| g.degree_on(self.mesh, stated));
+        let of_sides: Vec<_> = robin.all().map(of_side).chain(of_friction).collect();
         let degrees = degrees.chain(of_exact).map(|degree| degree.or(stated)).chain(of_sides);
         self.largest_degree(degrees)
     }
@@ -110,7 +113,7 @@ impl<const D: usize> Space<'_, D> {
     fn has_inexact_facets(&self) -> bool {
         D > 1
             && self.mesh.has_condition(BoundaryCondition::Neumann)
-            && self.problem.has_neumann_data()
+            && (self.problem.has_neumann_data() || self.data.friction.is_given())
             && self.neumann_degree().is_none_or(|degree| {
                 !self.facet_rule.moments(D - 1, degree).all(|moment| moment.is_exact())
             })

@@ -75,7 +75,9 @@ pub enum NoBound {
     #[error("the reaction is negative at a point, and the energy norm is none")]
     NegativeReaction,
     /// A force on a facet has not one sign, or a contact force is negative in the mean.
-    #[error("the force on a facet has the wrong sign: no obstacle or gap presses so")]
+    #[error(
+        "the force on a facet has the wrong sign or exceeds the threshold of friction: no obstacle, gap or friction acts so"
+    )]
     NegativeForce,
     /// A number that enters is not finite.
     #[error(

@@ -150,10 +150,16 @@ impl<const D: usize> Discretisation<'_, D> {
             }
             _ => inequality.residual_f64(u, &mut residual),
         }
+        // of the load without friction
+        for (k, kink) in inequality.kinks.iter().enumerate() {
+            residual[kink.unknown as usize] += inequality.slope_at(k);
+        }
         inequality.distribution().update(&mut residual);
         let obstacles = &space.active_obstacles(&inequality.bounds, &solution.contact);
         let of_solver = (&residual[..], obstacles);
-        let forces = &space.contact_forces(inequality, &solution.contact, of_solver, u);
+        let mut forces = space.contact_forces(inequality, &solution.contact, of_solver, u);
+        forces.extend(space.friction_forces(inequality, &residual, u)?);
+        let forces = &forces;
         let computed = OnceCell::new();
         let neighbours = match &space.neighbours {
             Some(neighbours) => neighbours,

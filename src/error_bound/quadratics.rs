@@ -178,7 +178,9 @@ impl<const D: usize> Space<'_, D> {
     fn neumann_products(&self, u: &[f64]) -> Result<Vec<(HalfFacet, Products)>, NoBound> {
         let mut neumann = Vec::new();
         if self.problem.has_neumann_data() {
-            for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
+            // friction has forces
+            let facets = self.grouped_facets_of(BoundaryCondition::Neumann);
+            for (facet, group) in facets.filter(|(_, g)| self.data.friction.of(*g).is_none()) {
                 neumann.push((facet, self.neumann_products_on(facet, group, Some(u))?));
             }
         }

@@ -4,9 +4,9 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use super::npy::{array, scalar};
+use super::npy::{array, matrix_of, scalar};
 use super::npz::archive;
-use crate::algebra::{DofLocation, Inequality, SparseMatrix};
+use crate::algebra::{Bound, DofLocation, Inequality, SparseMatrix};
 use crate::error::{Error, write_error};
 use crate::files::replace;
 use crate::instances::compiled;
@@ -18,6 +18,8 @@ use crate::mesh::Mesh;
 /// * `matrix.mtx`: `A` in Matrix Market format, all entries, numbered from one;
 /// * `load.npy`, `lower.npy`, `upper.npy`: `b` and the bounds, infinite where there is none, equal for
 ///   Dirichlet values;
+/// * `kinks.npy`, where there is friction: rows of unknown, place, slope below and slope above the place of a convex
+///   function that is added to the energy;
 /// * `inequality.npz`: all of these, of which `scipy.sparse.load_npz` reads the matrix and `numpy.load` the
 ///   arrays `load`, `lower`, `upper`; absent where it would have more than 4 GiB;
 /// * `places.csv`: for each unknown the cell that owns it, if one does, and its place: coordinates of the
@@ -55,7 +57,16 @@ fn write_files_with(
 ) -> Result<(), Error> {
     fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
     let Inequality { matrix, bounds, .. } = inequality;
-    let load = inequality.assembled_load();
+    let mut load = inequality.assembled_load().into_owned();
+    let mut intervals: Vec<[f64; 2]> = bounds.iter().map(Bound::interval).collect();
+    let mut kinks: Vec<f64> = Vec::new();
+    for (k, kink) in inequality.kinks.iter().enumerate() {
+        let i = kink.unknown as usize;
+        let place = bounds[i].lower().or(bounds[i].upper()).expect("a kink has one bound");
+        load[i] += inequality.slope_at(k);
+        intervals[i] = [f64::NEG_INFINITY, f64::INFINITY];
+        kinks.extend([f64::from(kink.unknown), place, -kink.slope, kink.slope]);
+    }
     let text = |name: &str, write: &dyn Fn(&mut dyn Write) -> std::io::Result<()>| {
         replace(&directory.join(name), |draft| {
             let mut file = BufWriter::new(File::create(draft)?);
@@ -64,12 +75,20 @@ fn write_files_with(
     };
     text("matrix.mtx", &|file| write_matrix(file, matrix))?;
     text("places.csv", write_places)?;
-    let ends = |side: usize| numbers(&mut bounds.iter().map(|bound| bound.interval()[side]));
-    let vectors = [
+    let ends = |side: usize| numbers(&mut intervals.iter().map(|interval| interval[side]));
+    let mut vectors = vec![
         ("load.npy", numbers(&mut load.iter().copied())),
         ("lower.npy", ends(0)),
         ("upper.npy", ends(1)),
     ];
+    let of_friction = directory.join("kinks.npy");
+    if kinks.is_empty() && of_friction.exists() {
+        fs::remove_file(&of_friction).map_err(|e| write_error(&of_friction, e))?;
+    }
+    if !kinks.is_empty() {
+        let bytes = kinks.iter().flat_map(|number| number.to_le_bytes());
+        vectors.push(("kinks.npy", matrix_of("<f8", [kinks.len() / 4, 4], bytes)));
+    }
     for (name, bytes) in &vectors {
         replace(&directory.join(name), |draft| fs::write(draft, bytes))?;
     }

@@ -12,6 +12,15 @@ pub(super) fn array(kind: &str, length: usize, data: impl Iterator<Item = u8>) -
     with_header(kind, &format!("({length},)"), data)
 }
 
+/// An array of two axes, row after row.
+pub(super) fn matrix_of(
+    kind: &str,
+    [rows, columns]: [usize; 2],
+    data: impl Iterator<Item = u8>,
+) -> Vec<u8> {
+    with_header(kind, &format!("({rows}, {columns})"), data)
+}
+
 /// A single value.
 pub(super) fn scalar(kind: &str, data: impl Iterator<Item = u8>) -> Vec<u8> {
     with_header(kind, "()", data)

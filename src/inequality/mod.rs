@@ -22,6 +22,7 @@
 //! | `violations/` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh; the violations at one unknown |
 //! | `algebraic_bound` | a bound on the algebraic error of admissible values |
 //! | `scales` | the energy norm and the largest value to which violations are relative |
+//! | `pieces` | inequalities with kinks, solved on one side of each at a time |
 //! | `recession` | whether a solution exists and is unique where only bounds hold a body |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
 //! | `single_precision` | [`SinglePrecision`]: a solver in `f32` for inequalities in `f64` |
@@ -44,6 +45,7 @@ mod initial_guess;
 mod interior_point;
 mod monotone_multigrid;
 mod outcome;
+mod pieces;
 mod proximal_point;
 mod recession;
 mod scales;

@@ -114,10 +114,10 @@ impl Outcome {
                 "the matrix is singular to working precision on the inactive unknowns"
             }
             Outcome::NoSolution => {
-                "no solution: the load pulls a body, which only its bounds hold, away from them"
+                "no solution: the load pulls a body, which only its bounds or friction hold, away from them"
             }
             Outcome::NotUnique => {
-                "the load on a body that only its bounds hold is balanced; the values are one of the solutions, which differ there by a constant"
+                "the load on a body that only its bounds or friction hold is balanced; the values are one of the solutions, which differ there by a constant"
             }
             Outcome::NotFinite => "a number of the data or of an iterate is not finite",
             Outcome::OutOfRange => {

@@ -8,6 +8,7 @@
 
 use super::certificate::contact_states;
 use super::history::Recorder;
+use super::pieces::solve_on_pieces;
 use super::validation::check_input;
 use super::{InitialGuess, Outcome, Solution};
 use crate::algebra::{Bound, FreeBody, Inequality, RESULTANT_ROUNDING};
@@ -94,7 +95,9 @@ pub(crate) fn solve_with_kernel<T: Real>(
     solve: impl Fn(&Inequality<T>, &Recorder<'_>) -> Solution<T>,
 ) -> Solution<T> {
     let recorder = Recorder::new(&guess.steps, guess.keeps_history);
-    let mut solution = solve_with_bodies(inequality, |inequality| solve(inequality, &recorder));
+    let mut solution = solve_on_pieces(inequality, guess, |inequality| {
+        solve_with_bodies(inequality, |inequality| solve(inequality, &recorder))
+    });
     let (systems, history) = recorder.finish();
     (solution.systems, solution.history) = (Some(systems), history);
     solution
@@ -281,7 +284,7 @@ pub(crate) fn explanation<T: Real>(inequality: &Inequality<T>, outcome: Outcome)
     Some(match motion {
         Motion::Unbounded => format!("{}: its resultant is {resultant:.6e}", outcome.message()),
         _ => format!(
-            "the data, as integrated, do not decide whether the load presses or pulls a body that only its bounds hold: its resultant is {resultant:.2e}, and up to {:.2e} it counts as none; the values are one of the solutions, which differ there by a constant",
+            "the data, as integrated, do not decide whether the load presses or pulls a body that only its bounds or friction hold: its resultant is {resultant:.2e}, and up to {:.2e} it counts as none; the values are one of the solutions, which differ there by a constant",
             body.uncertainty
         ),
     })

@@ -57,6 +57,9 @@ pub struct Solution<T> {
     /// The largest violation of the certificate times the energy norm to which it is relative: what the solver leaves
     /// of residuals and multipliers in the dual norm. Zero before the solution has a certificate.
     pub(crate) dual_residual: f64,
+    /// The positions of the [kinks](crate::algebra::Kink) of whose place the solution lies on the other side than load
+    /// and bounds of the inequality say: it solves the inequality with these [turned](Inequality::turn).
+    pub turned: Vec<u32>,
     /// The stages of the solver that ran, in their order; empty for a solver without stages.
     pub stages: Vec<StageRun>,
     /// A point after every outer step, all stages included, if the initial guess asks for it and the solver keeps it
@@ -85,6 +88,7 @@ impl Solution<f32> {
             algebraic_bound: self.algebraic_bound,
             jump_multipliers: widen(self.jump_multipliers),
             dual_residual: self.dual_residual,
+            turned: self.turned,
             stages: self.stages,
             history: self.history,
             precision: self.precision,
@@ -109,6 +113,7 @@ impl<T: Real> Solution<T> {
             algebraic_bound: None,
             jump_multipliers: Vec::new(),
             dual_residual: 0.0,
+            turned: Vec::new(),
             stages: Vec::new(),
             history: Vec::new(),
             precision: T::PRECISION,

@@ -104,6 +104,6 @@ impl<const D: usize> Space<'_, D> {
             }
             sum
         });
-        Ok(chunks.iter().sum())
+        Ok(chunks.iter().sum::<f64>() + self.friction_energy(u, counts)?)
     }
 }

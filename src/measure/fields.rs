@@ -7,7 +7,7 @@ use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryCondition, HalfFacet, edge_vertices};
+use crate::mesh::{HalfFacet, edge_vertices};
 use crate::quadrature::facet_to_cell;
 
 /// Fields on the cells of the mesh, for pictures.
@@ -30,12 +30,12 @@ pub struct Fields {
     pub midpoints: Vec<f64>,
     /// The discrete contact set, and the multiplier's density at vertices.
     pub discrete_contact: DiscreteContact,
-    /// The facets of the contact boundary: cell, and number in the cell.
+    /// The facets of the contact boundary and those with friction: cell, and number in the cell.
     pub contact_boundary: Vec<HalfFacet>,
     /// The contact pressure on each of these facets: as `multiplier`, of the unknowns to which the gap of its boundary
-    /// group gives the active bound. Its integral over a group is the contact force there.
+    /// group gives the active bound, or of friction. Its integral over a group is the force there.
     pub pressure: Vec<f64>,
-    /// The gap that is left on each of these facets: the mean of `u - g`.
+    /// The gap that is left on each of these facets: the mean of `u - g`, of `u` with friction.
     pub gap: Vec<f64>,
 }
 
@@ -87,13 +87,13 @@ impl<const D: usize> Space<'_, D> {
             touching as f64 / f64::from(all.max(1))
         };
         let n_cells = self.mesh.n_cells();
-        let contact_boundary: Vec<HalfFacet> = match self.problem.has_gap() {
-            true => self.facets_of(BoundaryCondition::Contact).collect(),
+        let contact_boundary: Vec<HalfFacet> = match self.problem.acts_on_boundary() {
+            true => self.facets_of_forces().map(|(facet, _)| facet).collect(),
             false => Vec::new(),
         };
         let multipliers = self.problem.is_constrained().then(|| self.multipliers(solved)).flatten();
         let of_obstacles = multipliers.as_ref().filter(|_| self.problem.has_obstacle());
-        let of_gaps = multipliers.as_ref().filter(|_| self.problem.has_gap());
+        let on_boundary = multipliers.as_ref().filter(|_| self.problem.acts_on_boundary());
         Fields {
             u: self.vertex_values(u),
             obstacle: self.problem.has_obstacle().then_some(obstacle),
@@ -105,8 +105,8 @@ impl<const D: usize> Space<'_, D> {
             contact: (0..n_cells).map(share).collect(),
             midpoints: self.midpoint_values(u),
             discrete_contact: self.discrete_contact(solved),
-            pressure: match of_gaps {
-                Some(of) => self.densities_of_gaps(inequality, of),
+            pressure: match on_boundary {
+                Some(of) => self.densities_on_boundary(inequality, of),
                 None => vec![f64::NAN; contact_boundary.len()],
             },
             gap: contact_boundary.iter().map(|&facet| self.mean_gap(facet, u)).collect(),
@@ -119,9 +119,10 @@ impl<const D: usize> Space<'_, D> {
         let values = self.local_values(cell, u);
         let group = self.mesh.boundary_group(cell, local);
         let gap = group.and_then(|group| self.data.gap.of(group));
+        let constant = self.body_constants.of_cell(cell);
         let at = |point: &[f64; 4]| {
             let x = self.facet_point(point, cell, local);
-            let gap = gap.map_or(0.0, |gap| self.at(gap, cell, &x));
+            let gap = gap.map_or(-constant, |gap| self.at(gap, cell, &x));
             self.basis_at(&facet_to_cell(point, local)).value(&values) - gap
         };
         self.facet_rule.iter().map(|(point, weight)| weight * at(point)).sum()

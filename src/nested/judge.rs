@@ -50,7 +50,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         scheme: &dyn Scheme<D>,
         (values, constants): (&[f64], Option<&[f64]>),
     ) -> Result<Solved<'a, D>, Error> {
-        let system = System::new(scheme, self.p1.problem, self.p1.place(position)?)?;
+        let mut system = System::new(scheme, self.p1.problem, self.p1.place(position)?)?;
         let inequality = system.inequality();
         if values.len() != inequality.size() {
             let allowed =
@@ -69,6 +69,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             Some(constants) => system.with_own_constants(values, constants),
             None => values.to_vec(),
         };
+        system.inequality.turn_to(&values);
+        let inequality = system.inequality();
         let solution = Solution::of_values(inequality, values, Vec::new(), Outcome::Converged);
         let mut solution = solution.linear_solver("none");
         solution.precision = self.p1.solver.precision();

@@ -211,8 +211,14 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
         })?;
         let clock = Instant::now();
         let fixed = fixed(&inequality);
+        let inequality_kinks = inequality.kinks.clone();
         let matrix = has_levels::<D>(&inequality).then_some(inequality.matrix);
-        let result = (solution.outcome, solution.contact, solution.values);
+        let mut result = (solution.outcome, solution.contact, solution.values);
+        // a start has the same state on both sides of a kink
+        let at_kinks = inequality_kinks.iter().map(|kink| kink.unknown as usize);
+        for i in at_kinks.filter(|&i| result.1[i] == Contact::Upper).collect::<Vec<_>>() {
+            result.1[i] = Contact::Lower;
+        }
         let mut solution = P1Solution::new(start.as_deref(), (matrix, fixed), result);
         solution.seconds += seconds + clock.elapsed().as_secs_f64();
         let solution = Arc::new(solution);

@@ -50,6 +50,10 @@ impl<'a, const D: usize> System<'a, D> {
         problem: &'a Problem<D>,
         place: MeshOfSystem<'a, D>,
     ) -> Result<Self, Error> {
+        if place.shared.is_some() && problem.friction.is_given() {
+            let allowed = "on a whole mesh only: leave out the processes";
+            return Err(Error::parameter("friction", "given", allowed));
+        }
         let clock = Instant::now();
         let assemble = || {
             let data = (problem, place.constants.clone());

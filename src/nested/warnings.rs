@@ -124,10 +124,14 @@ pub(crate) fn warnings_of_forces<const D: usize>(
         )];
     };
     let inequality = solved.inequality();
+    let mut loads = inequality.load.clone();
+    for (k, kink) in inequality.kinks.iter().enumerate() {
+        loads[kink.unknown as usize] += inequality.slope_at(k);
+    }
     let imbalance = |body: &Vec<(u32, f64)>| {
         let (mut sum, mut size) = (0.0, 0.0);
         for &(i, value) in body {
-            let load = value * inequality.load[i as usize];
+            let load = value * loads[i as usize];
             sum += value * forces[i as usize] + load;
             size += load.abs();
         }

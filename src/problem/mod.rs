@@ -5,6 +5,7 @@
 //! u = u_D                                    on the Dirichlet boundary
 //! alpha du/dn = q                            on the Neumann boundary
 //! alpha du/dn + k (u - g) = 0                on Robin sides, which are parts of the Neumann boundary
+//! |alpha du/dn| <= g, alpha du/dn u + g |u| = 0   on parts with friction, likewise
 //! obstacle:   psi_lower <= u <= psi_upper    in the domain
 //! Signorini:  u >= g, alpha du/dn >= 0, (u - g) alpha du/dn = 0   on the contact boundary
 //! ```
@@ -66,6 +67,8 @@ pub struct Problem<const D: usize> {
     /// of each cell, others its values at the points of rules in the cells in which it varies, see
     /// [`Problem::coefficient`].
     pub coefficient: Given<Datum<D>>,
+    /// The threshold `g >= 0` of friction on parts of the Neumann boundary, see [`Problem::friction_on`].
+    pub friction: Given<Datum<D>>,
     /// A tensor by which the diffusion coefficient is multiplied; one where absent. The energy norm has both.
     pub tensor: Given<Tensor<D>>,
     /// The reaction coefficient `c >= 0`.
@@ -103,6 +106,7 @@ impl<const D: usize> fmt::Debug for Problem<D> {
             ("lower", &self.lower),
             ("upper", &self.upper),
             ("gap", &self.gap),
+            ("friction", &self.friction),
         ] {
             if let Some(datum) = &given.everywhere {
                 out.field(name, datum);
@@ -289,6 +293,15 @@ impl<const D: usize> Problem<D> {
         self.gap.give(None, gap.into());
         self
     }
+    /// Sets the threshold of friction on the Neumann boundary, as [`Problem::friction_on`] on a group.
+    #[must_use]
+    pub fn friction(
+        mut self,
+        threshold: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.friction.give(None, threshold.into());
+        self
+    }
     /// Sets the constraint set: where obstacles and gap bind. A [`Study`](crate::study::Study) may
     /// give each of its schemes another one.
     ///
@@ -372,9 +385,13 @@ impl<const D: usize> Problem<D> {
     pub fn has_gap(&self) -> bool {
         self.gap.is_given()
     }
-    /// Whether the problem has an inequality constraint.
+    /// Whether the problem is an inequality.
     pub fn is_constrained(&self) -> bool {
-        self.has_obstacle() || self.has_gap()
+        self.has_obstacle() || self.acts_on_boundary()
+    }
+    /// Whether a Signorini condition or friction acts somewhere on the boundary.
+    pub fn acts_on_boundary(&self) -> bool {
+        self.has_gap() || self.friction.is_given()
     }
     /// Whether Dirichlet data are given, by themselves or by the exact solution.
     pub fn has_dirichlet_data(&self) -> bool {

@@ -113,6 +113,15 @@ impl<const D: usize> Problem<D> {
         self.robin.give(Some(group), Robin::new(coefficient, value));
         self
     }
+    /// Gives a boundary group simplified friction (Tresca): the flux is at most `g >= 0`, `|alpha du/dn| <= g`; where it is
+    /// less, `u = 0` (stick), where `u > 0` it is `-g`, where `u < 0` it is `g` (slip). The problem is then the inequality of
+    /// the second kind `a(u, v - u) + int g |v| - int g |u| >= l(v - u)` (F. Wang, W. Han, X. Cheng, SIAM J. Numer. Anal.
+    /// 48 (2010), 708-733, section 2).
+    #[must_use]
+    pub fn friction_on(mut self, group: &str, threshold: impl Into<Datum<D>>) -> Self {
+        self.friction.give(Some(group), threshold.into());
+        self
+    }
     /// Sets the Signorini condition `u >= g` on a boundary group.
     #[must_use]
     pub fn signorini_on(mut self, group: &str, gap: impl Into<Datum<D>>) -> Self {
@@ -148,6 +157,7 @@ impl<const D: usize> Problem<D> {
             ("Neumann datum", self.neumann.given_twice()),
             ("gap", self.gap.given_twice()),
             ("Robin datum", self.robin.given_twice()),
+            ("threshold of friction", self.friction.given_twice()),
         ];
         data.into_iter().try_for_each(check)
     }
@@ -157,7 +167,8 @@ impl<const D: usize> Problem<D> {
         let contact = self.gap.names().map(|name| (name, BoundaryCondition::Contact));
         let neumann = self.neumann.names().map(|name| (name, BoundaryCondition::Neumann));
         let robin = self.robin.names().map(|name| (name, BoundaryCondition::Neumann));
-        dirichlet.chain(contact).chain(neumann).chain(robin)
+        let friction = self.friction.names().map(|name| (name, BoundaryCondition::Neumann));
+        dirichlet.chain(contact).chain(neumann).chain(robin).chain(friction)
     }
     /// The names of boundary groups that have data.
     pub(super) fn boundary_names(&self) -> impl Iterator<Item = &str> {
@@ -186,6 +197,7 @@ impl<const D: usize> Problem<D> {
             dirichlet: of(&self.dirichlet, boundary),
             neumann: of(&self.neumann, boundary),
             robin: of(&self.robin, boundary),
+            friction: of(&self.friction, boundary),
             gap: of(&self.gap, boundary),
             ..self.clone()
         }

@@ -108,6 +108,7 @@ pub(crate) struct DataOnMesh<const D: usize> {
     pub gap: DataByGroup<D>,
     pub neumann: ByGroup<BoundaryFlux<D>>,
     pub robin: ByGroup<Robin<D>>,
+    pub friction: DataByGroup<D>,
     /// For each boundary group the rank of its Dirichlet datum: of unknowns on several groups those of
     /// the lowest rank take precedence.
     pub dirichlet_rank: Vec<usize>,
@@ -131,7 +132,7 @@ impl<const D: usize> DataOnMesh<D> {
         found.source = found.source.changed((groups.0.len(), false), on_mesh);
         let Self { coefficient, source, reaction, lower, upper, gap, .. } = &found;
         let data = [coefficient, source, reaction, lower, upper, gap].into_iter();
-        let robin = found.robin.all().flat_map(Robin::data);
+        let robin = found.robin.all().flat_map(Robin::data).chain(found.friction.all());
         let data = data.flat_map(|data| data.all()).chain(robin);
         let discrete = data.flat_map(|datum| datum.discrete());
         discrete.for_each(|u| u.prepare_for(mesh));
@@ -192,13 +193,15 @@ impl<const D: usize> DataOnMesh<D> {
                 return Err(unknown_group(name, (is_boundary, is_inside), all));
             }
         }
-        let both = boundary.iter().find(|group| {
-            problem.robin.position(&group.names).is_some()
-                && problem.neumann.position(&group.names).is_some()
-        });
-        if let Some(group) = both {
+        let given = |group: &&BoundaryGroup| {
+            let Problem { neumann, robin, friction, .. } = problem;
+            let names = &group.names;
+            let of = [neumann.position(names), robin.position(names), friction.position(names)];
+            of.iter().flatten().count() > 1
+        };
+        if let Some(group) = boundary.iter().find(given) {
             return Err(Error::GivenTwice(format!(
-                "facets of boundary group {} have a flux and Robin data: give one of them",
+                "facets of boundary group {} have two of a flux, Robin data and friction: give one of them",
                 excerpts(group.names.iter())
             )));
         }
@@ -240,6 +243,8 @@ impl<const D: usize> DataOnMesh<D> {
             neumann: ByGroup::new(&problem.neumann, &groups)
                 .on(BoundaryCondition::Neumann, boundary),
             robin: ByGroup::new(&problem.robin, &groups).on(BoundaryCondition::Neumann, boundary),
+            friction: ByGroup::new(&problem.friction, &groups)
+                .on(BoundaryCondition::Neumann, boundary),
             dirichlet_rank: groups.iter().map(|names| rank(names)).collect(),
             constants_differ: false,
         })

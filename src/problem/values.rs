@@ -27,7 +27,7 @@ pub enum ValueOf<const D: usize> {
     Integral(String),
     /// The force that a Dirichlet group or a Robin side exerts on the body, positive in the direction of the solution.
     Reaction(String),
-    /// The force of a contact group on the body.
+    /// The force of a contact group, or of friction on a group, on the body.
     Force(String),
 }
 
@@ -56,14 +56,18 @@ impl<const D: usize> ValueOf<D> {
         };
         let is_of_kind = |group: &usize| {
             let group = &mesh.boundary_groups()[*group];
-            let is_side =
-                || matches!(self, Self::Reaction(_)) && problem.robin.of(&group.names).is_some();
+            let is_side = || match self {
+                Self::Reaction(_) => problem.robin.of(&group.names).is_some(),
+                Self::Force(_) => problem.friction.of(&group.names).is_some(),
+                _ => false,
+            };
             condition.is_none_or(|condition| group.condition == Some(condition) || is_side())
         };
         let names = |group: usize| &mesh.boundary_groups()[group].names;
         let mut known = (0..mesh.boundary_groups().len()).filter(is_of_kind);
         let kind = match (self, condition) {
             (Self::Reaction(_), _) => "dirichlet or robin ".to_owned(),
+            (Self::Force(_), _) => "contact or friction ".to_owned(),
             (_, condition) => condition.map_or(String::new(), |of| format!("{} ", of.name())),
         };
         let all = known.clone().flat_map(names);

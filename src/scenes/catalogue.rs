@@ -5,18 +5,18 @@ use std::ops::RangeInclusive;
 use super::scene::Scene;
 use super::{
     ball_2d, ball_3d, biactive_half_2d, biactive_ring_2d, bilateral_1d, cone, contrast,
-    contrast_disc_2d, degenerate, disc_2d, hertz_2d, hertz_3d, icelike_1d, lshape_2d,
-    oscillating_1d, parabola_1d, polynomial, pyramid_2d, pyramid_full_2d, radial,
-    radial_quarter_2d, ridge, signorini_2d, signorini_biactive_2d, signorini_closed_1d,
-    signorini_disc, signorini_grazing_1d, signorini_harmonic, signorini_irrational_2d,
-    signorini_layers_2d, signorini_line_3d, signorini_open_1d, signorini_reaction_1d,
-    signorini_shifted_2d, signorini_sine_2d, signorini_smooth, signorini_two_2d, spiral_2d,
-    torsion_2d,
+    contrast_disc_2d, degenerate, disc_2d, friction, friction_1d, friction_both_1d, hertz_2d,
+    hertz_3d, icelike_1d, lshape_2d, oscillating_1d, parabola_1d, polynomial, pyramid_2d,
+    pyramid_full_2d, radial, radial_quarter_2d, ridge, signorini_2d, signorini_biactive_2d,
+    signorini_closed_1d, signorini_disc, signorini_grazing_1d, signorini_harmonic,
+    signorini_irrational_2d, signorini_layers_2d, signorini_line_3d, signorini_open_1d,
+    signorini_reaction_1d, signorini_shifted_2d, signorini_sine_2d, signorini_smooth,
+    signorini_two_2d, spiral_2d, torsion_2d,
 };
 use crate::error::Error;
 
 /// All registered scenes: obstacle problems, those without a solution in closed form last, then
-/// Signorini problems in one, two and three dimensions. A line of the list registers a scene.
+/// Signorini problems in one, two and three dimensions, then friction. A line of the list registers a scene.
 pub fn catalogue() -> Vec<Entry> {
     vec![
         Entry::new(parabola_1d),
@@ -72,6 +72,10 @@ pub fn catalogue() -> Vec<Entry> {
         Entry::new(|| signorini_disc(2)),
         Entry::new(|| signorini_disc(3)),
         Entry::new(hertz_3d),
+        Entry::new(friction_1d),
+        Entry::new(friction_both_1d),
+        Entry::new(friction::<2>),
+        Entry::new(friction::<3>),
     ]
 }
 

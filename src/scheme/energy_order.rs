@@ -23,13 +23,15 @@ use super::{ExpectedOrders, Setting};
 /// R. S. Falk, Math. Comp. 28 (1974), 963-971, F. Brezzi, W. W. Hager, P.-A. Raviart, Numer. Math. 28
 /// (1977), 431-443 and L.-H. Wang, Numer. Math. 92 (2002), 771-778 for obstacles; Z. Belhachmi, F. Ben
 /// Belgacem, Math. Comp. 72 (2003), 83-104 and G. Drouet, P. Hild, SIAM J. Numer. Anal. 53 (2015),
-/// 1488-1507 for Signorini; for discontinuous schemes F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer.
-/// Anal. 48 (2010), 708-733.
+/// 1488-1507 for Signorini; R. Glowinski, Numerical Methods for Nonlinear Variational Problems, 1984, chapter 2, for
+/// friction with linears, about which nothing is promised of others; for discontinuous schemes F. Wang, W. Han, X.-L.
+/// Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733.
 pub(crate) fn energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
     let s = setting.regularity.sobolev;
     let most = match degree {
         1 => Some(1.0),
         _ if setting.is_linear() => Some(degree as f64),
+        _ if setting.friction => None,
         _ if setting.obstacle && setting.dimension == 3 => None,
         _ => Some(1.5),
     };
@@ -63,7 +65,7 @@ pub(crate) fn broken_energy_order(setting: &Setting, degree: usize) -> ExpectedO
 /// 346-348; for schemes with penalties D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J.
 /// Numer. Anal. 39 (2002), 1749-1779.
 pub(crate) fn with_duality(orders: ExpectedOrders, setting: &Setting) -> ExpectedOrders {
-    let at_ends = setting.dimension == 1 && !setting.obstacle;
+    let at_ends = setting.dimension == 1 && !setting.obstacle && !setting.friction;
     let holds = setting.regular_dual && (setting.is_linear() || at_ends);
     ExpectedOrders { l2: orders.h1.filter(|_| holds).map(|h1| h1 + 1.0), ..orders }
 }

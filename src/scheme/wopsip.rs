@@ -11,7 +11,8 @@ use crate::mesh::Mesh;
 ///
 /// Orders: Y. Zeng, J. Chen, F. Wang, Comput. Math. Appl. 69 (2015), energy norm, both inequalities,
 /// for linears; S. C. Brenner, L. Owens, L.-Y. Sung, J. Comput. Appl. Math. 236 (2012), 2883-2894 for
-/// equations in the plane with quadratics, for which nothing is proven under inequalities.
+/// equations in the plane with quadratics, for which nothing is proven under inequalities, as
+/// with friction for linears.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wopsip {
     /// The factor.
@@ -54,6 +55,7 @@ impl BrokenScheme for Wopsip {
     }
     fn orders_of_degree(&self, degree: usize, setting: &Setting) -> ExpectedOrders {
         match degree {
+            _ if setting.friction => ExpectedOrders::default(),
             2 if !setting.is_linear() || setting.dimension > 2 => ExpectedOrders::default(),
             _ => with_duality(broken_energy_order(setting, degree), setting),
         }

@@ -16,6 +16,7 @@ pub(super) fn setting<const D: usize>(scene: &Scene<D>) -> Setting {
         dimension: D,
         obstacle: problem.has_obstacle(),
         contact: problem.has_gap(),
+        friction: problem.friction.is_given(),
         regularity: scene.regularity,
         coefficient: has_coefficient,
         regular_dual: !has_coefficient && (D == 1 || is_convex && all_dirichlet),

@@ -17,6 +17,7 @@ mod error_bounds_fluxes;
 mod error_bounds_guarantee;
 mod error_bounds_quadratics;
 mod forms;
+mod friction;
 mod gradients;
 mod matrices;
 mod named_data;

@@ -271,5 +271,5 @@ fn bad_data_of_a_robin_side_are_refused() {
     let infinite = refuse(Problem::new().robin_on("right", 1.0, f64::INFINITY));
     assert!(infinite.contains("robin is inf"), "{infinite}");
     let both = refuse(Problem::new().robin_on("right", 1.0, 0.0).neumann_on("right", |_, _| 0.0));
-    assert!(both.contains("right") && both.contains("flux and Robin data"), "{both}");
+    assert!(both.contains("right") && both.contains("two of a flux, Robin data"), "{both}");
 }

@@ -37,6 +37,8 @@ pub fn check_row(row: &Value) {
     // without an inequality there is no contact
     let of_contact = ["contact_measure", "resultant", "resultants", "penetration"];
     let has_none = of_contact.iter().all(|key| row[key].is_null());
+    let has_friction =
+        row["scene"].as_str().is_some_and(|name| name.starts_with("friction") || name == "brake");
     for key in ROW_KEYS {
         let value = &row[key];
         let fits = match key {
@@ -55,9 +57,9 @@ pub fn check_row(row: &Value) {
             "theta" => value.is_f64() || value.is_null(),
             "objective" => value.is_number() || value.is_null(),
             "energy" => value.is_f64() || !converged,
-            "contact_measure" | "resultant" | "penetration" => {
-                value.is_f64() || !converged || has_none
-            }
+            "contact_measure" | "resultant" => value.is_f64() || !converged || has_none,
+            // friction alone has nothing to penetrate
+            "penetration" => value.is_f64() || !converged || has_none || has_friction,
             "resultants" => value.is_object() || !converged || has_none,
             "level_kind" => value.is_string(),
             _ => value.is_object(),

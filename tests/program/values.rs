@@ -1,6 +1,8 @@
 //! Values by name in the reports of the program.
 
-use super::run::{Scratch, number, read_json, rows, stderr, stdout};
+use unilateral::exchange::read_vector;
+
+use super::run::{Scratch, command, number, read_json, rows, stderr, stdout};
 
 fn balance() -> String {
     format!("{}/examples/problems/balance.toml", env!("CARGO_MANIFEST_DIR"))
@@ -68,6 +70,68 @@ fn a_solution_that_breaks_a_robin_condition_is_named() {
     let report = scratch.report(&format!("{file} --scheme p1 --levels 4"));
     let warnings = rows(&report)[0]["warnings"].to_string();
     assert!(warnings.contains("not fulfilled: the Robin condition"), "{warnings}");
+}
+
+/// Friction that sticks at one side and slips at the other; its dump is judged.
+#[test]
+fn a_brake_has_its_forces_and_its_dump_is_a_solution() {
+    let scratch = Scratch::new("brake");
+    let file = format!("{}/examples/problems/brake.toml", env!("CARGO_MANIFEST_DIR"));
+    let dump = scratch.path("dump");
+    let report = scratch
+        .report(&format!("{file} --scheme p1,cr,sipg,wopsip,p2 --levels 4,8,16 --dump {dump}"));
+    for row in rows(&report) {
+        assert!(row["warnings"].as_array().is_none_or(Vec::is_empty), "{}", row["warnings"]);
+        let [stuck, slipping] = ["stuck", "slipping"].map(|name| number(row, &["values", name]));
+        assert!((stuck + 1.5).abs() < 1e-7 && (slipping + 0.5).abs() < 1e-7, "{}", row["values"]);
+        assert!((number(row, &["resultants", "left"]) - stuck).abs() < 1e-9);
+        assert!((number(row, &["values", "slip"]) - 0.5).abs() < 0.05, "{}", row["values"]);
+    }
+    let folder = format!("{dump}/brake-p1-4");
+    let u = by_relaxation(&folder);
+    let judged = |u: &[f64]| {
+        let text: Vec<String> = u.iter().map(|u| format!("{u:e}")).collect();
+        std::fs::write(format!("{folder}/u.txt"), text.join("\n")).unwrap();
+        let output = command("judge").arg(&folder).arg(format!("{folder}/u.txt")).output().unwrap();
+        (output.status.code(), stdout(&output))
+    };
+    let (code, text) = judged(&u);
+    assert_eq!(code, Some(0), "{text}");
+    // shifted up, the left end slips against its force
+    let (code, text) = judged(&u.iter().map(|u| u + 1e-3).collect::<Vec<_>>());
+    assert!(code == Some(1) && text.contains("not-a-solution"), "{text}");
+}
+
+/// The solution of an inequality with friction in the files of a folder, by the relaxation of one unknown after the other.
+fn by_relaxation(folder: &str) -> Vec<f64> {
+    let bytes = std::fs::read(format!("{folder}/kinks.npy")).unwrap();
+    let header = String::from_utf8_lossy(&bytes);
+    let end = bytes.iter().position(|b| *b == b'\n').unwrap() + 1;
+    assert!(header.contains("'shape': (10, 4)"), "{header}");
+    let numbers: Vec<f64> =
+        bytes[end..].chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect();
+    let load = read_vector(format!("{folder}/load.npy")).unwrap();
+    let text = std::fs::read_to_string(format!("{folder}/matrix.mtx")).unwrap();
+    let mut matrix = vec![vec![0.0; load.len()]; load.len()];
+    for line in text.lines().skip(2) {
+        let mut words = line.split(' ');
+        let [i, j] = [0; 2].map(|_| words.next().unwrap().parse::<usize>().unwrap() - 1);
+        matrix[i][j] = words.next().unwrap().parse::<f64>().unwrap();
+    }
+    let mut slopes = vec![[0.0, 0.0, 0.0]; load.len()];
+    for kink in numbers.chunks_exact(4) {
+        slopes[kink[0] as usize] = [kink[1], kink[2], kink[3]];
+    }
+    let mut u = vec![0.0; load.len()];
+    for _ in 0..2000 {
+        for i in 0..u.len() {
+            let product: f64 = matrix[i].iter().zip(&u).map(|(a, u)| a * u).sum();
+            let [place, below, above] = slopes[i];
+            let force = load[i] - product + matrix[i][i] * (u[i] - place);
+            u[i] = place + (force - force.clamp(below, above)) / matrix[i][i];
+        }
+    }
+    u
 }
 
 /// Problems that ask for no values have none of their keys.

@@ -44,6 +44,8 @@ fn cube<const D: usize>(n: usize) -> Mesh<D> {
 fn function<const D: usize>(mesh: &Mesh<D>, value: impl Fn(usize) -> f64) -> Fields {
     let mut fields = Fields::default();
     fields.u = (0..mesh.cells().len()).map(value).collect();
+    let contact = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Contact);
+    fields.contact_boundary = contact.map(|f| (f.cell as usize, usize::from(f.local))).collect();
     fields
 }
 

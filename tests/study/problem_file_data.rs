@@ -172,7 +172,7 @@ fn a_flux_and_robin_data_on_one_facet_are_refused() {
     let mesh = own.domain.mesh(0).unwrap();
     let refused = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default());
     let message = refused.map(|_| ()).unwrap_err().to_string();
-    assert!(message.contains("extra") && message.contains("a flux and Robin data"), "{message}");
+    assert!(message.contains("extra") && message.contains("a flux, Robin data"), "{message}");
 }
 
 /// Every kind of datum by region or by side is that of its table.

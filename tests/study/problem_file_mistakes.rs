@@ -70,7 +70,25 @@ fn mistakes_are_found_where_they_are() {
         (
             format!("{BOX}[boundary.left]\nkind = \"periodic\"\n"),
             (3, 8),
-            "\"dirichlet\", \"neumann\", \"robin\" or",
+            "\"dirichlet\", \"neumann\", \"robin\", \"friction\" or",
+        ),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"friction\"\n"),
+            (2, 11),
+            "`threshold` is missing: the largest flux of friction, not negative",
+        ),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"friction\"\nthreshold = 1\nflux = 1\n"),
+            (5, 1),
+            "allowed are kind, threshold, shape",
+        ),
+        (
+            format!(
+                "{BOX}{}",
+                SIDES.replacen("dirichlet\"\nvalue = \"x * y\"", "friction\"\nthreshold = -1", 1)
+            ),
+            (2, 11),
+            "boundary.left.threshold is -1",
         ),
         (
             format!("{BOX}[boundary.left]\nkind = \"robin\"\nvalue = 1\n"),
@@ -258,7 +276,7 @@ fn mistakes_in_values_are_found_where_they_are() {
         (
             "{ force = \"left\" }",
             15,
-            "the mesh has no contact boundary group `left`; it has bottom",
+            "the mesh has no contact or friction boundary group `left`; it has bottom",
         ),
     ] {
         let text = format!("{BOX}[values]\na = {value}\n{SIDES}");

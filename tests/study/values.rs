@@ -164,7 +164,10 @@ fn values_of_names_that_the_mesh_does_not_have_are_refused() {
             ValueOf::Reaction("right".to_owned()),
             "no dirichlet or robin boundary group `right`; it has left, top",
         ),
-        (ValueOf::Force("left".to_owned()), "no contact boundary group `left`; it has bottom"),
+        (
+            ValueOf::Force("left".to_owned()),
+            "no contact or friction boundary group `left`; it has bottom",
+        ),
         (ValueOf::Integral("lid".to_owned()), "no boundary group `lid`; it has"),
         (ValueOf::Mean("steel".to_owned()), "no region `steel`; it has none with a name"),
     ] {

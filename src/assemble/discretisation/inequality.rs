@@ -50,11 +50,13 @@ impl<const D: usize> Discretisation<'_, D> {
             penalised,
             dirichlet_energy,
             kernel: Vec::new(),
+            kinks: Vec::new(),
             bodies: Vec::new(),
             is_definite: self.is_coercive() && self.penalty_below_bound().is_none(),
             distribution: None,
         };
         self.space.set_kernel(&mut inequality, self.form.couples(), free);
+        self.space.add_friction(&mut inequality)?;
         Ok(inequality)
     }
     /// The bounds of all unknowns.

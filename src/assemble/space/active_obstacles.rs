@@ -53,7 +53,8 @@ impl<const D: usize> Space<'_, D> {
         let by_region = self.data.lower.has_names() || self.data.upper.has_names();
         let mut found =
             ActiveObstacles { has_obstacle, in_cells: Vec::new(), at_unknowns: Vec::new() };
-        if !has_obstacle || !(by_region || self.problem.has_gap()) {
+        let on_boundary = self.problem.acts_on_boundary();
+        if !has_obstacle || !(by_region || on_boundary) {
             return found;
         }
         let terms = self.node_terms(&self.facet_rule);
@@ -115,11 +116,17 @@ impl<const D: usize> Space<'_, D> {
             || (state != Some(Contact::Lower) && gives(upper, bound.upper()))
     }
 
-    /// By unknown whether no gap binds it.
+    /// By unknown whether neither a gap nor friction binds it.
     fn unknowns_without_gap(&self) -> Vec<bool> {
         let mut without = vec![true; self.dofs.size()];
         for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
             if self.data.gap.of(group).is_some() {
+                let bounded = self.bounded_nodes_on(local);
+                bounded.for_each(|(i, _)| without[self.dofs.of(cell, i)] = false);
+            }
+        }
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
+            if self.data.friction.of(group).is_some() {
                 let bounded = self.bounded_nodes_on(local);
                 bounded.for_each(|(i, _)| without[self.dofs.of(cell, i)] = false);
             }

@@ -14,6 +14,7 @@
 //! | `diffusion` | the coefficient in a cell, on a facet and in a flux |
 //! | `coefficient/tensor` | its tensor, as a change of coordinates |
 //! | `reaction_term` | the reaction term of the matrix |
+//! | `friction` | the kinks of unknowns on the boundary with friction |
 //! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
 //! | `obstacle_coefficients` | the Bernstein coefficients of obstacles and gaps, beside jumps too |
 //! | `active_obstacles` | where obstacles give the bound that is active |
@@ -27,6 +28,7 @@ pub(crate) mod contradictions;
 mod diffusion;
 pub(crate) mod dofs;
 pub(crate) mod form_facets;
+mod friction;
 mod locations;
 pub(crate) mod metric;
 mod node_vertices;
@@ -306,9 +308,11 @@ impl<'a, const D: usize> Space<'a, D> {
     pub fn group_of(&self, (cell, local): HalfFacet) -> usize {
         self.mesh.boundary_group(cell, local).expect("a boundary facet has a group")
     }
-    /// Whether a boundary facet lies on a Robin side.
-    pub fn is_on_robin_side(&self, facet: HalfFacet) -> bool {
-        self.data.robin.is_given() && self.data.robin.of(self.group_of(facet)).is_some()
+    /// Whether a Neumann facet has a flux that does not depend on the solution: no Robin side, no friction.
+    pub fn is_loaded_alone(&self, facet: HalfFacet) -> bool {
+        let group = || self.group_of(facet);
+        (!self.data.robin.is_given() || self.data.robin.of(group()).is_none())
+            && (!self.data.friction.is_given() || self.data.friction.of(group()).is_none())
     }
     /// For each vertex on the Dirichlet boundary the boundary group whose datum is given there, and the cell of a facet
     /// of this group.

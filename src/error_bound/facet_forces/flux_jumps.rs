@@ -91,7 +91,7 @@ impl<const D: usize> Space<'_, D> {
                         Some((other as usize, usize::from(local)))
                     }
                     Neighbour::Boundary(BoundaryCondition::Neumann)
-                        if !self.is_on_robin_side((cell, local)) =>
+                        if self.is_loaded_alone((cell, local)) =>
                     {
                         None
                     }

@@ -111,18 +111,20 @@ impl<const D: usize> Space<'_, D> {
         // without data a flux of degree zero is zero there
         let has_fluxes = (self.problem.has_neumann_data() || pair.degree > 1)
             && self.mesh.has_condition(BoundaryCondition::Neumann);
-        let has_gap = self.problem.has_gap();
+        let (has_gap, has_friction) = (self.problem.has_gap(), self.data.friction.is_given());
         let rule = self.rule_of_facets(pair.degree);
         let mut terms = BoundaryTerms {
-            traces: zeros(has_fluxes || has_gap && pair.degree > 1),
+            traces: zeros(has_fluxes || has_friction || has_gap && pair.degree > 1),
             robin: zeros(self.data.robin.is_given()),
-            contact: zeros(has_gap),
+            contact: zeros(has_gap || has_friction),
             obstacle: self.facet_obstacle_terms(pair)?,
             has_rounding: !pair.forces.is_empty()
                 && FriedrichsData::of(self.mesh).constant().is_some(),
         };
         if has_fluxes {
-            for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
+            let with_friction = |group: usize| self.data.friction.of(group).is_some();
+            let facets = self.grouped_facets_of(BoundaryCondition::Neumann);
+            for (facet, group) in facets.filter(|(_, group)| !with_friction(*group)) {
                 let measure = self.facet_measure(facet);
                 let flux = self.flux_on(pair, facet);
                 let force = pair.forces.binary_search_by_key(&facet, |force| force.facet);
@@ -145,6 +147,9 @@ impl<const D: usize> Space<'_, D> {
                     false => terms.traces[facet.0] += of_trace,
                 }
             }
+        }
+        if has_friction {
+            self.add_friction_terms(pair, &mut terms)?;
         }
         let (mut least, mut largest) = (0.0_f64, 0.0_f64);
         for (facet, group) in self.grouped_facets_of(BoundaryCondition::Contact) {
@@ -171,6 +176,68 @@ impl<const D: usize> Space<'_, D> {
             true => Err(NoBound::NegativeForce),
             false => Ok(terms),
         }
+    }
+
+    /// Adds the terms of friction: `int g |v| + mu v` with a multiplier `mu`, `|mu| <= g`, that has the integral of the flux
+    /// over the facet, where `|v|` is at most the sum of `|v_j| lambda_j` over the vertices for linears; and the norm of `mu`
+    /// less the flux with the constant of the trace inequality. The multiplier is the threshold times a linear function
+    /// within one at the vertices, as near to that of the flux as these allow.
+    fn add_friction_terms(
+        &self,
+        pair: &PrimalDualPair<D>,
+        terms: &mut BoundaryTerms,
+    ) -> Result<(), NoBound> {
+        for (facet, group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
+            if self.data.friction.of(group).is_none() {
+                continue;
+            }
+            let (flux, measure) = (self.flux_on(pair, facet), self.facet_measure(facet));
+            // the threshold tested with one and with barycentric coordinates
+            let (mut most, mut tested) = (0.0, [0.0; 4]);
+            self.visit_friction(facet, group, &mut |point, weight| {
+                most += weight;
+                tested.iter_mut().zip(point).for_each(|(sum, b)| *sum += weight * b);
+            })?;
+            let integral = flux.integral(D);
+            if integral.abs() > (1.0 + FORCE_ROUNDING) * most {
+                return Err(NoBound::NegativeForce);
+            }
+            let mut shares = [0.0; 4];
+            if most > 0.0 {
+                let mean = (integral / most).clamp(-1.0, 1.0);
+                let rest_of = |values: [f64; 4]| values.map(|value| (value - integral) / most);
+                let rests = flux.values.map_or([0.0; 4], rest_of);
+                let shift: f64 = tested.iter().zip(&rests).map(|(t, rest)| t * rest).sum();
+                let rests = rests.map(|rest| rest - shift / most);
+                let allowed = |j: usize| match rests[j] {
+                    rest if rest > 0.0 => (1.0 - mean) / rest,
+                    rest if rest < 0.0 => -(1.0 + mean) / rest,
+                    _ => 1.0,
+                };
+                let step = vertices_of::<D>(facet.1).map(allowed).fold(1.0, f64::min);
+                shares = rests.map(|rest| mean + step * rest);
+            }
+            let admissible = self.admissible_in(pair, facet.0);
+            let constant = self.body_constants.of_cell(facet.0);
+            let (mut sum, mut square) = (0.0, 0.0);
+            let mut rule = self.facet_rule.weights.iter();
+            self.visit_friction(facet, group, &mut |point, weight| {
+                let value = admissible.at(point, &self.cell_point(point, facet.0)).0 + constant;
+                let at_vertices = admissible.values.iter().zip(point);
+                let above = match pair.degree {
+                    1 => at_vertices.map(|(v, b)| (v + constant).abs() * b).sum(),
+                    _ => value.abs(),
+                };
+                let of_point = rule.next().expect("the rule has a weight a point") * measure;
+                let share: f64 = shares.iter().zip(point).map(|(share, b)| share * b).sum();
+                let rest = flux.scale * flux.at(point) / measure - share * weight / of_point;
+                sum += weight * (above + share * value);
+                square += of_point * rest.powi(2);
+            })?;
+            terms.contact[facet.0] += sum.max(0.0);
+            terms.traces[facet.0] += self.constant_of_trace(facet) * square.sqrt();
+        }
+        Ok(())
     }
 
     /// By cell the integrals of the forces of obstacles on facets times the distance from the obstacle: of the two sides

@@ -43,6 +43,14 @@ impl LocalViolation {
         local
     }
 
+    /// Counts as a multiplier by how much the step of an unknown at its bound exceeds the largest one.
+    pub fn add_excess<T: Real>(&mut self, bound: &Bound<T>, (x, step): (f64, f64), most: f64) {
+        let excess = step.abs() - most;
+        if excess > 0.0 && touched_bound(bound, x, step) != Contact::Inactive {
+            self.multiplier = maximum(self.multiplier, excess);
+        }
+    }
+
     /// Counts the share of an unknown in the force of its node, if its sign is wrong, as a multiplier. Its step is
     /// relative to the diagonal of the stiffness `K`; the change is that with the same energy in the diagonal `d` of
     /// `A`.

@@ -151,6 +151,7 @@ impl Violations {
         let scales = Sums::of(inequality, values, &|i| diagonal[i], owns);
         let jump_residual = largest_jump_residual(inequality, u, jump_multipliers, owns);
         let steps = |i: usize| -r[i] / diagonal[i];
+        let jumps = jumps_of_slopes(inequality);
         let shares = has_all_copies.then(|| shares_of_nodes(inequality, u, &steps)).flatten();
         let chunks = map_chunks(n, |range| {
             let (mut feasibility, mut sums) = (0.0_f64, [0.0; 4]);
@@ -162,6 +163,9 @@ impl Violations {
                 if let Some((shares, penalised)) = &shares {
                     let stiffness = penalised.stiffness_diagonal(i);
                     local.add_share(&bounds[i], (x, step), shares[i], (stiffness, d));
+                }
+                if let Some(&jump) = jumps.get(i) {
+                    local.add_excess(&bounds[i], (x, step), jump / d);
                 }
                 feasibility = maximum(feasibility, local.feasibility);
                 let changes = [local.multiplier, local.complementarity, local.residual];
@@ -273,4 +277,15 @@ fn shares_of_nodes<'a, T: Real>(
     let mut shares = vec![0.0; u.len()];
     nodes.share(u, &|i| touched[i], &mut shares, None);
     inequality.penalised.as_ref().map(|penalised| (shares, penalised))
+}
+
+/// By unknown the largest multiplier at its bound: the jump of the slope at a kink, infinite elsewhere; empty without
+/// kinks.
+fn jumps_of_slopes<T: Real>(inequality: &Inequality<T>) -> Vec<f64> {
+    let mut jumps =
+        vec![f64::INFINITY; if inequality.kinks.is_empty() { 0 } else { inequality.size() }];
+    for kink in &inequality.kinks {
+        jumps[kink.unknown as usize] = 2.0 * kink.slope.to_f64();
+    }
+    jumps
 }

@@ -36,7 +36,7 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         // with both an obstacle and a contact boundary there are two multipliers of different kind
-        if self.problem.has_obstacle() && self.problem.has_gap() {
+        if self.problem.has_obstacle() && self.problem.acts_on_boundary() {
             return contact;
         }
         let weights = self.hat_integrals(&entities, &self.measures_of(&entities));

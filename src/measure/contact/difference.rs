@@ -37,7 +37,7 @@ fn difference<const D: usize>(
     let (fine, fine_solved) = (&fine.space, (fine_inequality, fine_solution));
     let mut errors = ContactErrors::default();
     // with both an obstacle and a contact boundary there are two multipliers of different kind
-    if space.problem.has_obstacle() == space.problem.has_gap() {
+    if space.problem.has_obstacle() == space.problem.acts_on_boundary() {
         return errors;
     }
     let (entities, fine_entities) = (space.entities(), fine.entities());

@@ -25,7 +25,6 @@ use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::BoundaryCondition;
 use crate::parallel::cells;
 use crate::parallel::vectors::collect;
 use crate::real::Point;
@@ -83,7 +82,7 @@ impl<const D: usize> Discretisation<'_, D> {
 
     /// The measure of the discrete contact set: the volume of the cells in contact where there are
     /// obstacles, else the area of the facets in contact (the number of points in one dimension), with the
-    /// definitions of [`Discretisation::contact_errors`]; none without an inequality.
+    /// definitions of [`Discretisation::contact_errors`]; contact with friction is stick. None without an inequality.
     pub fn contact_measure(
         &self,
         inequality: &Inequality<f64>,
@@ -151,7 +150,7 @@ impl<const D: usize> Space<'_, D> {
         let Some(exact) = &self.problem.exact else { return Ok(errors) };
         let is_known = exact.multiplier.is_some() || exact.contact.is_some();
         // with both an obstacle and a contact boundary there are two multipliers of different kind
-        if !is_known || self.problem.has_obstacle() == self.problem.has_gap() {
+        if !is_known || self.problem.has_obstacle() == self.problem.acts_on_boundary() {
             return Ok(errors);
         }
         let entities = self.entities();
@@ -197,8 +196,8 @@ impl<const D: usize> Space<'_, D> {
                 .map(|cell| ContactEntity { cell, facet: None })
                 .collect();
         }
-        let contact = self.facets_of(BoundaryCondition::Contact);
-        contact.map(|(cell, local)| ContactEntity { cell, facet: Some(local) }).collect()
+        let facets = self.facets_of_forces();
+        facets.map(|((cell, local), _)| ContactEntity { cell, facet: Some(local) }).collect()
     }
 
     /// The volumes of cells and the areas of facets.

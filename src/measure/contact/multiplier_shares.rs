@@ -74,8 +74,12 @@ impl<const D: usize> Space<'_, D> {
             self.names_of_resultants().into_iter().map(|name| (name, 0.0)).collect();
         let multipliers = self.multipliers(solved)?;
         let (inequality, solution) = solved;
+        let has_kink = |unknown: usize| {
+            inequality.kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown).is_ok()
+        };
         for (unknown, value) in multipliers.by_unknown.iter().enumerate() {
-            if *value != 0.0 && multipliers.obstacles.act_at(unknown) && of_unknowns(unknown) {
+            let is_obstacle = multipliers.obstacles.act_at(unknown) && !has_kink(unknown);
+            if *value != 0.0 && is_obstacle && of_unknowns(unknown) {
                 let is_upper = solution.contact[unknown] == Contact::Upper;
                 let name = if is_upper { "upper" } else { "lower" };
                 *sums.entry(name.to_owned()).or_default() += value;
@@ -83,9 +87,8 @@ impl<const D: usize> Space<'_, D> {
         }
         let names: Vec<String> =
             (0..self.mesh.boundary_groups().len()).map(|group| self.name_of_gap(group)).collect();
-        let facets: Vec<(HalfFacet, usize)> =
-            self.grouped_facets_of(BoundaryCondition::Contact).collect();
-        for share in self.shares_of_gaps(&inequality.bounds, &multipliers) {
+        let facets: Vec<(HalfFacet, usize)> = self.facets_of_forces().collect();
+        for share in self.shares_on_boundary(inequality, &multipliers) {
             let ((cell, _), group) = facets[share.place];
             if of_cells(cell) {
                 *sums.entry(names[group].clone()).or_default() += share.value;
@@ -100,12 +103,42 @@ impl<const D: usize> Space<'_, D> {
         solved: SolvedInequality<'_>,
     ) -> Option<Vec<f64>> {
         let multipliers = self.multipliers(solved)?;
-        let facets: Vec<_> = self.grouped_facets_of(BoundaryCondition::Contact).collect();
+        let facets: Vec<_> = self.facets_of_forces().collect();
         let mut forces = vec![0.0; self.mesh.boundary_groups().len()];
-        for share in self.shares_of_gaps(&solved.0.bounds, &multipliers) {
+        for share in self.shares_on_boundary(solved.0, &multipliers) {
             forces[facets[share.place].1] += share.value;
         }
         Some(forces)
+    }
+
+    /// The shares of forces on all facets that can be in contact: of gaps and of friction.
+    fn shares_on_boundary(&self, inequality: &Inequality<f64>, of: &Multipliers) -> Vec<Share> {
+        let mut shares = self.shares_of_gaps(&inequality.bounds, of);
+        if !inequality.kinks.is_empty() {
+            self.add_shares_of_friction(inequality, of, &mut shares);
+        }
+        shares
+    }
+
+    /// The shares of the forces of friction: that of an unknown by its weights on the facets.
+    fn add_shares_of_friction(
+        &self,
+        inequality: &Inequality<f64>,
+        of: &Multipliers,
+        shares: &mut Vec<Share>,
+    ) {
+        for (place, (facet, group)) in self.facets_of_forces().enumerate() {
+            let weights = self.friction_weights(facet, group);
+            for (node, weight) in weights.expect("the assembly found weights") {
+                let unknown = self.dofs.of(facet.0, node);
+                let kinks = &inequality.kinks;
+                let found = kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown);
+                if let Ok(k) = found {
+                    let value = of.by_unknown[unknown] * (weight / kinks[k].slope);
+                    shares.push(Share { place, unknown, value });
+                }
+            }
+        }
     }
 
     /// The names of all resultants: the same on all parts of a mesh.
@@ -115,7 +148,9 @@ impl<const D: usize> Space<'_, D> {
         let mut names: Vec<String> = given.map(|(name, _)| name.to_owned()).collect();
         for (group, of_group) in self.mesh.boundary_groups().iter().enumerate() {
             let is_contact = of_group.condition == Some(BoundaryCondition::Contact);
-            if is_contact && self.data.gap.of(group).is_some() {
+            let has_friction = self.data.friction.of(group).is_some()
+                && of_group.condition == Some(BoundaryCondition::Neumann);
+            if is_contact && self.data.gap.of(group).is_some() || has_friction {
                 names.push(self.name_of_gap(group));
             }
         }
@@ -125,7 +160,7 @@ impl<const D: usize> Space<'_, D> {
     /// The name under which the contact force of a boundary group is shown.
     fn name_of_gap(&self, group: usize) -> String {
         let names = &self.mesh.boundary_groups()[group].names;
-        let given = self.problem.gap.names();
+        let given = self.problem.gap.names().chain(self.problem.friction.names());
         let mut given = given.chain(names.iter().map(String::as_str));
         match given.find(|name| names.iter().any(|n| n == name)) {
             None => "contact".to_owned(),
@@ -217,16 +252,15 @@ impl<const D: usize> Space<'_, D> {
         self.densities(&cells.collect::<Vec<_>>(), &self.shares_of_obstacles(of), inequality)
     }
 
-    /// The density of the multipliers of gaps on each contact facet, by groups.
-    pub(crate) fn densities_of_gaps(
+    /// The density of the multipliers of gaps and of friction on each facet that can be in contact, by groups.
+    pub(crate) fn densities_on_boundary(
         &self,
         inequality: &Inequality<f64>,
         of: &Multipliers,
     ) -> Vec<f64> {
-        let facets = self.grouped_facets_of(BoundaryCondition::Contact);
         let entity = |(cell, local)| ContactEntity { cell, facet: Some(local) };
-        let facets = facets.map(|(facet, group)| (entity(facet), group));
-        let shares = self.shares_of_gaps(&inequality.bounds, of);
+        let facets = self.facets_of_forces().map(|(facet, group)| (entity(facet), group));
+        let shares = self.shares_on_boundary(inequality, of);
         self.densities(&facets.collect::<Vec<_>>(), &shares, inequality)
     }
 

@@ -8,8 +8,8 @@ use crate::mesh::BoundaryCondition;
 use crate::parallel::vectors::collect;
 
 impl<const D: usize> Space<'_, D> {
-    /// By unknown the force of its active bound, positive where a lower bound pushes upward. It is zero without
-    /// contact, and at nodes on facets with weakly imposed Dirichlet data: there the entry of `A u - b` contains the
+    /// By unknown the force of its active bound, positive where a lower bound pushes upward, or of friction. It is zero
+    /// without contact, and at nodes on facets with weakly imposed Dirichlet data: there the entry of `A u - b` contains the
     /// flux through the boundary. None where rounding leaves no digit. On a part of a mesh ghosts have the forces of
     /// their owners, and all parts call it.
     pub(super) fn nodal_multipliers(&self, solved: SolvedInequality<'_>) -> Option<Vec<f64>> {
@@ -19,7 +19,14 @@ impl<const D: usize> Space<'_, D> {
         let counts = |i: usize| !on_data.get(i).is_some_and(|&is_left_out| is_left_out);
         let have_digits = forces.have_digits(inequality, solution, counts);
         let value = |i: usize| if counts(i) { forces.values[i] } else { 0.0 };
-        have_digits.then(|| collect(forces.values.len(), value))
+        let mut values = have_digits.then(|| collect(forces.values.len(), value))?;
+        // friction acts at slip too, and is no part of the load
+        for (k, kink) in inequality.kinks.iter().enumerate() {
+            if counts(kink.unknown as usize) {
+                values[kink.unknown as usize] -= inequality.slope_at(k);
+            }
+        }
+        Some(values)
     }
 
     /// By unknown whether its node is on a facet with weakly imposed Dirichlet data; empty without such data.

@@ -146,7 +146,10 @@ impl<const D: usize> Discretisation<'_, D> {
             }
             ValueOf::Reaction(name) => Some(space.on_group(name, &|f| space.holds(f), &flux)),
             ValueOf::Force(name) => {
-                let is_contact = |f: &BoundaryFacet| f.condition == BoundaryCondition::Contact;
+                let is_contact = |f: &BoundaryFacet| {
+                    f.condition == BoundaryCondition::Contact
+                        || space.data.friction.of(usize::from(f.group)).is_some()
+                };
                 Some(space.on_group(name, &is_contact, &flux))
             }
             _ => space.value_of(&function, of).value,

@@ -150,7 +150,7 @@ impl<const D: usize> Solved<'_, D> {
             file = file.on_cells("multiplier", &multiplier);
             file = file.on_cells("contact", &contact);
         }
-        if problem.has_gap() {
+        if problem.acts_on_boundary() {
             file = file.on_facets("pressure", &facets, &pressure);
             file = file.on_facets("gap", &facets, &gap);
             if !problem.has_obstacle() {

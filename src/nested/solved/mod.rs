@@ -73,10 +73,14 @@ impl<const D: usize> fmt::Debug for Solved<'_, D> {
 impl<'a, const D: usize> Solved<'a, D> {
     /// A solution with its certificate.
     pub(super) fn new(
-        system: System<'a, D>,
+        mut system: System<'a, D>,
         mut solution: Solution<f64>,
         hierarchy: Option<(&'a Hierarchy<D>, usize)>,
     ) -> Self {
+        // the inequality on the sides of kinks on which the solution lies
+        for k in std::mem::take(&mut solution.turned) {
+            system.inequality.turn(k as usize);
+        }
         let inequality = &system.inequality;
         // a solver of one's own may return anything
         let is_whole = [solution.values.len(), solution.contact.len()] == [inequality.size(); 2]
@@ -182,7 +186,14 @@ impl<'a, const D: usize> Solved<'a, D> {
     fn objective_of_constants(&self) -> f64 {
         let (of, constants) = (self.discretisation(), &self.solution.constants);
         match of.space.pins {
-            true => of.energy(&vec![0.0; constants.len()]).expect("the load was assembled before"),
+            true => {
+                let zero = vec![0.0; constants.len()];
+                let energy = of.energy(&zero).and_then(|energy| {
+                    // kinks have friction with the constants
+                    Ok(energy - of.space.friction_energy(&zero, &|_| true)?)
+                });
+                energy.expect("the load was assembled before")
+            }
             false => {
                 let negative: Vec<f64> = constants.iter().map(|constant| -constant).collect();
                 -self.inequality().objective(&negative)

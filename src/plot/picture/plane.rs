@@ -55,7 +55,7 @@ impl<'a, const D: usize> Plane<'a, D> {
         let view = View::along_coordinates(mesh, fields, axes);
         let faces =
             |&(cell, local): &HalfFacet| sign * mesh.geometry(cell).normal(local)[axis] > 0.7;
-        let all = trace::facets(mesh);
+        let all = &fields.contact_boundary;
         let facets: Vec<HalfFacet> = all.iter().copied().filter(faces).collect();
         let is_partial = facets.len() < all.len();
         let triangles: Vec<Triangle> = facets.iter().map(|&(c, k)| view.facet(c, k)).collect();
@@ -161,7 +161,7 @@ impl<'a, const D: usize> Plane<'a, D> {
                 map.legend.push((Symbol::Line(Stroke::Exact), exact));
             }
         } else {
-            let exact = trace::samples(self.view.mesh)
+            let exact = trace::samples(self.view.mesh, &self.view.fields.contact_boundary)
                 .into_iter()
                 .filter(|s| inside(&(0.5 * (s[0] + s[1]))));
             let before = map.lines.len();

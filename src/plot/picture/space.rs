@@ -9,7 +9,6 @@ use super::level_line::{distance, level_line};
 use super::map::Map;
 use super::panel::Panel;
 use super::plane::Plane;
-use super::trace;
 use super::triangle::{PlanePoint, Triangle, View};
 use crate::arrays::{array_of, map_entries};
 use crate::measure::Fields;
@@ -38,8 +37,7 @@ struct Facet<const D: usize> {
 }
 
 /// The axis along which most of the contact boundary faces, and the sign of its outward normal there; none without one.
-fn facing<const D: usize>(mesh: &Mesh<D>) -> Option<(usize, f64)> {
-    let facets = trace::facets(mesh);
+fn facing<const D: usize>(mesh: &Mesh<D>, facets: &[HalfFacet]) -> Option<(usize, f64)> {
     let area = |&(axis, sign): &(usize, f64)| -> f64 {
         let faces = |&(cell, local): &HalfFacet| {
             let geometry = mesh.geometry(cell);
@@ -65,7 +63,7 @@ pub(crate) struct Space<'a, const D: usize> {
 
 impl<'a, const D: usize> Space<'a, D> {
     pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<D>, fields: &'a Fields) -> Self {
-        let facing = facing(mesh);
+        let facing = facing(mesh, &fields.contact_boundary);
         let mut towards = TOWARDS_VIEWER;
         // without a contact boundary nothing is hidden
         let (axis, sign) = facing.unwrap_or((0, TOWARDS_VIEWER[0]));
@@ -104,7 +102,7 @@ impl<'a, const D: usize> Space<'a, D> {
         if self.problem.has_obstacle() {
             panels.push(Panel::Map(self.contact()));
         }
-        if let Some(facing) = self.facing.filter(|_| self.problem.has_gap()) {
+        if let Some(facing) = self.facing.filter(|_| self.problem.acts_on_boundary()) {
             let (problem, fields) = (self.problem, self.view.fields);
             let plane = Plane::of_contact_boundary(problem, mesh, fields, facing);
             panels.push(Panel::Map(plane.contact()));

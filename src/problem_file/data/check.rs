@@ -122,7 +122,7 @@ impl<const D: usize> Checks<'_, '_, D> {
             if !names.iter().any(|name| self.conditions.iter().any(|(known, _)| known == name)) {
                 let name = excerpt(names.first().expect("a boundary group has a name"));
                 let message = format!(
-                    "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann, robin or contact, or [boundary.default] for groups without one, if its kind is that of the name"
+                    "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann, robin, friction or contact, or [boundary.default] for groups without one, if its kind is that of the name"
                 );
                 return Err(self.source.error(0, ProblemFileErrorKind::MissingBoundary, message));
             }

@@ -175,12 +175,14 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     /// Reads the table of a boundary group.
     fn on_group(&self, group: &str, offset: usize, value: &Value<'t>) -> Done<OnGroup> {
         let table = self.source.table(group, value)?;
-        let kinds = "\"dirichlet\", \"neumann\", \"robin\" or \"contact\"";
+        let kinds = "\"dirichlet\", \"neumann\", \"robin\", \"friction\" or \"contact\"";
         let Some(kind) = table.get("kind") else {
             return Err(self.source.missing(offset, "kind", kinds));
         };
-        let (condition, is_robin) = match self.source.string("kind", kind)? {
+        let kind_name = self.source.string("kind", kind)?;
+        let (condition, is_robin) = match kind_name {
             "robin" => (BoundaryCondition::Neumann, true),
+            "friction" => (BoundaryCondition::Neumann, false),
             name => {
                 let condition = BoundaryCondition::from_name(name);
                 (condition.ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?, false)
@@ -194,6 +196,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let (name, takes_normal) = match condition {
             BoundaryCondition::Dirichlet => ("value", false),
             BoundaryCondition::Neumann if is_robin => ("value", false),
+            BoundaryCondition::Neumann if kind_name == "friction" => ("threshold", false),
             BoundaryCondition::Neumann => ("flux", true),
             BoundaryCondition::Contact => ("gap", true),
         };
@@ -205,6 +208,10 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         };
         let formula = match table.get(name) {
             Some(value) => self.source.formula(name, value, &variables)?,
+            None if name == "threshold" => {
+                let purpose = "the largest flux of friction, not negative";
+                return Err(self.source.missing(offset, name, purpose));
+            }
             None if self.has_exact && condition != BoundaryCondition::Contact => {
                 let purpose = "the exact solution does not stand for data that are left out";
                 return Err(self.source.missing(offset, name, purpose));
@@ -231,10 +238,12 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let OnGroup { condition, formula, coefficient, datum, offset, shape } = given;
         self.shapes.extend(shape.clone().map(|shape| (group.to_owned(), shape)));
         let (problem, name) = (&mut self.problem, Some(group));
+        let has_friction = datum.ends_with(".threshold");
         match condition {
             BoundaryCondition::Dirichlet => problem.dirichlet.give(name, formula.datum()),
             BoundaryCondition::Neumann => match coefficient {
                 Some(k) => problem.robin.give(name, Robin::new(k.datum(), formula.datum())),
+                None if has_friction => problem.friction.give(name, formula.datum()),
                 None => problem.neumann.give(name, formula.flux()),
             },
             BoundaryCondition::Contact => {
@@ -252,7 +261,8 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             allowed,
             value: formula.flux(),
         };
-        self.entries.push(entry(datum, Allowed::Finite, formula));
+        let allowed = if has_friction { Allowed::NotNegative } else { Allowed::Finite };
+        self.entries.push(entry(datum, allowed, formula));
         if let Some(coefficient) = coefficient {
             let of_group = datum.rsplit_once('.').map_or("boundary", |(of_group, _)| of_group);
             let datum = format!("{of_group}.coefficient");

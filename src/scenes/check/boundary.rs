@@ -27,6 +27,13 @@ impl<const D: usize> Evaluator<'_, D> {
         let (value, flux) = (exact * self.scales.value, exact * self.scales.flux);
         let problem = self.problem;
         let outflow = self.flux(&x).dot(&normal);
+        if let (BoundaryCondition::Neumann, Some(g)) = (condition, &problem.friction.everywhere) {
+            let (g, u) = (g.at(&x), self.value(&x));
+            self.require("|alpha du/dn| <= g of friction", &x, outflow.abs() - g, flux)?;
+            let work = outflow * u + g * u.abs();
+            let most = flux * u.abs() + value * (g + outflow.abs());
+            return self.require("alpha du/dn u + g |u| = 0 of friction", &x, work, most);
+        }
         if let (BoundaryCondition::Neumann, Some(side)) = (condition, &problem.robin.everywhere) {
             let force = side.coefficient.at(&x) * (side.value.at(&x) - self.value(&x));
             let error = (force - outflow).abs();

@@ -144,6 +144,10 @@ const REQUESTS: &[Request] = &[
     quick("problem-far", "DATA/problems/far_gap.toml", FEW, "--levels 8"),
     quick("problem-reaction", "DATA/problems/far_reaction.toml", FEW, "--levels 8"),
     quick("problem-bracket", "EXAMPLES/problems/bracket.toml", FEW, "--levels 0,1"),
+    quick("friction-lines", "friction-1d,friction-both-1d", LINEAR, "--levels 8,16"),
+    quick("friction-plane", "friction-2d", "p1,cr,sipg,nipg,wopsip,p2,sipg-p2", "--levels 8,16"),
+    quick("friction-space", "friction-3d", "p1,cr,sipg,wopsip", "--levels 2,4"),
+    quick("problem-brake", "EXAMPLES/problems/brake.toml", FEW, "--levels 4,8"),
 ];
 
 const fn request(
