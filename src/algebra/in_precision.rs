@@ -75,7 +75,13 @@ impl Inequality<f64> {
     pub fn in_precision<T: Real>(&self) -> Inequality<T> {
         let kernel_vector =
             |w: &Vec<(u32, f64)>| w.iter().map(|&(i, value)| (i, T::lit(value))).collect();
-        let kink = |of: &Kink<f64>| Kink { unknown: of.unknown, slope: T::lit(of.slope) };
+        let kink = |of: &Kink<f64>| Kink {
+            unknown: of.unknown,
+            slope: T::lit(of.slope),
+            place: T::lit(of.place),
+            is_above: of.is_above,
+            own: of.own.in_precision(),
+        };
         let mut rounded = Inequality {
             matrix: self.matrix.in_precision(),
             symmetric: self.symmetric,

@@ -1,7 +1,7 @@
 //! The forces on contact facets.
 
 use super::NoBound;
-use crate::algebra::{Contact, Inequality};
+use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::{BoundaryCondition, HalfFacet};
@@ -32,7 +32,7 @@ impl<const D: usize> Space<'_, D> {
     /// the flux of the discrete function `u` stands for it, and any number would do.
     pub(super) fn contact_forces(
         &self,
-        inequality: &Inequality<f64>,
+        bounds: &[Bound<f64>],
         contact: &[Contact],
         (residual, obstacles): (&[f64], &ActiveObstacles),
         u: &[f64],
@@ -52,7 +52,7 @@ impl<const D: usize> Space<'_, D> {
             }
             let measure = self.facet_measure((cell, local));
             let unknown_of = |node: usize| self.dofs.of(cell, node);
-            let is_bound = |unknown: usize| inequality.bounds[unknown].is_inequality();
+            let is_bound = |unknown: usize| bounds[unknown].is_inequality();
             let (mut n_bound, mut n_touching) = (0, 0);
             for (node, _) in self.bounded_nodes_on(local).filter(|(n, _)| is_bound(unknown_of(*n)))
             {
@@ -64,7 +64,7 @@ impl<const D: usize> Space<'_, D> {
                 let unknown = unknown_of(node);
                 if is_bound(unknown) {
                     if is_in_contact(unknown) {
-                        let bound = inequality.bounds[unknown];
+                        let bound = bounds[unknown];
                         let is_binding =
                             self.gap_gives(((cell, local), group), (node, by), &terms, bound);
                         let is_end = D < 3 && !is_closed;
@@ -93,13 +93,13 @@ impl<const D: usize> Space<'_, D> {
         forces
     }
 
-    /// The forces of friction: that of each unknown with a kink, divided by its weights among the facets. A node that
+    /// The forces of friction: that of each kink, divided by the weights of its unknown among the facets. A node that
     /// Dirichlet data pin has no force of its own: the threshold against its value stands for it, or without a value the
     /// flux of the discrete function `u`, as far as the threshold reaches.
     pub(super) fn friction_forces(
         &self,
         inequality: &Inequality<f64>,
-        residual: &[f64],
+        by_kink: &[f64],
         u: &[f64],
     ) -> Result<Vec<NodeForce>, NoBound> {
         if !self.data.friction.is_given() {
@@ -116,10 +116,7 @@ impl<const D: usize> Space<'_, D> {
                 let kink = kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown);
                 let own = u[unknown] + self.body_constants.of_cell(cell) * one[node];
                 let value = match kink {
-                    // beyond the threshold is rounding, and what the solver left
-                    Ok(k) => {
-                        (-residual[unknown] * (weight / kinks[k].slope)).clamp(-weight, weight)
-                    }
+                    Ok(k) => by_kink[k] * (weight / kinks[k].slope),
                     Err(_) if own.abs() > zero => -weight * own.signum(),
                     Err(_) => self.flux_at_node((cell, local), node, u).clamp(-weight, weight),
                 };

@@ -7,7 +7,7 @@ use super::contact_forces::NodeForce;
 use super::exchange::ROUNDING;
 use super::facet_forces::FacetForce;
 use super::flux::Flux;
-use crate::algebra::{Contact, Inequality};
+use crate::algebra::{Bound, Contact, Inequality};
 use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -150,16 +150,17 @@ impl<const D: usize> Discretisation<'_, D> {
             }
             _ => inequality.residual_f64(u, &mut residual),
         }
-        // of the load without friction
-        for (k, kink) in inequality.kinks.iter().enumerate() {
-            residual[kink.unknown as usize] += inequality.slope_at(k);
-        }
         inequality.distribution().update(&mut residual);
-        let obstacles = &space.active_obstacles(&inequality.bounds, &solution.contact);
-        let of_solver = (&residual[..], obstacles);
-        let mut forces = space.contact_forces(inequality, &solution.contact, of_solver, u);
-        forces.extend(space.friction_forces(inequality, &residual, u)?);
-        let forces = &forces;
+        let bounds = &inequality.own_bounds()[..];
+        let contact = &inequality.states_at_bounds(&solution.contact)[..];
+        let obstacles = &space.active_obstacles(bounds, contact);
+        let friction = take_friction(inequality, &solution.contact, &mut residual);
+        let mut forces = space.contact_forces(bounds, contact, (&residual, obstacles), u);
+        forces.extend(space.friction_forces(inequality, &friction, u)?);
+        for (kink, force) in inequality.kinks.iter().zip(&friction) {
+            residual[kink.unknown as usize] -= force;
+        }
+        let (of_solver, forces) = ((&residual[..], obstacles), &forces);
         let computed = OnceCell::new();
         let neighbours = match &space.neighbours {
             Some(neighbours) => neighbours,
@@ -168,13 +169,14 @@ impl<const D: usize> Discretisation<'_, D> {
         let found = Found {
             u,
             inequality,
-            contact: &solution.contact,
+            bounds,
+            contact,
             jump_multipliers: jump_multipliers.as_deref(),
             of_solver,
             forces,
             neighbours,
         };
-        let pair = space.admissible_function(u, (&inequality.bounds, &solution.contact));
+        let pair = space.admissible_function(u, (bounds, contact));
         let with_flux = |on_facets: bool| match space.degree {
             2 => self.with_flux_of_quadratics(pair.clone(), &found, on_facets),
             _ => self.with_flux_of_linears(pair.clone(), &found, counts, on_facets),
@@ -261,7 +263,7 @@ impl<const D: usize> Discretisation<'_, D> {
             true => None,
             false => space.node_numbers(&pair.edges),
         };
-        let states = (&inequality.bounds[..], found.contact);
+        let states = (found.bounds, found.contact);
         let mut loads = space.cell_loads(u, of_solver, states, forces, numbers)?;
         let known = match has_facet_fluxes {
             true => None,
@@ -302,6 +304,8 @@ impl<const D: usize> Discretisation<'_, D> {
 struct Found<'f> {
     u: &'f [f64],
     inequality: &'f Inequality<f64>,
+    /// Bounds and contact states, without kinks.
+    bounds: &'f [Bound<f64>],
     contact: &'f [Contact],
     /// The multipliers of jumps of over-penalties.
     jump_multipliers: Option<&'f [f64]>,
@@ -310,6 +314,25 @@ struct Found<'f> {
     /// The forces on contact facets.
     forces: &'f [NodeForce],
     neighbours: &'f Neighbours,
+}
+
+/// The forces of friction, by kink, and the residual without them: a kink that does not hold its unknown has its
+/// largest force, and what exceeds that is rounding or what the solver left.
+fn take_friction(
+    inequality: &Inequality<f64>,
+    contact: &[Contact],
+    residual: &mut [f64],
+) -> Vec<f64> {
+    let mut take = |k: usize| {
+        let (kink, slope) = (&inequality.kinks[k], inequality.slope_at(k));
+        let rest = &mut residual[kink.unknown as usize];
+        *rest += slope;
+        let sticks = inequality.sticks(k, contact);
+        let force = if sticks { (-*rest).clamp(-kink.slope, kink.slope) } else { -slope };
+        *rest += force;
+        force
+    };
+    (0..inequality.kinks.len()).map(&mut take).collect()
 }
 
 /// Adds the forces of a pair on the boundary to its flux.

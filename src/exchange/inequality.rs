@@ -62,10 +62,9 @@ fn write_files_with(
     let mut kinks: Vec<f64> = Vec::new();
     for (k, kink) in inequality.kinks.iter().enumerate() {
         let i = kink.unknown as usize;
-        let place = bounds[i].lower().or(bounds[i].upper()).expect("a kink has one bound");
         load[i] += inequality.slope_at(k);
-        intervals[i] = [f64::NEG_INFINITY, f64::INFINITY];
-        kinks.extend([f64::from(kink.unknown), place, -kink.slope, kink.slope]);
+        intervals[i] = kink.own.interval();
+        kinks.extend([f64::from(kink.unknown), kink.place, -kink.slope, kink.slope]);
     }
     let text = |name: &str, write: &dyn Fn(&mut dyn Write) -> std::io::Result<()>| {
         replace(&directory.join(name), |draft| {

@@ -7,7 +7,7 @@
 
 use super::certificate::residual;
 use super::{InitialGuess, Outcome, Solution};
-use crate::algebra::{Contact, Inequality, RESULTANT_ROUNDING, Start};
+use crate::algebra::{Bound, Contact, Inequality, RESULTANT_ROUNDING, Start};
 use crate::real::Real;
 
 /// Most pieces for which an inequality is solved.
@@ -56,10 +56,8 @@ pub(super) fn solve_on_pieces<T: Real>(
         solution.outcome = Outcome::NotUnique;
         solution.algebraic_bound = None;
     }
-    let is_turned = |&k: &u32| {
-        let unknown = inequality.kinks[k as usize].unknown as usize;
-        piece.bounds[unknown] != inequality.bounds[unknown]
-    };
+    let is_turned =
+        |&k: &u32| piece.kinks[k as usize].is_above != inequality.kinks[k as usize].is_above;
     solution.turned = (0..inequality.kinks.len() as u32).filter(is_turned).collect();
     solution
 }
@@ -93,10 +91,9 @@ fn solve_without_kinks<T: Real>(
     let (kinks, bodies) = (std::mem::take(&mut piece.kinks), piece.bodies.clone());
     for body in &mut piece.bodies {
         let Some(entries) = body.kernel.map(|k| &piece.kernel[k]) else { continue };
-        for kink in &kinks {
+        for kink in kinks.iter().filter(|kink| kink.has_both_sides()) {
             if let Ok(k) = entries.binary_search_by_key(&kink.unknown, |(i, _)| *i) {
-                let is_below = piece.bounds[kink.unknown as usize].lower().is_some();
-                let is_down = is_below == (entries[k].1.to_f64() > 0.0);
+                let is_down = kink.is_above == (entries[k].1.to_f64() > 0.0);
                 *(if is_down { &mut body.stops_below } else { &mut body.stops_above }) = true;
             }
         }
@@ -109,12 +106,13 @@ fn solve_without_kinks<T: Real>(
 /// Turns kinks to the sides of the values of a guess, and the states of its start with them.
 fn turn_by_guess<T: Real>(piece: &mut Inequality<T>, values: &[T]) {
     piece.turn_to(values);
-    let Inequality { kinks, bounds, start: Start::Contact(states), .. } = piece else { return };
-    for i in kinks.iter().map(|kink| kink.unknown as usize) {
-        let is_above = bounds[i].lower().is_some();
-        let at_kink = if is_above { Contact::Lower } else { Contact::Upper };
-        if let Some(state) = states.get_mut(i).filter(|state| **state != Contact::Inactive) {
-            *state = at_kink;
+    let Inequality { kinks, start: Start::Contact(states), .. } = piece else { return };
+    for kink in kinks {
+        let state = states.get_mut(kink.unknown as usize);
+        if let Some(state) = state.filter(|state| **state != Contact::Inactive) {
+            // beside bounds of its own nothing tells which of them a start means
+            let is_alone = kink.own == Bound::Free;
+            *state = kink.state().filter(|_| is_alone).unwrap_or_default();
         }
     }
 }
@@ -124,12 +122,11 @@ fn beyond_the_jump<T: Real>(piece: &Inequality<T>, solution: &Solution<T>) -> Ve
     let mut r = vec![0.0; piece.size()];
     residual(piece, &solution.values, &solution.jump_multipliers, &mut r);
     let is_beyond = |&k: &usize| {
+        if !piece.sticks(k, &solution.contact) {
+            return false;
+        }
         let (i, jump) = (piece.kinks[k].unknown as usize, 2.0 * piece.kinks[k].slope.to_f64());
-        let force = match solution.contact[i] {
-            Contact::Inactive => return false,
-            Contact::Lower => -r[i],
-            Contact::Upper => r[i],
-        };
+        let force = if piece.kinks[k].is_above { -r[i] } else { r[i] };
         let (columns, entries) = piece.matrix.row(i);
         let terms = columns
             .iter()

@@ -215,7 +215,8 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
         let matrix = has_levels::<D>(&inequality).then_some(inequality.matrix);
         let mut result = (solution.outcome, solution.contact, solution.values);
         // a start has the same state on both sides of a kink
-        let at_kinks = inequality_kinks.iter().map(|kink| kink.unknown as usize);
+        let alone = inequality_kinks.iter().filter(|kink| kink.own == Bound::Free);
+        let at_kinks = alone.map(|kink| kink.unknown as usize);
         for i in at_kinks.filter(|&i| result.1[i] == Contact::Upper).collect::<Vec<_>>() {
             result.1[i] = Contact::Lower;
         }

@@ -29,6 +29,7 @@ use super::{ExpectedOrders, Setting};
 pub(crate) fn energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
     let s = setting.regularity.sobolev;
     let most = match degree {
+        _ if setting.friction && (setting.obstacle || setting.contact) => None,
         1 => Some(1.0),
         _ if setting.is_linear() => Some(degree as f64),
         _ if setting.friction => None,

@@ -2,15 +2,23 @@
 
 mod turning;
 
-/// A kink of the convex function `slope |x - place|` of an unknown.
+use super::bound::Bound;
+
+/// A kink of the convex function `slope |x - place|` of an unknown, which may have bounds of its own beside it.
 ///
-/// The place is the bound of the unknown: [`Bound::Lower`](super::Bound::Lower) where the load has the slope of the
-/// function above the place, `-slope`, [`Bound::Upper`](super::Bound::Upper) where it has that below, `slope`.
-/// [`Inequality::turn`](super::Inequality::turn) goes from one to the other.
+/// The inequality has one side of the kink. There the place is a bound of the unknown, lower above it, upper below it,
+/// and the load has the slope of the function, `-slope` above the place, `slope` below it.
+/// [`Inequality::turn`](super::Inequality::turn) goes from one side to the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kink<T> {
     /// The unknown.
     pub unknown: u32,
     /// The slope, positive.
     pub slope: T,
+    /// Where the slope jumps.
+    pub place: T,
+    /// Whether the inequality has the side above the place.
+    pub is_above: bool,
+    /// The bounds of the unknown without the kink.
+    pub own: Bound<T>,
 }

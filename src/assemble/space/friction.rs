@@ -6,9 +6,8 @@ use super::{Space, checks};
 use crate::algebra::{Bound, Inequality};
 use crate::constraint::offered;
 use crate::error::{Error, InCell};
-use crate::mesh::{BoundaryCondition, HalfFacet, describe_point};
+use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::facet_to_cell;
-use crate::real::Point;
 
 /// A weight below this share of the integral of the threshold is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -20,7 +19,7 @@ impl<const D: usize> Space<'_, D> {
     /// # Errors
     /// [`Error::DataNotFinite`]; [`Error::CoefficientNotPositive`] for a threshold that is negative at a point of a rule;
     /// [`Error::NothingToBound`] where a weight is negative, or that of a function that the constraint set does not bind is
-    /// not zero; [`Error::UnsupportedForm`] for an unknown that has an obstacle too.
+    /// not zero.
     pub fn add_friction(&self, inequality: &mut Inequality<f64>) -> Result<(), Error> {
         if !self.data.friction.is_given() {
             return Ok(());
@@ -34,19 +33,9 @@ impl<const D: usize> Space<'_, D> {
             }
         }
         for (unknown, (slope, place)) in slopes {
-            match inequality.bounds[unknown] {
-                Bound::Fixed(_) => {}
-                Bound::Free if slope > 0.0 => inequality.add_kink(unknown as u32, slope, place),
-                Bound::Free => {}
-                _ => {
-                    let corners = inequality.locations[unknown].vertices();
-                    let sum: Point<D> =
-                        corners.iter().map(|&v| self.mesh.vertices()[v as usize]).sum();
-                    return Err(Error::UnsupportedForm(format!(
-                        "the unknown at {} on a boundary with friction has an obstacle or a gap too: leave friction out there, or the obstacle",
-                        describe_point(&(sum / corners.len() as f64))
-                    )));
-                }
+            // a fixed unknown has no function of its value
+            if slope > 0.0 && !matches!(inequality.bounds[unknown], Bound::Fixed(_)) {
+                inequality.add_kink(unknown as u32, slope, place);
             }
         }
         Ok(())

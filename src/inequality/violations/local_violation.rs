@@ -43,10 +43,15 @@ impl LocalViolation {
         local
     }
 
-    /// Counts as a multiplier by how much the step of an unknown at its bound exceeds the largest one.
-    pub fn add_excess<T: Real>(&mut self, bound: &Bound<T>, (x, step): (f64, f64), most: f64) {
+    /// Counts as a multiplier by how much the step of an unknown in a contact state exceeds the largest one there.
+    pub fn add_excess<T: Real>(
+        &mut self,
+        bound: &Bound<T>,
+        (x, step): (f64, f64),
+        (state, most): (Contact, f64),
+    ) {
         let excess = step.abs() - most;
-        if excess > 0.0 && touched_bound(bound, x, step) != Contact::Inactive {
+        if excess > 0.0 && touched_bound(bound, x, step) == state {
             self.multiplier = maximum(self.multiplier, excess);
         }
     }

@@ -7,7 +7,7 @@ use super::certificate::{Certificate, positive_diagonal, residual};
 use super::contact_forces::BalancedNodes;
 use super::scales::{Scales, Sums};
 use super::validation::data_are_in_range;
-use crate::algebra::{Distribution, Inequality, PenalisedMatrix};
+use crate::algebra::{Contact, Distribution, Inequality, PenalisedMatrix};
 use crate::arrays::array_of;
 use crate::instances::compiled;
 use crate::parallel::vectors::{collect, largest, map_chunks};
@@ -164,8 +164,8 @@ impl Violations {
                     let stiffness = penalised.stiffness_diagonal(i);
                     local.add_share(&bounds[i], (x, step), shares[i], (stiffness, d));
                 }
-                if let Some(&jump) = jumps.get(i) {
-                    local.add_excess(&bounds[i], (x, step), jump / d);
+                if let Some(&(state, jump)) = jumps.get(i) {
+                    local.add_excess(&bounds[i], (x, step), (state, jump / d));
                 }
                 feasibility = maximum(feasibility, local.feasibility);
                 let changes = [local.multiplier, local.complementarity, local.residual];
@@ -279,13 +279,15 @@ fn shares_of_nodes<'a, T: Real>(
     inequality.penalised.as_ref().map(|penalised| (shares, penalised))
 }
 
-/// By unknown the largest multiplier at its bound: the jump of the slope at a kink, infinite elsewhere; empty without
-/// kinks.
-fn jumps_of_slopes<T: Real>(inequality: &Inequality<T>) -> Vec<f64> {
-    let mut jumps =
-        vec![f64::INFINITY; if inequality.kinks.is_empty() { 0 } else { inequality.size() }];
+/// By unknown the largest multiplier in a contact state: the jump of the slope where a kink holds it, infinite elsewhere;
+/// empty without kinks.
+fn jumps_of_slopes<T: Real>(inequality: &Inequality<T>) -> Vec<(Contact, f64)> {
+    let n = if inequality.kinks.is_empty() { 0 } else { inequality.size() };
+    let mut jumps = vec![(Contact::Inactive, f64::INFINITY); n];
     for kink in &inequality.kinks {
-        jumps[kink.unknown as usize] = 2.0 * kink.slope.to_f64();
+        if let Some(state) = kink.state() {
+            jumps[kink.unknown as usize] = (state, 2.0 * kink.slope.to_f64());
+        }
     }
     jumps
 }

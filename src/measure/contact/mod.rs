@@ -227,18 +227,24 @@ impl<const D: usize> Space<'_, D> {
         (inequality, solution): SolvedInequality<'_>,
     ) -> Vec<bool> {
         // the locations where some unknown is in contact: vertices, and others sorted by their vertices
-        let touches = |&k: &usize| solution.contact[k] != Contact::Inactive;
-        let mut vertices = vec![false; self.mesh.vertices().len()];
-        let mut locations: Vec<&[u32]> = Vec::new();
-        for k in (0..inequality.size()).filter(touches) {
-            match inequality.locations[k].vertices() {
-                _ if !inequality.bounds[k].is_inequality() => {}
-                &[v] => vertices[v as usize] = true,
-                several => locations.push(several),
+        let states = inequality.states_at_bounds(&solution.contact);
+        let locations_of = |touches: &dyn Fn(usize) -> bool| {
+            let mut vertices = vec![false; self.mesh.vertices().len()];
+            let mut locations: Vec<&[u32]> = Vec::new();
+            for k in (0..inequality.size()).filter(|&k| touches(k)) {
+                match inequality.locations[k].vertices() {
+                    _ if !inequality.bounds[k].is_inequality() => {}
+                    &[v] => vertices[v as usize] = true,
+                    several => locations.push(several),
+                }
             }
-        }
-        locations.sort_unstable();
-        locations.dedup();
+            locations.sort_unstable();
+            locations.dedup();
+            (vertices, locations)
+        };
+        let at_bounds = locations_of(&|k| states[k] != Contact::Inactive);
+        let has_friction = !inequality.kinks.is_empty();
+        let at_kinks = has_friction.then(|| locations_of(&|k| states[k] != solution.contact[k]));
         let given = self.dirichlet_groups();
         let mut largest = [solution.values.iter().map(|u| u.abs()).fold(0.0, f64::max)];
         inequality.distribution().largest(&mut largest);
@@ -252,6 +258,12 @@ impl<const D: usize> Space<'_, D> {
             if let Some(group) = group.filter(|_| groups.clone().all(|g| g.is_some())) {
                 self.datum_touches(entity, group, location, slack)
             } else {
+                let is_facet_of_friction = entity.facet.is_some_and(|local| {
+                    let group = self.mesh.boundary_group(entity.cell, local);
+                    group.is_some_and(|group| self.data.friction.of(group).is_some())
+                });
+                let of_friction = at_kinks.as_ref().filter(|_| is_facet_of_friction);
+                let (vertices, locations) = of_friction.unwrap_or(&at_bounds);
                 match location {
                     &[v] => vertices[v as usize],
                     several => locations.binary_search(&several).is_ok(),

@@ -22,7 +22,10 @@ struct Share {
 
 /// Multipliers in contact by unknown, and which of them obstacles have.
 pub(crate) struct Multipliers {
+    /// Of obstacles and gaps.
     by_unknown: Vec<f64>,
+    /// Of friction, by kink.
+    friction: Vec<f64>,
     obstacles: ActiveObstacles,
 }
 
@@ -74,12 +77,8 @@ impl<const D: usize> Space<'_, D> {
             self.names_of_resultants().into_iter().map(|name| (name, 0.0)).collect();
         let multipliers = self.multipliers(solved)?;
         let (inequality, solution) = solved;
-        let has_kink = |unknown: usize| {
-            inequality.kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown).is_ok()
-        };
         for (unknown, value) in multipliers.by_unknown.iter().enumerate() {
-            let is_obstacle = multipliers.obstacles.act_at(unknown) && !has_kink(unknown);
-            if *value != 0.0 && is_obstacle && of_unknowns(unknown) {
+            if *value != 0.0 && multipliers.obstacles.act_at(unknown) && of_unknowns(unknown) {
                 let is_upper = solution.contact[unknown] == Contact::Upper;
                 let name = if is_upper { "upper" } else { "lower" };
                 *sums.entry(name.to_owned()).or_default() += value;
@@ -134,7 +133,7 @@ impl<const D: usize> Space<'_, D> {
                 let kinks = &inequality.kinks;
                 let found = kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown);
                 if let Ok(k) = found {
-                    let value = of.by_unknown[unknown] * (weight / kinks[k].slope);
+                    let value = of.friction[k] * (weight / kinks[k].slope);
                     shares.push(Share { place, unknown, value });
                 }
             }
@@ -171,9 +170,20 @@ impl<const D: usize> Space<'_, D> {
 
     /// The multipliers of a solution, none where rounding leaves no digit; all parts of a mesh call it.
     pub(crate) fn multipliers(&self, solved: SolvedInequality<'_>) -> Option<Multipliers> {
-        let by_unknown = self.nodal_multipliers(solved)?;
-        let obstacles = self.active_obstacles(&solved.0.bounds, &solved.1.contact);
-        Some(Multipliers { by_unknown, obstacles })
+        let (inequality, contact) = (solved.0, &solved.1.contact);
+        let mut by_unknown = self.nodal_multipliers(solved)?;
+        // a kink that does not hold its unknown has its largest force
+        let mut share = |k: usize| {
+            let all = &mut by_unknown[inequality.kinks[k].unknown as usize];
+            let own = if inequality.sticks(k, contact) { *all } else { -inequality.slope_at(k) };
+            let friction = if *all == 0.0 { 0.0 } else { own };
+            *all -= friction;
+            friction
+        };
+        let friction = (0..inequality.kinks.len()).map(&mut share).collect();
+        let states = inequality.states_at_bounds(contact);
+        let obstacles = self.active_obstacles(&inequality.own_bounds(), &states);
+        Some(Multipliers { by_unknown, friction, obstacles })
     }
 
     /// The shares of the multipliers of obstacles in all cells: that of a shared unknown by volume among the cells

@@ -20,7 +20,7 @@ impl<const D: usize> Space<'_, D> {
         let have_digits = forces.have_digits(inequality, solution, counts);
         let value = |i: usize| if counts(i) { forces.values[i] } else { 0.0 };
         let mut values = have_digits.then(|| collect(forces.values.len(), value))?;
-        // friction acts at slip too, and is no part of the load
+        // friction acts at slip too
         for (k, kink) in inequality.kinks.iter().enumerate() {
             if counts(kink.unknown as usize) {
                 values[kink.unknown as usize] -= inequality.slope_at(k);
