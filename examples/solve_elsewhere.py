@@ -30,7 +30,7 @@ if "clarabel" in sys.argv:  # minimise u.Au/2 - b.u + sum t within the bounds, t
     cones = [clarabel.ZeroConeT(int(fixed.sum())), clarabel.NonnegativeConeT(int(low.sum() + up.sum()) + 2 * m)]
     settings = clarabel.DefaultSettings()
     settings.verbose = False
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-13
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-11
     u = np.array(clarabel.DefaultSolver(sparse.triu(A).tocsc(), -b, G.tocsc(), h, cones, settings).solve().x)[:n]
 else:  # the primal-dual active set method
     c, u = A.diagonal(), np.clip(0.0, lower, upper)

@@ -129,8 +129,8 @@ fn needs_scipy() {
             let certificate = &rows(&judged)[0]["certificate"];
             println!("{name}, {solver}: {certificate}");
             let keys = ["feasibility", "multiplier", "complementarity", "residual"];
-            // the interior point method has a tolerance of 1e-13 on the energy, a square
-            let limit = if solver == "clarabel" { 1e-6 } else { 1e-10 };
+            // the interior point method has a tolerance of 1e-11 on the energy, a square
+            let limit = if solver == "clarabel" { 1e-5 } else { 1e-10 };
             assert!(keys.iter().all(|key| certificate[key].as_f64().unwrap() < limit), "{name}");
         }
     }

@@ -78,9 +78,9 @@ impl<const D: usize> Discretisation<'_, D> {
         )(self, wanted, inequality, solution)
     }
 
-    /// The numbers of the exact solution of the problem on this mesh; none without one, and no integrals and means on a mesh
-    /// with a [shape](Mesh::with_shape), which is another domain. Reactions and contact forces are integrals of its normal
-    /// flux.
+    /// The numbers of the exact solution of the problem on this mesh; none without one, and no integrals and means on a
+    /// mesh with a [shape](crate::mesh::Mesh::with_shape), which is another domain. Reactions and contact forces are
+    /// integrals of its normal flux.
     ///
     /// # Errors
     /// Those of [`Self::values_of`].
