@@ -108,11 +108,6 @@ impl Setting {
     pub const fn with_contact(self, contact: bool) -> Self {
         Self { contact, ..self }
     }
-    /// Sets whether there is friction on the boundary.
-    #[must_use]
-    pub const fn with_friction(self, friction: bool) -> Self {
-        Self { friction, ..self }
-    }
     /// Sets whether the problem has a coefficient that is a function of space.
     #[must_use]
     pub const fn with_coefficient(self, coefficient: bool) -> Self {

@@ -112,13 +112,11 @@ impl<const D: usize> Space<'_, D> {
         for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
             for (node, weight) in self.friction_weights((cell, local), group)? {
                 let unknown = self.dofs.of(cell, node);
-                let kinks = &inequality.kinks;
-                let kink = kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown);
                 let own = u[unknown] + self.body_constants.of_cell(cell) * one[node];
-                let value = match kink {
-                    Ok(k) => by_kink[k] * (weight / kinks[k].slope),
-                    Err(_) if own.abs() > zero => -weight * own.signum(),
-                    Err(_) => self.flux_at_node((cell, local), node, u).clamp(-weight, weight),
+                let value = match inequality.kink_of(unknown) {
+                    Some(k) => by_kink[k] * (weight / inequality.kinks[k].slope),
+                    None if own.abs() > zero => -weight * own.signum(),
+                    None => self.flux_at_node((cell, local), node, u).clamp(-weight, weight),
                 };
                 forces.push(NodeForce { cell, local, node, value });
             }

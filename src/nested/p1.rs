@@ -211,14 +211,15 @@ impl<'a, const D: usize> P1Iteration<'a, D> {
         })?;
         let clock = Instant::now();
         let fixed = fixed(&inequality);
-        let inequality_kinks = inequality.kinks.clone();
+        let alone = inequality.kinks.iter().filter(|kink| kink.own == Bound::Free);
+        let at_kinks: Vec<usize> = alone.map(|kink| kink.unknown as usize).collect();
         let matrix = has_levels::<D>(&inequality).then_some(inequality.matrix);
         let mut result = (solution.outcome, solution.contact, solution.values);
         // a start has the same state on both sides of a kink
-        let alone = inequality_kinks.iter().filter(|kink| kink.own == Bound::Free);
-        let at_kinks = alone.map(|kink| kink.unknown as usize);
-        for i in at_kinks.filter(|&i| result.1[i] == Contact::Upper).collect::<Vec<_>>() {
-            result.1[i] = Contact::Lower;
+        for i in at_kinks {
+            if result.1[i] == Contact::Upper {
+                result.1[i] = Contact::Lower;
+            }
         }
         let mut solution = P1Solution::new(start.as_deref(), (matrix, fixed), result);
         solution.seconds += seconds + clock.elapsed().as_secs_f64();

@@ -79,6 +79,10 @@ impl<T: Real> Inequality<T> {
     pub fn slope_at(&self, position: usize) -> f64 {
         self.kinks[position].slope_on_side().to_f64()
     }
+    /// The position of the kink of an unknown.
+    pub(crate) fn kink_of(&self, unknown: usize) -> Option<usize> {
+        self.kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown).ok()
+    }
     /// Whether a kink holds its unknown, whose contact state is one of these.
     pub(crate) fn sticks(&self, position: usize, contact: &[Contact]) -> bool {
         let kink = &self.kinks[position];

@@ -298,10 +298,10 @@ impl<const D: usize> Space<'_, D> {
         let contact = entity.facet.and_then(|local| self.mesh.boundary_group(entity.cell, local));
         let gap = contact.and_then(|group| self.data.gap.of(group));
         let bounds = [self.data.lower.of(region), self.data.upper.of(region), gap];
+        let place = contact.filter(|&group| self.data.friction.of(group).is_some());
+        let place = place.map(|_| -self.body_constants.of_cell(entity.cell));
         let value = self.dirichlet_at(group, entity.cell, &x);
-        bounds
-            .into_iter()
-            .flatten()
-            .any(|bound| (value - self.at(bound, entity.cell, &x)).abs() <= slack)
+        let bounds = bounds.into_iter().flatten().map(|bound| self.at(bound, entity.cell, &x));
+        bounds.chain(place).any(|bound| (value - bound).abs() <= slack)
     }
 }

@@ -130,10 +130,8 @@ impl<const D: usize> Space<'_, D> {
             let weights = self.friction_weights(facet, group);
             for (node, weight) in weights.expect("the assembly found weights") {
                 let unknown = self.dofs.of(facet.0, node);
-                let kinks = &inequality.kinks;
-                let found = kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown);
-                if let Ok(k) = found {
-                    let value = of.friction[k] * (weight / kinks[k].slope);
+                if let Some(k) = inequality.kink_of(unknown) {
+                    let value = of.friction[k] * (weight / inequality.kinks[k].slope);
                     shares.push(Share { place, unknown, value });
                 }
             }
