@@ -395,6 +395,28 @@ fn an_unknown_has_an_obstacle_and_friction() {
     }
 }
 
+/// Friction without a name lies on the Neumann boundary, not on a contact side beside it.
+#[test]
+fn friction_without_a_name_leaves_other_sides_alone() {
+    let square = BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0))
+        .side(0, 0, BoundaryCondition::Neumann)
+        .side(1, 0, BoundaryCondition::Contact);
+    let of = || Problem::<2>::new().source(|x: &Point<2>| 6.0 - 12.0 * x[0]).signorini(|_| -0.05);
+    let everywhere = of().friction(|_| 0.3);
+    let named = of().friction_on("left", 0.3);
+    for name in ["p1", "cr", "sipg", "p2"] {
+        let found = [&everywhere, &named].map(|problem| {
+            let mesh = problem.bind_boundary(Mesh::kuhn_box(&square, [6, 6]).unwrap()).unwrap();
+            let solved = solve(problem, &mesh, &*scheme::<2>(name)).unwrap();
+            assert!(solved.converged(), "{name}");
+            let forces = solved.resultants().unwrap();
+            (solved.energy().unwrap().unwrap(), forces.into_values().collect::<Vec<_>>())
+        });
+        assert_eq!(found[0].1.len(), 2, "{name}: {:?}", found[0]);
+        assert_eq!(found[0].0, found[1].0, "{name}");
+    }
+}
+
 /// What friction cannot have is refused by name.
 #[test]
 fn what_friction_cannot_have_is_refused() {

@@ -145,8 +145,7 @@ impl<const D: usize> Space<'_, D> {
         let mut names: Vec<String> = given.map(|(name, _)| name.to_owned()).collect();
         for (group, of_group) in self.mesh.boundary_groups().iter().enumerate() {
             let is_contact = of_group.condition == Some(BoundaryCondition::Contact);
-            let has_friction = self.data.friction.of(group).is_some()
-                && of_group.condition == Some(BoundaryCondition::Neumann);
+            let has_friction = self.data.friction.of(group).is_some();
             if is_contact && self.data.gap.of(group).is_some() || has_friction {
                 names.push(self.name_of_gap(group));
             }
