@@ -243,8 +243,8 @@ impl<T: Real> Inequality<T> {
     pub fn is_feasible(&self) -> bool {
         all(self.bounds.len(), |i| !matches!(self.bounds[i], Bound::Both(l, u) if l > u))
     }
-    /// The energy `u.A u / 2 - b.u`, with the functions of kinks, in `f64`; that of a penalised matrix by its jumps, because differences of
-    /// products of its entries would have no digits where the penalty is large.
+    /// The energy `u.A u / 2 - b.u`, with the functions of kinks, in `f64`; that of a penalised matrix by its jumps,
+    /// because differences of products of its entries would have no digits where the penalty is large.
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.

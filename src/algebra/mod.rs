@@ -6,8 +6,8 @@
 //! discontinuous linear functions. `dense`: small dense matrices.
 //! `dirichlet_energy`: the terms of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
-//! unknown. `kink`: kinks of the convex functions of unknowns. `inequality`: locations of unknowns and the inequality. `in_precision`:
-//! matrices, bounds and inequalities rounded.
+//! unknown. `kink`: kinks of the convex functions of unknowns. `inequality`: locations of unknowns and the inequality.
+//! `in_precision`: matrices, bounds and inequalities rounded.
 
 mod bound;
 pub(crate) mod dense;

@@ -206,11 +206,10 @@ impl<const D: usize> Space<'_, D> {
         let x = self.facet_point(point, cell, local);
         let middle = [1.0 / (D + 1) as f64; 4];
         let inward = x + (self.cell_point(&middle, cell) - x) * INWARD;
-        self.alpha_at(cell, &inward)
-            * self
-                .tensor_at(cell, &inward)
-                .map_or((exact.gradient)(&x), |tensor| tensor.flux(&(exact.gradient)(&x)))
-                .dot(&self.mesh.geometry(cell).normal(local))
+        let gradient = (exact.gradient)(&x);
+        let tensor = self.tensor_at(cell, &inward);
+        let flux = tensor.map_or(gradient, |tensor| tensor.flux(&gradient));
+        self.alpha_at(cell, &inward) * flux.dot(&self.mesh.geometry(cell).normal(local))
     }
 
     /// The load of all unknowns, with or without the Dirichlet data that the facet form imposes, and these data. The

@@ -57,13 +57,14 @@ fn write_files_with(
 ) -> Result<(), Error> {
     fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
     let Inequality { matrix, bounds, .. } = inequality;
-    let mut load = inequality.assembled_load().into_owned();
+    let mut load = inequality.assembled_load();
+    if !inequality.kinks.is_empty() {
+        inequality.add_slopes(load.to_mut());
+    }
     let mut intervals: Vec<[f64; 2]> = bounds.iter().map(Bound::interval).collect();
     let mut kinks: Vec<f64> = Vec::new();
-    for (k, kink) in inequality.kinks.iter().enumerate() {
-        let i = kink.unknown as usize;
-        load[i] += inequality.slope_at(k);
-        intervals[i] = kink.own.interval();
+    for kink in &inequality.kinks {
+        intervals[kink.unknown as usize] = kink.own.interval();
         kinks.extend([f64::from(kink.unknown), kink.place, -kink.slope, kink.slope]);
     }
     let text = |name: &str, write: &dyn Fn(&mut dyn Write) -> std::io::Result<()>| {

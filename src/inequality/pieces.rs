@@ -1,9 +1,9 @@
 //! Inequalities with kinks, solved piece by piece.
 //!
 //! On one side of each kink the convex function of an unknown is linear: its slope is load, its kink a bound. The solution
-//! there is that of the whole problem unless the multiplier at a bound exceeds the jump of the slope. Such an unknown turns
-//! to its other side: the energy falls, for the point itself is admissible there, so that no piece returns and the last one
-//! is reached after finitely many.
+//! there is that of the whole problem unless the multiplier at a kink exceeds the jump of the slope. Such an unknown turns to the
+//! other side of its kink. The solution at hand is admissible there too, and the next one has less energy: no piece
+//! returns, and the last one is reached after finitely many.
 
 use super::certificate::residual;
 use super::{InitialGuess, Outcome, Solution};
@@ -12,7 +12,7 @@ use crate::real::Real;
 
 /// Most pieces for which an inequality is solved.
 const MOST_PIECES: usize = 100;
-/// A multiplier turns a kink if it exceeds the jump of the slope by this share of the force of the unknown.
+/// A multiplier turns a kink if it exceeds the jump of the slope by this many units of rounding in the residual.
 const EXCESS: f64 = 64.0;
 
 /// Solves an inequality by `solve`, which takes it without kinks in mind, and names the kinks that turned.

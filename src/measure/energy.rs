@@ -18,8 +18,8 @@ impl<const D: usize> Discretisation<'_, D> {
     /// 1/2 int alpha grad u . T grad u + 1/2 int c u^2 - int f u - int_N q u + 1/2 int_R k u^2 - int_R k g u
     /// ```
     ///
-    /// with the gradient in each cell, the Neumann boundary `N` and Robin sides `R`. No facet form enters, so that a function
-    /// has the same energy in every scheme; the minimum over the admissible functions is that of the
+    /// and `+ int g |u|` on sides with friction, with the gradient in each cell, the Neumann boundary `N` and Robin sides
+    /// `R`. No facet form enters, so that a function has the same energy in every scheme; the minimum over the admissible functions is that of the
     /// continuous problem, and a discontinuous function may lie below it. Coefficient, reaction and loads
     /// are integrated by the rules of the assembly. `u` is the vector with the constants of bodies: with `w` the vector
     /// without, `J` the energy of `w` with the data less the constants and `l` their load, it is

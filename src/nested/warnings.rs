@@ -1,5 +1,7 @@
 //! The warnings of a solve.
 
+use std::borrow::Cow;
+
 use super::solved::Solved;
 use crate::algebra::Inequality;
 use crate::assemble::Discretisation;
@@ -124,9 +126,9 @@ pub(crate) fn warnings_of_forces<const D: usize>(
         )];
     };
     let inequality = solved.inequality();
-    let mut loads = inequality.load.clone();
-    for (k, kink) in inequality.kinks.iter().enumerate() {
-        loads[kink.unknown as usize] += inequality.slope_at(k);
+    let mut loads = Cow::Borrowed(&inequality.load[..]);
+    if !inequality.kinks.is_empty() {
+        inequality.add_slopes(loads.to_mut());
     }
     let imbalance = |body: &Vec<(u32, f64)>| {
         let (mut sum, mut size) = (0.0, 0.0);

@@ -6,8 +6,8 @@ use super::bound::Bound;
 
 /// A kink of the convex function `slope |x - place|` of an unknown, which may have bounds of its own beside it.
 ///
-/// The inequality has one side of the kink. There the place is a bound of the unknown, lower above it, upper below it,
-/// and the load has the slope of the function, `-slope` above the place, `slope` below it.
+/// Load and bounds of the inequality are those of one side of the kink. The place is a bound of the unknown there, the
+/// lower one above the place, the upper one below it; the load has `-slope` above the place, `slope` below it.
 /// [`Inequality::turn`](super::Inequality::turn) goes from one side to the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kink<T> {

@@ -79,6 +79,12 @@ impl<T: Real> Inequality<T> {
     pub fn slope_at(&self, position: usize) -> f64 {
         self.kinks[position].slope_on_side().to_f64()
     }
+    /// Adds to vectors of the load and of the residual what takes the slopes of kinks out of them.
+    pub(crate) fn add_slopes(&self, to: &mut [f64]) {
+        for (k, kink) in self.kinks.iter().enumerate() {
+            to[kink.unknown as usize] += self.slope_at(k);
+        }
+    }
     /// The position of the kink of an unknown.
     pub(crate) fn kink_of(&self, unknown: usize) -> Option<usize> {
         self.kinks.binary_search_by_key(&(unknown as u32), |kink| kink.unknown).ok()
@@ -107,7 +113,7 @@ impl<T: Real> Inequality<T> {
         }
         bounds
     }
-    /// What the linear functions that are in the load exceed those of the kinks by: slopes times places.
+    /// The sum of slope times place over the kinks: the load has `slope x` for the function `slope (x - place)`.
     pub(in crate::algebra) fn slopes_at_places(&self) -> f64 {
         self.kinks.iter().map(|kink| kink.slope_on_side().to_f64() * kink.place.to_f64()).sum()
     }

@@ -10,7 +10,7 @@ use super::obstacle_coefficients::Binding;
 use super::{Space, Terms};
 use crate::algebra::{Bound, Contact};
 use crate::constraint::BoundBy;
-use crate::mesh::{BoundaryCondition, HalfFacet};
+use crate::mesh::HalfFacet;
 use crate::parallel::cells;
 use crate::problem::Datum;
 
@@ -119,14 +119,8 @@ impl<const D: usize> Space<'_, D> {
     /// By unknown whether neither a gap nor friction binds it.
     fn unknowns_without_gap(&self) -> Vec<bool> {
         let mut without = vec![true; self.dofs.size()];
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Contact) {
-            if self.data.gap.of(group).is_some() {
-                let bounded = self.bounded_nodes_on(local);
-                bounded.for_each(|(i, _)| without[self.dofs.of(cell, i)] = false);
-            }
-        }
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryCondition::Neumann) {
-            if self.data.friction.of(group).is_some() {
+        for ((cell, local), group) in self.facets_of_forces() {
+            if self.data.friction.of(group).or(self.data.gap.of(group)).is_some() {
                 let bounded = self.bounded_nodes_on(local);
                 bounded.for_each(|(i, _)| without[self.dofs.of(cell, i)] = false);
             }

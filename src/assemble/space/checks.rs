@@ -20,6 +20,20 @@ pub(crate) fn finite<const D: usize>(
     }
 }
 
+/// A datum that must be finite and not negative.
+pub(crate) fn not_negative<const D: usize>(
+    value: f64,
+    datum: &'static str,
+    at: &Point<D>,
+    cell: usize,
+) -> Result<f64, Error> {
+    if finite(value, datum, at, cell)? < 0.0 {
+        let found = InCell::value((datum, value), at, cell, "it must not be negative");
+        return Err(Error::CoefficientNotPositive(found));
+    }
+    Ok(value)
+}
+
 /// The diffusion coefficient at a point of a cell; one that would vanish or overflow when
 /// rounded is refused.
 pub(crate) fn coefficient_at<const D: usize>(

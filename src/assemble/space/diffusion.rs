@@ -15,7 +15,7 @@ impl<const D: usize> Space<'_, D> {
     pub fn alpha(&self, cell: usize) -> f64 {
         self.coefficients.as_ref().map_or_else(|| 1.0, |a| a[cell])
     }
-    /// The diffusion coefficient at the barycentre of a cell; beside a tensor times the mean of its eigenvalues.
+    /// The diffusion coefficient at the barycentre of a cell; with a tensor, times the mean of its eigenvalues.
     pub fn mean_coefficient(&self, cell: usize) -> f64 {
         let of_tensor = self.tensor_in(cell).map_or(1.0, |tensor| tensor.mean_eigenvalue());
         self.alpha(cell) * of_tensor
@@ -141,7 +141,7 @@ impl<const D: usize> Space<'_, D> {
     pub fn has_tensor(&self) -> bool {
         self.tensor.is_some()
     }
-    /// A number that the least eigenvalue of the tensor of a cell is not below.
+    /// A lower bound of the least eigenvalue of the tensor of a cell.
     pub fn least_of_tensor(&self, cell: usize) -> f64 {
         self.tensor_in(cell).map_or(1.0, TensorFactor::least)
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{Space, checks};
 use crate::algebra::{Bound, Inequality};
 use crate::constraint::offered;
-use crate::error::{Error, InCell};
+use crate::error::Error;
 use crate::mesh::{BoundaryCondition, HalfFacet};
 use crate::quadrature::facet_to_cell;
 
@@ -77,7 +77,7 @@ impl<const D: usize> Space<'_, D> {
         let mut found = Vec::new();
         for (i, [plain, weight]) in nodes.into_iter().zip(weights) {
             let is_rounding = weight.abs() <= ROUNDING * size;
-            // where the threshold vanishes a weight may
+            // the weight of a node may vanish where the threshold does
             let has_weight = plain > ROUNDING * measure && (weight > 0.0 || is_rounding);
             if bound.contains(&i) && has_weight {
                 found.push((i, weight.max(0.0)));
@@ -106,11 +106,7 @@ impl<const D: usize> Space<'_, D> {
         for (point, weight) in self.facet_rule.iter() {
             let x = self.facet_point(point, cell, local);
             let datum = "threshold of friction";
-            let value = checks::finite(self.at(threshold, cell, &x), datum, &x, cell)?;
-            if value < 0.0 {
-                let found = InCell::value((datum, value), &x, cell, "it must not be negative");
-                return Err(Error::CoefficientNotPositive(found));
-            }
+            let value = checks::not_negative(self.at(threshold, cell, &x), datum, &x, cell)?;
             visit(&facet_to_cell(point, local), weight * measure * value);
         }
         Ok(())

@@ -340,7 +340,7 @@ impl<'a, const D: usize> Space<'a, D> {
     #[inline(always)]
     pub fn metric(&self, cell: usize) -> CellMetric<D> {
         let mut metric = CellMetric::of(self.mesh, cell);
-        // its measures are those of space
+        // volume and measures stay those of the mesh
         if let Some(tensor) = &self.tensor {
             metric.products = tensor.shape(self.mesh, cell, 1.0).1;
         }

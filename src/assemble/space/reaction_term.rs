@@ -3,12 +3,12 @@
 use std::slice::from_ref;
 use std::sync::Arc;
 
-use super::checks::finite;
+use super::checks::{finite, not_negative};
 use super::tables::{BasisAt, CellTable};
 use crate::assemble::cut_simplices::{CutRule, Visit};
 use crate::assemble::stiffness::Local;
 use crate::element::Element;
-use crate::error::{Error, InCell};
+use crate::error::Error;
 use crate::mesh::{BoundaryFacet, HalfFacet, Mesh};
 use crate::problem::{DataByGroup, DataOnMesh, Datum, Robin};
 use crate::quadrature::{Rule, facet_to_cell};
@@ -110,12 +110,7 @@ impl<const D: usize> ReactionTerm<D> {
             for (point, _) in self.facet_rule.iter() {
                 let x = mesh.point(*cell, &facet_to_cell(point, *local)[..=D]);
                 let datum = "coefficient of the Robin side";
-                let value = finite(side.coefficient.in_cell(mesh, *cell, &x), datum, &x, *cell)?;
-                if value < 0.0 {
-                    let rest = "it must not be negative";
-                    let found = InCell::value((datum, value), &x, *cell, rest);
-                    return Err(Error::CoefficientNotPositive(found));
-                }
+                not_negative(side.coefficient.in_cell(mesh, *cell, &x), datum, &x, *cell)?;
             }
         }
         Ok(())

@@ -16,9 +16,8 @@
 //! ```
 //!
 //! with the tensor `T = L L^T` of the coefficient, `L^T` times gradients, `L^-1` times fluxes and the diameter in the
-//! coordinates `L^-1 x`; and `c_K^-1/2 |r|_K` beside `|z|_K` in place of `R_K` where that is smaller, on a Robin side `|k^-1/2 t|_F` in place
-//! of the term of `T_K`. The multiplier `mu` is the mean of what
-//! the flux leaves, where an obstacle presses in its direction, with the share of the linear rest that keeps its sign
+//! coordinates `L^-1 x`; and `c_K^-1/2 |r|_K` beside `|z|_K` in place of `R_K` where that is smaller, on a Robin side
+//! `|k^-1/2 t|_F` in place of the term of `T_K`. The multiplier `mu` is the mean of what the flux leaves, where an obstacle presses in its direction, with the share of the linear rest that keeps its sign
 //! ([`share_of_one_sign`]); elsewhere the mean is what the solver left ([`Totals::of_solver`]).
 
 mod boundary;

@@ -30,15 +30,14 @@ impl<const D: usize> Discretisation<'_, D> {
         let Solution { values, contact, jump_multipliers, .. } = solution;
         let mut rest = vec![0.0; inequality.size()];
         residual(inequality, values, jump_multipliers, &mut rest);
-        let mut is_pressed: Vec<bool> = (0..contact.len())
-            .map(|i| inequality.bounds[i].is_inequality() && contact[i] != Contact::Inactive)
-            .collect();
-        for (k, kink) in inequality.kinks.iter().enumerate() {
-            rest[kink.unknown as usize] += inequality.slope_at(k);
-            is_pressed[kink.unknown as usize] = true;
-        }
+        inequality.add_slopes(&mut rest);
+        let is_pressed = |i: usize| {
+            let is_in_contact =
+                inequality.bounds[i].is_inequality() && contact[i] != Contact::Inactive;
+            is_in_contact || inequality.kink_of(i).is_some()
+        };
         for (i, location) in inequality.locations.iter().enumerate() {
-            let facets = around.get(location.vertices()).filter(|_| space.pins || is_pressed[i]);
+            let facets = around.get(location.vertices()).filter(|_| space.pins || is_pressed(i));
             let Some(facets) = facets else { continue };
             let all: f64 = facets.iter().map(|(_, measure)| measure).sum();
             for (group, measure) in facets {

@@ -70,6 +70,8 @@ struct OnGroup {
     formula: Formula,
     /// The coefficient of a Robin side.
     coefficient: Option<Formula>,
+    /// Whether the formula is a threshold of friction.
+    has_friction: bool,
     /// Its name in the file.
     datum: String,
     offset: usize,
@@ -180,13 +182,11 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             return Err(self.source.missing(offset, "kind", kinds));
         };
         let kind_name = self.source.string("kind", kind)?;
-        let (condition, is_robin) = match kind_name {
-            "robin" => (BoundaryCondition::Neumann, true),
-            "friction" => (BoundaryCondition::Neumann, false),
-            name => {
-                let condition = BoundaryCondition::from_name(name);
-                (condition.ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?, false)
-            }
+        let (is_robin, has_friction) = (kind_name == "robin", kind_name == "friction");
+        let condition = match is_robin || has_friction {
+            true => BoundaryCondition::Neumann,
+            false => BoundaryCondition::from_name(kind_name)
+                .ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?,
         };
         if BoundaryCondition::from_name(group).is_some_and(|named| named != condition) {
             let expected =
@@ -196,7 +196,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let (name, takes_normal) = match condition {
             BoundaryCondition::Dirichlet => ("value", false),
             BoundaryCondition::Neumann if is_robin => ("value", false),
-            BoundaryCondition::Neumann if kind_name == "friction" => ("threshold", false),
+            BoundaryCondition::Neumann if has_friction => ("threshold", false),
             BoundaryCondition::Neumann => ("flux", true),
             BoundaryCondition::Contact => ("gap", true),
         };
@@ -208,7 +208,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         };
         let formula = match table.get(name) {
             Some(value) => self.source.formula(name, value, &variables)?,
-            None if name == "threshold" => {
+            None if has_friction => {
                 let purpose = "the largest flux of friction, not negative";
                 return Err(self.source.missing(offset, name, purpose));
             }
@@ -230,20 +230,19 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             Ok((self.source.formula("shape", value, &VARIABLES[0][..D])?, value.span().start))
         });
         let (datum, shape) = (format!("boundary.{group}.{name}"), shape.transpose()?);
-        Ok(OnGroup { condition, formula, coefficient, datum, offset, shape })
+        Ok(OnGroup { condition, formula, coefficient, has_friction, datum, offset, shape })
     }
 
     /// Puts what is given on a boundary group into the problem.
     fn put_on(&mut self, group: &str, given: &OnGroup) {
-        let OnGroup { condition, formula, coefficient, datum, offset, shape } = given;
+        let OnGroup { condition, formula, coefficient, datum, offset, shape, .. } = given;
         self.shapes.extend(shape.clone().map(|shape| (group.to_owned(), shape)));
         let (problem, name) = (&mut self.problem, Some(group));
-        let has_friction = datum.ends_with(".threshold");
         match condition {
             BoundaryCondition::Dirichlet => problem.dirichlet.give(name, formula.datum()),
             BoundaryCondition::Neumann => match coefficient {
                 Some(k) => problem.robin.give(name, Robin::new(k.datum(), formula.datum())),
-                None if has_friction => problem.friction.give(name, formula.datum()),
+                None if given.has_friction => problem.friction.give(name, formula.datum()),
                 None => problem.neumann.give(name, formula.flux()),
             },
             BoundaryCondition::Contact => {
@@ -261,7 +260,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             allowed,
             value: formula.flux(),
         };
-        let allowed = if has_friction { Allowed::NotNegative } else { Allowed::Finite };
+        let allowed = if given.has_friction { Allowed::NotNegative } else { Allowed::Finite };
         self.entries.push(entry(datum, allowed, formula));
         if let Some(coefficient) = coefficient {
             let of_group = datum.rsplit_once('.').map_or("boundary", |(of_group, _)| of_group);

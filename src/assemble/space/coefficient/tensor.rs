@@ -47,7 +47,7 @@ impl<const D: usize> TensorFactor<D> {
     pub fn mean_eigenvalue(&self) -> f64 {
         self.root.norm_squared() / D as f64
     }
-    /// A number that the least eigenvalue of the tensor is not below.
+    /// A lower bound of the least eigenvalue of the tensor.
     pub fn least(&self) -> f64 {
         self.inverse.norm_squared().recip()
     }
