@@ -14,32 +14,9 @@ pub trait Engine: Debug + Send + Sync {
     fn name(&self) -> String;
     /// A preconditioner of a symmetric positive definite matrix.
     fn solver(&self, rows: &dyn OwnRows, method: EngineMethod) -> Box<dyn EngineSolver>;
-    /// Solves an inequality by a method of the engine itself, for cross-checks: replaces the values of own
-    /// unknowns, and returns the number of steps. None if the engine has no such method.
-    fn solve_inequality(
-        &self,
-        rows: &dyn OwnRows,
-        data: &OwnData<'_>,
-        values: &mut [f64],
-    ) -> Option<usize> {
-        let (_, _, _) = (rows, data, values);
-        None
-    }
     /// The reason for the last failure of a function in this part since the last call, if there is one. A matrix without
     /// factors is no failure.
     fn take_failure(&self) -> Option<String>;
-}
-
-/// Load and bounds of own unknowns. Absent bounds are infinite; those of fixed unknowns coincide.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub struct OwnData<'d> {
-    /// The load.
-    pub load: &'d [f64],
-    /// Lower bounds.
-    pub lower: &'d [f64],
-    /// Upper bounds.
-    pub upper: &'d [f64],
 }
 
 /// How an engine solves systems.

@@ -7,10 +7,9 @@
 //!
 //! `engine`: what a library does. `process`: one of the processes. `solver_on_parts`: the solve. `preconditioner`,
 //! `own_unknowns`: preconditioners of one process with an engine inside; `auxiliary_space`: blocks of cells and
-//! conforming linear functions. `differences`: whether a part has the bits of the whole. `petsc`: MPI and PETSc.
+//! conforming linear functions. `petsc`: MPI and PETSc.
 
 mod auxiliary_space;
-mod differences;
 mod engine;
 
 mod own_unknowns;
@@ -20,8 +19,7 @@ mod preconditioner;
 mod process;
 mod solver_on_parts;
 
-pub use differences::Differences;
-pub use engine::{Engine, EngineMethod, EngineSolver, OwnData, OwnRows};
+pub use engine::{Engine, EngineMethod, EngineSolver, OwnRows};
 
 pub use process::Process;
 pub use solver_on_parts::SolverOnParts;

@@ -8,9 +8,9 @@ use crate::linear::{FactorError, Preconditioner};
 use crate::processes::OverParts;
 
 /// The own rows of a matrix whose unknowns are those of a discretisation.
-pub(super) struct RowsOfPart<'m> {
-    pub matrix: &'m SparseMatrix<f64>,
-    pub over_parts: &'m OverParts,
+struct RowsOfPart<'m> {
+    matrix: &'m SparseMatrix<f64>,
+    over_parts: &'m OverParts,
 }
 
 impl OwnRows for RowsOfPart<'_> {

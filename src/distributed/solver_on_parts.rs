@@ -2,11 +2,11 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::engine::{EngineMethod, OwnData};
-use super::own_unknowns::{OnOwnUnknowns, RowsOfPart};
+use super::engine::EngineMethod;
+use super::own_unknowns::OnOwnUnknowns;
 use super::preconditioner::{Auxiliary, EnginePreconditioners};
 use super::process::Process;
-use crate::algebra::{Bound, Contact, Distribution, Inequality};
+use crate::algebra::{Bound, Contact, Inequality};
 use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
@@ -36,27 +36,19 @@ fn few_changes<const D: usize>(over_parts: &OverParts) -> f64 {
 #[derive(Clone, Debug)]
 pub struct SolverOnParts {
     process: Process,
-    is_by_engine: bool,
 }
 
 impl SolverOnParts {
     /// The solver of one of the processes; all have one.
     #[must_use]
     pub fn new(process: Process) -> Self {
-        Self { process, is_by_engine: false }
-    }
-    /// Makes the engine solve the inequalities of schemes by a method of its own, for cross-checks; the conforming P1
-    /// solutions from which they start are as before.
-    #[must_use]
-    pub fn by_engine(mut self, is_by_engine: bool) -> Self {
-        self.is_by_engine = is_by_engine;
-        self
+        Self { process }
     }
 }
 
 impl<const D: usize> SystemSolver<D> for SolverOnParts {
     fn name(&self) -> &'static str {
-        if self.is_by_engine { "engine" } else { "active-set" }
+        "active-set"
     }
     /// Solves over the parts of a mesh.
     ///
@@ -76,10 +68,7 @@ impl<const D: usize> SystemSolver<D> for SolverOnParts {
         // a start need not be accurate
         let is_start = guess.energy_tolerance.is_some();
         let solve = Solve { process: &self.process, system, over_parts, guess, is_start };
-        let mut solution = match self.is_by_engine && !is_start {
-            true => solve.by_engine()?,
-            false => solve.by_active_sets()?,
-        };
+        let mut solution = solve.by_active_sets()?;
         over_parts.update_contact(&mut solution.contact);
         Ok(solution)
     }
@@ -218,37 +207,5 @@ impl<const D: usize> Solve<'_, '_, D> {
         let is_fixed = |bound: &Bound<f64>| matches!(bound, Bound::Fixed(_));
         let dirichlet = beside.inequality().bounds.iter().map(is_fixed).collect();
         Ok(Auxiliary::Conforming(multigrid, dirichlet))
-    }
-
-    /// The engine's own method.
-    fn by_engine(&self) -> Result<Solution<f64>, Error> {
-        let (over_parts, inequality) = (&**self.over_parts, self.system.inequality());
-        let own = over_parts.numbering.own();
-        let ends = |side: usize| -> Vec<f64> {
-            own.iter().map(|&i| inequality.bounds[i as usize].interval()[side]).collect()
-        };
-        let (lower, upper) = (ends(0), ends(1));
-        let load = inequality.assembled_load();
-        let load: Vec<f64> = own.iter().map(|&i| load[i as usize]).collect();
-        let start = |&i: &u32| {
-            let value = self.guess.values.as_ref().map_or(0.0, |values| values[i as usize]);
-            inequality.bounds[i as usize].nearest(value)
-        };
-        let mut own_values: Vec<f64> = own.iter().map(start).collect();
-        let rows = RowsOfPart { matrix: &inequality.matrix, over_parts };
-        let data = OwnData { load: &load, lower: &lower, upper: &upper };
-        let steps = self.process.engine.solve_inequality(&rows, &data, &mut own_values);
-        let has_method = steps.ok_or("the engine has no solver of inequalities");
-        agree(has_method, &*self.process.exchange)?;
-        let steps = steps.expect("all parts have agreed that there is a method");
-        self.check_engine()?;
-        let mut values = vec![0.0; inequality.size()];
-        own.iter().zip(&own_values).for_each(|(&i, &value)| values[i as usize] = value);
-        (over_parts as &dyn Distribution).update(&mut values);
-        let solution = Solution::of_values(inequality, values, Vec::new(), Outcome::Converged)
-            .iterations(steps, 0)
-            .systems(steps)
-            .linear_solver("engine");
-        Ok(solution)
     }
 }

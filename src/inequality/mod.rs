@@ -17,11 +17,9 @@
 //! | `interior_point/` | [`InteriorPoint`]: Mehrotra's method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid/` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `proximal_point/` | [`ProximalPoint`]: proximal Galerkin with one Newton system a step, for comparison |
-//! | `certificate` | [`Certificate`] |
+//! | `certificate/` | [`Certificate`], [`certify`]; the scales of violations |
 //! | `contact_forces` | the forces of active bounds, from which everything that shows a force takes them |
-//! | `violations/` | [`certify`], [`Violations`]: sums and maxima of a certificate over a part of a mesh; the violations at one unknown |
 //! | `algebraic_bound` | a bound on the algebraic error of admissible values |
-//! | `scales` | the energy norm and the largest value to which violations are relative |
 //! | `pieces` | inequalities with kinks, solved on one side of each at a time |
 //! | `recession` | whether a solution exists and is unique where only bounds hold a body |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
@@ -48,18 +46,16 @@ mod outcome;
 mod pieces;
 mod proximal_point;
 mod recession;
-mod scales;
 mod single_precision;
 mod solution;
 mod stage;
 mod validation;
-mod violations;
 
 pub use active_set::{ActiveSet, Preconditioned};
 pub use by_name::{SOLVERS, solver_by_name};
 pub(crate) use certificate::count_active;
-pub use certificate::{Certificate, contact_of};
-pub(crate) use certificate::{positive_diagonal, residual, stiffness_diagonal};
+pub use certificate::{Certificate, certify, contact_of};
+pub(crate) use certificate::{certify_solution, positive_diagonal, residual, stiffness_diagonal};
 pub(crate) use contact_forces::ContactForces;
 pub use history::{HistoryPoint, StepCounter};
 pub use initial_guess::InitialGuess;
@@ -71,8 +67,6 @@ pub(crate) use recession::explanation;
 pub use single_precision::{SinglePrecision, in_precision};
 pub use solution::Solution;
 pub use stage::{Stage, StageRun};
-pub(crate) use violations::certify_solution;
-pub use violations::{Violations, certify};
 
 use crate::algebra::Inequality;
 use crate::real::{Precision, Real};

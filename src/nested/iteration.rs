@@ -48,6 +48,8 @@ pub struct NestedIteration<'a, const D: usize> {
     pub(super) has_cold_start: bool,
     /// Whether schemes are solved once more for a history.
     pub(super) keeps_history: bool,
+    /// The share of the error bound that the algebraic error of schemes may have; none for solves to rounding.
+    pub(super) tolerance: Option<f64>,
     /// The solution of another problem from which schemes with as many unknowns start.
     pub(super) previous: Option<Solution<f64>>,
     observer: Box<dyn Fn(Phase) + 'a>,
@@ -82,7 +84,14 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             constants: OnceCell::new(),
         };
         let observer = Box::new(|_| {});
-        Self { p1, has_cold_start: false, keeps_history: false, previous: None, observer }
+        Self {
+            p1,
+            has_cold_start: false,
+            keeps_history: false,
+            tolerance: None,
+            previous: None,
+            observer,
+        }
     }
     /// Sets the solver of the inequality.
     #[must_use]
@@ -128,6 +137,15 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     #[must_use]
     pub fn history(mut self, keeps_history: bool) -> Self {
         self.keeps_history = keeps_history;
+        self
+    }
+
+    /// Makes solves of schemes end where the bound on their algebraic error is at most this share of the
+    /// [bound](Solved::bound) on the error, in place of the limit of the certificate; on whole meshes. A solve without
+    /// a bound is one to rounding.
+    #[must_use]
+    pub fn tolerance(mut self, share: f64) -> Self {
+        self.tolerance = Some(share);
         self
     }
 

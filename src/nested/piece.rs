@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use crate::error::Error;
 use crate::mesh::{Domain, Extent, Mesh, Part, Refinement};
-use crate::processes::{Exchange, agree, merge_all};
+use crate::processes::{Exchange, ExchangeError, agree};
+use crate::real::Point;
 
 /// A mesh of a hierarchy, or the part of the mesh that one process has, with the exchange between all processes.
 #[derive(Debug)]
@@ -27,7 +28,7 @@ impl<const D: usize> Piece<D> {
             Self::Part(part, exchange) => {
                 let (fine, by) = agree(domain.refine_part(part, part.layers), &**exchange)?;
                 // the mesh size is that of all parts
-                let extent = merge_all(&Extent::of(&fine.mesh), &**exchange)?;
+                let extent = of_all_parts(Extent::of(&fine.mesh), &**exchange)?;
                 Ok((Self::Part(fine.with_extent(extent), exchange.clone()), by))
             }
             Self::Whole(mesh) => {
@@ -43,4 +44,18 @@ impl<const D: usize> Piece<D> {
             Self::Part(part, _) => &part.mesh,
         }
     }
+}
+
+/// The extent of the cells of all parts; all parts call it.
+fn of_all_parts<const D: usize>(
+    mut extent: Extent<D>,
+    exchange: &dyn Exchange,
+) -> Result<Extent<D>, ExchangeError> {
+    let Extent { lower, upper, mesh_size } = &mut extent;
+    let ends = [(-*lower).as_slice(), upper.as_slice(), &[*mesh_size]].concat();
+    let largest = exchange.largest(&ends)?;
+    *lower = -Point::from_column_slice(&largest[..D]);
+    *upper = Point::from_column_slice(&largest[D..2 * D]);
+    *mesh_size = largest[2 * D];
+    Ok(extent)
 }

@@ -1,7 +1,9 @@
 //! The solve of one scheme on one mesh of a nested iteration: start, assembly, initial guess, solver.
 
 use std::sync::Arc;
+use std::time::Instant;
 
+use super::hierarchy::Hierarchy;
 use super::iteration::NestedIteration;
 use super::meshes::unknowns;
 use super::p1::P1Solution;
@@ -21,6 +23,10 @@ use crate::scheme::Scheme;
 /// The ratio of the diameter of a cell to its least height from which the bound looks at a conforming solution beside the
 /// means of a function of another scheme (problem stretched of the tests, `cr`).
 const STRETCHED: f64 = 16.0;
+
+/// Tolerances of the solves one after the other that end at a share of the error bound, relative to the solution in the
+/// energy norm; after them follows a solve to rounding.
+const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
 impl<'a, const D: usize> NestedIteration<'a, D> {
     /// A scheme on a mesh: [`NestedIteration::repeat`] times, with the smallest time.
@@ -83,30 +89,33 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             Some(_) => None,
         };
         self.enter(Phase::Solve);
-        let sent = system.sent_bytes();
-        let (solution, solve_seconds) = match &refusal {
+        let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
+        let (mut solved, solve_seconds) = match &refusal {
             Some(_) => {
                 let mut none = Solution::without_iterate(&system.inequality, Outcome::Singular);
                 none.precision = precision;
-                (none, 0.0)
+                (Solved::new(system, none, hierarchy), 0.0)
             }
-            None => self.run(&system, &guess)?,
+            None => match self.tolerance {
+                Some(share) => self.solve_to_share(system, guess, (hierarchy, share))?,
+                None => {
+                    let (solution, seconds) = self.run(&system, &guess)?;
+                    (Solved::new(system, solution, hierarchy), seconds)
+                }
+            },
         };
-        let sent = system.sent_bytes() - sent;
         warnings.extend(refusal);
-        if system.part().is_none() {
-            warnings.extend(data_beyond_coefficients(system.discretisation(), &solution));
-            warnings.extend(coefficients_on_jumps(system.discretisation()));
+        if solved.part().is_none() {
+            warnings.extend(data_beyond_coefficients(solved.discretisation(), solved.solution()));
+            warnings.extend(coefficients_on_jumps(solved.discretisation()));
         }
-        let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
-        let mut solved = Solved::new(system, solution, hierarchy);
         solved.warnings = warnings;
         // that of linears holds without it
         if precision == Precision::Single && scheme.degree() > 1 {
             solved.add_rounding_to_algebraic_bound();
         }
         solved.mesh_seconds = self.p1.meshes.seconds(position);
-        (solved.solve_seconds, solved.sent_bytes) = (solve_seconds, sent);
+        solved.solve_seconds = solve_seconds;
         let is_p1 = scheme.is_conforming_linear(solved.mesh());
         if is_p1 && self.adaptive_meshes().is_some() {
             // every step of an adaptive sequence is solved: the next one starts from here
@@ -199,5 +208,46 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             solution.history = again.history;
         }
         Ok((solution, seconds))
+    }
+
+    /// Solves a system, each time from the solution before, until the bound on the algebraic error is at most a share of
+    /// that on the error. Counts are those of all solves, seconds those of all solves and of the bounds between them.
+    fn solve_to_share(
+        &self,
+        mut system: System<'a, D>,
+        mut guess: InitialGuess<f64>,
+        (hierarchy, share): (Option<(&'a Hierarchy<D>, usize)>, f64),
+    ) -> Result<(Solved<'a, D>, f64), Error> {
+        let (mut outer, mut linear, mut systems, mut stages) = (0, 0, Some(0), Vec::new());
+        let mut seconds = 0.0;
+        for tolerance in TOLERANCES.map(Some).into_iter().chain([None]) {
+            guess.energy_tolerance = tolerance;
+            let (mut solution, of_solve) = self.run(&system, &guess)?;
+            seconds += of_solve;
+            (outer, linear) = (outer + solution.outer, linear + solution.linear);
+            systems = systems.zip(solution.systems).map(|(before, own)| before + own);
+            stages.append(&mut solution.stages);
+            let is_found = solution.outcome == Outcome::Converged;
+            let mut solved = Solved::new(system, solution, hierarchy);
+            let clock = Instant::now();
+            let is_small = is_found && solved.algebraic_share().is_some_and(|own| own <= share);
+            if is_small || tolerance.is_none() {
+                let solution = &mut solved.solution;
+                (solution.outer, solution.linear) = (outer, linear);
+                (solution.systems, solution.stages) = (systems, stages);
+                if is_small {
+                    solution.outcome = Outcome::Converged;
+                }
+                return Ok((solved, seconds));
+            }
+            seconds += clock.elapsed().as_secs_f64();
+            let (before, values, contact) = solved.into_system();
+            system = before;
+            if is_found {
+                guess.values = Some(values);
+                system.inequality.start = Start::Contact(contact);
+            }
+        }
+        unreachable!("the last solve has no tolerance")
     }
 }

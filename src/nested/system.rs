@@ -13,7 +13,7 @@ use crate::measure::SquaredErrors;
 use crate::mesh::{Mesh, Part};
 use crate::parallel::vectors::collect;
 use crate::problem::{BodyConstants, Problem};
-use crate::processes::{Numbering, OverParts, agree, agree_on_data, check_bounds, merge_all};
+use crate::processes::{Numbering, OverParts, agree, agree_on_data, check_bounds};
 use crate::real::Precision;
 use crate::scheme::Scheme;
 
@@ -134,10 +134,6 @@ impl<'a, const D: usize> System<'a, D> {
         self.over_parts.as_ref()
     }
 
-    /// The bytes that this part has sent to others so far.
-    pub(super) fn sent_bytes(&self) -> u64 {
-        self.place.shared.map_or(0, |shared| shared.exchange.sent_bytes())
-    }
     /// Whether a cell counts: on a part if it is an own one.
     pub(super) fn owns(&self, cell: usize) -> bool {
         self.part().is_none_or(|part| part.owns(cell))
@@ -168,11 +164,7 @@ impl<'a, const D: usize> System<'a, D> {
     }
     /// The squared errors of all parts, of those of this one.
     pub(super) fn merged(&self, own: Result<SquaredErrors, Error>) -> Result<SquaredErrors, Error> {
-        let own = self.agreed(own)?;
-        match self.place.shared {
-            None => Ok(own),
-            Some(SharedPart { exchange, .. }) => Ok(merge_all(&own, &**exchange)?),
-        }
+        Ok(self.agreed(own)?.over_parts(self.inequality.distribution()))
     }
     /// Numbers of this part summed over all parts.
     pub(super) fn sums<const N: usize>(&self, mut own: [f64; N]) -> [f64; N] {

@@ -19,10 +19,6 @@ pub trait Exchange: Debug + Send + Sync {
     /// [`ExchangeError::Lists`] unless there is one list for each part; [`ExchangeError::Ended`] or
     /// [`ExchangeError::Transport`] if a part is out of reach.
     fn exchange(&self, lists: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError>;
-    /// The bytes that this part has sent to others so far; zero where nobody counts.
-    fn sent_bytes(&self) -> u64 {
-        0
-    }
     /// The sums of the numbers of all parts, place by place. They are added up in the order of the parts, so that
     /// all parts have the same bits; an implementation with another order has this property, too.
     ///
@@ -55,7 +51,7 @@ fn fold<E: Exchange + ?Sized>(
 }
 
 /// The numbers of every part, of which all have equally many.
-pub(super) fn numbers_of_all<E: Exchange + ?Sized>(
+fn numbers_of_all<E: Exchange + ?Sized>(
     exchange: &E,
     numbers: &[f64],
 ) -> Result<Vec<Vec<f64>>, ExchangeError> {
@@ -87,9 +83,6 @@ impl<E: Exchange + ?Sized> Exchange for Arc<E> {
     }
     fn exchange(&self, lists: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError> {
         (**self).exchange(lists)
-    }
-    fn sent_bytes(&self) -> u64 {
-        (**self).sent_bytes()
     }
     fn sum(&self, values: &[f64]) -> Result<Vec<f64>, ExchangeError> {
         (**self).sum(values)

@@ -5,9 +5,7 @@
 //! passes through one function, [`Exchange::exchange`]. [`in_process`] runs the parts as threads of one
 //! process, for tests and as a model of an exchange between processes.
 //!
-//! Two things depend on all data and so on all parts: the mesh size of a
-//! [refined part](crate::mesh::Part::refine), which [`merge_all`] finds, and whether bounds contradict each other,
-//! which [`check_bounds`] decides. A step that may fail in one part ends in [`agree`], which makes its error one
+//! Whether bounds contradict each other depends on all data and so on all parts: [`check_bounds`] decides it. A step that may fail in one part ends in [`agree`], which makes its error one
 //! of all parts.
 //!
 //! [`Hierarchy::of_parts`](crate::nested::Hierarchy::of_parts) has the part of one process of nested meshes, on which
@@ -17,7 +15,6 @@ mod agree;
 mod check_bounds;
 mod error;
 mod exchange;
-mod merge;
 mod numbering;
 mod over_parts;
 
@@ -26,6 +23,5 @@ pub(crate) use agree::agree_on_data;
 pub use check_bounds::check_bounds;
 pub use error::ExchangeError;
 pub use exchange::{Exchange, InProcess, in_process};
-pub use merge::{Merge, merge_all};
 pub use numbering::Numbering;
 pub(crate) use over_parts::OverParts;

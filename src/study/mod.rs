@@ -33,5 +33,5 @@ pub use part_figures::{PartFigures, PartSeconds};
 pub use program::Program;
 pub use report::Report;
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
-pub use runner::{PartChecks, Progress, Study};
+pub use runner::{Progress, Study};
 pub use series::{Meshes, Series, Variant};

@@ -1,7 +1,5 @@
 //! The figures of a run over several parts of a mesh.
 
-use crate::distributed::Differences;
-
 /// Figures of a run over several parts of a mesh, one in each process.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
@@ -17,13 +15,6 @@ pub struct PartFigures {
     pub imbalance: f64,
     /// Seconds by phase, the least and the most of all parts.
     pub seconds: PartSeconds,
-    /// Bytes that a part sends in an iteration of the linear solver, the most of all parts; messages inside the
-    /// engine do not count. None without an iteration.
-    pub bytes_per_iteration: Option<f64>,
-    /// Peak memory of a process so far, the least and the most; none where the system does not tell.
-    pub peak_memory_bytes: Option<[u64; 2]>,
-    /// Rows that differ from those of the whole mesh, where that was asked for.
-    pub differences: Option<Differences>,
 }
 
 /// Seconds by phase, each the least and the most of all parts.

@@ -11,14 +11,13 @@ fn a_program_without_petsc_refuses_several_processes() {
     let scratch = Scratch::new("without-petsc");
     let expected = ["cargo build --release --features petsc"];
     refused(&scratch, &["--engine", "petsc"], &expected);
-    refused(&scratch, &["--verify"], &expected);
     // what a launcher of MPI jobs sets
     let mut command = program();
     command.args(["--out", &scratch.path("out")]).env("OMPI_COMM_WORLD_SIZE", "2");
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains(expected[0]));
-    let unknown = ["petsc", "snesvi", "trilinos"];
+    let unknown = ["petsc", "trilinos"];
     refused(&scratch, &["--engine", "trilinos"], &unknown);
 }
 
@@ -46,12 +45,9 @@ mod needs_petsc {
 
     /// The command of a job.
     fn job(processes: usize, scratch: &Scratch, options: &str) -> Command {
-        job_by("petsc", processes, scratch, options)
-    }
-    fn job_by(engine: &str, processes: usize, scratch: &Scratch, options: &str) -> Command {
         let mut mpirun = mpirun();
         mpirun.args(["-n", &processes.to_string()]);
-        mpirun.arg(env!("CARGO_BIN_EXE_unilateral")).args(["compare", "--engine", engine]);
+        mpirun.arg(env!("CARGO_BIN_EXE_unilateral")).args(["compare", "--engine", "petsc"]);
         mpirun.args(["--threads", "1", "--out", &scratch.path(&format!("out-{processes}"))]);
         mpirun.args(options.split_whitespace());
         mpirun
@@ -78,8 +74,7 @@ mod needs_petsc {
         row.pointer(path).unwrap().as_f64().unwrap()
     }
 
-    /// The errors are those of one process without MPI, no bit of any row differs, and iterations do not depend on
-    /// the number of processes.
+    /// The errors are those of one process without MPI, and iterations do not depend on the number of processes.
     #[test]
     #[ignore = "needs PETSc and mpirun"]
     fn any_number_of_processes_has_the_rows_of_one() {
@@ -93,9 +88,8 @@ mod needs_petsc {
             let serial = read_json(&scratch.0.join("serial/report.json"));
             let mut counts: Vec<f64> = Vec::new();
             for processes in [1, 2, 4] {
-                let output = job(processes, &scratch, &format!("{options} --quiet --verify"))
-                    .output()
-                    .unwrap();
+                let output =
+                    job(processes, &scratch, &format!("{options} --quiet")).output().unwrap();
                 assert!(output.status.success(), "{}", stderr(&output));
                 let report = report(processes, &scratch);
                 assert_eq!(rows(&report).len(), rows(&serial).len());
@@ -106,14 +100,6 @@ mod needs_petsc {
                     }
                     let [found, expected] = [row, one].map(|row| number(row, "/error/l2"));
                     assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected} {label}");
-                    assert_eq!(
-                        number(row, "/ranks/differences/compared"),
-                        number(one, "/unknowns")
-                    );
-                    for key in ["rows", "loads", "bounds", "residuals"] {
-                        let path = format!("/ranks/differences/{key}");
-                        assert_eq!(number(row, &path), 0.0, "{key}, {label}");
-                    }
                     let linear = number(row, "/iterations/linear");
                     match counts.get(k).copied() {
                         None => counts.push(linear),
@@ -124,23 +110,6 @@ mod needs_petsc {
                     }
                 }
             }
-        }
-    }
-
-    /// The engine's own solver of inequalities finds the same solution.
-    #[test]
-    #[ignore = "needs PETSc and mpirun"]
-    fn two_solvers_agree() {
-        let scratch = Scratch::new("snesvi");
-        let options = "--scene radial-2d --levels 32 --scheme p1,sipg --quiet";
-        assert!(job(2, &scratch, options).output().unwrap().status.success());
-        let ours = report(2, &scratch);
-        let output = job_by("snesvi", 2, &scratch, options).output().unwrap();
-        assert!(output.status.success(), "{}", stderr(&output));
-        for (row, one) in rows(&report(2, &scratch)).iter().zip(rows(&ours)) {
-            assert_eq!(row["active"], one["active"]);
-            let [found, expected] = [row, one].map(|row| number(row, "/error/l2"));
-            assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
         }
     }
 

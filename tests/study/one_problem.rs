@@ -268,3 +268,31 @@ fn values_that_are_not_finite_are_refused() {
         assert!(of_values, "{value}: {error}");
     }
 }
+
+/// A solve that ends at a share of the error bound takes fewer iterations, and its error differs by no more.
+#[test]
+fn solves_end_at_a_share_of_the_error_bound() {
+    const SHARE: f64 = 0.1;
+    let scene = scenes::radial::<2>(1.0);
+    let meshes = Hierarchy::<2>::of_domain(&scene.domain, 64).unwrap();
+    for named in NamedScheme::list(["p1", "sipg", "nipg", "wopsip:facet-means"]).unwrap() {
+        let scheme = named.make::<2>();
+        let solve = |tolerance: Option<f64>| {
+            let solver = ActiveSet::default().linear(LinearMethod::Iterative);
+            let nested = NestedIteration::new(&scene.problem, &meshes).solver(solver);
+            let mut nested = match tolerance {
+                Some(share) => nested.tolerance(share),
+                None => nested,
+            };
+            nested.solve(&*scheme).unwrap()
+        };
+        let [to_rounding, to_share] = [None, Some(SHARE)].map(solve);
+        assert!(to_share.converged(), "{}: {}", scheme.name(), to_share.outcome());
+        let [all, few] = [&to_rounding, &to_share].map(|solved| solved.solution().linear);
+        assert!(few < all, "{}: {few} of {all} iterations", scheme.name());
+        let error = |solved: &Solved<'_, 2>| solved.errors().unwrap().broken_energy.unwrap();
+        let difference = (error(&to_rounding) - error(&to_share)).abs();
+        let bound = to_share.bound().unwrap().discrete;
+        assert!(difference <= SHARE * bound, "{}: {difference:e}, {bound:e}", scheme.name());
+    }
+}

@@ -6,10 +6,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::shim::{
     NOT_POSITIVE, OUT_OF_MEMORY, agreed, check, ul_abort_with, ul_matrix_assemble,
-    ul_matrix_destroy, ul_matrix_new, ul_matrix_row, ul_newton, ul_solver_apply, ul_solver_destroy,
+    ul_matrix_destroy, ul_matrix_new, ul_matrix_row, ul_solver_apply, ul_solver_destroy,
     ul_solver_fix, ul_solver_new, ul_version,
 };
-use crate::distributed::engine::{Engine, EngineMethod, EngineSolver, OwnData, OwnRows};
+use crate::distributed::engine::{Engine, EngineMethod, EngineSolver, OwnRows};
 use crate::linear::FactorError;
 
 /// The first failure of this process that nobody has taken.
@@ -56,39 +56,6 @@ impl Engine for Petsc {
             solver.destroy();
         }
         Box::new(solver)
-    }
-    fn solve_inequality(
-        &self,
-        rows: &dyn OwnRows,
-        data: &OwnData<'_>,
-        values: &mut [f64],
-    ) -> Option<usize> {
-        let (mut lower, mut upper) = (data.lower.to_vec(), data.upper.to_vec());
-        let (mut steps, mut converged) = (0, 0);
-        let solved = matrix(rows).and_then(|mut matrix| {
-            // SAFETY: all lists have a number for each own row
-            let code = unsafe {
-                ul_newton(
-                    matrix,
-                    data.load.as_ptr(),
-                    lower.as_mut_ptr(),
-                    upper.as_mut_ptr(),
-                    values.as_mut_ptr(),
-                    &mut steps,
-                    &mut converged,
-                )
-            };
-            let what = "the solver of inequalities of PETSc";
-            let solved = agreed(code, what);
-            // SAFETY: the matrix is not used any more
-            unsafe { ul_matrix_destroy(&mut matrix) };
-            match solved {
-                Ok(()) if converged == 0 => Err(format!("{what} stopped after {steps} steps")),
-                solved => solved,
-            }
-        });
-        keep(&self.failure, solved);
-        Some(steps as usize)
     }
     fn take_failure(&self) -> Option<String> {
         self.failure.lock().unwrap_or_else(PoisonError::into_inner).take()

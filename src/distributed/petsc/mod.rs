@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `mod` | [`Processes`]: the begin and the end of a job |
 //! | `mpi_exchange` | messages between processes |
-//! | `engine` | matrices, preconditioners and the solver of inequalities of PETSc |
+//! | `engine` | matrices and preconditioners of PETSc |
 //! | `shim` | the C functions and their errors |
 
 #![allow(unsafe_code)]

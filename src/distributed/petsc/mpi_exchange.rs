@@ -1,7 +1,6 @@
 //! Messages between the processes of an MPI job.
 
 use std::ffi::c_int;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::shim::{check, ul_counts, ul_exchange, ul_largest, ul_sum};
 use crate::processes::Exchange;
@@ -11,14 +10,12 @@ use crate::processes::ExchangeError;
 #[derive(Debug)]
 pub(super) struct MpiExchange {
     parts: usize,
-    /// Bytes sent so far.
-    sent: AtomicU64,
 }
 
 impl MpiExchange {
     /// The exchange between so many processes.
     pub fn new(parts: usize) -> Self {
-        Self { parts, sent: AtomicU64::new(0) }
+        Self { parts }
     }
     fn transport(code: c_int) -> Result<(), ExchangeError> {
         check(code, "a message of MPI").map_err(ExchangeError::Transport)
@@ -44,7 +41,6 @@ impl Exchange for MpiExchange {
         // SAFETY: both lists have a number for each process
         Self::transport(unsafe { ul_counts(to.as_ptr(), from.as_mut_ptr()) })?;
         let sent = lists.concat();
-        self.sent.fetch_add(8 * sent.len() as u64, Ordering::Relaxed);
         let mut received = vec![0_u64; from.iter().map(|&n| n as usize).sum()];
         // SAFETY: the buffers have as many words as the counts state
         Self::transport(unsafe {
@@ -57,9 +53,6 @@ impl Exchange for MpiExchange {
             own.to_vec()
         };
         Ok(from.iter().map(of_process).collect())
-    }
-    fn sent_bytes(&self) -> u64 {
-        self.sent.load(Ordering::Relaxed)
     }
     fn sum(&self, values: &[f64]) -> Result<Vec<f64>, ExchangeError> {
         let mut sums = values.to_vec();

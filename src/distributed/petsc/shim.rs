@@ -46,15 +46,6 @@ unsafe extern "C" {
         correction: *mut f64,
     ) -> c_int;
     pub(super) fn ul_solver_destroy(solver: *mut c_void) -> c_int;
-    pub(super) fn ul_newton(
-        matrix: *mut c_void,
-        load: *const f64,
-        lower: *mut f64,
-        upper: *mut f64,
-        values: *mut f64,
-        steps: *mut c_int,
-        converged: *mut c_int,
-    ) -> c_int;
 }
 
 /// What the C functions return for a matrix that is not positive definite, and PETSc for lack of memory.

@@ -5,7 +5,7 @@ use super::contact_state::violated_bound;
 use super::iterate::Iterate;
 use super::linear_solver::LinearSolver;
 use crate::algebra::{Contact, Distribution};
-use crate::inequality::scales::Scales;
+use crate::inequality::certificate::scales::Scales;
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
 

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use super::contact_state::{prescribed_value, starting_states};
 use crate::algebra::{Contact, Inequality, any_part};
+use crate::inequality::certificate::violations::certify_with_rounding;
 use crate::inequality::certificate::{self, positive_diagonal};
-use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Outcome, Solution};
 use crate::parallel::vectors::{collect, for_each_chunk, for_each_chunk_of_two, sum_chunks};
 use crate::real::Real;

@@ -12,10 +12,10 @@ mod newton_system;
 mod start;
 
 use super::certificate::is_final;
+use super::certificate::violations::certify_with_rounding;
 use super::history::Recorder;
 use super::recession::{press_onto_bounds, solve_with_kernel};
 use super::validation::check;
-use super::violations::certify_with_rounding;
 use super::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
 use crate::algebra::Inequality;
 use crate::instances::compiled;

@@ -8,12 +8,12 @@
 mod latent;
 
 use super::active_set::prescribed_value;
+use super::certificate::violations::certify_with_rounding;
 use super::certificate::{is_final, nearer_bound, positive_diagonal};
 use super::history::Recorder;
 use super::interior_point::{MixedVector, NewtonSystem};
 use super::recession::{press_onto_bounds, solve_with_kernel};
 use super::validation::check;
-use super::violations::certify_with_rounding;
 use super::{InequalitySolver, InitialGuess, Outcome, Solution};
 use crate::algebra::Inequality;
 use crate::instances::compiled;

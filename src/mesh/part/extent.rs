@@ -28,19 +28,6 @@ impl<const D: usize> Extent<D> {
             mesh_size: self.mesh_size.max(other.mesh_size),
         }
     }
-    /// All of it as numbers, to be sent to another part.
-    pub fn to_numbers(&self) -> Vec<f64> {
-        let box_ends = self.lower.iter().chain(self.upper.iter());
-        box_ends.copied().chain([self.mesh_size]).collect()
-    }
-    /// What [`Extent::to_numbers`] has made numbers of; none for another number of them.
-    #[must_use]
-    pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
-        let (lower, numbers) = numbers.split_first_chunk::<D>()?;
-        let (upper, numbers) = numbers.split_first_chunk::<D>()?;
-        let &[mesh_size] = numbers else { return None };
-        Some(Self { lower: Point::from(*lower), upper: Point::from(*upper), mesh_size })
-    }
     /// The diagonal of the box.
     pub fn diameter(&self) -> f64 {
         (self.upper - self.lower).norm()

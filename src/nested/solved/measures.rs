@@ -142,6 +142,11 @@ impl<const D: usize> Solved<'_, D> {
         }
         Ok(once(&self.bound, || (pair, bound, clock.elapsed().as_secs_f64())))
     }
+    /// The bound on the algebraic error over that on the error; none without one of them.
+    pub(in crate::nested) fn algebraic_share(&self) -> Option<f64> {
+        let (_, bound, _) = self.pair_and_bound().ok()?;
+        Some(self.solution.algebraic_bound? * self.energy_norm / bound.discrete)
+    }
     /// Seconds of the bound; none if it is not known, or not yet.
     pub(crate) fn bound_seconds(&self) -> Option<f64> {
         self.bound.get().map(|(_, _, seconds)| *seconds)

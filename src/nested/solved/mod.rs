@@ -55,8 +55,6 @@ pub struct Solved<'a, const D: usize> {
     pub(crate) start_seconds: f64,
     pub(crate) coarser_levels: usize,
     pub(crate) start_cycles: usize,
-    /// Bytes that this part sent to others in the solve; messages inside an engine do not count.
-    pub(crate) sent_bytes: u64,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -120,9 +118,13 @@ impl<'a, const D: usize> Solved<'a, D> {
             start_seconds: 0.0,
             coarser_levels: 0,
             start_cycles: 0,
-            sent_bytes: 0,
             warnings: Vec::new(),
         }
+    }
+
+    /// The system on the sides of kinks on which the solution lies, with values and contact states of the solution.
+    pub(super) fn into_system(self) -> (System<'a, D>, Vec<f64>, Vec<Contact>) {
+        (self.system, self.solution.values, self.solution.contact)
     }
 
     /// How the solve ended.

@@ -36,7 +36,6 @@ use crate::study::program::Program;
 use crate::study::reference::{Measured, Reference};
 use crate::study::report::Report;
 use crate::study::row::{Row, RowKey};
-pub use on_parts::PartChecks;
 
 /// Progress of a study.
 #[derive(Debug)]

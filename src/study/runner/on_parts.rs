@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::rows::with_level;
 use super::{Entry, Progress, Study};
-use crate::distributed::{Differences, Process, SolverOnParts};
+use crate::distributed::{Process, SolverOnParts};
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::mesh::{Layers, Mesh};
@@ -18,15 +18,6 @@ use crate::study::part_figures::{PartFigures, PartSeconds};
 use crate::study::reference::Measured;
 use crate::study::report::Report;
 use crate::study::row::{Row, Seconds};
-
-/// The options of a study over the parts of a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PartChecks {
-    /// Compares the rows of all parts with those of the whole mesh, which every process then has.
-    pub verify: bool,
-    /// Solves inequalities by a method of the engine itself.
-    pub by_engine: bool,
-}
 
 impl<const D: usize> Study<'_, D> {
     /// [`Study::check`] for a study over the parts of a mesh: limits of numbers are those of each process.
@@ -45,11 +36,11 @@ impl<const D: usize> Study<'_, D> {
     /// Errors of [`Self::check_on_parts`]; [`Error::Parameter`] for what parts of a mesh do not have: other solvers,
     /// references, adaptive meshes, files of fields and inequalities, a journal of an earlier run. A run that
     /// fails is no error: its row has the outcome and the message.
-    pub fn run_on_parts(&self, process: &Process, checks: PartChecks) -> Result<Report, Error> {
+    pub fn run_on_parts(&self, process: &Process) -> Result<Report, Error> {
         let failure = self.where_exact_fails(process.count())?;
         self.check_parts()?;
         let hierarchies = self.hierarchies_on_parts(process)?;
-        let solver = Rc::new(SolverOnParts::new(process.clone()).by_engine(checks.by_engine));
+        let solver = Rc::new(SolverOnParts::new(process.clone()));
         let on_parts = |hierarchy| {
             let nested = NestedIteration::new(&self.scene.problem, hierarchy);
             nested.quadrature(self.quadrature).system_solver(solver.clone())
@@ -63,12 +54,11 @@ impl<const D: usize> Study<'_, D> {
                 nested.replace_constraint_set(&entry.problem);
                 let solved = nested.solve_on(position, &*entry.scheme);
                 let place = (level, nested.mesh(position));
-                let failed =
-                    |error: &Error| self.row_of_failure(entry, place, error, (process, checks));
+                let failed = |error: &Error| self.row_of_failure(entry, place, error, process);
                 let mut row = match &solved {
                     Err(error) => failed(error),
                     Ok(solved) => self
-                        .row_on_parts(entry, level, solved, failure.as_deref(), (process, checks))
+                        .row_on_parts(entry, level, solved, failure.as_deref(), process)
                         .unwrap_or_else(|error| failed(&error)),
                 };
                 row.solver = nested.solver_name().to_owned();
@@ -101,15 +91,13 @@ impl<const D: usize> Study<'_, D> {
         entry: &Entry<'_, D>,
         (level, mesh): (usize, &Mesh<D>),
         error: &Error,
-        (process, checks): (&Process, PartChecks),
+        process: &Process,
     ) -> Row {
         // without a fault of the data the engine has failed
         let outcome = ExchangeError::outcome_of(error).unwrap_or(Outcome::Singular);
         let ranks = PartFigures {
             count: process.count(),
             engine: process.engine.name(),
-            // all rows of a report have the same keys
-            differences: checks.verify.then(Differences::default),
             ..PartFigures::default()
         };
         let row = Row {
@@ -151,16 +139,9 @@ impl<const D: usize> Study<'_, D> {
         level: usize,
         solved: &Solved<'_, D>,
         failure: Option<&str>,
-        (process, checks): (&Process, PartChecks),
+        process: &Process,
     ) -> Result<Row, Error> {
-        let mut parts = part_figures(solved, process)?;
-        if checks.verify {
-            let whole = Hierarchy::of_domain(&self.scene.domain, level);
-            let whole = agree(whole, &*process.exchange)?;
-            let (scheme, whole) = (&*entry.scheme, whole.finest());
-            parts.differences =
-                Some(Differences::from_whole(solved, scheme, whole, self.quadrature)?);
-        }
+        let (parts, peak_memory_bytes) = part_figures(solved, process)?;
         let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
         let mut row = self.named(entry, row, failure);
         Measured { failure, reference: None }.measure(&mut row, solved)?;
@@ -171,7 +152,7 @@ impl<const D: usize> Study<'_, D> {
             bound: row.seconds.bound.map(|_| in_bound),
             ..Seconds::new(mesh[1], assemble[1] + number[1], start[1] + solve[1])
         };
-        row.peak_memory_bytes = parts.peak_memory_bytes.map(|[_, most]| most);
+        row.peak_memory_bytes = peak_memory_bytes;
         row.ranks = Some(parts);
         Ok(row)
     }
@@ -194,17 +175,16 @@ impl<const D: usize> Study<'_, D> {
     }
 }
 
-/// The figures of all parts.
+/// The figures of all parts, and the largest peak memory of a process.
 fn part_figures<const D: usize>(
     solved: &Solved<'_, D>,
     process: &Process,
-) -> Result<PartFigures, ExchangeError> {
+) -> Result<(PartFigures, Option<u64>), ExchangeError> {
     let inequality = solved.inequality();
     let own = (0..inequality.size()).filter(|&i| inequality.owns(i)).count();
     let ghosts = (inequality.size() - own) as f64;
     let [_, unknowns, _] = solved.sizes();
     let memory = peak_memory_bytes().map_or(f64::NAN, |bytes| bytes as f64);
-    let iterations = solved.solution().linear as f64;
     let own_numbers = [
         solved.mesh_seconds,
         solved.system().assemble_seconds,
@@ -216,10 +196,10 @@ fn part_figures<const D: usize>(
     let most = process.exchange.largest(&own_numbers)?;
     let least = process.exchange.largest(&own_numbers.map(|x| -x))?;
     let range = |k: usize| [-least[k], most[k]];
-    let largest = process.exchange.largest(&[own as f64, solved.sent_bytes as f64])?;
+    let largest = process.exchange.largest(&[own as f64])?;
     let ghosts = process.exchange.sum(&[ghosts])?[0];
     let count = process.count();
-    Ok(PartFigures {
+    let figures = PartFigures {
         count,
         engine: process.engine.name(),
         ghosts: ghosts / unknowns as f64,
@@ -231,8 +211,6 @@ fn part_figures<const D: usize>(
             start: range(3),
             solve: range(4),
         },
-        bytes_per_iteration: (iterations > 0.0).then(|| largest[1] / iterations),
-        peak_memory_bytes: (!most[5].is_nan()).then(|| range(5).map(|x| x as u64)),
-        differences: None,
-    })
+    };
+    Ok((figures, (!most[5].is_nan()).then_some(most[5] as u64)))
 }

@@ -333,14 +333,9 @@ fn of_processes(rows: &[&Row]) -> Vec<Column> {
         ("number", |r| figure(r, |p| range(p.seconds.number))),
         ("start", |r| figure(r, |p| range(p.seconds.start))),
         ("solve", |r| figure(r, |p| range(p.seconds.solve))),
-        ("B/it.", |r| {
-            let bytes = r.ranks.as_ref().and_then(|p| p.bytes_per_iteration);
-            Cell::number(bytes.map(|bytes| format!("{bytes:.0}")))
-        }),
         ("MB", |r| {
-            let memory = r.ranks.as_ref().and_then(|p| p.peak_memory_bytes);
-            let memory = memory.map(|bytes| bytes.map(|b| b as f64 / 1e6));
-            Cell::number(memory.map(|[a, b]| format!("{a:.0}-{b:.0}")))
+            let memory = r.peak_memory_bytes.map(|bytes| format!("{:.0}", bytes as f64 / 1e6));
+            Cell::number(memory)
         }),
     ]
 }

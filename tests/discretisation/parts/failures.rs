@@ -3,13 +3,11 @@
 use super::compare::Assembled;
 use super::gathered::process;
 use super::meshes::{box_mesh, moved};
-use unilateral::inequality::{Outcome, Violations};
-use unilateral::measure::SquaredErrors;
-use unilateral::mesh::{Extent, Layers};
+use unilateral::inequality::Outcome;
+use unilateral::mesh::Layers;
 use unilateral::prelude::*;
 use unilateral::processes::{
-    Exchange, ExchangeError, InProcess, Merge, Numbering, agree, check_bounds, in_process,
-    merge_all,
+    Exchange, ExchangeError, InProcess, Numbering, agree, check_bounds, in_process,
 };
 
 /// The message that all parts have.
@@ -194,37 +192,7 @@ fn an_exchange_may_have_sums_of_its_own() {
         assert_eq!(exchange.sum(&[1.0]), Ok(vec![42.0]));
         let error = exchange.largest(&[1.0]).unwrap_err();
         assert_eq!(error.to_string(), "the exchange between parts failed: no network");
-        assert_eq!(merge_all(&SquaredErrors::default(), exchange), Err(error));
     });
-}
-
-/// What is sent arrives, bit for bit, and lists of another length are refused.
-#[test]
-fn what_parts_merge_survives_the_way() {
-    fn there_and_back<M: Merge>(own: &M) {
-        let numbers = own.to_numbers();
-        let again = M::from_numbers(&numbers).unwrap().to_numbers();
-        assert!(numbers.iter().map(|x| x.to_bits()).eq(again.iter().map(|x| x.to_bits())));
-        assert!(M::from_numbers(&numbers[1..]).is_none());
-        assert!(M::from_numbers(&[&numbers[..], &[0.0]].concat()).is_none());
-    }
-    let (mesh, problem) = (moved::<2>(3), super::problems::obstacle_problem());
-    let Assembled { discretisation, inequality } = Assembled::new(&ConformingP1, &problem, &mesh);
-    let u = super::compare::some_values(inequality.size());
-    there_and_back(&Extent::of(&mesh));
-    let violations = Violations::of(&inequality, &u, &[], &|_| true);
-    there_and_back(&violations);
-    let exact = problem.exact.as_ref().unwrap();
-    let errors = discretisation.squared_errors(exact, &u, &|_| true).unwrap();
-    there_and_back(&errors);
-    assert_eq!(SquaredErrors::from_numbers(&errors.to_numbers()), Some(errors));
-    let again = Violations::from_numbers(&violations.to_numbers()).unwrap();
-    assert_eq!(again.certificate(), violations.certificate());
-    let mixed = in_process(2, |part, exchange| match part {
-        0 => merge_all(&Extent::of(&mesh), exchange).map(|_| ()),
-        _ => merge_all(&violations, exchange).map(|_| ()),
-    });
-    assert_eq!(mixed[0], Err(wrong_length((1, 13, 5))));
 }
 
 /// Parts with other owners, and parts without enough layers, are refused in all parts, with part and cell.

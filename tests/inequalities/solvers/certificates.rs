@@ -6,7 +6,7 @@ use unilateral::algebra::{
     Bound, Contact, DirichletEnergy, DirichletTerm, Inequality, SparseMatrix,
 };
 use unilateral::inequality::{
-    Certificate, InequalitySolver, Outcome, Solution, Violations, certify, contact_of,
+    Certificate, InequalitySolver, Outcome, Solution, certify, contact_of,
 };
 use unilateral::prelude::*;
 use unilateral::real::Precision;
@@ -98,18 +98,16 @@ fn contact_of_values_includes_coinciding_bounds() {
     }
 }
 
-/// Without energy and load, residuals are relative to the size of the values, of all parts together.
+/// Without energy and load, residuals are relative to the size of the values.
 #[test]
-fn parts_without_energy_have_the_scale_of_the_whole() {
+fn without_energy_the_values_are_the_scale() {
     let matrix = SparseMatrix {
         row_starts: vec![0, 2, 4],
         columns: vec![0, 1, 0, 1],
         values: vec![0.0, 1.0, -1.0, 0.0],
     };
     let problem = Inequality::new(matrix, false, vec![0.0; 2], vec![Bound::Free; 2]);
-    let [one, other] = [0, 1].map(|own| Violations::of(&problem, &[1.0; 2], &[], &|i| i == own));
     assert_eq!(certify(&problem, &[1.0; 2]).residual, 1.0);
-    assert_eq!(one.merge(other).certificate().residual, 1.0);
 }
 
 /// Each of the four violations alone, and the bound on the algebraic error, where there is one, decide on the limits.
@@ -179,7 +177,21 @@ fn jumps_that_their_multipliers_do_not_have_are_seen() {
     let penalised = inequality.penalised.as_ref().unwrap();
     let mut values = solved.values().to_vec();
     let multipliers = penalised.jump_multipliers(|i| values[i]);
-    let of = |u: &[f64]| Violations::of(inequality, u, &multipliers, &|_| true).certificate();
+    struct Given(Vec<f64>, Vec<f64>);
+    impl InequalitySolver<f64> for Given {
+        fn name(&self) -> &'static str {
+            "given"
+        }
+        fn solve(&self, inequality: &Inequality<f64>) -> Solution<f64> {
+            let Self(values, multipliers) = self;
+            Solution::of_values(inequality, values.clone(), multipliers.clone(), Outcome::Converged)
+        }
+    }
+    let of = |u: &[f64]| {
+        let given = Given(u.to_vec(), multipliers.clone());
+        let mut nested = NestedIteration::new(&problem, &mesh).solver(given);
+        nested.solve(&Wopsip::default()).unwrap().certificate()
+    };
     assert!(of(&values).largest() < 1e-9);
     values[..3].iter_mut().for_each(|u| *u += 1e-3);
     let largest = values.iter().fold(0.0, |largest: f64, u| largest.max(u.abs()));
@@ -259,32 +271,5 @@ fn what_is_not_a_number_is_within_no_limit() {
         let mut wrong = problem.clone();
         wrong.bounds[0] = bound;
         assert_eq!(certify(&wrong, &values), Certificate::INVALID, "{bound:?}");
-        let [one, others] =
-            [true, false].map(|own| Violations::of(&wrong, &values, &[], &|i| (i == 0) == own));
-        for merged in [others.merge(one), one.merge(others)] {
-            assert_eq!(merged.certificate(), Certificate::INVALID, "{bound:?}");
-        }
     }
-}
-
-/// Parts of different sizes, and one where all is zero.
-#[test]
-fn certificates_of_merged_parts_do_not_depend_on_the_unit_of_data() {
-    let of_unit = |unit: f64| {
-        let (mut problem, mut values) = in_unit(unit);
-        // the second unknown is smaller than the first
-        problem.load[1] *= 0.125;
-        problem.bounds[1] = Bound::Upper(0.03 * unit);
-        values[1] *= 0.1;
-        let part = |own: usize| Violations::of(&problem, &values, &[], &|i| i == own);
-        let serial = certify(&problem, &values);
-        for order in [[0, 1, 2], [2, 1, 0], [0, 2, 1]] {
-            let merged = order.map(part).into_iter().reduce(Violations::merge).unwrap();
-            let difference = (merged.certificate().largest() - serial.largest()).abs();
-            assert!(difference < 1e-15, "{order:?} in units of {unit:e}: {difference:e}");
-        }
-        serial
-    };
-    let [of_one, of_small] = [1.0, 2.0_f64.powi(-60)].map(of_unit);
-    assert_eq!(of_small, of_one);
 }

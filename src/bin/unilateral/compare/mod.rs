@@ -38,7 +38,7 @@ pub fn run(options: &Options) -> Request<bool> {
     if options.list {
         return print(&list()).map(|()| true);
     }
-    if processes_of_job() > 1 || options.engine.is_some() || options.verify {
+    if processes_of_job() > 1 || options.engine.is_some() {
         return run_over_processes(options);
     }
     check_numbers(options)?;
@@ -67,7 +67,7 @@ fn run_over_processes(options: &Options) -> Request<bool> {
 }
 #[cfg(not(feature = "petsc"))]
 fn run_over_processes(_: &Options) -> Request<bool> {
-    Err("several processes, --engine and --verify need a program with PETSc: cargo build --release --features petsc"
+    Err("several processes and --engine need a program with PETSc: cargo build --release --features petsc"
         .to_owned())
 }
 

@@ -63,13 +63,10 @@ pub struct Options {
     /// Certificates after every outer step, of one more run
     #[arg(help_heading = SOLVER, long)]
     pub history: bool,
-    /// Over mpirun: petsc for preconditioners, or snesvi for the whole inequality
-    #[arg(help_heading = SOLVER, long, value_name = "NAME", value_parser = ["petsc", "snesvi"],
+    /// Over mpirun: petsc, the library of the preconditioners
+    #[arg(help_heading = SOLVER, long, value_name = "NAME", value_parser = ["petsc"],
         hide_possible_values = true, hide = !cfg!(feature = "petsc"))]
     pub engine: Option<String>,
-    /// Over mpirun: compare all rows with those of the whole mesh, bit for bit
-    #[arg(help_heading = SOLVER, long, hide = !cfg!(feature = "petsc"))]
-    pub verify: bool,
     /// Where the report goes
     #[arg(help_heading = OUTPUT, long, value_name = "DIR", default_value = "target/compare")]
     pub out: PathBuf,

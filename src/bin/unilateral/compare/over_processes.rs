@@ -8,7 +8,7 @@ use unilateral::in_its_dimension;
 use unilateral::processes::{ExchangeError, agree};
 use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Journal, PartChecks, Report, Row};
+use unilateral::study::{Journal, Report, Row};
 
 use super::options::{Options, check_numbers};
 use super::prepare::study;
@@ -65,11 +65,7 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
         messages.iter().for_each(|text| complain(text));
     }
     agreed(if is_first { write_all(options, &report) } else { Ok(()) }, process)?;
-    let has_bits = |row: &Row| {
-        let differences = row.ranks.as_ref().and_then(|ranks| ranks.differences);
-        differences.is_none_or(|found| found.are_none())
-    };
-    Ok(messages.is_empty() && report.rows.iter().all(|row| row.converged() && has_bits(row)))
+    Ok(messages.is_empty() && report.rows.iter().all(Row::converged))
 }
 
 /// Checks what needs no file: numbers, options, the launcher, threads.
@@ -126,9 +122,7 @@ impl AllRuns<'_> {
         if let Some(journal) = journal {
             study = study.journal(journal);
         }
-        let by_engine = options.engine.as_deref() == Some("snesvi");
-        let checks = PartChecks { verify: options.verify, by_engine };
-        let report = study.run_on_parts(process, checks);
+        let report = study.run_on_parts(process);
         report.map(|report| report.rows).map_err(|e| format!("{place}: {e}"))
     }
 }

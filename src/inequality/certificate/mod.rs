@@ -1,6 +1,18 @@
 //! The certificate: violations of the complementarity conditions, computed from the data and `u` alone.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod` | [`Certificate`]; contact states of values |
+//! | `violations` | [`certify`]: the violations at each unknown, and their sums |
+//! | `scales` | the energy norm and the largest value to which violations are relative |
 
-use super::scales::Scales;
+pub(super) mod scales;
+pub(super) mod violations;
+
+use scales::Scales;
+pub use violations::certify;
+pub(crate) use violations::certify_solution;
+
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::parallel::vectors::collect;
 use crate::real::{Precision, Real, maximum};
@@ -48,8 +60,7 @@ pub struct Certificate {
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub complementarity: f64,
     /// Dual norm of the residual on inactive unknowns divided by `E`; or, if larger, the largest
-    /// difference between a jump and the jump that its multiplier determines, divided by `U`
-    /// ([`Violations::of`](super::Violations::of)).
+    /// difference between a jump and the jump that its multiplier determines, divided by `U`.
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub residual: f64,
     /// Bound on the relative algebraic error in the energy norm, if the solver computes one; else `None`. Without
@@ -137,7 +148,7 @@ const WITH_FORCES: f64 = 1e-6;
 
 /// Whether a method whose certificates fall from step to step ends: the smallest one is within its limit, and forces have
 /// digits, or the last step has not halved the certificate `before`.
-pub(super) fn is_final<T: Real>(smallest: f64, before: f64, last: f64) -> bool {
+pub(in crate::inequality) fn is_final<T: Real>(smallest: f64, before: f64, last: f64) -> bool {
     smallest <= T::CERTIFICATE_LIMIT && (smallest <= WITH_FORCES || last > 0.5 * before)
 }
 
@@ -154,7 +165,7 @@ pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> 
 }
 
 /// [`contact_of`] for values with jump multipliers, if they are not empty.
-pub(super) fn contact_states<T: Real>(
+pub(in crate::inequality) fn contact_states<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
     jump_multipliers: &[T],
@@ -178,7 +189,11 @@ pub(super) fn contact_states<T: Real>(
 
 /// The bound that is nearer to the value `x`, the distance from it, negative beyond it, and the step towards it.
 /// `step = r_i / d_i` is positive where a Gauss-Seidel correction would decrease the value.
-pub(super) fn nearer_bound<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> (Contact, f64, f64) {
+pub(in crate::inequality) fn nearer_bound<T: Real>(
+    bound: &Bound<T>,
+    x: f64,
+    step: f64,
+) -> (Contact, f64, f64) {
     let [to_lower, to_upper] = bound.distances(x);
     match to_lower <= to_upper {
         true => (Contact::Lower, to_lower, step),

@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use crate::algebra::{Distribution, Inequality};
+use crate::algebra::Inequality;
 use crate::arrays::array_of;
 use crate::parallel::vectors::map_chunks;
 use crate::real::{Precision, Real, maximum};
@@ -38,40 +38,52 @@ const STIFFNESS_ENERGY: usize = 4;
 
 /// The maximum and the sums over unknowns from which [`Scales`] are computed.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sums {
+struct Sums {
     /// The largest `|u_i|` or `|v_i|`.
-    pub max_norm: f64,
+    max_norm: f64,
     /// The energy with data ([`Scales::energy_norm`]), the sum of the absolute values of its terms, `sum c_i^2 / d_i`,
     /// `sum d_i u_i^2`, and `sum k_i u_i^2` with the diagonal `k` of the matrix without a penalty that is kept apart.
-    pub sums: [f64; 5],
+    sums: [f64; 5],
 }
 
 impl Scales {
     /// The scales of `u`, given as `values` with the residual and the jump multipliers: `b - A u`, or `c - K u - M^T p`
     /// with jump multipliers `p` if they are not empty. `diagonal` is the positive diagonal, `precision` that in which
-    /// the values were computed. Numbers that are not finite give norms that are not finite.
+    /// the values were computed. A jump belongs to the part of a mesh that owns its first unknown. Numbers that are not
+    /// finite give norms that are not finite.
     pub fn of<T: Real>(
         inequality: &Inequality<T>,
         values: (&[T], &[f64], &[T]),
         diagonal: &(dyn Fn(usize) -> f64 + Sync),
         precision: Precision,
     ) -> Self {
-        let mut sums = Sums::of(inequality, values, diagonal, &|i| inequality.owns(i));
-        sums = sums.over_parts(inequality.distribution());
-        sums.scales(precision.epsilon())
+        let Sums { mut max_norm, mut sums } = Sums::of(inequality, values, diagonal);
+        let distribution = inequality.distribution();
+        distribution.largest(std::slice::from_mut(&mut max_norm));
+        distribution.sum(&mut sums);
+        let [energy, terms, load_energy, diagonal_energy, stiffness_energy] = sums;
+        let epsilon = precision.epsilon();
+        // products are summed in double precision, of values that are rounded to theirs
+        let products = (f64::EPSILON + epsilon * epsilon) * stiffness_energy;
+        let least = VANISHING * maximum(epsilon * terms, products);
+        let energy = [(energy, least), (load_energy, 0.0), (diagonal_energy, 0.0)]
+            .into_iter()
+            // true for NaN
+            .find(|(energy, least)| energy.partial_cmp(least).is_none_or(Ordering::is_gt))
+            .map_or(1.0, |(energy, _)| energy);
+        Self { max_norm: if max_norm == 0.0 { 1.0 } else { max_norm }, energy_norm: energy.sqrt() }
     }
 }
 
 impl Sums {
-    /// The sums over the unknowns that a part owns, for values, residual and jump multipliers as
-    /// [`Scales::of`] takes them. A jump belongs to the owner of its first unknown.
-    pub fn of<T: Real>(
+    /// The sums over the unknowns of this part.
+    fn of<T: Real>(
         inequality: &Inequality<T>,
         (u, residual, jump_multipliers): (&[T], &[f64], &[T]),
         diagonal: &(dyn Fn(usize) -> f64 + Sync),
-        owns: &(impl Fn(usize) -> bool + Sync),
     ) -> Self {
         let Inequality { load, bounds, penalised, dirichlet_energy, .. } = inequality;
+        let owns = |i: usize| inequality.owns(i);
         let chunks = map_chunks(u.len(), |range| {
             let mut chunk = Sums::default();
             for i in range.filter(|&i| owns(i)) {
@@ -89,7 +101,7 @@ impl Sums {
         let mut sums = chunks.into_iter().fold(Sums::default(), Sums::merge);
         if let Some(penalised) = penalised {
             // u.K u + p.(S^-1 p) = u.(c - r) - p.g, without the cancellation of penalties
-            let work = penalised.work_on_data(|i| u[i].to_f64(), jump_multipliers, owns);
+            let work = penalised.work_on_data(|i| u[i].to_f64(), jump_multipliers, &owns);
             sums.add_energy(-work);
         } else if let Some(data) = dirichlet_energy {
             for term in data.terms.iter().filter(|term| owns(term.unknown as usize)) {
@@ -102,30 +114,8 @@ impl Sums {
         }
         sums
     }
-    /// The scales; `epsilon` is machine epsilon of the precision in which the values were computed.
-    pub fn scales(&self, epsilon: f64) -> Scales {
-        let [energy, terms, load_energy, diagonal_energy, stiffness_energy] = self.sums;
-        // products are summed in double precision, of values that are rounded to theirs
-        let products = (f64::EPSILON + epsilon * epsilon) * stiffness_energy;
-        let least = VANISHING * maximum(epsilon * terms, products);
-        let energy = [(energy, least), (load_energy, 0.0), (diagonal_energy, 0.0)]
-            .into_iter()
-            // true for NaN
-            .find(|(energy, least)| energy.partial_cmp(least).is_none_or(Ordering::is_gt))
-            .map_or(1.0, |(energy, _)| energy);
-        Scales {
-            max_norm: if self.max_norm == 0.0 { 1.0 } else { self.max_norm },
-            energy_norm: energy.sqrt(),
-        }
-    }
-    /// The maximum and the sums over all parts.
-    pub fn over_parts(mut self, distribution: &dyn Distribution) -> Self {
-        distribution.largest(std::slice::from_mut(&mut self.max_norm));
-        distribution.sum(&mut self.sums);
-        self
-    }
     /// The sums over the unknowns of `self` and `other`.
-    pub fn merge(self, other: Self) -> Self {
+    fn merge(self, other: Self) -> Self {
         Self {
             max_norm: maximum(self.max_norm, other.max_norm),
             sums: array_of(|k| self.sums[k] + other.sums[k]),
