@@ -8,7 +8,7 @@ use super::space::Space;
 use super::space::metric::Metrics;
 use super::space::tables::FacetDatum;
 use super::space::tables::FacetTable;
-use super::stiffness::zero_local;
+use super::stiffness::Local;
 use crate::algebra::{JumpTerm, Jumps, MeanJumps, NO_INDEX, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::FacetForm;
@@ -120,16 +120,10 @@ fn blocks<const D: usize>(space: &Space<'_, D>, metrics: &Metrics) -> Vec<f64> {
     let fill = |cells: Range<usize>, chunk: &mut [f64]| {
         for (cell, out) in cells.zip(chunk.chunks_exact_mut(n * n)) {
             let metric = metrics.at::<D>(cell);
-            let stiffness = space.stiffness(&table, cell, &metric);
-            for (row, stiffness) in out.chunks_exact_mut(n).zip(&stiffness) {
-                row.copy_from_slice(&stiffness[..n]);
-            }
-            if let Some(reaction) = &space.reaction {
-                let mut own = zero_local();
-                reaction.add(space.mesh, cell, metric.volume, &mut own);
-                for (k, out) in out.iter_mut().enumerate() {
-                    *out += own[k / n][k % n];
-                }
+            let mut matrix: Local = space.stiffness(&table, cell, &metric.products);
+            space.add_reaction(cell, metric.volume, &mut matrix);
+            for (row, entries) in out.chunks_exact_mut(n).zip(&matrix) {
+                row.copy_from_slice(&entries[..n]);
             }
         }
         Ok::<(), Infallible>(())

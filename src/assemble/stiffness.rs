@@ -1,6 +1,5 @@
-//! The stiffness of a cell.
+//! The stiffness of the reference element.
 
-use super::space::metric::CellMetric;
 use super::space::tables::CellTable;
 use crate::element::MAX_BASIS;
 
@@ -15,11 +14,14 @@ pub(crate) fn zero_local() -> Local {
 /// their product of gradients contributes. Pairs are enough, because gradients sum to zero.
 pub(crate) struct StiffnessTable {
     pairs: Vec<Local>,
+    /// The square by which products of gradients of barycentric coordinates are those of basis functions, if they are.
+    square: Option<f64>,
 }
 
 impl StiffnessTable {
-    /// From the basis at the points of a rule that integrates products of derivatives.
-    pub fn new(dimension: usize, table: &CellTable) -> Self {
+    /// From the basis at the points of a rule that integrates products of derivatives, and the factor by which gradients of
+    /// basis functions are those of barycentric coordinates, if they are.
+    pub fn new(dimension: usize, table: &CellTable, gradient_factor: Option<f64>) -> Self {
         let mut pairs = Vec::new();
         for k in 0..dimension {
             for l in k + 1..=dimension {
@@ -35,16 +37,38 @@ impl StiffnessTable {
                 pairs.push(pair);
             }
         }
-        Self { pairs }
+        Self { pairs, square: gradient_factor.map(|factor| factor * factor) }
     }
-    /// Entry `(i, j)` of `(grad phi_j, grad phi_i)` over a cell.
+    /// Calls a function with `i <= j` and the entry `(grad phi_j, grad phi_i)` over a cell with these products of
+    /// gradients, for the first `n` basis functions.
     #[inline(always)]
-    pub fn entry<const D: usize>(&self, metric: &CellMetric<D>, i: usize, j: usize) -> f64 {
+    pub fn for_each_entry<const D: usize>(
+        &self,
+        products: &[[f64; 4]; 4],
+        n: usize,
+        mut visit: impl FnMut(usize, usize, f64),
+    ) {
+        for i in 0..n {
+            for j in i..n {
+                visit(
+                    i,
+                    j,
+                    match self.square {
+                        Some(square) => square * products[i][j],
+                        None => self.entry::<D>(products, i, j),
+                    },
+                );
+            }
+        }
+    }
+    /// Entry `(i, j)` of `(grad phi_j, grad phi_i)` over a cell with these products of gradients.
+    #[inline(always)]
+    pub fn entry<const D: usize>(&self, products: &[[f64; 4]; 4], i: usize, j: usize) -> f64 {
         let mut sum = 0.0;
         let mut pair = 0;
         for k in 0..D {
             for l in k + 1..=D {
-                sum += metric.products[k][l] * self.pairs[pair][i][j];
+                sum += products[k][l] * self.pairs[pair][i][j];
                 pair += 1;
             }
         }

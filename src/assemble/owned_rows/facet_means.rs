@@ -9,7 +9,6 @@ use crate::algebra::SparseMatrix;
 use crate::assemble::facet_coefficients::FacetCoefficients;
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::Metrics;
-use crate::assemble::stiffness::zero_local;
 use crate::facet::{FacetForm, FacetKind};
 use crate::mesh::{BoundaryCondition, Neighbour};
 
@@ -59,13 +58,7 @@ pub(super) fn fill<const D: usize>(
         let metric = metrics.at::<D>(cell);
         let scale = space.alpha(cell) * ((D * D) as f64);
         let mut own = metric.products.map(|row| row.map(|product| scale * product));
-        if let Some(reaction) = &space.reaction {
-            let mut products = zero_local();
-            reaction.add(space.mesh, cell, metric.volume, &mut products);
-            for (row, products) in own.iter_mut().zip(&products) {
-                row.iter_mut().zip(products).for_each(|(entry, product)| *entry += *product);
-            }
-        }
+        space.add_reaction(cell, metric.volume, &mut own);
         for (local, mut own) in own.into_iter().enumerate().take(D + 1) {
             let facet = (cell, local);
             let (here, kind) = match neighbours.across(cell, local) {

@@ -21,7 +21,7 @@ use super::jump_products::JumpProducts;
 use super::space::Space;
 use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
-use super::stiffness::{StiffnessTable, zero_local};
+use super::stiffness::StiffnessTable;
 use super::trace::MAX_FLUX_MOMENTS;
 use crate::algebra::SparseMatrix;
 use crate::element::MAX_BASIS;
@@ -171,33 +171,9 @@ pub(crate) fn fill<const D: usize>(
     }
     if form.is_lifted() {
         let lifting = Lifting::new(space, form, metrics);
-        filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
-            lifting.add(cell, coupled, rows);
-        });
-    }
-    if let Some(reaction) = &space.reaction {
-        let n = space.per_cell();
-        filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
-            let mut own = zero_local();
-            reaction.add(space.mesh, cell, metrics.at::<D>(cell).volume, &mut own);
-            let block = coupled.position(cell) * n;
-            for (row, values) in rows.chunks_exact_mut(coupled.n * n).zip(&own) {
-                for (entry, value) in row[block..].iter_mut().zip(&values[..n]) {
-                    *entry += *value;
-                }
-            }
-        });
-    }
-}
-
-/// The functions that add to the rows of a cell.
-type AddToCell<'w> = &'w (dyn Fn(usize, &Coupled, &mut [f64]) + Sync);
-
-impl<const D: usize> Filling<'_, '_, D> {
-    /// Calls a function with each cell and its rows.
-    fn add_to_cells(&self, row_starts: &[u32], values: &mut [f64], add: AddToCell<'_>) {
-        for_each_cell(row_starts, self.space.per_cell(), values, |cell, rows| {
-            add(cell, &Coupled::of::<D>(self.neighbours, cell, self.lifted), rows);
+        for_each_cell(row_starts, space.per_cell(), values, |cell, rows| {
+            let coupled = Coupled::of::<D>(filling.neighbours, cell, true);
+            lifting.add(cell, &coupled, rows);
         });
     }
 }

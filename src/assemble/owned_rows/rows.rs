@@ -119,11 +119,9 @@ impl<const D: usize> Filling<'_, '_, D> {
     #[inline(always)]
     fn write_cell<const N: usize, const M: usize>(&self, cell: usize, mut rows: Rows<'_>) {
         let metric = self.metrics.at(cell);
-        let coefficient = self.space.alpha(cell);
-        let mut block_of_own: Block<N> = match self.space.varying_in(cell) {
-            None => block(|i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j)),
-            Some((varying, values)) => block(|i, j| varying.stiffness::<D>(values, &metric, i, j)),
-        };
+        let mut block_of_own: Block<N> =
+            self.space.stiffness(&self.stiffness, cell, &metric.products);
+        self.space.add_reaction(cell, metric.volume, &mut block_of_own);
         for local in 0..=D {
             let own = Own { cell, local, metric: &metric };
             match self.neighbours.across(cell, local) {
@@ -273,9 +271,4 @@ impl<const D: usize> Filling<'_, '_, D> {
             scale * (1..=D).fold(derivatives[i][0] * products[0], sum)
         })
     }
-}
-
-#[inline(always)]
-fn block<const N: usize>(entry: impl Fn(usize, usize) -> f64) -> Block<N> {
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }

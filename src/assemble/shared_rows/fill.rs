@@ -5,12 +5,12 @@ use std::sync::atomic::Ordering;
 
 use crate::parallel::for_each_item;
 
-use super::cells::{CellMatrices, CellMatrix, General, Gradients};
 use super::pattern::{EntryPositions, LONGEST};
 use super::unknowns::{CellUnknowns, Rows, with_constant_count};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
-use crate::assemble::space::dofs::{Dofs, KINDS};
+use crate::assemble::space::dofs::KINDS;
+use crate::assemble::stiffness::StiffnessTable;
 use crate::mesh::incidence::{Columns, Overlap, partition};
 
 /// The rows of one kind in a subset, and their values.
@@ -42,9 +42,9 @@ fn fill_with<const D: usize, const N: usize>(
     let SparseMatrix { row_starts, columns, values } = matrix;
     let same = row_starts.len() == dofs.size() + 1 && values.len() == positions.nonzeros;
     assert!(same, "the matrix has the pattern of another discretisation");
-    let cells = CellMatrices::new(space);
     let unknowns = CellUnknowns::<D, N>::new(dofs);
-    let filling = Filling { dofs, row_starts, columns, positions, cells, unknowns };
+    let table = space.stiffness_table();
+    let filling = Filling { space, row_starts, columns, positions, table, unknowns };
     let subsets = partition(dofs.kinds());
     let targets = targets(&subsets, row_starts, values);
     for_each_item(targets, &|k, targets| filling.fill_subset(&subsets[k], targets));
@@ -92,16 +92,16 @@ impl Target<'_> {
 }
 
 /// All that the loop over cells reads.
-struct Filling<'f, 's, 'a, const D: usize, const N: usize> {
-    dofs: &'f Dofs<'a>,
+struct Filling<'f, 's, const D: usize, const N: usize> {
+    space: &'f Space<'s, D>,
     row_starts: &'f [u32],
     columns: &'f [u32],
     positions: &'f EntryPositions,
-    cells: CellMatrices<'s, 'a, D>,
+    table: StiffnessTable,
     unknowns: CellUnknowns<D, N>,
 }
 
-impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
+impl<const D: usize, const N: usize> Filling<'_, '_, D, N> {
     /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
     #[inline(never)]
     fn fill_subset(&self, rows: &Rows, mut targets: [Target<'_>; KINDS]) {
@@ -109,16 +109,9 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
             for (target, hull) in targets.iter_mut().zip(hull) {
                 target.clear_before(hull.end, self.row_starts);
             }
-            match self.cells.only_gradients() {
-                // for other elements the loop over products of gradients is not even instantiated
-                Some(square) if const { N == D + 1 } => {
-                    let matrices = Gradients::new(&self.cells, square);
-                    self.block(cells, overlap, &mut targets, matrices);
-                }
-                _ => {
-                    let matrices = General::new(&self.cells, &self.unknowns);
-                    self.block(cells, overlap, &mut targets, matrices);
-                }
+            match overlap {
+                Overlap::Inside => self.add::<true>(cells, &mut targets),
+                _ => self.add::<false>(cells, &mut targets),
             }
         }
         for target in &mut targets {
@@ -126,43 +119,23 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
         }
     }
 
-    #[inline(always)]
-    fn block<M: CellMatrix>(
-        &self,
-        cells: Range<usize>,
-        overlap: Overlap,
-        targets: &mut [Target<'_>; KINDS],
-        matrices: M,
-    ) {
-        if overlap == Overlap::Inside {
-            self.add::<M, true>(cells, targets, matrices);
-        } else {
-            self.add::<M, false>(cells, targets, matrices);
-        }
-    }
-
     /// Adds the matrices of the cells of a block to those of their rows that the targets have.
     #[inline(always)]
-    fn add<M: CellMatrix, const INSIDE: bool>(
-        &self,
-        cells: Range<usize>,
-        targets: &mut [Target<'_>; KINDS],
-        mut matrix: M,
-    ) {
+    fn add<const INSIDE: bool>(&self, cells: Range<usize>, targets: &mut [Target<'_>; KINDS]) {
         let mut numbers = Vec::new();
         // a copy stays in registers, whatever is written to the values
         let of_cell = self.unknowns;
         let n = of_cell.count();
         let square = n * n;
         let positions = &self.positions.in_rows[cells.start * square..cells.end * square];
-        let unknowns = self.dofs.of_cells(cells.clone(), &mut numbers);
+        let unknowns = self.space.dofs.of_cells(cells.clone(), &mut numbers);
         let each = unknowns.chunks_exact(n).zip(positions.chunks_exact(square)).zip(cells);
         for ((unknowns, positions), cell) in each {
             let has = |i: usize| targets[of_cell.kind(i)].rows.contains(&unknowns[i]);
             if !INSIDE && !(0..n).any(has) {
                 continue;
             }
-            matrix.of_cell(cell);
+            let matrix = self.matrix(cell);
             for i in 0..n {
                 let target = &mut targets[of_cell.kind(i)];
                 if INSIDE || target.rows.contains(&unknowns[i]) {
@@ -173,15 +146,24 @@ impl<const D: usize, const N: usize> Filling<'_, '_, '_, D, N> {
                     if out.len() <= LONGEST {
                         for j in 0..n {
                             let position = positions[i * n + j].load(Ordering::Relaxed);
-                            out[position as usize] += matrix.entry(i, j);
+                            out[position as usize] += matrix[i][j];
                         }
                     } else {
                         let columns = &self.columns[start + target.base..end + target.base];
-                        add_by_search(out, columns, unknowns, &|j| matrix.entry(i, j));
+                        add_by_search(out, columns, unknowns, &|j| matrix[i][j]);
                     }
                 }
             }
         }
+    }
+
+    /// The matrix of a cell.
+    #[inline(always)]
+    fn matrix(&self, cell: usize) -> [[f64; N]; N] {
+        let (volume, products) = self.space.shape(cell, 1.0);
+        let mut matrix = self.space.stiffness(&self.table, cell, &products);
+        self.space.add_reaction(cell, volume, &mut matrix);
+        matrix
     }
 }
 

@@ -4,7 +4,6 @@
 //! when the pattern was made: see [`pattern`](pattern::pattern) and [`fill`](fill::fill). With one, which
 //! is rare here, see [`with_facets`].
 
-mod cells;
 mod fill;
 pub(crate) mod pattern;
 pub(crate) mod places;

@@ -7,8 +7,8 @@ use crate::mesh::incidence::{Columns, Ranges};
 /// A range of rows for each kind of owner.
 pub(super) type Rows = Ranges<KINDS>;
 
-/// In place of a constant number of unknowns: the number is known at run time only.
-pub(super) const ANY: usize = 0;
+/// In place of a constant number of unknowns: the number is known at run time only, and at most this one.
+pub(super) const ANY: usize = MAX_BASIS;
 
 /// How many unknowns a cell has and which kind owns each of them.
 ///

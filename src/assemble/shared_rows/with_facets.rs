@@ -6,6 +6,7 @@ use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
 use crate::assemble::space::form_facets::FormFacet;
 use crate::assemble::space::tables::FacetTable;
+use crate::assemble::stiffness::Local;
 use crate::assemble::trace::traces;
 use crate::element::MAX_BASIS;
 use crate::facet::{FacetForm, Trace};
@@ -60,11 +61,9 @@ pub(crate) fn fill<const D: usize>(
     let stiffness = space.stiffness_table();
     let mut unknowns = Vec::new();
     for cell in 0..space.mesh.n_cells() {
-        let metric = space.metric(cell);
-        let mut local = space.stiffness(&stiffness, cell, &metric);
-        if let Some(reaction) = &space.reaction {
-            reaction.add(space.mesh, cell, metric.volume, &mut local);
-        }
+        let (volume, products) = space.shape(cell, 1.0);
+        let mut local: Local = space.stiffness(&stiffness, cell, &products);
+        space.add_reaction(cell, volume, &mut local);
         list_unknowns(space, cell, None, &mut unknowns);
         add(matrix, &unknowns, &local);
     }

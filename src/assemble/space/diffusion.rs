@@ -1,4 +1,4 @@
-//! The diffusion coefficient in cells and on facets, and what it makes of derivatives in a flux.
+//! The diffusion coefficient in cells and on facets, what it makes of derivatives in a flux, and the matrix of a cell.
 
 use super::Space;
 use super::coefficient::tensor::{TensorCoefficient, TensorFactor};
@@ -6,6 +6,8 @@ use super::coefficient::{VaryingCoefficient, limited};
 use super::metric::shape;
 use super::tables::Derivatives;
 use crate::arrays::array_of;
+use crate::assemble::stiffness::{StiffnessTable, zero_local};
+use crate::element::MAX_BASIS;
 use crate::mesh::HalfFacet;
 use crate::real::Point;
 
@@ -122,6 +124,54 @@ impl<const D: usize> Space<'_, D> {
     ) -> Option<impl Fn(usize, usize) -> f64> {
         let (varying, weight) = self.flux_weights(own, other, own_weight)?;
         Some(move |k, l| varying.weighted_product(k, l, &weight))
+    }
+}
+
+/// The matrix of a cell.
+impl<const D: usize> Space<'_, D> {
+    /// The entries `(alpha grad phi_j, grad phi_i)` over a cell with these products of gradients, from the table of the
+    /// reference element, for an element of `N` functions, or of fewer for the largest `N`.
+    #[inline(always)]
+    pub fn stiffness<const N: usize>(
+        &self,
+        table: &StiffnessTable,
+        cell: usize,
+        products: &[[f64; 4]; 4],
+    ) -> [[f64; N]; N] {
+        let n = if N == MAX_BASIS { self.per_cell() } else { N };
+        let mut out = [[0.0; N]; N];
+        match self.varying_in(cell) {
+            None => {
+                let alpha = self.alpha(cell);
+                table.for_each_entry::<D>(products, n, |i, j, entry| {
+                    (out[i][j], out[j][i]) = (alpha * entry, alpha * entry);
+                });
+            }
+            Some((varying, values)) => {
+                for i in 0..n {
+                    for j in i..n {
+                        let entry = varying.stiffness::<D>(values, products, i, j);
+                        (out[i][j], out[j][i]) = (entry, entry);
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Adds the reaction term of a cell to its matrix.
+    pub fn add_reaction<const N: usize>(
+        &self,
+        cell: usize,
+        volume: f64,
+        matrix: &mut [[f64; N]; N],
+    ) {
+        let Some(reaction) = &self.reaction else { return };
+        let mut terms = zero_local();
+        reaction.add(self.mesh, cell, volume, &mut terms);
+        for (row, terms) in matrix.iter_mut().zip(&terms) {
+            row.iter_mut().zip(terms).for_each(|(entry, term)| *entry += term);
+        }
     }
 }
 

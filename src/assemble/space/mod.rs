@@ -40,7 +40,7 @@ use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use super::DataQuadrature;
-use super::stiffness::{Local, StiffnessTable, zero_local};
+use super::stiffness::StiffnessTable;
 use crate::constraint::{BoundBy, in_basis_of, offered};
 use crate::element::{Element, Entity, MAX_BASIS, Node};
 use crate::error::Error;
@@ -236,22 +236,7 @@ impl<'a, const D: usize> Space<'a, D> {
     /// The stiffness of the reference element.
     pub fn stiffness_table(&self) -> StiffnessTable {
         let degree = 2 * self.basis_degree.saturating_sub(1);
-        StiffnessTable::new(D, &self.cell_table(Rule::new(D, degree)))
-    }
-    /// The entries `(alpha grad phi_j, grad phi_i)` over a cell, from the table of the reference element. The loops
-    /// over cells that fill a matrix make the same numbers in place.
-    pub fn stiffness(&self, table: &StiffnessTable, cell: usize, metric: &CellMetric<D>) -> Local {
-        let (n, alpha, varying) = (self.per_cell(), self.alpha(cell), self.varying_in(cell));
-        let mut out = zero_local();
-        for (i, row) in out.iter_mut().enumerate().take(n) {
-            for (j, entry) in row.iter_mut().enumerate().take(n) {
-                *entry = match varying {
-                    None => alpha * table.entry(metric, i, j),
-                    Some((varying, values)) => varying.stiffness(values, metric, i, j),
-                };
-            }
-        }
-        out
+        StiffnessTable::new(D, &self.cell_table(Rule::new(D, degree)), self.gradient_factor())
     }
     /// Whether the unknowns of a cell are Bernstein coefficients.
     pub fn has_coefficients(&self) -> bool {

@@ -1,7 +1,5 @@
 //! The cells around each vertex.
 
-use std::ops::Range;
-
 use crate::assemble::space::Space;
 use crate::parallel::grouping::group_by_key;
 
@@ -50,31 +48,5 @@ impl<const D: usize> Space<'_, D> {
             }
         });
         Corners { corners, starts }
-    }
-
-    /// Ranges of `length` cells whose fluxes of vertices are kept at a time, each with the vertices of its cells. All cells are
-    /// one range if the ranges would have more than twice as many vertices as the mesh: the numbers of neighbours are far
-    /// apart then.
-    pub(super) fn ranges_with_vertices(&self, length: usize) -> Vec<(Range<usize>, Vec<u32>)> {
-        let (n_cells, n_vertices) = (self.mesh.n_cells(), self.mesh.vertices().len());
-        let mut last_range = vec![u32::MAX; n_vertices];
-        let mut ranges = Vec::new();
-        let mut n_visits = 0;
-        for (number, first) in (0..n_cells).step_by(length).enumerate() {
-            let cells = first..(first + length).min(n_cells);
-            let mut vertices = Vec::new();
-            for &v in &self.mesh.cells()[cells.start * (D + 1)..cells.end * (D + 1)] {
-                if last_range[v as usize] != number as u32 {
-                    last_range[v as usize] = number as u32;
-                    vertices.push(v);
-                }
-            }
-            n_visits += vertices.len();
-            if n_visits > 2 * n_vertices {
-                return vec![(0..n_cells, (0..n_vertices as u32).collect())];
-            }
-            ranges.push((cells, vertices));
-        }
-        ranges
     }
 }

@@ -64,9 +64,6 @@ use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::mesh::{BoundaryCondition, Neighbours};
 use crate::parallel::cells;
 
-/// Number of cells whose fluxes of vertices are kept at a time. Those of a tetrahedron are twelve numbers, the flux is four.
-const CELLS_AT_A_TIME: usize = 1 << 17;
-
 impl<const D: usize> Space<'_, D> {
     /// The flux of a conforming linear function, without that of Neumann data and contact, which are balanced all the
     /// same.
@@ -94,53 +91,50 @@ impl<const D: usize> Space<'_, D> {
         self.flux_of_patches(&self.quadratic_cells(known, loads, pressing), None, neighbours)
     }
 
-    /// The flux, from the fluxes of vertices, which are kept for [`CELLS_AT_A_TIME`] cells; in the plane and in space most
-    /// patches of linears need no least squares on facets.
+    /// The flux, from the fluxes of vertices; in the plane and in space most patches of linears need no least squares on
+    /// facets.
     fn flux_of_patches<C: PatchCells<D, N>, const N: usize>(
         &self,
         of: &C,
         linear: Option<&LinearCells<'_, '_, D>>,
         neighbours: &Neighbours,
     ) -> Flux<D> {
-        let mut of_vertices = CornerFluxes::new(D * C::PER_FACET, D + 1);
-        let mut corners = None;
-        let mut flux = Flux::zero(C::DEGREE, self.mesh.n_cells());
-        for (cells, mut vertices) in self.ranges_with_vertices(CELLS_AT_A_TIME) {
-            of_vertices.keep(cells.clone());
-            // fans and links know no tensors
-            if let Some(of) = linear.filter(|_| !self.has_tensor()) {
-                vertices = of.set_directly(&vertices, &of_vertices);
-            }
-            if !vertices.is_empty() {
-                let corners = corners.get_or_insert_with(|| self.corners());
-                cells::map(vertices.len(), &|range: Range<usize>| {
-                    let mut patch = Patch::default();
-                    for &v in &vertices[range] {
-                        patch.solve(of, neighbours, corners.at(v as usize), |corner, k, number| {
-                            of_vertices.set(corner, k, number);
-                        });
-                    }
-                });
-            }
-            let (n_cells, per_cell) = (cells.len(), flux.per_cell());
-            let fill = |range: Range<usize>, out: &mut [f64]| {
-                for (k, out) in range.zip(out.chunks_exact_mut(per_cell)) {
-                    let cell = cells.start + k;
-                    of.normals(cell, out);
-                    for corner in (0..=D).map(|own| Corner::new(cell, own)) {
-                        for (f, facet) in corner.facets::<D>().enumerate() {
-                            for p in 0..C::PER_FACET {
-                                let number = of_vertices.get(corner, f * C::PER_FACET + p);
-                                out[C::place(facet, p)] += number;
-                            }
+        let n_cells = self.mesh.n_cells();
+        let of_vertices = CornerFluxes::new(D * C::PER_FACET, D + 1, n_cells);
+        let mut vertices: Vec<u32> = (0..self.mesh.vertices().len() as u32).collect();
+        // fans and links know no tensors
+        if let Some(of) = linear.filter(|_| !self.has_tensor()) {
+            vertices = of.set_directly(&vertices, &of_vertices);
+        }
+        if !vertices.is_empty() {
+            let corners = self.corners();
+            cells::map(vertices.len(), &|range: Range<usize>| {
+                let mut patch = Patch::default();
+                for &v in &vertices[range] {
+                    patch.solve(of, neighbours, corners.at(v as usize), |corner, k, number| {
+                        of_vertices.set(corner, k, number);
+                    });
+                }
+            });
+        }
+        let mut flux = Flux::zero(C::DEGREE, n_cells);
+        let per_cell = flux.per_cell();
+        let fill = |cells: Range<usize>, out: &mut [f64]| {
+            for (cell, out) in cells.zip(out.chunks_exact_mut(per_cell)) {
+                of.normals(cell, out);
+                for corner in (0..=D).map(|own| Corner::new(cell, own)) {
+                    for (f, facet) in corner.facets::<D>().enumerate() {
+                        for p in 0..C::PER_FACET {
+                            let number = of_vertices.get(corner, f * C::PER_FACET + p);
+                            out[C::place(facet, p)] += number;
                         }
                     }
                 }
-                Ok::<(), Infallible>(())
-            };
-            let numbers = flux.of_cells_mut(cells.clone());
-            let Ok(()) = cells::for_each(n_cells, &|c| c * per_cell, numbers, &fill);
-        }
+            }
+            Ok::<(), Infallible>(())
+        };
+        let numbers = flux.of_cells_mut(0..n_cells);
+        let Ok(()) = cells::for_each(n_cells, &|c| c * per_cell, numbers, &fill);
         for f in self.mesh.boundary().iter().filter(|f| f.condition != BoundaryCondition::Dirichlet)
         {
             flux.set_zero_on(f.cell as usize, f.local.into());

@@ -18,7 +18,7 @@ use super::pressing::Pressing;
 use crate::arrays::array_of;
 use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{INWARD, Space};
-use crate::assemble::stiffness::StiffnessTable;
+use crate::assemble::stiffness::{Local, StiffnessTable};
 use crate::element::Node;
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{
@@ -215,14 +215,9 @@ impl<const D: usize> Space<'_, D> {
                 data.normal[facet][k] = -(D as f64) * coefficient * sum;
             }
         }
-        for (i, term) in data.stiffness.iter_mut().enumerate().take(n) {
-            for (j, value) in local.iter().enumerate().take(n) {
-                let entry = match varying {
-                    None => alpha * table.entry::<D>(&metric, i, j),
-                    Some((varying, values)) => varying.stiffness::<D>(values, &metric, i, j),
-                };
-                *term += entry * value;
-            }
+        let stiffness: Local = self.stiffness(table, cell, &metric.products);
+        for (term, row) in data.stiffness.iter_mut().zip(&stiffness).take(n) {
+            *term = row.iter().zip(&local).map(|(entry, value)| entry * value).sum();
         }
         data
     }

@@ -14,7 +14,6 @@ pub(crate) mod weighted_polynomials;
 
 use self::weighted_polynomials::{Factor, WeightedPolynomials};
 use super::checks::coefficient_at;
-use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable, Derivatives};
 use crate::arrays::map_entries;
 use crate::assemble::stiffness::StiffnessTable;
@@ -108,7 +107,7 @@ impl VaryingCoefficient {
         }
         let at_point = |(&point, &weight)| {
             let rule = Rule { points: vec![point], weights: vec![weight] };
-            StiffnessTable::new(D, &CellTable::new(rule, element))
+            StiffnessTable::new(D, &CellTable::new(rule, element), None)
         };
         let polynomials = OrthonormalPolynomials::new(D - 1, basis_degree);
         let moments = 0..polynomials.len();
@@ -176,16 +175,16 @@ impl VaryingCoefficient {
         let weighted = |k: usize, l: usize| self.weighted_product(k, l, &weight);
         self.in_cell.largest_flux(local, values, &weighted)
     }
-    /// Entry `(i, j)` of `(alpha grad phi_j, grad phi_i)` over a cell with these values.
+    /// Entry `(i, j)` of `(alpha grad phi_j, grad phi_i)` over a cell with these values and products of gradients.
     pub fn stiffness<const D: usize>(
         &self,
         values: &[f64],
-        metric: &CellMetric<D>,
+        products: &[[f64; 4]; 4],
         i: usize,
         j: usize,
     ) -> f64 {
         let points = self.stiffness.iter().zip(values);
-        points.fold(0.0, |sum, (table, &alpha)| sum + alpha * table.entry::<D>(metric, i, j))
+        points.fold(0.0, |sum, (table, &alpha)| sum + alpha * table.entry::<D>(products, i, j))
     }
     /// Moment `k` on facet `local` of the derivatives of the basis, with a weight at each point. Moments
     /// of the degree of the basis functions and above are left out of fluxes.
