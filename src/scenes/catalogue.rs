@@ -6,7 +6,7 @@ use super::scene::Scene;
 use super::{
     ball_2d, ball_3d, biactive_half_2d, biactive_ring_2d, bilateral_1d, cone, contrast,
     contrast_disc_2d, degenerate, disc_2d, friction, friction_1d, friction_both_1d, hertz_2d,
-    hertz_3d, icelike_1d, lshape_2d, oscillating_1d, parabola_1d, polynomial, pyramid_2d,
+    hertz_3d, hill, icelike_1d, lshape_2d, oscillating_1d, parabola_1d, polynomial, pyramid_2d,
     pyramid_full_2d, radial, radial_quarter_2d, ridge, signorini_2d, signorini_biactive_2d,
     signorini_closed_1d, signorini_disc, signorini_grazing_1d, signorini_harmonic,
     signorini_irrational_2d, signorini_layers_2d, signorini_line_3d, signorini_open_1d,
@@ -33,6 +33,9 @@ pub fn catalogue() -> Vec<Entry> {
         Entry::new(polynomial::<1>),
         Entry::new(polynomial::<2>),
         Entry::new(polynomial::<3>),
+        Entry::new(hill::<1>),
+        Entry::new(hill::<2>),
+        Entry::new(hill::<3>),
         Entry::new(ball_2d),
         Entry::new(ball_3d),
         Entry::new(disc_2d),

@@ -48,7 +48,7 @@ pub use hertz::hertz_2d;
 pub use hertz_in_space::hertz_3d;
 pub use lshape::lshape_2d;
 pub use oscillating::oscillating_1d;
-pub use polynomial::{degenerate, polynomial};
+pub use polynomial::{degenerate, hill, polynomial};
 pub use radial::{radial, radial_quarter_2d};
 pub use ridge::{pyramid_full_2d, ridge};
 pub use scene::Scene;

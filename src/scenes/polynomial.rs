@@ -1,14 +1,14 @@
-//! Powers of `r^2 - r0^2` over a plane obstacle, with and without force on the contact ball.
+//! Powers of `r^2 - r0^2` and `r0^2 - r^2` over a plane obstacle, with and without force on contact.
 
 use super::dual_number::{DualNumber, positive_power};
 use super::free_boundary;
 use super::scene::Scene;
 use crate::mesh::BoxDomain;
-use crate::problem::{Exact, Problem};
+use crate::problem::{Datum, Exact, Problem};
 use crate::real::Point;
 use crate::scheme::Regularity;
 
-/// Radius of the contact ball.
+/// Radius of the free boundary.
 const R0: f64 = 0.7;
 
 /// The "constant obstacle" of Nochetto, Siebert and Veeser, *Numer. Math.* 95 (2003), in `D`
@@ -40,6 +40,33 @@ pub fn polynomial<const D: usize>() -> Scene<D> {
             .obstacle_below(|_| 0.0)
             .obstacles_of_degree(0)
             .solved_by(exact),
+        regularity: Regularity::new(2.5),
+    }
+}
+
+/// A hill in the ball `r < r0 = 0.7` on a plane obstacle, in `D` dimensions: `(-1, 1)^D`, `psi = 0`, contact
+/// outside of the ball. All data are polynomials, so that bounds on errors are guaranteed.
+///
+/// The solution is `u = s^2`, `s = max(r0^2 - r^2, 0)`, zero on the boundary; the load is
+/// `f = 4D (r0^2 - r^2) - 8 r^2` everywhere. *Off contact*: `-Laplace u = 4D s - 8 r^2 = f`. *On contact*: the
+/// multiplier is `-f >= 8 r0^2`, since `r >= r0`. The second derivatives jump: `C^{1,1}`, `H^s` for `s < 5/2`.
+pub fn hill<const D: usize>() -> Scene<D> {
+    let load = |x: &Point<D>| -4.0 * D as f64 * from_sphere(x) - 8.0 * x.norm_squared();
+    let below = |x: &Point<D>| positive_power(-from_sphere(x), 2);
+    let exact = Exact::new(move |x| below(x)[0], move |x| x * (-2.0 * below(x)[1]))
+        .with_multiplier(move |x| if from_sphere(x) >= 0.0 { -load(x) } else { 0.0 })
+        .with_contact(|x| x.norm() - R0, free_boundary::sphere(R0, 2.0));
+    let problem = Problem { dirichlet: Datum::Constant(0.0).into(), ..Problem::new() };
+    Scene {
+        name: format!("hill-{D}d"),
+        summary: "a hill on a plane obstacle, contact outside a ball; polynomial data",
+        domain: BoxDomain::centred(1.0).into(),
+        problem: problem
+            .source(load)
+            .obstacle_below(|_| 0.0)
+            .obstacles_of_degree(0)
+            .solved_by(exact)
+            .polynomial_data(2),
         regularity: Regularity::new(2.5),
     }
 }

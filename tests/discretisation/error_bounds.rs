@@ -437,13 +437,12 @@ fn what_is_proven_and_what_has_no_bound() {
     assert!(matches!(unproven(&negative, &ConformingP1), Err(NoBound::NegativeReaction)));
 }
 
-/// On the line data on facets are numbers: scenes that state constant data have guaranteed bounds.
+/// On the line data on facets are numbers: scenes that state constant data have guaranteed bounds. So does the hill.
 #[test]
-fn a_scene_with_constant_data_has_a_guaranteed_bound() {
-    for name in ["signorini-open-1d", "signorini-closed-1d"] {
-        let scene = scenes::by_name(name).unwrap().make(&scenes::Parameters::default()).unwrap();
-        let scenes::AnyScene::One(scene) = scene else { panic!("{name}") };
-        let study = Study::<1>::new(scene).scheme(ConformingP1).scheme(Sipg::default());
+fn a_scene_with_polynomial_data_has_a_guaranteed_bound() {
+    fn check<const D: usize>(scene: Scene<D>) {
+        let name = scene.name.clone();
+        let study = Study::<D>::new(scene).scheme(ConformingP1).scheme(Sipg::default());
         for row in study.scheme(Wopsip::default()).levels([8]).run().unwrap().rows {
             assert_eq!(row.bound.guaranteed, Some(true), "{name} {}", row.label);
             let effectivity = row.bound.effectivity.unwrap();
@@ -454,6 +453,9 @@ fn a_scene_with_constant_data_has_a_guaranteed_bound() {
             );
         }
     }
+    check(scenes::signorini_open_1d());
+    check(scenes::signorini_closed_1d());
+    check(scenes::hill::<2>());
 }
 
 /// Dirichlet data of two groups that differ where the groups meet belong to no function of finite energy.

@@ -42,7 +42,7 @@ const NAMES: &str = "
     parabola-1d icelike-1d oscillating-1d ridge-1d ridge-2d ridge-3d radial-1d radial-2d
     radial-3d radial-quarter-2d polynomial-1d polynomial-2d polynomial-3d ball-2d ball-3d
     disc-2d biactive-half-2d biactive-ring-2d lshape-2d cone-2d cone-3d pyramid-full-2d
-    bilateral-1d degenerate2-2d degenerate3-2d degenerate4-2d contrast-1d contrast-2d
+    bilateral-1d hill-1d hill-2d hill-3d degenerate2-2d degenerate3-2d degenerate4-2d contrast-1d contrast-2d
     contrast-disc-2d signorini-reaction-1d signorini-open-1d signorini-closed-1d
     signorini-grazing-1d signorini-harmonic-2d signorini-2d signorini-shifted-2d
     signorini-irrational-2d signorini-smooth2-2d signorini-smooth3-2d signorini-smooth4-2d

@@ -4,7 +4,7 @@ use unilateral::mesh::BoundaryCondition;
 use unilateral::real::Point;
 use unilateral::scenes::{
     Scene, ball_2d, ball_3d, biactive_half_2d, biactive_ring_2d, bilateral_1d, cone, contrast,
-    contrast_disc_2d, degenerate, disc_2d, hertz_2d, hertz_3d, icelike_1d, lshape_2d,
+    contrast_disc_2d, degenerate, disc_2d, hertz_2d, hertz_3d, hill, icelike_1d, lshape_2d,
     oscillating_1d, parabola_1d, polynomial, radial_quarter_2d, signorini_2d,
     signorini_biactive_2d, signorini_closed_1d, signorini_disc, signorini_harmonic,
     signorini_irrational_2d, signorini_layers_2d, signorini_line_3d, signorini_open_1d,
@@ -120,6 +120,14 @@ fn membranes_take_the_values_of_their_formulas() {
     check(&polynomial::<3>(), &[([0.0, 0.0, r], s * s, load(3.0))], 1e-14);
     let inside = -8.0 * 0.49 * (1.0 - 0.25 + 0.49);
     check(&polynomial::<2>(), &[([0.3, 0.4], 0.0, inside)], 1e-14);
+    // in the ball and outside of it, 8 r0^2 - 16 r^2 in the plane
+    check(&hill::<1>(), &[([0.5], 0.24 * 0.24, -1.04), ([r], 0.0, 1.96 - 12.0 * 0.81)], 1e-14);
+    check(&hill::<2>(), &[([0.3, 0.4], 0.24 * 0.24, -0.08), ([0.0, r], 0.0, -9.04)], 1e-14);
+    check(
+        &hill::<3>(),
+        &[([0.3, 0.4, 0.0], 0.24 * 0.24, 0.88), ([0.0, 0.0, r], 0.0, -10.32)],
+        1e-14,
+    );
     for k in [2, 3, 4] {
         let order = f64::from(k);
         let load =
@@ -166,6 +174,7 @@ fn regularity_is_that_of_the_derivations() {
         assert_eq!(found, (sobolev, strictly), "{}", scene.name);
     }
     stated(ball_2d(), 2.5, true);
+    stated(hill::<2>(), 2.5, true);
     stated(cone::<2>(), 2.0, true);
     stated(cone::<3>(), 2.5, true);
     stated(lshape_2d(), 5.0 / 3.0, false);
